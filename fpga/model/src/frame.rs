@@ -1,0 +1,175 @@
+//! A Bayer frame: samples as they come from the sensor, row by row.
+
+use crate::Phase;
+
+/// Bits of one sample.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum BitDepth {
+    /// 8 bits, 0 to 255.
+    Eight,
+    /// 10 bits, 0 to 1023.
+    Ten,
+    /// 12 bits, 0 to 4095: the paper's system.
+    #[default]
+    Twelve,
+}
+
+impl BitDepth {
+    /// All depths, from the smallest.
+    pub const ALL: [Self; 3] = [Self::Eight, Self::Ten, Self::Twelve];
+
+    /// The number of bits: 8, 10 or 12.
+    #[must_use]
+    pub const fn bits(self) -> u32 {
+        match self {
+            Self::Eight => 8,
+            Self::Ten => 10,
+            Self::Twelve => 12,
+        }
+    }
+
+    /// The depth of `bits` bits, if it is one that the datapath has.
+    #[must_use]
+    pub fn from_bits(bits: u32) -> Option<Self> {
+        Self::ALL.into_iter().find(|depth| depth.bits() == bits)
+    }
+
+    /// The largest sample, 2^bits − 1.
+    #[must_use]
+    pub const fn max(self) -> u16 {
+        (1 << self.bits()) - 1
+    }
+}
+
+/// A frame of raw samples, one colour each, `width` × `height`, row after row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Frame {
+    width: usize,
+    depth: BitDepth,
+    phase: Phase,
+    samples: Vec<u16>,
+}
+
+/// Samples that do not make a frame.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FrameError {
+    /// A frame without samples.
+    #[error("a frame needs at least one row and two columns")]
+    Empty,
+    /// Colours alternate in pairs of columns.
+    #[error("the width {0} is odd, and Bayer columns come in pairs; crop or pad one column")]
+    OddWidth(usize),
+    /// The samples do not fill whole rows.
+    #[error("{samples} samples are no whole number of rows of {width}; check the width and the height")]
+    Ragged {
+        /// Samples given.
+        samples: usize,
+        /// Samples in a row.
+        width: usize,
+    },
+    /// A sample that the depth cannot hold.
+    #[error(
+        "the sample at row {row}, column {column} is {value}, above {max}, the largest of {bits} bits; \
+         give the depth that the file was taken with"
+    )]
+    TooBright {
+        /// Its row.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// The sample.
+        value: u16,
+        /// 2^bits − 1.
+        max: u16,
+        /// The depth.
+        bits: u32,
+    },
+}
+
+impl Frame {
+    /// A frame of `samples`, row after row, each row `width` samples.
+    ///
+    /// # Errors
+    /// [`FrameError`] when the width is odd or zero, rows are incomplete, or a sample exceeds `depth`. The limits of the
+    /// datapath (64 ≤ W ≤ 2592, H ≤ 2048) are the geometry's to check.
+    pub fn new(width: usize, depth: BitDepth, phase: Phase, samples: Vec<u16>) -> Result<Self, FrameError> {
+        if width == 0 || samples.is_empty() {
+            return Err(FrameError::Empty);
+        }
+        if width % 2 == 1 {
+            return Err(FrameError::OddWidth(width));
+        }
+        if !samples.len().is_multiple_of(width) {
+            return Err(FrameError::Ragged { samples: samples.len(), width });
+        }
+        if let Some(place) = samples.iter().position(|&sample| sample > depth.max()) {
+            return Err(FrameError::TooBright {
+                row: place / width,
+                column: place % width,
+                value: samples[place],
+                max: depth.max(),
+                bits: depth.bits(),
+            });
+        }
+        Ok(Self { width, depth, phase, samples })
+    }
+
+    /// Columns.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// Rows.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.samples.len() / self.width
+    }
+
+    /// Bits of a sample.
+    #[must_use]
+    pub fn depth(&self) -> BitDepth {
+        self.depth
+    }
+
+    /// The colours' arrangement.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.phase
+    }
+
+    /// All samples, row after row.
+    #[must_use]
+    pub fn samples(&self) -> &[u16] {
+        &self.samples
+    }
+
+    /// The samples of row `index`, which must be below [`Self::height`].
+    #[must_use]
+    pub fn row(&self, index: usize) -> &[u16] {
+        &self.samples[index * self.width..][..self.width]
+    }
+
+    /// The rows from the top.
+    pub fn rows(&self) -> std::slice::ChunksExact<'_, u16> {
+        self.samples.chunks_exact(self.width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_frame_is_refused_with_its_place() {
+        let new = |width, samples: &[u16]| Frame::new(width, BitDepth::Eight, Phase::Grbg, samples.to_vec());
+        assert_eq!(new(0, &[1, 2]), Err(FrameError::Empty));
+        assert_eq!(new(2, &[]), Err(FrameError::Empty));
+        assert_eq!(new(3, &[1, 2, 3]), Err(FrameError::OddWidth(3)));
+        assert_eq!(new(2, &[1, 2, 3]), Err(FrameError::Ragged { samples: 3, width: 2 }));
+        let too_bright = FrameError::TooBright { row: 1, column: 0, value: 256, max: 255, bits: 8 };
+        assert_eq!(new(2, &[1, 255, 256, 0]), Err(too_bright));
+        let frame = new(2, &[1, 2, 3, 255]).unwrap();
+        assert_eq!((frame.height(), frame.row(1)), (2, &[3, 255][..]));
+    }
+}
