@@ -1,0 +1,144 @@
+//! CAPABILITIES: what a board is, as a list of tagged values.
+
+use alloc::string::String;
+use alloc::vec::Vec;
+
+use crate::Malformed;
+use crate::bytes::Fields;
+
+/// What stands behind the wire, as the board itself says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum BoardNature {
+    /// An FPGA.
+    Hardware = 1,
+    /// The Verilog under simulation.
+    Simulation = 2,
+    /// The mock board.
+    Mock = 3,
+}
+
+/// The sample depths that a board has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Depths(pub u8);
+
+impl Depths {
+    /// 8, 10 and 12 bits.
+    pub const ALL: Self = Self(0b111);
+
+    /// Whether samples of `bits` bits can be configured.
+    #[must_use]
+    pub fn has(self, bits: u8) -> bool {
+        match bits {
+            8 => self.0 & 1 != 0,
+            10 => self.0 & 2 != 0,
+            12 => self.0 & 4 != 0,
+            _ => false,
+        }
+    }
+}
+
+macro_rules! capabilities {
+    ($($(#[$doc:meta])* $tag:literal $name:ident: $type:ident,)*) => {
+        /// What a board is and can do.
+        #[derive(Clone, Debug, PartialEq, Eq)]
+        pub struct Capabilities {
+            $($(#[$doc])* pub $name: $type,)*
+            /// What stands behind the wire.
+            pub nature: BoardNature,
+            /// The board's name, for people; UTF-8, at most 255 bytes.
+            pub name: String,
+        }
+
+        impl Capabilities {
+            const NATURE: u8 = 0x20;
+            const NAME: u8 = 0x21;
+
+            pub(crate) fn write(&self, payload: &mut Vec<u8>) {
+                $(tagged(payload, $tag, &self.$name.to_le_bytes());)*
+                tagged(payload, Self::NATURE, &[self.nature as u8]);
+                tagged(payload, Self::NAME, self.name.as_bytes());
+            }
+
+            pub(crate) fn read(mut fields: Fields<'_>) -> Result<Self, Malformed> {
+                $(let mut $name = None;)*
+                let (mut nature, mut name) = (None, String::new());
+                while !fields.0.is_empty() {
+                    let tag = fields.u8()?;
+                    let length = fields.u8()?;
+                    let mut value = Fields(fields.take(usize::from(length))?);
+                    match tag {
+                        $($tag => $name = Some($type::from_le_bytes(value.array()?)),)*
+                        Self::NATURE => nature = Some(BoardNature::from_code(value.u8()?)?),
+                        Self::NAME => name = String::from_utf8_lossy(value.rest()).into_owned(),
+                        _ => {}
+                    }
+                }
+                Ok(Self {
+                    $($name: $name.ok_or(Malformed::MissingCapability(stringify!($name)))?,)*
+                    nature: nature.ok_or(Malformed::MissingCapability("nature"))?,
+                    name,
+                })
+            }
+        }
+    };
+}
+
+capabilities! {
+    /// The datapath's id: which arithmetic (DATAPATH.md) the board computes.
+    0x01 datapath: u16,
+    /// The widest row, in samples.
+    0x02 max_width: u16,
+    /// The most rows of a frame.
+    0x03 max_height: u16,
+    /// Depths: bit 0 for 8, bit 1 for 10, bit 2 for 12 bits.
+    0x04 depths: u8,
+    /// 5, or 7 when the outer taps are there.
+    0x05 taps: u8,
+    /// L: a sample leaves W/2 + L pixel clocks after it entered.
+    0x06 latency: u8,
+    /// M: samples of line memory, a power of two.
+    0x07 ring: u16,
+    /// The fewest pixel clocks between two rows.
+    0x08 least_blanking: u16,
+    /// Banks of tables: 2 when one can be written while the other is used.
+    0x09 table_banks: u8,
+    /// Rows that the board holds before they are played.
+    0x0a row_banks_in: u8,
+    /// Rows that it holds until they are acknowledged.
+    0x0b row_banks_out: u8,
+    /// Ports by which the datapath reads the row table.
+    0x0c step_ports: u8,
+    /// Ports by which it reads the kernel.
+    0x0d kernel_ports: u8,
+    /// The clock that runs the core: 0 the host's own, 1 the sensor's PIXCLK, 2 a PLL.
+    0x0e clock_source: u8,
+    /// Its frequency in hertz; 0 when it stands for no real time.
+    0x0f clock_hz: u32,
+}
+
+impl Capabilities {
+    /// The sample depths.
+    #[must_use]
+    pub fn sample_depths(&self) -> Depths {
+        Depths(self.depths)
+    }
+}
+
+impl BoardNature {
+    fn from_code(code: u8) -> Result<Self, Malformed> {
+        match code {
+            1 => Ok(Self::Hardware),
+            2 => Ok(Self::Simulation),
+            3 => Ok(Self::Mock),
+            _ => Err(Malformed::Value { field: "nature", value: code.into() }),
+        }
+    }
+}
+
+fn tagged(payload: &mut Vec<u8>, tag: u8, value: &[u8]) {
+    let value = &value[..value.len().min(255)];
+    #[expect(clippy::cast_possible_truncation, reason = "cut to 255 just above")]
+    payload.extend_from_slice(&[tag, value.len() as u8]);
+    payload.extend_from_slice(value);
+}

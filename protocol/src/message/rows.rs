@@ -1,0 +1,114 @@
+//! ROW_IN and ROW_OUT: rows on their way to the core and back.
+
+use alloc::vec::Vec;
+
+use crate::Malformed;
+use crate::bytes::Fields;
+use crate::samples::packed_length;
+
+/// Which row it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RowPlace {
+    /// Counts the rows of a session, through all its frames.
+    pub row_sequence: u32,
+    /// The frame's number, as the host likes.
+    pub frame: u16,
+    /// The row of the frame, from 0 at the top.
+    pub row: u16,
+    /// Samples.
+    pub width: u16,
+    /// The last row of its frame: the core is flushed behind it.
+    pub last: bool,
+}
+
+impl RowPlace {
+    const LAST: u8 = 1;
+
+    fn write(&self, generation: u8, payload: &mut Vec<u8>) {
+        payload.extend_from_slice(&self.row_sequence.to_le_bytes());
+        payload.extend_from_slice(&self.frame.to_le_bytes());
+        payload.extend_from_slice(&self.row.to_le_bytes());
+        payload.extend_from_slice(&self.width.to_le_bytes());
+        payload.extend_from_slice(&[if self.last { Self::LAST } else { 0 }, generation]);
+    }
+
+    fn read(fields: &mut Fields<'_>) -> Result<(Self, u8), Malformed> {
+        let place = Self {
+            row_sequence: fields.u32()?,
+            frame: fields.u16()?,
+            row: fields.u16()?,
+            width: fields.u16()?,
+            last: fields.u8()? & Self::LAST != 0,
+        };
+        Ok((place, fields.u8()?))
+    }
+}
+
+fn packed_samples<'a>(fields: &mut Fields<'a>, width: u16) -> Result<&'a [u8], Malformed> {
+    fields.take(packed_length(usize::from(width)))
+}
+
+/// A row to correct.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RowIn<'a> {
+    /// Which row.
+    pub place: RowPlace,
+    /// Its samples, as [`crate::samples::pack`] packs them.
+    pub packed: &'a [u8],
+}
+
+impl<'a> RowIn<'a> {
+    pub(crate) fn write(&self, payload: &mut Vec<u8>) {
+        self.place.write(0, payload);
+        payload.extend_from_slice(self.packed);
+    }
+
+    pub(crate) fn read(mut fields: Fields<'a>) -> Result<Self, Malformed> {
+        let (place, _) = RowPlace::read(&mut fields)?;
+        let packed = packed_samples(&mut fields, place.width)?;
+        Ok(fields.end(Self { place, packed }))
+    }
+}
+
+/// A corrected row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RowOut<'a> {
+    /// Which row.
+    pub place: RowPlace,
+    /// The generation of the tables that made it.
+    pub generation: u8,
+    /// Pixel clocks from the first sample in to the first sample out.
+    pub first_latency: u16,
+    /// Pixel clocks from the last sample in to the last sample out.
+    pub last_latency: u16,
+    /// Board clocks that the enable was off while the row was played, 65535 and more as 65535.
+    pub pauses: u16,
+    /// Times that the row was sent before.
+    pub repeats: u16,
+    /// Its samples, as [`crate::samples::pack`] packs them.
+    pub packed: &'a [u8],
+}
+
+impl<'a> RowOut<'a> {
+    pub(crate) fn write(&self, payload: &mut Vec<u8>) {
+        self.place.write(self.generation, payload);
+        for field in [self.first_latency, self.last_latency, self.pauses, self.repeats] {
+            payload.extend_from_slice(&field.to_le_bytes());
+        }
+        payload.extend_from_slice(self.packed);
+    }
+
+    pub(crate) fn read(mut fields: Fields<'a>) -> Result<Self, Malformed> {
+        let (place, generation) = RowPlace::read(&mut fields)?;
+        let row = Self {
+            place,
+            generation,
+            first_latency: fields.u16()?,
+            last_latency: fields.u16()?,
+            pauses: fields.u16()?,
+            repeats: fields.u16()?,
+            packed: packed_samples(&mut fields, place.width)?,
+        };
+        Ok(fields.end(row))
+    }
+}

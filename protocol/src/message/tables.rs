@@ -1,0 +1,146 @@
+//! The tables: written into a shadow bank, read back through the ports that the datapath uses, then committed.
+
+use alloc::vec::Vec;
+
+use crate::Malformed;
+use crate::bytes::Fields;
+
+/// Bytes of a row factor on the wire: an unsigned 32-bit word that holds 25 bits.
+pub const STEP_BYTES: usize = 4;
+/// Nodes of a kernel.
+pub const NODES: usize = 65;
+/// Weights of a node, in the order g0, r1, g4, r5, g6.
+pub const NODE_WEIGHTS: usize = 5;
+/// Bytes of a node on the wire: five signed 16-bit words.
+pub const NODE_BYTES: usize = 2 * NODE_WEIGHTS;
+
+/// One of a board's two tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Table {
+    /// The row factors Q.
+    Steps = 0,
+    /// The kernel's nodes.
+    Kernel = 1,
+}
+
+impl Table {
+    /// Bytes of one entry on the wire.
+    #[must_use]
+    pub const fn entry_bytes(self) -> usize {
+        match self {
+            Self::Steps => STEP_BYTES,
+            Self::Kernel => NODE_BYTES,
+        }
+    }
+
+    fn read(fields: &mut Fields<'_>) -> Result<Self, Malformed> {
+        match fields.u8()? {
+            0 => Ok(Self::Steps),
+            1 => Ok(Self::Kernel),
+            other => Err(Malformed::Value { field: "table", value: other.into() }),
+        }
+    }
+}
+
+/// Which copy of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Bank {
+    /// The one that is written and not yet committed.
+    Shadow = 0,
+    /// The one committed last.
+    Committed = 1,
+}
+
+/// Entries of a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Span {
+    /// The table.
+    pub table: Table,
+    /// The copy.
+    pub bank: Bank,
+    /// The datapath's port that reads them, from 0.
+    pub port: u8,
+    /// The first entry.
+    pub first: u16,
+    /// How many.
+    pub count: u16,
+}
+
+impl Span {
+    pub(crate) fn write(&self, payload: &mut Vec<u8>) {
+        payload.extend_from_slice(&[self.table as u8, self.bank as u8, self.port]);
+        payload.extend_from_slice(&self.first.to_le_bytes());
+        payload.extend_from_slice(&self.count.to_le_bytes());
+    }
+
+    pub(crate) fn read(fields: &mut Fields<'_>) -> Result<Self, Malformed> {
+        let table = Table::read(fields)?;
+        let bank = match fields.u8()? {
+            0 => Bank::Shadow,
+            1 => Bank::Committed,
+            other => return Err(Malformed::Value { field: "bank", value: other.into() }),
+        };
+        Ok(Self { table, bank, port: fields.u8()?, first: fields.u16()?, count: fields.u16()? })
+    }
+}
+
+/// Entries of a table with their values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Entries<'a> {
+    /// Where they stand. A write goes to the shadow bank and through every port.
+    pub span: Span,
+    /// Their values, [`Table::entry_bytes`] each.
+    pub bytes: &'a [u8],
+}
+
+impl<'a> Entries<'a> {
+    /// Row factors, if they are the table's.
+    pub fn steps(&self) -> impl Iterator<Item = u32> + use<'a> {
+        self.bytes.as_chunks::<STEP_BYTES>().0.iter().map(|&step| u32::from_le_bytes(step))
+    }
+
+    /// Kernel nodes, if they are the table's.
+    pub fn nodes(&self) -> impl Iterator<Item = [i16; NODE_WEIGHTS]> + use<'a> {
+        self.bytes.as_chunks::<NODE_BYTES>().0.iter().map(|node| {
+            let weights = node.as_chunks::<2>().0;
+            core::array::from_fn(|tap| i16::from_le_bytes(weights[tap]))
+        })
+    }
+
+    pub(crate) fn write(&self, payload: &mut Vec<u8>) {
+        self.span.write(payload);
+        payload.extend_from_slice(self.bytes);
+    }
+
+    pub(crate) fn read(mut fields: Fields<'a>) -> Result<Self, Malformed> {
+        let span = Span::read(&mut fields)?;
+        let bytes = fields.take(usize::from(span.count) * span.table.entry_bytes())?;
+        Ok(fields.end(Self { span, bytes }))
+    }
+}
+
+/// Makes the shadow tables the next frame's.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Commit {
+    /// CRC-32 of the first H row factors, 4 bytes each.
+    pub steps_crc: u32,
+    /// CRC-32 of the 65 nodes, 10 bytes each.
+    pub kernel_crc: u32,
+    /// The generation that the tables become, 1 to 255; not the present one, so that a repeated request is known.
+    pub generation: u8,
+}
+
+impl Commit {
+    pub(crate) fn write(&self, payload: &mut Vec<u8>) {
+        payload.extend_from_slice(&self.steps_crc.to_le_bytes());
+        payload.extend_from_slice(&self.kernel_crc.to_le_bytes());
+        payload.push(self.generation);
+    }
+
+    pub(crate) fn read(mut fields: Fields<'_>) -> Result<Self, Malformed> {
+        let commit = Self { steps_crc: fields.u32()?, kernel_crc: fields.u32()?, generation: fields.u8()? };
+        Ok(fields.end(commit))
+    }
+}
