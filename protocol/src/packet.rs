@@ -31,7 +31,7 @@ pub enum Kind {
     TableRead = 0x11,
     /// The CRC-32 of entries read through a datapath port.
     TableCrc = 0x12,
-    /// Makes the shadow tables the next frame's.
+    /// Makes the shadow tables the active ones, from a frame on.
     Commit = 0x13,
     /// Sets width, height, depth, centre, blanking and gaps.
     Configure = 0x18,

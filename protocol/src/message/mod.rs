@@ -68,7 +68,7 @@ pub enum Request<'a> {
     TableRead(Span),
     /// Read entries back and say their CRC-32.
     TableCrc(Span),
-    /// Use the shadow tables from the next row 0 on.
+    /// Use the shadow tables from a frame on.
     Commit(Commit),
     /// Use this geometry.
     Configure(Configuration),

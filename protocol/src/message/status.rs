@@ -59,7 +59,7 @@ status! {
     next_row_out,
     /// 1 while a row is inside the core.
     core_busy,
-    /// The generation of the tables last committed, 0 for none.
+    /// The generation of the active tables, 0 for none.
     generation,
     /// The smallest first or last latency of a row, in pixel clocks.
     least_latency,

@@ -47,10 +47,10 @@ impl Table {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Bank {
-    /// The one that is written and not yet committed.
+    /// The one that is written.
     Shadow = 0,
-    /// The one committed last.
-    Committed = 1,
+    /// The one that rows use.
+    Active = 1,
 }
 
 /// Entries of a table.
@@ -79,7 +79,7 @@ impl Span {
         let table = Table::read(fields)?;
         let bank = match fields.u8()? {
             0 => Bank::Shadow,
-            1 => Bank::Committed,
+            1 => Bank::Active,
             other => return Err(Malformed::Value { field: "bank", value: other.into() }),
         };
         Ok(Self { table, bank, port: fields.u8()?, first: fields.u16()?, count: fields.u16()? })
@@ -121,13 +121,15 @@ impl<'a> Entries<'a> {
     }
 }
 
-/// Makes the shadow tables the next frame's.
+/// Makes the shadow tables the active ones, from a frame on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Commit {
     /// CRC-32 of the first H row factors, 4 bytes each.
     pub steps_crc: u32,
     /// CRC-32 of the 65 nodes, 10 bytes each.
     pub kernel_crc: u32,
+    /// The number of the frame whose row 0 is the first to use them.
+    pub first_frame: u16,
     /// The generation that the tables become, 1 to 255; not the present one, so that a repeated request is known.
     pub generation: u8,
 }
@@ -136,11 +138,17 @@ impl Commit {
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {
         payload.extend_from_slice(&self.steps_crc.to_le_bytes());
         payload.extend_from_slice(&self.kernel_crc.to_le_bytes());
+        payload.extend_from_slice(&self.first_frame.to_le_bytes());
         payload.push(self.generation);
     }
 
     pub(crate) fn read(mut fields: Fields<'_>) -> Result<Self, Malformed> {
-        let commit = Self { steps_crc: fields.u32()?, kernel_crc: fields.u32()?, generation: fields.u8()? };
+        let commit = Self {
+            steps_crc: fields.u32()?,
+            kernel_crc: fields.u32()?,
+            first_frame: fields.u16()?,
+            generation: fields.u8()?,
+        };
         Ok(fields.end(commit))
     }
 }
