@@ -114,6 +114,12 @@ impl Frame {
         Ok(Self { width, depth, phase, samples })
     }
 
+    /// A frame of the same size, depth and phase, for samples that are known to fit.
+    pub(crate) fn with_samples(&self, samples: Vec<u16>) -> Self {
+        debug_assert_eq!(samples.len(), self.samples.len());
+        Self { samples, ..*self }
+    }
+
     /// Columns.
     #[must_use]
     pub fn width(&self) -> usize {

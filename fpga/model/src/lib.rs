@@ -1,7 +1,36 @@
 //! The reference: what a board must compute.
+//!
+//! From the lens to the corrected frame, in the order of the data:
+//!
+//! ```text
+//! Equidistant ──► TableSet ─┐
+//! Interpolant ──► Kernel ───┼─► correct ──► Frame     the integer datapath, bit for bit
+//! Frame ────────────────────┘
+//! ```
+//!
+//! [`correct`] is the oracle: it implements `fpga/DATAPATH.md` and a board must equal it. [`correct_real`] computes the
+//! same correction in double precision, to show what the integers cost. Equation and section numbers in this crate are
+//! those of Lai et al., *Real-time distortion correction of fish-eye lens based on Bayer image signal*, Optical Review
+//! 2014. The crate knows no board, no protocol and no file.
 
 mod bayer;
+mod corrector;
 mod frame;
+mod geometry;
+mod interpolant;
+mod kernel;
+mod lens;
+mod projection;
+mod real;
+mod table;
 
 pub use bayer::{Colour, Phase, UnknownPhase};
+pub use corrector::{CorrectError, Source, correct, correct_row, source};
 pub use frame::{BitDepth, Frame, FrameError};
+pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
+pub use interpolant::{Interpolant, UnknownInterpolant};
+pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_ONE};
+pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Spherical};
+pub use projection::{exact, exact_inverse, simplified, simplified_inverse, stretch_factor};
+pub use real::{correct_real, round_to_frame};
+pub use table::{STEP_ONE, TableError, TableSet};

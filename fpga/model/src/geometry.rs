@@ -1,0 +1,139 @@
+//! The frame's geometry: what a board must know of a frame beside its samples.
+
+use crate::BitDepth;
+
+/// The narrowest frame of the datapath, in columns; half a row is then always longer than a board's fixed delay.
+pub const MIN_WIDTH: usize = 64;
+
+/// The widest frame of the datapath, in columns: the MT9P031's full row.
+pub const MAX_WIDTH: usize = 2592;
+
+/// The highest frame of the datapath, in rows.
+pub const MAX_HEIGHT: usize = 2048;
+
+/// Size, depth and optical centre of the frames that a table set is for (DATAPATH.md, "Frame").
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Geometry {
+    width: usize,
+    height: usize,
+    depth: BitDepth,
+    centre2: u32,
+}
+
+/// A geometry that the datapath does not have.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GeometryError {
+    /// A width that is odd or outside [`MIN_WIDTH`] to [`MAX_WIDTH`].
+    #[error(
+        "a width of {0} columns is not an even number from {min} to {max}; crop or pad the frame",
+        min = MIN_WIDTH,
+        max = MAX_WIDTH
+    )]
+    Width(usize),
+    /// A height outside 1 to [`MAX_HEIGHT`].
+    #[error("a height of {0} rows is outside 1 to {max}; crop the frame", max = MAX_HEIGHT)]
+    Height(usize),
+    /// An optical centre outside the frame.
+    #[error(
+        "the optical centre is at column {column}, outside the frame's 0 to {last}; \
+         give the column of the lens's axis, counted from 0"
+    )]
+    Centre {
+        /// The column given.
+        column: f64,
+        /// The frame's last column.
+        last: usize,
+    },
+}
+
+impl Geometry {
+    /// A frame of `width` columns and `height` rows, with the optical centre at column `centre2` / 2.
+    ///
+    /// # Errors
+    /// [`GeometryError`] when the width is odd or outside [`MIN_WIDTH`] to [`MAX_WIDTH`], the height is outside 1 to
+    /// [`MAX_HEIGHT`], or `centre2` is above 2W − 2.
+    pub fn new(width: usize, height: usize, depth: BitDepth, centre2: u32) -> Result<Self, GeometryError> {
+        if !(MIN_WIDTH..=MAX_WIDTH).contains(&width) || width % 2 == 1 {
+            return Err(GeometryError::Width(width));
+        }
+        if !(1..=MAX_HEIGHT).contains(&height) {
+            return Err(GeometryError::Height(height));
+        }
+        if centre2 as usize > 2 * width - 2 {
+            return Err(GeometryError::Centre { column: f64::from(centre2) / 2.0, last: width - 1 });
+        }
+        Ok(Self { width, height, depth, centre2 })
+    }
+
+    /// A frame with the optical centre in its middle: C = W − 1.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn centred(width: usize, height: usize, depth: BitDepth) -> Result<Self, GeometryError> {
+        let centre2 = u32::try_from(width.saturating_sub(1)).map_err(|_| GeometryError::Width(width))?;
+        Self::new(width, height, depth, centre2)
+    }
+
+    /// The same frame with the optical centre at `column`, rounded to half a column: C = round(2 · cx).
+    ///
+    /// # Errors
+    /// [`GeometryError::Centre`] when the rounded centre is outside columns 0 to W − 1 or is no number.
+    pub fn with_centre(self, column: f64) -> Result<Self, GeometryError> {
+        let centre2 = (2.0 * column + 0.5).floor();
+        if (0.0..=2.0 * self.width as f64 - 2.0).contains(&centre2) {
+            Ok(Self { centre2: centre2 as u32, ..self })
+        } else {
+            Err(GeometryError::Centre { column, last: self.width - 1 })
+        }
+    }
+
+    /// W: columns, even.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        self.width
+    }
+
+    /// H: rows.
+    #[must_use]
+    pub fn height(&self) -> usize {
+        self.height
+    }
+
+    /// B: bits of a sample.
+    #[must_use]
+    pub fn depth(&self) -> BitDepth {
+        self.depth
+    }
+
+    /// C: twice the column of the optical centre, 0 to 2W − 2.
+    #[must_use]
+    pub fn centre2(&self) -> u32 {
+        self.centre2
+    }
+
+    /// y of row `row`: its distance below the optical centre in rows, from `centre_y` or else from the middle
+    /// (H − 1)/2.
+    #[must_use]
+    pub fn row_offset(&self, row: usize, centre_y: Option<f64>) -> f64 {
+        row as f64 - centre_y.unwrap_or((self.height - 1) as f64 / 2.0)
+    }
+
+    /// The column whose sample P(m) stands for column `column`: itself inside the row, and the row's first or last
+    /// column of the same colour outside of it (DATAPATH.md, "Taps").
+    #[must_use]
+    pub fn sample_column(&self, column: i64) -> usize {
+        let parity = column.rem_euclid(2) as usize;
+        match usize::try_from(column) {
+            Err(_) => parity,
+            Ok(column) if column < self.width => column,
+            Ok(_) => self.width - 2 + parity,
+        }
+    }
+}
+
+impl Default for Geometry {
+    /// The paper's frame: 1920 × 1080, 12 bits, the lens in the middle (Sect. 4.2).
+    fn default() -> Self {
+        Self { width: 1920, height: 1080, depth: BitDepth::Twelve, centre2: 1919 }
+    }
+}

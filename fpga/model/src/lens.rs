@@ -1,0 +1,157 @@
+//! The lens: from a point of the fisheye image to the direction it was seen in (Eqs. 1 to 4).
+//!
+//! Image points are in pixels from the optical centre, x to the right and y down.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// The smallest image radius that a lens may have, in pixels.
+pub const MIN_RADIUS: f64 = 1.0;
+
+/// The largest image radius that a lens may have, in pixels; squares of it are still exact enough in double precision.
+pub const MAX_RADIUS: f64 = 1e9;
+
+/// A lens whose image radius grows with the angle to the axis: α = r / f (Eq. 1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equidistant {
+    focal_length: f64,
+    radius: f64,
+}
+
+/// A direction on the unit sphere, the optical axis at longitude 0, latitude 0 (Eq. 3).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spherical {
+    /// θ in radians, −π to π, positive to the right.
+    pub longitude: f64,
+    /// φ in radians, −π/2 to π/2, positive downwards as y is.
+    pub latitude: f64,
+}
+
+/// Figures that describe no lens.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LensError {
+    /// An image radius outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
+    #[error(
+        "an image radius of {0} pixels is outside {min} to {max:e}; give the distance in pixels from the optical \
+         centre to where a ray at 90 degrees lands",
+        min = MIN_RADIUS,
+        max = MAX_RADIUS
+    )]
+    Radius(f64),
+    /// A focal length that is not above zero.
+    #[error("a focal length of {0} mm is not above zero; take it from the lens's data sheet")]
+    FocalLength(f64),
+    /// A pixel pitch that is not above zero.
+    #[error("a pixel pitch of {0} um is not above zero; take it from the sensor's data sheet")]
+    PixelPitch(f64),
+    /// A field of view outside 0° to 360°.
+    #[error(
+        "a field of view of {0} degrees is outside 0 to 360; give the full angle across the image circle, \
+         180 for a hemisphere"
+    )]
+    FieldOfView(f64),
+}
+
+impl Equidistant {
+    /// The lens that images 90° off the axis at `radius_px` pixels: R of Eq. 9, so f = 2R/π.
+    ///
+    /// # Errors
+    /// [`LensError::Radius`] when the radius is outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
+    pub fn from_radius(radius_px: f64) -> Result<Self, LensError> {
+        Self::checked(radius_px / FRAC_PI_2, radius_px)
+    }
+
+    /// The lens of focal length `focal_mm` on pixels of `pixel_um`, with an image circle of `field_of_view_deg` across.
+    ///
+    /// R becomes the radius of the image circle, f · fov/2. Eq. 9 takes R as half the size of the whole image of 180°,
+    /// so 180 gives the paper's R. Another field of view stretches the rows until *its* circle fills the frame; it
+    /// changes R alone and leaves f, and with it the exact projection, as it is.
+    ///
+    /// # Errors
+    /// [`LensError`] when the focal length or the pitch is not above zero, the field of view is not above 0° and at
+    /// most 360°, or R comes out outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
+    pub fn from_focal_length(
+        focal_mm: f64,
+        pixel_um: f64,
+        field_of_view_deg: f64,
+    ) -> Result<Self, LensError> {
+        if !is_positive(focal_mm) {
+            return Err(LensError::FocalLength(focal_mm));
+        }
+        if !is_positive(pixel_um) {
+            return Err(LensError::PixelPitch(pixel_um));
+        }
+        if !is_positive(field_of_view_deg) || field_of_view_deg > 360.0 {
+            return Err(LensError::FieldOfView(field_of_view_deg));
+        }
+        let focal_length = focal_mm * 1000.0 / pixel_um;
+        Self::checked(focal_length, focal_length * field_of_view_deg.to_radians() / 2.0)
+    }
+
+    fn checked(focal_length: f64, radius: f64) -> Result<Self, LensError> {
+        if (MIN_RADIUS..=MAX_RADIUS).contains(&radius) {
+            Ok(Self { focal_length, radius })
+        } else {
+            Err(LensError::Radius(radius))
+        }
+    }
+
+    /// f in pixels.
+    #[must_use]
+    pub fn focal_length(&self) -> f64 {
+        self.focal_length
+    }
+
+    /// R in pixels: what Eq. 9 stretches by, see [`Self::from_radius`] and [`Self::from_focal_length`].
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The direction seen at the image point (`x`, `y`), as a unit vector: u right, v down, w forward (Eq. 2).
+    ///
+    /// Beyond 90° (r > πf/2) w is negative: the ray comes from behind. A point farther out than πf is no image of
+    /// anything.
+    #[must_use]
+    pub fn ray(&self, x: f64, y: f64) -> [f64; 3] {
+        let r = x.hypot(y);
+        if r == 0.0 {
+            return [0.0, 0.0, 1.0];
+        }
+        let (sine, cosine) = (r / self.focal_length).sin_cos();
+        [sine * x / r, sine * y / r, cosine]
+    }
+
+    /// The direction seen at the image point (`x`, `y`) as longitude and latitude.
+    ///
+    /// The arctangents of two arguments hold beyond 90° too, where those of Eqs. 3 and 4 would fold over, and keep their
+    /// precision next to the poles.
+    #[must_use]
+    pub fn spherical(&self, x: f64, y: f64) -> Spherical {
+        let [u, v, w] = self.ray(x, y);
+        Spherical { longitude: u.atan2(w), latitude: v.atan2(u.hypot(w)) }
+    }
+
+    /// Where the direction `ray` is imaged, (x, y) in pixels: the inverse of [`Self::ray`] for vectors of any length.
+    ///
+    /// The direction straight back is imaged all round the rim; its rightmost point stands for it. A zero vector has no
+    /// direction and gives the centre.
+    #[must_use]
+    pub fn image_point(&self, ray: [f64; 3]) -> (f64, f64) {
+        let [u, v, w] = ray;
+        let across = u.hypot(v);
+        let r = self.focal_length * across.atan2(w);
+        if across == 0.0 { (r, 0.0) } else { (r * u / across, r * v / across) }
+    }
+}
+
+impl Default for Equidistant {
+    /// The paper's lens on its sensor: 1.55 mm, 2.2 µm, 180°, so R = 1106.697 pixels (Sect. 4.2).
+    fn default() -> Self {
+        let focal_length = 1550.0 / 2.2;
+        Self { focal_length, radius: focal_length * PI / 2.0 }
+    }
+}
+
+fn is_positive(value: f64) -> bool {
+    value.is_finite() && value > 0.0
+}

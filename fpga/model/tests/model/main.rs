@@ -1,0 +1,14 @@
+//! The reference model against hand calculation, the paper's figures and values from other programs.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+mod corrector;
+mod geometry;
+mod golden;
+mod kernel;
+mod lens;
+mod projection;
+mod real;
+mod scenes;
+mod table;
