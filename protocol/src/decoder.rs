@@ -11,18 +11,18 @@ pub enum Damage {
     /// No stuffing makes these bytes.
     #[error("the byte stuffing is broken")]
     Stuffing,
-    /// More bytes than any packet has.
-    #[error("it is longer than any packet")]
-    TooLong,
-    /// Too few bytes for a header, or not as many as the header says.
-    #[error("its length is not what its header says")]
-    Length,
+    /// Fewer bytes than a header and a CRC take, or more than any packet has.
+    #[error("it is shorter or longer than any packet")]
+    Size,
     /// The bytes are not the ones that were sent.
     #[error("its CRC-32 is wrong")]
     Crc,
     /// Whole, but of a version that this crate does not speak.
     #[error("it is of version {0} of the wire, and only version {VERSION} is known here")]
     Version(u8),
+    /// Not as many bytes of payload as the header says.
+    #[error("its length is not what its header says")]
+    Length,
 }
 
 /// Finds packets in a byte stream. A zero ends a packet wherever the stream was entered, so at most the packet that was
@@ -74,15 +74,15 @@ impl Decoder {
 
     fn open(&mut self) -> Result<Packet<'_>, Damage> {
         if self.too_long {
-            return Err(Damage::TooLong);
+            return Err(Damage::Size);
         }
         let length = cobs::unstuff(&mut self.stuffed).ok_or(Damage::Stuffing)?;
         let packet = &self.stuffed[..length];
         if length > MAX_PACKET {
-            return Err(Damage::TooLong);
+            return Err(Damage::Size);
         }
-        let (body, crc) = packet.split_last_chunk::<CRC>().ok_or(Damage::Length)?;
-        let (header, payload) = body.split_first_chunk::<HEADER>().ok_or(Damage::Length)?;
+        let (body, crc) = packet.split_last_chunk::<CRC>().ok_or(Damage::Size)?;
+        let (header, payload) = body.split_first_chunk::<HEADER>().ok_or(Damage::Size)?;
         if crc32fast::hash(body) != u32::from_le_bytes(*crc) {
             return Err(Damage::Crc);
         }

@@ -15,6 +15,7 @@ extern crate alloc;
 mod bytes;
 mod cobs;
 mod decoder;
+pub mod fuzz;
 pub mod message;
 mod packet;
 pub mod samples;

@@ -57,7 +57,7 @@ macro_rules! capabilities {
             pub(crate) fn write(&self, payload: &mut Vec<u8>) {
                 $(tagged(payload, $tag, &self.$name.to_le_bytes());)*
                 tagged(payload, Self::NATURE, &[self.nature as u8]);
-                tagged(payload, Self::NAME, self.name.as_bytes());
+                tagged(payload, Self::NAME, cut(&self.name).as_bytes());
             }
 
             pub(crate) fn read(mut fields: Fields<'_>) -> Result<Self, Malformed> {
@@ -70,7 +70,7 @@ macro_rules! capabilities {
                     match tag {
                         $($tag => $name = Some($type::from_le_bytes(value.array()?)),)*
                         Self::NATURE => nature = Some(BoardNature::from_code(value.u8()?)?),
-                        Self::NAME => name = String::from_utf8_lossy(value.rest()).into_owned(),
+                        Self::NAME => name = cut(&String::from_utf8_lossy(value.rest())).into(),
                         _ => {}
                     }
                 }
@@ -136,9 +136,14 @@ impl BoardNature {
     }
 }
 
+/// As much of `text` as fits a value, in whole characters.
+fn cut(text: &str) -> &str {
+    &text[..text.floor_char_boundary(usize::from(u8::MAX))]
+}
+
+/// Appends a value of at most 255 bytes.
 fn tagged(payload: &mut Vec<u8>, tag: u8, value: &[u8]) {
-    let value = &value[..value.len().min(255)];
-    #[expect(clippy::cast_possible_truncation, reason = "cut to 255 just above")]
+    #[expect(clippy::cast_possible_truncation, reason = "integers are short, and names are cut")]
     payload.extend_from_slice(&[tag, value.len() as u8]);
     payload.extend_from_slice(value);
 }

@@ -1,0 +1,260 @@
+//! Strategies for every message of the wire. Those that borrow their bytes are kept with the bytes.
+
+use halfrow_protocol::message::{
+    Bank, BoardNature, Capabilities, Commit, Configuration, Entries, Hello, Refusal, RefusalCode, Reset,
+    ResetLevel, RowIn, RowOut, RowPlace, Span, Status, Table, Welcome,
+};
+use halfrow_protocol::samples::packed_length;
+use halfrow_protocol::{MAX_PAYLOAD, Reply, Request};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::select;
+
+/// A request that owns its bytes.
+#[derive(Clone, Debug)]
+pub(crate) enum OwnedRequest {
+    Plain(Request<'static>),
+    Echo(Vec<u8>),
+    TableWrite(Span, Vec<u8>),
+    RowIn(RowPlace, Vec<u8>),
+}
+
+impl OwnedRequest {
+    pub(crate) fn get(&self) -> Request<'_> {
+        match self {
+            Self::Plain(request) => *request,
+            Self::Echo(bytes) => Request::Echo(bytes),
+            Self::TableWrite(span, bytes) => Request::TableWrite(Entries { span: *span, bytes }),
+            Self::RowIn(place, packed) => Request::RowIn(RowIn { place: *place, packed }),
+        }
+    }
+}
+
+/// A reply that owns its bytes; a row stands here without its samples.
+#[derive(Clone, Debug)]
+pub(crate) enum OwnedReply {
+    Plain(Reply<'static>),
+    Echo(Vec<u8>),
+    TableRead(Span, Vec<u8>),
+    RowOut(RowOut<'static>, Vec<u8>),
+}
+
+impl OwnedReply {
+    pub(crate) fn get(&self) -> Reply<'_> {
+        match self {
+            Self::Plain(reply) => reply.clone(),
+            Self::Echo(bytes) => Reply::Echo(bytes),
+            Self::TableRead(span, bytes) => Reply::TableRead(Entries { span: *span, bytes }),
+            Self::RowOut(row, packed) => Reply::RowOut(RowOut { packed, ..*row }),
+        }
+    }
+}
+
+/// Any request.
+pub(crate) fn request() -> impl Strategy<Value = OwnedRequest> {
+    let plain = prop_oneof![
+        hello().prop_map(Request::Hello),
+        select(vec![Request::Capabilities, Request::RowAck]),
+        any::<bool>().prop_map(|clear| Request::Status { clear }),
+        reset().prop_map(Request::Reset),
+        span().prop_map(Request::TableRead),
+        span().prop_map(Request::TableCrc),
+        commit().prop_map(Request::Commit),
+        configuration().prop_map(Request::Configure),
+    ];
+    prop_oneof![
+        5 => plain.prop_map(OwnedRequest::Plain),
+        1 => echo().prop_map(OwnedRequest::Echo),
+        1 => entries().prop_map(|(span, bytes)| OwnedRequest::TableWrite(span, bytes)),
+        1 => row().prop_map(|(place, packed)| OwnedRequest::RowIn(place, packed)),
+    ]
+}
+
+/// Any reply, or row of a board.
+pub(crate) fn reply() -> impl Strategy<Value = OwnedReply> {
+    let plain = prop_oneof![
+        welcome().prop_map(Reply::Hello),
+        capabilities().prop_map(Reply::Capabilities),
+        status().prop_map(Reply::Status),
+        select(vec![Reply::Reset, Reply::TableWrite, Reply::Configure]),
+        any::<u32>().prop_map(Reply::TableCrc),
+        any::<u8>().prop_map(|generation| Reply::Commit { generation }),
+        refusal().prop_map(Reply::Refusal),
+    ];
+    prop_oneof![
+        5 => plain.prop_map(OwnedReply::Plain),
+        1 => echo().prop_map(OwnedReply::Echo),
+        1 => entries().prop_map(|(span, bytes)| OwnedReply::TableRead(span, bytes)),
+        1 => row_out(),
+    ]
+}
+
+/// Few bytes mostly, but up to as many as a packet takes.
+fn echo() -> impl Strategy<Value = Vec<u8>> {
+    prop_oneof![3 => vec(any::<u8>(), 0..40), 1 => vec(0..2_u8, 0..600), 1 => vec(1..=255_u8, 0..=MAX_PAYLOAD)]
+}
+
+fn hello() -> impl Strategy<Value = Hello> {
+    any::<(u32, u32, u8, u8, bool)>().prop_map(|(nonce, host, version_min, version_max, take_over)| Hello {
+        nonce,
+        host,
+        version_min,
+        version_max,
+        take_over,
+    })
+}
+
+fn welcome() -> impl Strategy<Value = Welcome> {
+    any::<(u32, u8, u8, u32, u64)>().prop_map(|(nonce, version, session, build, serial)| Welcome {
+        nonce,
+        version,
+        session,
+        build,
+        serial,
+    })
+}
+
+fn capabilities() -> impl Strategy<Value = Capabilities> {
+    let nature = select(vec![BoardNature::Hardware, BoardNature::Simulation, BoardNature::Mock]);
+    // Sixty characters are at most 240 bytes; a name has at most 255.
+    (any::<([u16; 5], [u8; 9], u32)>(), nature, "\\PC{0,60}").prop_map(
+        |((words, bytes, clock_hz), nature, name)| {
+            let [datapath, max_width, max_height, ring, least_blanking] = words;
+            let [
+                depths,
+                taps,
+                latency,
+                table_banks,
+                row_banks_in,
+                row_banks_out,
+                step_ports,
+                kernel_ports,
+                clock_source,
+            ] = bytes;
+            Capabilities {
+                datapath,
+                max_width,
+                max_height,
+                depths,
+                taps,
+                latency,
+                ring,
+                least_blanking,
+                table_banks,
+                row_banks_in,
+                row_banks_out,
+                step_ports,
+                kernel_ports,
+                clock_source,
+                clock_hz,
+                nature,
+                name,
+            }
+        },
+    )
+}
+
+fn status() -> impl Strategy<Value = Status> {
+    any::<([u32; 8], [u32; 8])>().prop_map(|(traffic, rows)| {
+        let [
+            packets,
+            crc_errors,
+            framing_errors,
+            foreign_packets,
+            refusals,
+            rows_in,
+            rows_out,
+            rows_repeated,
+        ] = traffic;
+        let [
+            rows_unneeded,
+            samples_over,
+            next_row_in,
+            next_row_out,
+            core_busy,
+            generation,
+            least_latency,
+            most_latency,
+        ] = rows;
+        Status {
+            packets,
+            crc_errors,
+            framing_errors,
+            foreign_packets,
+            refusals,
+            rows_in,
+            rows_out,
+            rows_repeated,
+            rows_unneeded,
+            samples_over,
+            next_row_in,
+            next_row_out,
+            core_busy,
+            generation,
+            least_latency,
+            most_latency,
+        }
+    })
+}
+
+fn reset() -> impl Strategy<Value = Reset> {
+    let level = select(vec![ResetLevel::Rows, ResetLevel::Session, ResetLevel::Tables]);
+    (level, any::<u32>()).prop_map(|(level, next_row)| Reset { level, next_row })
+}
+
+fn commit() -> impl Strategy<Value = Commit> {
+    any::<(u32, u32, u16, u8)>().prop_map(|(steps_crc, kernel_crc, first_frame, generation)| Commit {
+        steps_crc,
+        kernel_crc,
+        first_frame,
+        generation,
+    })
+}
+
+fn configuration() -> impl Strategy<Value = Configuration> {
+    any::<([u16; 4], u32, u8)>().prop_map(|([width, height, centre2, blanking], gap_seed, bits)| {
+        Configuration { width, height, centre2, blanking, gap_seed, bits }
+    })
+}
+
+fn span() -> impl Strategy<Value = Span> {
+    let table = select(vec![Table::Steps, Table::Kernel]);
+    let bank = select(vec![Bank::Shadow, Bank::Active]);
+    (table, bank, any::<(u8, u16, u16)>()).prop_map(|(table, bank, (port, first, count))| Span {
+        table,
+        bank,
+        port,
+        first,
+        count,
+    })
+}
+
+/// As many entries as a packet takes are 1018 row factors or 407 nodes.
+fn entries() -> impl Strategy<Value = (Span, Vec<u8>)> {
+    (span(), prop_oneof![3 => 0..9_u16, 1 => 0..=407_u16, 1 => Just(1018)]).prop_flat_map(|(span, most)| {
+        let count = if span.table == Table::Kernel { most.min(407) } else { most };
+        (Just(Span { count, ..span }), vec(any::<u8>(), usize::from(count) * span.table.entry_bytes()))
+    })
+}
+
+/// A row and its packed samples, up to the 2592 that the datapath goes to.
+fn row() -> impl Strategy<Value = (RowPlace, Vec<u8>)> {
+    let half_width = prop_oneof![3 => 32..40_u16, 1 => 32..=1296_u16];
+    (half_width, any::<(u32, u16, u16, bool)>()).prop_flat_map(|(half, (row_sequence, frame, row, last))| {
+        let place = RowPlace { row_sequence, frame, row, width: 2 * half, last };
+        (Just(place), vec(any::<u8>(), packed_length(usize::from(place.width))))
+    })
+}
+
+fn row_out() -> impl Strategy<Value = OwnedReply> {
+    (row(), any::<(u8, [u16; 4])>()).prop_map(|((place, packed), (generation, latencies))| {
+        let [first_latency, last_latency, pauses, repeats] = latencies;
+        let row = RowOut { place, generation, first_latency, last_latency, pauses, repeats, packed: &[] };
+        OwnedReply::RowOut(row, packed)
+    })
+}
+
+fn refusal() -> impl Strategy<Value = Refusal> {
+    let code = (1..=12_u8).prop_filter_map("a refusal's code", RefusalCode::from_code);
+    (code, any::<(u8, u16)>()).prop_map(|(code, (kind, detail))| Refusal { code, kind, detail })
+}

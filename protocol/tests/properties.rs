@@ -1,0 +1,267 @@
+//! What holds for every message and on every link: what was sent arrives as it was or not at all, and damage ends at the
+//! next zero.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that they call.
+#![allow(clippy::expect_used)]
+
+mod messages;
+
+use halfrow_protocol::{
+    Damage, Decoder, Encoder, Header, Kind, MAX_PAYLOAD, Malformed, Packet, Reply, Request, TooLong, fuzz,
+};
+use messages::{OwnedReply, OwnedRequest, reply, request};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::Index;
+
+fn header() -> impl Strategy<Value = Header> {
+    any::<(u16, bool, u8, u32)>().prop_map(|(sequence, reply, session, window)| Header {
+        kind: 0,
+        sequence,
+        reply,
+        session,
+        window,
+    })
+}
+
+/// The sizes of the reads in which a link delivers its bytes, over and over.
+fn reads() -> impl Strategy<Value = Vec<usize>> {
+    vec(prop_oneof![1..8_usize, 1..4000_usize], 1..12)
+}
+
+fn encode(header: &Header, write_payload: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let mut wire = Vec::new();
+    Encoder::new().encode(header, write_payload, &mut wire).expect("a payload that fits");
+    wire
+}
+
+fn payload_of(write: impl FnOnce(&mut Vec<u8>)) -> Vec<u8> {
+    let mut payload = Vec::new();
+    write(&mut payload);
+    payload
+}
+
+fn receive(mut wire: &[u8], reads: &[usize]) -> Vec<Result<(Header, Vec<u8>), Damage>> {
+    let mut decoder = Decoder::new();
+    let mut events = Vec::new();
+    for &read in reads.iter().cycle() {
+        let (mut now, later) = wire.split_at(read.min(wire.len()));
+        while let Some(event) = decoder.next(&mut now) {
+            events.push(event.map(|packet| (packet.header, packet.payload.to_vec())));
+        }
+        wire = later;
+        if wire.is_empty() {
+            break;
+        }
+    }
+    events
+}
+
+/// Requests that have fields of fixed places; the bytes of ECHO end where the payload ends.
+fn request_with_fields() -> impl Strategy<Value = OwnedRequest> {
+    request().prop_filter("it has no fields", |request| {
+        !matches!(request.get().kind(), Kind::Echo | Kind::Capabilities | Kind::RowAck)
+    })
+}
+
+/// Replies that have fields of fixed places; ECHO and the list of CAPABILITIES end where the payload ends.
+fn reply_with_fields() -> impl Strategy<Value = OwnedReply> {
+    reply().prop_filter("it has no fields", |reply| match reply.get() {
+        Reply::Reset | Reply::TableWrite | Reply::Configure => false,
+        reply => !matches!(reply.kind(), Kind::Echo | Kind::Capabilities),
+    })
+}
+
+fn packet(kind: Kind, payload: &[u8]) -> Packet<'_> {
+    Packet { header: Header { kind: kind.code(), ..Header::default() }, payload }
+}
+
+proptest! {
+    #[test]
+    fn requests_arrive_as_they_were_sent(sent in vec((header(), request()), 1..6), reads in reads()) {
+        let (mut encoder, mut wire) = (Encoder::new(), Vec::new());
+        for (header, request) in &sent {
+            let request = request.get();
+            let header = Header { kind: request.kind().code(), ..*header };
+            prop_assert_eq!(encoder.encode(&header, |payload| request.write(payload), &mut wire), Ok(()));
+        }
+        let events = receive(&wire, &reads);
+        prop_assert_eq!(events.len(), sent.len());
+        for (event, (header, request)) in events.into_iter().zip(&sent) {
+            let (found, payload) = event.expect("a packet");
+            prop_assert_eq!(found, Header { kind: request.get().kind().code(), ..*header });
+            prop_assert_eq!(Request::read(&Packet { header: found, payload: &payload }), Ok(request.get()));
+        }
+    }
+
+    #[test]
+    fn replies_arrive_as_they_were_sent(sent in vec((header(), reply()), 1..6), reads in reads()) {
+        let (mut encoder, mut wire) = (Encoder::new(), Vec::new());
+        for (header, reply) in &sent {
+            let reply = reply.get();
+            let header = Header { kind: reply.kind().code(), ..*header };
+            prop_assert_eq!(encoder.encode(&header, |payload| reply.write(payload), &mut wire), Ok(()));
+        }
+        let events = receive(&wire, &reads);
+        prop_assert_eq!(events.len(), sent.len());
+        for (event, (header, reply)) in events.into_iter().zip(&sent) {
+            let (found, payload) = event.expect("a packet");
+            prop_assert_eq!(found, Header { kind: reply.get().kind().code(), ..*header });
+            prop_assert_eq!(Reply::read(&Packet { header: found, payload: &payload }), Ok(reply.get()));
+        }
+    }
+
+    #[test]
+    fn a_request_that_lost_bytes_is_too_short(request in request_with_fields(), cut in any::<Index>()) {
+        let request = request.get();
+        let payload = payload_of(|payload| request.write(payload));
+        let rest = &payload[..cut.index(payload.len())];
+        prop_assert_eq!(Request::read(&packet(request.kind(), rest)), Err(Malformed::Length));
+    }
+
+    #[test]
+    fn a_reply_that_lost_bytes_is_too_short(reply in reply_with_fields(), cut in any::<Index>()) {
+        let reply = reply.get();
+        let payload = payload_of(|payload| reply.write(payload));
+        let rest = &payload[..cut.index(payload.len())];
+        prop_assert_eq!(Reply::read(&packet(reply.kind(), rest)), Err(Malformed::Length));
+    }
+
+    #[test]
+    fn bytes_behind_the_fields_change_nothing(
+        request in request_with_fields(), reply in reply_with_fields(), more in vec(any::<u8>(), 0..20)
+    ) {
+        let (request, reply) = (request.get(), reply.get());
+        let longer = [payload_of(|payload| request.write(payload)), more.clone()].concat();
+        prop_assert_eq!(Request::read(&packet(request.kind(), &longer)), Ok(request));
+        let longer = [payload_of(|payload| reply.write(payload)), more].concat();
+        prop_assert_eq!(Reply::read(&packet(reply.kind(), &longer)), Ok(reply));
+    }
+
+    #[test]
+    fn a_payload_over_its_limit_is_not_sent(over in prop_oneof![Just(1), 1..3000_usize], before in vec(any::<u8>(), 0..9)) {
+        let (mut encoder, mut wire) = (Encoder::new(), before.clone());
+        let length = MAX_PAYLOAD + over;
+        let result = encoder.encode(&Header::default(), |payload| payload.resize(payload.len() + length, 7), &mut wire);
+        prop_assert_eq!((result, &wire), (Err(TooLong(length)), &before));
+    }
+
+    #[test]
+    fn any_bytes_keep_every_promise_of_the_wire(bytes in prop_oneof![
+        vec(any::<u8>(), 0..9000), vec(0..6_u8, 0..200), vec(1..=255_u8, 4000..9000)
+    ]) {
+        fuzz::decode(&bytes);
+    }
+}
+
+#[test]
+fn no_flipped_bit_of_a_packet_goes_unnoticed() {
+    let header = Header { sequence: 0x1234, session: 7, window: 0x89ab_cdef, ..Header::default() };
+    let wire = encode(&header, |payload| payload.extend(0..40));
+    for bit in 8..8 * (wire.len() - 1) {
+        let mut damaged = wire.clone();
+        damaged[bit / 8] ^= 1 << (bit % 8);
+        assert!(receive(&damaged, &[damaged.len()]).iter().all(Result::is_err), "bit {bit}");
+    }
+}
+
+/// What a link does to the bytes of one packet and its two zeros.
+#[derive(Clone, Debug)]
+enum Blow {
+    Flip(Index, u8),
+    Drop(Index, usize),
+    Repeat(Index, usize),
+    Truncate(Index),
+    Insert(Index, Vec<u8>),
+}
+
+impl Blow {
+    /// Repeats are shorter than any packet: a link that repeats whole packets repeats what was sent, and it is for the
+    /// sequence numbers to tell.
+    fn any() -> impl Strategy<Value = Self> {
+        let place = any::<Index>;
+        prop_oneof![
+            (place(), 0..8_u8).prop_map(|(place, bit)| Self::Flip(place, bit)),
+            (place(), 1..40_usize).prop_map(|(place, count)| Self::Drop(place, count)),
+            (place(), 1..16_usize).prop_map(|(place, count)| Self::Repeat(place, count)),
+            place().prop_map(Self::Truncate),
+            (place(), vec(any::<u8>(), 1..40)).prop_map(|(place, bytes)| Self::Insert(place, bytes)),
+        ]
+    }
+
+    fn strike(&self, frame: &mut Vec<u8>) {
+        let place = |index: &Index| index.index(frame.len() + 1);
+        match self {
+            Self::Flip(index, bit) => {
+                let place = place(index);
+                frame.get_mut(place).into_iter().for_each(|byte| *byte ^= 1 << bit);
+            }
+            Self::Drop(index, count) => {
+                let place = place(index);
+                frame.drain(place..(place + count).min(frame.len()));
+            }
+            Self::Repeat(index, count) => {
+                let place = place(index);
+                let bytes = frame[place..(place + count).min(frame.len())].to_vec();
+                frame.splice(place..place, bytes);
+            }
+            Self::Truncate(index) => frame.truncate(place(index)),
+            Self::Insert(index, bytes) => {
+                let place = place(index);
+                frame.splice(place..place, bytes.iter().copied());
+            }
+        }
+    }
+}
+
+/// A payload, what the link does to its packet (often nothing), and the noise in front of it.
+fn passage() -> impl Strategy<Value = (Vec<u8>, Vec<Blow>, Vec<u8>)> {
+    let payload =
+        prop_oneof![4 => vec(any::<u8>(), 0..60), 1 => vec(prop_oneof![Just(0), any::<u8>()], 0..1500)];
+    let noise = prop_oneof![2 => Just(vec![]), 1 => vec(any::<u8>(), 0..60), 1 => vec(0..4_u8, 0..20), 1 => vec(1..=255_u8, 4000..9000)];
+    (payload, prop_oneof![2 => Just(vec![]), 3 => vec(Blow::any(), 1..4)], noise)
+}
+
+/// The bytes that come out of the link. With `share` a packet leaves its first zero out if a zero is there already.
+fn disturb(passages: &[(Vec<u8>, Vec<Blow>, Vec<u8>)], share: bool) -> Vec<u8> {
+    let mut wire = Vec::new();
+    for (sequence, (payload, blows, noise)) in (0..).zip(passages) {
+        wire.extend_from_slice(noise);
+        let header = Header { kind: Kind::Echo.code(), sequence, ..Header::default() };
+        let mut frame = encode(&header, |out| out.extend_from_slice(payload));
+        blows.iter().for_each(|blow| blow.strike(&mut frame));
+        if share && blows.is_empty() && wire.last() == Some(&0) {
+            frame.remove(0);
+        }
+        wire.extend(frame);
+    }
+    wire
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn a_damaged_link_loses_packets_but_never_alters_reorders_or_invents_one(
+        passages in vec(passage(), 1..12), share in any::<bool>(), reads in reads()
+    ) {
+        let delivered: Vec<_> = receive(&disturb(&passages, share), &reads).into_iter().flatten().collect();
+        for (header, payload) in &delivered {
+            let sent = passages.get(usize::from(header.sequence)).map(|(payload, ..)| payload);
+            let expected = Header { kind: Kind::Echo.code(), sequence: header.sequence, ..Header::default() };
+            prop_assert_eq!((header, Some(payload)), (&expected, sent));
+        }
+        prop_assert!(delivered.is_sorted_by(|(one, _), (next, _)| one.sequence < next.sequence));
+    }
+
+    #[test]
+    fn every_whole_packet_arrives_whatever_is_in_front_of_it(
+        passages in vec(passage(), 1..12), share in any::<bool>(), reads in reads()
+    ) {
+        let delivered: Vec<_> = receive(&disturb(&passages, share), &reads).into_iter().flatten().collect();
+        for (sequence, (payload, ..)) in (0..).zip(&passages).filter(|(_, (_, blows, _))| blows.is_empty()) {
+            let arrived = |(header, found): &(Header, Vec<u8>)| header.sequence == sequence && found == payload;
+            prop_assert!(delivered.iter().any(arrived), "packet {} is lost", sequence);
+        }
+    }
+}
