@@ -1,1 +1,25 @@
-//! Placeholder.
+//! Tells whether a board that straightens fisheye Bayer video computes what it should, and if not, what is broken.
+//!
+//! ```text
+//!  target ──► link ──► board ──┐                      ┌─► verdict
+//!  tables, kernel, frames ─────┼─► session ─► compare ┼─► report
+//!  halfrow_model ──────────────┘                      └─► diagnosis
+//! ```
+//!
+//! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`session`] is the one that knows the order of
+//! things. [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
+
+pub mod board;
+pub mod commands;
+pub mod compare;
+pub mod diagnosis;
+pub mod frames;
+pub mod link;
+pub mod progress;
+pub mod report;
+pub mod session;
+pub mod settings;
+pub mod tables;
+pub mod target;
+pub mod verdict;
+pub mod written_aside;

@@ -1,1 +1,47 @@
-//! Placeholder.
+//! A board in Rust: it corrects a frame as the hardware does, one pixel clock at a time.
+//!
+//! ```text
+//! Options (the build) ─┐
+//! Settings (the run) ──┼─► Player ─ one sample a pixel clock ─► Core ─ half a row later ─► OutBanks
+//! Tables (two banks) ──┘   blanking, gaps, flush               ring, window, weights
+//! ```
+//!
+//! [`Core`] is the datapath with its one ring of samples and its timing. [`Player`] feeds it rows and measures how
+//! long each takes. [`Tables`] hold the stretch factors and the kernel in a shadow bank and a committed one.
+//! [`BoardFault`] breaks one part of the board on purpose, so that a judge of boards can be judged.
+//!
+//! The crate shares no arithmetic with the reference model: both follow `fpga/DATAPATH.md` on their own.
+
+mod banks;
+mod board;
+mod core;
+mod defects;
+mod delay;
+mod depth;
+mod faults;
+mod gaps;
+mod kernel;
+mod options;
+mod player;
+mod reader;
+mod ring;
+mod settings;
+mod source;
+mod tables;
+mod value;
+mod weights;
+mod window;
+mod wire;
+
+pub use crate::banks::{OutBanks, RowName, RowOut};
+pub use crate::board::Board;
+pub use crate::core::{Core, Entering, Leaving, RowBinding};
+pub use crate::depth::Depth;
+pub use crate::faults::{BoardFault, FaultError, FaultInfo, Parameters, Place, catalogue};
+pub use crate::kernel::{Kernel, NODES, Node, Weight};
+pub use crate::options::{OptionError, Options, TapCount};
+pub use crate::player::{PlayError, Player, RowIn};
+pub use crate::settings::{Settings, SettingsError};
+pub use crate::tables::{Bank, Bound, Port, TABLE_BANKS, TableError, Tables, UNSTRETCHED};
+pub use crate::value::ValueError;
+pub use crate::wire::{Disconnected, Wire, WireError, WireFault, WireFaultError, WireOptions, WireValueError};

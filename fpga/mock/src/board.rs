@@ -1,0 +1,170 @@
+//! The board behind the wire: packets in, packets out, as `protocol/WIRE.md` says.
+
+mod identity;
+mod rows;
+mod session;
+mod setup;
+
+use std::time::Duration;
+
+use halfrow_protocol::message::{Entries, Malformed, Refusal, RefusalCode, Reply, Request, ResetLevel, Status};
+use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Packet};
+
+use crate::faults::BoardFault;
+use crate::options::{OptionError, Options};
+use crate::player::Player;
+use crate::tables::Tables;
+
+use rows::RowBanks;
+use session::Session;
+
+/// Why a request is refused, with the detail that goes with the reason.
+type Refused = (RefusalCode, u16);
+
+/// A board. It takes no time of its own: everything that can be done is done when bytes arrive.
+#[derive(Debug)]
+pub struct Board {
+    options: Options,
+    fault: Option<BoardFault>,
+    decoder: Decoder,
+    encoder: Encoder,
+    outgoing: Vec<u8>,
+    session: Session,
+    tables: Tables,
+    player: Player,
+    configured: bool,
+    rows: RowBanks,
+    status: Status,
+}
+
+impl Board {
+    /// A board of the build `options` that was just switched on.
+    ///
+    /// # Errors
+    /// If the options do not describe a build that can exist.
+    pub fn new(options: &Options, fault: Option<BoardFault>) -> Result<Self, OptionError> {
+        Ok(Self {
+            options: options.clone(),
+            fault,
+            decoder: Decoder::new(),
+            encoder: Encoder::new(),
+            outgoing: Vec::new(),
+            session: Session::default(),
+            tables: Tables::new(options, fault),
+            player: Player::new(options, fault)?,
+            configured: false,
+            rows: RowBanks::new(options.row_banks_in),
+            status: Status::default(),
+        })
+    }
+
+    /// Takes bytes from the host at the time `now` since the board was switched on.
+    pub fn receive(&mut self, bytes: &[u8], now: Duration) {
+        let mut decoder = std::mem::take(&mut self.decoder);
+        let mut bytes = bytes;
+        while let Some(packet) = decoder.next(&mut bytes) {
+            match packet {
+                Ok(packet) => self.packet(&packet, now),
+                Err(Damage::Crc) => count(&mut self.status.crc_errors),
+                Err(_) => count(&mut self.status.framing_errors),
+            }
+            self.play();
+        }
+        self.decoder = decoder;
+    }
+
+    /// Bytes that wait to be sent to the host.
+    pub fn outgoing(&mut self) -> &mut Vec<u8> {
+        &mut self.outgoing
+    }
+
+    fn packet(&mut self, packet: &Packet<'_>, now: Duration) {
+        let header = packet.header;
+        count(&mut self.status.packets);
+        if self.session.is_open(header.session) {
+            self.session.heard(now);
+            self.rows.acknowledge(header.window);
+            self.free_acknowledged();
+        } else if header.kind != Kind::Hello.code() {
+            count(&mut self.status.foreign_packets);
+            if header.kind != Kind::RowAck.code() {
+                self.refuse(&header, (RefusalCode::Session, 0));
+            }
+            return;
+        }
+        let done = match Request::read(packet) {
+            Ok(request) => self.carry_out(&header, &request, now),
+            Err(Malformed::Kind(_)) => Err((RefusalCode::Kind, 0)),
+            Err(_) => Err((RefusalCode::Payload, 0)),
+        };
+        if let Err(refused) = done {
+            self.refuse(&header, refused);
+        }
+    }
+
+    fn carry_out(&mut self, header: &Header, request: &Request<'_>, now: Duration) -> Result<(), Refused> {
+        let read;
+        let reply = match request {
+            Request::Hello(hello) => Reply::Hello(self.greet(hello, now)?),
+            Request::Capabilities => Reply::Capabilities(self.capabilities()),
+            Request::Status { clear } => Reply::Status(self.report(*clear)),
+            Request::Reset(reset) => {
+                self.reset(reset);
+                Reply::Reset
+            }
+            Request::Echo(bytes) => Reply::Echo(bytes),
+            Request::TableWrite(entries) => {
+                self.write_entries(entries)?;
+                Reply::TableWrite
+            }
+            Request::TableRead(span) => {
+                read = self.read_entries(span)?;
+                Reply::TableRead(Entries { span: *span, bytes: &read })
+            }
+            Request::TableCrc(span) => Reply::TableCrc(crc32fast::hash(&self.read_entries(span)?)),
+            Request::Commit(commit) => {
+                self.commit(commit)?;
+                Reply::Commit { generation: commit.generation }
+            }
+            Request::Configure(configuration) => {
+                self.configure(configuration)?;
+                Reply::Configure
+            }
+            Request::RowIn(row) => return self.row_in(row),
+            Request::RowAck => return Ok(()),
+        };
+        self.reply(header, &reply);
+        if matches!(request, Request::Reset(reset) if reset.level == ResetLevel::Session) {
+            self.session.close();
+        }
+        Ok(())
+    }
+
+    fn reply(&mut self, request: &Header, reply: &Reply<'_>) {
+        // A refusal to a foreign session carries that session's number, so that its host can tell.
+        let foreign = !self.session.is_open(request.session) && request.session != 0;
+        let header = Header {
+            kind: reply.kind().code(),
+            sequence: request.sequence,
+            reply: true,
+            session: if foreign { request.session } else { self.session.number() },
+            window: self.rows.credit(),
+        };
+        self.send(&header, reply);
+    }
+
+    fn refuse(&mut self, request: &Header, (code, detail): Refused) {
+        count(&mut self.status.refusals);
+        self.reply(request, &Reply::Refusal(Refusal { code, kind: request.kind, detail }));
+    }
+
+    fn send(&mut self, header: &Header, reply: &Reply<'_>) {
+        // Nothing that a board says is longer than a packet, and what it cannot say it leaves unsaid.
+        let _ = self.encoder.encode(header, |payload| reply.write(payload), &mut self.outgoing);
+    }
+}
+
+/// Counts one more, up to the counter's end.
+fn count(counter: &mut u32) {
+    *counter = counter.saturating_add(1);
+}

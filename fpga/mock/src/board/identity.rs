@@ -1,0 +1,60 @@
+//! What the board says of itself.
+
+use halfrow_protocol::message::{BoardNature, Capabilities, Status};
+
+use super::Board;
+use crate::faults::BoardFault;
+use crate::options::TapCount;
+use crate::tables::TABLE_BANKS;
+
+/// The arithmetic of fpga/DATAPATH.md.
+const DATAPATH: u16 = 1;
+/// Ports by which the datapath reads row factors.
+pub(super) const STEP_PORTS: u8 = 1;
+/// Ports by which it reads nodes: i and i + 1 at once.
+pub(super) const KERNEL_PORTS: u8 = 2;
+
+impl Board {
+    pub(super) fn capabilities(&self) -> Capabilities {
+        let options = &self.options;
+        let claims_more = u8::from(self.fault == Some(BoardFault::WrongLatencyClaim));
+        let another = u16::from(self.fault == Some(BoardFault::WrongDatapath));
+        Capabilities {
+            datapath: DATAPATH + another,
+            max_width: options.max_width,
+            max_height: options.max_height,
+            depths: options.depths.iter().map(|depth| 1 << ((depth.bits() - 8) / 2)).sum(),
+            taps: match options.taps {
+                TapCount::Five => 5,
+                TapCount::Seven => 7,
+            },
+            latency: options.latency + claims_more,
+            ring: options.ring_size(),
+            least_blanking: options.least_blanking,
+            table_banks: TABLE_BANKS,
+            row_banks_in: options.row_banks_in,
+            row_banks_out: options.row_banks_out,
+            step_ports: STEP_PORTS,
+            kernel_ports: KERNEL_PORTS,
+            clock_source: 0,
+            clock_hz: options.pixel_clock,
+            nature: BoardNature::Mock,
+            name: "halfrow mock board".to_owned(),
+        }
+    }
+
+    /// The counters, which `clear` sets back.
+    pub(super) fn report(&mut self, clear: bool) -> Status {
+        let status = Status {
+            next_row_in: self.rows.next_row_in(),
+            next_row_out: self.rows.acknowledged(),
+            core_busy: u32::from(!self.player.banks.is_idle()),
+            generation: self.tables.generation().into(),
+            ..self.status
+        };
+        if clear {
+            self.status = Status::default();
+        }
+        status
+    }
+}

@@ -1,0 +1,118 @@
+//! Who talks to the board.
+
+use std::time::Duration;
+
+use halfrow_protocol::VERSION;
+use halfrow_protocol::message::{Hello, RefusalCode, Reset, ResetLevel, Status, Welcome};
+
+use super::rows::RowBanks;
+use super::{Board, Refused};
+use crate::player::Player;
+use crate::tables::Tables;
+
+/// After this silence another host may have the board.
+const SILENCE: Duration = Duration::from_secs(10);
+
+/// The open session, if there is one.
+#[derive(Debug, Default)]
+pub(super) struct Session {
+    holder: Option<Holder>,
+    last_number: u8,
+}
+
+#[derive(Debug)]
+struct Holder {
+    nonce: u32,
+    host: u32,
+    heard: Duration,
+}
+
+impl Session {
+    /// The number of the open session, 0 for none.
+    pub(super) fn number(&self) -> u8 {
+        if self.holder.is_some() { self.last_number } else { 0 }
+    }
+
+    pub(super) fn is_open(&self, number: u8) -> bool {
+        number != 0 && number == self.number()
+    }
+
+    /// The holder was heard.
+    pub(super) fn heard(&mut self, now: Duration) {
+        if let Some(holder) = &mut self.holder {
+            holder.heard = now;
+        }
+    }
+
+    pub(super) fn close(&mut self) {
+        self.holder = None;
+    }
+
+    /// What is left of the silence that a host other than `host` has to wait for.
+    fn held_for(&self, host: u32, now: Duration) -> Duration {
+        match &self.holder {
+            Some(holder) if holder.host != host => (holder.heard + SILENCE).saturating_sub(now),
+            _ => Duration::ZERO,
+        }
+    }
+
+    fn open(&mut self, hello: &Hello, now: Duration) {
+        self.last_number = self.last_number.checked_add(1).unwrap_or(1);
+        self.holder = Some(Holder { nonce: hello.nonce, host: hello.host, heard: now });
+    }
+
+    fn was_opened_by(&self, hello: &Hello) -> bool {
+        self.holder
+            .as_ref()
+            .is_some_and(|holder| (holder.nonce, holder.host) == (hello.nonce, hello.host))
+    }
+}
+
+impl Board {
+    /// Opens a session, or answers again the greeting that opened it.
+    pub(super) fn greet(&mut self, hello: &Hello, now: Duration) -> Result<Welcome, Refused> {
+        if !(hello.version_min..=hello.version_max).contains(&VERSION) {
+            return Err((RefusalCode::Version, VERSION.into()));
+        }
+        let left = self.session.held_for(hello.host, now);
+        if !left.is_zero() && !hello.take_over {
+            let tenths = left.as_millis().div_ceil(100);
+            return Err((RefusalCode::Held, u16::try_from(tenths).unwrap_or(u16::MAX)));
+        }
+        if !self.session.was_opened_by(hello) {
+            self.session.open(hello, now);
+            self.drop_rows(0);
+            self.rows = RowBanks::new(self.options.row_banks_in);
+            self.status = Status::default();
+        }
+        Ok(Welcome {
+            nonce: hello.nonce,
+            version: VERSION,
+            session: self.session.number(),
+            build: 0,
+            serial: 0,
+        })
+    }
+
+    /// Drops what `reset` says. The session itself is closed when the reply is out.
+    pub(super) fn reset(&mut self, reset: &Reset) {
+        self.drop_rows(reset.next_row);
+        if reset.level == ResetLevel::Tables {
+            self.tables = Tables::new(&self.options, self.fault);
+            self.configured = false;
+        }
+    }
+
+    /// Drops the rows in the banks and in the core, and a commit that waits for one of them.
+    fn drop_rows(&mut self, next_row: u32) {
+        self.rows.restart(next_row);
+        self.tables.forget_commit();
+        let settings = self.player.settings().clone();
+        // The same build with the same settings stood before, so it can be made again.
+        if let Ok(mut player) = Player::new(&self.options, self.fault)
+            && player.configure(settings).is_ok()
+        {
+            self.player = player;
+        }
+    }
+}

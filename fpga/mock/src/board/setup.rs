@@ -1,0 +1,118 @@
+//! Geometry and tables: written, read back through the datapath's ports, committed.
+
+use halfrow_protocol::message::{
+    Bank, Commit, Configuration, Entries, NODES, RefusalCode, Span, Table,
+};
+
+use super::identity::{KERNEL_PORTS, STEP_PORTS};
+use super::{Board, Refused};
+use crate::depth::Depth;
+use crate::kernel::Node;
+use crate::settings::{Settings, SettingsError};
+use crate::tables::{self, Port, TableError};
+
+impl Board {
+    pub(super) fn configure(&mut self, wanted: &Configuration) -> Result<(), Refused> {
+        if !self.player.banks.is_idle() || self.rows.is_waiting() {
+            return Err((RefusalCode::Busy, 0));
+        }
+        let settings = Settings {
+            width: wanted.width,
+            height: wanted.height,
+            centre2: wanted.centre2,
+            depth: Depth::from_bits(wanted.bits).ok_or((RefusalCode::Range, 5))?,
+            blanking: wanted.blanking,
+            gap_seed: wanted.gap_seed,
+        };
+        self.player.configure(settings).map_err(|error| match error {
+            SettingsError::Busy => (RefusalCode::Busy, 0),
+            SettingsError::Width { .. } => (RefusalCode::Range, 0),
+            SettingsError::Height { .. } => (RefusalCode::Range, 1),
+            SettingsError::Centre { .. } => (RefusalCode::Range, 2),
+            SettingsError::Blanking { .. } => (RefusalCode::Range, 3),
+            SettingsError::Depth { .. } => (RefusalCode::Range, 5),
+        })?;
+        self.configured = true;
+        Ok(())
+    }
+
+    pub(super) fn write_entries(&mut self, entries: &Entries<'_>) -> Result<(), Refused> {
+        let Span { table, bank, first, .. } = entries.span;
+        if bank != Bank::Shadow {
+            return Err((RefusalCode::Range, first));
+        }
+        if self.player.banks.holds_generation(self.tables.shadow_generation()) {
+            return Err((RefusalCode::Busy, 0));
+        }
+        let first = usize::from(first);
+        let written = match table {
+            Table::Steps => self.tables.write_factors(first, &entries.steps().collect::<Vec<_>>()),
+            Table::Kernel => {
+                self.tables.write_nodes(first, &entries.nodes().map(Node::from).collect::<Vec<_>>())
+            }
+        };
+        let entry = |place: usize| u16::try_from(place).unwrap_or(u16::MAX);
+        written.map_err(|error| match error {
+            TableError::NoSuchEntry { entry: place, .. } => (RefusalCode::Range, entry(place)),
+            TableError::Factor { row, .. } => (RefusalCode::Range, entry(row)),
+            TableError::OuterTaps { node } => (RefusalCode::Taps, entry(node)),
+            TableError::CommitPending { .. } => (RefusalCode::Busy, 0),
+        })
+    }
+
+    /// The bytes of entries as the datapath's port reads them.
+    pub(super) fn read_entries(&self, span: &Span) -> Result<Vec<u8>, Refused> {
+        let Span { table, bank, port, first, count } = *span;
+        if !self.player.banks.is_idle() {
+            return Err((RefusalCode::Busy, 0));
+        }
+        let (ports, entries) = match table {
+            Table::Steps => (STEP_PORTS, usize::from(self.options.max_height)),
+            Table::Kernel => (KERNEL_PORTS, NODES),
+        };
+        let (start, end) = (usize::from(first), usize::from(first) + usize::from(count));
+        if port >= ports || end > entries {
+            return Err((RefusalCode::Range, first));
+        }
+        let bank = match bank {
+            Bank::Shadow => tables::Bank::Shadow,
+            Bank::Active => tables::Bank::Active,
+        };
+        Ok(match table {
+            Table::Steps => (start..end)
+                .filter_map(|row| self.tables.factor(bank, row, Port::ReadBack))
+                .flat_map(u32::to_le_bytes)
+                .collect(),
+            Table::Kernel => {
+                let kernel = self.tables.kernel(bank, Port::ReadBack);
+                let nodes = kernel.nodes.iter().take(end).skip(start);
+                nodes.flat_map(Node::words).flat_map(i16::to_le_bytes).collect()
+            }
+        })
+    }
+
+    pub(super) fn commit(&mut self, commit: &Commit) -> Result<(), Refused> {
+        if self.tables.has_generation(commit.generation) {
+            return Ok(());
+        }
+        if !self.configured {
+            return Err((RefusalCode::NotReady, 0));
+        }
+        if commit.generation == 0 {
+            return Err((RefusalCode::Range, 0));
+        }
+        let height = self.player.settings().height;
+        for (table, ports, count, crc) in [
+            (Table::Steps, STEP_PORTS, height, commit.steps_crc),
+            (Table::Kernel, KERNEL_PORTS, NODES as u16, commit.kernel_crc),
+        ] {
+            for port in 0..ports {
+                let span = Span { table, bank: Bank::Shadow, port, first: 0, count };
+                if crc32fast::hash(&self.read_entries(&span)?) != crc {
+                    return Err((RefusalCode::TableCrc, table as u16));
+                }
+            }
+        }
+        self.tables.commit(commit.generation, commit.first_frame).map_err(|_| (RefusalCode::Busy, 0))
+    }
+}

@@ -1,0 +1,127 @@
+//! The corrector: samples in, corrected samples out half a row later, clock for clock as in hardware.
+
+use std::sync::Arc;
+
+use crate::defects::Defects;
+use crate::delay::DelayLine;
+use crate::depth::Depth;
+use crate::faults::BoardFault;
+use crate::kernel::Kernel;
+use crate::options::{OptionError, Options};
+use crate::reader::Reader;
+use crate::ring::Ring;
+
+/// Samples that must have entered beyond half a row before a column can be read; part of the latency L.
+const LOOK_AHEAD: u32 = 3;
+
+/// What a row is bound to when its first sample enters. It keeps it until its last sample has left.
+#[derive(Clone, Debug)]
+pub struct RowBinding {
+    /// Columns W.
+    pub width: u16,
+    /// Twice the optical centre's column, C.
+    pub centre2: u16,
+    /// Bits a sample; outputs are clamped to it.
+    pub depth: Depth,
+    /// The row's table entry Q, 1/k in units of 2^-24 (Eq. 9).
+    pub factor: u32,
+    /// The interpolation kernel.
+    pub kernel: Arc<Kernel>,
+}
+
+/// A sample that enters.
+#[derive(Clone, Copy, Debug)]
+pub struct Entering<'a> {
+    /// The sample; its low 12 bits count.
+    pub sample: u16,
+    /// With the first sample of a row, what the row is bound to.
+    pub begins: Option<&'a RowBinding>,
+}
+
+/// A sample that leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Leaving {
+    /// The corrected sample.
+    pub sample: u16,
+    /// Its column, from 0.
+    pub column: u16,
+}
+
+/// A row that has begun to enter and has not yet begun to be read.
+#[derive(Debug)]
+struct Waiting {
+    binding: RowBinding,
+    base: usize,
+    clocks: u32,
+}
+
+/// The datapath with its one ring of samples.
+///
+/// Inside a row every pixel clock must carry a sample; a source that pauses stops clocking the core. Between rows any
+/// number of pixel clocks may pass without one. The sample of column j leaves W/2 + L pixel clocks after it entered.
+#[derive(Debug)]
+pub struct Core {
+    ring: Ring,
+    waiting: Option<Waiting>,
+    leaving: Option<Reader>,
+    delay: DelayLine,
+    defects: Defects,
+    latency: u32,
+}
+
+impl Core {
+    /// A core of the build `options`, empty, its ring all zero.
+    ///
+    /// # Errors
+    /// If the options do not describe a build that can exist.
+    pub fn new(options: &Options, fault: Option<BoardFault>) -> Result<Self, OptionError> {
+        options.check()?;
+        let defects = Defects::of(fault);
+        let latency = u32::from(options.latency) + defects.extra_delay;
+        Ok(Self {
+            ring: Ring::new(options.ring_size().into(), defects.address_lines, defects.data_lines),
+            waiting: None,
+            leaving: None,
+            delay: DelayLine::new((latency - LOOK_AHEAD) as usize),
+            defects,
+            latency,
+        })
+    }
+
+    /// Pixel clocks D = W/2 + L between a sample and its output in rows of `width` columns, as the core really is.
+    #[must_use]
+    pub fn delay(&self, width: u16) -> u32 {
+        u32::from(width) / 2 + self.latency
+    }
+
+    /// One pixel clock, with a sample or without one. Returns the output that is taken at the same clock edge.
+    pub fn clock(&mut self, input: Option<Entering<'_>>) -> Option<Leaving> {
+        if let Some(entering) = input {
+            self.enter(entering);
+        }
+        self.begin_reading();
+        let made = self.leaving.as_mut().and_then(|row| row.make(&self.ring, &self.defects));
+        self.delay.step(made)
+    }
+
+    /// Writes a sample into the ring; a row's first one sets the time of its first read.
+    fn enter(&mut self, entering: Entering<'_>) {
+        if let Some(binding) = entering.begins {
+            let clocks = u32::from(binding.width) / 2 + LOOK_AHEAD;
+            self.waiting = Some(Waiting { binding: binding.clone(), base: self.ring.next_address(), clocks });
+        }
+        self.ring.write(entering.sample);
+    }
+
+    /// Lets the waiting row follow the one that leaves, once its time has come.
+    fn begin_reading(&mut self) {
+        match &mut self.waiting {
+            None => {}
+            Some(waiting) if waiting.clocks > 0 => waiting.clocks -= 1,
+            Some(waiting) => {
+                self.leaving = Some(Reader::start(&waiting.binding, waiting.base, &self.ring, &self.defects));
+                self.waiting = None;
+            }
+        }
+    }
+}

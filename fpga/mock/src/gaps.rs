@@ -1,0 +1,52 @@
+//! The pattern of pauses that a seed stands for. The RTL draws the same numbers.
+
+/// A seeded pattern of pauses; none at all with the seed 0.
+#[derive(Debug, Default)]
+pub(crate) struct Gaps {
+    state: u32,
+}
+
+impl Gaps {
+    /// Starts the pattern, as at the first row of every frame.
+    pub(crate) fn start(&mut self, seed: u32) {
+        self.state = seed;
+    }
+
+    /// Blank pixel clocks to be added before a row, 0 to 15. One draw.
+    pub(crate) fn extra_blanking(&mut self) -> u32 {
+        self.draw() & 0xF
+    }
+
+    /// Whether the pixel enable is off for one board clock before a sample. One draw.
+    pub(crate) fn pauses(&mut self) -> bool {
+        // Zero is the one state that the generator neither reaches nor leaves, so it can stand for "no gaps".
+        self.state != 0 && self.draw() & 0x7 == 0
+    }
+
+    /// The next number of Marsaglia's xorshift32.
+    fn draw(&mut self) -> u32 {
+        self.state ^= self.state << 13;
+        self.state ^= self.state >> 17;
+        self.state ^= self.state << 5;
+        self.state
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Gaps;
+
+    #[test]
+    fn the_generator_is_marsaglias() {
+        let mut gaps = Gaps::default();
+        gaps.start(2_463_534_242);
+        assert_eq!(gaps.draw(), 723_471_715);
+    }
+
+    #[test]
+    fn the_seed_0_means_no_gaps() {
+        let mut gaps = Gaps::default();
+        gaps.start(0);
+        assert!((0..1000).all(|_| !gaps.pauses() && gaps.extra_blanking() == 0));
+    }
+}

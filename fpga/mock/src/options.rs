@@ -1,0 +1,165 @@
+//! What a build of the board has: the constants that synthesis fixes and the board advertises.
+
+use crate::depth::Depth;
+use crate::value::{Limits, ValueError, parse_word};
+
+const LATENCY: Limits = Limits::new("latency", 4, 32);
+const RING: Limits = Limits::new("ring", 64, 16384);
+const LEAST_BLANKING: Limits = Limits::new("least-blanking", 0, 4095);
+const ROW_BANKS_IN: Limits = Limits::new("row-banks-in", 2, 255);
+const ROW_BANKS_OUT: Limits = Limits::new("row-banks-out", 2, 255);
+const MAX_WIDTH: Limits = Limits::new("max-width", 64, 2592);
+const MAX_HEIGHT: Limits = Limits::new("max-height", 1, 2048);
+const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
+
+/// The name of the option that lists the depths, as in `depths=8+12`.
+const DEPTHS: &str = "depths";
+
+/// An option that no build can have.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum OptionError {
+    /// One option by itself is wrong.
+    #[error(transparent)]
+    Value(#[from] ValueError),
+    /// The ring's addresses would not wrap.
+    #[error("ring={ring} is not a power of two; give one from 64 to 16384")]
+    RingNotPowerOfTwo {
+        /// Samples in the ring.
+        ring: u16,
+    },
+    /// The ring does not hold a row.
+    #[error(
+        "ring={ring} is shorter than a row of max-width={max_width}; make the ring larger or the width less"
+    )]
+    RingTooShort {
+        /// Samples in the ring.
+        ring: u16,
+        /// Columns of the widest row.
+        max_width: u16,
+    },
+    /// Rows have an even width, since colours come in pairs.
+    #[error("max-width={max_width} is odd; give an even one")]
+    OddWidth {
+        /// Columns of the widest row.
+        max_width: u16,
+    },
+    /// No depth is left.
+    #[error("depths is empty; give at least one of 8, 10 and 12")]
+    NoDepth,
+}
+
+/// How many taps a build weighs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TapCount {
+    /// R1 to R5: enough for Hermite, linear and nearest, not for Keys.
+    Five,
+    /// G0 to G6: any kernel.
+    Seven,
+}
+
+/// The constants of a build.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Pixel clocks L that an output leaves after half a row, 4 to 32; three are look-ahead, the rest pipeline.
+    pub latency: u8,
+    /// Samples M in the ring, a power of two; none for the least that holds the widest row.
+    pub ring: Option<u16>,
+    /// Pixel clocks that the build needs between rows, 0 to 4095.
+    pub least_blanking: u16,
+    /// Rows that wait to be played, 2 to 255.
+    pub row_banks_in: u8,
+    /// Rows that were played and wait to be fetched, 2 to 255.
+    pub row_banks_out: u8,
+    /// Taps of the core.
+    pub taps: TapCount,
+    /// Columns of the widest row, even, 64 to 2592.
+    pub max_width: u16,
+    /// Rows of the highest frame, 1 to 2048.
+    pub max_height: u16,
+    /// Bits a sample that the board can be set to.
+    pub depths: Vec<Depth>,
+    /// Pixel clock in Hz, 1 to 10^9. Told to the host, not kept to.
+    pub pixel_clock: u32,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            latency: 12,
+            ring: None,
+            least_blanking: 0,
+            row_banks_in: 4,
+            row_banks_out: 4,
+            taps: TapCount::Seven,
+            max_width: 2048,
+            max_height: 2048,
+            depths: Depth::ALL.to_vec(),
+            pixel_clock: 96_000_000,
+        }
+    }
+}
+
+impl Options {
+    /// Sets one option from text, as in `latency=12`. Returns false, with nothing changed, for a key that is no option.
+    ///
+    /// # Errors
+    /// If the value is outside the option's own range. Whether options fit each other is for [`Self::check`] to say,
+    /// so that their order does not matter.
+    pub fn set(&mut self, key: &str, value: &str) -> Result<bool, OptionError> {
+        match key {
+            "latency" => self.latency = LATENCY.parse(value)?,
+            "ring" => self.ring = Some(RING.parse(value)?),
+            "least-blanking" => self.least_blanking = LEAST_BLANKING.parse(value)?,
+            "row-banks-in" => self.row_banks_in = ROW_BANKS_IN.parse(value)?,
+            "row-banks-out" => self.row_banks_out = ROW_BANKS_OUT.parse(value)?,
+            "max-width" => self.max_width = MAX_WIDTH.parse(value)?,
+            "max-height" => self.max_height = MAX_HEIGHT.parse(value)?,
+            "pixel-clock" => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
+            "taps" => {
+                self.taps =
+                    parse_word("taps", value, &[("five", TapCount::Five), ("seven", TapCount::Seven)])?;
+            }
+            DEPTHS => self.depths = parse_depths(value)?,
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+
+    /// Samples M in the ring.
+    #[must_use]
+    pub fn ring_size(&self) -> u16 {
+        self.ring.unwrap_or_else(|| self.max_width.next_power_of_two())
+    }
+
+    /// Whether a build with these options can exist.
+    ///
+    /// # Errors
+    /// Names the first option that is out of range or does not fit another.
+    pub fn check(&self) -> Result<(), OptionError> {
+        LATENCY.check(self.latency.into())?;
+        LEAST_BLANKING.check(self.least_blanking.into())?;
+        ROW_BANKS_IN.check(self.row_banks_in.into())?;
+        ROW_BANKS_OUT.check(self.row_banks_out.into())?;
+        MAX_WIDTH.check(self.max_width.into())?;
+        MAX_HEIGHT.check(self.max_height.into())?;
+        PIXEL_CLOCK.check(self.pixel_clock.into())?;
+        let (ring, max_width) = (self.ring_size(), self.max_width);
+        RING.check(ring.into())?;
+        if !ring.is_power_of_two() {
+            return Err(OptionError::RingNotPowerOfTwo { ring });
+        }
+        if ring < max_width {
+            return Err(OptionError::RingTooShort { ring, max_width });
+        }
+        if max_width % 2 != 0 {
+            return Err(OptionError::OddWidth { max_width });
+        }
+        if self.depths.is_empty() { Err(OptionError::NoDepth) } else { Ok(()) }
+    }
+}
+
+/// The depths in a list like `8+12`.
+fn parse_depths(text: &str) -> Result<Vec<Depth>, ValueError> {
+    let known = [("8", Depth::Eight), ("10", Depth::Ten), ("12", Depth::Twelve)];
+    text.split('+').map(|word| parse_word(DEPTHS, word, &known)).collect()
+}

@@ -1,0 +1,210 @@
+//! Plays rows through the core as a sensor would, and measures how long they take.
+
+use crate::banks::{OutBanks, RowName};
+use crate::core::{Core, Entering, RowBinding};
+use crate::faults::BoardFault;
+use crate::gaps::Gaps;
+use crate::options::{OptionError, Options};
+use crate::settings::{Settings, SettingsError};
+use crate::tables::Tables;
+
+/// A row to be played.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RowIn {
+    /// The row sequence number, handed on to the row's output.
+    pub sequence: u32,
+    /// The frame's number.
+    pub frame: u16,
+    /// The row in its frame, from 0.
+    pub row: u16,
+    /// Whether it is the last of its frame, so that the core is flushed behind it.
+    pub last: bool,
+    /// Its samples, W of them.
+    pub samples: Vec<u16>,
+}
+
+/// A row that the player does not take.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum PlayError {
+    /// All out-banks are in use.
+    #[error("no out-bank is free; fetch a corrected row first")]
+    NoBank,
+    /// The row does not have the width that was set.
+    #[error("the row has {samples} samples where {width} are set; send rows of the width that was set")]
+    Width {
+        /// Samples of the row.
+        samples: usize,
+        /// Columns that were set.
+        width: u16,
+    },
+    /// The row is not in the frame that was set.
+    #[error("row {row} is not in a frame of {height} rows; send rows below {height}")]
+    Row {
+        /// The row's number.
+        row: u16,
+        /// Rows that were set.
+        height: u16,
+    },
+}
+
+/// Plays rows through the core, one sample a pixel clock.
+///
+/// Between rows it stops the pixel enable, so the time until the next row is there adds no pixel clock. The output of
+/// a row is complete when half of the next one has entered, or when the core was flushed behind the last of a frame.
+#[derive(Debug)]
+pub struct Player {
+    core: Core,
+    options: Options,
+    settings: Settings,
+    gaps: Gaps,
+    pixel_clock: u64,
+    /// Pixel clocks without a sample that bring the rest of a frame's last row out.
+    flush: u32,
+    /// Where corrected rows wait to be fetched.
+    pub banks: OutBanks,
+}
+
+impl Player {
+    /// A player with an empty core and the settings of power-up.
+    ///
+    /// # Errors
+    /// If the options do not describe a build that can exist.
+    pub fn new(options: &Options, fault: Option<BoardFault>) -> Result<Self, OptionError> {
+        let lost_row = match fault {
+            Some(BoardFault::LostRow { row }) => Some(row),
+            _ => None,
+        };
+        Ok(Self {
+            core: Core::new(options, fault)?,
+            options: options.clone(),
+            settings: Settings::at_power_up(options),
+            gaps: Gaps::default(),
+            pixel_clock: 0,
+            flush: 0,
+            banks: OutBanks::new(options.row_banks_out, lost_row),
+        })
+    }
+
+    /// The present settings.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// Changes the settings.
+    ///
+    /// # Errors
+    /// If a row is inside the core, or the build cannot run with the settings.
+    pub fn configure(&mut self, settings: Settings) -> Result<(), SettingsError> {
+        if !self.banks.is_idle() {
+            return Err(SettingsError::Busy);
+        }
+        settings.check(&self.options)?;
+        self.settings = settings;
+        Ok(())
+    }
+
+    /// Plays a row: the blanking before it, then its samples with the gaps between them. Row 0 starts a frame: the pattern
+    /// of gaps starts anew, and a commit for this frame takes effect. If the last row of the frame before has not left
+    /// yet, its rest leaves meanwhile.
+    ///
+    /// # Errors
+    /// If no out-bank is free or the row does not fit the settings. Nothing is played then.
+    pub fn play(&mut self, row: &RowIn, tables: &mut Tables) -> Result<(), PlayError> {
+        self.check(row)?;
+        let mut blanking = u32::from(self.settings.blanking);
+        if row.row == 0 {
+            self.gaps.start(self.settings.gap_seed);
+            tables.start_frame(row.frame);
+        } else {
+            blanking += self.gaps.extra_blanking();
+        }
+        if !self.banks.is_idle() {
+            self.blank(blanking);
+        }
+        self.enter(row, tables);
+        self.flush = if row.last { self.core.delay(self.settings.width) } else { 0 };
+        Ok(())
+    }
+
+    /// Brings the rest of a frame's last row out, if that is the row that was played last.
+    pub fn flush(&mut self) {
+        self.blank(self.flush);
+        self.flush = 0;
+    }
+
+    fn check(&self, row: &RowIn) -> Result<(), PlayError> {
+        let &Settings { width, height, .. } = &self.settings;
+        if row.samples.len() != usize::from(width) {
+            return Err(PlayError::Width { samples: row.samples.len(), width });
+        }
+        if row.row >= height {
+            return Err(PlayError::Row { row: row.row, height });
+        }
+        if self.banks.has_room() { Ok(()) } else { Err(PlayError::NoBank) }
+    }
+
+    /// Lets the samples of a row enter, bound to what the tables hold now.
+    fn enter(&mut self, row: &RowIn, tables: &mut Tables) {
+        let bound = tables.bind(row.row);
+        let &RowIn { sequence, frame, row: number, .. } = row;
+        let name = RowName { sequence, frame, row: number, generation: bound.generation };
+        let &Settings { width, centre2, depth, .. } = &self.settings;
+        let binding = RowBinding { width, centre2, depth, factor: bound.factor, kernel: bound.kernel };
+        let mut begins = Some(&binding);
+        let mut pauses = 0_u16;
+        self.banks.open(name, row.samples.len(), self.pixel_clock);
+        for &sample in &row.samples {
+            pauses = pauses.saturating_add(self.gaps.pauses().into());
+            self.tick(Some(Entering { sample, begins: begins.take() }));
+        }
+        self.banks.entered(pauses, self.pixel_clock - 1);
+    }
+
+    /// Lets pixel clocks pass without a sample.
+    fn blank(&mut self, clocks: u32) {
+        for _ in 0..clocks {
+            self.tick(None);
+        }
+    }
+
+    /// One pixel clock.
+    fn tick(&mut self, input: Option<Entering<'_>>) {
+        if let Some(leaving) = self.core.clock(input) {
+            self.banks.collect(leaving, self.pixel_clock);
+        }
+        self.pixel_clock += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pixel clocks of a frame of four rows of 2048 samples, which the core leaves after 1036.
+    fn clocks_of_a_frame(blanking: u16, gap_seed: u32) -> u64 {
+        let options = Options::default();
+        let mut player = Player::new(&options, None).unwrap();
+        let mut tables = Tables::new(&options, None);
+        player.configure(Settings { blanking, gap_seed, ..Settings::at_power_up(&options) }).unwrap();
+        for row in 0..4 {
+            let samples = vec![0; 2048];
+            player.play(&RowIn { sequence: 0, frame: 0, row, last: row == 3, samples }, &mut tables).unwrap();
+            player.banks.fetch();
+        }
+        player.flush();
+        player.pixel_clock
+    }
+
+    #[test]
+    fn blanking_stands_before_every_row_but_the_first() {
+        assert_eq!(clocks_of_a_frame(0, 0), 4 * 2048 + 1036);
+        assert_eq!(clocks_of_a_frame(100, 0), 4 * 2048 + 1036 + 3 * 100);
+    }
+
+    /// The seed 1 adds 7, 7 and 6 clocks before the rows 1 to 3; drawn in Python.
+    #[test]
+    fn a_seed_adds_blanking_before_every_row_but_the_first() {
+        assert_eq!(clocks_of_a_frame(100, 1), clocks_of_a_frame(100, 0) + 7 + 7 + 6);
+    }
+}

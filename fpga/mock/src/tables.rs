@@ -1,0 +1,284 @@
+//! The tables that rows are made with, in two banks: one is written while rows use the other.
+
+use std::sync::Arc;
+
+use crate::faults::BoardFault;
+use crate::kernel::{Kernel, NODES, Node};
+use crate::options::{Options, TapCount};
+
+/// Banks of tables: a shadow bank and an active one.
+pub const TABLE_BANKS: u8 = 2;
+
+/// The table entry of a row that is not stretched, 1.0; also the largest.
+pub const UNSTRETCHED: u32 = 1 << 24;
+
+/// A write or a commit that the tables refuse.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TableError {
+    /// The entry is not in the table.
+    #[error("entry {entry} is not in a table of {entries}; write entries below {entries}")]
+    NoSuchEntry {
+        /// The entry's number.
+        entry: usize,
+        /// Entries of the table.
+        entries: usize,
+    },
+    /// The factor is zero or above one.
+    #[error("the factor {factor} of row {row} is out of range; give 1 to {UNSTRETCHED}")]
+    Factor {
+        /// The entry's row.
+        row: usize,
+        /// What was to be written.
+        factor: u32,
+    },
+    /// The build has five taps and the kernel needs seven.
+    #[error("node {node} weighs G0 or G6, which this five-tap build lacks; use a five-tap kernel")]
+    OuterTaps {
+        /// The node's number.
+        node: usize,
+    },
+    /// The shadow bank has been committed and no row has used it yet.
+    #[error("the shadow bank waits for row 0 of frame {first_frame}; play that row first")]
+    CommitPending {
+        /// The frame that the commit takes effect with.
+        first_frame: u16,
+    },
+}
+
+/// A bank of tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bank {
+    /// The one that is written.
+    Shadow,
+    /// The one that rows use.
+    Active,
+}
+
+/// Who reads a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Port {
+    /// The datapath, when a row begins.
+    Datapath,
+    /// The host, to see what the datapath sees.
+    ReadBack,
+}
+
+/// What a row takes from the tables when its first sample enters.
+#[derive(Clone, Debug)]
+pub struct Bound {
+    /// The row's table entry Q.
+    pub factor: u32,
+    /// The kernel.
+    pub kernel: Arc<Kernel>,
+    /// The generation that the row will be named after.
+    pub generation: u8,
+}
+
+/// The contents of one bank.
+#[derive(Debug)]
+struct Contents {
+    factors: Vec<u32>,
+    kernel: Arc<Kernel>,
+    generation: u8,
+}
+
+/// A commit that has not taken effect yet.
+#[derive(Debug)]
+struct Commit {
+    generation: u8,
+    first_frame: u16,
+}
+
+/// Both banks of tables, and the faults that lie in them.
+#[derive(Debug)]
+pub struct Tables {
+    shadow: Contents,
+    active: Contents,
+    commit: Option<Commit>,
+    taps: TapCount,
+    fault: Option<BoardFault>,
+    rows_bound: u32,
+}
+
+impl Tables {
+    /// The tables of a board that was just switched on: generation 0, nothing stretched, all weights zero.
+    #[must_use]
+    pub fn new(options: &Options, fault: Option<BoardFault>) -> Self {
+        let contents = || Contents {
+            factors: vec![UNSTRETCHED; options.max_height.into()],
+            kernel: Arc::default(),
+            generation: 0,
+        };
+        Self {
+            shadow: contents(),
+            active: contents(),
+            commit: None,
+            taps: options.taps,
+            fault,
+            rows_bound: 0,
+        }
+    }
+
+    /// Writes factors into the shadow bank, from the row `first` on: all of them or, on an error, none.
+    ///
+    /// # Errors
+    /// If a row is not in the table, a factor is not from 1 to 2^24, or the shadow bank waits for its frame.
+    pub fn write_factors(&mut self, first: usize, factors: &[u32]) -> Result<(), TableError> {
+        self.check_writable()?;
+        let entries = span(&mut self.shadow.factors, first, factors.len())?;
+        if let Some(place) = factors.iter().position(|factor| !(1..=UNSTRETCHED).contains(factor)) {
+            return Err(TableError::Factor { row: first + place, factor: factors[place] });
+        }
+        entries.copy_from_slice(factors);
+        Ok(())
+    }
+
+    /// Writes kernel nodes into the shadow bank, from the node `first` on: all of them or, on an error, none.
+    ///
+    /// # Errors
+    /// If a node is not in the kernel, needs taps that the build lacks, or the shadow bank waits for its frame.
+    pub fn write_nodes(&mut self, first: usize, nodes: &[Node]) -> Result<(), TableError> {
+        self.check_writable()?;
+        let entries = span(&mut Arc::make_mut(&mut self.shadow.kernel).nodes, first, nodes.len())?;
+        if self.taps == TapCount::Five
+            && let Some(place) = nodes.iter().position(Node::needs_outer_taps)
+        {
+            return Err(TableError::OuterTaps { node: first + place });
+        }
+        entries.copy_from_slice(nodes);
+        Ok(())
+    }
+
+    /// Commits the shadow bank: from row 0 of `first_frame` on it is the active one and has this generation.
+    ///
+    /// # Errors
+    /// If an earlier commit has not taken effect yet.
+    pub fn commit(&mut self, generation: u8, first_frame: u16) -> Result<(), TableError> {
+        self.check_writable()?;
+        self.commit = Some(Commit { generation, first_frame });
+        Ok(())
+    }
+
+    /// Row 0 of `frame` begins: a commit for this frame takes effect.
+    pub fn start_frame(&mut self, frame: u16) {
+        if let Some(commit) = self.commit.take_if(|commit| commit.first_frame == frame) {
+            std::mem::swap(&mut self.shadow, &mut self.active);
+            self.active.generation = commit.generation;
+            self.rows_bound = 0;
+        }
+    }
+
+    /// What the row that begins now is bound to.
+    pub fn bind(&mut self, row: u16) -> Bound {
+        self.drift();
+        let stale = matches!(self.fault, Some(BoardFault::StaleTable { .. }));
+        let bank = if stale { Bank::Shadow } else { Bank::Active };
+        let named_after = match self.fault {
+            Some(BoardFault::StaleTable { hidden: false }) => Bank::Shadow,
+            _ => Bank::Active,
+        };
+        Bound {
+            factor: self.factor(bank, row.into(), Port::Datapath).unwrap_or(UNSTRETCHED),
+            kernel: self.kernel(bank, Port::Datapath),
+            generation: self.contents(named_after).generation,
+        }
+    }
+
+    /// The factor of a row as a port sees it; none for a row that is not in the table.
+    #[must_use]
+    pub fn factor(&self, bank: Bank, row: usize, port: Port) -> Option<u32> {
+        let stored = *self.contents(bank).factors.get(row)?;
+        Some(match self.fault {
+            Some(BoardFault::RowFactor { row: faulty, bit, hidden }) if row == usize::from(faulty) => {
+                if shows(hidden, port) { flipped(stored, bit) } else { stored }
+            }
+            _ => stored,
+        })
+    }
+
+    /// The kernel as a port sees it.
+    #[must_use]
+    pub fn kernel(&self, bank: Bank, port: Port) -> Arc<Kernel> {
+        let mut kernel = Arc::clone(&self.contents(bank).kernel);
+        if let Some(BoardFault::KernelWord { node, weight, bit, hidden }) = self.fault
+            && shows(hidden, port)
+            && usize::from(node) < NODES
+        {
+            let word = Arc::make_mut(&mut kernel).nodes[usize::from(node)].word_mut(weight);
+            *word = flipped(u32::from(word.cast_unsigned()), bit) as i16;
+        }
+        kernel
+    }
+
+    /// The generation of the active bank, 0 before the first commit took effect.
+    #[must_use]
+    pub fn generation(&self) -> u8 {
+        self.active.generation
+    }
+
+    /// The generation of the shadow bank: of rows that entered before the last commit took effect.
+    #[must_use]
+    pub fn shadow_generation(&self) -> u8 {
+        self.shadow.generation
+    }
+
+    /// Whether this generation is the active one, or waits for its frame.
+    #[must_use]
+    pub fn has_generation(&self, generation: u8) -> bool {
+        let waits = self.commit.as_ref().is_some_and(|commit| commit.generation == generation);
+        waits || generation != 0 && self.active.generation == generation
+    }
+
+    /// Whether row 0 of `frame` finds committed tables.
+    #[must_use]
+    pub fn are_ready_for(&self, frame: u16) -> bool {
+        self.active.generation != 0 || self.commit.as_ref().is_some_and(|commit| commit.first_frame == frame)
+    }
+
+    /// Forgets a commit that has not taken effect. Its tables stay in the shadow bank.
+    pub fn forget_commit(&mut self) {
+        self.commit = None;
+    }
+
+    fn contents(&self, bank: Bank) -> &Contents {
+        match bank {
+            Bank::Shadow => &self.shadow,
+            Bank::Active => &self.active,
+        }
+    }
+
+    fn check_writable(&self) -> Result<(), TableError> {
+        match self.commit {
+            Some(Commit { first_frame, .. }) => Err(TableError::CommitPending { first_frame }),
+            None => Ok(()),
+        }
+    }
+
+    /// Lets a drifting entry flip once its time has come.
+    fn drift(&mut self) {
+        if let Some(BoardFault::DriftingTable { after, row, bit }) = self.fault
+            && after == self.rows_bound
+            && let Some(factor) = self.active.factors.get_mut(usize::from(row))
+        {
+            *factor = flipped(*factor, bit);
+        }
+        self.rows_bound = self.rows_bound.wrapping_add(1);
+    }
+}
+
+/// The entries `first` to `first + count` of a table.
+fn span<T>(table: &mut [T], first: usize, count: usize) -> Result<&mut [T], TableError> {
+    let entries = table.len();
+    let end = first.saturating_add(count);
+    table.get_mut(first..end).ok_or(TableError::NoSuchEntry { entry: end.saturating_sub(1), entries })
+}
+
+/// Whether a faulty word shows at a port: everywhere, or only to the datapath.
+fn shows(hidden: bool, port: Port) -> bool {
+    !hidden || port == Port::Datapath
+}
+
+/// A word with one bit flipped. A bit beyond the word leaves it as it is.
+fn flipped(word: u32, bit: u8) -> u32 {
+    word ^ 1_u32.checked_shl(bit.into()).unwrap_or(0)
+}

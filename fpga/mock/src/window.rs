@@ -1,0 +1,44 @@
+//! The window of samples that serves all taps of one output.
+
+/// Samples in the window: columns n − 3 to n + 4, so that a tap set at a = n and one at a = n − 1 both fit.
+const SAMPLES: usize = 8;
+
+/// Columns of the window left of n.
+const LEFT: i32 = 3;
+
+/// Columns of the window right of n. The sample that enters when n moves is this far ahead of it.
+const RIGHT: i32 = 4;
+
+/// Taps of an output, G0 to G6.
+pub(crate) const TAPS: usize = 7;
+
+/// The eight samples around the source column n. One enters when n moves on by one, in place of the leftmost.
+#[derive(Debug)]
+pub(crate) struct Window {
+    samples: [i32; SAMPLES],
+    leftmost: usize,
+    n: i32,
+}
+
+impl Window {
+    /// The window at a row's start, loaded whole; `read` gives the row's sample at a column.
+    pub(crate) fn load(n: i32, read: impl Fn(i32) -> u16) -> Self {
+        let samples = std::array::from_fn(|place| i32::from(read(n - LEFT + place as i32)));
+        Self { samples, leftmost: 0, n }
+    }
+
+    /// Moves the window to the source column `n`, reading at most one sample. The port has no time for a second.
+    pub(crate) fn follow(&mut self, n: i32, read: impl Fn(i32) -> u16) {
+        if n != self.n {
+            self.n = n;
+            self.samples[self.leftmost] = i32::from(read(n + RIGHT));
+            self.leftmost = (self.leftmost + 1) % SAMPLES;
+        }
+    }
+
+    /// The seven taps G0 to G6 of an output whose base column a is n, or n − 1 if `left_of_n`.
+    pub(crate) fn taps(&self, left_of_n: bool) -> [i32; TAPS] {
+        let first = self.leftmost + usize::from(!left_of_n);
+        std::array::from_fn(|tap| self.samples[(first + tap) % SAMPLES])
+    }
+}

@@ -1,0 +1,162 @@
+//! The wire: a board behind a byte pipe, on a virtual clock.
+//!
+//! ```text
+//! host ── exchange ─► Lane to the board ─► Board::receive
+//!          │           speed, delay,          │
+//!          ◄────────── Lane to the host ◄─────┘ Board::outgoing
+//!                      damage by a fault
+//! ```
+//!
+//! It is simulated event by event. The clock stands still while bytes can move; when none can, it jumps to the next
+//! arrival. So a run takes no more of the real clock than its computing does, and comes out the same every time.
+
+mod chance;
+mod damage;
+mod fault;
+mod lane;
+mod options;
+mod queue;
+mod target;
+mod value;
+
+use std::time::Duration;
+
+use crate::board::Board;
+
+use damage::{Damage, Side};
+use lane::Lane;
+use queue::ByteQueue;
+
+pub use fault::{WireFault, WireFaultError};
+pub use options::WireOptions;
+pub use target::WireError;
+pub use value::WireValueError;
+
+/// The wire broke: the fault `disconnect` has struck.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the mock board's wire broke at {:.3} s and stays broken; open a new one", at.as_secs_f64())]
+pub struct Disconnected {
+    /// When it broke, on the wire's clock.
+    pub at: Duration,
+}
+
+/// A board and the byte pipe to it.
+#[derive(Debug)]
+pub struct Wire {
+    board: Board,
+    options: WireOptions,
+    now: Duration,
+    to_board: Lane,
+    to_host: Lane,
+    /// What the board has said and the lane to the host has not taken.
+    unsent: ByteQueue,
+    /// What reaches the board at one instant; kept for its memory.
+    arrived: Vec<u8>,
+    broken_at: Option<Duration>,
+}
+
+impl Wire {
+    /// A wire to `board`, which is switched on now: the clock starts at 0.
+    #[must_use]
+    pub fn new(board: Board, options: WireOptions, fault: Option<WireFault>) -> Self {
+        let lane = |side| Lane::new(&options, Damage::new(fault, side));
+        Self {
+            to_board: lane(Side::Board),
+            to_host: lane(Side::Host),
+            board,
+            options,
+            now: Duration::ZERO,
+            unsent: ByteQueue::default(),
+            arrived: Vec::new(),
+            broken_at: None,
+        }
+    }
+
+    /// Moves bytes both ways: takes from the front of `outgoing` what the pipe accepts, and appends to `incoming` what
+    /// has arrived. Returns the number of bytes taken as soon as a byte has moved either way; if none has moved when
+    /// `wait` has passed on the virtual clock, 0.
+    ///
+    /// # Errors
+    /// [`Disconnected`] once the wire is broken. Bytes that moved in the call in which it broke are returned by that
+    /// call, and the next one fails.
+    pub fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, Disconnected> {
+        let deadline = self.now.saturating_add(wait);
+        let before = incoming.len();
+        loop {
+            let taken = self.settle(outgoing, incoming);
+            if taken > 0 || incoming.len() > before {
+                return Ok(taken);
+            }
+            if let Some(at) = self.broken_at {
+                return Err(Disconnected { at });
+            }
+            match self.next_arrival().filter(|&arrival| arrival <= deadline) {
+                Some(arrival) => self.now = arrival,
+                None => {
+                    self.now = deadline;
+                    return Ok(0);
+                }
+            }
+        }
+    }
+
+    /// The virtual clock: time since the board was switched on.
+    #[must_use]
+    pub fn now(&self) -> Duration {
+        self.now
+    }
+
+    /// Bytes per second that either direction carries; none for a wire without a limit.
+    #[must_use]
+    pub fn bytes_per_second(&self) -> Option<f64> {
+        self.options.speed.map(|speed| speed.get() as f64)
+    }
+
+    /// Moves all that can move at this instant. Returns the number of bytes taken.
+    fn settle(&mut self, outgoing: &[u8], incoming: &mut Vec<u8>) -> usize {
+        let before = incoming.len();
+        let mut rest = outgoing;
+        while self.broken_at.is_none() {
+            let accepted =
+                if self.accepts(incoming.len() > before) { self.to_board.accept(rest, self.now) } else { 0 };
+            rest = &rest[accepted..];
+            if accepted + self.carry(incoming) == 0 {
+                break;
+            }
+        }
+        outgoing.len() - rest.len()
+    }
+
+    /// Whether the host may send at all. A pipe without a buffer takes nothing while the board has something to say, and
+    /// what was `heard` in this call is the host's only when the call returns.
+    fn accepts(&self, heard: bool) -> bool {
+        self.options.buffer > 0 || !heard && self.unsent.is_empty() && self.to_host.is_empty()
+    }
+
+    /// Hands over what has arrived on either side, and puts what the board says on its lane. Returns the number of
+    /// steps that bytes took, so 0 when nothing moved.
+    fn carry(&mut self, incoming: &mut Vec<u8>) -> usize {
+        self.arrived.clear();
+        let to_board = self.to_board.deliver(self.now, &mut self.arrived);
+        if !self.arrived.is_empty() {
+            self.board.receive(&self.arrived, self.now);
+        }
+        self.unsent.take_over(self.board.outgoing());
+        let sent = self.to_host.accept(self.unsent.as_slice(), self.now);
+        self.unsent.consume(sent);
+        let to_host = self.to_host.deliver(self.now, incoming);
+        if to_board.broken || to_host.broken {
+            self.broken_at = Some(self.now);
+        }
+        to_board.bytes + sent + to_host.bytes
+    }
+
+    fn next_arrival(&self) -> Option<Duration> {
+        self.to_board.next_arrival().into_iter().chain(self.to_host.next_arrival()).min()
+    }
+}

@@ -1,0 +1,121 @@
+//! Faults of the core: each changes what it says, and nothing else.
+
+use std::collections::BTreeMap;
+
+use halfrow_mock::{BoardFault, FaultError, Kernel, Node, Place, ValueError, Weight, catalogue};
+
+use crate::support::{binding, constant, core, fault, hermite, noise_row, row_out, run, unchanged};
+
+/// What a row of these samples, unstretched, becomes on a core with a fault.
+fn row_with(fault: BoardFault, kernel: Kernel, samples: Vec<u16>) -> Vec<u16> {
+    let rows = [(samples, binding(64, 1 << 24, kernel))];
+    row_out(&run(&mut core(12, 64, Some(fault)), &rows, 0), 64, 0)
+}
+
+#[test]
+fn a_stuck_data_line_forces_a_bit() {
+    let samples = noise_row(0, 64);
+    let high: Vec<_> = samples.iter().map(|sample| sample | 32).collect();
+    let low: Vec<_> = samples.iter().map(|sample| sample & !2048).collect();
+    assert_eq!(row_with(fault("stuck-data", &[]), hermite(), samples.clone()), high);
+    assert_eq!(row_with(fault("stuck-data", &[("bit", "11"), ("value", "0")]), hermite(), samples), low);
+}
+
+/// With address line 3 stuck, columns that differ in it only share a cell, and the later one stays there.
+#[test]
+fn a_stuck_address_line_makes_columns_share_a_cell() {
+    let samples = noise_row(0, 64);
+    let expected: Vec<_> = (0..64).map(|column: usize| samples[column | 8]).collect();
+    assert_eq!(row_with(fault("stuck-address", &[]), hermite(), samples), expected);
+}
+
+/// The last column would come from column 64, which column 62 stands for.
+#[test]
+fn a_tap_offset_shifts_the_row() {
+    let samples = noise_row(0, 64);
+    let expected: Vec<_> = (1..64).chain([62]).map(|column| samples[column]).collect();
+    assert_eq!(row_with(fault("tap-offset", &[]), hermite(), samples), expected);
+}
+
+/// The mean of 0 and 1 rounds to 1 and truncates to 0.
+#[test]
+fn without_rounding_a_half_is_dropped() {
+    let mean = constant(Node { g4: 1 << 13, ..Node::default() });
+    let samples: Vec<_> = (0..64).map(|column| column / 2 % 2).collect();
+    let healthy = [(samples.clone(), binding(64, 1 << 24, mean.clone()))];
+    let rounded = row_out(&run(&mut core(12, 64, None), &healthy, 0), 64, 0);
+    assert_eq!(rounded[..62], [1; 62]);
+    assert_eq!(row_with(fault("no-rounding", &[]), mean, samples)[..62], [0; 62]);
+}
+
+#[test]
+fn a_dead_tap_carries_zero() {
+    let right = constant(Node { g4: 1 << 14, ..Node::default() });
+    assert_eq!(row_with(fault("dead-tap", &[]), right, noise_row(0, 64)), [0; 64]);
+}
+
+#[test]
+fn a_dead_tap_carries_another_taps_sample() {
+    let samples = noise_row(0, 64);
+    let shifted = row_with(fault("dead-tap", &[("tap", "2"), ("reads", "3")]), hermite(), samples.clone());
+    assert_eq!(shifted[..63], samples[1..]);
+}
+
+#[test]
+fn a_late_board_is_one_clock_late_and_otherwise_right() {
+    let samples = noise_row(0, 64);
+    let rows = [(samples.clone(), unchanged(64))];
+    let outputs = run(&mut core(12, 64, Some(fault("late", &[]))), &rows, 0);
+    assert_eq!((outputs[0].0, outputs[63].0), (45, 108));
+    assert_eq!(row_out(&outputs, 64, 0), samples);
+}
+
+#[test]
+fn faults_outside_the_core_leave_it_as_it_is() {
+    let samples = noise_row(0, 64);
+    for name in ["wrong-latency-claim", "wrong-datapath", "stale-table", "lost-row"] {
+        assert_eq!(row_with(fault(name, &[]), hermite(), samples.clone()), samples, "{name}");
+    }
+}
+
+#[test]
+fn every_board_fault_of_the_catalogue_can_be_made_without_parameters() {
+    for info in catalogue().iter().filter(|info| info.place == Place::Board) {
+        assert!(BoardFault::from_name(info.name, &mut BTreeMap::new()).is_ok(), "{}", info.name);
+    }
+}
+
+#[test]
+fn no_name_is_in_the_catalogue_twice() {
+    let names: std::collections::BTreeSet<_> = catalogue().iter().map(|info| info.name).collect();
+    assert_eq!(names.len(), catalogue().len());
+}
+
+#[test]
+fn a_fault_takes_its_own_parameters_and_leaves_the_others() {
+    let given = [("row", "7"), ("latency", "9"), ("hidden", "true")];
+    let mut parameters = given.map(|(key, value)| (key.to_owned(), value.to_owned())).into();
+    let fault = BoardFault::from_name("row-factor", &mut parameters).unwrap();
+    assert_eq!(fault, BoardFault::RowFactor { row: 7, bit: 18, hidden: true });
+    assert_eq!(parameters, BTreeMap::from([("latency".to_owned(), "9".to_owned())]));
+}
+
+#[test]
+fn a_kernel_word_is_named_by_node_and_weight() {
+    let named = fault("kernel-word", &[("node", "64"), ("weight", "r5"), ("bit", "15")]);
+    assert_eq!(named, BoardFault::KernelWord { node: 64, weight: Weight::R5, bit: 15, hidden: false });
+}
+
+#[test]
+fn an_unknown_fault_is_refused() {
+    let refused = BoardFault::from_name("flip", &mut BTreeMap::new());
+    assert_eq!(refused, Err(FaultError::Unknown { name: "flip".to_owned() }));
+}
+
+#[test]
+fn a_parameter_out_of_range_is_refused_with_its_range() {
+    let mut parameters = BTreeMap::from([("bit".to_owned(), "12".to_owned())]);
+    let source = ValueError::OutOfRange { key: "bit", value: 12, least: 0, most: 11 };
+    let refused = BoardFault::from_name("stuck-data", &mut parameters);
+    assert_eq!(refused, Err(FaultError::Parameter { fault: "stuck-data".to_owned(), source }));
+}

@@ -1,0 +1,154 @@
+//! What the tests feed the board with, made from the paper's formulas and the specification's sample formula.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use halfrow_mock::{
+    BoardFault, Core, Depth, Entering, Kernel, Leaving, NODES, Node, Options, Player, RowBinding, RowIn,
+    RowOut, Settings, Tables, UNSTRETCHED,
+};
+
+/// The table entry that the golden rows were made with.
+pub(crate) const GOLDEN_FACTOR: u32 = 14_648_488;
+
+/// Hermite's five stored weights (Eq. 18).
+pub(crate) fn hermite() -> Kernel {
+    sampled(|x| {
+        let (x2, x3) = (x * x, x * x * x);
+        [0.0, -x3 / 8.0 + x2 / 2.0 - x / 2.0, -x3 / 4.0 + 3.0 * x2 / 4.0, x3 / 8.0 - x2 / 4.0, 0.0]
+    })
+}
+
+/// Keys' five stored weights (Eq. 12).
+pub(crate) fn keys() -> Kernel {
+    sampled(|x| {
+        let (x2, x3) = (x * x, x * x * x);
+        let own_right = -3.0 * x3 / 16.0 + x2 / 2.0 + x / 4.0;
+        [-x3 / 16.0 + x2 / 4.0 - x / 4.0, 0.0, own_right, 0.0, x3 / 16.0 - x2 / 8.0]
+    })
+}
+
+/// A kernel with the same weights at every node.
+pub(crate) fn constant(node: Node) -> Kernel {
+    Kernel { nodes: [node; NODES] }
+}
+
+fn sampled(weights: impl Fn(f64) -> [f64; 5]) -> Kernel {
+    let nodes = std::array::from_fn(|node| {
+        let rounded = weights(node as f64 / 32.0).map(|weight| (weight * 16384.0 + 0.5).floor() as i16);
+        Node::from(rounded)
+    });
+    Kernel { nodes }
+}
+
+/// The specification's samples of one row of a frame `width` columns wide.
+pub(crate) fn noise_row(row: u32, width: u16) -> Vec<u16> {
+    let width = u32::from(width);
+    (0..width).map(|column| ((row * width + column).wrapping_mul(2_654_435_761) >> 20) as u16).collect()
+}
+
+/// Table entries of a frame with the circle's radius `radius` (Eq. 9), its centre row in the middle.
+pub(crate) fn factors(height: u16, radius: f64) -> Vec<u32> {
+    let middle = f64::from(height - 1) / 2.0;
+    let entry = |row| {
+        let y = f64::from(row) - middle;
+        (f64::from(UNSTRETCHED) * (radius * radius - y * y).sqrt() / radius + 0.5).floor() as u32
+    };
+    (0..height).map(entry).collect()
+}
+
+/// A 12-bit row with its centre in the middle.
+pub(crate) fn binding(width: u16, factor: u32, kernel: Kernel) -> RowBinding {
+    RowBinding { width, centre2: width - 1, depth: Depth::Twelve, factor, kernel: Arc::new(kernel) }
+}
+
+/// A row that comes out as it went in.
+pub(crate) fn unchanged(width: u16) -> RowBinding {
+    binding(width, UNSTRETCHED, hermite())
+}
+
+/// A core of this latency and ring, with a fault or without.
+pub(crate) fn core(latency: u8, ring: u16, fault: Option<BoardFault>) -> Core {
+    let options = Options { latency, ring: Some(ring), max_width: ring.min(2592), ..Options::default() };
+    Core::new(&options, fault).unwrap()
+}
+
+/// Feeds rows into a core with `blanking` clocks between them and flushes it. Returns every output with the pixel
+/// clock that it was taken at; the first sample enters at clock 0.
+pub(crate) fn run(
+    core: &mut Core,
+    rows: &[(Vec<u16>, RowBinding)],
+    blanking: usize,
+) -> Vec<(usize, Leaving)> {
+    let mut inputs = Vec::new();
+    for (samples, binding) in rows {
+        if !inputs.is_empty() {
+            inputs.resize(inputs.len() + blanking, None);
+        }
+        let entering = samples
+            .iter()
+            .enumerate()
+            .map(|(column, &sample)| Some(Entering { sample, begins: (column == 0).then_some(binding) }));
+        inputs.extend(entering);
+    }
+    let flush = rows.iter().map(|(_, binding)| core.delay(binding.width) as usize).max().unwrap();
+    inputs.resize(inputs.len() + flush, None);
+    inputs
+        .into_iter()
+        .map(|input| core.clock(input))
+        .enumerate()
+        .filter_map(|(t, out)| Some((t, out?)))
+        .collect()
+}
+
+/// The samples of the row that leaves `index`th.
+pub(crate) fn row_out(outputs: &[(usize, Leaving)], width: u16, index: usize) -> Vec<u16> {
+    outputs.chunks(width.into()).nth(index).unwrap().iter().map(|(_, leaving)| leaving.sample).collect()
+}
+
+/// The fault called `name` with parameters as in a target string.
+pub(crate) fn fault(name: &str, parameters: &[(&str, &str)]) -> BoardFault {
+    let mut parameters: BTreeMap<_, _> =
+        parameters.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
+    let fault = BoardFault::from_name(name, &mut parameters).unwrap();
+    assert!(parameters.is_empty(), "the fault left {parameters:?}");
+    fault
+}
+
+/// A player and its tables, set to 64 columns and as many rows as there are factors, the tables committed for frame 0.
+pub(crate) fn small_board(fault: Option<BoardFault>, factors: &[u32], kernel: &Kernel) -> (Player, Tables) {
+    let options = Options::default();
+    let mut player = Player::new(&options, fault).unwrap();
+    let mut tables = Tables::new(&options, fault);
+    player.configure(small_settings(factors.len() as u16, 0, 0)).unwrap();
+    tables.write_factors(0, factors).unwrap();
+    tables.write_nodes(0, &kernel.nodes).unwrap();
+    tables.commit(1, 0).unwrap();
+    (player, tables)
+}
+
+/// Settings for 12-bit rows of 64 columns with the centre in the middle.
+pub(crate) fn small_settings(height: u16, blanking: u16, gap_seed: u32) -> Settings {
+    Settings { width: 64, height, centre2: 63, depth: Depth::Twelve, blanking, gap_seed }
+}
+
+/// Plays a frame of the specification's samples, flushes it and fetches what comes out.
+pub(crate) fn play_frame(player: &mut Player, tables: &mut Tables, frame: u16) -> Vec<RowOut> {
+    let &Settings { width, height, .. } = player.settings();
+    let mut corrected = Vec::new();
+    for row in 0..height {
+        let samples = noise_row(row.into(), width);
+        let last = row + 1 == height;
+        player.play(&RowIn { sequence: row.into(), frame, row, last, samples }, tables).unwrap();
+        corrected.extend(std::iter::from_fn(|| player.banks.fetch()));
+    }
+    player.flush();
+    corrected.extend(std::iter::from_fn(|| player.banks.fetch()));
+    corrected
+}
+
+/// CRC-32 of samples as 16-bit little-endian words.
+pub(crate) fn crc_of_words(words: impl IntoIterator<Item = u16>) -> u32 {
+    let bytes: Vec<u8> = words.into_iter().flat_map(u16::to_le_bytes).collect();
+    crc32fast::hash(&bytes)
+}

@@ -1,0 +1,140 @@
+//! Why a board could not be driven.
+
+use std::time::Duration;
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{Malformed, Refusal, RowPlace};
+
+use crate::link::LinkError;
+use crate::verdict::Exit;
+
+/// Why a board could not be driven.
+#[derive(Debug, thiserror::Error)]
+pub enum BoardError {
+    /// The link broke.
+    #[error("the link broke while {doing}")]
+    Link {
+        /// What was under way.
+        doing: String,
+        /// How.
+        #[source]
+        source: LinkError,
+    },
+    /// Nobody answered.
+    #[error(
+        "no answer to {kind:?} in {attempts} tries ({:.1} s); check that the board is powered and loaded, and that \
+         the target's rate is the board's",
+        waited.as_secs_f64()
+    )]
+    NoAnswer {
+        /// The request.
+        kind: Kind,
+        /// Tries.
+        attempts: u32,
+        /// Time in all.
+        waited: Duration,
+    },
+    /// Somebody answered, but not as a halfrow board.
+    #[error("what answers is no halfrow board; check the target and what is loaded into the FPGA")]
+    NotABoard,
+    /// No common version of the wire.
+    #[error(
+        "the board speaks version {board} of the wire and this program version {ours}; load a matching bitstream or \
+         install a matching halfrow"
+    )]
+    Version {
+        /// The board's newest.
+        board: u16,
+        /// This program's.
+        ours: u8,
+    },
+    /// Another host holds the board.
+    #[error(
+        "another host holds the board; wait until it is done (silent for 10 s; {seconds:.1} s are left), or take the \
+         board over with --take-over"
+    )]
+    Held {
+        /// What is left of the ten seconds.
+        seconds: f64,
+    },
+    /// The session is gone.
+    #[error(
+        "the board no longer knows this session: it was reset or lost power, or another host took it over; run again"
+    )]
+    SessionLost,
+    /// The board refused.
+    #[error("the board refused {kind:?}: {code} (detail {detail}); see protocol/WIRE.md, section 6", kind = .kind, code = .refusal.code, detail = .refusal.detail)]
+    Refused {
+        /// The request.
+        kind: Kind,
+        /// Its reason.
+        refusal: Refusal,
+    },
+    /// The board's answer does not parse, although its CRC is right.
+    #[error("the board's answer to {kind:?} makes no sense; its bitstream and this halfrow do not match")]
+    Malformed {
+        /// The request.
+        kind: Kind,
+        /// What is wrong.
+        #[source]
+        source: Malformed,
+    },
+    /// The answer has another kind than the request.
+    #[error("the board answered {kind:?} with something else; its bitstream and this halfrow do not match")]
+    Unexpected {
+        /// The request.
+        kind: Kind,
+    },
+    /// Too many retries.
+    #[error(
+        "the link is too poor to judge a board over: {retries} of {packets} packets had to be sent again, and {limit} \
+         are allowed; check cable, connectors and rate, or raise --retry-limit"
+    )]
+    TooPoor {
+        /// Packets sent again.
+        retries: u64,
+        /// Packets sent.
+        packets: u64,
+        /// The limit at that many packets.
+        limit: u64,
+    },
+    /// A row did not come back.
+    #[error("row {row} of frame {frame} did not come back in {attempts} tries", row = .place.row, frame = .place.frame)]
+    RowMissing {
+        /// The row.
+        place: RowPlace,
+        /// Tries.
+        attempts: u32,
+    },
+    /// A row came back under another name.
+    #[error(
+        "the board returned row {row} of frame {frame} under a place that was never sent; its bitstream and this \
+         halfrow do not match", row = .place.row, frame = .place.frame
+    )]
+    WrongPlace {
+        /// The place that the board named.
+        place: RowPlace,
+    },
+    /// The run's own time limit.
+    #[error("the run took longer than the {:.0} s of --timeout; give it more, or use a faster link", limit.as_secs_f64())]
+    Timeout {
+        /// The limit.
+        limit: Duration,
+    },
+    /// Ctrl-C or SIGTERM.
+    #[error("stopped by a signal; nothing is wrong with the board as far as it was tested")]
+    Stopped(Exit),
+}
+
+impl BoardError {
+    /// The exit code of a run that ends with this error.
+    #[must_use]
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Held { .. } => Exit::Busy,
+            Self::NotABoard | Self::Version { .. } => Exit::Refused,
+            Self::Stopped(exit) => *exit,
+            _ => Exit::Error,
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! A board: whatever answers the protocol behind a link. The only module that speaks the protocol.
+
+mod conversation;
+pub mod deadlines;
+mod error;
+mod rows;
+mod sent;
+mod stop;
+mod tables;
+
+use std::time::Duration;
+
+use halfrow_protocol::message::{Hello, Reply, Request, Reset, ResetLevel};
+use halfrow_protocol::{Kind, VERSION};
+
+use conversation::{Conversation, take_reply};
+use deadlines::{RetryLimit, Step};
+
+use crate::link::Link;
+pub use conversation::Tally;
+pub use error::BoardError;
+pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
+pub use sent::Sent;
+pub use stop::Stop;
+pub use tables::{ReadBack, TablePort};
+
+pub use halfrow_protocol::message::{Bank, BoardNature, Capabilities, Configuration, RefusalCode, Status, Table, Welcome};
+
+/// How a session is opened.
+#[derive(Clone, Debug, Default)]
+pub struct OpenOptions {
+    /// Drawn at random for the session.
+    pub nonce: u32,
+    /// Drawn at random for this program's run.
+    pub host: u32,
+    /// Take the board from whoever holds it.
+    pub take_over: bool,
+    /// How many packets may be sent again.
+    pub retry_limit: RetryLimit,
+    /// What ends the run early.
+    pub stop: Stop,
+}
+
+/// An open session with a board.
+pub struct Board {
+    conversation: Conversation,
+    /// Its answer to the greeting.
+    pub welcome: Welcome,
+    /// What it can do.
+    pub capabilities: Capabilities,
+}
+
+impl Board {
+    /// Opens a session over `link`.
+    ///
+    /// # Errors
+    /// [`BoardError`]: nobody answers, no halfrow board, another version, held by another host. What the link did up to
+    /// then comes with it.
+    pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Tally)> {
+        let mut conversation = Conversation::new(link, options.retry_limit, options.stop.clone());
+        let mut open = || {
+            let welcome = greet(&mut conversation, options)?;
+            conversation.session = welcome.session;
+            let capabilities =
+                conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
+                    Reply::Capabilities(capabilities) => Some(capabilities),
+                    _ => None,
+                })?;
+            Ok((welcome, capabilities))
+        };
+        match open() {
+            Ok((welcome, capabilities)) => Ok(Self { conversation, welcome, capabilities }),
+            Err(error) => Err((error, conversation.tally)),
+        }
+    }
+
+    /// What the link did so far.
+    #[must_use]
+    pub fn tally(&self) -> Tally {
+        self.conversation.tally
+    }
+
+    /// The retries that the run may have at its present length.
+    #[must_use]
+    pub fn retry_limit(&self) -> u64 {
+        self.conversation.limit.of(self.conversation.tally.packets_out)
+    }
+
+    /// The time on the link's clock.
+    #[must_use]
+    pub fn now(&self) -> Duration {
+        self.conversation.now()
+    }
+
+    /// The link, for people.
+    #[must_use]
+    pub fn link_name(&self) -> String {
+        self.conversation.link_name()
+    }
+
+    /// Sends `bytes`, and says whether they came back as they went and how long that took on the link's clock.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub fn echo(&mut self, bytes: &[u8]) -> Result<(bool, Duration), BoardError> {
+        let begun = self.now();
+        let same = self.conversation.request(&Request::Echo(bytes), Step::Request, |reply| match reply {
+            Reply::Echo(back) => Some(back == bytes),
+            _ => None,
+        })?;
+        Ok((same, self.now() - begun))
+    }
+
+    /// The board's counters, which `clear` sets back.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
+        self.conversation.request(&Request::Status { clear }, Step::Request, |reply| match reply {
+            Reply::Status(status) => Some(status),
+            _ => None,
+        })
+    }
+
+    /// Sets geometry and timing.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub fn configure(&mut self, configuration: &Configuration) -> Result<(), BoardError> {
+        self.conversation.request(&Request::Configure(*configuration), Step::Request, |reply| {
+            matches!(reply, Reply::Configure).then_some(())
+        })
+    }
+
+    /// Streams frames, and hands back every row.
+    ///
+    /// # Errors
+    /// [`BoardError`]; rows that came back before it were handed over.
+    pub fn stream(&mut self, traffic: &mut dyn RowTraffic) -> Result<(), BoardError> {
+        rows::stream(&mut self.conversation, traffic)
+    }
+
+    /// Drops the rows inside the board, so that another stream can begin.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board does not answer.
+    pub fn drop_rows(&mut self) -> Result<(), BoardError> {
+        self.reset(ResetLevel::Rows)
+    }
+
+    /// Closes the session, so that another host finds the board free. Waits for the board's answer, but not for ever.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board does not answer; it is then free after 10 s of silence.
+    pub fn close(&mut self) -> Result<(), BoardError> {
+        self.reset(ResetLevel::Session)
+    }
+
+    fn reset(&mut self, level: ResetLevel) -> Result<(), BoardError> {
+        // Beyond every row that can be under way: credit is never further ahead than a board has banks.
+        let next_row = self.conversation.credit;
+        let reset = Request::Reset(Reset { level, next_row });
+        self.conversation.request(&reset, Step::Request, |reply| {
+            matches!(reply, Reply::Reset).then_some(())
+        })?;
+        self.conversation.acknowledged = next_row;
+        Ok(())
+    }
+}
+
+fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
+    let hello = Hello {
+        nonce: options.nonce,
+        host: options.host,
+        version_min: VERSION,
+        version_max: VERSION,
+        take_over: options.take_over,
+    };
+    conversation.queue_zeros();
+    let answer = conversation.ask(&Request::Hello(hello), Step::Hello, |packet| {
+        // A stale reply has another nonce; anything else that carries our number is for us.
+        !matches!(Reply::read(packet), Ok(Reply::Hello(welcome)) if welcome.nonce != hello.nonce)
+    })?;
+    take_reply(Kind::Hello, &answer, |reply| match reply {
+        Reply::Hello(welcome) => Some(welcome),
+        _ => None,
+    })
+    .map_err(|error| match error {
+        BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::Held => {
+            BoardError::Held { seconds: f64::from(refusal.detail) / 10.0 }
+        }
+        BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::Version => {
+            BoardError::Version { board: refusal.detail, ours: VERSION }
+        }
+        BoardError::Malformed { .. } | BoardError::Unexpected { .. } => BoardError::NotABoard,
+        other => other,
+    })
+}

@@ -1,0 +1,53 @@
+//! What a recorded host sent: the frames, put together from their rows.
+
+use std::collections::BTreeMap;
+
+use halfrow_protocol::message::Request;
+use halfrow_protocol::{Decoder, samples};
+
+/// Rows and commits among recorded bytes.
+#[derive(Debug, Default)]
+pub struct Sent {
+    /// The first frame of each committed generation.
+    pub first_frames: BTreeMap<u8, u16>,
+    rows: BTreeMap<(u16, u16), Vec<u16>>,
+}
+
+impl Sent {
+    /// Finds them in all bytes that a host sent.
+    #[must_use]
+    pub fn find(bytes: &[u8]) -> Self {
+        let mut sent = Self::default();
+        let mut decoder = Decoder::new();
+        let mut bytes = bytes;
+        while let Some(packet) = decoder.next(&mut bytes) {
+            let Ok(packet) = packet else { continue };
+            match Request::read(&packet) {
+                Ok(Request::Commit(commit)) => {
+                    sent.first_frames.insert(commit.generation, commit.first_frame);
+                }
+                Ok(Request::RowIn(row)) => {
+                    let mut unpacked = vec![0; usize::from(row.place.width)];
+                    samples::unpack(row.packed, &mut unpacked);
+                    sent.rows.insert((row.place.frame, row.place.row), unpacked);
+                }
+                _ => {}
+            }
+        }
+        sent
+    }
+
+    /// The samples of frame `number`, `width` × `height`; rows that were never sent are black.
+    #[must_use]
+    pub fn frame(&self, number: u16, width: usize, height: usize) -> Vec<u16> {
+        let mut frame = vec![0; width * height];
+        for ((_, row), samples) in self.rows.range((number, 0)..=(number, u16::MAX)) {
+            if let Some(place) = frame.chunks_exact_mut(width).nth(usize::from(*row))
+                && place.len() == samples.len()
+            {
+                place.copy_from_slice(samples);
+            }
+        }
+        frame
+    }
+}

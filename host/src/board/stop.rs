@@ -1,0 +1,37 @@
+//! What ends a run early: a signal, or the run's own time limit.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Duration;
+
+use super::BoardError;
+use crate::verdict::Exit;
+
+/// Asked between any two exchanges whether to go on.
+#[derive(Clone, Debug, Default)]
+pub struct Stop {
+    signal: Arc<AtomicUsize>,
+    limit: Option<Duration>,
+}
+
+impl Stop {
+    /// Stops when `signal` holds an exit code other than 0, or when the link's clock has passed `limit`.
+    #[must_use]
+    pub fn new(signal: Arc<AtomicUsize>, limit: Option<Duration>) -> Self {
+        Self { signal, limit }
+    }
+
+    pub(super) fn check(&self, now: Duration) -> Result<(), BoardError> {
+        match self.signal.load(Ordering::Relaxed) {
+            0 => {}
+            code if code == usize::from(Exit::Terminated.code()) => {
+                return Err(BoardError::Stopped(Exit::Terminated));
+            }
+            _ => return Err(BoardError::Stopped(Exit::Interrupted)),
+        }
+        match self.limit {
+            Some(limit) if now > limit => Err(BoardError::Timeout { limit }),
+            _ => Ok(()),
+        }
+    }
+}

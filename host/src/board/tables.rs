@@ -1,0 +1,159 @@
+//! Tables on their way to the board, and read back as its datapath sees them.
+
+use halfrow_model::{Kernel, TableSet};
+use halfrow_protocol::MAX_PAYLOAD;
+use halfrow_protocol::message::{Bank, Commit, Entries, NODES, Reply, Request, Span, Table};
+
+use super::deadlines::Step;
+use super::{Board, BoardError};
+
+/// Bytes of a span in front of the entries.
+const SPAN: usize = 7;
+
+/// One of the ports by which the datapath reads its tables.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TablePort {
+    /// The table.
+    pub table: Table,
+    /// The port's number.
+    pub port: u8,
+}
+
+/// The CRC of a table as one port reads it, beside what it should be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ReadBack {
+    /// The port.
+    pub port: TablePort,
+    /// The CRC-32 of what was uploaded.
+    pub expected: u32,
+    /// The CRC-32 of what the port reads.
+    pub found: u32,
+}
+
+impl ReadBack {
+    /// Whether the datapath gets what was uploaded.
+    #[must_use]
+    pub fn agrees(&self) -> bool {
+        self.expected == self.found
+    }
+}
+
+impl Board {
+    /// Every port that the datapath reads tables by.
+    #[must_use]
+    pub fn table_ports(&self) -> Vec<TablePort> {
+        let ports = |table, count| (0..count).map(move |port| TablePort { table, port });
+        ports(Table::Steps, self.capabilities.step_ports)
+            .chain(ports(Table::Kernel, self.capabilities.kernel_ports))
+            .collect()
+    }
+
+    /// Writes row factors and nodes into the shadow bank.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub fn upload(&mut self, tables: &TableSet, kernel: &Kernel) -> Result<(), BoardError> {
+        self.write(Table::Steps, &tables.to_bytes())?;
+        self.write(Table::Kernel, &kernel.to_bytes())
+    }
+
+    fn write(&mut self, table: Table, bytes: &[u8]) -> Result<(), BoardError> {
+        let at_once = (MAX_PAYLOAD - SPAN) / table.entry_bytes();
+        for (index, bytes) in bytes.chunks(at_once * table.entry_bytes()).enumerate() {
+            let span = Span {
+                table,
+                bank: Bank::Shadow,
+                port: 0,
+                first: (index * at_once) as u16,
+                count: (bytes.len() / table.entry_bytes()) as u16,
+            };
+            let request = Request::TableWrite(Entries { span, bytes });
+            self.conversation.request(&request, Step::Request, |reply| {
+                matches!(reply, Reply::TableWrite).then_some(())
+            })?;
+        }
+        Ok(())
+    }
+
+    /// The CRCs of both tables through every port.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub fn read_back(
+        &mut self,
+        bank: Bank,
+        tables: &TableSet,
+        kernel: &Kernel,
+    ) -> Result<Vec<ReadBack>, BoardError> {
+        let steps = (tables.geometry().height() as u16, crc32fast::hash(&tables.to_bytes()));
+        let nodes = (NODES as u16, crc32fast::hash(&kernel.to_bytes()));
+        self.table_ports()
+            .into_iter()
+            .map(|port| {
+                let (count, expected) = match port.table {
+                    Table::Steps => steps,
+                    Table::Kernel => nodes,
+                };
+                let span = Span { table: port.table, bank, port: port.port, first: 0, count };
+                let found = self.conversation.request(
+                    &Request::TableCrc(span),
+                    Step::Request,
+                    |reply| match reply {
+                        Reply::TableCrc(crc) => Some(crc),
+                        _ => None,
+                    },
+                )?;
+                Ok(ReadBack { port, expected, found })
+            })
+            .collect()
+    }
+
+    /// The bytes of entries as a port reads them.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub fn read_entries(&mut self, bank: Bank, port: TablePort, entries: usize) -> Result<Vec<u8>, BoardError> {
+        let at_once = (MAX_PAYLOAD - SPAN) / port.table.entry_bytes();
+        let mut bytes = Vec::new();
+        for first in (0..entries).step_by(at_once) {
+            let count = at_once.min(entries - first);
+            let span = Span {
+                table: port.table,
+                bank,
+                port: port.port,
+                first: first as u16,
+                count: count as u16,
+            };
+            let read =
+                self.conversation.request(&Request::TableRead(span), Step::Request, |reply| match reply {
+                    Reply::TableRead(entries) => Some(entries.bytes.to_vec()),
+                    _ => None,
+                })?;
+            bytes.extend(read);
+        }
+        Ok(bytes)
+    }
+
+    /// Makes the shadow tables the active ones from row 0 of `first_frame` on, under `generation`.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses, since a port reads something else, or does not answer.
+    pub fn commit(
+        &mut self,
+        tables: &TableSet,
+        kernel: &Kernel,
+        first_frame: u16,
+        generation: u8,
+    ) -> Result<(), BoardError> {
+        let commit = Commit {
+            steps_crc: crc32fast::hash(&tables.to_bytes()),
+            kernel_crc: crc32fast::hash(&kernel.to_bytes()),
+            first_frame,
+            generation,
+        };
+        self.conversation.request(&Request::Commit(commit), Step::Request, |reply| match reply {
+            Reply::Commit { generation: named } if named == generation => Some(()),
+            _ => None,
+        })
+    }
+}

@@ -1,0 +1,200 @@
+//! `halfrow correct`
+
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context as _, bail};
+use clap::Args;
+use halfrow_model::{Frame, correct};
+use serde_json::json;
+
+use super::inputs::{InputArguments, frame_sources};
+use super::lens::{self, Chosen, LensArguments};
+use super::verify::BoardArguments;
+use super::{Context, Failure, print, print_json};
+use crate::board::{Board, BoardError, Configuration, NumberedFrame, ReturnedRow, RowTraffic};
+use crate::frames;
+use crate::session::{FrameSource, JUDGED};
+use crate::target::BoardKind;
+use crate::verdict::Exit;
+
+/// Correct frames with the reference model, or with a board, unjudged
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The frames: PGM, PNG, TIFF, headerless files with --raw, or builtin:NAME
+    #[arg(required = true, value_name = "IN")]
+    inputs: Vec<String>,
+    /// The table file; without it the lens options make the tables
+    #[arg(long, value_name = "FILE", env = "HALFROW_TABLES")]
+    tables: Option<PathBuf>,
+    /// The kernel: nearest, linear, keys, hermite, or a file, instead of the table file's
+    #[arg(long, value_name = "NAME|FILE")]
+    kernel: Option<String>,
+    /// Correct with the reference model
+    #[arg(long, conflicts_with = "board", required_unless_present = "board")]
+    model: bool,
+    #[command(flatten)]
+    board: BoardArguments,
+    /// Where to: a .pgm, .png, .tif or .raw file, or a folder for several frames
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Replace files that are there
+    #[arg(long)]
+    overwrite: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+    #[command(flatten)]
+    input: InputArguments,
+    #[command(flatten)]
+    lens: LensArguments,
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let chosen = lens::choose(
+        arguments.tables.as_deref(),
+        &arguments.lens,
+        arguments.kernel.as_deref(),
+    )?;
+    let geometry = chosen.tables.geometry();
+    let how = arguments.input.read_options(geometry, arguments.lens.phase);
+    let sources = frame_sources(&arguments.inputs, &how, geometry)?;
+    let outputs = outputs(&sources, &arguments.output)?;
+    if let Some(taken) = outputs.iter().find(|path| path.exists() && !arguments.overwrite) {
+        return Err(anyhow::anyhow!("{} is there already; give --overwrite to replace it", taken.display()).into());
+    }
+    let scene = arguments.lens.scene(1)?;
+    let inputs = sources
+        .iter()
+        .map(|source| match source {
+            FrameSource::File { frame, .. } => Ok(Arc::clone(frame)),
+            FrameSource::Builtin(builtin) => builtin.render(&scene).map(Arc::new),
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    let (kind, corrected) = if arguments.model {
+        ("model".to_owned(), by_model(&chosen, &inputs)?)
+    } else {
+        by_board(arguments, context, &chosen, &inputs)?
+    };
+    if arguments.output.extension().is_none() {
+        std::fs::create_dir_all(&arguments.output).map_err(Failure::error)?;
+    }
+    for (path, frame) in outputs.iter().zip(&corrected) {
+        frames::write(path, frame, arguments.overwrite).map_err(Failure::error)?;
+    }
+    report(arguments.json, &kind, &outputs)
+}
+
+fn report(as_json: bool, kind: &str, outputs: &[PathBuf]) -> Result<Exit, Failure> {
+    if as_json {
+        let outputs: Vec<_> = outputs.iter().map(|path| path.display().to_string()).collect();
+        print_json(&json!({ "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs }))?;
+    } else {
+        for path in outputs {
+            print(&format!("wrote {}, corrected by the {kind}, not judged", path.display()))?;
+        }
+    }
+    Ok(Exit::Pass)
+}
+
+/// One file for one frame; for several, files of the inputs' names in a folder.
+fn outputs(sources: &[FrameSource], output: &Path) -> anyhow::Result<Vec<PathBuf>> {
+    let is_file = output.extension().is_some() && !output.is_dir();
+    if is_file && sources.len() > 1 {
+        bail!("{} is one file for {} frames; name a folder with -o", output.display(), sources.len());
+    }
+    if is_file {
+        return Ok(vec![output.to_owned()]);
+    }
+    let mut paths = Vec::new();
+    for source in sources {
+        let name = match source {
+            FrameSource::Builtin(builtin) => builtin.name().to_owned(),
+            FrameSource::File { path, .. } => {
+                path.file_stem().context("an input has no file name; name a file")?.to_string_lossy().into_owned()
+            }
+        };
+        let path = output.join(format!("{name}.pgm"));
+        if paths.contains(&path) {
+            bail!("two inputs would both be written to {}; correct them one by one", path.display());
+        }
+        paths.push(path);
+    }
+    Ok(paths)
+}
+
+fn by_model(chosen: &Chosen, inputs: &[Arc<Frame>]) -> anyhow::Result<Vec<Frame>> {
+    inputs.iter().map(|frame| Ok(correct(&chosen.tables, &chosen.kernel, frame)?)).collect()
+}
+
+fn by_board(
+    arguments: &Arguments,
+    context: &Context,
+    chosen: &Chosen,
+    inputs: &[Arc<Frame>],
+) -> Result<(String, Vec<Frame>), Failure> {
+    let candidate = arguments.board.candidate(&context.settings)?;
+    if candidate.kind == BoardKind::Replay {
+        return Err(anyhow::anyhow!("a recording corrects no new frames; use it with `halfrow verify`").into());
+    }
+    let options = arguments.board.open_options(&context.settings, None)?;
+    let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+    chosen.tables.check_ring(board.capabilities.ring.into())?;
+    let rows = stream(&mut board, chosen, inputs).map_err(failed)?;
+    board.close().map_err(failed)?;
+    let frames = rows
+        .into_iter()
+        .zip(inputs)
+        .map(|(samples, input)| Frame::new(input.width(), input.depth(), input.phase(), samples))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(Failure::error)?;
+    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
+    Ok((format!("{kind} board"), frames))
+}
+
+fn stream(board: &mut Board, chosen: &Chosen, inputs: &[Arc<Frame>]) -> Result<Vec<Vec<u16>>, BoardError> {
+    let geometry = chosen.tables.geometry();
+    board.configure(&Configuration {
+        width: geometry.width() as u16,
+        height: geometry.height() as u16,
+        centre2: geometry.centre2() as u16,
+        blanking: board.capabilities.least_blanking,
+        gap_seed: 0,
+        bits: geometry.depth().bits() as u8,
+    })?;
+    board.upload(&chosen.tables, &chosen.kernel)?;
+    board.commit(&chosen.tables, &chosen.kernel, 0, JUDGED)?;
+    let mut collect = Collect {
+        waiting: inputs.iter().enumerate(),
+        corrected: inputs.iter().map(|frame| vec![0; frame.samples().len()]).collect(),
+    };
+    board.stream(&mut collect)?;
+    Ok(collect.corrected)
+}
+
+/// Keeps what comes back.
+struct Collect<'a> {
+    waiting: std::iter::Enumerate<std::slice::Iter<'a, Arc<Frame>>>,
+    corrected: Vec<Vec<u16>>,
+}
+
+impl RowTraffic for Collect<'_> {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        let (number, frame) = self.waiting.next()?;
+        Some(NumberedFrame { number: number as u16, frame: Arc::clone(frame) })
+    }
+
+    fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        let start = row.row * row.samples.len();
+        if let Some(place) = self
+            .corrected
+            .get_mut(usize::from(row.frame))
+            .and_then(|frame| frame.get_mut(start..start + row.samples.len()))
+        {
+            place.copy_from_slice(row.samples);
+        }
+        ControlFlow::Continue(())
+    }
+}

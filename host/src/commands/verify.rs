@@ -1,0 +1,202 @@
+//! `halfrow verify`
+
+mod board;
+mod recorded;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use clap::builder::FalseyValueParser;
+
+use super::inputs::{InputArguments, file_hash, frame_sources};
+use super::lens::{self, LensArguments};
+use super::{Context, Failure, print};
+use crate::board::deadlines::RetryLimit;
+use crate::frames::Builtin;
+use crate::link::{Candidate, Recorder};
+use crate::progress;
+use crate::report::{self, Report, ReportError, ReportFolder};
+use crate::session::{self, Circumstances, Finished, FrameSource, Plan, Timing};
+use crate::settings::Settings;
+use crate::verdict::{Exit, Verdict};
+
+pub(super) use board::BoardArguments;
+
+/// Judge a board: stream frames through it and compare every sample with the reference
+///
+/// Without --board the built-in mock board is judged. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
+/// 6 identity or version refused, 130 or 143 interrupted.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    board: BoardArguments,
+    /// A frame to stream instead of the built-in ones: a file, or builtin:NAME; may be given several times
+    #[arg(long, value_name = "FILE", env = "HALFROW_FRAME")]
+    frame: Vec<String>,
+    /// The table file to judge with; without it the lens options make the tables
+    #[arg(long, value_name = "FILE", env = "HALFROW_TABLES")]
+    tables: Option<PathBuf>,
+    /// The kernel: nearest, linear, keys, hermite, or a file, instead of the table file's
+    #[arg(long, value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
+    kernel: Option<String>,
+    /// Print the result as JSON
+    #[arg(long)]
+    pub(super) json: bool,
+    /// Write a report (JSON, JUnit, HTML) into this folder
+    #[arg(long, value_name = "FOLDER", env = "HALFROW_REPORT")]
+    report: Option<PathBuf>,
+    /// Keep every byte of the run with its time, for replay:FILE
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
+    /// Replace a previous report or recording
+    #[arg(long, env = "HALFROW_OVERWRITE", value_parser = FalseyValueParser::new())]
+    overwrite: bool,
+    /// Stream the frames this often
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
+    repeat: u32,
+    /// Stop at the first frame that differs
+    #[arg(long)]
+    fail_fast: bool,
+    /// Refuse to judge anything but hardware
+    #[arg(long, env = "HALFROW_REQUIRE_HARDWARE", value_parser = FalseyValueParser::new())]
+    require_hardware: bool,
+    /// Only list what would be streamed
+    #[arg(long)]
+    list: bool,
+    /// Seed of noise, gaps and link test
+    #[arg(long, value_name = "SEED", env = "HALFROW_SEED")]
+    seed: Option<u64>,
+    #[command(flatten)]
+    input: InputArguments,
+    #[command(flatten)]
+    lens: LensArguments,
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let settings = &context.settings;
+    let recording = arguments.board.recording(settings)?;
+    let (plan, circumstances) = match &recording {
+        Some(recording) => recorded::restore(recording)?,
+        None => (arguments.plan(settings)?, arguments.circumstances(settings)?),
+    };
+    let candidate = arguments.board.candidate(settings)?;
+    if arguments.list {
+        print(&listing(&plan))?;
+        return Ok(Exit::Pass);
+    }
+    let overwrite = arguments.overwrite || settings.overwrite.unwrap_or(false);
+    let folder = arguments.report.as_ref().or(settings.report.as_ref());
+    let folder = folder.map(|path| ReportFolder::prepare(path, overwrite)).transpose()?;
+    let candidate = match &arguments.record {
+        None => candidate,
+        Some(path) => {
+            let run = recorded::RecordedRun::of(&plan, &circumstances);
+            let link = Recorder::create(candidate.link, path, &run, overwrite)?;
+            Candidate { link: Box::new(link), ..candidate }
+        }
+    };
+    let stop = arguments.board.stop(plan.timeout)?;
+    let watched = progress::for_stderr(context.quiet || arguments.json);
+    let mut finished = session::verify(&plan, candidate, &circumstances, stop, watched.as_ref());
+    let written = folder.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
+    if let Err(error) = &written {
+        lose(&mut finished.report, error);
+    }
+    conclude(&finished, arguments.json)
+}
+
+/// A result that could not be written is none, even when all samples were equal.
+fn lose(report: &mut Report, error: &ReportError) {
+    report.headline = format!("the report could not be written: {:#}", anyhow::anyhow!("{error}"));
+    report.verdict = Verdict::Error;
+    report.exit_code = Exit::Error;
+    report.remedy = Some("Free some space or choose another folder with --report, then run again.".to_owned());
+}
+
+fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
+    let report = &finished.report;
+    if as_json {
+        print(&report::json(report).map_err(Failure::error)?)?;
+    } else {
+        print(report::text(report).trim_end())?;
+    }
+    Ok(report.exit_code)
+}
+
+fn listing(plan: &Plan) -> String {
+    let mut lines = Vec::new();
+    for segment in plan.schedule(2) {
+        let timing = match segment.timing {
+            Timing::Least => "least blanking",
+            Timing::Sensor => "sensor blanking",
+            Timing::Gaps(_) => "gaps",
+        };
+        lines.extend(segment.frames.iter().map(|frame| {
+            let tables = if frame.generation == session::DECOY { "decoy" } else { "judged" };
+            format!("{:>4}  {:<24} {tables:<6} tables, {timing}", frame.number, frame.source.name())
+        }));
+    }
+    lines.join("\n")
+}
+
+impl Arguments {
+    fn plan(&self, settings: &Settings) -> Result<Plan, Failure> {
+        let file = self.tables.as_deref().or(settings.tables.as_deref());
+        let kernel = self.kernel.as_deref().or(settings.kernel.as_deref());
+        let chosen = lens::choose(file, &self.lens, kernel)?;
+        let geometry = chosen.tables.geometry();
+        chosen.tables.check_ring(geometry.width().next_power_of_two())?;
+        let how = self.input.read_options(geometry, self.lens.phase);
+        let names = if self.frame.is_empty() { settings.frame.as_deref().unwrap_or_default() } else { &self.frame };
+        let frames = if names.is_empty() {
+            Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
+        } else {
+            frame_sources(names, &how, geometry)?
+        };
+        Ok(Plan {
+            lens: self.lens.lens()?,
+            centre_y: self.lens.centre_y,
+            phase: self.lens.phase,
+            tables: chosen.tables,
+            kernel: chosen.kernel,
+            tables_source: chosen.source,
+            frames,
+            repeat: self.repeat,
+            fail_fast: self.fail_fast,
+            require_hardware: self.require_hardware || settings.require_hardware.unwrap_or(false),
+            take_over: self.board.take_over,
+            seed: self.seed.or(settings.seed).unwrap_or(1),
+            timeout: self.board.timeout(settings)?,
+            retry_limit: self.board.retry_limit(settings),
+            keep_pictures: self.report.is_some() || settings.report.is_some(),
+        })
+    }
+
+    fn circumstances(&self, settings: &Settings) -> Result<Circumstances, Failure> {
+        let tables = self.tables.as_ref().or(settings.tables.as_ref());
+        let frames = self.frame.iter().filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
+        let files = tables.cloned().into_iter().chain(frames);
+        Ok(Circumstances {
+            arguments: std::env::args().collect(),
+            files: files.map(|path| file_hash(&path)).collect::<Result<_, _>>()?,
+            draws: session::Draws::draw(),
+        })
+    }
+}
+
+impl BoardArguments {
+    fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
+        let seconds = self.timeout.or(settings.timeout);
+        let limit = seconds.map(Duration::try_from_secs_f64).transpose();
+        limit.map_err(|_| anyhow::anyhow!("--timeout takes a number of seconds, 0 or more").into())
+    }
+
+    fn retry_limit(&self, settings: &Settings) -> RetryLimit {
+        let limit = RetryLimit::default();
+        match self.retry_limit.or(settings.retry_limit) {
+            Some(percent) => RetryLimit { share: percent / 100.0, ..limit },
+            None => limit,
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! The options of the board and its link, which several commands share.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
+use std::time::Duration;
+
+use clap::Args;
+
+use super::Failure;
+use crate::board::{OpenOptions, Stop};
+use crate::link::{self, Candidate, Recording};
+use crate::session::Draws;
+use crate::settings::Settings;
+use crate::target::Target;
+use crate::verdict::Exit;
+
+/// Which board, and how patiently.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Board")]
+pub(in crate::commands) struct BoardArguments {
+    /// The board: mock, mock,fault=NAME, replay:FILE …; see `halfrow boards` [default: mock]
+    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD")]
+    board: Option<Target>,
+    /// The longest that the run may take, in seconds of the link's clock
+    #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
+    pub(super) timeout: Option<f64>,
+    /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5]
+    #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = percent)]
+    pub(super) retry_limit: Option<f64>,
+    /// Take the board over from another host that holds it
+    #[arg(long)]
+    pub(super) take_over: bool,
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|percent| (0.0..=100.0).contains(percent));
+    number.ok_or_else(|| "give a number of percent, 0 to 100".to_owned())
+}
+
+impl BoardArguments {
+    fn target(&self, settings: &Settings) -> Result<Target, Failure> {
+        match (&self.board, &settings.board) {
+            (Some(target), _) => Ok(target.clone()),
+            (None, Some(text)) => Ok(text.parse()?),
+            (None, None) => Ok(Target::mock()),
+        }
+    }
+
+    /// The link to the board that is named; by default the mock, never a guess.
+    pub(in crate::commands) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
+        Ok(link::open(&self.target(settings)?)?)
+    }
+
+    /// The recording, if the target is one.
+    pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
+        let file = link::replayed_file(&self.target(settings)?);
+        Ok(file.map(|file| Recording::read(&file)).transpose()?)
+    }
+
+    pub(in crate::commands) fn open_options(
+        &self,
+        settings: &Settings,
+        draws: Option<Draws>,
+    ) -> Result<OpenOptions, Failure> {
+        let Draws { nonce, host } = draws.unwrap_or_else(Draws::draw);
+        Ok(OpenOptions {
+            nonce,
+            host,
+            take_over: self.take_over,
+            retry_limit: self.retry_limit(settings),
+            stop: self.stop(self.timeout(settings)?)?,
+        })
+    }
+
+    /// What ends the run early: Ctrl-C, SIGTERM, or the time limit. A second signal ends the program at once.
+    pub(super) fn stop(&self, limit: Option<Duration>) -> Result<Stop, Failure> {
+        use signal_hook::consts::{SIGINT, SIGTERM};
+        let signal = Arc::new(AtomicUsize::new(0));
+        for (number, exit) in [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated)] {
+            let code = usize::from(exit.code());
+            let second = Arc::new(std::sync::atomic::AtomicBool::new(false));
+            signal_hook::flag::register_conditional_shutdown(number, exit.code().into(), Arc::clone(&second))
+                .map_err(Failure::error)?;
+            signal_hook::flag::register(number, second).map_err(Failure::error)?;
+            signal_hook::flag::register_usize(number, Arc::clone(&signal), code).map_err(Failure::error)?;
+        }
+        Ok(Stop::new(signal, limit))
+    }
+}

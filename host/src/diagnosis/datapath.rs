@@ -1,0 +1,173 @@
+//! The datapath with one part out of order.
+//!
+//! Other samples, factors and weights go through the reference itself, [`RowTables::corrected`]. What it has no input for
+//! is here, and here alone: a sum that is not rounded or not clamped, taps that carry other samples, memory that changes
+//! between two reads, and a factor above 1. It reads the row as a board does, by a window of eight samples and one read a
+//! pixel clock (DATAPATH.md, "Ring").
+
+use halfrow_model::{Geometry, Kernel, STEP_ONE, correct_row, source};
+
+/// Samples in the window, columns n − 3 to n + 4.
+const WINDOW: usize = 8;
+/// Columns of the window left and right of n.
+const LEFT: i64 = 3;
+const RIGHT: i64 = 4;
+/// The column n has 12 bits; a factor above 1 makes it wrap.
+const COLUMNS: i64 = 1 << 12;
+/// A position has 13 fractional bits; the next one says that the base is left of n.
+const LEFT_OF_N: usize = 1 << 13;
+
+/// What a row is made with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RowTables<'a> {
+    /// Size, depth and centre.
+    pub(super) geometry: &'a Geometry,
+    /// The row's factor Q; 1 to 2^24 when it is sound.
+    pub(super) step: u32,
+    /// The kernel.
+    pub(super) kernel: &'a Kernel,
+}
+
+/// A tap that does not carry its own sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct DeadTap {
+    /// The tap, 0 for G0 to 6 for G6.
+    pub(super) tap: usize,
+    /// The tap whose sample it carries; none for zero.
+    pub(super) reads: Option<usize>,
+}
+
+/// How the arithmetic is wired; by default as specified.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Wiring {
+    /// Added to the weighted sum before its 14 fractional bits are dropped.
+    pub(super) rounding: i32,
+    /// Added to the product between two nodes before its 8 fractional bits are dropped.
+    pub(super) weight_rounding: i32,
+    /// Whether outputs below 0 become 0; otherwise they wrap.
+    pub(super) clamps_low: bool,
+    /// Whether outputs above 2^B − 1 become that; otherwise they wrap.
+    pub(super) clamps_high: bool,
+    /// A tap that does not carry its own sample.
+    pub(super) dead_tap: Option<DeadTap>,
+    /// Whether the base column has the row's other colour.
+    pub(super) other_colour: bool,
+}
+
+impl Default for Wiring {
+    fn default() -> Self {
+        Self {
+            rounding: 1 << 13,
+            weight_rounding: 1 << 7,
+            clamps_low: true,
+            clamps_high: true,
+            dead_tap: None,
+            other_colour: false,
+        }
+    }
+}
+
+impl RowTables<'_> {
+    /// What a board without defect makes of `input`, a row of the geometry's width, with these tables.
+    pub(super) fn corrected(&self, input: &[u16]) -> Vec<u16> {
+        if !(1..=STEP_ONE).contains(&self.step) {
+            return self.run(&Wiring::default(), |column, _| self.sample_of(input, column));
+        }
+        let mut output = vec![0; self.geometry.width()];
+        correct_row(self.geometry, self.step, self.kernel, input, &mut output);
+        output
+    }
+
+    /// What a board wired like this makes of a row. `read` gives the sample that the window gets for a column, which may
+    /// lie outside the row, at the time of an output.
+    pub(super) fn run(&self, wiring: &Wiring, read: impl Fn(i64, usize) -> u16) -> Vec<u16> {
+        let mut window: Option<Window> = None;
+        (0..self.geometry.width())
+            .map(|output| {
+                let source = source(self.geometry, self.step, output);
+                let column = source.column.rem_euclid(COLUMNS);
+                let window = window.get_or_insert_with(|| Window::load(column, |m| read(m, output)));
+                window.follow(column, |m| read(m, output));
+                let position = (source.node << 8 | source.fraction as usize)
+                    ^ if wiring.other_colour { LEFT_OF_N } else { 0 };
+                let taps = window.taps(position & LEFT_OF_N != 0);
+                wiring.output(self.kernel, position, taps, self.geometry.depth().max())
+            })
+            .collect()
+    }
+
+    /// The output at one column of `input`.
+    pub(super) fn output(&self, input: &[u16], column: usize) -> u16 {
+        let source = source(self.geometry, self.step, column);
+        let position = source.node << 8 | source.fraction as usize;
+        let taps = std::array::from_fn(|tap| self.sample_of(input, source.base - 2 + tap as i64));
+        Wiring::default().output(self.kernel, position, taps, self.geometry.depth().max())
+    }
+
+    /// P(m): the row's sample at a column, or outside the row the one that stands in for it.
+    pub(super) fn sample_of(&self, row: &[u16], column: i64) -> u16 {
+        row.get(self.geometry.sample_column(column)).copied().unwrap_or_default()
+    }
+}
+
+impl Wiring {
+    /// One output: the taps G0 to G6 weighed at `position`, in units of 2^-13 column right of the base.
+    fn output(&self, kernel: &Kernel, position: usize, taps: [u16; 7], max: u16) -> u16 {
+        let [g0, r1, g4, r5, g6] = self.weights(kernel, position);
+        let [s0, s1, s2, s3, s4, s5, s6] = self.carried(taps).map(i32::from);
+        let own = g0 * (s0 - s2) + g4 * (s4 - s2) + g6 * (s6 - s2);
+        let other = r1 * (s1 - s3) + r5 * (s5 - s3);
+        self.limited(((s2 << 14) + own + other + self.rounding) >> 14, i32::from(max))
+    }
+
+    fn weights(&self, kernel: &Kernel, position: usize) -> [i32; 5] {
+        let node = position >> 8 & 63;
+        let fraction = (position & 255) as i32;
+        let (low, high) = (kernel.nodes()[node].map(i32::from), kernel.nodes()[node + 1].map(i32::from));
+        std::array::from_fn(|tap| {
+            low[tap] + (((high[tap] - low[tap]) * fraction + self.weight_rounding) >> 8)
+        })
+    }
+
+    fn carried(&self, taps: [u16; 7]) -> [u16; 7] {
+        let mut carried = taps;
+        if let Some(DeadTap { tap, reads }) = self.dead_tap
+            && let Some(carried) = carried.get_mut(tap)
+        {
+            *carried = reads.and_then(|other| taps.get(other).copied()).unwrap_or_default();
+        }
+        carried
+    }
+
+    /// Two's complement and a maximum of 2^B − 1 make a mask of what would have been clamped.
+    fn limited(&self, value: i32, max: i32) -> u16 {
+        let clamps = if value < 0 { self.clamps_low } else { self.clamps_high };
+        (if clamps { value.clamp(0, max) } else { value & max }) as u16
+    }
+}
+
+/// The eight samples that serve all taps of an output.
+struct Window {
+    samples: [u16; WINDOW],
+    column: i64,
+}
+
+impl Window {
+    fn load(column: i64, read: impl Fn(i64) -> u16) -> Self {
+        Self { samples: std::array::from_fn(|place| read(column - LEFT + place as i64)), column }
+    }
+
+    /// Moves on when n does. There is time for one read, even if n jumps.
+    fn follow(&mut self, column: i64, read: impl Fn(i64) -> u16) {
+        if column != self.column {
+            self.column = column;
+            self.samples.rotate_left(1);
+            self.samples[WINDOW - 1] = read(column + RIGHT);
+        }
+    }
+
+    fn taps(&self, left_of_n: bool) -> [u16; 7] {
+        let first = usize::from(!left_of_n);
+        std::array::from_fn(|tap| self.samples[first + tap])
+    }
+}

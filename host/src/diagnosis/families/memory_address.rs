@@ -1,0 +1,165 @@
+//! An address line of the line memory stuck, for writing and for reading.
+//!
+//! Two addresses that differ in the line share a cell, and a read gives what came last. Which of the two that is depends
+//! on when the sample is read, so the row is read output by output. At which level the line is stuck makes no
+//! difference: either way the same addresses share a cell.
+
+use std::ops::Range;
+
+use crate::diagnosis::datapath::Wiring;
+use crate::diagnosis::hypothesis::{Cause, Hypothesis, Prediction};
+use crate::diagnosis::witnesses::{Witness, Witnesses};
+
+/// Columns that the newest sample is ahead of the middle of the row when the first output is read.
+const LOOK_AHEAD: usize = 3;
+
+/// From where the ring's addresses are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// From a count at the first sample of the run, modulo M.
+    Run(usize),
+    /// From the first sample of each frame.
+    Frame,
+    /// From the first sample of each row.
+    Row,
+}
+
+impl Origin {
+    /// The address of the row's first sample.
+    pub(super) fn base(self, witness: &Witness<'_>) -> usize {
+        let (width, height) = (witness.geometry().width(), witness.geometry().height());
+        match self {
+            Self::Run(first) => first + (witness.frame * height + witness.row) * width,
+            Self::Frame => witness.row * width,
+            Self::Row => 0,
+        }
+    }
+}
+
+/// A ring of `size` samples with address line `bit` stuck.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BrokenRing {
+    /// M, a power of two.
+    pub(super) size: usize,
+    /// The line, below log2 M.
+    pub(super) bit: u32,
+}
+
+/// Every address line, for each way to count addresses that a board may have.
+pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
+    let origins = [(Origin::Run(0), ""), (Origin::Frame, FRAME), (Origin::Row, ROW)];
+    rings(witnesses)
+        .flat_map(|ring| origins.map(|(origin, counted)| hypothesis(ring, origin, counted)))
+        .collect()
+}
+
+const FRAME: &str = " if addresses are counted from each frame's start,";
+const ROW: &str = " if addresses are counted from each row's start,";
+
+/// The ring with each of its address lines stuck.
+pub(super) fn rings(witnesses: &Witnesses<'_>) -> impl Iterator<Item = BrokenRing> + use<> {
+    let size = witnesses.case.ring;
+    let lines = if size.is_power_of_two() { size.ilog2() } else { 0 };
+    (0..lines).map(move |bit| BrokenRing { size, bit })
+}
+
+/// Line `ring.bit` as a suspect; `counted` says on what condition.
+pub(super) fn hypothesis<'a>(ring: BrokenRing, origin: Origin, counted: &str) -> Hypothesis<'a> {
+    let bit = ring.bit;
+    let cause = Cause {
+        part: "address bit",
+        place: format!("line memory, address bit {bit}"),
+        defect: format!("this line stuck, at either level,{counted}"),
+        next_step: format!("Check address line {bit} of the line memory, and the counters that drive it."),
+    };
+    Hypothesis::new(cause, move |witness| Some(ring.corrected(witness, origin.base(witness))))
+}
+
+impl BrokenRing {
+    /// The row at address `base` as the board gives it.
+    ///
+    /// How many clocks lie before the next row, whose samples may replace this one's, is not known, and with gaps it is
+    /// another number for every row: the fitting one is taken. Nor is it known whether another frame follows at once; if
+    /// one seems to and was not kept, only what does not depend on it is predicted. A row whose sure half is wrong is past
+    /// fitting.
+    fn corrected(self, witness: &Witness<'_>, base: usize) -> Prediction {
+        let undisturbed = self.read_row(witness, base, None);
+        let sure = sure(undisturbed.len());
+        if undisturbed == witness.found || undisturbed.get(sure.clone()) != witness.found.get(sure) {
+            return undisturbed.into();
+        }
+        match witness.next {
+            Some(next) => self.followed_by(next, witness, base, &undisturbed).into(),
+            None => before_next_row(undisturbed),
+        }
+    }
+
+    /// The row with the blanking behind it that fits best. The longer it is, the fewer samples are replaced in time.
+    fn followed_by(self, next: &[u16], witness: &Witness<'_>, base: usize, undisturbed: &[u16]) -> Vec<u16> {
+        let with = |blanking| self.read_row(witness, base, Some((next, blanking)));
+        let at_once = with(0);
+        let (mut low, mut high) = (0, next.len() / 2 + LOOK_AHEAD + 1);
+        while low < high {
+            let blanking = usize::midpoint(low, high);
+            match is_too_short(&with(blanking), witness.found, &at_once, undisturbed) {
+                true => low = blanking + 1,
+                false => high = blanking,
+            }
+        }
+        with(low)
+    }
+
+    /// The outputs that depend on nothing but the row itself.
+    pub(super) fn before_next_row(self, witness: &Witness<'_>, base: usize) -> Prediction {
+        before_next_row(self.read_row(witness, base, None))
+    }
+
+    /// The row, with the samples of the next row and the clocks before it.
+    fn read_row(self, witness: &Witness<'_>, base: usize, next: Option<(&[u16], usize)>) -> Vec<u16> {
+        let tables = witness.tables();
+        let samples = witness.samples();
+        tables.run(&Wiring::default(), |column, output| {
+            let column = tables.geometry.sample_column(column);
+            let newest = newest(samples.len(), output, next);
+            let stored =
+                Some(self.replaced_by(base, column)).filter(|&later| later <= newest).unwrap_or(column);
+            let of_next = || next.and_then(|(next, _)| next.get(stored - samples.len()));
+            samples.get(stored).or_else(of_next).copied().unwrap_or_default()
+        })
+    }
+
+    /// The next sample that goes to the cell of `column`, counted in columns from the row's start.
+    fn replaced_by(self, base: usize, column: usize) -> usize {
+        let distance = 1 << self.bit;
+        if (base + column) & distance == 0 { column + distance } else { column + self.size - distance }
+    }
+}
+
+/// The newest sample when an output is read, counted in columns from the row's start.
+fn newest(width: usize, output: usize, next: Option<(&[u16], usize)>) -> usize {
+    let clock = output + width / 2 + LOOK_AHEAD;
+    let beyond = next.map_or(0, |(_, blanking)| (clock + 1).saturating_sub(width + blanking));
+    clock.min(width - 1) + beyond
+}
+
+/// Whether `row` has samples of the next row where the board has its own.
+fn is_too_short(row: &[u16], found: &[u16], at_once: &[u16], undisturbed: &[u16]) -> bool {
+    let (mut own, mut next) = (0, 0);
+    for (((row, found), at_once), undisturbed) in row.iter().zip(found).zip(at_once).zip(undisturbed) {
+        if row != found && at_once != undisturbed {
+            own += usize::from(found == undisturbed);
+            next += usize::from(found == at_once);
+        }
+    }
+    own > next
+}
+
+/// The outputs of a row that are made before the next row can begin.
+fn sure(width: usize) -> Range<usize> {
+    0..width / 2 - LOOK_AHEAD
+}
+
+fn before_next_row(row: Vec<u16>) -> Prediction {
+    let known = sure(row.len());
+    Prediction::partly(row, known)
+}

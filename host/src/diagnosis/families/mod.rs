@@ -1,0 +1,80 @@
+//! The defects that are known, each kind in its own file.
+
+mod arithmetic;
+mod factor_search;
+mod generations;
+mod kernel_word;
+mod memory_address;
+mod memory_data;
+mod origin_search;
+mod places;
+mod row_factor;
+mod table_lines;
+mod table_word;
+mod taps;
+
+use std::collections::BTreeMap;
+
+use halfrow_model::Kernel;
+
+use super::Uploaded;
+use super::hypothesis::Hypothesis;
+use super::witnesses::Witnesses;
+
+/// The defects that the pattern of differences leaves possible, those of the smallest parts first.
+pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
+    [
+        row_factor::propose,
+        kernel_word::propose,
+        memory_data::propose,
+        memory_address::propose,
+        taps::propose,
+        arithmetic::propose,
+        table_lines::propose,
+        generations::propose,
+        places::propose,
+    ]
+    .into_iter()
+    .flat_map(|propose| propose(witnesses))
+    .collect()
+}
+
+/// Defects whose figures must be searched for, for when nothing else explains everything.
+pub(super) fn search<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
+    let mut found = factor_search::propose(witnesses);
+    found.extend(origin_search::propose(witnesses));
+    found
+}
+
+/// The kernels of the generations in which `change` changes something, by generation.
+fn kernels(
+    generations: &[Uploaded<'_>],
+    change: impl Fn(&Uploaded<'_>) -> Option<Kernel>,
+) -> BTreeMap<u8, Kernel> {
+    generations.iter().filter_map(|uploaded| Some((uploaded.generation, change(uploaded)?))).collect()
+}
+
+/// A bus with one line stuck.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct StuckLine {
+    bit: u32,
+    high: bool,
+}
+
+impl StuckLine {
+    /// The lowest `bits` lines of a bus, each stuck at 0 and at 1.
+    fn all(bits: u32) -> impl Iterator<Item = Self> {
+        (0..bits).flat_map(|bit| [false, true].map(|high| Self { bit, high }))
+    }
+
+    /// What arrives at the far end of the bus.
+    fn carry(self, word: u32) -> u32 {
+        let line = 1 << self.bit;
+        if self.high { word | line } else { word & !line }
+    }
+
+    /// "stuck at 1"
+    fn describe(self) -> String {
+        format!("stuck at {}", u8::from(self.high))
+    }
+}

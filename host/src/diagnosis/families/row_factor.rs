@@ -1,0 +1,48 @@
+//! One row's table entry with a bit inverted.
+
+use super::table_word::{changed, inversions, reading};
+use crate::diagnosis::datapath::RowTables;
+use crate::diagnosis::hypothesis::{Cause, Hypothesis, Prediction};
+use crate::diagnosis::witnesses::{Witness, Witnesses};
+
+/// More rows than this are not one table entry each.
+pub(super) const FEW_ROWS: usize = 8;
+/// Bits of an entry.
+pub(super) const BITS: u32 = 25;
+
+/// Every bit of the entry of every row that differs, when few do.
+pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
+    let rows = if witnesses.rows.len() <= FEW_ROWS { &witnesses.rows[..] } else { &[] };
+    rows.iter().flat_map(|&row| entry(witnesses, row)).collect()
+}
+
+fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
+    let words: Vec<_> = witnesses
+        .generations()
+        .iter()
+        .filter_map(|uploaded| Some((uploaded.generation, uploaded.tables.step(row)?)))
+        .collect();
+    let bits = (0..BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
+    bits.map(|(bit, read)| {
+        let cause = cause(row, format!("row {row}'s factor, bit {bit}"), reading(&words, &read, i64::from));
+        Hypothesis::new(cause, move |witness| {
+            (witness.row == row)
+                .then(|| changed(&read, &witness.uploaded))
+                .flatten()
+                .map(|step| with_step(witness, step))
+        })
+    })
+    .collect()
+}
+
+/// The entry of `row` as a suspect.
+pub(super) fn cause(row: usize, place: String, defect: String) -> Cause {
+    let next_step =
+        format!("Check entry {row} of the row table as the datapath reads it, and the memory that holds it.");
+    Cause { part: "row factor", place, defect, next_step }
+}
+
+/// The witness's row made with another factor.
+pub(super) fn with_step(witness: &Witness<'_>, step: u32) -> Prediction {
+    RowTables { step, ..witness.tables() }.corrected(witness.samples()).into()
+}

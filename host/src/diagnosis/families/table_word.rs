@@ -1,0 +1,43 @@
+//! A word of a table, as each generation has it, and what one broken cell makes of it.
+
+use crate::diagnosis::Uploaded;
+
+/// A word under the number of its generation.
+pub(super) type Word = (u8, u32);
+
+/// The words that change when `bit` is broken. It may be inverted in every bank, in the bank of one generation, or stuck,
+/// so that only the words of the other level change; what comes out the same is given once.
+pub(super) fn inversions(words: &[Word], bit: u32) -> Vec<Vec<Word>> {
+    let is_set = |word: u32| word >> bit & 1 == 1;
+    let changed = |broken: &dyn Fn(&Word) -> bool| -> Vec<Word> {
+        let inverted = |&(generation, word): &Word| (generation, word ^ 1 << bit);
+        words.iter().filter(|word| broken(word)).map(inverted).collect()
+    };
+    let mut sets =
+        vec![changed(&|_| true), changed(&|word| is_set(word.1)), changed(&|word| !is_set(word.1))];
+    sets.extend(words.iter().map(|one| changed(&|word| word.0 == one.0)));
+    let mut distinct: Vec<Vec<Word>> = Vec::new();
+    for set in sets {
+        if !set.is_empty() && !distinct.contains(&set) {
+            distinct.push(set);
+        }
+    }
+    distinct
+}
+
+/// The word of `generation`, if it changed.
+pub(super) fn changed(words: &[Word], uploaded: &Uploaded<'_>) -> Option<u32> {
+    words.iter().find(|word| word.0 == uploaded.generation).map(|word| word.1)
+}
+
+/// "reading 5 for 7", with the generation when others are right. `show` gives a word as people write it.
+pub(super) fn reading(before: &[Word], after: &[Word], show: impl Fn(u32) -> i64) -> String {
+    let Some(&(generation, new)) = after.last() else { return "reading what was uploaded".to_owned() };
+    let old = before.iter().find(|word| word.0 == generation).map_or(new, |word| word.1);
+    let only = if after.len() < before.len() {
+        format!(" in the tables of generation {generation} only")
+    } else {
+        String::new()
+    };
+    format!("reading {} for {}{only}", show(new), show(old))
+}

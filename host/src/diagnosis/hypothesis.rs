@@ -1,0 +1,133 @@
+//! A single defect, and how much of what was seen it explains.
+
+use std::ops::Range;
+
+use super::witnesses::Witness;
+
+/// Rows that must speak for or against a defect before it can be given up.
+const PATIENCE: usize = 8;
+/// The share below which it is given up then.
+const HOPELESS: f64 = 0.1;
+
+/// A defect in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Cause {
+    /// The kind of part: stable, lower case.
+    pub(super) part: &'static str,
+    /// Where: row, node and weight, bit.
+    pub(super) place: String,
+    /// What is wrong there, so that "… gives these samples" makes a sentence.
+    pub(super) defect: String,
+    /// What to do next, one sentence.
+    pub(super) next_step: String,
+}
+
+/// What a board with a defect would have given for a row.
+#[derive(Clone, Debug)]
+pub(super) struct Prediction {
+    samples: Vec<u16>,
+    known: Range<usize>,
+}
+
+impl Prediction {
+    /// A row of which only the columns `known` follow from the defect.
+    pub(super) fn partly(samples: Vec<u16>, known: Range<usize>) -> Self {
+        Self { samples, known }
+    }
+
+    /// A row that the defect leaves open.
+    pub(super) fn unknown() -> Self {
+        Self { samples: Vec::new(), known: 0..0 }
+    }
+}
+
+impl From<Vec<u16>> for Prediction {
+    fn from(samples: Vec<u16>) -> Self {
+        let known = 0..samples.len();
+        Self { samples, known }
+    }
+}
+
+/// What a defect makes of a row; none where the row stays as it should be.
+type Predict<'a> = dyn Fn(&Witness<'_>) -> Option<Prediction> + 'a;
+
+/// A single defect that may be the board's.
+pub(super) struct Hypothesis<'a> {
+    /// It in words.
+    pub(super) cause: Cause,
+    predict: Box<Predict<'a>>,
+}
+
+impl<'a> Hypothesis<'a> {
+    /// The defect `cause`, which makes of a row what `predict` gives, or leaves it as it should be.
+    pub(super) fn new(cause: Cause, predict: impl Fn(&Witness<'_>) -> Option<Prediction> + 'a) -> Self {
+        Self { cause, predict: Box::new(predict) }
+    }
+
+    /// How much of `rows` it explains. One that explains next to nothing of the rows that it touches is not tried on all.
+    pub(super) fn score<'w, 'r: 'w>(&self, rows: impl Iterator<Item = &'w Witness<'r>>) -> Score {
+        let mut score = Score::default();
+        let mut touched = Score::default();
+        let mut tried = 0;
+        for row in rows {
+            let Some(prediction) = (self.predict)(row) else {
+                score.differing += row.differences;
+                continue;
+            };
+            let of_row = Score::of_row(&prediction, row);
+            score.add(of_row);
+            touched.add(of_row);
+            tried += usize::from(of_row != Score::default());
+            if tried >= PATIENCE && touched.share() < HOPELESS {
+                break;
+            }
+        }
+        score
+    }
+}
+
+/// How well a defect explains rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Score {
+    /// Samples that differ from the reference.
+    pub(super) differing: usize,
+    /// Those of them that the defect gives, to the bit.
+    pub(super) explained: usize,
+    /// Samples that the defect would change and that are right.
+    pub(super) contradicted: usize,
+}
+
+impl Score {
+    /// How well a prediction fits its row.
+    pub(super) fn of_row(prediction: &Prediction, row: &Witness<'_>) -> Self {
+        let samples = prediction.samples.iter().zip(row.found).zip(row.expected);
+        let known = samples.take(prediction.known.end).skip(prediction.known.start);
+        let mut score = Self::default();
+        for ((predicted, found), expected) in known {
+            let differs = found != expected;
+            score.differing += usize::from(differs);
+            score.explained += usize::from(differs && predicted == found);
+            score.contradicted += usize::from(!differs && predicted != found);
+        }
+        score
+    }
+
+    fn add(&mut self, other: Self) {
+        self.differing += other.differing;
+        self.explained += other.explained;
+        self.contradicted += other.contradicted;
+    }
+
+    /// The share that is explained, 0 to 1; what is contradicted counts against it.
+    pub(super) fn share(&self) -> f64 {
+        match self.differing + self.contradicted {
+            0 => 0.0,
+            all => self.explained as f64 / all as f64,
+        }
+    }
+
+    /// Whether every differing sample is explained and none contradicted.
+    pub(super) fn is_exact(&self) -> bool {
+        self.differing > 0 && self.explained == self.differing && self.contradicted == 0
+    }
+}

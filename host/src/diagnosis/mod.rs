@@ -1,0 +1,64 @@
+//! From the pattern of differences to the part that is broken.
+//!
+//! ```text
+//! Case ─► witnesses ─► families ─► ranking ─► Suspect
+//!         rows to      single      simulates each defect on the rows,
+//!         explain      defects     sample by sample, and keeps the best
+//! ```
+//!
+//! Every suspect is a single defect that was simulated exactly. Its share says how many of the differing samples it
+//! gives to the bit; where nothing explains them, [`diagnose`] describes where they lie and names no part.
+
+mod datapath;
+mod families;
+mod hypothesis;
+mod pattern;
+mod ranking;
+mod read_back;
+mod witnesses;
+
+use halfrow_model::{Kernel, TableSet};
+
+use crate::report::{Evidence, FrameReport, Suspect};
+use witnesses::Witnesses;
+
+pub use read_back::read_back;
+
+/// Tables and kernel that a frame may have been corrected by.
+#[derive(Clone, Copy, Debug)]
+pub struct Uploaded<'a> {
+    /// Their generation.
+    pub generation: u8,
+    /// The row factors.
+    pub tables: &'a TableSet,
+    /// The kernel.
+    pub kernel: &'a Kernel,
+}
+
+/// Everything that is known of a board that computes wrongly.
+#[derive(Clone, Copy, Debug)]
+pub struct Case<'a> {
+    /// All that was uploaded, in order.
+    pub uploaded: &'a [Uploaded<'a>],
+    /// M, the samples of line memory.
+    pub ring: usize,
+    /// Every frame, in the order in which they were streamed.
+    pub frames: &'a [FrameReport],
+    /// Frames that were kept, those that differ among them.
+    pub evidence: &'a [Evidence],
+}
+
+/// The defects that explain the differences best, the likeliest first and at most three; none when nothing differs.
+///
+/// Several that explain all of them say so in their evidence. Where no defect explains most of them, the first suspect is
+/// `unknown` and says in words where they lie.
+#[must_use]
+pub fn diagnose(case: &Case<'_>) -> Vec<Suspect> {
+    let witnesses = Witnesses::of(case);
+    let mut ranked = ranking::rank(&witnesses, families::propose(&witnesses));
+    if !ranked.first().is_some_and(|best| best.score.is_exact()) {
+        let searched = ranking::rank(&witnesses, families::search(&witnesses));
+        ranked = ranking::merge(ranked, searched);
+    }
+    ranking::suspects(&ranked, pattern::summary(&witnesses))
+}

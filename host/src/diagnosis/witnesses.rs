@@ -1,0 +1,182 @@
+//! The rows that a hypothesis must explain.
+
+use std::collections::BTreeSet;
+
+use halfrow_model::{Frame, Geometry};
+
+use super::datapath::RowTables;
+use super::{Case, Uploaded};
+use crate::report::Evidence;
+
+/// 2^64 / golden ratio: its multiples, taken modulo 2^64, fall evenly everywhere.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// A row that was kept: what went in, what came out, what should have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Witness<'a> {
+    /// Its frame's place in the order of streaming.
+    pub(super) frame: usize,
+    /// Its row.
+    pub(super) row: usize,
+    /// What its frame must be made with.
+    pub(super) uploaded: Uploaded<'a>,
+    /// The whole frame that went in.
+    pub(super) input: &'a Frame,
+    /// The row that went in behind it, of this frame or the next, if it was kept.
+    pub(super) next: Option<&'a [u16]>,
+    /// What the board gave.
+    pub(super) found: &'a [u16],
+    /// What the reference gives.
+    pub(super) expected: &'a [u16],
+    /// Samples that differ.
+    pub(super) differences: usize,
+}
+
+impl<'a> Witness<'a> {
+    /// Size, depth and centre.
+    pub(super) fn geometry(&self) -> &'a Geometry {
+        self.uploaded.tables.geometry()
+    }
+
+    /// The samples that went in.
+    pub(super) fn samples(&self) -> &'a [u16] {
+        self.input.row(self.row)
+    }
+
+    /// The samples that went in `distance` rows below, if the frame has such a row.
+    pub(super) fn samples_at(&self, distance: isize) -> Option<&'a [u16]> {
+        let row = self.row.checked_add_signed(distance).filter(|&row| row < self.input.height())?;
+        Some(self.input.row(row))
+    }
+
+    /// What the row must be made with.
+    pub(super) fn tables(&self) -> RowTables<'a> {
+        let Uploaded { tables, kernel, .. } = self.uploaded;
+        RowTables { geometry: tables.geometry(), step: tables.step(self.row).unwrap_or_default(), kernel }
+    }
+
+    /// Where it stands in the run.
+    pub(super) fn place(&self) -> (usize, usize) {
+        (self.frame, self.row)
+    }
+
+    /// The columns that differ.
+    pub(super) fn differing_columns(&self) -> impl Iterator<Item = usize> {
+        self.found
+            .iter()
+            .zip(self.expected)
+            .enumerate()
+            .filter_map(|(column, (found, expected))| (found != expected).then_some(column))
+    }
+}
+
+/// All rows that were kept, in an order of which every beginning is spread over frames and rows.
+#[derive(Debug)]
+pub(super) struct Witnesses<'a> {
+    /// What is known.
+    pub(super) case: Case<'a>,
+    /// Rows with differences.
+    pub(super) differing: Vec<Witness<'a>>,
+    /// Rows without, from the first difference of the run on.
+    equal: Vec<Witness<'a>>,
+    /// Rows without, before it.
+    before: Vec<Witness<'a>>,
+    /// The rows that differ in any frame, kept or not, from the top.
+    pub(super) rows: Vec<usize>,
+}
+
+impl<'a> Witnesses<'a> {
+    /// The rows of the frames that were kept and whose tables are known.
+    pub(super) fn of(case: &Case<'a>) -> Self {
+        let all: Vec<_> = case.evidence.iter().flat_map(|evidence| rows(case, evidence)).collect();
+        let (differing, equal): (Vec<_>, Vec<_>) = all.into_iter().partition(|row| row.differences > 0);
+        let counted = case.frames.iter().flat_map(|frame| frame.comparison.differing_rows());
+        let differ: BTreeSet<_> = counted.chain(differing.iter().map(|row| row.row)).collect();
+        let first = differing.iter().map(Witness::place).min();
+        let (before, equal): (Vec<_>, Vec<_>) = equal.into_iter().partition(|row| Some(row.place()) < first);
+        Self {
+            case: *case,
+            differing: spread(differing),
+            equal: telling(equal, &differ),
+            before: telling(before, &differ),
+            rows: differ.into_iter().collect(),
+        }
+    }
+
+    /// At most `count` rows that differ, and as many that do not although others did before.
+    pub(super) fn sample(&self, count: usize) -> impl Iterator<Item = &Witness<'a>> {
+        self.differing.iter().take(count).chain(self.equal.iter().take(count))
+    }
+
+    /// At most `count` rows that came before anything differed.
+    pub(super) fn sample_before(&self, count: usize) -> impl Iterator<Item = &Witness<'a>> {
+        self.before.iter().take(count)
+    }
+
+    /// The size, depth and centre of all frames; none without rows to explain.
+    pub(super) fn geometry(&self) -> Option<&'a Geometry> {
+        self.differing.first().map(Witness::geometry)
+    }
+
+    /// What was uploaded for any of the frames that were kept, each generation once.
+    pub(super) fn generations(&self) -> Vec<Uploaded<'a>> {
+        let used: BTreeSet<_> = self
+            .case
+            .evidence
+            .iter()
+            .filter_map(|evidence| Some(self.case.frames.get(evidence.index)?.generation))
+            .collect();
+        used.into_iter().filter_map(|generation| uploaded(&self.case, generation)).collect()
+    }
+}
+
+fn uploaded<'a>(case: &Case<'a>, generation: u8) -> Option<Uploaded<'a>> {
+    case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation).copied()
+}
+
+/// The rows of one frame. A frame of another size than its tables bears no witness.
+fn rows<'a>(case: &Case<'a>, evidence: &'a Evidence) -> Vec<Witness<'a>> {
+    let uploaded = case.frames.get(evidence.index).and_then(|frame| uploaded(case, frame.generation));
+    let Some(uploaded) = uploaded.filter(|uploaded| fits(evidence, uploaded.tables.geometry())) else {
+        return Vec::new();
+    };
+    let input = &evidence.input;
+    let following = case.evidence.iter().find(|other| other.index == evidence.index + 1);
+    let next_frame =
+        following.filter(|next| next.input.width() == input.width()).map(|next| next.input.row(0));
+    let witness = |(row, (found, expected)): (usize, (&'a [u16], &'a [u16]))| {
+        let differences =
+            if found == expected { 0 } else { found.iter().zip(expected).filter(|(f, e)| f != e).count() };
+        let frame = evidence.index;
+        let next = if row + 1 < input.height() { Some(input.row(row + 1)) } else { next_frame };
+        Witness { frame, row, uploaded, input, next, found, expected, differences }
+    };
+    evidence.found.rows().zip(evidence.expected.rows()).enumerate().map(witness).collect()
+}
+
+/// Rows without differences: by turns one that differs in another frame and one that differs in none, both kinds spread.
+fn telling<'a>(equal: Vec<Witness<'a>>, differ: &BTreeSet<usize>) -> Vec<Witness<'a>> {
+    let (here, everywhere): (Vec<_>, Vec<_>) = equal.into_iter().partition(|row| differ.contains(&row.row));
+    let (mut here, mut everywhere) = (spread(here).into_iter(), spread(everywhere).into_iter());
+    let mut mixed = Vec::new();
+    loop {
+        let pair: Vec<_> = here.next().into_iter().chain(everywhere.next()).collect();
+        if pair.is_empty() {
+            return mixed;
+        }
+        mixed.extend(pair);
+    }
+}
+
+fn fits(evidence: &Evidence, geometry: &Geometry) -> bool {
+    [&evidence.input, &evidence.found, &evidence.expected]
+        .iter()
+        .all(|frame| (frame.width(), frame.height()) == (geometry.width(), geometry.height()))
+}
+
+/// The rows in an order of which every beginning is spread evenly over the whole, with no period.
+fn spread(rows: Vec<Witness<'_>>) -> Vec<Witness<'_>> {
+    let mut ordered: Vec<_> = rows.into_iter().enumerate().collect();
+    ordered.sort_unstable_by_key(|(index, _)| (*index as u64).wrapping_mul(GOLDEN));
+    ordered.into_iter().map(|(_, row)| row).collect()
+}

@@ -1,0 +1,189 @@
+//! What can go wrong between a file and a frame.
+
+use std::io;
+use std::path::PathBuf;
+
+use halfrow_model::{BitDepth, FrameError};
+
+use super::RawLayout;
+use super::size::{MAX_FILE_BYTES, MAX_SIDE};
+use crate::written_aside::WriteAsideError;
+
+/// A file that could not be read as a frame.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The system did not hand the file over.
+    #[error("cannot read {}; check that it exists and that you may read it", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// More bytes than any frame has.
+    #[error("{} is longer than {MAX_FILE_BYTES} bytes; give a file that holds one frame", path.display())]
+    TooLong {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The bytes are no frame; the source says why and what to do.
+    #[error("{} holds no frame that can be used", path.display())]
+    Decode {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with its bytes.
+        source: DecodeError,
+    },
+}
+
+/// Bytes that are no frame.
+#[derive(Debug, thiserror::Error)]
+pub enum DecodeError {
+    /// No format known here begins like this.
+    #[error(
+        "it begins like no format known here (PGM P5, PNG, TIFF); convert it, or for samples without a header \
+         give width, height and layout"
+    )]
+    UnknownFormat,
+    /// A kind of file that is understood but not taken.
+    #[error("{what} cannot be used; {remedy}")]
+    Unsupported {
+        /// The kind of file.
+        what: String,
+        /// What to do about it.
+        remedy: &'static str,
+    },
+    /// A side of the picture is beyond any sensor.
+    #[error("it is {width} x {height}, above {MAX_SIDE} x {MAX_SIDE}; crop it or check its header")]
+    TooLarge {
+        /// Columns.
+        width: u64,
+        /// Rows.
+        height: u64,
+    },
+    /// Fewer bytes than the size calls for.
+    #[error(
+        "it has {found} bytes of samples where its size calls for {expected}; \
+         check width, height and layout, or copy the file again"
+    )]
+    Truncated {
+        /// Bytes that the size calls for; at least so many when the file is compressed.
+        expected: usize,
+        /// Bytes there.
+        found: usize,
+    },
+    /// Bytes after the last sample.
+    #[error(
+        "it goes on for {extra} bytes after its last sample; check width, height and layout, \
+         or split a file of several frames"
+    )]
+    Trailing {
+        /// Bytes too many.
+        extra: usize,
+    },
+    /// The PGM header lacks a number.
+    #[error("the PGM header has no {wanted} at byte {offset}; it must read `P5 WIDTH HEIGHT MAXVAL`")]
+    PgmHeader {
+        /// What should be there.
+        wanted: &'static str,
+        /// Where, in bytes from the start of the file.
+        offset: usize,
+    },
+    /// The PGM header gives a maximum that the format does not have.
+    #[error("the PGM maxval is {0}; it must be 1 to 65535, so write the file again")]
+    PgmMaxval(u32),
+    /// A sample beyond what the PGM header promised.
+    #[error(
+        "the sample at row {row}, column {column} is {value}, above the PGM's own maxval {maxval}; \
+         write the file again with the right maxval"
+    )]
+    AboveMaxval {
+        /// Its row.
+        row: usize,
+        /// Its column.
+        column: usize,
+        /// The sample.
+        value: u16,
+        /// The header's maximum.
+        maxval: u16,
+    },
+    /// The PNG decoder gave up.
+    #[error("the PNG is damaged; copy or export it again")]
+    Png(#[source] png::DecodingError),
+    /// The TIFF directory is cut off or malformed.
+    #[error("the TIFF's directory is damaged at byte {offset}; copy or export the file again")]
+    TiffDirectory {
+        /// Where, in bytes from the start of the file.
+        offset: usize,
+    },
+    /// The TIFF decoder gave up.
+    #[error("the TIFF is damaged; copy or export it again")]
+    Tiff(#[source] tiff::TiffError),
+    /// The rows do not fill whole packing groups.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+    /// The samples are no frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
+}
+
+/// A row that a packed layout cannot hold.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{layout} packs {group} samples together, and {width} columns are no whole number of groups; use u16le"
+)]
+pub struct PackingError {
+    /// The layout.
+    pub layout: RawLayout,
+    /// Samples that it packs together.
+    pub group: usize,
+    /// Columns of the frame.
+    pub width: usize,
+}
+
+/// A frame that could not be written to a file.
+#[derive(Debug, thiserror::Error)]
+pub enum WriteError {
+    /// The name does not tell the format.
+    #[error("{} names no format; end it in .pgm, .png, .tif, .tiff or .raw", path.display())]
+    Extension {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The frame does not fit the format, or the encoder gave up.
+    #[error("cannot write {} in its format", path.display())]
+    Encode {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: EncodeError,
+    },
+    /// The file could not be put in its place.
+    #[error(transparent)]
+    File(#[from] WriteAsideError),
+}
+
+/// A frame that could not be turned into bytes.
+#[derive(Debug, thiserror::Error)]
+pub enum EncodeError {
+    /// The output took no more bytes.
+    #[error("the output takes no more bytes; check the space that is left")]
+    Io(#[from] io::Error),
+    /// The PNG encoder gave up.
+    #[error("the PNG encoder refused the frame; write a PGM instead")]
+    Png(#[from] png::EncodingError),
+    /// The TIFF encoder gave up.
+    #[error("the TIFF encoder refused the frame; write a PGM instead")]
+    Tiff(#[from] tiff::TiffError),
+    /// The layout has fewer bits than the frame.
+    #[error("{layout} cannot hold samples of {bits} bits; use u16le", bits = depth.bits())]
+    LayoutTooNarrow {
+        /// The layout.
+        layout: RawLayout,
+        /// The frame's depth.
+        depth: BitDepth,
+    },
+    /// The rows do not fill whole packing groups.
+    #[error(transparent)]
+    Packing(#[from] PackingError),
+}

@@ -1,0 +1,57 @@
+//! From the pixels of a picture to the samples of a Bayer frame.
+
+use halfrow_model::{BitDepth, Colour, Frame, Phase};
+
+use super::{DecodeError, ReadOptions};
+
+/// A decoded picture: `channels` interleaved samples a pixel, row after row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Picture {
+    /// Pixels in a row.
+    pub(super) width: usize,
+    /// 1 grey, 2 grey and alpha, 3 red, green and blue, 4 the same and alpha.
+    pub(super) channels: usize,
+    /// The sample of full brightness: 255 or 65535.
+    pub(super) full: u16,
+    /// The samples.
+    pub(super) samples: Vec<u16>,
+}
+
+impl Picture {
+    /// The frame that the picture stands for. Grey is a raw Bayer frame and taken as it is. Of colour, each sample keeps
+    /// the colour of its place, scaled to the depth by [`scaled`], without gamma. Alpha is ignored.
+    ///
+    /// # Errors
+    /// [`DecodeError`] when the samples are no frame of `how.depth`.
+    pub(super) fn into_frame(self, how: &ReadOptions) -> Result<Frame, DecodeError> {
+        let Self { width, channels, full, samples } = self;
+        let samples = match channels {
+            1 => samples,
+            2 => samples.chunks_exact(2).map(|pixel| pixel[0]).collect(),
+            _ => mosaicked(&samples, channels, width.max(1), how.phase)
+                .map(|sample| scaled(sample, full, how.depth))
+                .collect(),
+        };
+        Ok(Frame::new(width, how.depth, how.phase, samples)?)
+    }
+}
+
+/// The sample of each place's own colour, from three or more channels a pixel.
+fn mosaicked(samples: &[u16], channels: usize, width: usize, phase: Phase) -> impl Iterator<Item = u16> {
+    samples.chunks_exact(channels).enumerate().map(move |(place, pixel)| {
+        let channel = match phase.colour(place / width, place % width) {
+            Colour::Red => 0,
+            Colour::Green => 1,
+            Colour::Blue => 2,
+        };
+        pixel[channel]
+    })
+}
+
+/// `sample · (2^B − 1) / full`, rounded half up.
+#[must_use]
+fn scaled(sample: u16, full: u16, depth: BitDepth) -> u16 {
+    let full = u32::from(full.max(1));
+    let product = u32::from(sample) * u32::from(depth.max());
+    u16::try_from((product + full / 2) / full).unwrap_or(u16::MAX)
+}

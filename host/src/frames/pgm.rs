@@ -1,0 +1,112 @@
+//! PGM, the binary kind (P5): samples exactly as they are in the file.
+//!
+//! The maxval says only how many bytes a sample takes, one up to 255 and else two, the high one first. It never scales.
+
+use std::io::{self, Write};
+
+use halfrow_model::{BitDepth, Frame};
+
+use super::{DecodeError, ReadOptions, size};
+
+/// The first bytes of a PGM.
+pub(super) const MAGIC: &[u8] = b"P5";
+
+/// The frame in the bytes of a PGM.
+///
+/// # Errors
+/// [`DecodeError`] when the header is malformed, the raster is not exactly as long as the header says, or a sample is
+/// above the header's maxval or above `how.depth`.
+pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
+    let mut header = Header { bytes, offset: MAGIC.len() };
+    if !bytes.starts_with(MAGIC) {
+        return Err(DecodeError::PgmHeader { wanted: "`P5`", offset: 0 });
+    }
+    let (width, height) = (header.number("width")?, header.number("height")?);
+    let (width, height) = size::checked(width.into(), height.into())?;
+    let maxval = header.maxval()?;
+    let raster = header.raster()?;
+    let sample_bytes = if maxval <= u16::from(u8::MAX) { 1 } else { 2 };
+    size::exact(raster.len(), width * height * sample_bytes)?;
+    let samples: Vec<u16> = raster
+        .chunks_exact(sample_bytes)
+        .map(|bytes| bytes.iter().fold(0, |high, &low| high << 8 | u16::from(low)))
+        .collect();
+    if let Some((place, &value)) = samples.iter().enumerate().find(|&(_, &value)| value > maxval) {
+        return Err(DecodeError::AboveMaxval { row: place / width, column: place % width, value, maxval });
+    }
+    Ok(Frame::new(width, how.depth, how.phase, samples)?)
+}
+
+/// Writes `frame` as a PGM with the maxval 2^B − 1.
+///
+/// # Errors
+/// Whatever `out` answers.
+pub fn encode(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, "P5\n{} {}\n{}", frame.width(), frame.height(), frame.depth().max())?;
+    let mut line = Vec::with_capacity(frame.width() * 2);
+    for row in frame.rows() {
+        line.clear();
+        match frame.depth() {
+            BitDepth::Eight => line.extend(row.iter().map(|&sample| sample.to_be_bytes()[1])),
+            _ => line.extend(row.iter().flat_map(|sample| sample.to_be_bytes())),
+        }
+        out.write_all(&line)?;
+    }
+    Ok(())
+}
+
+/// A reader of the header's numbers.
+struct Header<'a> {
+    bytes: &'a [u8],
+    offset: usize,
+}
+
+impl<'a> Header<'a> {
+    fn rest(&self) -> &'a [u8] {
+        self.bytes.get(self.offset..).unwrap_or_default()
+    }
+
+    /// The next number, after white space and comments, of which there must be some.
+    fn number(&mut self, wanted: &'static str) -> Result<u32, DecodeError> {
+        let missing = |offset| DecodeError::PgmHeader { wanted, offset };
+        let before = self.offset;
+        self.skip_blanks();
+        let digits = self.rest().iter().take_while(|byte| byte.is_ascii_digit()).count();
+        let value = std::str::from_utf8(&self.rest()[..digits]).ok().and_then(|text| text.parse().ok());
+        match value {
+            Some(value) if self.offset > before => {
+                self.offset += digits;
+                Ok(value)
+            }
+            _ => Err(missing(self.offset)),
+        }
+    }
+
+    fn maxval(&mut self) -> Result<u16, DecodeError> {
+        let maxval = self.number("maxval")?;
+        match u16::try_from(maxval) {
+            Ok(fits) if fits > 0 => Ok(fits),
+            _ => Err(DecodeError::PgmMaxval(maxval)),
+        }
+    }
+
+    /// The bytes after the one white space that ends the header.
+    fn raster(&self) -> Result<&'a [u8], DecodeError> {
+        match self.rest() {
+            [blank, raster @ ..] if blank.is_ascii_whitespace() => Ok(raster),
+            _ => Err(DecodeError::PgmHeader { wanted: "white space after the maxval", offset: self.offset }),
+        }
+    }
+
+    fn skip_blanks(&mut self) {
+        loop {
+            let rest = self.rest();
+            let skipped = match rest.first() {
+                Some(blank) if blank.is_ascii_whitespace() => 1,
+                Some(b'#') => rest.iter().take_while(|&&byte| byte != b'\n').count(),
+                _ => return,
+            };
+            self.offset += skipped;
+        }
+    }
+}

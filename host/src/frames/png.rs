@@ -1,0 +1,110 @@
+//! PNG, 8 and 16 bits a sample. Gamma and colour profiles are not applied: the numbers in the file are the samples.
+
+use std::io::{Cursor, Write};
+
+use halfrow_model::{BitDepth, Frame};
+use png::{ColorType, Decoder, DecodingError, Encoder, EncodingError, Info, Transformations};
+
+use super::mosaic::Picture;
+use super::{DecodeError, ReadOptions, size};
+
+/// The first bytes of a PNG.
+pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+/// The frame in the bytes of a PNG: grey is a raw Bayer frame as it is; colour, palettes among it, is mosaicked; alpha
+/// is ignored.
+///
+/// # Errors
+/// [`DecodeError`] when the PNG is damaged, animated, followed by other bytes, or grey with fewer than 8 bits, or when a
+/// sample is above `how.depth`.
+pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
+    let mut input = Cursor::new(bytes);
+    let picture = picture(&mut input)?;
+    let read = usize::try_from(input.position()).unwrap_or(usize::MAX);
+    size::exact(bytes.len(), read)?;
+    picture.into_frame(how)
+}
+
+/// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16.
+///
+/// # Errors
+/// The encoder's, or whatever `out` answers.
+pub fn encode(frame: &Frame, out: &mut impl Write) -> Result<(), EncodingError> {
+    let samples = frame.samples();
+    match frame.depth() {
+        BitDepth::Eight => {
+            let bytes: Vec<u8> = samples.iter().map(|sample| sample.to_be_bytes()[1]).collect();
+            write(out, (frame.width(), frame.height()), (ColorType::Grayscale, png::BitDepth::Eight), &bytes)
+        }
+        _ => {
+            let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_be_bytes()).collect();
+            write(
+                out,
+                (frame.width(), frame.height()),
+                (ColorType::Grayscale, png::BitDepth::Sixteen),
+                &bytes,
+            )
+        }
+    }
+}
+
+/// Writes a PNG of `(width, height)` from rows of bytes in the given colour type and depth.
+///
+/// # Errors
+/// The encoder's, or whatever `out` answers.
+pub(super) fn write(
+    out: &mut impl Write,
+    (width, height): (usize, usize),
+    (colour, depth): (ColorType, png::BitDepth),
+    bytes: &[u8],
+) -> Result<(), EncodingError> {
+    let side = |length| u32::try_from(length).unwrap_or(u32::MAX);
+    let mut encoder = Encoder::new(out, side(width), side(height));
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()
+}
+
+fn picture(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {
+    let compressed = input.get_ref().len();
+    let mut decoder = Decoder::new(input);
+    decoder.set_transformations(Transformations::EXPAND);
+    decoder.set_ignore_text_chunk(true);
+    decoder.set_ignore_iccp_chunk(true);
+    check(decoder.read_header_info().map_err(DecodeError::Png)?)?;
+    let mut reader = decoder.read_info().map_err(DecodeError::Png)?;
+    if reader.info().is_animated() {
+        return Err(DecodeError::Unsupported {
+            what: "an animated PNG".to_owned(),
+            remedy: "save each picture as a file of its own",
+        });
+    }
+    let length = reader.output_buffer_size().ok_or(DecodeError::Png(DecodingError::LimitsExceeded))?;
+    size::plausible(compressed, length)?;
+    let mut bytes = vec![0; length];
+    let output = reader.next_frame(&mut bytes).map_err(DecodeError::Png)?;
+    reader.finish().map_err(DecodeError::Png)?;
+    let (full, samples) = match output.bit_depth {
+        png::BitDepth::Sixteen => {
+            (u16::MAX, bytes.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect())
+        }
+        _ => (u8::MAX.into(), bytes.into_iter().map(u16::from).collect()),
+    };
+    let width = usize::try_from(output.width).unwrap_or(usize::MAX);
+    Ok(Picture { width, channels: output.color_type.samples(), full, samples })
+}
+
+/// Refuses what would be too large or would not keep its samples, from the header alone.
+fn check(header: &Info<'_>) -> Result<(), DecodeError> {
+    size::checked(header.width.into(), header.height.into())?;
+    let bits = header.bit_depth as u8;
+    if header.color_type == ColorType::Grayscale && bits < 8 {
+        return Err(DecodeError::Unsupported {
+            what: format!("a grey PNG of {bits} bits a sample"),
+            remedy: "save it with 8 or 16 bits",
+        });
+    }
+    Ok(())
+}

@@ -1,0 +1,176 @@
+//! Headerless samples: plain bytes and words, and the packings of MIPI CSI-2.
+//!
+//! RAW10 packs four samples into five bytes: their upper eight bits in order, then their lower two bits in the fifth
+//! byte, the first sample's in bits 1:0. RAW12 packs two samples into three bytes: their upper eight bits, then their
+//! lower four, the first sample's in bits 3:0.
+
+use std::fmt;
+use std::io::Write;
+use std::str::FromStr;
+
+use halfrow_model::Frame;
+
+use super::error::PackingError;
+use super::{DecodeError, EncodeError, ReadOptions, size};
+
+/// How headerless samples lie in bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum RawLayout {
+    /// One byte a sample.
+    U8,
+    /// Two bytes a sample, the low one first.
+    U16Le,
+    /// MIPI RAW10: four samples in five bytes.
+    Mipi10,
+    /// MIPI RAW12: two samples in three bytes.
+    Mipi12,
+}
+
+impl RawLayout {
+    /// All layouts.
+    pub const ALL: [Self; 4] = [Self::U8, Self::U16Le, Self::Mipi10, Self::Mipi12];
+
+    /// The layout in the spelling that [`FromStr`] reads.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::U8 => "u8",
+            Self::U16Le => "u16le",
+            Self::Mipi10 => "mipi10",
+            Self::Mipi12 => "mipi12",
+        }
+    }
+
+    /// The most bits that a sample can have.
+    #[must_use]
+    pub fn bits(self) -> u32 {
+        match self {
+            Self::U8 => 8,
+            Self::U16Le => 16,
+            Self::Mipi10 => 10,
+            Self::Mipi12 => 12,
+        }
+    }
+
+    /// Samples of one packing group, and the bytes that it takes.
+    fn group(self) -> (usize, usize) {
+        match self {
+            Self::U8 => (1, 1),
+            Self::U16Le => (1, 2),
+            Self::Mipi10 => (4, 5),
+            Self::Mipi12 => (2, 3),
+        }
+    }
+
+    /// Appends the samples of one group of bytes.
+    fn unpack(self, group: &[u8], samples: &mut Vec<u16>) {
+        match (self, group) {
+            (Self::U16Le, &[low, high]) => samples.push(u16::from_le_bytes([low, high])),
+            (Self::U8, &[sample]) => samples.push(sample.into()),
+            (_, [high @ .., low]) => {
+                let low_bits = self.bits() - 8;
+                samples.extend(high.iter().zip(0..).map(|(&byte, place)| {
+                    u16::from(byte) << low_bits | u16::from(low >> (place * low_bits)) & ((1 << low_bits) - 1)
+                }));
+            }
+            _ => {}
+        }
+    }
+
+    /// Appends the bytes of one group of samples.
+    fn pack(self, group: &[u16], bytes: &mut Vec<u8>) {
+        match self {
+            Self::U8 | Self::U16Le => {
+                let (_, width) = self.group();
+                bytes.extend(group.iter().flat_map(|sample| sample.to_le_bytes().into_iter().take(width)));
+            }
+            Self::Mipi10 | Self::Mipi12 => {
+                let low_bits = self.bits() - 8;
+                bytes.extend(group.iter().map(|sample| (sample >> low_bits).to_le_bytes()[0]));
+                let low = group.iter().zip(0..).fold(0, |low, (sample, place)| {
+                    low | (sample & ((1 << low_bits) - 1)) << (place * low_bits)
+                });
+                bytes.push(low.to_le_bytes()[0]);
+            }
+        }
+    }
+
+    fn check_width(self, width: usize) -> Result<(), PackingError> {
+        let (group, _) = self.group();
+        if width.is_multiple_of(group) {
+            return Ok(());
+        }
+        Err(PackingError { layout: self, group, width })
+    }
+}
+
+impl fmt::Display for RawLayout {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A name that is no layout's.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no layout of raw samples; use u8, u16le, mipi10 or mipi12")]
+pub struct UnknownLayout(String);
+
+impl FromStr for RawLayout {
+    type Err = UnknownLayout;
+
+    fn from_str(text: &str) -> Result<Self, UnknownLayout> {
+        let named = |layout: &Self| layout.name().eq_ignore_ascii_case(text);
+        Self::ALL.into_iter().find(named).ok_or_else(|| UnknownLayout(text.to_owned()))
+    }
+}
+
+/// What a headerless file does not say about itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RawGeometry {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// How the samples lie in bytes.
+    pub layout: RawLayout,
+}
+
+/// The frame in headerless bytes. Rows follow one another without padding.
+///
+/// # Errors
+/// [`DecodeError`] when the length is not exactly that of the geometry, when a row is no whole number of packing groups,
+/// or when a sample is above `how.depth`.
+pub fn decode(bytes: &[u8], geometry: RawGeometry, how: &ReadOptions) -> Result<Frame, DecodeError> {
+    let RawGeometry { width, height, layout } = geometry;
+    let (width, height) = size::checked(width as u64, height as u64)?;
+    layout.check_width(width)?;
+    let (group_samples, group_bytes) = layout.group();
+    size::exact(bytes.len(), width / group_samples * group_bytes * height)?;
+    let mut samples = Vec::with_capacity(width * height);
+    for group in bytes.chunks_exact(group_bytes) {
+        layout.unpack(group, &mut samples);
+    }
+    Ok(Frame::new(width, how.depth, how.phase, samples)?)
+}
+
+/// Writes the samples of `frame` without a header.
+///
+/// # Errors
+/// [`EncodeError`] when the layout has fewer bits than the frame, when a row is no whole number of packing groups, or
+/// when `out` fails.
+pub fn encode(frame: &Frame, layout: RawLayout, out: &mut impl Write) -> Result<(), EncodeError> {
+    if layout.bits() < frame.depth().bits() {
+        return Err(EncodeError::LayoutTooNarrow { layout, depth: frame.depth() });
+    }
+    layout.check_width(frame.width())?;
+    let (group_samples, _) = layout.group();
+    let mut line = Vec::with_capacity(frame.width() * 2);
+    for row in frame.rows() {
+        line.clear();
+        for group in row.chunks_exact(group_samples) {
+            layout.pack(group, &mut line);
+        }
+        out.write_all(&line)?;
+    }
+    Ok(())
+}

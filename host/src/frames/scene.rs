@@ -1,0 +1,48 @@
+//! What a built-in frame is made for: its size and depth, its colours, and the lens it is seen through.
+
+use halfrow_model::{Equidistant, Frame, FrameError, Geometry, Phase};
+
+/// The circumstances of a built-in frame. The default is the paper's: 1920 x 1080, 12 bits, GRBG, its lens.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Scene {
+    /// Width, height, depth and the column of the optical centre.
+    pub geometry: Geometry,
+    /// The row of the optical centre; the middle of the frame when not given.
+    pub centre_y: Option<f64>,
+    /// The arrangement of the colours.
+    pub phase: Phase,
+    /// The lens; only the street is seen through it.
+    pub lens: Equidistant,
+    /// What random samples start from: the same seed gives the same frame.
+    pub seed: u64,
+}
+
+impl Scene {
+    /// The frame whose sample at each row and column is what `sample` answers, asked row by row.
+    ///
+    /// # Errors
+    /// [`FrameError::TooBright`] when an answer is above the depth.
+    pub(super) fn frame(&self, mut sample: impl FnMut(usize, usize) -> u16) -> Result<Frame, FrameError> {
+        let (width, height) = (self.geometry.width(), self.geometry.height());
+        let mut samples = Vec::with_capacity(width * height);
+        for row in 0..height {
+            samples.extend((0..width).map(|column| sample(row, column)));
+        }
+        Frame::new(width, self.geometry.depth(), self.phase, samples)
+    }
+
+    /// The largest sample, 2^B − 1.
+    pub(super) fn max(&self) -> u16 {
+        self.geometry.depth().max()
+    }
+
+    /// The column of the optical centre, cx = C/2.
+    pub(super) fn centre_x(&self) -> f64 {
+        f64::from(self.geometry.centre2()) / 2.0
+    }
+
+    /// y of `row`: how far it lies below the optical centre, in rows.
+    pub(super) fn y(&self, row: usize) -> f64 {
+        self.geometry.row_offset(row, self.centre_y)
+    }
+}

@@ -1,0 +1,47 @@
+//! The sensor: light into samples, with the noise of photons and of reading out.
+
+use rand_core::Rng;
+use rand_pcg::Pcg32;
+
+/// The sample of no light, as a share of the largest.
+const PEDESTAL: f64 = 0.01;
+
+/// Electrons that a full pixel holds.
+const FULL_WELL: f64 = 8000.0;
+
+/// The standard deviation of reading out, in electrons.
+const READ_NOISE: f64 = 6.0;
+
+/// The generator's stream, so that the street shares no numbers with the patterns.
+const STREAM: u64 = 56;
+
+/// A sensor, whose noise goes on from pixel to pixel.
+pub(super) struct Sensor {
+    random: Pcg32,
+    max: f64,
+}
+
+impl Sensor {
+    /// A sensor whose samples reach `max`.
+    pub(super) fn new(seed: u64, max: u16) -> Self {
+        Self { random: Pcg32::new(seed, STREAM), max: max.into() }
+    }
+
+    /// The sample of a pixel that gets `light`, 0 to 1; more saturates.
+    pub(super) fn sample(&mut self, light: f64) -> u16 {
+        let electrons = light.clamp(0.0, 1.0) * FULL_WELL;
+        let deviation = (electrons + READ_NOISE * READ_NOISE).sqrt();
+        let measured = (electrons + deviation * self.normal()) / FULL_WELL;
+        let share = PEDESTAL + (1.0 - PEDESTAL) * measured;
+        (share.clamp(0.0, 1.0) * self.max + 0.5) as u16
+    }
+
+    /// Nearly normal, of mean 0 and deviation 1: the sum of four uniform numbers of 16 bits, which is the same on every
+    /// machine.
+    fn normal(&mut self) -> f64 {
+        const UNIT: f64 = 65536.0;
+        let bits = self.random.next_u64();
+        let sum: u64 = [0, 16, 32, 48].iter().map(|shift| bits >> shift & 0xffff).sum();
+        (sum as f64 / UNIT - 2.0) * 3.0_f64.sqrt()
+    }
+}

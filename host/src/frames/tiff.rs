@@ -1,0 +1,68 @@
+//! TIFF, 8 and 16 bits a sample: one plain picture, in either byte order.
+
+use std::io::{Cursor, Seek, Write};
+
+use halfrow_model::{BitDepth, Frame};
+use tiff::decoder::{Decoder, DecodingResult};
+use tiff::encoder::TiffEncoder;
+use tiff::encoder::colortype::{Gray8, Gray16};
+use tiff::{ColorType, TiffError};
+
+use super::mosaic::Picture;
+use super::{DecodeError, ReadOptions, tiff_directory};
+
+/// The first bytes of a TIFF, of either byte order.
+pub(super) const MAGICS: [&[u8]; 2] = [b"II*\0", b"MM\0*"];
+
+/// The frame in the bytes of a TIFF: grey is a raw Bayer frame as it is; RGB is mosaicked; alpha is ignored.
+///
+/// # Errors
+/// [`DecodeError`] when the TIFF is damaged, of a kind that is not taken (several pictures, palettes, planes, lossy or
+/// unusual codings), or when a sample is above `how.depth`.
+pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
+    tiff_directory::check(bytes)?;
+    picture(bytes)?.into_frame(how)
+}
+
+/// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16; uncompressed.
+///
+/// # Errors
+/// The encoder's, or whatever `out` answers.
+pub fn encode(frame: &Frame, out: &mut (impl Write + Seek)) -> Result<(), TiffError> {
+    let (width, height) = (u32::try_from(frame.width())?, u32::try_from(frame.height())?);
+    let mut encoder = TiffEncoder::new(out)?;
+    match frame.depth() {
+        BitDepth::Eight => {
+            let bytes: Vec<u8> = frame.samples().iter().map(|sample| sample.to_be_bytes()[1]).collect();
+            encoder.write_image::<Gray8>(width, height, &bytes)
+        }
+        _ => encoder.write_image::<Gray16>(width, height, frame.samples()),
+    }
+}
+
+fn picture(bytes: &[u8]) -> Result<Picture, DecodeError> {
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(DecodeError::Tiff)?;
+    if decoder.more_images() {
+        return Err(DecodeError::Unsupported {
+            what: "a TIFF of several pictures".to_owned(),
+            remedy: "save each as a file of its own",
+        });
+    }
+    let (width, _) = decoder.dimensions().map_err(DecodeError::Tiff)?;
+    let channels = match decoder.colortype().map_err(DecodeError::Tiff)? {
+        ColorType::Gray(_) => 1,
+        ColorType::RGB(_) => 3,
+        ColorType::RGBA(_) => 4,
+        other => return Err(unsupported(&format!("a TIFF of {other:?}"))),
+    };
+    let (full, samples) = match decoder.read_image().map_err(DecodeError::Tiff)? {
+        DecodingResult::U8(samples) => (u8::MAX.into(), samples.into_iter().map(u16::from).collect()),
+        DecodingResult::U16(samples) => (u16::MAX, samples),
+        _ => return Err(unsupported("a TIFF of signed or floating-point samples")),
+    };
+    Ok(Picture { width: usize::try_from(width).unwrap_or(usize::MAX), channels, full, samples })
+}
+
+fn unsupported(what: &str) -> DecodeError {
+    DecodeError::Unsupported { what: what.to_owned(), remedy: "save it as grey or RGB of 8 or 16 bits" }
+}

@@ -1,0 +1,66 @@
+//! A link: a pipe that carries bytes to a board and back, with deadlines.
+
+mod mock;
+mod open;
+mod recording;
+mod replay;
+
+use std::time::Duration;
+
+pub use mock::MockLink;
+pub use open::{Candidate, OpenError, open, replayed_file};
+pub use recording::{Recorder, Recording, RecordingError};
+pub use replay::ReplayLink;
+
+/// A byte pipe to a board.
+///
+/// Both directions move in one call, so a host that uses it cannot deadlock with a board that waits to be read: whatever
+/// the board sends is taken while the host sends.
+pub trait Link {
+    /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes
+    /// taken. Returns as soon as a byte has moved either way, and without one when `wait` has passed.
+    ///
+    /// # Errors
+    /// [`LinkError`] when the pipe is broken; bytes that had moved before are accounted for in earlier calls.
+    fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, LinkError>;
+
+    /// The link's own clock, from its opening. Deadlines are kept by it, so that a link on a virtual clock times out in
+    /// virtual time.
+    fn now(&self) -> Duration;
+
+    /// The bytes a second that the slower direction carries, when that is known.
+    fn bytes_per_second(&self) -> Option<f64>;
+
+    /// What it is, for people.
+    fn name(&self) -> String;
+}
+
+/// A pipe that broke.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// The other end is gone.
+    #[error("{link} was closed at {:.3} s; check the cable and the board's power, then run again", at.as_secs_f64())]
+    Closed {
+        /// The link's name.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+    },
+    /// What the host sends is not what it sent when the recording was made.
+    #[error(
+        "the recording holds another conversation from byte {byte} of what was sent on; replay it with the program, \
+         tables and frames of the run that made it"
+    )]
+    OtherConversation {
+        /// The first byte that differs, counted from the beginning.
+        byte: u64,
+    },
+    /// The recording could not be written.
+    #[error("the recording could not be written; free some space or choose another place with --record")]
+    Record(#[source] std::io::Error),
+}

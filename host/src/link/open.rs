@@ -1,0 +1,111 @@
+//! From a target string to a link.
+
+use std::path::{Path, PathBuf};
+
+use halfrow_mock::{Wire, WireError};
+
+use super::{Link, MockLink, Recording, RecordingError, ReplayLink};
+use crate::target::{BoardKind, Target};
+
+/// A board that is about to be opened.
+pub struct Candidate {
+    /// The target string.
+    pub target: String,
+    /// What the target's kind says that it is. A link to the outside may still lead to a mock, and then the board says so.
+    pub kind: BoardKind,
+    /// The link to it.
+    pub link: Box<dyn Link>,
+}
+
+/// A target that leads nowhere.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The kind is not known.
+    #[error("`{0}` is no kind of board that this program knows; it knows mock and replay:FILE")]
+    UnknownKind(String),
+    /// A kind that has no address.
+    #[error("`{kind}` takes no address, and got `{address}`; write `{kind}` alone, options behind a comma")]
+    NoAddress {
+        /// The kind.
+        kind: String,
+        /// The address.
+        address: String,
+    },
+    /// A kind that needs an address.
+    #[error("`{0}` needs a file; write replay:FILE")]
+    AddressMissing(String),
+    /// A kind that has no options.
+    #[error("`{kind}` takes no option, and got `{option}`; leave it out")]
+    NoOption {
+        /// The kind.
+        kind: String,
+        /// The option.
+        option: String,
+    },
+    /// The mock board does not take these options.
+    #[error("the target `{target}` is not one that the mock board takes")]
+    Mock {
+        /// The target.
+        target: String,
+        /// Why.
+        #[source]
+        source: WireError,
+    },
+    /// An option whose value is none.
+    #[error("`{key}={value}` is not an option of the mock board; write {key}=virtual or {key}=real")]
+    Pace {
+        /// The key.
+        key: String,
+        /// Its value.
+        value: String,
+    },
+    /// The recording cannot be played.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}
+
+/// The file of a `replay:FILE` target.
+#[must_use]
+pub fn replayed_file(target: &Target) -> Option<PathBuf> {
+    target.address.as_ref().filter(|_| target.kind == "replay").map(PathBuf::from)
+}
+
+/// Opens the link that `target` names; nothing is said over it yet.
+///
+/// # Errors
+/// [`OpenError`] when the target is none of ours, or its options are not.
+pub fn open(target: &Target) -> Result<Candidate, OpenError> {
+    let (kind, link) = match target.kind.as_str() {
+        "mock" => (BoardKind::Mock, open_mock(target)?),
+        "replay" => (BoardKind::Replay, open_replay(target)?),
+        other => return Err(OpenError::UnknownKind(other.to_owned())),
+    };
+    Ok(Candidate { target: target.to_string(), kind, link })
+}
+
+fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+    if let Some(address) = &target.address {
+        return Err(OpenError::NoAddress { kind: target.kind.clone(), address: address.clone() });
+    }
+    let mut paced = false;
+    let mut options = Vec::new();
+    for (key, value) in &target.options {
+        match (key.as_str(), value.as_str()) {
+            ("pace", "real") => paced = true,
+            ("pace", "virtual") => paced = false,
+            ("pace", _) => return Err(OpenError::Pace { key: key.clone(), value: value.clone() }),
+            option => options.push(option),
+        }
+    }
+    let wire = Wire::from_options(&options)
+        .map_err(|source| OpenError::Mock { target: target.to_string(), source })?;
+    Ok(Box::new(MockLink::new(wire, paced)))
+}
+
+fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+    if let Some((key, value)) = target.options.first() {
+        return Err(OpenError::NoOption { kind: target.kind.clone(), option: format!("{key}={value}") });
+    }
+    let file = target.address.as_deref().ok_or_else(|| OpenError::AddressMissing(target.kind.clone()))?;
+    Ok(Box::new(ReplayLink::new(Recording::read(Path::new(file))?)?))
+}

@@ -1,0 +1,117 @@
+//! Progress of a long run, for whoever watches: a bar on a terminal, plain lines otherwise, or nothing.
+
+use std::io::IsTerminal;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+/// Told what a run does.
+pub trait Progress: Sync {
+    /// A step begins that moves no rows.
+    fn step(&self, _what: &str) {}
+    /// This many rows will come back in all.
+    fn rows_expected(&self, _rows: u64) {}
+    /// A frame is being sent.
+    fn frame(&self, _name: &str) {}
+    /// A row came back.
+    fn row(&self) {}
+    /// The run is over.
+    fn done(&self) {}
+}
+
+/// Says nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Progress for Silent {}
+
+/// What suits the standard error stream: a bar on a terminal, a line now and then elsewhere.
+#[must_use]
+pub fn for_stderr(quiet: bool) -> Box<dyn Progress> {
+    if quiet {
+        Box::new(Silent)
+    } else if std::io::stderr().is_terminal() {
+        Box::new(Bar::new())
+    } else {
+        Box::new(Lines::default())
+    }
+}
+
+/// A bar with rate and time left.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new() -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+        bar.set_style(ProgressStyle::with_template("{spinner} {msg}").unwrap_or_else(|_| ProgressStyle::default_spinner()));
+        Self(bar)
+    }
+}
+
+impl Progress for Bar {
+    fn step(&self, what: &str) {
+        self.0.set_message(what.to_owned());
+        self.0.tick();
+    }
+
+    fn rows_expected(&self, rows: u64) {
+        let template = "{bar:30} {pos}/{len} rows  {per_sec}  {eta} left  {msg}";
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            self.0.set_style(style);
+        }
+        self.0.set_length(rows);
+    }
+
+    fn frame(&self, name: &str) {
+        self.0.set_message(name.to_owned());
+    }
+
+    fn row(&self) {
+        self.0.inc(1);
+    }
+
+    fn done(&self) {
+        self.0.finish_and_clear();
+    }
+}
+
+/// A line every few seconds, for logs.
+struct Lines {
+    begun: Instant,
+    last: Mutex<Instant>,
+    rows: AtomicU64,
+    expected: AtomicU64,
+}
+
+impl Default for Lines {
+    fn default() -> Self {
+        let now = Instant::now();
+        Self { begun: now, last: Mutex::new(now), rows: AtomicU64::new(0), expected: AtomicU64::new(0) }
+    }
+}
+
+impl Lines {
+    const EVERY: Duration = Duration::from_secs(5);
+}
+
+impl Progress for Lines {
+    fn rows_expected(&self, rows: u64) {
+        self.expected.store(rows, Ordering::Relaxed);
+    }
+
+    fn row(&self) {
+        let rows = self.rows.fetch_add(1, Ordering::Relaxed) + 1;
+        let Ok(mut last) = self.last.try_lock() else { return };
+        if last.elapsed() < Self::EVERY {
+            return;
+        }
+        *last = Instant::now();
+        let expected = self.expected.load(Ordering::Relaxed);
+        let seconds = self.begun.elapsed().as_secs_f64();
+        let rate = rows as f64 / seconds;
+        let left = expected.saturating_sub(rows) as f64 / rate;
+        eprintln!("{rows} of {expected} rows, {rate:.0} rows/s, {left:.0} s left");
+    }
+}

@@ -1,0 +1,199 @@
+//! The folder of a report: `report.json`, `report.xml` and `report.html`, all of one run or none.
+
+use std::fs::{self, File};
+use std::io::{self, BufReader, Write as _};
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use tempfile::TempDir;
+
+use super::{Evidence, Report, html, json, junit};
+
+const JSON: &str = "report.json";
+const JUNIT: &str = "report.xml";
+const HTML: &str = "report.html";
+
+/// A report that could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The path ends in no name.
+    #[error("`{}` names no folder of its own; give the report a new one, as in `reports/today`", path.display())]
+    Name {
+        /// The path.
+        path: PathBuf,
+    },
+    /// Something is there and may not be replaced.
+    #[error("{} exists; name another folder, or allow it to be overwritten", path.display())]
+    Exists {
+        /// The path.
+        path: PathBuf,
+    },
+    /// Something is there that halfrow did not write.
+    #[error("{} is no earlier report and is left alone: {why}; name another folder", path.display())]
+    NotAReport {
+        /// The path.
+        path: PathBuf,
+        /// How it can be told.
+        why: String,
+    },
+    /// The folder cannot be made where it should be.
+    #[error("cannot make the folder {}; check that the folder above it exists and is writable", path.display())]
+    Prepare {
+        /// The path.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A file of the report was not taken.
+    #[error("cannot write {name} of the report {}; check the space that is left", path.display())]
+    Write {
+        /// The report's path.
+        path: PathBuf,
+        /// The file's name.
+        name: &'static str,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The finished folder was not taken in its place.
+    #[error("cannot put the report in its place, {}; check that nothing else uses that folder", path.display())]
+    Place {
+        /// The path.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The JSON encoder gave up.
+    #[error("the report cannot be encoded as JSON; this is a fault of halfrow, so report it")]
+    Json(#[from] serde_json::Error),
+    /// The XML writer gave up.
+    #[error("the report cannot be encoded as JUnit XML; this is a fault of halfrow, so report it")]
+    Junit(#[from] quick_junit::SerializeError),
+    /// The PNG encoder gave up.
+    #[error("the report's pictures cannot be encoded; this is a fault of halfrow, so report it")]
+    Pictures(#[from] png::EncodingError),
+}
+
+/// The place of a report to come. The folder is written aside and renamed at the end, so that readers find the earlier
+/// report, or none, until the new one is whole.
+#[derive(Debug)]
+pub struct ReportFolder {
+    path: PathBuf,
+    parent: PathBuf,
+    overwrite: bool,
+    aside: TempDir,
+}
+
+impl ReportFolder {
+    /// Makes sure that a report can be written to `path`, before a board is opened for it.
+    ///
+    /// # Errors
+    /// [`ReportError`] when the folder above does not exist or is not writable, or when there is something at `path` that
+    /// is no earlier report or, without `overwrite`, anything.
+    pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ReportError> {
+        if path.file_name().is_none() {
+            return Err(ReportError::Name { path: path.to_owned() });
+        }
+        check(path, overwrite)?;
+        let parent = match path.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
+        let aside = beside(&parent).map_err(failed)?;
+        Ok(Self { path: path.to_owned(), parent, overwrite, aside })
+    }
+
+    /// Writes the report and puts it in its place. When that fails, an earlier report stays as it was.
+    ///
+    /// # Errors
+    /// [`ReportError`] when a view cannot be encoded, a file cannot be written, or something came to be in the way.
+    pub fn commit(self, report: &Report, evidence: &[Evidence]) -> Result<(), ReportError> {
+        self.write(JSON, &json::render(report)?)?;
+        self.write(JUNIT, &junit::render(report)?)?;
+        self.write(HTML, &html::render(report, evidence)?)?;
+        check(&self.path, self.overwrite)?;
+        let failed = |source| ReportError::Place { path: self.path.clone(), source };
+        sync(self.aside.path()).map_err(failed)?;
+        self.place().map_err(failed)
+    }
+
+    fn write(&self, name: &'static str, text: &str) -> Result<(), ReportError> {
+        let failed = |source| ReportError::Write { path: self.path.clone(), name, source };
+        let mut file = File::create_new(self.aside.path().join(name)).map_err(failed)?;
+        file.write_all(text.as_bytes()).and_then(|()| file.sync_all()).map_err(failed)
+    }
+
+    /// Renames the new folder into place. An earlier report is moved out of the way, and back when the new one is not
+    /// taken; it goes for good only when the new one stands.
+    fn place(&self) -> io::Result<()> {
+        let earlier = if self.path.exists() { Some(beside(&self.parent)?) } else { None };
+        let kept = earlier.as_ref().map(|folder| folder.path().join("earlier"));
+        if let Some(kept) = &kept {
+            fs::rename(&self.path, kept)?;
+        }
+        if let Err(refused) = fs::rename(self.aside.path(), &self.path) {
+            if let Some(kept) = &kept {
+                fs::rename(kept, &self.path)?;
+            }
+            return Err(refused);
+        }
+        sync(&self.parent)
+    }
+}
+
+/// Whether a report may go to `path` as things are.
+fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
+    match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(source) => Err(ReportError::Prepare { path: path.to_owned(), source }),
+        Ok(_) if !overwrite => Err(ReportError::Exists { path: path.to_owned() }),
+        Ok(_) => match foreign(path) {
+            None => Ok(()),
+            Some(why) => Err(ReportError::NotAReport { path: path.to_owned(), why }),
+        },
+    }
+}
+
+/// What shows that `path` is not just a report of halfrow's; none when it is. Replacing a folder removes all that is in
+/// it, so it may hold nothing else.
+fn foreign(path: &Path) -> Option<String> {
+    if !fs::symlink_metadata(path).is_ok_and(|found| found.is_dir()) {
+        return Some("it is no folder".to_owned());
+    }
+    let entries = match fs::read_dir(path).and_then(Iterator::collect::<io::Result<Vec<_>>>) {
+        Ok(entries) => entries,
+        Err(error) => return Some(format!("it cannot be listed ({error})")),
+    };
+    let ours = |name: &std::ffi::OsStr| [JSON, JUNIT, HTML].iter().any(|our| name == *our);
+    if let Some(other) = entries.iter().map(fs::DirEntry::file_name).find(|name| !ours(name)) {
+        return Some(format!("it also holds `{}`", other.display()));
+    }
+    (!is_report(&path.join(JSON))).then(|| format!("it holds no {JSON} of halfrow's"))
+}
+
+/// Whether a file is a report's JSON, by the two names that every report begins with.
+fn is_report(path: &Path) -> bool {
+    #[derive(Deserialize)]
+    struct Head {
+        #[serde(rename = "verdict")]
+        _verdict: IgnoredAny,
+        #[serde(rename = "exit_code")]
+        _exit_code: IgnoredAny,
+    }
+    File::open(path).is_ok_and(|file| serde_json::from_reader::<_, Head>(BufReader::new(file)).is_ok())
+}
+
+/// A new folder in `parent`, on the same file system as the report, with the permissions of an ordinary folder.
+fn beside(parent: &Path) -> io::Result<TempDir> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".halfrow-report-");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
+    builder.tempdir_in(parent)
+}
+
+/// Makes a folder's entries last through a power cut, where the system can.
+fn sync(folder: &Path) -> io::Result<()> {
+    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}

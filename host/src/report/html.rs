@@ -1,0 +1,104 @@
+//! The report as one page that stands alone: pictures and style inside, no script, nothing loaded.
+
+mod charts;
+mod evidence;
+mod facts;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use png::EncodingError;
+
+use super::wording::{self, plain};
+use super::{Check, Evidence, Report, Suspect};
+
+const STYLE: &str = include_str!("style.css");
+
+/// Forbids the page to load or run anything, whatever gets into it.
+const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
+
+/// The report as a page of under 10 MB. Each frame of `evidence` has a section with pictures, which shrink, or give way
+/// from the last on, when they are too many.
+///
+/// # Errors
+/// The PNG encoder's.
+pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, EncodingError> {
+    let pictures = evidence::sections(report, evidence)?;
+    let title = format!("{}: halfrow verify {}", report.verdict, plain(&report.board.target));
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                (banner(report))
+                main {
+                    (next(report))
+                    section { h2 { "Checks" } (checks(&report.checks)) }
+                    (facts::frames(report))
+                    (pictures)
+                    (facts::figures(report))
+                    (facts::board(report))
+                    (facts::run(report))
+                }
+            }
+        }
+    };
+    Ok(page.into_string())
+}
+
+fn banner(report: &Report) -> Markup {
+    html! {
+        header.(report.verdict.to_string().to_lowercase()) {
+            div {
+                p.verdict { (report.verdict) }
+                p.kind { (wording::remark(&report.board)) }
+            }
+            h1 { (plain(&report.headline)) }
+            p.facts { (wording::facts(report)) " · " (plain(&report.run.started)) }
+        }
+    }
+}
+
+/// What is suspected and what to do about it.
+fn next(report: &Report) -> Markup {
+    let remedy = wording::remedy(report);
+    if report.suspects.is_empty() && remedy.is_none() {
+        return Markup::default();
+    }
+    html! {
+        section {
+            h2 { "What to do" }
+            @if let Some(remedy) = remedy { p.remedy { (plain(remedy)) } }
+            @if !report.suspects.is_empty() { ol.suspects { @for it in &report.suspects { (suspect(it)) } } }
+        }
+    }
+}
+
+fn suspect(suspect: &Suspect) -> Markup {
+    html! {
+        li {
+            h3 { (plain(suspect.part)) ", " (plain(&suspect.place)) }
+            p { (plain(&suspect.evidence)) " It explains " (wording::percent(suspect.explained)) " of the differences." }
+            p { strong { "Next: " } (plain(&suspect.next_step)) }
+        }
+    }
+}
+
+fn checks(checks: &[Check]) -> Markup {
+    html! {
+        table.checks {
+            @for check in checks {
+                tr {
+                    td { (facts::mark(check.outcome)) }
+                    th scope="row" { (check.name) }
+                    td { (plain(&check.detail)) }
+                }
+            }
+        }
+    }
+}

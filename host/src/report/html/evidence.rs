@@ -1,0 +1,165 @@
+//! The sections with pictures: how a frame went in, what came out, and where it is wrong.
+
+use maud::{Markup, html};
+use png::EncodingError;
+
+use super::charts;
+use super::facts::{mark, pair};
+use crate::report::pictures::{self, BOX, Picture, Window};
+use crate::report::wording::{self, count, grouped, plain};
+use crate::report::{Evidence, FrameReport, Report};
+
+/// Bytes of all pictures together. Base 64 makes 8.8 MB of them, which leaves over 1 MB of 10 MB to text and charts.
+const MOST_BYTES: usize = 6_600_000;
+/// Bytes that the map and the crops of one frame stay under, even of noise.
+const DETAIL_BYTES: usize = 150_000;
+/// Windows of a frame that are shown sample by sample.
+const MOST_WINDOWS: usize = 3;
+/// Screen pixels to a sample there.
+const ZOOM: usize = 8;
+
+/// A section for each frame of `evidence`, in order.
+///
+/// # Errors
+/// The PNG encoder's.
+pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup, EncodingError> {
+    let known = evidence.iter().filter_map(|kept| Some((kept, report.frames.get(kept.index)?)));
+    let known: Vec<_> = known.collect();
+    let mut left = MOST_BYTES;
+    let mut sections = Vec::with_capacity(known.len());
+    for (place, (kept, frame)) in known.iter().enumerate() {
+        let share = left / (known.len() - place);
+        let (section, used) = section(report, frame, kept, share)?;
+        left = left.saturating_sub(used);
+        sections.push(section);
+    }
+    Ok(html! { @for section in sections { (section) } })
+}
+
+/// One frame's section of at most `most_bytes` of pictures, and the bytes that it took.
+fn section(
+    report: &Report,
+    frame: &FrameReport,
+    kept: &Evidence,
+    most_bytes: usize,
+) -> Result<(Markup, usize), EncodingError> {
+    let differs = frame.comparison.differences > 0 && most_bytes > DETAIL_BYTES;
+    let (details, used) = if differs { details(frame, kept)? } else { Default::default() };
+    let left = most_bytes.saturating_sub(used);
+    let input = pictures::preview(&kept.input, left / 2)?;
+    let found = pictures::preview(&kept.found, left - input.as_ref().map_or(0, Picture::len))?;
+    let used = used + [&input, &found].into_iter().flatten().map(Picture::len).sum::<usize>();
+    let markup = html! {
+        section.frame {
+            h2 {
+                (mark(wording::frame_outcome(report, frame)))
+                " Frame " (frame.number) ": " (plain(&frame.name))
+            }
+            (summary(frame))
+            div.previews {
+                (preview(input.as_ref(), "As it went in, developed for the screen"))
+                (preview(found.as_ref(), &came_out(frame)))
+            }
+            (details)
+        }
+    };
+    Ok((markup, used))
+}
+
+fn came_out(frame: &FrameReport) -> String {
+    match frame.comparison.by_row.len().saturating_sub(frame.rows) {
+        0 => "As the board corrected it".to_owned(),
+        missing => format!("As the board corrected it; {} never came back and are black", count(missing, "row")),
+    }
+}
+
+fn summary(frame: &FrameReport) -> Markup {
+    let comparison = &frame.comparison;
+    let share = wording::percent(comparison.differences as f64 / comparison.samples.max(1) as f64);
+    html! {
+        dl {
+            @if let (Some(first), Some((least, most))) = (comparison.first, comparison.extremes) {
+                (pair("Differences", format!("{} of {} ({share})",
+                    grouped(comparison.differences), count(comparison.samples, "sample"))))
+                (pair("First", format!("row {}, column {}: expected {}, found {}",
+                    first.row, first.column, first.expected, first.found)))
+                (pair("Found − expected", format!("{least:+} to {most:+}")))
+            } @else {
+                (pair("Differences", format!("none in {}", count(comparison.samples, "sample"))))
+            }
+            (pair("Timing", &frame.timing))
+            (pair("Phase", &frame.phase))
+            (pair("Table generation", frame.generation.to_string()))
+            (pair("SHA-256 of the samples", &frame.sha256))
+        }
+    }
+}
+
+fn preview(picture: Option<&Picture>, caption: &str) -> Markup {
+    match picture {
+        Some(picture) => figure(picture, 1, caption),
+        None => html! { p { (caption) ": left out to keep the page small." } },
+    }
+}
+
+/// The map, its charts and the crops, and the bytes of their pictures.
+fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
+    let map = pictures::difference_map(&kept.expected, &kept.found)?;
+    let mut used = map.len();
+    let mut crops = Vec::new();
+    for window in pictures::windows(&kept.expected, &kept.found, MOST_WINDOWS) {
+        let (markup, bytes) = self::crops(window, kept)?;
+        used += bytes;
+        crops.push(markup);
+    }
+    let (rows, columns) = (&frame.comparison.by_row, &frame.comparison.by_column);
+    let markup = html! {
+        h3 { "Where it differs" }
+        div.map {
+            img.samples src=(map.data_uri()) width=(map.width) height=(map.height) alt="Map of differences";
+            (charts::by_row(rows, BOX))
+            (charts::by_column(columns, BOX))
+        }
+        p.legend {
+            "Largest |found − expected| in each " (BOX) " × " (BOX) " samples:"
+            @for step in pictures::steps_up_to(frame.comparison.largest) {
+                @let [red, green, blue] = step.colour;
+                " " span.swatch style=(format!("background:rgb({red} {green} {blue})")) {} " from " (step.from)
+            }
+            ". The bars count the differences by row and by column."
+        }
+        @for crop in crops { (crop) }
+    };
+    Ok((markup, used))
+}
+
+/// One window of all three frames, and the bytes of its pictures.
+fn crops(window: Window, kept: &Evidence) -> Result<(Markup, usize), EncodingError> {
+    let crops = window.crops(kept)?;
+    let Window { around, top, left, height, width } = window;
+    let all = [
+        (&crops.input, "Input"),
+        (&crops.difference, "Difference, colours as in the map"),
+        (&crops.expected, "Expected"),
+        (&crops.found, "Found"),
+    ];
+    let markup = html! {
+        h3 { "Around row " (around.row) ", column " (around.column) ": expected " (around.expected) ", found " (around.found) }
+        p {
+            "Rows " (top) " to " (top + height - 1) ", columns " (left) " to " (left + width - 1)
+            ", raw samples; black is " (crops.range.0) ", white is " (crops.range.1) "."
+        }
+        div.crops { @for (picture, caption) in all { (figure(picture, ZOOM, caption)) } }
+    };
+    Ok((markup, all.iter().map(|(picture, _)| picture.len()).sum()))
+}
+
+fn figure(picture: &Picture, zoom: usize, caption: &str) -> Markup {
+    let (width, height) = (picture.width * zoom, picture.height * zoom);
+    html! {
+        figure {
+            img.samples[zoom > 1] src=(picture.data_uri()) width=(width) height=(height) alt=(caption);
+            figcaption { (caption) }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! The parts of the page that are tables and lists.
+
+use maud::{Markup, html};
+
+use crate::report::wording::{self, grouped, plain};
+use crate::report::{FrameReport, LinkReport, Outcome, Report, TablesReport};
+
+/// Rows of the table of frames.
+const MOST_FRAMES: usize = 400;
+
+/// The word of an outcome, in its colour.
+pub(super) fn mark(outcome: Outcome) -> Markup {
+    let word = wording::mark(outcome);
+    html! { span.mark.(word.to_lowercase()) { (word) } }
+}
+
+/// The table of frames.
+pub(super) fn frames(report: &Report) -> Markup {
+    if report.frames.is_empty() {
+        return Markup::default();
+    }
+    let (listed, left_out) = wording::worth_listing(report, MOST_FRAMES);
+    html! {
+        section {
+            h2 { "Frames" }
+            div.scroll { table.frames {
+                thead { tr {
+                    th {} th.number { "frame" } th { "name" } th { "timing" } th.number { "rows" }
+                    th.number { "differences" } th.number { "first at" } th.number { "expected" }
+                    th.number { "found" } th.number { "largest" }
+                } }
+                tbody { @for frame in listed { (frame_row(report, frame)) } }
+            } }
+            @if left_out > 0 { p { "And " (wording::count(left_out, "more frame")) "." } }
+        }
+    }
+}
+
+fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
+    let comparison = &frame.comparison;
+    html! {
+        tr {
+            td { (mark(wording::frame_outcome(report, frame))) }
+            td.number { (frame.number) }
+            td { (plain(&frame.name)) }
+            td { (plain(&frame.timing)) }
+            td.number { (grouped(frame.rows)) }
+            td.number { (grouped(comparison.differences)) }
+            @if let Some(first) = comparison.first {
+                td.number { (first.row) ", " (first.column) }
+                td.number { (first.expected) }
+                td.number { (first.found) }
+                td.number { (comparison.largest) }
+            } @else { td {} td {} td {} td {} }
+        }
+    }
+}
+
+/// Latency, street and link.
+pub(super) fn figures(report: &Report) -> Markup {
+    html! {
+        section {
+            h2 { "Figures" }
+            dl {
+                @if let Some(latency) = &report.latency { (pair("Latency", wording::latency(latency))) }
+                @if let Some(street) = &report.street { (pair("Street", wording::street(street))) }
+            }
+            (link(&report.link))
+        }
+    }
+}
+
+fn link(link: &LinkReport) -> Markup {
+    html! {
+        h3 { "Link" }
+        dl {
+            (pair("Name", &link.name))
+            (pair("Bytes", format!("{} out, {} in", grouped(link.bytes_out), grouped(link.bytes_in))))
+            (pair("Packets", format!("{} out, {} in", grouped(link.packets_out), grouped(link.packets_in))))
+            (pair("Damaged", format!("{} out, {} in", grouped(link.damaged_out), grouped(link.damaged_in))))
+            (pair("Sent again", format!("{}; too poor from {} on", grouped(link.retries), grouped(link.retry_limit))))
+            @if let Some(time) = link.round_trip_us { (pair("Round trip", format!("{} µs", grouped(time)))) }
+            (pair("Time", format!("{:.3} s on the link's clock", link.seconds)))
+        }
+    }
+}
+
+/// The board and what was uploaded to it.
+pub(super) fn board(report: &Report) -> Markup {
+    let board = &report.board;
+    html! {
+        section {
+            h2 { "Board" }
+            dl {
+                (pair("Kind", format!("{} ({})", board.kind, wording::remark(board))))
+                (pair("Target", &board.target))
+                @match &board.identity {
+                    Some(identity) => @for (name, value) in identity.lines() { (pair(name, value)) },
+                    None => (pair("identity", "it never said what it is")),
+                }
+            }
+        }
+        section { h2 { "Tables" } (tables(&report.tables)) }
+    }
+}
+
+fn tables(tables: &TablesReport) -> Markup {
+    html! {
+        dl {
+            (pair("Source", &tables.source))
+            (pair("Geometry", format!("{} x {}, {} bits", tables.width, tables.height, tables.bits)))
+            (pair("Optical centre", format!("column {:.1}", f64::from(tables.centre2) / 2.0)))
+            (pair("Outside the image circle", wording::count(tables.rows_outside_circle, "row")))
+            (pair("CRC-32", format!("row factors {}, kernel {}", tables.steps_crc32, tables.kernel_crc32)))
+        }
+    }
+}
+
+/// What it takes to repeat the run.
+pub(super) fn run(report: &Report) -> Markup {
+    let run = &report.run;
+    let command: Vec<_> = run.arguments.iter().map(|argument| quoted(argument)).collect();
+    html! {
+        section {
+            h2 { "Run" }
+            pre { (plain(&command.join(" "))) }
+            dl {
+                (pair("halfrow", format!("{} ({})", run.version, run.commit)))
+                (pair("Exit code", report.exit_code.code().to_string()))
+                (pair("Seed", run.seed.to_string()))
+                (pair("Began", &run.started))
+                (pair("Ended", &run.ended))
+                (pair("Host", &run.host))
+            }
+            @if !run.files.is_empty() {
+                h3 { "Files read" }
+                dl.files { @for file in &run.files { (pair(&file.path, format!("SHA-256 {}", file.sha256))) } }
+            }
+        }
+    }
+}
+
+/// A term and its value.
+pub(super) fn pair(term: &str, value: impl AsRef<str>) -> Markup {
+    html! { div { dt { (plain(term)) } dd { (plain(value.as_ref())) } } }
+}
+
+/// An argument as a POSIX shell takes it.
+fn quoted(argument: &str) -> String {
+    let tame = |letter: char| letter.is_ascii_alphanumeric() || "_-./:=,@%+".contains(letter);
+    if !argument.is_empty() && argument.chars().all(tame) {
+        return argument.to_owned();
+    }
+    format!("'{}'", argument.replace('\'', r"'\''"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_arguments_that_a_shell_would_touch_are_quoted() {
+        assert_eq!(quoted("mock,fault=flip,rate=1e-4"), "mock,fault=flip,rate=1e-4");
+        assert_eq!(quoted("my frames/*.pgm"), "'my frames/*.pgm'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted(""), "''");
+    }
+}

@@ -1,0 +1,13 @@
+//! The report as JSON, for programs.
+
+use crate::report::Report;
+
+/// The report, indented, ending in a line feed. `verdict`, `exit_code` and `board.kind` come first.
+///
+/// # Errors
+/// The encoder's. No value that a [`Report`] can hold brings one about.
+pub fn render(report: &Report) -> Result<String, serde_json::Error> {
+    let mut text = serde_json::to_string_pretty(report)?;
+    text.push('\n');
+    Ok(text)
+}

@@ -1,0 +1,116 @@
+//! The report as JUnit XML, for CI systems and test stations.
+//!
+//! One suite: the verdict, then every check, then every frame. A verdict that is not PASS is a failure or an error of its
+//! own, so that no run turns green for want of a check.
+
+use std::time::Duration;
+
+use quick_junit::{
+    NonSuccessKind, Property, Report as Document, SerializeError, TestCase, TestCaseStatus as Status, TestSuite,
+};
+
+use super::wording::{self, plain};
+use super::{Check, FrameReport, Outcome, Report, Suspect, text};
+use crate::verdict::Verdict;
+
+/// The name of the suite and the head of all class names.
+const SUITE: &str = "halfrow verify";
+
+/// The report as an XML document.
+///
+/// # Errors
+/// The XML writer's. No value that a [`Report`] can hold brings one about.
+pub fn render(report: &Report) -> Result<String, SerializeError> {
+    let mut suite = TestSuite::new(SUITE);
+    suite.timestamp = report.run.started.parse().ok();
+    suite.time = Duration::try_from_secs_f64(report.link.seconds).ok();
+    for (name, value) in properties(report) {
+        suite.add_property(Property::new(name, plain(&value)));
+    }
+    suite.set_system_out(text::render(report));
+    suite.add_test_case(verdict_case(report));
+    suite.add_test_cases(report.checks.iter().map(check_case));
+    suite.add_test_cases(report.frames.iter().map(|frame| frame_case(report, frame)));
+    let mut document = Document::new(SUITE);
+    (document.timestamp, document.time) = (suite.timestamp, suite.time);
+    document.add_test_suite(suite);
+    document.to_string()
+}
+
+/// What the run was, by name.
+fn properties(report: &Report) -> Vec<(&'static str, String)> {
+    let mut list = vec![
+        ("verdict", report.verdict.to_string()),
+        ("exit_code", report.exit_code.code().to_string()),
+        ("board.kind", report.board.kind.to_string()),
+        ("board.target", report.board.target.clone()),
+        ("halfrow.version", report.run.version.to_owned()),
+        ("halfrow.commit", report.run.commit.to_owned()),
+        ("seed", report.run.seed.to_string()),
+    ];
+    if let Some(identity) = &report.board.identity {
+        list.push(("board.name", identity.name.clone()));
+        list.push(("board.serial", identity.serial.clone()));
+        list.push(("board.build", identity.build.clone()));
+    }
+    list
+}
+
+fn verdict_case(report: &Report) -> TestCase {
+    let outcome = match report.verdict {
+        Verdict::Pass => Outcome::Passed,
+        Verdict::Fail => Outcome::Failed,
+        Verdict::Error => Outcome::Error,
+    };
+    let suspicion = |suspect: &Suspect| {
+        let (part, place) = (suspect.part, &suspect.place);
+        format!("{part}, {place}: {} {}", suspect.evidence, suspect.next_step)
+    };
+    let details = report.suspects.iter().map(suspicion).chain(report.remedy.clone());
+    let details: Vec<_> = details.map(|detail| plain(&detail).into_owned()).collect();
+    case("verify", "verdict", status(outcome, &report.headline, &details.join("\n")))
+}
+
+fn check_case(check: &Check) -> TestCase {
+    case("check", check.name, status(check.outcome, &check.detail, ""))
+}
+
+fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
+    let comparison = &frame.comparison;
+    let message = match comparison.differences {
+        0 => format!("{} of {} rows came back", frame.rows, comparison.by_row.len()),
+        some => format!("{some} of {} samples differ", comparison.samples),
+    };
+    let first = comparison.first.map_or_else(String::new, |first| {
+        format!(
+            "First at row {}, column {}: expected {}, found {}; largest difference {}.",
+            first.row, first.column, first.expected, first.found, comparison.largest
+        )
+    });
+    // The number keeps apart two frames of one name.
+    let name = format!("{} (frame {}, {}, {})", frame.name, frame.number, frame.phase, frame.timing);
+    case("frame", &name, status(wording::frame_outcome(report, frame), &message, &first))
+}
+
+fn case(class: &str, name: &str, status: Status) -> TestCase {
+    let mut case = TestCase::new(plain(name), status);
+    case.set_classname(format!("halfrow.{class}"));
+    case
+}
+
+fn status(outcome: Outcome, message: &str, description: &str) -> Status {
+    let mut status = match outcome {
+        Outcome::Passed => return Status::success(),
+        Outcome::Failed => Status::non_success(NonSuccessKind::Failure),
+        Outcome::Error => Status::non_success(NonSuccessKind::Error),
+        Outcome::Skipped => Status::skipped(),
+    };
+    status.set_message(plain(message));
+    if outcome != Outcome::Skipped {
+        status.set_type(wording::mark(outcome));
+    }
+    if !description.is_empty() {
+        status.set_description(description);
+    }
+    status
+}

@@ -1,0 +1,70 @@
+//! Pictures for the page: frames made small, and where and how they differ.
+
+mod crop;
+mod map;
+mod scale;
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use halfrow_model::Frame;
+use png::EncodingError;
+
+use crate::frames::preview::{self, RgbImage};
+
+pub(super) use crop::{Window, windows};
+pub(super) use map::{BOX, difference_map};
+pub(super) use scale::steps_up_to;
+
+/// The widest preview, in pixels.
+const MAX_WIDTH: usize = 960;
+/// The narrowest preview that still shows something.
+const MIN_WIDTH: usize = 64;
+
+/// A picture as a PNG.
+#[derive(Clone, Debug)]
+pub(super) struct Picture {
+    /// Pixels in a row.
+    pub(super) width: usize,
+    /// Rows.
+    pub(super) height: usize,
+    png: Vec<u8>,
+}
+
+impl Picture {
+    fn new(image: &RgbImage) -> Result<Self, EncodingError> {
+        let mut png = Vec::new();
+        preview::encode_png_rgb(image, &mut png)?;
+        Ok(Self { width: image.width, height: image.height, png })
+    }
+
+    /// The length of the PNG in bytes.
+    pub(super) fn len(&self) -> usize {
+        self.png.len()
+    }
+
+    /// The PNG as a `data:` address, four characters for every three bytes.
+    pub(super) fn data_uri(&self) -> String {
+        format!("data:image/png;base64,{}", STANDARD.encode(&self.png))
+    }
+}
+
+/// The frame as a picture of at most `most_bytes` and [`MAX_WIDTH`] columns, as large as that allows; none when not even
+/// [`MIN_WIDTH`] columns fit.
+///
+/// # Errors
+/// The PNG encoder's.
+pub(super) fn preview(frame: &Frame, most_bytes: usize) -> Result<Option<Picture>, EncodingError> {
+    let mut side = frame.width().div_ceil(MAX_WIDTH);
+    loop {
+        let picture = Picture::new(&preview::thumbnail(frame, frame.width().div_ceil(side)))?;
+        if picture.len() <= most_bytes {
+            return Ok(Some(picture));
+        }
+        if picture.width <= MIN_WIDTH {
+            return Ok(None);
+        }
+        // The bytes go down with the square of the side.
+        let excess = picture.len() as f64 / most_bytes.max(1) as f64;
+        side = (side + 1).max((side as f64 * excess.sqrt()) as usize);
+    }
+}

@@ -1,0 +1,122 @@
+//! Small parts of frames, sample by sample.
+
+use halfrow_model::Frame;
+use png::EncodingError;
+
+use super::scale::colour;
+use super::Picture;
+use crate::compare::Difference;
+use crate::frames::preview::RgbImage;
+use crate::report::Evidence;
+
+/// A part of a frame, around a difference.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(in crate::report) struct Window {
+    /// The first difference in it that no window above has.
+    pub(in crate::report) around: Difference,
+    /// Its first row.
+    pub(in crate::report) top: usize,
+    /// Its first column.
+    pub(in crate::report) left: usize,
+    /// Its rows.
+    pub(in crate::report) height: usize,
+    /// Its columns.
+    pub(in crate::report) width: usize,
+}
+
+/// The same window of all three frames.
+#[derive(Clone, Debug)]
+pub(in crate::report) struct Crops {
+    /// What went in.
+    pub(in crate::report) input: Picture,
+    /// What the reference gives.
+    pub(in crate::report) expected: Picture,
+    /// What the board gave.
+    pub(in crate::report) found: Picture,
+    /// Where and how much the last two differ.
+    pub(in crate::report) difference: Picture,
+    /// The samples that are shown black and white: the least and the greatest of all three.
+    pub(in crate::report) range: (u16, u16),
+}
+
+/// Windows around the first differences in reading order, at most `most` of them, none around a difference that an
+/// earlier one shows.
+pub(in crate::report) fn windows(expected: &Frame, found: &Frame, most: usize) -> Vec<Window> {
+    let mut windows: Vec<Window> = Vec::new();
+    for difference in differences(expected, found) {
+        if windows.len() == most {
+            break;
+        }
+        if !windows.iter().any(|window| window.shows(&difference)) {
+            windows.push(Window::around(difference, expected));
+        }
+    }
+    windows
+}
+
+/// All differences in reading order.
+fn differences<'a>(expected: &'a Frame, found: &'a Frame) -> impl Iterator<Item = Difference> + 'a {
+    expected.rows().zip(found.rows()).enumerate().flat_map(|(row, (expected, found))| {
+        let unequal = move |(column, (&expected, &found))| {
+            (expected != found).then_some(Difference { row, column, expected, found })
+        };
+        expected.iter().zip(found).enumerate().filter_map(unequal)
+    })
+}
+
+impl Window {
+    const WIDTH: usize = 48;
+    const HEIGHT: usize = 32;
+
+    /// The window with `around` in its middle, or as near as the frame allows.
+    fn around(around: Difference, frame: &Frame) -> Self {
+        let (width, height) = (Self::WIDTH.min(frame.width()), Self::HEIGHT.min(frame.height()));
+        let start = |middle: usize, length: usize, all: usize| middle.saturating_sub(length / 2).min(all - length);
+        let top = start(around.row, height, frame.height());
+        let left = start(around.column, width, frame.width());
+        Self { around, top, left, height, width }
+    }
+
+    fn shows(&self, difference: &Difference) -> bool {
+        (self.top..self.top + self.height).contains(&difference.row)
+            && (self.left..self.left + self.width).contains(&difference.column)
+    }
+
+    /// The window's samples, row after row; 0 outside the frame.
+    fn samples(self, frame: &Frame) -> impl Iterator<Item = u16> {
+        (self.top..self.top + self.height).flat_map(move |row| {
+            (self.left..self.left + self.width)
+                .map(move |column| frame.samples().get(row * frame.width() + column).copied().unwrap_or(0))
+        })
+    }
+
+    /// The pictures of the window, a pixel a sample, with one contrast for all three frames.
+    ///
+    /// # Errors
+    /// The PNG encoder's.
+    pub(in crate::report) fn crops(self, evidence: &Evidence) -> Result<Crops, EncodingError> {
+        let Evidence { input, expected, found, .. } = evidence;
+        let all = || [input, expected, found].into_iter().flat_map(|frame| self.samples(frame));
+        let range = all().fold((u16::MAX, 0), |(least, most), sample| (least.min(sample), most.max(sample)));
+        let grey = |frame| self.picture(self.samples(frame).map(|sample| [level(sample, range); 3]));
+        let pairs = self.samples(expected).zip(self.samples(found));
+        Ok(Crops {
+            input: grey(input)?,
+            expected: grey(expected)?,
+            found: grey(found)?,
+            difference: self.picture(pairs.map(|(expected, found)| colour(expected.abs_diff(found))))?,
+            range,
+        })
+    }
+
+    fn picture(self, pixels: impl Iterator<Item = [u8; 3]>) -> Result<Picture, EncodingError> {
+        Picture::new(&RgbImage { width: self.width, height: self.height, data: pixels.flatten().collect() })
+    }
+}
+
+/// A sample's grey, from 0 for the least of the range to 255 for the most.
+fn level(sample: u16, (least, most): (u16, u16)) -> u8 {
+    let span = u32::from(most.saturating_sub(least)).max(1);
+    let above = u32::from(sample.saturating_sub(least)).min(span);
+    u8::try_from(above * 255 / span).unwrap_or(u8::MAX)
+}

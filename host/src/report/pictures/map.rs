@@ -1,0 +1,29 @@
+//! The map of differences.
+
+use halfrow_model::Frame;
+use png::EncodingError;
+
+use super::Picture;
+use super::scale::colour;
+use crate::frames::preview::RgbImage;
+
+/// The side of the square of samples that one pixel of the map stands for. It keeps a single difference visible when a
+/// whole frame is shown on a telephone.
+pub(in crate::report) const BOX: usize = 8;
+
+/// A map of two frames of one size: each pixel has the colour of the largest difference in its square of [`BOX`] samples.
+///
+/// # Errors
+/// The PNG encoder's.
+pub(in crate::report) fn difference_map(expected: &Frame, found: &Frame) -> Result<Picture, EncodingError> {
+    let (width, height) = (expected.width().div_ceil(BOX), expected.height().div_ceil(BOX));
+    let mut largest = vec![0_u16; width * height];
+    for (row, (expected, found)) in expected.rows().zip(found.rows()).enumerate() {
+        let line = largest.iter_mut().skip(row / BOX * width).take(width);
+        for (most, (expected, found)) in line.zip(expected.chunks(BOX).zip(found.chunks(BOX))) {
+            *most = expected.iter().zip(found).fold(*most, |most, (e, f)| most.max(e.abs_diff(*f)));
+        }
+    }
+    let data = largest.into_iter().flat_map(colour).collect();
+    Picture::new(&RgbImage { width, height, data })
+}

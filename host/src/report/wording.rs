@@ -1,0 +1,215 @@
+//! The words and figures that the views share, so that all of them say the same.
+
+use std::borrow::Cow;
+
+use crate::report::{BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, Outcome, Report, StreetReport};
+use crate::verdict::Verdict;
+
+/// What a check's outcome is called. The loud ones are those to act on.
+pub(super) const fn mark(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Passed => "ok",
+        Outcome::Failed => "FAIL",
+        Outcome::Error => "ERROR",
+        Outcome::Skipped => "skipped",
+    }
+}
+
+/// What a board's kind is called.
+pub(super) const fn kind(kind: BoardKind) -> &'static str {
+    match kind {
+        BoardKind::Mock => "mock board",
+        BoardKind::Sim => "simulated board",
+        BoardKind::Replay => "recording",
+        BoardKind::Hardware => "hardware",
+    }
+}
+
+/// What a result on this board is worth: only hardware is a test of hardware.
+pub(super) fn remark(board: &BoardReport) -> String {
+    match (board.kind, &board.identity) {
+        (BoardKind::Hardware, Some(identity)) => {
+            format!("hardware {}, serial {}", plain(&identity.name), plain(&identity.serial))
+        }
+        (BoardKind::Hardware, None) => "hardware".to_owned(),
+        (other, _) => format!("{}: no hardware was tested", kind(other)),
+    }
+}
+
+/// The verdict in one line, for people and for `tail -1`.
+pub(super) fn verdict_line(report: &Report) -> String {
+    match report.verdict {
+        Verdict::Pass => format!("PASS ({})  {}", remark(&report.board), facts(report)),
+        verdict => format!("{verdict}: {}", plain(&report.headline)),
+    }
+}
+
+/// What to do, unless a suspect already says so.
+pub(super) fn remedy(report: &Report) -> Option<&str> {
+    let said = |remedy: &&str| report.suspects.iter().any(|suspect| suspect.next_step == *remedy);
+    report.remedy.as_deref().filter(|remedy| !said(remedy))
+}
+
+/// What was judged, in figures.
+pub(super) fn facts(report: &Report) -> String {
+    let samples: usize = report.frames.iter().map(|frame| frame.comparison.samples).sum();
+    let differences: usize = report.frames.iter().map(|frame| frame.comparison.differences).sum();
+    let mut facts = vec![count(report.frames.len(), "frame")];
+    facts.push(match differences {
+        0 => format!("{} equal", count(samples, "sample")),
+        _ => format!("{} of {} different", grouped(differences), count(samples, "sample")),
+    });
+    facts.extend(report.latency.map(|latency| format!("latency {}", measured(&latency))));
+    facts.push(format!("{:.1} s", report.link.seconds));
+    facts.join(", ")
+}
+
+/// The latency of all rows in one sentence, without a full stop.
+pub(super) fn latency(latency: &LatencyReport) -> String {
+    let rows = count(latency.rows, "row");
+    let allowed = format!("at most {} allowed", latency.limit);
+    match latency.wrong_rows {
+        0 => format!("{} in all of {rows} ({allowed})", measured(latency)),
+        wrong => format!("{}; wrong in {} of {rows} ({allowed})", measured(latency), grouped(wrong)),
+    }
+}
+
+/// `972 = 960 + 12 pixel clocks`: half a row and the build's own L; or what came instead.
+fn measured(latency: &LatencyReport) -> String {
+    let half_row = latency.limit.saturating_sub(32);
+    let claim = match latency.claimed.checked_sub(half_row) {
+        Some(own) => format!("{} = {half_row} + {own}", latency.claimed),
+        None => latency.claimed.to_string(),
+    };
+    match (latency.least, latency.most) {
+        (least, most) if (least, most) == (latency.claimed, latency.claimed) => format!("{claim} pixel clocks"),
+        (least, most) if least == most => format!("{least} pixel clocks instead of {claim}"),
+        (least, most) => format!("{least} to {most} pixel clocks instead of {claim}"),
+    }
+}
+
+/// How straight the street's façade edges are, without a full stop.
+pub(super) fn street(street: &StreetReport) -> String {
+    let (before, after) = (&street.before, &street.after);
+    format!(
+        "{} off the straight by {:.2} px before and {:.2} px after on average, at most {:.2} px and {:.2} px",
+        count(before.edges, "façade edge"),
+        before.mean_px,
+        after.mean_px,
+        before.max_px,
+        after.max_px
+    )
+}
+
+/// What the link did in one sentence, without a full stop. Trouble is named only when there was some.
+pub(super) fn link(link: &LinkReport) -> String {
+    let mut parts = vec![
+        format!("{} out, {} in", bytes(link.bytes_out), bytes(link.bytes_in)),
+        format!("{} packets", grouped(link.packets_out.saturating_add(link.packets_in))),
+    ];
+    match (link.damaged_in.saturating_add(link.damaged_out), link.retries) {
+        (0, 0) => parts.push("none damaged".to_owned()),
+        (damaged, retries) => parts.push(format!(
+            "{} damaged, {} sent again (too poor from {} on)",
+            grouped(damaged),
+            grouped(retries),
+            grouped(link.retry_limit)
+        )),
+    }
+    parts.extend(link.round_trip_us.map(|time| format!("round trip {} µs", grouped(time))));
+    format!("{}: {}", link.name, parts.join(", "))
+}
+
+/// How a frame came out. Under the verdict ERROR nothing is the board's fault.
+pub(super) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
+    let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
+    match (report.verdict, frame.comparison.differences) {
+        (_, 0) if judged => Outcome::Passed,
+        (Verdict::Error, _) | (_, 0) => Outcome::Error,
+        _ => Outcome::Failed,
+    }
+}
+
+/// The frames to list when there is room for `most`: all, or else those that are not equal, in order. The number left
+/// out comes with them.
+pub(super) fn worth_listing(report: &Report, most: usize) -> (Vec<&FrameReport>, usize) {
+    let all = report.frames.len();
+    let wanted = |frame: &&FrameReport| all <= most || frame_outcome(report, frame) != Outcome::Passed;
+    let listed: Vec<_> = report.frames.iter().filter(wanted).take(most).collect();
+    let left_out = all - listed.len();
+    (listed, left_out)
+}
+
+/// `1 frame`, `16 frames`, `17,280 rows`.
+pub(super) fn count(number: usize, what: &str) -> String {
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{} {what}{ending}", grouped(number))
+}
+
+/// A number with a comma before every third digit from the right.
+pub(super) fn grouped(number: impl Copy + ToString) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (place, digit) in digits.char_indices() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Bytes in the largest decimal unit that leaves a whole digit.
+pub(super) fn bytes(number: u64) -> String {
+    match number {
+        0..1_000 => format!("{number} B"),
+        1_000..1_000_000 => format!("{:.1} kB", number as f64 / 1e3),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", number as f64 / 1e6),
+        _ => format!("{:.1} GB", number as f64 / 1e9),
+    }
+}
+
+/// A share of 0 to 1 in percent; only the whole is called 100 %.
+pub(super) fn percent(share: f64) -> String {
+    match share * 100.0 {
+        all if all >= 100.0 => "100 %".to_owned(),
+        none if none <= 0.0 => "0 %".to_owned(),
+        most if most > 99.9 => "99.9 %".to_owned(),
+        least if least < 0.1 => "under 0.1 %".to_owned(),
+        some => format!("{some:.1} %"),
+    }
+}
+
+/// Text from outside with its control characters spelt out, since boards and file names can hold any, and terminals
+/// obey some.
+pub(super) fn plain(text: &str) -> Cow<'_, str> {
+    let unfit = |letter: char| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}');
+    if !text.contains(unfit) {
+        return Cow::Borrowed(text);
+    }
+    let spelt = |letter: char| if unfit(letter) { letter.escape_default().to_string() } else { letter.into() };
+    Cow::Owned(text.chars().map(spelt).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_third_digit_is_set_off() {
+        let numbers = [0, 12, 999, 1_000, 33_177_600].map(grouped);
+        assert_eq!(numbers, ["0", "12", "999", "1,000", "33,177,600"]);
+    }
+
+    #[test]
+    fn a_share_short_of_the_whole_is_never_called_the_whole() {
+        let shares = [0.0, 0.000_01, 0.5, 0.999_99, 1.0].map(percent);
+        assert_eq!(shares, ["0 %", "under 0.1 %", "50.0 %", "99.9 %", "100 %"]);
+    }
+
+    #[test]
+    fn a_terminal_never_sees_a_control_character() {
+        assert_eq!(plain("a\u{1b}[2Jb\u{9b}\n"), "a\\u{1b}[2Jb\\u{9b}\\n");
+        assert!(matches!(plain("façade.pgm"), Cow::Borrowed(_)));
+    }
+}

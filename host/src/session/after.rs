@@ -1,0 +1,136 @@
+//! What is judged when the last row has come back.
+
+use super::findings::End;
+use super::judge::Seen;
+use super::plan::{Generation, JUDGED};
+use super::steps::Run;
+use crate::board::{Bank, Status};
+use crate::diagnosis::{self, Case, Uploaded};
+use crate::report::Suspect;
+
+impl Run<'_> {
+    /// Judges what was seen, then the tables and the counters.
+    pub(super) fn judge(&mut self) -> Result<(), End> {
+        let after = self.tables_after();
+        let status = self.board.status(false).map_err(|error| End::board("counters", error))?;
+        self.findings.note_status(&status);
+        self.frames(after.as_ref().err())?;
+        latency(&self.findings.seen)?;
+        if let Some(latency) = self.findings.seen.latency {
+            let detail = format!("every row takes {} pixel clocks, first and last sample", latency.claimed);
+            self.findings.passed("latency", detail);
+        }
+        after?;
+        self.findings.passed("tables after", "the tables are still what was uploaded".to_owned());
+        let detail = counters(&status, &self.findings.seen)?;
+        self.findings.passed("counters", detail);
+        Ok(())
+    }
+
+    /// The tables must still be what was uploaded.
+    fn tables_after(&mut self) -> Result<(), End> {
+        let judged = self.generations.iter().find(|generation| generation.number == JUDGED).cloned();
+        let Some(judged) = judged.filter(|_| self.streamed_judged()) else { return Ok(()) };
+        let checked = self.check_read_back("tables after", Bank::Active, &judged).map(|_| ());
+        checked.map_err(|end| match end {
+            End::Failed { check, headline, remedy, suspects } => {
+                let headline = format!("the tables changed during the run: {headline}");
+                End::Failed { check, headline, remedy, suspects }
+            }
+            end => end,
+        })
+    }
+
+    /// Whether the judged tables were ever used; a run that ends with its first frame does not come to that.
+    fn streamed_judged(&self) -> bool {
+        self.findings.seen.frames.iter().any(|frame| frame.generation == JUDGED)
+    }
+
+    fn frames(&mut self, tables_after: Option<&End>) -> Result<(), End> {
+        let seen = &self.findings.seen;
+        if let Some(sentence) = &seen.wrong_generation {
+            let remedy = "The board uses stale tables: check when its bank switch takes effect.";
+            return Err(End::failed("frames", sentence.clone(), remedy));
+        }
+        let differing = seen.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
+        let (samples, frames) = (seen.samples(), seen.frames.len());
+        if differing == 0 {
+            self.findings.passed("frames", format!("{frames} frames, {samples} samples, all equal"));
+            return Ok(());
+        }
+        // Tables that changed explain the differences better than their pattern does.
+        if let Some(changed @ End::Failed { .. }) = tables_after {
+            return Err(changed.clone());
+        }
+        let suspects = self.diagnose();
+        let wrong = seen.differences();
+        let found = format!("{wrong} of {samples} samples differ, in {differing} of {frames} frames");
+        let (headline, remedy) = match suspects.first() {
+            Some(suspect) => {
+                (format!("{}: {}; {found}", suspect.place, suspect.evidence), suspect.next_step.clone())
+            }
+            None => (
+                format!("{found}, and no single defect that is known explains them"),
+                "Make a report with --report and look at the difference maps.".to_owned(),
+            ),
+        };
+        Err(End::Failed { check: "frames", headline, remedy, suspects })
+    }
+
+    fn diagnose(&self) -> Vec<Suspect> {
+        let uploaded: Vec<_> = self
+            .generations
+            .iter()
+            .map(|Generation { number, tables, kernel }| Uploaded { generation: *number, tables, kernel })
+            .collect();
+        diagnosis::diagnose(&Case {
+            uploaded: &uploaded,
+            ring: usize::from(self.board.capabilities.ring),
+            frames: &self.findings.seen.frames,
+            evidence: &self.findings.seen.evidence,
+        })
+    }
+}
+
+fn latency(seen: &Seen) -> Result<(), End> {
+    match &seen.wrong_latency {
+        None => Ok(()),
+        Some(sentence) => {
+            let wrong = seen.latency.map_or(0, |latency| latency.wrong_rows);
+            Err(End::failed(
+                "latency",
+                format!("{wrong} rows have another latency than the board claims: {sentence}"),
+                "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise.",
+            ))
+        }
+    }
+}
+
+fn counters(status: &Status, seen: &Seen) -> Result<String, End> {
+    let rows: usize = seen.frames.iter().map(|frame| frame.rows).sum();
+    let expected = u32::try_from(rows).unwrap_or(u32::MAX);
+    let failed = |what: String| {
+        Err(End::failed("counters", what, "Check the board's counters and its row player; the samples themselves were right."))
+    };
+    if (status.rows_in, status.rows_out) != (expected, expected) {
+        return failed(format!(
+            "{expected} rows went through the board, and it counts {} in and {} out",
+            status.rows_in, status.rows_out
+        ));
+    }
+    if status.samples_over > 0 {
+        return failed(format!(
+            "the board counts {} samples above the depth, and none was sent",
+            status.samples_over
+        ));
+    }
+    if let Some(latency) = seen.latency
+        && (status.least_latency, status.most_latency) != (latency.least, latency.most)
+    {
+        return failed(format!(
+            "the rows name latencies of {} to {} pixel clocks, and the board's counters {} to {}",
+            latency.least, latency.most, status.least_latency, status.most_latency
+        ));
+    }
+    Ok(format!("{rows} rows in, {rows} rows out"))
+}

@@ -1,0 +1,108 @@
+//! What a run has found so far, and why it ended where it did.
+
+use super::judge::Seen;
+use super::{Candidate, Plan};
+use crate::board::{Board, BoardError, Status, Tally};
+use crate::report::{BoardReport, Check, Identity, LinkReport, Outcome, Suspect};
+use crate::verdict::Exit;
+
+/// Every check, in the order of the run.
+pub(super) const CHECKS: [&str; 9] =
+    ["judge", "identity", "link", "upload", "read-back", "frames", "latency", "tables after", "counters"];
+
+/// Why a run ended before its last step, or with a board that is wrong.
+#[derive(Clone, Debug)]
+pub(super) enum End {
+    /// The board is wrong.
+    Failed { check: &'static str, headline: String, remedy: String, suspects: Vec<Suspect> },
+    /// It could not be judged.
+    Error { check: &'static str, exit: Exit, headline: String, remedy: Option<String>, unreachable: bool },
+}
+
+impl End {
+    /// The run could not go on since the board could not be driven.
+    pub(super) fn board(check: &'static str, error: BoardError) -> Self {
+        let unreachable = matches!(
+            error,
+            BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost
+        );
+        Self::Error {
+            check,
+            exit: error.exit(),
+            headline: chain(&error),
+            remedy: None,
+            unreachable,
+        }
+    }
+
+    pub(super) fn error(check: &'static str, exit: Exit, headline: String) -> Self {
+        Self::Error { check, exit, headline, remedy: None, unreachable: false }
+    }
+
+    pub(super) fn failed(check: &'static str, headline: String, remedy: &str) -> Self {
+        Self::Failed { check, headline, remedy: remedy.to_owned(), suspects: Vec::new() }
+    }
+
+    pub(super) fn is_unreachable(&self) -> bool {
+        matches!(self, Self::Error { unreachable: true, .. })
+    }
+}
+
+/// An error with its causes, in one line.
+fn chain(error: &dyn std::error::Error) -> String {
+    let mut text = error.to_string();
+    let mut cause = error.source();
+    while let Some(error) = cause {
+        text = format!("{text}: {error}");
+        cause = error.source();
+    }
+    text
+}
+
+/// What a run has found so far.
+pub(super) struct Findings {
+    pub(super) board: BoardReport,
+    pub(super) checks: Vec<Check>,
+    pub(super) seen: Seen,
+    pub(super) tally: Tally,
+    pub(super) link: LinkReport,
+}
+
+impl Findings {
+    pub(super) fn new(plan: &Plan, candidate: &Candidate) -> Self {
+        let link = LinkReport {
+            name: candidate.link.name(),
+            retry_limit: plan.retry_limit.of(0),
+            ..LinkReport::default()
+        };
+        Self {
+            board: BoardReport { kind: candidate.kind, target: candidate.target.clone(), identity: None },
+            checks: Vec::new(),
+            seen: Seen::default(),
+            tally: Tally::default(),
+            link,
+        }
+    }
+
+    pub(super) fn passed(&mut self, name: &'static str, detail: String) {
+        self.checks.push(Check { name, outcome: Outcome::Passed, detail });
+    }
+
+    /// Takes what the board says of itself.
+    pub(super) fn note_identity(&mut self, board: &Board) {
+        self.board.kind = self.board.kind.confirmed_by(board.capabilities.nature);
+        self.board.identity = Some(Identity::of(&board.welcome, &board.capabilities));
+    }
+
+    /// Takes the link's counts at the end of the run.
+    pub(super) fn note_link(&mut self, board: &Board) {
+        self.tally = board.tally();
+        self.link.name = board.link_name();
+        self.link.retry_limit = board.retry_limit();
+        self.link.seconds = board.now().as_secs_f64();
+    }
+
+    pub(super) fn note_status(&mut self, status: &Status) {
+        self.link.damaged_out = u64::from(status.crc_errors) + u64::from(status.framing_errors);
+    }
+}

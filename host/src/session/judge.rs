@@ -1,0 +1,229 @@
+//! Judges rows as they come back: place, generation, latency, every sample.
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use halfrow_model::{CorrectError, Frame, FrameError};
+use sha2::{Digest, Sha256};
+
+use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
+use crate::compare::Comparison;
+use crate::progress::Progress;
+use crate::report::{Evidence, FrameReport, LatencyReport};
+
+/// A frame that is ready to be sent, with what must come back.
+pub(super) struct Prepared {
+    pub(super) name: String,
+    pub(super) number: u16,
+    pub(super) generation: u8,
+    pub(super) input: Arc<Frame>,
+    pub(super) expected: Arc<Frame>,
+}
+
+/// A frame that could not be made ready.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum PrepareError {
+    #[error("the frame {name} cannot be made; leave it out")]
+    Render { name: String, source: FrameError },
+    #[error("the reference cannot correct the frame {name}; use a frame of the tables' size and depth")]
+    Correct { name: String, source: CorrectError },
+}
+
+/// What the judge has seen of all frames so far.
+#[derive(Default)]
+pub(super) struct Seen {
+    pub(super) frames: Vec<FrameReport>,
+    pub(super) evidence: Vec<Evidence>,
+    pub(super) latency: Option<LatencyReport>,
+    /// Sentence about the first row that names other tables than it should.
+    pub(super) wrong_generation: Option<String>,
+    /// Sentence about the first row with a wrong latency.
+    pub(super) wrong_latency: Option<String>,
+}
+
+impl Seen {
+    pub(super) fn differences(&self) -> usize {
+        self.frames.iter().map(|frame| frame.comparison.differences).sum()
+    }
+
+    pub(super) fn samples(&self) -> usize {
+        self.frames.iter().map(|frame| frame.comparison.samples).sum()
+    }
+}
+
+/// Always kept: the report measures its façades.
+pub(super) const STREET: &str = "builtin:street";
+
+/// How strict, and what to keep.
+#[derive(Clone, Copy)]
+pub(super) struct Manner {
+    pub(super) claimed_latency: u32,
+    pub(super) latency_limit: u32,
+    pub(super) fail_fast: bool,
+    /// Frames kept for pictures although they are equal.
+    pub(super) pictures: usize,
+    /// Frames that differ kept for diagnosis.
+    pub(super) differing: usize,
+}
+
+struct InFlight {
+    prepared: Prepared,
+    found: Vec<u16>,
+    rows: usize,
+    comparison: Comparison,
+}
+
+/// The judge of one segment.
+pub(super) struct Judge<'a> {
+    source: Receiver<Result<Prepared, PrepareError>>,
+    seen: &'a mut Seen,
+    manner: Manner,
+    timing: String,
+    progress: &'a dyn Progress,
+    unprepared: Option<PrepareError>,
+    in_flight: VecDeque<InFlight>,
+}
+
+impl<'a> Judge<'a> {
+    pub(super) fn new(
+        source: Receiver<Result<Prepared, PrepareError>>,
+        seen: &'a mut Seen,
+        manner: Manner,
+        timing: String,
+        progress: &'a dyn Progress,
+    ) -> Self {
+        Self { source, seen, manner, timing, progress, unprepared: None, in_flight: VecDeque::new() }
+    }
+
+    /// Takes what came back of frames that never came back whole.
+    ///
+    /// # Errors
+    /// [`PrepareError`] when a frame could not be made ready, so that none behind it was sent.
+    pub(super) fn finish(mut self) -> Result<(), PrepareError> {
+        while let Some(frame) = self.in_flight.pop_front() {
+            if frame.rows > 0 {
+                self.conclude(frame);
+            }
+        }
+        self.unprepared.map_or(Ok(()), Err)
+    }
+
+    fn check_latency(&mut self, row: &ReturnedRow<'_>) {
+        let Manner { claimed_latency: claimed, latency_limit: limit, .. } = self.manner;
+        let (first, last) = (u32::from(row.first_latency), u32::from(row.last_latency));
+        let seen = self.seen.latency.get_or_insert(LatencyReport {
+            claimed,
+            limit,
+            least: first,
+            most: first,
+            rows: 0,
+            wrong_rows: 0,
+        });
+        seen.least = seen.least.min(first).min(last);
+        seen.most = seen.most.max(first).max(last);
+        seen.rows += 1;
+        if (first, last) != (claimed, claimed) || claimed > limit {
+            seen.wrong_rows += 1;
+            self.seen.wrong_latency.get_or_insert_with(|| {
+                format!(
+                    "row {} of frame {} took {first} pixel clocks from first in to first out and {last} from last in \
+                     to last out; the board claims {claimed}",
+                    row.row, row.frame
+                )
+            });
+        }
+    }
+
+    fn conclude(&mut self, frame: InFlight) {
+        let InFlight { prepared, found, rows, comparison } = frame;
+        let Prepared { name, number, generation, input, expected } = prepared;
+        let differs = comparison.differences > 0;
+        let kept = self.seen.evidence.len();
+        let differing = self.seen.evidence.iter().filter(|evidence| evidence.found != evidence.expected).count();
+        let wanted = match differs {
+            true => differing < self.manner.differing,
+            false => kept < self.manner.pictures || name == STREET,
+        };
+        if wanted {
+            if let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found) {
+                let index = self.seen.frames.len();
+                let (input, expected) = ((*input).clone(), (*expected).clone());
+                self.seen.evidence.push(Evidence { index, input, found, expected });
+            }
+        }
+        self.seen.frames.push(FrameReport {
+            name,
+            number,
+            sha256: sha256(&input),
+            phase: input.phase().to_string(),
+            generation,
+            timing: self.timing.clone(),
+            comparison,
+            rows,
+        });
+    }
+}
+
+impl RowTraffic for Judge<'_> {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        let prepared = match self.source.recv().ok()? {
+            Ok(prepared) => prepared,
+            Err(error) => {
+                self.unprepared = Some(error);
+                return None;
+            }
+        };
+        let (width, height) = (prepared.expected.width(), prepared.expected.height());
+        let numbered = NumberedFrame { number: prepared.number, frame: Arc::clone(&prepared.input) };
+        self.progress.frame(&prepared.name);
+        self.in_flight.push_back(InFlight {
+            prepared,
+            found: vec![0; width * height],
+            rows: 0,
+            comparison: Comparison::new(width, height),
+        });
+        Some(numbered)
+    }
+
+    fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        self.check_latency(row);
+        self.progress.row();
+        let Some(frame) = self.in_flight.iter_mut().find(|frame| frame.prepared.number == row.frame) else {
+            return ControlFlow::Continue(());
+        };
+        if row.generation != frame.prepared.generation {
+            self.seen.wrong_generation.get_or_insert_with(|| {
+                format!(
+                    "row {} of frame {} names the tables of generation {}, and generation {} was committed for it",
+                    row.row, row.frame, row.generation, frame.prepared.generation
+                )
+            });
+        }
+        frame.comparison.row(row.row, frame.prepared.expected.row(row.row), row.samples);
+        let width = row.samples.len();
+        frame.found[row.row * width..][..width].copy_from_slice(row.samples);
+        frame.rows += 1;
+        let mut flow = ControlFlow::Continue(());
+        while let Some(front) = self.in_flight.pop_front_if(|front| front.rows == front.prepared.expected.height())
+        {
+            if front.comparison.differences > 0 && self.manner.fail_fast {
+                flow = ControlFlow::Break(());
+            }
+            self.conclude(front);
+        }
+        flow
+    }
+}
+
+/// SHA-256 of a frame's samples, 16 bits little endian, in hexadecimal.
+fn sha256(frame: &Frame) -> String {
+    let bytes: Vec<u8> = frame.samples().iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    hex(&Sha256::digest(bytes))
+}
+
+/// Bytes in hexadecimal.
+pub(super) fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

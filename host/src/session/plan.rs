@@ -1,0 +1,195 @@
+//! What a run will do: decided, and checked, before any board is opened.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use halfrow_model::{Equidistant, Frame, FrameError, Interpolant, Kernel, Phase, STEP_ONE, TableSet};
+
+use crate::board::deadlines::RetryLimit;
+use crate::frames::{Builtin, Scene};
+
+/// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
+pub const SENSOR_BLANKING: u16 = 900;
+
+/// Tables and kernel under one generation.
+#[derive(Clone, Debug)]
+pub struct Generation {
+    /// 1 to 255.
+    pub number: u8,
+    /// The row factors.
+    pub tables: TableSet,
+    /// The kernel.
+    pub kernel: Kernel,
+}
+
+/// Where a frame comes from.
+#[derive(Clone, Debug)]
+pub enum FrameSource {
+    /// Rendered when its turn comes.
+    Builtin(Builtin),
+    /// Read from a file before the board is opened.
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Its frame.
+        frame: Arc<Frame>,
+    },
+}
+
+impl FrameSource {
+    /// Its name in reports.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self {
+            Self::Builtin(builtin) => format!("builtin:{}", builtin.name()),
+            Self::File { path, .. } => path.display().to_string(),
+        }
+    }
+}
+
+/// How rows are played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Timing {
+    /// The fewest clocks between rows that the board can do.
+    Least,
+    /// As many as behind the sensor.
+    Sensor,
+    /// Gaps in and between rows, by this seed.
+    Gaps(u32),
+}
+
+/// What a run will do.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The tables to judge with.
+    pub tables: TableSet,
+    /// The kernel to judge with.
+    pub kernel: Kernel,
+    /// Where they came from, for people.
+    pub tables_source: String,
+    /// The lens that built-in frames are rendered through.
+    pub lens: Equidistant,
+    /// The row of the optical centre of built-in frames; the middle when not given.
+    pub centre_y: Option<f64>,
+    /// The Bayer phase of built-in frames.
+    pub phase: Phase,
+    /// The frames to stream, each `repeat` times.
+    pub frames: Vec<FrameSource>,
+    /// How often.
+    pub repeat: u32,
+    /// End with the first frame that differs.
+    pub fail_fast: bool,
+    /// Refuse anything but hardware.
+    pub require_hardware: bool,
+    /// Take the board from whoever holds it.
+    pub take_over: bool,
+    /// The seed of nonces, link test and noise.
+    pub seed: u64,
+    /// The longest that the run may take on the link's clock.
+    pub timeout: Option<Duration>,
+    /// The retries that it may have.
+    pub retry_limit: RetryLimit,
+    /// Keep every frame for pictures, not only those that differ.
+    pub keep_pictures: bool,
+}
+
+/// Frames that follow each other without the core running empty, and what is set before them.
+#[derive(Clone, Debug)]
+pub struct Segment {
+    /// How their rows are played.
+    pub timing: Timing,
+    /// Tables that are committed before the first of them, for the frame with this number on.
+    pub commit: Option<(u8, u16)>,
+    /// The frames.
+    pub frames: Vec<ScheduledFrame>,
+}
+
+/// A frame with the tables that it is to be corrected by.
+#[derive(Clone, Debug)]
+pub struct ScheduledFrame {
+    /// Its number on the wire.
+    pub number: u16,
+    /// Where it comes from.
+    pub source: FrameSource,
+    /// The generation that must correct it.
+    pub generation: u8,
+}
+
+/// The generation of the decoy tables.
+pub const DECOY: u8 = 1;
+/// The generation of the tables to judge with.
+pub const JUDGED: u8 = 2;
+
+impl Plan {
+    /// The tables that a run uploads, in order. The first are a decoy, legal wherever the others are and different in
+    /// every row that is stretched: a board that goes on using them is caught.
+    ///
+    /// A row factor half way to 1 reaches half as far, so the ring's limits hold.
+    #[must_use]
+    pub fn generations(&self) -> Vec<Generation> {
+        let steps = self.tables.steps().iter().map(|&step| u32::midpoint(step, STEP_ONE)).collect();
+        let linear = Kernel::from(Interpolant::Linear);
+        let kernel = if self.kernel == linear { Kernel::from(Interpolant::Hermite) } else { linear };
+        let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
+        match TableSet::new(*self.tables.geometry(), steps) {
+            Ok(tables) => vec![Generation { number: DECOY, tables, kernel }, judged],
+            Err(_) => vec![judged],
+        }
+    }
+
+    /// The run, segment by segment: a frame with the decoy; another one with the decoy and, close behind it, the frames to judge; then
+    /// noise with the sensor's blanking, and noise with gaps. A board with one bank of tables cannot change them between two
+    /// frames that follow closely, so there the second segment begins with the frames to judge.
+    #[must_use]
+    pub fn schedule(&self, table_banks: u8) -> Vec<Segment> {
+        let mut numbers = 0_u16..;
+        let mut frame = |source: FrameSource, generation| ScheduledFrame {
+            number: numbers.next().unwrap_or_default(),
+            source,
+            generation,
+        };
+        let noise = || FrameSource::Builtin(Builtin::Noise);
+        let first = vec![frame(noise(), DECOY)];
+        let mut judged = Vec::new();
+        if table_banks > 1 {
+            judged.push(frame(noise(), DECOY));
+        }
+        let first_judged = 1 + judged.len() as u16;
+        for _ in 0..self.repeat {
+            judged.extend(self.frames.iter().map(|source| frame(source.clone(), JUDGED)));
+        }
+        let sensor = vec![frame(noise(), JUDGED)];
+        let gaps = vec![frame(noise(), JUDGED)];
+        let segment = |timing, commit, frames| Segment { timing, commit, frames };
+        vec![
+            segment(Timing::Least, Some((DECOY, 0)), first),
+            segment(Timing::Least, Some((JUDGED, first_judged)), judged),
+            segment(Timing::Sensor, None, sensor),
+            segment(Timing::Gaps((self.seed as u32) | 1), None, gaps),
+        ]
+    }
+
+    /// The samples of a scheduled frame. Noise is drawn anew for every frame.
+    ///
+    /// # Errors
+    /// [`FrameError`] when a built-in frame cannot be made.
+    pub fn render(&self, scheduled: &ScheduledFrame) -> Result<Arc<Frame>, FrameError> {
+        match &scheduled.source {
+            FrameSource::File { frame, .. } => Ok(Arc::clone(frame)),
+            FrameSource::Builtin(builtin) => builtin.render(&self.scene(scheduled.number.into())).map(Arc::new),
+        }
+    }
+
+    /// What built-in frames are made for.
+    #[must_use]
+    pub fn scene(&self, draw: u64) -> Scene {
+        Scene {
+            geometry: *self.tables.geometry(),
+            centre_y: self.centre_y,
+            phase: self.phase,
+            lens: self.lens,
+            seed: self.seed.wrapping_add(draw),
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! The steps of a run, in their order.
+
+use halfrow_model::Taps;
+
+use super::findings::{End, Findings};
+use super::golden;
+use super::patterns::patterns;
+use super::plan::{Generation, Plan};
+use crate::board::Board;
+use crate::progress::Progress;
+use crate::tables::DATAPATH;
+use crate::target::BoardKind;
+use crate::verdict::Exit;
+
+/// The largest L that a board may have.
+pub(super) const MAX_LATENCY: u8 = 32;
+
+/// A run with an open board.
+pub(super) struct Run<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) board: &'a mut Board,
+    pub(super) generations: Vec<Generation>,
+    pub(super) progress: &'a dyn Progress,
+    pub(super) findings: &'a mut Findings,
+}
+
+pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
+    match golden::judge_the_judge() {
+        Ok(samples) => {
+            findings.passed("judge", format!("this computer finds all {samples} golden samples"));
+            Ok(())
+        }
+        Err(what) => {
+            let headline = format!(
+                "this computer cannot judge: {what}; rebuild halfrow, and if that does not help, test the \
+                 computer's memory"
+            );
+            Err(End::error("judge", Exit::Error, headline))
+        }
+    }
+}
+
+impl Run<'_> {
+    /// All that needs an open board.
+    pub(super) fn all_steps(&mut self) -> Result<(), End> {
+        self.findings.note_identity(self.board);
+        self.identity()?;
+        self.progress.step("testing the link");
+        self.link()?;
+        let schedule = self.plan.schedule(self.board.capabilities.table_banks);
+        let height = self.plan.tables.geometry().height() as u64;
+        let frames: usize = schedule.iter().map(|segment| segment.frames.len()).sum();
+        self.progress.rows_expected(frames as u64 * height);
+        self.board.status(true).map_err(|error| End::board("link", error))?;
+        for segment in &schedule {
+            self.prepare(segment)?;
+            self.stream(segment)?;
+            if self.plan.fail_fast && self.findings.seen.differences() > 0 {
+                break;
+            }
+        }
+        self.judge()
+    }
+
+    fn identity(&mut self) -> Result<(), End> {
+        let error = |exit, what| Err(End::error("identity", exit, what));
+        let datapath = self.board.capabilities.datapath;
+        if datapath != DATAPATH {
+            return error(
+                Exit::Refused,
+                format!(
+                    "the board computes datapath {datapath}, and this program judges datapath {DATAPATH}; load a \
+                     bitstream of datapath {DATAPATH}, or install a halfrow that knows {datapath}"
+                ),
+            );
+        }
+        if self.plan.require_hardware && self.findings.board.kind != BoardKind::Hardware {
+            return error(
+                Exit::NothingJudged,
+                "hardware is required and this is none, so nothing was judged; name a real board with --board"
+                    .to_owned(),
+            );
+        }
+        if let Some(misfit) = self.misfit() {
+            return error(Exit::Usage, misfit);
+        }
+        let latency = self.board.capabilities.latency;
+        if latency > MAX_LATENCY {
+            let headline = format!("the board claims L = {latency}, and no datapath may take over {MAX_LATENCY}");
+            let remedy = "Check the pipeline's depth in the design that was loaded.";
+            return Err(End::failed("identity", headline, remedy));
+        }
+        let detail = format!(
+            "{}, wire {}, datapath {DATAPATH}",
+            self.board.capabilities.name, self.board.welcome.version
+        );
+        self.findings.passed("identity", detail);
+        Ok(())
+    }
+
+    /// Why the plan cannot be carried out on this board, if it cannot.
+    fn misfit(&self) -> Option<String> {
+        let (geometry, capabilities) = (self.plan.tables.geometry(), &self.board.capabilities);
+        let (width, height) = (usize::from(capabilities.max_width), usize::from(capabilities.max_height));
+        if geometry.width() > width || geometry.height() > height {
+            return Some(format!(
+                "frames of {} x {} do not fit the board, which takes {width} x {height} at most; use smaller \
+                 frames and tables",
+                geometry.width(),
+                geometry.height()
+            ));
+        }
+        let bits = geometry.depth().bits();
+        if !capabilities.sample_depths().has(bits as u8) {
+            return Some(format!("the board has no {bits}-bit samples; use tables of another depth"));
+        }
+        if self.plan.kernel.taps() == Taps::Seven && capabilities.taps < 7 {
+            return Some(
+                "the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite"
+                    .to_owned(),
+            );
+        }
+        self.plan.tables.check_ring(usize::from(capabilities.ring)).err().map(|error| error.to_string())
+    }
+
+    fn link(&mut self) -> Result<(), End> {
+        let board_error = |error| End::board("link", error);
+        let (_, round_trip) = self.board.echo(&[]).map_err(board_error)?;
+        self.findings.link.round_trip_us = Some(round_trip.as_micros() as u64);
+        let patterns = patterns(self.plan.seed);
+        let bytes: usize = patterns.iter().map(Vec::len).sum();
+        for pattern in &patterns {
+            let (same, _) = self.board.echo(pattern).map_err(board_error)?;
+            if !same {
+                return Err(End::failed(
+                    "link",
+                    "the board returns other bytes than it was sent, under a CRC that it computed itself".to_owned(),
+                    "Check the board's packet buffers: the link carried what the board sent.",
+                ));
+            }
+        }
+        let detail = format!("{bytes} bytes in {} echoes came back as they went", patterns.len());
+        self.findings.passed("link", detail);
+        Ok(())
+    }
+}

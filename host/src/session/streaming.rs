@@ -1,0 +1,147 @@
+//! Frames through the board, one made ready while another is on its way.
+
+use std::ops::ControlFlow;
+use std::sync::mpsc::sync_channel;
+
+use halfrow_model::correct;
+
+use super::findings::End;
+use super::judge::{Judge, Manner, PrepareError, Prepared};
+use super::plan::{Generation, Plan, SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
+use super::steps::{MAX_LATENCY, Run};
+use crate::board::{BoardError, NumberedFrame, ReturnedRow, RowTraffic};
+use crate::verdict::Exit;
+
+/// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
+const KEPT: usize = 16;
+
+/// A frame and the row in which it happened twice that a row did not come back.
+struct LostTwice {
+    row: u16,
+}
+
+impl Run<'_> {
+    /// Streams a segment and judges what comes back.
+    pub(super) fn stream(&mut self, segment: &Segment) -> Result<(), End> {
+        let (manner, timing) = (self.manner(), self.timing(segment.timing));
+        let (plan, generations) = (self.plan, &self.generations);
+        let (sender, source) = sync_channel(1);
+        let (streamed, prepared) = std::thread::scope(|scope| {
+            scope.spawn(move || {
+                let frames = segment.frames.iter().map(|frame| make_ready(plan, frame, generations));
+                // The judge hangs up when the stream has ended.
+                let _ = frames.into_iter().try_for_each(|prepared| sender.send(prepared));
+            });
+            let mut judge = Judge::new(source, &mut self.findings.seen, manner, timing, self.progress);
+            let streamed = self.board.stream(&mut judge);
+            (streamed, judge.finish())
+        });
+        streamed.map_err(|error| self.interrupted(segment, error))?;
+        prepared.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+        if plan.fail_fast && self.findings.seen.differences() > 0 {
+            self.board.drop_rows().map_err(|error| End::board("frames", error))?;
+        }
+        Ok(())
+    }
+
+    fn manner(&self) -> Manner {
+        let half = self.plan.tables.geometry().width() as u32 / 2;
+        Manner {
+            claimed_latency: half + u32::from(self.board.capabilities.latency),
+            latency_limit: half + u32::from(MAX_LATENCY),
+            fail_fast: self.plan.fail_fast,
+            pictures: if self.plan.keep_pictures { KEPT } else { 0 },
+            differing: KEPT,
+        }
+    }
+
+    fn timing(&self, timing: Timing) -> String {
+        match timing {
+            Timing::Least => format!("least blanking ({} clocks)", self.board.capabilities.least_blanking),
+            Timing::Sensor => format!("{SENSOR_BLANKING} clocks of blanking"),
+            Timing::Gaps(seed) => format!("gaps, seed {seed}"),
+        }
+    }
+
+    /// A row did not come back, or the link broke. A row that a board swallows is the board's fault only when the link is
+    /// proven clean and it happens again.
+    fn interrupted(&mut self, segment: &Segment, error: BoardError) -> End {
+        let place = match error {
+            BoardError::RowMissing { place, .. } => place,
+            BoardError::WrongPlace { .. } => {
+                let remedy = "Check how the board keeps a row's place with its samples.";
+                return End::failed("frames", error.to_string(), remedy);
+            }
+            other => return End::board("frames", other),
+        };
+        let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
+        match frame.map(|frame| self.lost_again(frame)) {
+            Some(Ok(Some(LostTwice { row }))) => End::failed(
+                "frames",
+                format!(
+                    "row {} of frame {} went into the board and never came out; played again, row {row} was lost, \
+                     and the link is clean",
+                    place.row, place.frame
+                ),
+                "Check the row banks and the row player: the board took the row and lost it inside.",
+            ),
+            Some(Err(other)) => End::board("frames", other),
+            Some(Ok(None)) | None => End::board("frames", error),
+        }
+    }
+
+    /// Plays a frame again. Returns nothing if the link may have lost the row, or if all rows come back this time.
+    fn lost_again(&mut self, frame: &ScheduledFrame) -> Result<Option<LostTwice>, BoardError> {
+        self.board.drop_rows()?;
+        self.board.status(true)?;
+        let damaged = self.board.tally().damaged_in;
+        let Ok(frame) = self.plan.render(frame).map(|input| NumberedFrame { number: frame.number, frame: input })
+        else {
+            return Ok(None);
+        };
+        let place = match self.board.stream(&mut Unjudged(Some(frame))) {
+            Err(BoardError::RowMissing { place, .. }) => place,
+            Err(error) => return Err(error),
+            Ok(()) => return Ok(None),
+        };
+        let status = self.board.status(false)?;
+        let link_is_clean =
+            status.crc_errors + status.framing_errors == 0 && self.board.tally().damaged_in == damaged;
+        let went_in = status.next_row_in > place.row_sequence;
+        Ok((link_is_clean && went_in).then_some(LostTwice { row: place.row }))
+    }
+}
+
+/// A frame of which only the arrival matters.
+struct Unjudged(Option<NumberedFrame>);
+
+impl RowTraffic for Unjudged {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        self.0.take()
+    }
+
+    fn returned(&mut self, _row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
+fn make_ready(
+    plan: &Plan,
+    frame: &ScheduledFrame,
+    generations: &[Generation],
+) -> Result<Prepared, PrepareError> {
+    let name = frame.source.name();
+    let decoy = generations.iter().find(|generation| generation.number == frame.generation);
+    let (tables, kernel) = decoy.map_or((&plan.tables, &plan.kernel), |found| (&found.tables, &found.kernel));
+    let input =
+        plan.render(frame).map_err(|source| PrepareError::Render { name: name.clone(), source })?;
+    let expected = correct(tables, kernel, &input)
+        .map_err(|source| PrepareError::Correct { name: name.clone(), source })?;
+    Ok(Prepared {
+        name,
+        number: frame.number,
+        generation: frame.generation,
+        input,
+        expected: expected.into(),
+    })
+}

@@ -1,0 +1,95 @@
+//! Geometry and tables on their way to the board, and back through the datapath's own ports.
+
+use super::findings::End;
+use super::plan::{Generation, JUDGED, SENSOR_BLANKING, Segment, Timing};
+use super::steps::Run;
+use crate::board::{Bank, BoardError, Configuration, ReadBack, RefusalCode, Table};
+use crate::diagnosis;
+
+impl Run<'_> {
+    /// Sets the board for a segment.
+    pub(super) fn prepare(&mut self, segment: &Segment) -> Result<(), End> {
+        let geometry = self.plan.tables.geometry();
+        let least = self.board.capabilities.least_blanking;
+        let (blanking, gap_seed) = match segment.timing {
+            Timing::Least => (least, 0),
+            Timing::Sensor => (SENSOR_BLANKING.max(least), 0),
+            Timing::Gaps(seed) => (least, seed),
+        };
+        let configuration = Configuration {
+            width: geometry.width() as u16,
+            height: geometry.height() as u16,
+            centre2: geometry.centre2() as u16,
+            blanking,
+            gap_seed,
+            bits: geometry.depth().bits() as u8,
+        };
+        self.board.configure(&configuration).map_err(|error| End::board("upload", error))?;
+        let Some((number, first_frame)) = segment.commit else { return Ok(()) };
+        let generation = self.generations.iter().find(|generation| generation.number == number).cloned();
+        generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame))
+    }
+
+    fn upload(&mut self, generation: &Generation, first_frame: u16) -> Result<(), End> {
+        let Generation { number, tables, kernel } = generation;
+        self.board.upload(tables, kernel).map_err(|error| End::board("upload", error))?;
+        let ports = self.check_read_back("read-back", Bank::Shadow, generation)?;
+        self.board.commit(tables, kernel, first_frame, *number).map_err(|error| match error {
+            BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::TableCrc => End::failed(
+                "read-back",
+                "the tables read back right, and the board finds another CRC when it commits them".to_owned(),
+                "Check the board's CRC unit and whether the tables change on their own.",
+            ),
+            error => End::board("upload", error),
+        })?;
+        if *number == JUDGED {
+            let (rows, nodes) = (tables.steps().len(), kernel.nodes().len());
+            let detail = format!("{rows} row factors and {nodes} kernel nodes, as generation {number}");
+            self.findings.passed("upload", detail);
+            self.findings.passed("read-back", format!("{ports} datapath ports read what was uploaded"));
+        }
+        Ok(())
+    }
+
+    /// Compares the CRCs of both tables through every port, and returns the number of ports. A table that reads back
+    /// otherwise is read entry by entry, to name the entry.
+    pub(super) fn check_read_back(
+        &mut self,
+        check: &'static str,
+        bank: Bank,
+        generation: &Generation,
+    ) -> Result<usize, End> {
+        let Generation { tables, kernel, .. } = generation;
+        let read = self.board.read_back(bank, tables, kernel).map_err(|error| End::board(check, error))?;
+        match read.iter().find(|read| !read.agrees()) {
+            None => Ok(read.len()),
+            Some(wrong) => Err(self.wrong_entries(check, bank, generation, wrong)),
+        }
+    }
+
+    fn wrong_entries(
+        &mut self,
+        check: &'static str,
+        bank: Bank,
+        generation: &Generation,
+        wrong: &ReadBack,
+    ) -> End {
+        let expected = match wrong.port.table {
+            Table::Steps => generation.tables.to_bytes(),
+            Table::Kernel => generation.kernel.to_bytes(),
+        };
+        let entries = expected.len() / wrong.port.table.entry_bytes();
+        let found = match self.board.read_entries(bank, wrong.port, entries) {
+            Ok(found) => found,
+            Err(error) => return End::board(check, error),
+        };
+        let suspects = diagnosis::read_back(wrong.port.table, &expected, &found);
+        let headline = match suspects.first() {
+            Some(suspect) => format!("{}: {}", suspect.place, suspect.evidence),
+            None => "a table's CRC is wrong although every entry reads back right".to_owned(),
+        };
+        let remedy =
+            "Check the table memory named above, its write path and its supply; then upload again.".to_owned();
+        End::Failed { check, headline, remedy, suspects }
+    }
+}

@@ -1,0 +1,202 @@
+//! What can be wrong with a table file.
+
+use std::io;
+use std::path::PathBuf;
+
+use halfrow_model::{GeometryError, KernelError, TableError};
+
+use super::{DATAPATH, Place};
+
+/// A file that holds no tables that can be used. The source says where and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum TableFileError {
+    /// The system did not hand the file over, or it is no text, or longer than any table file.
+    #[error("cannot read {}; check that it is the file you mean and that you may read it", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The tables are for another datapath, which this program cannot judge.
+    #[error("{} is refused", path.display())]
+    Datapath {
+        /// The file.
+        path: PathBuf,
+        /// Which datapath.
+        source: WrongDatapath,
+    },
+    /// The file's content is wrong.
+    #[error("{} cannot be used", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        source: ContentError,
+    },
+    /// The memory image is wrong.
+    #[error("{} cannot be used", path.display())]
+    Mem {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        source: MemError,
+    },
+}
+
+impl TableFileError {
+    /// The error of the JSON file `path` with the content `source`.
+    pub(super) fn content(path: PathBuf, source: ContentError) -> Self {
+        match source {
+            ContentError::Datapath(source) => Self::Datapath { path, source },
+            source => Self::Content { path, source },
+        }
+    }
+
+    /// The error of the memory image `path` with the content `source`.
+    pub(super) fn mem(path: PathBuf, source: MemError) -> Self {
+        match source {
+            MemError::Datapath(source) => Self::Datapath { path, source },
+            source => Self::Mem { path, source },
+        }
+    }
+}
+
+/// Tables for a datapath that is not [`DATAPATH`].
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the tables are for datapath {found}, and this program knows datapath {DATAPATH} alone; \
+     make them again with `halfrow tables`, or use a halfrow that knows datapath {found}"
+)]
+pub struct WrongDatapath {
+    /// The id found.
+    pub found: i128,
+}
+
+/// Text that is no table file or no kernel file.
+#[derive(Debug, thiserror::Error)]
+pub enum ContentError {
+    /// The text ends too early.
+    #[error("it breaks off at line {line}, column {column}; copy or make the file again")]
+    Truncated {
+        /// The line, from 1.
+        line: usize,
+        /// The column in bytes, from 1.
+        column: usize,
+    },
+    /// The text is no JSON object.
+    #[error("it is not the JSON object it should be at line {line}, column {column}; mend it there")]
+    Json {
+        /// The line, from 1.
+        line: usize,
+        /// The column in bytes, from 1.
+        column: usize,
+        /// What the JSON reader found.
+        source: serde_json::Error,
+    },
+    /// The tables are for another datapath.
+    #[error(transparent)]
+    Datapath(#[from] WrongDatapath),
+    /// A key that the file does not have.
+    #[error(
+        "it has the key {key:?}, and the keys are {known}; correct or remove it, or put notes into `about`"
+    )]
+    UnknownKey {
+        /// The key.
+        key: String,
+        /// The keys that there are.
+        known: String,
+    },
+    /// A key that is there twice.
+    #[error("it has the key {key:?} twice; remove one")]
+    RepeatedKey {
+        /// The key.
+        key: String,
+    },
+    /// A key that is not there.
+    #[error("it lacks {0}; {remedy}", remedy = .0.remedy())]
+    MissingKey(Place),
+    /// A value of the wrong kind.
+    #[error("{place} is {found}, not {wanted}; {remedy}", remedy = place.remedy())]
+    Kind {
+        /// Where.
+        place: Place,
+        /// The value, shortened.
+        found: String,
+        /// The kind that it should be.
+        wanted: &'static str,
+    },
+    /// A number that is too small or too large.
+    #[error("{place} is {found}, outside {allowed}; {remedy}", remedy = place.remedy())]
+    Range {
+        /// Where.
+        place: Place,
+        /// The number.
+        found: i128,
+        /// The least and the largest that it can be.
+        allowed: String,
+    },
+    /// A list with too few or too many entries.
+    #[error("{place} has {found} entries instead of {wanted}; {remedy}", remedy = place.remedy())]
+    Length {
+        /// Where.
+        place: Place,
+        /// Entries there.
+        found: usize,
+        /// Entries that should be there.
+        wanted: usize,
+    },
+    /// A depth that the datapath does not have.
+    #[error("{place} is {found}; {remedy}", place = Place::Bits, remedy = Place::Bits.remedy())]
+    Bits {
+        /// The bits given.
+        found: u32,
+    },
+    /// The numbers make no geometry.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// The numbers make no table set.
+    #[error(transparent)]
+    Tables(#[from] TableError),
+    /// The numbers make no kernel.
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
+}
+
+/// Text that is no memory image of tables.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum MemError {
+    /// The image is for another datapath.
+    #[error(transparent)]
+    Datapath(#[from] WrongDatapath),
+    /// The header comment lacks a number.
+    #[error("its comments give no whole number as `{key}=`; write the file again with `halfrow tables`", key = .0.key())]
+    Header(Place),
+    /// A depth that the datapath does not have.
+    #[error("its comments give bits={found}; {remedy}", remedy = Place::Bits.remedy())]
+    Bits {
+        /// The bits given.
+        found: u32,
+    },
+    /// A line that is neither comment nor word.
+    #[error(
+        "line {line} is {found:?}, not {digits} hexadecimal digits; write the file again with `halfrow tables`"
+    )]
+    Word {
+        /// The line, from 1.
+        line: usize,
+        /// The text on it, shortened.
+        found: String,
+        /// Digits that a word has.
+        digits: usize,
+    },
+    /// The numbers make no geometry.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// The words make no table set.
+    #[error(transparent)]
+    Tables(#[from] TableError),
+    /// The words make no kernel.
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
+}

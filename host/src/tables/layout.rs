@@ -1,0 +1,55 @@
+//! How table files look: a key a line, some steps a line, a node a line.
+
+use halfrow_model::Kernel;
+use serde_json::{Map, Value};
+
+use super::{DATAPATH, KernelFile, Place, TableFile};
+
+/// Steps on a line: 8 digits and a comma each fill about a hundred columns.
+const STEPS_A_LINE: usize = 10;
+
+/// The text of a table file, its members in the order of [`TableFile::KEYS`].
+pub(super) fn table_file(file: &TableFile) -> String {
+    let geometry = file.tables.geometry();
+    let steps: Vec<_> = file.tables.steps().iter().map(ToString::to_string).collect();
+    let members = TableFile::KEYS.into_iter().filter_map(|place| match place {
+        Place::Width => Some((place, geometry.width().to_string())),
+        Place::Height => Some((place, geometry.height().to_string())),
+        Place::Bits => Some((place, geometry.depth().bits().to_string())),
+        Place::Centre2 => Some((place, geometry.centre2().to_string())),
+        Place::Steps => Some((place, list(&steps, STEPS_A_LINE))),
+        other => shared_member(other, &file.kernel, file.about.as_ref()),
+    });
+    object(members)
+}
+
+/// The text of a kernel file, its members in the order of [`KernelFile::KEYS`].
+pub(super) fn kernel_file(file: &KernelFile) -> String {
+    let member = |place| shared_member(place, &file.kernel, file.about.as_ref());
+    object(KernelFile::KEYS.into_iter().filter_map(member))
+}
+
+/// A member that both kinds of file have.
+fn shared_member(
+    place: Place,
+    kernel: &Kernel,
+    about: Option<&Map<String, Value>>,
+) -> Option<(Place, String)> {
+    let value = match place {
+        Place::Datapath => DATAPATH.to_string(),
+        Place::About => Value::Object(about?.clone()).to_string(),
+        Place::Kernel => list(&kernel.nodes().map(|node| format!("{node:?}")), 1),
+        _ => return None,
+    };
+    Some((place, value))
+}
+
+fn object(members: impl Iterator<Item = (Place, String)>) -> String {
+    let members: Vec<_> = members.map(|(place, value)| format!("  \"{}\": {value}", place.key())).collect();
+    format!("{{\n{}\n}}\n", members.join(",\n"))
+}
+
+fn list(entries: &[String], a_line: usize) -> String {
+    let lines: Vec<_> = entries.chunks(a_line).map(|line| format!("    {}", line.join(", "))).collect();
+    format!("[\n{}\n  ]", lines.join(",\n"))
+}

@@ -1,0 +1,142 @@
+//! The members of a JSON object, taken out one by one and checked as they are.
+
+use std::collections::HashSet;
+use std::fmt::{self, Display};
+use std::ops::RangeInclusive;
+
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::{Map, Value};
+
+use super::text::quoted;
+use super::{ContentError, DATAPATH, Place, WrongDatapath};
+
+/// An object's members as they stand in the text: a key that comes twice is there twice.
+pub(super) struct Members(Vec<(String, Value)>);
+
+impl<'de> Deserialize<'de> for Members {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Object;
+
+        impl<'de> Visitor<'de> for Object {
+            type Value = Members;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Members, A::Error> {
+                let mut members = Vec::new();
+                while let Some(member) = map.next_entry()? {
+                    members.push(member);
+                }
+                Ok(Members(members))
+            }
+        }
+
+        deserializer.deserialize_map(Object)
+    }
+}
+
+impl Members {
+    /// The members of the JSON object `text`, each once.
+    pub(super) fn parse(text: &str) -> Result<Self, ContentError> {
+        let members: Self = serde_json::from_str(text).map_err(json_error)?;
+        let mut seen = HashSet::new();
+        match members.0.iter().find(|(key, _)| !seen.insert(key)) {
+            Some((key, _)) => Err(ContentError::RepeatedKey { key: quoted(key) }),
+            None => Ok(members),
+        }
+    }
+
+    /// Whether the tables are for the datapath that is known, if they say for which.
+    ///
+    /// To be asked first: another datapath's file may have other keys.
+    pub(super) fn check_datapath(&self) -> Result<(), ContentError> {
+        let Some((_, value)) = self.0.iter().find(|(key, _)| key == Place::Datapath.key()) else {
+            return Ok(());
+        };
+        let found = integer(Place::Datapath, value)?;
+        if found == i128::from(DATAPATH) { Ok(()) } else { Err(WrongDatapath { found }.into()) }
+    }
+
+    /// Whether there are no members beside `places`.
+    pub(super) fn check_keys(&self, places: &[Place]) -> Result<(), ContentError> {
+        let known: Vec<_> = places.iter().map(|place| place.key()).collect();
+        match self.0.iter().find(|(key, _)| !known.contains(&key.as_str())) {
+            Some((key, _)) => Err(ContentError::UnknownKey { key: quoted(key), known: known.join(", ") }),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes the value of `place`, which must be there.
+    pub(super) fn take(&mut self, place: Place) -> Result<Value, ContentError> {
+        self.take_optional(place).ok_or(ContentError::MissingKey(place))
+    }
+
+    /// Takes the number of `place`, which must be there and within `allowed`.
+    pub(super) fn take_number<T>(
+        &mut self,
+        place: Place,
+        allowed: &RangeInclusive<T>,
+    ) -> Result<T, ContentError>
+    where
+        T: TryFrom<i128> + PartialOrd + Display,
+    {
+        number(place, &self.take(place)?, allowed)
+    }
+
+    /// Takes the user's notes, if there are any.
+    pub(super) fn take_about(&mut self) -> Result<Option<Map<String, Value>>, ContentError> {
+        match self.take_optional(Place::About) {
+            None => Ok(None),
+            Some(Value::Object(about)) => Ok(Some(about)),
+            Some(other) => Err(kind(Place::About, &other, "an object")),
+        }
+    }
+
+    fn take_optional(&mut self, place: Place) -> Option<Value> {
+        let index = self.0.iter().position(|(key, _)| key == place.key())?;
+        Some(self.0.swap_remove(index).1)
+    }
+}
+
+/// The whole number that `value` is, within `allowed`.
+pub(super) fn number<T>(place: Place, value: &Value, allowed: &RangeInclusive<T>) -> Result<T, ContentError>
+where
+    T: TryFrom<i128> + PartialOrd + Display,
+{
+    let found = integer(place, value)?;
+    T::try_from(found).ok().filter(|number| allowed.contains(number)).ok_or_else(|| ContentError::Range {
+        place,
+        found,
+        allowed: format!("{} to {}", allowed.start(), allowed.end()),
+    })
+}
+
+/// The entries of the list that `value` is, of which there must be `wanted`.
+pub(super) fn list(place: Place, value: &Value, wanted: usize) -> Result<&[Value], ContentError> {
+    let entries = value.as_array().ok_or_else(|| kind(place, value, "a list"))?;
+    if entries.len() == wanted {
+        Ok(entries)
+    } else {
+        Err(ContentError::Length { place, found: entries.len(), wanted })
+    }
+}
+
+fn integer(place: Place, value: &Value) -> Result<i128, ContentError> {
+    let integer = value.as_number().and_then(serde_json::Number::as_i128);
+    integer.ok_or_else(|| kind(place, value, "a whole number in plain digits"))
+}
+
+fn kind(place: Place, value: &Value, wanted: &'static str) -> ContentError {
+    ContentError::Kind { place, found: quoted(&value.to_string()), wanted }
+}
+
+fn json_error(source: serde_json::Error) -> ContentError {
+    let (line, column) = (source.line(), source.column());
+    if source.is_eof() {
+        ContentError::Truncated { line, column }
+    } else {
+        ContentError::Json { line, column, source }
+    }
+}

@@ -1,0 +1,88 @@
+//! The places of a table file that a fault can be at.
+
+use std::fmt;
+
+/// A place in a table or kernel file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// `datapath`: the datapath's id.
+    Datapath,
+    /// `about`: the user's own notes.
+    About,
+    /// `width`: W.
+    Width,
+    /// `height`: H.
+    Height,
+    /// `bits`: B.
+    Bits,
+    /// `centre2`: C.
+    Centre2,
+    /// `step`: the list of all Q.
+    Steps,
+    /// Q of one row.
+    Step {
+        /// The row, from 0 at the top.
+        row: usize,
+    },
+    /// `kernel`: the list of all nodes.
+    Kernel,
+    /// The weights of one node.
+    Node {
+        /// The node, 0 to 64.
+        node: usize,
+    },
+    /// One weight of one node.
+    Weight {
+        /// The node, 0 to 64.
+        node: usize,
+        /// The tap's name, one of [`halfrow_model::TAP_NAMES`].
+        tap: &'static str,
+    },
+}
+
+impl Place {
+    /// The file's key that the place is under.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Datapath => "datapath",
+            Self::About => "about",
+            Self::Width => "width",
+            Self::Height => "height",
+            Self::Bits => "bits",
+            Self::Centre2 => "centre2",
+            Self::Steps | Self::Step { .. } => "step",
+            Self::Kernel | Self::Node { .. } | Self::Weight { .. } => "kernel",
+        }
+    }
+
+    /// What belongs there, as an instruction.
+    pub(super) fn remedy(self) -> &'static str {
+        match self {
+            Self::Datapath => "give the id of the datapath that the tables are for",
+            Self::About => "put your notes between { and }",
+            Self::Width => "give the frame's columns, an even number",
+            Self::Height => "give the frame's rows",
+            Self::Bits => "give 8, 10 or 12 bits a sample",
+            Self::Centre2 => "give twice the column of the optical centre, counted from 0",
+            Self::Steps => "give one step for each row, from the top",
+            Self::Step { .. } => "a step is 2^24 / k, rounded, with a stretch factor k of at least 1",
+            Self::Kernel => "give one node for each x = 0, 1/32, ..., 2",
+            Self::Node { .. } => "give the five weights g0, r1, g4, r5, g6",
+            Self::Weight { .. } => {
+                "weights count in 2^-14: 16384 is 1.0, and 2.0 (32768) cannot be held; check the interpolant"
+            }
+        }
+    }
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Step { row } => write!(f, "the step of row {row}"),
+            Self::Node { node } => write!(f, "node {node} of `kernel`"),
+            Self::Weight { node, tap } => write!(f, "the weight {tap} of node {node}"),
+            whole => write!(f, "`{}`", whole.key()),
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Target strings: `KIND[:ADDRESS][,KEY=VALUE]…` names a board, with nothing in it that a shell would touch.
+
+use std::fmt;
+use std::str::FromStr;
+
+use halfrow_protocol::message::BoardNature;
+use serde::Serialize;
+
+/// A board's name, taken apart but not yet looked up.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// `mock`, `replay`, ….
+    pub kind: String,
+    /// What follows the colon.
+    pub address: Option<String>,
+    /// The options, in order.
+    pub options: Vec<(String, String)>,
+}
+
+/// What stands behind a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum BoardKind {
+    /// The mock board.
+    Mock,
+    /// The Verilog under simulation.
+    Sim,
+    /// A recording.
+    Replay,
+    /// A board that one can touch.
+    Hardware,
+}
+
+impl BoardKind {
+    /// What the board turns out to be: behind a link to the outside there may be a mock or a simulation, and it says so.
+    #[must_use]
+    pub fn confirmed_by(self, nature: BoardNature) -> Self {
+        match (self, nature) {
+            (Self::Hardware, BoardNature::Simulation) => Self::Sim,
+            (Self::Hardware, BoardNature::Mock) => Self::Mock,
+            (kind, _) => kind,
+        }
+    }
+}
+
+impl fmt::Display for BoardKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Mock => "mock",
+            Self::Sim => "sim",
+            Self::Replay => "replay",
+            Self::Hardware => "hardware",
+        })
+    }
+}
+
+/// Text that names no target.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum TargetError {
+    /// No kind.
+    #[error("an empty target names no board; write `mock`, or see `halfrow boards`")]
+    Empty,
+    /// An option without a value.
+    #[error("`{option}` in the target `{target}` is no option; write KEY=VALUE")]
+    Option {
+        /// The piece between the commas.
+        option: String,
+        /// The whole.
+        target: String,
+    },
+}
+
+impl Target {
+    /// The mock board as it is by default.
+    #[must_use]
+    pub fn mock() -> Self {
+        Self { kind: "mock".to_owned(), address: None, options: Vec::new() }
+    }
+}
+
+impl FromStr for Target {
+    type Err = TargetError;
+
+    fn from_str(text: &str) -> Result<Self, TargetError> {
+        let mut pieces = text.split(',');
+        let board = pieces.next().unwrap_or_default();
+        let (kind, address) = match board.split_once(':') {
+            Some((kind, address)) => (kind, Some(address.to_owned())),
+            None => (board, None),
+        };
+        if kind.is_empty() {
+            return Err(TargetError::Empty);
+        }
+        let options = pieces
+            .map(|option| match option.split_once('=') {
+                Some((key, value)) if !key.is_empty() => Ok((key.to_owned(), value.to_owned())),
+                _ => Err(TargetError::Option { option: option.to_owned(), target: text.to_owned() }),
+            })
+            .collect::<Result<_, _>>()?;
+        Ok(Self { kind: kind.to_owned(), address, options })
+    }
+}
+
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.kind)?;
+        if let Some(address) = &self.address {
+            write!(f, ":{address}")?;
+        }
+        self.options.iter().try_for_each(|(key, value)| write!(f, ",{key}={value}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_comes_apart_and_back_together() {
+        let text = "serial:/dev/ttyUSB1,baud=12000000,flow=rtscts";
+        let target: Target = text.parse().unwrap();
+        assert_eq!((target.kind.as_str(), target.address.as_deref()), ("serial", Some("/dev/ttyUSB1")));
+        assert_eq!(target.options[0], ("baud".to_owned(), "12000000".to_owned()));
+        assert_eq!(target.to_string(), text);
+        assert_eq!("mock".parse::<Target>().unwrap().to_string(), "mock");
+        assert_eq!("tcp:host:3001".parse::<Target>().unwrap().address.as_deref(), Some("host:3001"));
+    }
+
+    #[test]
+    fn what_names_no_board_is_refused() {
+        assert_eq!("".parse::<Target>(), Err(TargetError::Empty));
+        assert_eq!(":x".parse::<Target>(), Err(TargetError::Empty));
+        assert!(matches!("mock,".parse::<Target>(), Err(TargetError::Option { .. })));
+        assert!(matches!("mock,=1".parse::<Target>(), Err(TargetError::Option { .. })));
+    }
+}

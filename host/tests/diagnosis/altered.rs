@@ -1,0 +1,274 @@
+//! Frames that were altered by hand, for defects that the mock does not make.
+
+use halfrow::report::Suspect;
+use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, TableSet, correct, correct_row, source};
+
+use crate::bench::{Bench, Generation, Seen, WHITE, fault, narrow, wide};
+
+/// What is said of a board that gives `found` of a frame that went in, frame by frame.
+fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {
+    bench.judge(&seen(bench, found))
+}
+
+/// The frames, given the index of each, what went in, and what should come out.
+fn seen(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Seen {
+    let mut altered = Seen { frames: Vec::new(), evidence: Vec::new() };
+    for (index, (generation, input, expected)) in bench.sound_frames().into_iter().enumerate() {
+        let samples = found(index, &input, &expected);
+        let found = Frame::new(input.width(), input.depth(), input.phase(), samples).unwrap();
+        altered.take(generation, input, expected, found);
+    }
+    altered
+}
+
+/// Every row of a frame made anew by `row` from its index.
+fn by_row(frame: &Frame, row: impl Fn(usize) -> Vec<u16>) -> Vec<u16> {
+    (0..frame.height()).flat_map(row).collect()
+}
+
+/// The only suspect, which must explain everything.
+fn certain(suspects: &[Suspect]) -> (&str, &str) {
+    let [only] = suspects else { panic!("{suspects:#?}") };
+    assert_eq!(only.explained, 1.0, "{only:#?}");
+    (only.part, &only.place)
+}
+
+/// The reference's frame with other tables.
+fn remade(bench: &Bench, input: &Frame, steps: impl Fn(usize) -> usize, generation: usize) -> Vec<u16> {
+    let tables = &bench.generations[generation].tables;
+    let steps = (0..input.height()).map(|row| tables.step(steps(row)).unwrap()).collect();
+    let tables = TableSet::new(bench.geometry, steps).unwrap();
+    correct(&tables, &bench.generations[generation].kernel, input).unwrap().samples().to_vec()
+}
+
+/// Frames 0 and 1 of the bench are made with the decoy.
+fn generation(frame: usize) -> usize {
+    usize::from(frame > 1)
+}
+
+#[test]
+fn a_stuck_line_behind_the_datapath_is_named() {
+    let suspects = diagnose(&narrow(), |_, _, expected| expected.samples().iter().map(|s| s | 64).collect());
+    assert_eq!(certain(&suspects), ("output bit", "corrected samples, bit 6, stuck at 1"));
+}
+
+#[test]
+fn rows_of_the_bank_before_are_named() {
+    let suspects = diagnose(&wide(), |_, _, expected| {
+        by_row(expected, |row| expected.row(if row % 4 == 2 { row - 1 } else { row }).to_vec())
+    });
+    assert_eq!(certain(&suspects), ("row bank", "the row banks"));
+    assert!(suspects[0].evidence.contains("holding the row above"), "{}", suspects[0].evidence);
+}
+
+#[test]
+fn rows_that_went_in_at_another_place_are_named() {
+    let bench = wide();
+    let suspects = diagnose(&bench, |frame, input, _| {
+        let Generation { tables, kernel, .. } = &bench.generations[generation(frame)];
+        by_row(input, |row| {
+            let mut output = vec![0; input.width()];
+            let from = if row % 8 == 5 { row + 2 } else { row };
+            correct_row(&bench.geometry, tables.step(row).unwrap(), kernel, input.row(from), &mut output);
+            output
+        })
+    });
+    assert_eq!(certain(&suspects).0, "row bank");
+    assert!(suspects[0].evidence.contains("2 below, made with their own factor"), "{}", suspects[0].evidence);
+}
+
+/// What enters at the row's end is not known, so the last samples are not held against the suspect.
+#[test]
+fn rows_shifted_along_themselves_are_named() {
+    let suspects = diagnose(&narrow(), |_, _, expected| {
+        by_row(expected, |row| {
+            let mut samples = expected.row(row).to_vec();
+            samples.rotate_left(2);
+            samples
+        })
+    });
+    assert_eq!(certain(&suspects), ("row shift", "the corrected row's first sample, 2 to the left"));
+}
+
+#[test]
+fn exchanged_columns_are_named() {
+    let suspects = diagnose(&narrow(), |_, _, expected| {
+        expected.samples().chunks(2).flat_map(|pair| [pair[1], pair[0]]).collect()
+    });
+    assert_eq!(certain(&suspects), ("colour", "the pairs of columns"));
+}
+
+/// The sum by hand, from the samples around the source (DATAPATH.md, "Output sample"), without its clamp.
+fn sum(bench: &Bench, generation: usize, row: usize, input: &[u16], column: usize) -> i32 {
+    let Generation { tables, kernel, .. } = &bench.generations[generation];
+    let source = source(&bench.geometry, tables.step(row).unwrap(), column);
+    let tap = |tap: i64| i32::from(input[bench.geometry.sample_column(source.base - 2 + tap)]);
+    let nodes = [kernel.nodes()[source.node], kernel.nodes()[source.node + 1]];
+    let weight = |index: usize| {
+        let [low, high] = nodes.map(|node| i32::from(node[index]));
+        low + (((high - low) * source.fraction + 128) >> 8)
+    };
+    let own = weight(0) * (tap(0) - tap(2)) + weight(2) * (tap(4) - tap(2)) + weight(4) * (tap(6) - tap(2));
+    let other = weight(1) * (tap(1) - tap(3)) + weight(3) * (tap(5) - tap(3));
+    (tap(2) * 16384 + own + other + 8192) >> 14
+}
+
+#[test]
+fn a_missing_clamp_is_named_with_its_end() {
+    let bench = narrow();
+    let wrapped = |wraps: fn(i32) -> bool| {
+        let bench = &bench;
+        diagnose(bench, move |frame, input, _| {
+            by_row(input, |row| {
+                let sums = (0..input.width())
+                    .map(|column| sum(bench, generation(frame), row, input.row(row), column));
+                sums.map(|sum| if wraps(sum) { sum.rem_euclid(4096) } else { sum.clamp(0, 4095) } as u16)
+                    .collect()
+            })
+        })
+    };
+    assert_eq!(certain(&wrapped(|sum| sum < 0)), ("clamp", "the output's clamp, below 0"));
+    assert_eq!(certain(&wrapped(|sum| sum > 0)), ("clamp", "the output's clamp, above the largest sample"));
+    assert_eq!(certain(&wrapped(|_| true)), ("clamp", "the output's clamp, beyond either end"));
+}
+
+#[test]
+fn a_stuck_address_line_of_the_row_table_is_named() {
+    let bench = wide();
+    let suspects =
+        diagnose(&bench, |frame, input, _| remade(&bench, input, |row| row & !4, generation(frame)));
+    assert_eq!(certain(&suspects), ("row table address", "row table, address bit 2, stuck at 0"));
+}
+
+#[test]
+fn a_row_counter_that_is_ahead_is_named() {
+    let bench = wide();
+    let suspects =
+        diagnose(&bench, |frame, input, _| remade(&bench, input, |row| (row + 1).min(23), generation(frame)));
+    assert_eq!(certain(&suspects), ("row table address", "the row table's address, one entry ahead"));
+}
+
+#[test]
+fn a_factor_of_any_value_is_found() {
+    let bench = wide();
+    let wrong = 13_131_313;
+    let suspects = diagnose(&bench, |frame, input, expected| {
+        let kernel = &bench.generations[generation(frame)].kernel;
+        let mut samples = expected.samples().to_vec();
+        if generation(frame) == 1 {
+            let output = &mut samples[4 * input.width()..][..input.width()];
+            correct_row(&bench.geometry, wrong, kernel, input.row(4), output);
+        }
+        samples
+    });
+    assert_eq!(certain(&suspects), ("row factor", "row 4's factor"));
+    let figures: Vec<u32> =
+        suspects[0].evidence.split(|c: char| !c.is_ascii_digit()).filter_map(|w| w.parse().ok()).collect();
+    assert!(figures[0].abs_diff(wrong) < 4096, "{}", suspects[0].evidence);
+}
+
+#[test]
+fn a_kernel_that_is_stale_while_the_factors_are_not_is_named() {
+    let bench = narrow();
+    let suspects = diagnose(&bench, |frame, input, _| {
+        let kernel = &bench.generations[0].kernel;
+        correct(&bench.generations[generation(frame)].tables, kernel, input).unwrap().samples().to_vec()
+    });
+    assert_eq!(certain(&suspects).0, "stale tables");
+    assert!(
+        suspects[0].evidence.contains("with the kernel of generation 1 instead of 2"),
+        "{}",
+        suspects[0].evidence
+    );
+}
+
+/// Two broken factors are two parts, and each explains its own row.
+#[test]
+fn two_defects_are_both_named_and_neither_for_certain() {
+    let bench = wide();
+    let suspects = diagnose(&bench, |frame, input, expected| {
+        let Generation { tables, kernel, .. } = &bench.generations[generation(frame)];
+        let mut samples = expected.samples().to_vec();
+        for (row, bit) in [(3, 20), (21, 22)] {
+            let output = &mut samples[row * input.width()..][..input.width()];
+            correct_row(
+                &bench.geometry,
+                tables.step(row).unwrap() ^ 1 << bit,
+                kernel,
+                input.row(row),
+                output,
+            );
+        }
+        samples
+    });
+    let mut places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+    places.retain(|place| place.starts_with("row"));
+    places.sort_unstable();
+    assert_eq!(places, ["row 21's factor, bit 22", "row 3's factor, bit 20"]);
+    assert!(suspects.iter().all(|suspect| suspect.explained < 1.0));
+}
+
+/// Nothing that is known makes every seventh column one brighter.
+#[test]
+fn what_nothing_explains_is_described() {
+    let suspects = diagnose(&narrow(), |_, _, expected| {
+        let brighter = |(place, &sample): (usize, &u16)| (sample + u16::from(place % 128 == 44)).min(4095);
+        expected.samples().iter().enumerate().map(brighter).collect()
+    });
+    let first = &suspects[0];
+    assert_eq!((first.part, first.explained), ("unknown", 0.0));
+    for clause in ["in every row", "all in column 44", "all off by +1", "in 8 of 9 frames"] {
+        assert!(first.evidence.contains(clause), "{}", first.evidence);
+    }
+}
+
+#[test]
+fn differences_of_which_no_frame_was_kept_are_described() {
+    let bench = narrow();
+    let mut seen = seen(&bench, |_, _, expected| expected.samples().iter().map(|s| s ^ 1).collect());
+    seen.evidence.clear();
+    let suspects = bench.judge(&seen);
+    assert_eq!((suspects.len(), suspects[0].part), (1, "unknown"));
+}
+
+/// A white frame does not tell whether its samples lost a bit before the datapath or behind it.
+#[test]
+fn defects_that_cannot_be_told_apart_are_all_named() {
+    let bench = narrow();
+    let mut seen = bench.play(Some(fault("stuck-data,bit=5,value=0")));
+    seen.evidence.retain(|evidence| evidence.index == WHITE);
+    let suspects = bench.judge(&seen);
+    let places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+    assert_eq!(places, ["line memory, data bit 5, stuck at 0", "corrected samples, bit 5, stuck at 0"]);
+    assert!(suspects.iter().all(|suspect| suspect.explained == 1.0));
+    assert!(
+        suspects
+            .iter()
+            .all(|suspect| suspect.evidence.ends_with("so does one other defect, so this is not certain"))
+    );
+}
+
+/// Frames, tables and indices that do not belong together must not end the program.
+#[test]
+fn evidence_of_another_size_is_left_aside() {
+    let (narrow, wide) = (narrow(), wide());
+    let mut seen = seen(&narrow, |_, _, expected| expected.samples().iter().map(|s| s ^ 1).collect());
+    assert_eq!(wide.judge(&seen)[0].part, "unknown");
+    for evidence in &mut seen.evidence {
+        evidence.index += 100;
+    }
+    assert_eq!(narrow.judge(&seen)[0].part, "unknown");
+}
+
+#[test]
+fn a_narrower_depth_and_a_shifted_centre_are_no_obstacle() {
+    let geometry = Geometry::new(192, 24, BitDepth::Eight, 150).unwrap();
+    let bench = Bench::with(geometry, 30.0, 256, Interpolant::Keys);
+    let suspects = diagnose(&bench, |frame, input, _| {
+        let Generation { tables, kernel, .. } = &bench.generations[generation(frame)];
+        let mut nodes = kernel.nodes().to_vec();
+        nodes[20][2] ^= 1 << 12;
+        correct(tables, &Kernel::from_nodes(nodes).unwrap(), input).unwrap().samples().to_vec()
+    });
+    assert_eq!(certain(&suspects), ("kernel word", "kernel node 20, weight g4, bit 12"));
+}

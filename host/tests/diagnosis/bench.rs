@@ -1,0 +1,277 @@
+//! A run against the mock's clocked core, as a session makes it: a decoy generation first, then the judged one, then
+//! other timings.
+
+use std::iter;
+
+use halfrow::compare::Comparison;
+use halfrow::diagnosis::{Case, Uploaded, diagnose};
+use halfrow::report::{Evidence, FrameReport, Suspect};
+use halfrow_mock::{BoardFault, Depth, Node, Options, Parameters, Player, RowIn, Settings, Tables};
+use halfrow_model::{
+    BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, STEP_ONE, TableSet, correct,
+};
+
+use crate::scenes::{Scene, scene};
+
+/// Tables and kernel under a generation.
+pub(crate) struct Generation {
+    pub(crate) number: u8,
+    pub(crate) tables: TableSet,
+    pub(crate) kernel: Kernel,
+}
+
+/// What all runs of a test have in common.
+pub(crate) struct Bench {
+    pub(crate) geometry: Geometry,
+    pub(crate) generations: [Generation; 2],
+    pub(crate) ring: u16,
+    /// Frames of noise behind the schedule.
+    pub(crate) noise: usize,
+    /// Rows that the board has played before the run.
+    pub(crate) rows_before: u16,
+}
+
+/// How rows are played: clocks between them, and a seed of gaps.
+#[derive(Clone, Copy, PartialEq)]
+struct Timing {
+    blanking: u16,
+    gap_seed: u32,
+}
+
+/// A frame of the schedule: what it shows, the index of its generation, its timing.
+type Scheduled = (Scene, usize, Timing);
+
+const LEAST: Timing = Timing { blanking: 0, gap_seed: 0 };
+
+/// The decoy twice, the judged tables behind it without a pause, then two other timings.
+const SCHEDULE: [Scheduled; 9] = [
+    (Scene::Noise, 0, LEAST),
+    (Scene::Noise, 0, LEAST),
+    (Scene::Noise, 1, LEAST),
+    (Scene::White, 1, LEAST),
+    (Scene::RampAcross, 1, LEAST),
+    (Scene::Impulses, 1, LEAST),
+    (Scene::Extremes, 1, LEAST),
+    (Scene::Noise, 1, Timing { blanking: 29, gap_seed: 0 }),
+    (Scene::Noise, 1, Timing { blanking: 0, gap_seed: 7 }),
+];
+
+/// The white frame of the schedule.
+pub(crate) const WHITE: usize = 3;
+
+/// What a run gives to diagnose.
+pub(crate) struct Seen {
+    pub(crate) frames: Vec<FrameReport>,
+    pub(crate) evidence: Vec<Evidence>,
+}
+
+impl Bench {
+    /// Frames of `width` × `height` through a lens of `radius` pixels, on a board with a ring of `ring` samples.
+    pub(crate) fn new(width: usize, height: usize, radius: f64, ring: u16, judged: Interpolant) -> Self {
+        let geometry = Geometry::centred(width, height, BitDepth::Twelve).unwrap();
+        Self::with(geometry, radius, ring, judged)
+    }
+
+    pub(crate) fn with(geometry: Geometry, radius: f64, ring: u16, judged: Interpolant) -> Self {
+        let lens = Equidistant::from_radius(radius).unwrap();
+        let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
+        tables.check_ring(ring.into()).unwrap();
+        let halves = tables.steps().iter().map(|&step| u32::midpoint(step, STEP_ONE)).collect();
+        let decoy = TableSet::new(geometry, halves).unwrap();
+        let generations = [
+            Generation { number: 1, tables: decoy, kernel: Kernel::from(Interpolant::Linear) },
+            Generation { number: 2, tables, kernel: Kernel::from(judged) },
+        ];
+        Self { geometry, generations, ring, noise: 0, rows_before: 0 }
+    }
+
+    /// Runs the schedule on a board with `fault` and diagnoses what comes back.
+    pub(crate) fn diagnose(&self, fault: BoardFault) -> Vec<Suspect> {
+        self.judge(&self.play(Some(fault)))
+    }
+
+    /// What the diagnosis says of frames that were seen.
+    pub(crate) fn judge(&self, seen: &Seen) -> Vec<Suspect> {
+        let uploaded = self.generations.each_ref().map(|generation| Uploaded {
+            generation: generation.number,
+            tables: &generation.tables,
+            kernel: &generation.kernel,
+        });
+        diagnose(&Case {
+            uploaded: &uploaded,
+            ring: self.ring.into(),
+            frames: &seen.frames,
+            evidence: &seen.evidence,
+        })
+    }
+
+    /// The frames of the schedule as a board with `fault` gives them. Frames of one timing follow each other closely.
+    pub(crate) fn play(&self, fault: Option<BoardFault>) -> Seen {
+        let options = Options { ring: Some(self.ring), max_width: self.width(), ..Options::default() };
+        let mut player = Player::new(&options, fault).unwrap();
+        let mut tables = Tables::new(&options, fault);
+        self.play_before(&mut player, &mut tables);
+        let schedule: Vec<_> = self.schedule().collect();
+        let sound = self.sound_frames();
+        let mut found: Vec<_> = sound.iter().map(|(_, input, _)| vec![0; input.samples().len()]).collect();
+        for (number, (_, input, _)) in sound.iter().enumerate() {
+            let timing = schedule[number].2;
+            if number < 2 || schedule[number - 1].2 != timing {
+                player.flush();
+                fetch(&mut player, &mut found);
+                self.upload(&mut tables, number);
+                player.configure(self.settings(timing)).unwrap();
+            }
+            play(&mut player, &mut tables, number as u16, input, &mut found);
+        }
+        player.flush();
+        fetch(&mut player, &mut found);
+        let mut seen = Seen { frames: Vec::new(), evidence: Vec::new() };
+        for ((generation, input, expected), samples) in sound.into_iter().zip(found) {
+            let found = Frame::new(input.width(), input.depth(), input.phase(), samples).unwrap();
+            seen.take(generation, input, expected, found);
+        }
+        seen
+    }
+
+    fn schedule(&self) -> impl Iterator<Item = Scheduled> {
+        SCHEDULE.into_iter().chain(iter::repeat_n((Scene::Noise, 1, LEAST), self.noise))
+    }
+
+    /// Every frame of the schedule: its generation, what goes in, what must come out.
+    pub(crate) fn sound_frames(&self) -> Vec<(u8, Frame, Frame)> {
+        (1..)
+            .zip(self.schedule())
+            .map(|(seed, (shown, generation, _))| {
+                let Generation { number, tables, kernel } = &self.generations[generation];
+                let input = scene(shown, &self.geometry, seed);
+                let expected = correct(tables, kernel, &input).unwrap();
+                (*number, input, expected)
+            })
+            .collect()
+    }
+
+    /// Lets the ring's count begin somewhere else than at 0.
+    fn play_before(&self, player: &mut Player, tables: &mut Tables) {
+        player.configure(self.settings(LEAST)).unwrap();
+        for row in 0..self.rows_before {
+            let samples = vec![0; self.geometry.width()];
+            player.play(&RowIn { sequence: 0, frame: u16::MAX, row, last: true, samples }, tables).unwrap();
+            player.flush();
+            player.banks.fetch();
+        }
+    }
+
+    fn width(&self) -> u16 {
+        self.geometry.width() as u16
+    }
+
+    /// The decoy is committed for frame 0, the judged tables for frame 2 while frame 1 has yet to come.
+    fn upload(&self, tables: &mut Tables, number: usize) {
+        let (generation, first_frame) = match number {
+            0 => (&self.generations[0], 0),
+            1 => (&self.generations[1], 2),
+            _ => return,
+        };
+        let nodes: Vec<_> = generation.kernel.nodes().iter().copied().map(Node::from).collect();
+        tables.write_factors(0, generation.tables.steps()).unwrap();
+        tables.write_nodes(0, &nodes).unwrap();
+        tables.commit(generation.number, first_frame).unwrap();
+    }
+
+    fn settings(&self, timing: Timing) -> Settings {
+        Settings {
+            width: self.width(),
+            height: self.geometry.height() as u16,
+            centre2: self.geometry.centre2() as u16,
+            depth: Depth::from_bits(self.geometry.depth().bits() as u8).unwrap(),
+            blanking: timing.blanking,
+            gap_seed: timing.gap_seed,
+        }
+    }
+}
+
+impl Seen {
+    /// Adds a frame and keeps it as a session does: those that differ.
+    pub(crate) fn take(&mut self, generation: u8, input: Frame, expected: Frame, found: Frame) {
+        let comparison = Comparison::of_frames(&expected, &found);
+        let differs = comparison.differences > 0;
+        self.frames.push(FrameReport {
+            name: "scene".to_owned(),
+            number: self.frames.len() as u16,
+            sha256: String::new(),
+            phase: input.phase().to_string(),
+            generation,
+            timing: String::new(),
+            rows: input.height(),
+            comparison,
+        });
+        if differs {
+            self.evidence.push(Evidence { index: self.frames.len() - 1, input, found, expected });
+        }
+    }
+
+    /// Keeps the frames that do not differ as well. `sound` are the same frames of a board without fault.
+    pub(crate) fn keep_all(&mut self, sound: Vec<(u8, Frame, Frame)>) {
+        let kept: Vec<_> = self.evidence.iter().map(|evidence| evidence.index).collect();
+        for (index, (_, input, expected)) in sound.into_iter().enumerate() {
+            if !kept.contains(&index) {
+                self.evidence.push(Evidence { index, input, found: expected.clone(), expected });
+            }
+        }
+    }
+
+    /// The samples that differ, in all frames.
+    pub(crate) fn differences(&self) -> usize {
+        self.frames.iter().map(|frame| frame.comparison.differences).sum()
+    }
+}
+
+/// Plays one frame.
+fn play(player: &mut Player, tables: &mut Tables, number: u16, input: &Frame, found: &mut [Vec<u16>]) {
+    for (row, samples) in input.rows().enumerate() {
+        let last = row + 1 == input.height();
+        let row = RowIn { sequence: 0, frame: number, row: row as u16, last, samples: samples.to_vec() };
+        player.play(&row, tables).unwrap();
+        fetch(player, found);
+    }
+}
+
+/// Takes what came back. Rows that never do stay black.
+fn fetch(player: &mut Player, found: &mut [Vec<u16>]) {
+    while let Some(out) = player.banks.fetch() {
+        let width = out.samples.len();
+        found[usize::from(out.name.frame)][usize::from(out.name.row) * width..][..width]
+            .copy_from_slice(&out.samples);
+    }
+}
+
+/// The fault that a target string like `stuck-data,bit=5` asks for.
+pub(crate) fn fault(text: &str) -> BoardFault {
+    let mut words = text.split(',');
+    let name = words.next().unwrap();
+    let pair = |word: &str| {
+        let (key, value) = word.split_once('=').unwrap();
+        (key.to_owned(), value.to_owned())
+    };
+    let mut parameters: Parameters = words.map(pair).collect();
+    BoardFault::from_name(name, &mut parameters).unwrap()
+}
+
+/// Small frames in a ring of just a row.
+pub(crate) fn narrow() -> Bench {
+    Bench::new(128, 16, 20.0, 128, Interpolant::Hermite)
+}
+
+/// Frames that are no power of two wide, in a ring that is longer than a row.
+pub(crate) fn wide() -> Bench {
+    Bench::new(192, 24, 13.0, 256, Interpolant::Hermite)
+}
+
+/// A fault must be explained by the part at `place`, wholly and by nothing else.
+pub(crate) fn assert_named(bench: &Bench, text: &str, place: &str) {
+    let suspects = bench.diagnose(fault(text));
+    let places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+    assert_eq!(places, [place], "{text}: {suspects:#?}");
+    assert_eq!(suspects[0].explained, 1.0, "{text}: {suspects:#?}");
+}

@@ -1,0 +1,15 @@
+//! The diagnosis against boards that are known to be broken: the mock's core, whose faults are made by an
+//! implementation of its own, and frames that were altered by hand.
+
+// clippy.toml allows these inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+mod altered;
+mod bench;
+mod memory;
+mod read_back;
+mod scenes;
+mod share;
+mod tables;
+mod taps;
+mod words;

@@ -1,0 +1,117 @@
+//! Tables that read back wrong.
+
+use halfrow::board::Table;
+use halfrow::diagnosis::read_back;
+use halfrow::report::Suspect;
+use halfrow_model::{Interpolant, Kernel};
+
+use crate::bench::narrow;
+
+fn steps() -> Vec<u32> {
+    (0..100_u32).map(|row| 16_777_216 - row.wrapping_mul(2_654_435_761) % 5_000_000).collect()
+}
+
+fn read_steps(found: &[u32]) -> Vec<Suspect> {
+    let bytes = |steps: &[u32]| steps.iter().flat_map(|step| step.to_le_bytes()).collect::<Vec<_>>();
+    read_back(Table::Steps, &bytes(&steps()), &bytes(found))
+}
+
+fn read_nodes(change: impl Fn(usize, &mut [i16; 5])) -> Vec<Suspect> {
+    let kernel = Kernel::from(Interpolant::Hermite);
+    let mut nodes = kernel.nodes().to_vec();
+    nodes.iter_mut().enumerate().for_each(|(node, weights)| change(node, weights));
+    read_back(Table::Kernel, &kernel.to_bytes(), &Kernel::from_nodes(nodes).unwrap().to_bytes())
+}
+
+/// What is named first, and how much of the wrong words it explains.
+fn first(suspects: &[Suspect]) -> (&str, f64) {
+    (&suspects[0].place, suspects[0].explained)
+}
+
+#[test]
+fn equal_tables_have_no_suspects() {
+    assert_eq!(read_steps(&steps()), []);
+    let bytes = narrow().generations[1].tables.to_bytes();
+    assert_eq!(read_back(Table::Steps, &bytes, &bytes), []);
+}
+
+#[test]
+fn one_wrong_factor_is_named_with_its_bit_and_values() {
+    let mut found = steps();
+    found[17] ^= 1 << 12;
+    let suspects = read_steps(&found);
+    assert_eq!(first(&suspects), ("row 17's factor, bit 12", 1.0));
+    assert_eq!(suspects[0].evidence, format!("{} was read where {} was uploaded", found[17], steps()[17]));
+}
+
+#[test]
+fn one_wrong_weight_is_named_with_its_bits() {
+    let suspects = read_nodes(|node, weights| {
+        if node == 12 {
+            weights[1] ^= 0b1001;
+        }
+    });
+    assert_eq!(first(&suspects), ("kernel node 12, weight r1, bits 0, 3", 1.0));
+}
+
+#[test]
+fn a_stuck_data_line_is_named() {
+    let suspects = read_steps(&steps().iter().map(|step| step | 1 << 7).collect::<Vec<_>>());
+    assert_eq!(first(&suspects), ("row table, data bit 7", 1.0));
+    assert!(suspects[0].evidence.contains("stuck at 1"));
+    assert_eq!(suspects.len(), 1);
+}
+
+#[test]
+fn a_stuck_data_line_of_one_weights_memory_is_named() {
+    let suspects = read_nodes(|_, weights| weights[2] &= !(1 << 4));
+    assert_eq!(first(&suspects), ("kernel memory, weight g4, data bit 4", 1.0));
+    assert_eq!(suspects.len(), 1);
+}
+
+#[test]
+fn a_stuck_address_line_is_named() {
+    let suspects = read_steps(&(0..100).map(|row: usize| steps()[row & !8]).collect::<Vec<_>>());
+    assert_eq!(first(&suspects), ("row table, address bit 3", 1.0));
+    let nodes = *Kernel::from(Interpolant::Hermite).nodes();
+    let suspects = read_nodes(|node, weights| *weights = nodes[node & !16]);
+    assert_eq!(first(&suspects), ("kernel memory, address bit 4", 1.0));
+}
+
+/// Of two entries in one cell, the one written later stays.
+#[test]
+fn an_address_line_stuck_for_writing_too_is_named() {
+    let later = |row: usize| if row | 32 < 100 { row | 32 } else { row };
+    let suspects = read_steps(&(0..100).map(|row| steps()[later(row)]).collect::<Vec<_>>());
+    assert_eq!(first(&suspects), ("row table, address bit 5", 1.0));
+}
+
+#[test]
+fn entries_read_one_place_off_are_named() {
+    let suspects = read_steps(&(0..100).map(|row: usize| steps()[row.saturating_sub(1)]).collect::<Vec<_>>());
+    assert_eq!(first(&suspects), ("row table, its address", 1.0));
+    assert!(suspects[0].evidence.contains("the one before"));
+}
+
+#[test]
+fn a_dead_table_is_named() {
+    assert_eq!(first(&read_steps(&[0; 100])), ("row table", 1.0));
+}
+
+#[test]
+fn words_without_a_common_cause_are_counted() {
+    let mut found = steps();
+    for (row, bit) in [(5, 3), (40, 9), (77, 20)] {
+        found[row] ^= 1 << bit;
+    }
+    let suspects = read_steps(&found);
+    assert_eq!(first(&suspects), ("row 5's factor, bit 3", 1.0 / 3.0));
+    assert!(suspects[0].evidence.contains("the first of 3 wrong words"));
+}
+
+#[test]
+fn a_table_of_another_length_is_told_by_its_length() {
+    let suspects = read_steps(&steps()[..60]);
+    assert_eq!(suspects[0].evidence, "100 entries were uploaded and 60 came back");
+    assert_eq!(read_back(Table::Kernel, &[1, 2, 3], &[1, 2, 4]), []);
+}

@@ -1,0 +1,119 @@
+//! How many single faults are named exactly.
+
+use std::time::Instant;
+
+use halfrow_model::Interpolant;
+
+use crate::bench::{Bench, fault, narrow, wide};
+use crate::scenes::Random;
+
+/// A fault as in a target string, and the place that must be named.
+fn random_fault(random: &mut Random, height: u64) -> (String, String) {
+    let level = random.below(2);
+    match random.below(6) {
+        0 => {
+            let bit = random.below(12);
+            let text = format!("stuck-data,bit={bit},value={level}");
+            (text, format!("line memory, data bit {bit}, stuck at {level}"))
+        }
+        1 => {
+            let bit = random.below(7);
+            (format!("stuck-address,bit={bit},value={level}"), format!("line memory, address bit {bit}"))
+        }
+        2 => {
+            let (row, bit) = (random.below(height), random.below(25));
+            (format!("row-factor,row={row},bit={bit}"), format!("row {row}'s factor, bit {bit}"))
+        }
+        3 | 4 => {
+            let (node, bit) = (random.below(65), random.below(16));
+            let weight = ["g0", "r1", "g4", "r5", "g6"][random.below(5) as usize];
+            let text = format!("kernel-word,node={node},weight={weight},bit={bit}");
+            (text, format!("kernel node {node}, weight {weight}, bit {bit}"))
+        }
+        _ => {
+            let (tap, other) = (random.below(7), random.below(7));
+            let names = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
+            let [tap_name, other_name] = [tap, other].map(|tap| names[tap as usize]);
+            if tap == other {
+                return (format!("dead-tap,tap={tap}"), format!("tap {tap_name}, stuck at 0"));
+            }
+            (format!("dead-tap,tap={tap},reads={other}"), format!("tap {tap_name}, reading {other_name}"))
+        }
+    }
+}
+
+/// What became of a number of faults.
+#[derive(Debug, Default, PartialEq, Eq)]
+struct Tally {
+    invisible: usize,
+    alone: usize,
+    first_of_several: usize,
+    among_several: usize,
+    not_named: usize,
+    wrong_for_certain: usize,
+}
+
+fn tally(faults: u64) -> Tally {
+    let mut tally = Tally::default();
+    let benches = [narrow(), wide()];
+    for seed in 0..faults {
+        let bench: &Bench = &benches[(seed % 2) as usize];
+        let (text, place) = random_fault(&mut Random::new(seed), bench.geometry.height() as u64);
+        let suspects = bench.diagnose(fault(&text));
+        let places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+        let certain = suspects.len() == 1 && suspects[0].explained == 1.0;
+        let count = match places.iter().position(|named| *named == place) {
+            _ if suspects.is_empty() => &mut tally.invisible,
+            Some(0) if places.len() == 1 => &mut tally.alone,
+            Some(0) => &mut tally.first_of_several,
+            Some(_) => &mut tally.among_several,
+            None if certain => &mut tally.wrong_for_certain,
+            None => &mut tally.not_named,
+        };
+        *count += 1;
+        if places.first().is_some_and(|named| *named != place) {
+            println!("{text}: {suspects:#?}");
+        }
+    }
+    tally
+}
+
+#[test]
+fn no_wrong_part_is_named_for_certain() {
+    let tally = tally(60);
+    assert_eq!((tally.wrong_for_certain, tally.not_named), (0, 0), "{tally:?}");
+    assert!(tally.alone >= 45, "{tally:?}");
+}
+
+/// Full-size frames, sixteen of which differ: a person waits for this.
+#[test]
+#[ignore = "a measurement of time"]
+fn full_frames_are_diagnosed_within_two_seconds() {
+    let bench = Bench { noise: 16, ..Bench::new(1920, 1080, 1106.697, 2048, Interpolant::Hermite) };
+    for text in [
+        "stuck-data,bit=5",
+        "stuck-address,bit=6",
+        "stuck-address,bit=10",
+        "row-factor,row=417,bit=12",
+        "row-factor,row=417,bit=4",
+        "kernel-word,node=12,weight=r1,bit=3",
+        "no-rounding",
+        "dead-tap,tap=4,reads=5",
+        "stale-table-hidden",
+        "row-factor,row=417,bit=24",
+    ] {
+        let seen = bench.play(Some(fault(text)));
+        let begun = Instant::now();
+        let suspects = bench.judge(&seen);
+        let (seconds, first) = (begun.elapsed().as_secs_f64(), &suspects[0]);
+        println!("{text}: {seconds:.2} s, {}: {}", first.place, first.evidence);
+        assert!(seconds < 2.0, "{text} took {seconds} s");
+    }
+}
+
+/// Run with `--ignored --nocapture` to see the share.
+#[test]
+#[ignore = "a measurement"]
+fn share_of_faults_that_are_named() {
+    println!("{:?}", tally(300));
+}

@@ -1,0 +1,68 @@
+//! Single words of the tables, whose faults a read-back may hide.
+
+use crate::bench::{assert_named, fault, narrow, wide};
+
+#[test]
+fn a_bit_of_a_rows_factor_is_named() {
+    for row in [0, 3, 7, 8, 15] {
+        for bit in 10..24 {
+            let place = format!("row {row}'s factor, bit {bit}");
+            assert_named(&narrow(), &format!("row-factor,row={row},bit={bit},hidden=true"), &place);
+        }
+    }
+}
+
+#[test]
+fn a_bit_of_a_rows_factor_is_named_in_wider_frames() {
+    for (row, bit) in [(1, 9), (4, 12), (11, 23), (12, 16), (23, 20)] {
+        let place = format!("row {row}'s factor, bit {bit}");
+        assert_named(&wide(), &format!("row-factor,row={row},bit={bit}"), &place);
+    }
+}
+
+/// The factor exceeds 1, and which samples come then is not defined.
+#[test]
+fn the_highest_bit_of_a_rows_factor_is_named_first() {
+    for (bench, row) in [(narrow(), 2), (narrow(), 14), (wide(), 5)] {
+        let suspects = bench.diagnose(fault(&format!("row-factor,row={row},bit=24")));
+        assert_eq!(suspects[0].place, format!("row {row}'s factor, bit 24"), "{suspects:#?}");
+    }
+}
+
+#[test]
+fn a_bit_of_a_kernel_word_is_named() {
+    for (node, weight, bit) in [
+        (0, "g4", 13),
+        (1, "r1", 9),
+        (7, "r5", 11),
+        (12, "r1", 15),
+        (16, "g4", 6),
+        (31, "g0", 14),
+        (32, "g6", 10),
+        (40, "r1", 5),
+        (63, "g4", 12),
+        (64, "r5", 15),
+    ] {
+        let place = format!("kernel node {node}, weight {weight}, bit {bit}");
+        let text = format!("kernel-word,node={node},weight={weight},bit={bit},hidden=true");
+        assert_named(&narrow(), &text, &place);
+        assert_named(&wide(), &text, &place);
+    }
+}
+
+/// Most of the lowest bits change no sample, and those that do can often not be told apart.
+#[test]
+fn low_bits_of_a_rows_factor_are_among_the_suspects_or_invisible() {
+    for bit in 0..10 {
+        let bench = wide();
+        let seen = bench.play(Some(fault(&format!("row-factor,row=2,bit={bit}"))));
+        let suspects = bench.judge(&seen);
+        let place = format!("row 2's factor, bit {bit}");
+        assert_eq!(seen.differences() == 0, suspects.is_empty(), "{bit}");
+        if let [first, others @ ..] = &suspects[..] {
+            assert_eq!(first.explained, 1.0);
+            let unsure = !others.is_empty() && first.evidence.contains("not certain");
+            assert!(first.place == place && others.is_empty() || unsure, "bit {bit}: {suspects:#?}");
+        }
+    }
+}

@@ -1,0 +1,138 @@
+use std::fs;
+use std::path::Path;
+
+use halfrow::report::{self, ReportError, ReportFolder};
+use tempfile::TempDir;
+
+use crate::made;
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+fn write(path: &Path, overwrite: bool, report: &report::Report) {
+    ReportFolder::prepare(path, overwrite).unwrap().commit(report, &[]).unwrap();
+}
+
+fn headline(path: &Path) -> String {
+    let text = fs::read_to_string(path.join("report.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    json["headline"].as_str().unwrap().to_owned()
+}
+
+#[test]
+fn a_report_is_three_files_and_nothing_is_left_beside_it() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    write(&path, false, &made::pass());
+    assert_eq!(names(&path), ["report.html", "report.json", "report.xml"]);
+    assert_eq!(names(station.path()), ["today"]);
+}
+
+#[test]
+fn programs_find_verdict_exit_code_and_board_kind_at_the_top() {
+    let (report, _) = made::fail();
+    let json: serde_json::Value = serde_json::from_str(&report::json(&report).unwrap()).unwrap();
+    assert_eq!((&json["verdict"], &json["exit_code"]), (&"FAIL".into(), &1.into()));
+    assert_eq!(json["board"]["kind"], "mock");
+    assert_eq!(json["frames"][1]["comparison"]["first"]["found"], 209);
+}
+
+#[test]
+fn an_earlier_report_is_replaced_only_on_request() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    write(&path, false, &made::pass());
+    assert!(matches!(ReportFolder::prepare(&path, false), Err(ReportError::Exists { .. })));
+    write(&path, true, &made::error());
+    assert_eq!(headline(&path), "no answer within 2 s");
+    assert_eq!(names(station.path()), ["today"]);
+}
+
+#[test]
+fn a_folder_that_is_no_report_is_never_replaced() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("thesis");
+    fs::create_dir(&path).unwrap();
+    for name in ["report.json", "chapter1.tex"] {
+        fs::write(path.join(name), "{}").unwrap();
+        let refused = ReportFolder::prepare(&path, true).unwrap_err();
+        assert!(matches!(refused, ReportError::NotAReport { .. }), "{refused}");
+    }
+    assert_eq!(names(&path), ["chapter1.tex", "report.json"]);
+    assert_eq!(names(station.path()), ["thesis"]);
+}
+
+#[test]
+fn a_report_with_a_file_of_someone_else_in_it_is_left_alone() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    write(&path, false, &made::pass());
+    fs::write(path.join("notes.txt"), "the fan was off").unwrap();
+    let refused = ReportFolder::prepare(&path, true).unwrap_err().to_string();
+    assert!(refused.contains("it also holds `notes.txt`"), "{refused}");
+    assert!(path.join("notes.txt").exists());
+}
+
+#[test]
+fn a_file_in_the_way_is_refused() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    fs::write(&path, "a file").unwrap();
+    assert!(matches!(ReportFolder::prepare(&path, true), Err(ReportError::NotAReport { .. })));
+}
+
+#[test]
+fn a_missing_parent_is_found_before_the_run() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("no/such/folder");
+    assert!(matches!(ReportFolder::prepare(&path, false), Err(ReportError::Prepare { .. })));
+    assert!(matches!(ReportFolder::prepare(Path::new("/"), true), Err(ReportError::Name { .. })));
+}
+
+#[test]
+fn a_run_that_never_ends_in_a_report_leaves_nothing_behind() {
+    let station = TempDir::new().unwrap();
+    drop(ReportFolder::prepare(&station.path().join("today"), false).unwrap());
+    assert!(names(station.path()).is_empty());
+}
+
+#[test]
+fn an_earlier_report_stays_when_the_new_one_cannot_be_put_in_its_place() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    write(&path, false, &made::pass());
+    let folder = ReportFolder::prepare(&path, true).unwrap();
+    let aside = names(station.path()).into_iter().find(|name| name != "today").unwrap();
+    // The folder that was to be renamed is gone, as when someone cleans up during the run.
+    fs::remove_dir_all(station.path().join(aside)).unwrap();
+    assert!(matches!(folder.commit(&made::error(), &[]), Err(ReportError::Write { .. })));
+    assert_eq!(headline(&path), made::pass().headline);
+    assert_eq!(names(station.path()), ["today"]);
+}
+
+#[test]
+fn what_came_into_the_way_during_the_run_is_not_replaced() {
+    let station = TempDir::new().unwrap();
+    let path = station.path().join("today");
+    let folder = ReportFolder::prepare(&path, false).unwrap();
+    write(&path, false, &made::pass());
+    assert!(matches!(folder.commit(&made::error(), &[]), Err(ReportError::Exists { .. })));
+    assert_eq!(headline(&path), made::pass().headline);
+    assert_eq!(names(station.path()), ["today"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn others_may_read_a_report_as_any_folder() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let station = TempDir::new().unwrap();
+    let (ordinary, path) = (station.path().join("ordinary"), station.path().join("today"));
+    fs::create_dir(&ordinary).unwrap();
+    write(&path, false, &made::pass());
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&path), mode(&ordinary));
+}

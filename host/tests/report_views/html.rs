@@ -1,0 +1,96 @@
+use halfrow::compare::Comparison;
+use halfrow::report::{self, Evidence, Report};
+
+use crate::made;
+
+/// Elements that have no end tag.
+const VOID: [&str; 3] = ["meta", "img", "!DOCTYPE"];
+
+fn page(report: &Report, evidence: &[Evidence]) -> String {
+    report::html(report, evidence).unwrap()
+}
+
+/// The names of all tags, end tags with their slash.
+fn tags(page: &str) -> Vec<&str> {
+    let name = |piece: &'_ str| piece.find(|end: char| " >".contains(end)).unwrap_or(piece.len());
+    page.split('<').skip(1).map(|piece| &piece[..name(piece)]).collect()
+}
+
+#[test]
+fn every_element_is_closed_in_order() {
+    let (report, evidence) = made::fail();
+    let mut open = Vec::new();
+    for tag in tags(&page(&report, &evidence)) {
+        match tag.strip_prefix('/') {
+            Some(name) => assert_eq!(open.pop(), Some(name.to_owned())),
+            None if VOID.contains(&tag) => {}
+            None => open.push(tag.to_owned()),
+        }
+    }
+    assert_eq!(open, Vec::<String>::new());
+}
+
+#[test]
+fn nothing_from_outside_becomes_markup() {
+    let (report, evidence) = made::fail();
+    let page = page(&report, &evidence);
+    assert!(!tags(&page).contains(&"script"));
+    assert!(page.contains("frames/&lt;script&gt;alert(1)&lt;/script&gt;&amp;.pgm"));
+}
+
+#[test]
+fn nothing_is_loaded_from_anywhere() {
+    let (report, evidence) = made::fail();
+    let page = page(&report, &evidence);
+    let sources: Vec<_> = page.split("src=\"").skip(1).collect();
+    assert!(sources.len() >= 7 && sources.iter().all(|source| source.starts_with("data:image/png;base64,")));
+    assert!(!["href=", "url(", "@import", "http://", "https://"].iter().any(|loads| page.contains(loads)));
+    assert!(page.contains("default-src 'none'"));
+}
+
+#[test]
+fn the_banner_says_that_no_hardware_was_tested() {
+    let page = page(&made::pass(), &[]);
+    let (banner, _) = page.split_once("</header>").unwrap();
+    assert!(banner.contains("PASS") && banner.contains("mock board: no hardware was tested"));
+}
+
+#[test]
+fn a_fail_shows_suspects_and_what_to_do() {
+    let (report, evidence) = made::fail();
+    let page = page(&report, &evidence);
+    for words in ["row factor, row 3, bit 4", "Check the table memory's data line 4.", "Read the tables back."] {
+        assert!(page.contains(words), "{words}");
+    }
+    assert!(page.contains("row 3, column 0: expected 193, found 209"));
+    assert!(page.contains("halfrow verify --frame 'my frames/a.pgm'"));
+}
+
+#[test]
+fn sixteen_frames_of_noise_stay_under_ten_megabytes_and_all_are_shown() {
+    let mut state = 1_u64;
+    let mut noise = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40) as usize
+    };
+    let samples: Vec<usize> = (0..3 * 640 * 360).map(|_| noise()).collect();
+    let frame = |which: usize| made::sized_frame(640, 360, |row, column| samples[(which * 360 + row) * 640 + column]);
+    let (input, expected, found) = (frame(0), frame(1), frame(2));
+    let (mut report, _) = made::fail();
+    report.frames = (0..16).map(|number| made::equal_frame((number, "builtin:noise"))).collect();
+    for frame in &mut report.frames {
+        frame.comparison = Comparison::of_frames(&expected, &found);
+    }
+    let kept = |index| Evidence { index, input: input.clone(), found: found.clone(), expected: expected.clone() };
+    let page = page(&report, &(0..16).map(kept).collect::<Vec<_>>());
+    assert!(page.len() < 10_000_000, "{} bytes", page.len());
+    assert_eq!(page.matches("As it went in").count(), 32, "a caption and a description for each");
+    assert!(!page.contains("left out"));
+}
+
+#[test]
+fn evidence_of_a_frame_that_was_never_streamed_is_passed_over() {
+    let (report, mut evidence) = made::fail();
+    evidence[0].index = 99;
+    assert!(!page(&report, &evidence).contains("<img"));
+}

@@ -1,0 +1,93 @@
+use halfrow::report;
+use quick_junit::{NonSuccessKind, Report as Document, TestCase, TestCaseStatus, TestSuite};
+
+use crate::made;
+
+fn suite(report: &report::Report) -> TestSuite {
+    let text = report::junit(report).unwrap();
+    let document = Document::deserialize_from_str(&text).unwrap();
+    let [suite] = document.test_suites.try_into().unwrap();
+    suite
+}
+
+fn case<'a>(suite: &'a TestSuite, class: &str, name: &str) -> &'a TestCase {
+    let wanted = |case: &&TestCase| {
+        case.name.as_str() == name && case.classname.as_ref().is_some_and(|found| found.as_str() == class)
+    };
+    suite.test_cases.iter().find(wanted).unwrap()
+}
+
+fn kind(case: &TestCase) -> Option<NonSuccessKind> {
+    match &case.status {
+        TestCaseStatus::NonSuccess { kind, .. } => Some(*kind),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_pass_has_a_case_for_the_verdict_each_check_and_each_frame() {
+    let suite = suite(&made::pass());
+    assert_eq!(suite.name.as_str(), "halfrow verify");
+    assert_eq!((suite.tests, suite.failures, suite.errors, suite.skipped), (5, 0, 0, 0));
+    case(&suite, "halfrow.frame", "builtin:noise (frame 2, grbg, least blanking (0))");
+}
+
+#[test]
+fn the_suite_says_which_kind_of_board_it_was() {
+    let suite = suite(&made::pass());
+    let value = |name| {
+        suite.properties.iter().find(|property| property.name.as_str() == name).map(|found| found.value.as_str())
+    };
+    assert_eq!(value("board.kind"), Some("mock"));
+    assert_eq!(value("board.target"), Some("mock,fault=flip"));
+    assert_eq!(value("exit_code"), Some("0"));
+}
+
+#[test]
+fn a_wrong_frame_is_a_failure_and_what_was_not_reached_is_skipped() {
+    let suite = suite(&made::fail().0);
+    assert_eq!((suite.failures, suite.errors, suite.skipped), (3, 0, 1));
+    let wrong = "frames/<script>alert(1)</script>&.pgm (frame 2, grbg, least blanking (0))";
+    let wrong = case(&suite, "halfrow.frame", wrong);
+    let TestCaseStatus::NonSuccess { kind, message, description, .. } = &wrong.status else { panic!() };
+    assert_eq!(*kind, NonSuccessKind::Failure);
+    assert_eq!(message.as_ref().unwrap().as_str(), "5 of 2560 samples differ");
+    let first = "First at row 3, column 0: expected 193, found 209; largest difference 16.";
+    assert_eq!(description.as_ref().unwrap().as_str(), first);
+    assert!(matches!(case(&suite, "halfrow.check", "counters").status, TestCaseStatus::Skipped { .. }));
+}
+
+#[test]
+fn differences_over_a_poor_link_are_errors_and_no_failures() {
+    let (mut report, _) = made::fail();
+    report.verdict = halfrow::verdict::Verdict::Error;
+    report.checks.clear();
+    let suite = suite(&report);
+    assert_eq!((suite.failures, suite.errors), (0, 2));
+}
+
+#[test]
+fn a_verdict_that_is_no_pass_is_never_green_even_when_no_check_says_so() {
+    let mut report = made::error();
+    report.checks.clear();
+    let suite = suite(&report);
+    assert_eq!(kind(case(&suite, "halfrow.verify", "verdict")), Some(NonSuccessKind::Error));
+}
+
+#[test]
+fn a_frame_that_did_not_come_back_whole_is_no_success() {
+    let mut report = made::pass();
+    report.frames[0].rows = 1079;
+    let suite = suite(&report);
+    let cut = case(&suite, "halfrow.frame", "builtin:street (frame 1, grbg, least blanking (0))");
+    assert_eq!(kind(cut), Some(NonSuccessKind::Error));
+}
+
+#[test]
+fn characters_that_xml_forbids_are_spelt_out() {
+    let mut report = made::error();
+    report.headline = "\u{0}\u{1b}[1m\u{ffff}]]>".to_owned();
+    let text = report::junit(&report).unwrap();
+    assert!(text.contains("\\u{0}\\u{1b}[1m\\u{ffff}]]&gt;"), "{text}");
+    assert!(!text.contains(['\u{0}', '\u{1b}', '\u{ffff}']));
+}

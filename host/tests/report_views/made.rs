@@ -1,0 +1,177 @@
+//! Reports made by hand.
+
+use halfrow::compare::Comparison;
+use halfrow::frames::street::EdgeDeviation;
+use halfrow::report::{
+    BoardKind, BoardReport, Check, Evidence, FrameReport, Identity, LatencyReport, LinkReport, Outcome, Report,
+    RunReport, StreetReport, Suspect, TablesReport,
+};
+use halfrow::verdict::{Exit, Verdict};
+use halfrow_model::{BitDepth, Frame, Phase};
+
+/// Two equal frames of 1920 × 1080 on the mock board.
+pub(crate) fn pass() -> Report {
+    let frames: Vec<_> = [(1, "builtin:street"), (2, "builtin:noise")].map(equal_frame).into();
+    Report {
+        verdict: Verdict::Pass,
+        exit_code: Exit::Pass,
+        board: board(),
+        headline: "2 frames, all equal to the reference".to_owned(),
+        remedy: None,
+        suspects: Vec::new(),
+        checks: vec![check("judge", Outcome::Passed, "the golden values agree"), check("frames", Outcome::Passed, "all equal")],
+        latency: Some(latency(2160)),
+        street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
+        link: link(),
+        tables: tables(),
+        run: run(),
+        frames,
+    }
+}
+
+/// Row 3 of the second frame is wrong; the frames are 64 × 40.
+pub(crate) fn fail() -> (Report, Vec<Evidence>) {
+    let (input, expected) = (frame(|row, column| row * 64 + column), frame(|row, column| row * 64 + column + 1));
+    let found = frame(|row, column| row * 64 + column + if row == 3 && column < 5 { 17 } else { 1 });
+    let mut second = equal_frame((2, "frames/<script>alert(1)</script>&.pgm"));
+    second.comparison = Comparison::of_frames(&expected, &found);
+    second.rows = 40;
+    let report = Report {
+        verdict: Verdict::Fail,
+        exit_code: Exit::Fail,
+        headline: "5 samples of row 3 differ".to_owned(),
+        remedy: Some("Read the tables back.".to_owned()),
+        suspects: vec![Suspect {
+            part: "row factor",
+            place: "row 3, bit 4".to_owned(),
+            evidence: "With that bit the other way round the reference gives the same samples.".to_owned(),
+            next_step: "Check the table memory's data line 4.".to_owned(),
+            explained: 1.0,
+        }],
+        checks: vec![
+            check("judge", Outcome::Passed, "the golden values agree"),
+            check("frames", Outcome::Failed, "5 samples of row 3 differ"),
+            check("counters", Outcome::Skipped, "not reached"),
+        ],
+        frames: vec![equal_frame((1, "builtin:street")), second],
+        ..pass()
+    };
+    (report, vec![Evidence { index: 1, input, found, expected }])
+}
+
+/// The board never answered.
+pub(crate) fn error() -> Report {
+    Report {
+        verdict: Verdict::Error,
+        exit_code: Exit::Error,
+        board: BoardReport { kind: BoardKind::Hardware, target: "serial:/dev/ttyUSB1".to_owned(), identity: None },
+        headline: "no answer within 2 s".to_owned(),
+        remedy: Some("Check cable and power.".to_owned()),
+        checks: vec![
+            check("identity", Outcome::Error, "no answer within 2 s"),
+            check("frames", Outcome::Skipped, "not reached"),
+        ],
+        frames: Vec::new(),
+        latency: None,
+        street: None,
+        ..pass()
+    }
+}
+
+/// A frame of 64 × 40, 12 bits.
+pub(crate) fn frame(sample: impl Fn(usize, usize) -> usize) -> Frame {
+    sized_frame(64, 40, sample)
+}
+
+pub(crate) fn sized_frame(width: usize, height: usize, sample: impl Fn(usize, usize) -> usize) -> Frame {
+    let samples = (0..width * height).map(|place| (sample(place / width, place % width) & 0xfff) as u16);
+    Frame::new(width, BitDepth::Twelve, Phase::Grbg, samples.collect()).unwrap()
+}
+
+pub(crate) fn check(name: &'static str, outcome: Outcome, detail: &str) -> Check {
+    Check { name, outcome, detail: detail.to_owned() }
+}
+
+pub(crate) fn equal_frame((number, name): (u16, &str)) -> FrameReport {
+    FrameReport {
+        name: name.to_owned(),
+        number,
+        sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".to_owned(),
+        phase: "grbg".to_owned(),
+        generation: 2,
+        timing: "least blanking (0)".to_owned(),
+        comparison: Comparison { samples: 1920 * 1080, ..Comparison::new(1920, 1080) },
+        rows: 1080,
+    }
+}
+
+fn board() -> BoardReport {
+    let identity = Identity {
+        name: "mock".to_owned(),
+        serial: "000000000000002a".to_owned(),
+        build: "0badcafe".to_owned(),
+        protocol: 1,
+        datapath: 1,
+        max_width: 2592,
+        max_height: 2048,
+        depths: vec![8, 10, 12],
+        taps: 7,
+        latency: 12,
+        ring: 4096,
+        least_blanking: 0,
+        table_banks: 2,
+        row_banks_in: 4,
+        row_banks_out: 4,
+        clock_hz: 0,
+    };
+    BoardReport { kind: BoardKind::Mock, target: "mock,fault=flip".to_owned(), identity: Some(identity) }
+}
+
+/// Of 1920 columns: D = 960 + 12.
+pub(crate) fn latency(rows: usize) -> LatencyReport {
+    LatencyReport { claimed: 972, limit: 992, least: 972, most: 972, rows, wrong_rows: 0 }
+}
+
+fn edges(mean_px: f64, max_px: f64) -> EdgeDeviation {
+    EdgeDeviation { edges: 9, mean_px, max_px }
+}
+
+fn link() -> LinkReport {
+    LinkReport {
+        name: "mock".to_owned(),
+        bytes_out: 6_300_000,
+        bytes_in: 6_400_000,
+        packets_out: 2200,
+        packets_in: 2240,
+        retry_limit: 30,
+        round_trip_us: Some(8),
+        seconds: 1.94,
+        ..LinkReport::default()
+    }
+}
+
+fn tables() -> TablesReport {
+    TablesReport {
+        source: "equidistant lens, R = 1106.697 px, hermite".to_owned(),
+        width: 1920,
+        height: 1080,
+        bits: 12,
+        centre2: 1919,
+        rows_outside_circle: 0,
+        steps_crc32: "5f5a7553".to_owned(),
+        kernel_crc32: "16e29b0f".to_owned(),
+    }
+}
+
+fn run() -> RunReport {
+    RunReport {
+        version: "0.1.0",
+        commit: "252ffed",
+        arguments: ["halfrow", "verify", "--frame", "my frames/a.pgm"].map(str::to_owned).into(),
+        seed: 7,
+        started: "2026-11-21T02:03:04Z".to_owned(),
+        ended: "2026-11-21T02:03:06Z".to_owned(),
+        host: "bench-3".to_owned(),
+        files: Vec::new(),
+    }
+}

@@ -1,0 +1,61 @@
+//! The pictures of the page, taken out of it and decoded again.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use halfrow::report;
+
+use crate::made;
+
+/// Colours of the scale.
+const EQUAL: [u8; 3] = [0x17, 0x17, 0x20];
+const FROM_8: [u8; 3] = [0xdc, 0x46, 0x6a];
+
+/// Width, height and pixels of the picture with the description `alt`.
+fn picture(page: &str, alt: &str) -> (u32, u32, Vec<[u8; 3]>) {
+    let (before, _) = page.split_once(&format!("alt=\"{alt}\"")).unwrap();
+    let (_, data) = before.rsplit_once("base64,").unwrap();
+    let (data, _) = data.split_once('"').unwrap();
+    let bytes = STANDARD.decode(data).unwrap();
+    let mut reader = png::Decoder::new(std::io::Cursor::new(bytes)).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut pixels).unwrap();
+    (info.width, info.height, pixels.chunks_exact(3).map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect())
+}
+
+#[test]
+fn each_pixel_of_the_map_shows_the_largest_difference_of_its_eight_by_eight_samples() {
+    let (report, evidence) = made::fail();
+    let page = report::html(&report, &evidence).unwrap();
+    let (width, height, pixels) = picture(&page, "Map of differences");
+    assert_eq!((width, height), (8, 5));
+    assert_eq!(pixels[0], FROM_8, "columns 0 to 4 of row 3 are 16 too large");
+    assert!(pixels[1..].iter().all(|pixel| *pixel == EQUAL));
+}
+
+#[test]
+fn a_crop_shows_48_by_32_samples_around_the_first_difference() {
+    let (report, evidence) = made::fail();
+    let page = report::html(&report, &evidence).unwrap();
+    let (width, height, pixels) = picture(&page, "Difference, colours as in the map");
+    assert_eq!((width, height), (48, 32));
+    let wrong: Vec<_> = (0..pixels.len()).filter(|&place| pixels[place] != EQUAL).collect();
+    assert_eq!(wrong, (0..5).map(|column| 3 * 48 + column).collect::<Vec<_>>());
+    assert!(page.contains("Rows 0 to 31, columns 0 to 47, raw samples; black is 0, white is 2032."));
+}
+
+#[test]
+fn the_three_crops_share_one_contrast() {
+    let (report, evidence) = made::fail();
+    let page = report::html(&report, &evidence).unwrap();
+    let grey = |alt| picture(&page, alt).2[31 * 48 + 47][0];
+    // Row 31, column 47 is 31 · 64 + 47 = 2031 of 2032 in the input, and 2032 of 2032 in the other two.
+    assert_eq!((grey("Input"), grey("Expected"), grey("Found")), (254, 255, 255));
+}
+
+#[test]
+fn the_bars_count_the_differences_by_row_and_by_column() {
+    let (report, evidence) = made::fail();
+    let page = report::html(&report, &evidence).unwrap();
+    assert!(page.contains("M0 0h100v1h-100z"), "rows 0 to 7 have all five");
+    assert!(page.contains("M0 0v100h1v-100z"), "columns 0 to 7 have all five");
+}

@@ -1,0 +1,116 @@
+use halfrow::compare::{Comparison, Difference};
+use halfrow::report::{self, BoardKind, Report};
+use halfrow::verdict::Verdict;
+
+use crate::made;
+
+/// The text as a pipe gets it.
+fn plain(report: &Report) -> String {
+    anstream::adapter::strip_str(&report::text(report)).to_string()
+}
+
+fn last_line(text: &str) -> &str {
+    text.trim_end().lines().last().unwrap()
+}
+
+#[test]
+fn a_pass_ends_in_one_line_with_all_that_was_judged() {
+    assert_eq!(
+        last_line(&plain(&made::pass())),
+        "PASS (mock board: no hardware was tested)  2 frames, 4,147,200 samples equal, latency 972 = 960 + 12 pixel \
+         clocks, 1.9 s"
+    );
+}
+
+#[test]
+fn no_pass_without_hardware_is_taken_for_one_with() {
+    for kind in [BoardKind::Mock, BoardKind::Sim, BoardKind::Replay] {
+        let mut report = made::pass();
+        report.board.kind = kind;
+        assert!(last_line(&plain(&report)).contains("no hardware was tested"), "{kind}");
+    }
+    let mut report = made::pass();
+    report.board.kind = BoardKind::Hardware;
+    assert!(last_line(&plain(&report)).starts_with("PASS (hardware mock, serial 000000000000002a)  2 frames"));
+}
+
+#[test]
+fn a_fail_names_the_suspect_and_the_next_step_after_the_verdict() {
+    let text = plain(&made::fail().0);
+    let (_, after) = text.split_once("\nFAIL: 5 samples of row 3 differ\n").unwrap();
+    let expected = "\
+suspect  row factor, row 3, bit 4 (explains 100 % of the differences)
+         With that bit the other way round the reference gives the same samples.
+         Next: Check the table memory's data line 4.
+do       Read the tables back.
+";
+    assert_eq!(after, expected);
+}
+
+#[test]
+fn a_remedy_that_a_suspect_already_gives_is_not_repeated() {
+    let (mut report, _) = made::fail();
+    report.remedy = Some(report.suspects[0].next_step.clone());
+    assert_eq!(plain(&report).matches("Check the table memory's data line 4.").count(), 1);
+}
+
+#[test]
+fn an_error_says_what_to_do() {
+    let text = plain(&made::error());
+    assert!(text.ends_with("\nERROR: no answer within 2 s\ndo       Check cable and power.\n"), "{text}");
+}
+
+#[test]
+fn every_check_has_a_line_with_its_mark() {
+    let text = plain(&made::fail().0);
+    for line in [
+        "ok       judge: the golden values agree",
+        "FAIL     frames: 5 samples of row 3 differ",
+        "skipped  counters: not reached",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{line}\n{text}");
+    }
+}
+
+#[test]
+fn a_table_too_long_keeps_the_frames_that_differ() {
+    let mut report = made::fail().0;
+    let wrong = report.frames.remove(1);
+    report.frames = (0..50).map(|number| made::equal_frame((number, "builtin:grey"))).collect();
+    report.frames[40] = wrong;
+    let text = plain(&report);
+    assert!(text.contains("3, 0") && text.contains("alert(1)"), "{text}");
+    assert!(!text.contains("builtin:grey"), "{text}");
+    assert!(text.contains("… and 49 more frames\n"), "{text}");
+}
+
+#[test]
+fn nothing_but_the_verdict_is_wider_than_80_columns() {
+    let (mut report, _) = made::fail();
+    report.frames[1].name = "a/very/deep/folder/".repeat(9);
+    report.suspects[0].evidence = "There is a long story to tell about this suspect. ".repeat(5);
+    let difference = Difference { row: 2047, column: 2591, expected: 4095, found: 4094 };
+    report.frames[1].comparison =
+        Comparison { differences: 5_308_416, first: Some(difference), largest: 4095, ..Comparison::new(2592, 2048) };
+    for line in plain(&report).lines().filter(|line| !line.starts_with("FAIL:")) {
+        assert!(line.chars().count() <= 80, "{line}");
+    }
+}
+
+#[test]
+fn what_a_board_calls_itself_cannot_drive_the_terminal() {
+    let mut report = made::error();
+    report.headline = "the board says \u{1b}[2J\u{7}".to_owned();
+    assert!(report::text(&report).contains("the board says \\u{1b}[2J\\u{7}\n"));
+}
+
+#[test]
+fn a_wrong_latency_says_what_was_claimed() {
+    let mut report = made::pass();
+    report.verdict = Verdict::Fail;
+    let latency = report.latency.as_mut().unwrap();
+    (latency.most, latency.wrong_rows) = (975, 1200);
+    let expected = "latency  972 to 975 pixel clocks instead of 972 = 960 + 12; wrong in 1,200 of\n         2,160 rows";
+    let text = plain(&report);
+    assert!(text.contains(expected), "{text}");
+}
