@@ -274,6 +274,10 @@ impl Stream<'_> {
         self.progress_at = self.conversation.now();
         if self.conversation.queued() < QUEUE {
             self.send(missing);
+            // A row leaves the core while its successor enters, so the successor may be the one that was lost.
+            if missing + 1 < self.sent {
+                self.send(missing + 1);
+            }
         }
         Ok(())
     }

@@ -55,10 +55,13 @@ pub struct Case<'a> {
 #[must_use]
 pub fn diagnose(case: &Case<'_>) -> Vec<Suspect> {
     let witnesses = Witnesses::of(case);
+    if witnesses.rows.is_empty() {
+        return Vec::new();
+    }
     let mut ranked = ranking::rank(&witnesses, families::propose(&witnesses));
     if !ranked.first().is_some_and(|best| best.score.is_exact()) {
         let searched = ranking::rank(&witnesses, families::search(&witnesses));
         ranked = ranking::merge(ranked, searched);
     }
-    ranking::suspects(&ranked, pattern::summary(&witnesses))
+    ranking::suspects(&ranked, || pattern::summary(&witnesses))
 }

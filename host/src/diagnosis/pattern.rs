@@ -3,30 +3,27 @@
 use super::witnesses::{Witness, Witnesses};
 use crate::report::{FrameReport, Suspect};
 
-/// Where the differences lie; none when there are none.
-pub(super) fn summary(witnesses: &Witnesses<'_>) -> Option<Suspect> {
+/// Where the differences lie.
+pub(super) fn summary(witnesses: &Witnesses<'_>) -> Suspect {
     let frames: Vec<_> =
         witnesses.case.frames.iter().filter(|frame| frame.comparison.differences > 0).collect();
-    if frames.is_empty() && witnesses.differing.is_empty() {
-        return None;
-    }
     let clauses: Vec<_> = [
         rows(witnesses, &frames),
-        columns(witnesses, &frames),
+        columns(&frames),
         sizes(&frames),
         brightness(&witnesses.differing),
-        in_frames(witnesses, frames.len()),
+        Some(format!("in {} of {} frames", frames.len(), witnesses.case.frames.len())),
     ]
     .into_iter()
     .flatten()
     .collect();
-    Some(Suspect {
+    Suspect {
         part: "unknown",
         place: "no single part".to_owned(),
         evidence: format!("no known defect explains most of the differences: {}", clauses.join(", ")),
         next_step: "Make a report with --report and look at the difference maps.".to_owned(),
         explained: 0.0,
-    })
+    }
 }
 
 fn rows(witnesses: &Witnesses<'_>, frames: &[&FrameReport]) -> Option<String> {
@@ -34,18 +31,13 @@ fn rows(witnesses: &Witnesses<'_>, frames: &[&FrameReport]) -> Option<String> {
     extent("row", &witnesses.rows, height)
 }
 
-fn columns(witnesses: &Witnesses<'_>, frames: &[&FrameReport]) -> Option<String> {
+fn columns(frames: &[&FrameReport]) -> Option<String> {
     let width = frames.iter().map(|frame| frame.comparison.by_column.len()).max()?;
-    let differs = |column: &usize| {
-        let counted = |frame: &&FrameReport| frame.comparison.by_column.get(*column).is_some_and(|&n| n > 0);
-        frames.iter().any(counted) || witnesses.differing.iter().any(|row| differs_at(row, *column))
-    };
+    let counted =
+        |frame: &FrameReport, column| frame.comparison.by_column.get(column).is_some_and(|&n| n > 0);
+    let differs = |column: &usize| frames.iter().any(|frame| counted(frame, *column));
     let columns: Vec<_> = (0..width).filter(differs).collect();
     extent("column", &columns, width)
-}
-
-fn differs_at(row: &Witness<'_>, column: usize) -> bool {
-    row.found.get(column) != row.expected.get(column)
 }
 
 /// Which of `total` rows or columns: `places` ascend.
@@ -87,9 +79,4 @@ fn brightness(differing: &[Witness<'_>]) -> Option<String> {
         (false, true) => Some("only in samples below half the range".to_owned()),
         _ => None,
     }
-}
-
-fn in_frames(witnesses: &Witnesses<'_>, differing: usize) -> Option<String> {
-    let all = witnesses.case.frames.len();
-    (all > 0).then(|| format!("in {differing} of {all} frames"))
 }

@@ -68,8 +68,7 @@ fn by_share(a: &Score, b: &Score) -> Ordering {
 }
 
 /// The suspects to name. `summary` stands first when nothing explains most of the differences.
-pub(super) fn suspects(ranked: &[Ranked], summary: Option<Suspect>) -> Vec<Suspect> {
-    let Some(summary) = summary else { return Vec::new() };
+pub(super) fn suspects(ranked: &[Ranked], summary: impl FnOnce() -> Suspect) -> Vec<Suspect> {
     let alike = ranked.iter().take_while(|candidate| candidate.is_as_good_as(ranked.first())).count();
     let named = if alike > 0 { alike } else { ranked.len() };
     let others = alike.saturating_sub(1);
@@ -80,7 +79,7 @@ pub(super) fn suspects(ranked: &[Ranked], summary: Option<Suspect>) -> Vec<Suspe
         .map(|candidate| suspect(candidate, others))
         .collect();
     if suspects.first().is_none_or(|best| best.explained < CONVINCING) {
-        suspects.insert(0, summary);
+        suspects.insert(0, summary());
     }
     suspects.truncate(NAMED);
     suspects

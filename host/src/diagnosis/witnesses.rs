@@ -103,7 +103,7 @@ impl<'a> Witnesses<'a> {
         }
     }
 
-    /// At most `count` rows that differ, and as many that do not although others did before.
+    /// At most `count` rows that differ, and as many that do not although an earlier one does.
     pub(super) fn sample(&self, count: usize) -> impl Iterator<Item = &Witness<'a>> {
         self.differing.iter().take(count).chain(self.equal.iter().take(count))
     }

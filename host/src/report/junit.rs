@@ -23,7 +23,7 @@ const SUITE: &str = "halfrow verify";
 pub fn render(report: &Report) -> Result<String, SerializeError> {
     let mut suite = TestSuite::new(SUITE);
     suite.timestamp = report.run.started.parse().ok();
-    suite.time = Duration::try_from_secs_f64(report.link.seconds).ok();
+    suite.time = Duration::try_from_secs_f64(report.run.seconds).ok();
     for (name, value) in properties(report) {
         suite.add_property(Property::new(name, plain(&value)));
     }

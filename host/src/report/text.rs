@@ -53,10 +53,14 @@ fn head(report: &Report) -> String {
     text
 }
 
+/// A line for each check. The verdict's own is the last of the text, so it is not said twice.
 fn checks(report: &Report) -> String {
+    let widest = report.checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
     let mut text = String::new();
     for check in &report.checks {
-        push(&mut text, mark(check.outcome), colour(check.outcome), &format!("{}: {}", check.name, check.detail));
+        let detail = if check.detail == report.headline { "see below" } else { &check.detail };
+        let name = format!("{}{:widest$}  ", label(colour(check.outcome), mark(check.outcome)), check.name);
+        push_after(&mut text, &name, LABEL + widest + 2, detail);
     }
     text
 }
@@ -129,12 +133,23 @@ fn push_suspect(text: &mut String, suspect: &Suspect) {
     push(text, "", BOLD, &format!("Next: {}", suspect.next_step));
 }
 
-/// Appends `words` wrapped at [`WIDTH`], with `label` to the left of the first line.
-fn push(text: &mut String, label: &str, style: Style, words: &str) {
-    let mut label = label;
-    for line in wrapped(&plain(words), WIDTH - LABEL) {
-        let _ = writeln!(text, "{style}{label}{style:#}{:1$}{line}", "", LABEL.saturating_sub(label.len()));
-        label = "";
+/// Appends `words` with a label to their left.
+fn push(text: &mut String, word: &str, style: Style, words: &str) {
+    push_after(text, &label(style, word), LABEL, words);
+}
+
+/// A word at the left, [`LABEL`] columns wide.
+fn label(style: Style, word: &str) -> String {
+    format!("{style}{word}{style:#}{:1$}", "", LABEL.saturating_sub(word.len()))
+}
+
+/// Appends `words`, wrapped at [`WIDTH`], to the right of `head`, which takes `indent` columns.
+fn push_after(text: &mut String, head: &str, indent: usize, words: &str) {
+    for (place, line) in wrapped(&plain(words), WIDTH.saturating_sub(indent)).iter().enumerate() {
+        let _ = match place {
+            0 => writeln!(text, "{head}{line}"),
+            _ => writeln!(text, "{:indent$}{line}", ""),
+        };
     }
 }
 

@@ -60,7 +60,7 @@ pub(super) fn facts(report: &Report) -> String {
         _ => format!("{} of {} different", grouped(differences), count(samples, "sample")),
     });
     facts.extend(report.latency.map(|latency| format!("latency {}", measured(&latency))));
-    facts.push(format!("{:.1} s", report.link.seconds));
+    facts.push(format!("{:.1} s", report.run.seconds));
     facts.join(", ")
 }
 
@@ -69,7 +69,7 @@ pub(super) fn latency(latency: &LatencyReport) -> String {
     let rows = count(latency.rows, "row");
     let allowed = format!("at most {} allowed", latency.limit);
     match latency.wrong_rows {
-        0 => format!("{} in all of {rows} ({allowed})", measured(latency)),
+        0 => format!("{} in all {rows} ({allowed})", measured(latency)),
         wrong => format!("{}; wrong in {} of {rows} ({allowed})", measured(latency), grouped(wrong)),
     }
 }
@@ -92,7 +92,7 @@ fn measured(latency: &LatencyReport) -> String {
 pub(super) fn street(street: &StreetReport) -> String {
     let (before, after) = (&street.before, &street.after);
     format!(
-        "{} off the straight by {:.2} px before and {:.2} px after on average, at most {:.2} px and {:.2} px",
+        "{} {:.2} px off straight before, {:.2} px after (at most {:.2}, {:.2})",
         count(before.edges, "façade edge"),
         before.mean_px,
         after.mean_px,

@@ -168,6 +168,21 @@ fn a_factor_of_any_value_is_found() {
 }
 
 #[test]
+fn a_weight_of_any_value_is_found() {
+    let bench = wide();
+    let suspects = diagnose(&bench, |frame, input, _| {
+        let Generation { tables, kernel, .. } = &bench.generations[generation(frame)];
+        let mut nodes = kernel.nodes().to_vec();
+        if generation(frame) == 1 {
+            nodes[16][2] = -1234;
+        }
+        correct(tables, &Kernel::from_nodes(nodes).unwrap(), input).unwrap().samples().to_vec()
+    });
+    assert_eq!(certain(&suspects), ("kernel word", "kernel node 16, weight g4"));
+    assert!(suspects[0].evidence.starts_with("reading -1234 for 2560"), "{}", suspects[0].evidence);
+}
+
+#[test]
 fn a_kernel_that_is_stale_while_the_factors_are_not_is_named() {
     let bench = narrow();
     let suspects = diagnose(&bench, |frame, input, _| {

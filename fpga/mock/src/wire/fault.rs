@@ -12,7 +12,7 @@ use crate::value::{Limits, parse_word};
 const BYTE_RATE: Occurrence = Occurrence::Rate(1e-6);
 /// One packet in a thousand: one or two of a frame of 1080 rows.
 const PACKET_RATE: Occurrence = Occurrence::Rate(1e-3);
-/// Among the first rows of a frame: behind the tables, which take some thirty packets.
+/// Among the first rows of a run: the session, the tables and the tests of the link take some twenty packets.
 const ONE_PACKET: Occurrence = Occurrence::At(40);
 
 const BYTE: Limits = Limits::new("byte", 0, 1_000_000_000_000);

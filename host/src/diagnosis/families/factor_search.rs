@@ -4,6 +4,7 @@ use std::ops::RangeInclusive;
 
 use halfrow_model::{STEP_ONE, source};
 
+use super::first_where;
 use super::row_factor::{BITS, FEW_ROWS, cause, with_step};
 use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::Hypothesis;
@@ -12,7 +13,7 @@ use crate::diagnosis::witnesses::{Witness, Witnesses};
 /// Outputs that may be simulated for one row before the search is given up.
 const BUDGET: usize = 1_000_000;
 /// Frames whose row must agree.
-const FRAMES: usize = 4;
+const FRAMES: usize = 32;
 
 /// The factors that rows were really made with, when few rows differ. Those that are one bit off were tried before.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
@@ -21,7 +22,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 }
 
 fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>> {
-    let mut seen: Vec<_> = witnesses.differing.iter().filter(|witness| witness.row == row).collect();
+    let mut seen: Vec<_> = witnesses.sample(usize::MAX).filter(|witness| witness.row == row).collect();
     seen.sort_by_key(|witness| std::cmp::Reverse(witness.differences));
     let generation = seen.first()?.uploaded.generation;
     let uploaded = seen.first()?.tables().step;
@@ -71,16 +72,12 @@ fn matching_steps(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
     Some(ranges)
 }
 
-/// The largest factor up to `limit` that takes `column` from the same source as the tables' own. By bisection, since
-/// the source moves one way with the factor.
+/// The largest factor up to `limit` that takes `column` from the same source as the tables' own: the source moves one way
+/// with the factor.
 fn last_alike(tables: &RowTables<'_>, column: usize, limit: u32) -> u32 {
     let here = source(tables.geometry, tables.step, column);
-    let (mut alike, mut beyond) = (tables.step, limit + 1);
-    while alike + 1 < beyond {
-        let middle = u32::midpoint(alike, beyond);
-        if source(tables.geometry, middle, column) == here { alike = middle } else { beyond = middle }
-    }
-    alike
+    let differs = |step: i64| source(tables.geometry, step as u32, column) != here;
+    first_where(tables.step.into()..i64::from(limit) + 1, differs) as u32 - 1
 }
 
 fn gives(row: &Witness<'_>, step: u32, column: usize) -> bool {

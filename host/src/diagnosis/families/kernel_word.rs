@@ -2,8 +2,7 @@
 
 use halfrow_model::{Kernel, NODES, TAP_NAMES, source};
 
-use super::table_word::{Word, inversions, reading};
-use crate::diagnosis::datapath::RowTables;
+use super::table_word::{inversions, reading};
 use crate::diagnosis::hypothesis::{Cause, Hypothesis};
 use crate::diagnosis::witnesses::Witnesses;
 
@@ -22,7 +21,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 }
 
 /// The nodes k for which every differing sample lies between k − 1 and k or between k and k + 1.
-fn common_nodes(witnesses: &Witnesses<'_>) -> Vec<usize> {
+pub(super) fn common_nodes(witnesses: &Witnesses<'_>) -> Vec<usize> {
     let mut uses = [0_usize; NODES];
     let mut samples = 0;
     for witness in witnesses.differing.iter().take(ROWS) {
@@ -50,25 +49,24 @@ fn word<'a>(witnesses: &Witnesses<'a>, node: usize, tap: usize) -> Vec<Hypothesi
         .collect();
     let bits = (0..BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
     bits.map(|(bit, read)| {
-        let cause = cause(node, tap, bit, &words, &read);
+        let defect = reading(&words, &read, |word| i64::from(word as u16 as i16));
+        let cause = cause(node, tap, &format!(", bit {bit}"), defect);
         let kernels = super::kernels(&generations, |uploaded| {
             let weight = super::table_word::changed(&read, uploaded)?;
             with_word(uploaded.kernel, node, tap, weight as u16 as i16)
         });
-        Hypothesis::new(cause, move |witness| {
-            let kernel = kernels.get(&witness.uploaded.generation)?;
-            Some(RowTables { kernel, ..witness.tables() }.corrected(witness.samples()).into())
-        })
+        super::with_kernels(cause, kernels)
     })
     .collect()
 }
 
-fn cause(node: usize, tap: usize, bit: u32, words: &[Word], read: &[Word]) -> Cause {
+/// A word as a suspect; `bit` names the bit, if it is one.
+pub(super) fn cause(node: usize, tap: usize, bit: &str, defect: String) -> Cause {
     let weight = TAP_NAMES.get(tap).copied().unwrap_or_default();
     Cause {
         part: "kernel word",
-        place: format!("kernel node {node}, weight {weight}, bit {bit}"),
-        defect: reading(words, read, |word| i64::from(word as u16 as i16)),
+        place: format!("kernel node {node}, weight {weight}{bit}"),
+        defect,
         next_step: format!(
             "Check node {node} of the kernel as the datapath reads it, and the memory that holds weight {weight}."
         ),
@@ -76,7 +74,7 @@ fn cause(node: usize, tap: usize, bit: u32, words: &[Word], read: &[Word]) -> Ca
 }
 
 /// The kernel with another weight at one place.
-fn with_word(kernel: &Kernel, node: usize, tap: usize, weight: i16) -> Option<Kernel> {
+pub(super) fn with_word(kernel: &Kernel, node: usize, tap: usize, weight: i16) -> Option<Kernel> {
     let mut nodes = kernel.nodes().to_vec();
     *nodes.get_mut(node)?.get_mut(tap)? = weight;
     Kernel::from_nodes(nodes).ok()

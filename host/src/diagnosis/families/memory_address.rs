@@ -98,15 +98,10 @@ impl BrokenRing {
     fn followed_by(self, next: &[u16], witness: &Witness<'_>, base: usize, undisturbed: &[u16]) -> Vec<u16> {
         let with = |blanking| self.read_row(witness, base, Some((next, blanking)));
         let at_once = with(0);
-        let (mut low, mut high) = (0, next.len() / 2 + LOOK_AHEAD + 1);
-        while low < high {
-            let blanking = usize::midpoint(low, high);
-            match is_too_short(&with(blanking), witness.found, &at_once, undisturbed) {
-                true => low = blanking + 1,
-                false => high = blanking,
-            }
-        }
-        with(low)
+        let longest = (next.len() / 2 + LOOK_AHEAD + 1) as i64;
+        let enough =
+            |blanking: i64| !is_too_short(&with(blanking as usize), witness.found, &at_once, undisturbed);
+        with(super::first_where(0..longest, enough) as usize)
     }
 
     /// The outputs that depend on nothing but the row itself.

@@ -3,6 +3,7 @@
 mod arithmetic;
 mod factor_search;
 mod generations;
+mod kernel_search;
 mod kernel_word;
 mod memory_address;
 mod memory_data;
@@ -14,11 +15,13 @@ mod table_word;
 mod taps;
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 use halfrow_model::Kernel;
 
 use super::Uploaded;
-use super::hypothesis::Hypothesis;
+use super::datapath::RowTables;
+use super::hypothesis::{Cause, Hypothesis};
 use super::witnesses::Witnesses;
 
 /// The defects that the pattern of differences leaves possible, those of the smallest parts first.
@@ -41,9 +44,10 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 
 /// Defects whose figures must be searched for, for when nothing else explains everything.
 pub(super) fn search<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    let mut found = factor_search::propose(witnesses);
-    found.extend(origin_search::propose(witnesses));
-    found
+    [factor_search::propose, kernel_search::propose, origin_search::propose]
+        .into_iter()
+        .flat_map(|propose| propose(witnesses))
+        .collect()
 }
 
 /// The kernels of the generations in which `change` changes something, by generation.
@@ -52,6 +56,25 @@ fn kernels(
     change: impl Fn(&Uploaded<'_>) -> Option<Kernel>,
 ) -> BTreeMap<u8, Kernel> {
     generations.iter().filter_map(|uploaded| Some((uploaded.generation, change(uploaded)?))).collect()
+}
+
+/// Rows made with these kernels, by generation; other generations are as they should be.
+fn with_kernels<'a>(cause: Cause, kernels: BTreeMap<u8, Kernel>) -> Hypothesis<'a> {
+    Hypothesis::new(cause, move |witness| {
+        let kernel = kernels.get(&witness.uploaded.generation)?;
+        Some(RowTables { kernel, ..witness.tables() }.corrected(witness.samples()).into())
+    })
+}
+
+/// The first number of a range from which on `holds` is true, found by bisection; the range's end if it never is.
+fn first_where(range: Range<i64>, holds: impl Fn(i64) -> bool) -> i64 {
+    let Range { start: mut low, end: mut high } = range;
+    while low < high {
+        // Downwards, also between negative numbers, which `midpoint` would round towards 0.
+        let middle = low + (high - low) / 2;
+        if holds(middle) { high = middle } else { low = middle + 1 }
+    }
+    low
 }
 
 /// A bus with one line stuck.

@@ -20,7 +20,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 
 /// Where a row's samples come from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-enum Origin {
+enum Place {
     /// The corrected row so many rows below, in the frame so many later.
     Output { frames: isize, rows: isize },
     /// The row that went in so many rows below, made with this row's factor.
@@ -29,25 +29,25 @@ enum Origin {
 
 fn exchanged<'a>(witnesses: &Witnesses<'a>) -> Option<Hypothesis<'a>> {
     let case = witnesses.case;
-    let mut origins: BTreeMap<Origin, usize> = BTreeMap::new();
+    let mut places: BTreeMap<Place, usize> = BTreeMap::new();
     for row in witnesses.differing.iter().take(ROWS) {
-        if let Some(origin) = origin(&case, row) {
-            *origins.entry(origin).or_default() += 1;
+        if let Some(place) = place(&case, row) {
+            *places.entry(place).or_default() += 1;
         }
     }
-    let (&commonest, _) = origins.iter().max_by_key(|(_, count)| **count)?;
+    let (&commonest, _) = places.iter().max_by_key(|(_, count)| **count)?;
     let cause = Cause {
         part: "row bank",
         place: "the row banks".to_owned(),
-        defect: commonest.describe(origins.len() > 1),
+        defect: commonest.describe(places.len() > 1),
         next_step: "Check the numbers of the row banks that are filled, played and fetched.".to_owned(),
     };
-    // A row is found whole or not at all, so its origin predicts what was found.
-    Some(Hypothesis::new(cause, move |row| origin(&case, row).map(|_| row.found.to_vec().into())))
+    // A row is found whole or not at all, so its place predicts what was found.
+    Some(Hypothesis::new(cause, move |row| place(&case, row).map(|_| row.found.to_vec().into())))
 }
 
 /// Where the samples of a row that differs come from, the nearest place first. A uniform row may come from anywhere.
-fn origin(case: &Case<'_>, row: &Witness<'_>) -> Option<Origin> {
+fn place(case: &Case<'_>, row: &Witness<'_>) -> Option<Place> {
     let uniform = row.found.windows(2).all(|pair| pair.first() == pair.last());
     if row.differences == 0 || uniform {
         return None;
@@ -62,23 +62,23 @@ fn origin(case: &Case<'_>, row: &Witness<'_>) -> Option<Origin> {
 }
 
 /// The row of the reference's frame that the board gave instead.
-fn in_frame(case: &Case<'_>, row: &Witness<'_>, frame: usize) -> Option<Origin> {
+fn in_frame(case: &Case<'_>, row: &Witness<'_>, frame: usize) -> Option<Place> {
     let evidence = case.evidence.iter().find(|evidence| evidence.index == frame)?;
     let rows = evidence.expected.rows().enumerate();
     let same = rows.filter(|(_, samples)| *samples == row.found).map(|(index, _)| index);
     let nearest = same.min_by_key(|index| index.abs_diff(row.row))?;
     let distance = |to: usize, from: usize| to as isize - from as isize;
-    Some(Origin::Output { frames: distance(frame, row.frame), rows: distance(nearest, row.row) })
+    Some(Place::Output { frames: distance(frame, row.frame), rows: distance(nearest, row.row) })
 }
 
-fn of_input(row: &Witness<'_>, rows: isize) -> Option<Origin> {
+fn of_input(row: &Witness<'_>, rows: isize) -> Option<Place> {
     let tables: RowTables<'_> = row.tables();
-    (tables.corrected(row.samples_at(rows)?) == row.found).then_some(Origin::Input { rows })
+    (tables.corrected(row.samples_at(rows)?) == row.found).then_some(Place::Input { rows })
 }
 
-impl Origin {
+impl Place {
     fn describe(self, among_others: bool) -> String {
-        let place = |rows: isize| match rows {
+        let name = |rows: isize| match rows {
             0 => "the same row".to_owned(),
             -1 => "the row above".to_owned(),
             1 => "the row below".to_owned(),
@@ -87,12 +87,12 @@ impl Origin {
         };
         let most = if among_others { "rows holding other rows, mostly" } else { "rows holding" };
         match self {
-            Self::Output { frames: 0, rows } => format!("{most} {},", place(rows)),
+            Self::Output { frames: 0, rows } => format!("{most} {},", name(rows)),
             Self::Output { frames, rows } => {
                 let when = if frames < 0 { "earlier" } else { "later" };
-                format!("{most} {} of the frame {} {when},", place(rows), frames.abs())
+                format!("{most} {} of the frame {} {when},", name(rows), frames.abs())
             }
-            Self::Input { rows } => format!("{most} {}, made with their own factor,", place(rows)),
+            Self::Input { rows } => format!("{most} {}, made with their own factor,", name(rows)),
         }
     }
 }

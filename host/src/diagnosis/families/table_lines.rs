@@ -5,7 +5,6 @@ use halfrow_model::{Kernel, NODES, TAP_NAMES};
 use super::StuckLine;
 use super::row_factor::with_step;
 use crate::diagnosis::Uploaded;
-use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::{Cause, Hypothesis, Prediction};
 use crate::diagnosis::witnesses::Witnesses;
 
@@ -116,8 +115,5 @@ fn with_nodes<'a>(
         let kernel = Kernel::from_nodes(read(uploaded.kernel.nodes())).ok()?;
         (kernel != *uploaded.kernel).then_some(kernel)
     });
-    Hypothesis::new(cause, move |witness| {
-        let kernel = kernels.get(&witness.uploaded.generation)?;
-        Some(RowTables { kernel, ..witness.tables() }.corrected(witness.samples()).into())
-    })
+    super::with_kernels(cause, kernels)
 }

@@ -1,0 +1,120 @@
+//! Section 4 of WIRE.md: credit and acknowledgement.
+
+use halfrow_mock::Options;
+use halfrow_protocol::message::{RefusalCode, Request};
+
+use crate::bench::{Bench, HELLO, rows_of};
+use crate::frames::{make_ready, ready, row};
+
+fn banks(row_banks_in: u8, row_banks_out: u8) -> Options {
+    Options { row_banks_in, row_banks_out, ..Options::default() }
+}
+
+fn window(bench: &mut Bench) -> u32 {
+    bench.done(&Request::Echo(b"")).header.window
+}
+
+#[test]
+fn credit_reaches_past_the_first_row_that_has_not_entered_by_the_input_banks() {
+    let mut bench = ready(&banks(3, 2), 8);
+    let mut windows = vec![window(&mut bench)];
+    for number in 0..5 {
+        bench.send_all(8, [number]);
+        windows.push(window(&mut bench));
+    }
+    // Two output banks: the third row waits, and so do those behind it.
+    assert_eq!(windows, [3, 4, 5, 5, 5, 5]);
+}
+
+#[test]
+fn rows_come_back_with_the_credit_of_the_moment() {
+    let mut bench = ready(&banks(3, 4), 8);
+    let windows: Vec<_> = bench.send_all(8, 0..4).iter().map(|packet| packet.header.window).collect();
+    assert_eq!(windows, [5, 6, 7]);
+}
+
+#[test]
+fn a_row_at_or_beyond_the_window_is_refused() {
+    let mut bench = ready(&banks(2, 4), 8);
+    for number in [2, 3, 1000, u32::MAX] {
+        assert_eq!(bench.send(&row(8, number))[0].refusal(), Some((RefusalCode::Credit, 0)));
+    }
+    assert_eq!(bench.send(&row(8, 1)), []);
+    bench.send_all(8, [0]);
+    assert_eq!(bench.send(&row(8, 4))[0].refusal(), Some((RefusalCode::Credit, 0)));
+    assert_eq!(rows_of(&bench.send(&row(8, 3))), []);
+    assert_eq!(bench.status().rows_in, 3);
+}
+
+#[test]
+fn an_acknowledgement_in_any_packet_frees_output_banks() {
+    for carrier in [Request::RowAck, Request::Echo(b""), Request::Status { clear: false }] {
+        let mut bench = ready(&banks(4, 2), 8);
+        bench.send_all(8, 0..4);
+        bench.window = 1;
+        let heard = bench.say(&carrier);
+        let rows: Vec<_> = heard.into_iter().filter(|packet| !packet.header.reply).collect();
+        assert_eq!(rows_of(&rows), [1], "row 2 enters and pushes row 1 out");
+    }
+}
+
+#[test]
+fn even_a_refused_packet_acknowledges() {
+    let mut bench = ready(&banks(4, 2), 8);
+    bench.send_all(8, 0..4);
+    bench.window = 1;
+    let header = bench.header(0x55);
+    let heard = bench.receive(&crate::bench::wire(&header, |_| {}));
+    assert_eq!(heard.len(), 2);
+    assert_eq!(heard[1].row().place.row_sequence, 1);
+}
+
+#[test]
+fn a_smaller_window_than_before_means_nothing() {
+    let mut bench = ready(&banks(4, 4), 8);
+    bench.send_all(8, 0..4);
+    bench.acknowledge(3);
+    bench.acknowledge(1);
+    bench.window = 0;
+    assert_eq!(bench.status().next_row_out, 3);
+}
+
+#[test]
+fn rows_that_were_never_sent_back_cannot_be_acknowledged() {
+    let mut bench = ready(&banks(2, 2), 8);
+    bench.send_all(8, 0..2);
+    bench.acknowledge(u32::MAX);
+    assert_eq!(bench.status().next_row_out, 1);
+    assert_eq!(rows_of(&bench.send_all(8, [2])), [1]);
+}
+
+#[test]
+fn one_acknowledgement_may_free_many_banks() {
+    let mut bench = ready(&banks(4, 4), 8);
+    bench.send_all(8, 0..8);
+    assert_eq!(window(&mut bench), 8, "rows 4 to 7 wait");
+    assert_eq!(rows_of(&bench.acknowledge(3)), [3, 4, 5]);
+    assert_eq!(rows_of(&bench.acknowledge(6)), [6, 7]);
+}
+
+#[test]
+fn a_frame_streams_through_any_number_of_banks() {
+    for row_banks_in in [2, 3, 4, 255] {
+        for row_banks_out in [2, 3, 4, 255] {
+            let mut bench = Bench::switched_on(&banks(row_banks_in, row_banks_out), None);
+            bench.greet(&HELLO);
+            make_ready(&mut bench, 20);
+            let (mut sent, mut back) = (0, 0);
+            while back < 60 {
+                let credit = window(&mut bench).min(60);
+                let mut heard = bench.send_all(20, sent..credit);
+                sent = credit;
+                heard.extend(bench.say(&Request::RowAck));
+                assert!(!heard.is_empty(), "{row_banks_in} in, {row_banks_out} out: stuck at {back}");
+                assert_eq!(rows_of(&heard), (back..back + heard.len() as u32).collect::<Vec<_>>());
+                back += heard.len() as u32;
+                bench.window = back;
+            }
+        }
+    }
+}

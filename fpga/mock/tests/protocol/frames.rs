@@ -1,0 +1,120 @@
+//! Frames of the specification's samples, 64 columns wide, and boards that are ready for them.
+
+use halfrow_mock::{BoardFault, Kernel, Node, Options, UNSTRETCHED};
+use halfrow_protocol::message::{
+    Bank, Commit, Configuration, Entries, Request, RowIn, RowOut, RowPlace, Span, Table,
+};
+use halfrow_protocol::samples;
+
+use crate::bench::{Bench, HELLO, Heard};
+use crate::material::{hermite, noise_row};
+
+/// Columns of a row.
+pub(crate) const WIDTH: u16 = 64;
+
+/// A row on its way to the board.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) place: RowPlace,
+    pub(crate) samples: Vec<u16>,
+}
+
+/// The row with this number in frames of `height` rows, the first of which is frame 0.
+pub(crate) fn row(height: u16, row_sequence: u32) -> Row {
+    let frame = (row_sequence / u32::from(height)) as u16;
+    let row = (row_sequence % u32::from(height)) as u16;
+    let place = RowPlace { row_sequence, frame, row, width: WIDTH, last: row + 1 == height };
+    Row { place, samples: noise_row(row_sequence, WIDTH) }
+}
+
+/// The samples of a row that came back.
+pub(crate) fn samples_of(row: &RowOut<'_>) -> Vec<u16> {
+    let mut unpacked = vec![0; row.place.width.into()];
+    samples::unpack(row.packed, &mut unpacked);
+    unpacked
+}
+
+/// A configuration for 12-bit rows with the centre in the middle.
+pub(crate) fn configuration(height: u16) -> Configuration {
+    Configuration { width: WIDTH, height, centre2: WIDTH - 1, blanking: 0, gap_seed: 0, bits: 12 }
+}
+
+/// Row factors and a kernel, as a host uploads them.
+#[derive(Clone)]
+pub(crate) struct TableSet {
+    factors: Vec<u8>,
+    nodes: Vec<u8>,
+}
+
+impl TableSet {
+    pub(crate) fn new(factors: &[u32], kernel: &Kernel) -> Self {
+        let words = kernel.nodes.iter().flat_map(Node::words);
+        Self {
+            factors: factors.iter().flat_map(|factor| factor.to_le_bytes()).collect(),
+            nodes: words.flat_map(i16::to_le_bytes).collect(),
+        }
+    }
+
+    /// Tables that change no sample.
+    pub(crate) fn unstretched(height: u16) -> Self {
+        Self::new(&vec![UNSTRETCHED; height.into()], &hermite())
+    }
+
+    pub(crate) fn upload(&self, bench: &mut Bench) {
+        bench.done(&write(Table::Steps, 0, &self.factors));
+        bench.done(&write(Table::Kernel, 0, &self.nodes));
+    }
+
+    pub(crate) fn commit(&self, generation: u8, first_frame: u16) -> Request<'static> {
+        let steps_crc = crc32fast::hash(&self.factors);
+        let kernel_crc = crc32fast::hash(&self.nodes);
+        Request::Commit(Commit { steps_crc, kernel_crc, first_frame, generation })
+    }
+}
+
+/// A write of whole entries, from the entry `first` on.
+pub(crate) fn write(table: Table, first: u16, bytes: &[u8]) -> Request<'_> {
+    let count = (bytes.len() / table.entry_bytes()) as u16;
+    Request::TableWrite(Entries { span: Span { table, bank: Bank::Shadow, port: 0, first, count }, bytes })
+}
+
+/// A board of this build that is ready for frames of `height` rows and changes no sample.
+pub(crate) fn ready(options: &Options, height: u16) -> Bench {
+    ready_with(options, None, height)
+}
+
+/// The same with a fault.
+pub(crate) fn ready_with(options: &Options, fault: Option<BoardFault>, height: u16) -> Bench {
+    let mut bench = Bench::switched_on(options, fault);
+    bench.greet(&HELLO);
+    make_ready(&mut bench, height);
+    bench
+}
+
+/// Configures for frames of `height` rows and commits tables that change no sample as generation 1, for frame 0.
+pub(crate) fn make_ready(bench: &mut Bench, height: u16) {
+    let tables = TableSet::unstretched(height);
+    bench.done(&Request::Configure(configuration(height)));
+    tables.upload(bench);
+    bench.done(&tables.commit(1, 0));
+}
+
+impl Bench {
+    /// The bytes of a ROW_IN.
+    pub(crate) fn row_packet(&mut self, row: &Row) -> Vec<u8> {
+        let mut packed = Vec::new();
+        samples::pack(&row.samples, &mut packed);
+        self.packet(&Request::RowIn(RowIn { place: row.place, packed: &packed }))
+    }
+
+    /// Sends a row and returns all that comes back.
+    pub(crate) fn send(&mut self, row: &Row) -> Vec<Heard> {
+        let packet = self.row_packet(row);
+        self.receive(&packet)
+    }
+
+    /// Sends the rows with these numbers, a packet at a time.
+    pub(crate) fn send_all(&mut self, height: u16, numbers: impl IntoIterator<Item = u32>) -> Vec<Heard> {
+        numbers.into_iter().flat_map(|number| self.send(&row(height, number))).collect()
+    }
+}

@@ -1,0 +1,141 @@
+//! STATUS: every counter, and what clearing does to it.
+
+use halfrow_mock::Options;
+use halfrow_protocol::message::{Configuration, Request, RowPlace, Status};
+
+use crate::bench::{Bench, HELLO};
+use crate::frames::{Row, configuration, ready, row};
+
+#[test]
+fn counters_are_sent_in_the_order_of_the_page() {
+    let mut bench = ready(&Options::default(), 4);
+    bench.send_all(4, [0, 1, 3]);
+    bench.acknowledge(1);
+    let payload = bench.done(&Request::Status { clear: false }).payload;
+    let words: Vec<_> =
+        payload.chunks(4).map(|word| u32::from_le_bytes(word.try_into().unwrap())).collect();
+    // HELLO cleared the counters; behind it came CONFIGURE, two TABLE_WRITE, COMMIT, three ROW_IN, ROW_ACK, STATUS.
+    assert_eq!(words, [9, 0, 0, 0, 0, 3, 1, 0, 0, 0, 2, 1, 1, 1, 44, 44]);
+}
+
+#[test]
+fn packets_counts_whole_packets_and_the_status_itself() {
+    let mut bench = Bench::greeted();
+    assert_eq!(bench.status().packets, 1);
+    bench.say(&Request::RowAck);
+    bench.done(&Request::Echo(b""));
+    let header = bench.header(0x55);
+    bench.answer(&header, &[]);
+    assert_eq!(bench.status().packets, 5);
+}
+
+#[test]
+fn repeated_and_unneeded_rows_are_counted_apart() {
+    let mut bench = ready(&Options::default(), 4);
+    bench.send_all(4, [0, 1, 3, 3, 0, 0, 0]);
+    bench.acknowledge(1);
+    bench.send_all(4, [0]);
+    let status = bench.status();
+    assert_eq!((status.rows_in, status.rows_repeated, status.rows_unneeded), (3, 3, 2));
+}
+
+#[test]
+fn next_row_in_stands_at_the_first_gap() {
+    let mut bench = ready(&Options::default(), 4);
+    bench.send_all(4, [0, 2, 3]);
+    assert_eq!(bench.status().next_row_in, 1);
+    bench.send_all(4, [1]);
+    assert_eq!(bench.status().next_row_in, 4);
+}
+
+#[test]
+fn next_row_out_follows_the_hosts_window() {
+    let mut bench = ready(&Options::default(), 4);
+    bench.send_all(4, 0..4);
+    assert_eq!(bench.status().next_row_out, 0);
+    bench.acknowledge(3);
+    assert_eq!(bench.status().next_row_out, 3);
+}
+
+#[test]
+fn the_core_is_busy_from_a_frames_first_row_to_its_last() {
+    let mut bench = ready(&Options::default(), 2);
+    assert_eq!(bench.status().core_busy, 0);
+    bench.send_all(2, [0]);
+    assert_eq!(bench.status().core_busy, 1);
+    bench.send_all(2, [1]);
+    assert_eq!(bench.status().core_busy, 0);
+}
+
+#[test]
+fn the_generation_is_the_active_one_not_the_pending_one() {
+    let mut bench = ready(&Options::default(), 2);
+    assert_eq!(bench.status().generation, 0);
+    bench.send_all(2, [0]);
+    assert_eq!(bench.status().generation, 1);
+}
+
+#[test]
+fn samples_beyond_the_depth_are_counted_in_accepted_rows_alone() {
+    let mut bench = ready(&Options::default(), 1);
+    bench.done(&Request::Configure(Configuration { bits: 10, ..configuration(1) }));
+    let mut samples = vec![1023; 64];
+    samples[5] = 1024;
+    samples[9] = 4095;
+    let place = row(1, 0).place;
+    bench.send(&Row { place: RowPlace { row: 1, ..place }, samples: samples.clone() });
+    assert_eq!(bench.status().samples_over, 0, "the row was refused");
+    bench.send(&Row { place, samples: samples.clone() });
+    bench.send(&Row { place, samples });
+    assert_eq!(bench.status().samples_over, 2, "the row was taken once");
+}
+
+#[test]
+fn latencies_are_the_smallest_and_the_largest_of_any_row() {
+    let mut bench = ready(&Options::default(), 1);
+    let latencies = |status: Status| (status.least_latency, status.most_latency);
+    assert_eq!(latencies(bench.status()), (0, 0));
+    bench.send_all(1, [0]);
+    assert_eq!(latencies(bench.status()), (44, 44));
+    bench.window = 1;
+    bench.done(&Request::Configure(Configuration { width: 128, ..configuration(1) }));
+    let place = RowPlace { width: 128, ..row(1, 1).place };
+    bench.send(&Row { place, samples: vec![0; 128] });
+    assert_eq!(latencies(bench.status()), (44, 76));
+    bench.status_and(true);
+    bench.window = 2;
+    bench.send(&Row { place: RowPlace { row_sequence: 2, frame: 2, ..place }, samples: vec![0; 128] });
+    assert_eq!(latencies(bench.status()), (76, 76));
+}
+
+#[test]
+fn clearing_answers_with_the_counters_before_it_and_leaves_what_is_no_counter() {
+    let mut bench = ready(&Options::default(), 4);
+    bench.send_all(4, [0, 1, 3, 3, 0]);
+    bench.acknowledge(1);
+    bench.session += 1;
+    bench.ask(&Request::Capabilities);
+    bench.session -= 1;
+    bench.receive(&[0, 1, 2, 3, 0]);
+    let before = bench.status();
+    assert_eq!(bench.status_and(true), Status { packets: before.packets + 1, ..before });
+    let kept = Status { next_row_in: 2, next_row_out: 1, core_busy: 1, generation: 1, ..Status::default() };
+    assert_eq!(bench.status(), Status { packets: 1, ..kept });
+}
+
+#[test]
+fn a_status_that_does_not_clear_changes_nothing_but_packets() {
+    let mut bench = ready(&Options::default(), 4);
+    bench.send_all(4, 0..3);
+    let first = bench.status();
+    assert_eq!(bench.status(), Status { packets: first.packets + 1, ..first });
+}
+
+#[test]
+fn counters_begin_at_0_in_a_session() {
+    let mut bench = Bench::switched_on(&Options::default(), None);
+    bench.receive(&[0, 1, 2, 3, 0]);
+    bench.ask(&Request::Capabilities);
+    bench.greet(&HELLO);
+    assert_eq!(bench.status(), Status { packets: 1, ..Status::default() });
+}
