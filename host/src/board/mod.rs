@@ -24,7 +24,9 @@ pub use sent::Sent;
 pub use stop::Stop;
 pub use tables::{ReadBack, TablePort};
 
-pub use halfrow_protocol::message::{Bank, BoardNature, Capabilities, Configuration, RefusalCode, Status, Table, Welcome};
+pub use halfrow_protocol::message::{
+    Bank, BoardNature, Capabilities, Configuration, RefusalCode, Status, Table, Welcome,
+};
 
 /// How a session is opened.
 #[derive(Clone, Debug, Default)]
@@ -160,9 +162,8 @@ impl Board {
         // Beyond every row that can be under way: credit is never further ahead than a board has banks.
         let next_row = self.conversation.credit;
         let reset = Request::Reset(Reset { level, next_row });
-        self.conversation.request(&reset, Step::Request, |reply| {
-            matches!(reply, Reply::Reset).then_some(())
-        })?;
+        self.conversation
+            .request(&reset, Step::Request, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.acknowledged = next_row;
         Ok(())
     }

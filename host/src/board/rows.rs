@@ -241,8 +241,7 @@ impl Stream<'_> {
             self.attempts = 1;
             self.progress_at = self.conversation.now();
         }
-        while self.frames.len() > 1
-            && self.missing() - self.first_row >= (self.frames_done + 1) * self.height
+        while self.frames.len() > 1 && self.missing() - self.first_row >= (self.frames_done + 1) * self.height
         {
             self.frames.pop_front();
             self.frames_done += 1;
@@ -284,13 +283,7 @@ impl Stream<'_> {
 }
 
 fn place(row_sequence: u32, frame: u16, row: usize, of: &Frame) -> RowPlace {
-    RowPlace {
-        row_sequence,
-        frame,
-        row: row as u16,
-        width: of.width() as u16,
-        last: row + 1 == of.height(),
-    }
+    RowPlace { row_sequence, frame, row: row as u16, width: of.width() as u16, last: row + 1 == of.height() }
 }
 
 struct OwnedRow {

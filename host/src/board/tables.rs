@@ -68,9 +68,8 @@ impl Board {
                 count: (bytes.len() / table.entry_bytes()) as u16,
             };
             let request = Request::TableWrite(Entries { span, bytes });
-            self.conversation.request(&request, Step::Request, |reply| {
-                matches!(reply, Reply::TableWrite).then_some(())
-            })?;
+            self.conversation
+                .request(&request, Step::Request, |reply| matches!(reply, Reply::TableWrite).then_some(()))?;
         }
         Ok(())
     }
@@ -95,14 +94,15 @@ impl Board {
                     Table::Kernel => nodes,
                 };
                 let span = Span { table: port.table, bank, port: port.port, first: 0, count };
-                let found = self.conversation.request(
-                    &Request::TableCrc(span),
-                    Step::Request,
-                    |reply| match reply {
-                        Reply::TableCrc(crc) => Some(crc),
-                        _ => None,
-                    },
-                )?;
+                let found =
+                    self.conversation.request(
+                        &Request::TableCrc(span),
+                        Step::Request,
+                        |reply| match reply {
+                            Reply::TableCrc(crc) => Some(crc),
+                            _ => None,
+                        },
+                    )?;
                 Ok(ReadBack { port, expected, found })
             })
             .collect()
@@ -112,18 +112,18 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
-    pub fn read_entries(&mut self, bank: Bank, port: TablePort, entries: usize) -> Result<Vec<u8>, BoardError> {
+    pub fn read_entries(
+        &mut self,
+        bank: Bank,
+        port: TablePort,
+        entries: usize,
+    ) -> Result<Vec<u8>, BoardError> {
         let at_once = (MAX_PAYLOAD - SPAN) / port.table.entry_bytes();
         let mut bytes = Vec::new();
         for first in (0..entries).step_by(at_once) {
             let count = at_once.min(entries - first);
-            let span = Span {
-                table: port.table,
-                bank,
-                port: port.port,
-                first: first as u16,
-                count: count as u16,
-            };
+            let span =
+                Span { table: port.table, bank, port: port.port, first: first as u16, count: count as u16 };
             let read =
                 self.conversation.request(&Request::TableRead(span), Step::Request, |reply| match reply {
                     Reply::TableRead(entries) => Some(entries.bytes.to_vec()),

@@ -9,9 +9,9 @@ use clap::Args;
 use halfrow_model::{Frame, correct};
 use serde_json::json;
 
+use super::board::BoardArguments;
 use super::inputs::{InputArguments, frame_sources};
 use super::lens::{self, Chosen, LensArguments};
-use super::verify::BoardArguments;
 use super::{Context, Failure, print, print_json};
 use crate::board::{Board, BoardError, Configuration, NumberedFrame, ReturnedRow, RowTraffic};
 use crate::frames;
@@ -31,8 +31,8 @@ pub(super) struct Arguments {
     /// The kernel: nearest, linear, keys, hermite, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE")]
     kernel: Option<String>,
-    /// Correct with the reference model
-    #[arg(long, conflicts_with = "board", required_unless_present = "board")]
+    /// Correct with the reference model, whatever board is set
+    #[arg(long)]
     model: bool,
     #[command(flatten)]
     board: BoardArguments,
@@ -52,17 +52,18 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    let chosen = lens::choose(
-        arguments.tables.as_deref(),
-        &arguments.lens,
-        arguments.kernel.as_deref(),
-    )?;
+    if !arguments.model && !arguments.board.is_named(&context.settings) {
+        return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
+    }
+    let chosen = lens::choose(arguments.tables.as_deref(), &arguments.lens, arguments.kernel.as_deref())?;
     let geometry = chosen.tables.geometry();
     let how = arguments.input.read_options(geometry, arguments.lens.phase);
     let sources = frame_sources(&arguments.inputs, &how, geometry)?;
     let outputs = outputs(&sources, &arguments.output)?;
     if let Some(taken) = outputs.iter().find(|path| path.exists() && !arguments.overwrite) {
-        return Err(anyhow::anyhow!("{} is there already; give --overwrite to replace it", taken.display()).into());
+        return Err(
+            anyhow::anyhow!("{} is there already; give --overwrite to replace it", taken.display()).into()
+        );
     }
     let scene = arguments.lens.scene(1)?;
     let inputs = sources
@@ -89,7 +90,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 fn report(as_json: bool, kind: &str, outputs: &[PathBuf]) -> Result<Exit, Failure> {
     if as_json {
         let outputs: Vec<_> = outputs.iter().map(|path| path.display().to_string()).collect();
-        print_json(&json!({ "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs }))?;
+        print_json(
+            &json!({ "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs }),
+        )?;
     } else {
         for path in outputs {
             print(&format!("wrote {}, corrected by the {kind}, not judged", path.display()))?;
@@ -111,9 +114,11 @@ fn outputs(sources: &[FrameSource], output: &Path) -> anyhow::Result<Vec<PathBuf
     for source in sources {
         let name = match source {
             FrameSource::Builtin(builtin) => builtin.name().to_owned(),
-            FrameSource::File { path, .. } => {
-                path.file_stem().context("an input has no file name; name a file")?.to_string_lossy().into_owned()
-            }
+            FrameSource::File { path, .. } => path
+                .file_stem()
+                .context("an input has no file name; name a file")?
+                .to_string_lossy()
+                .into_owned(),
         };
         let path = output.join(format!("{name}.pgm"));
         if paths.contains(&path) {
@@ -136,7 +141,9 @@ fn by_board(
 ) -> Result<(String, Vec<Frame>), Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     if candidate.kind == BoardKind::Replay {
-        return Err(anyhow::anyhow!("a recording corrects no new frames; use it with `halfrow verify`").into());
+        return Err(
+            anyhow::anyhow!("a recording corrects no new frames; use it with `halfrow verify`").into()
+        );
     }
     let options = arguments.board.open_options(&context.settings, None)?;
     let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };

@@ -3,7 +3,7 @@
 use clap::Args;
 use serde_json::json;
 
-use super::verify::BoardArguments;
+use super::board::BoardArguments;
 use super::{Context, Failure, print, print_json};
 use crate::board::{Board, Status};
 use crate::report::{BoardReport, Identity};

@@ -25,11 +25,8 @@ pub(super) struct InputArguments {
 impl InputArguments {
     /// How to read a frame for `geometry`.
     pub(super) fn read_options(&self, geometry: &Geometry, phase: Phase) -> ReadOptions {
-        let raw = self.raw.map(|layout| RawGeometry {
-            width: geometry.width(),
-            height: geometry.height(),
-            layout,
-        });
+        let raw =
+            self.raw.map(|layout| RawGeometry { width: geometry.width(), height: geometry.height(), layout });
         ReadOptions { depth: geometry.depth(), phase, raw }
     }
 }

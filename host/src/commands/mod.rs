@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod board;
 mod boards;
 mod completions;
 mod correct;

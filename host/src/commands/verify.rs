@@ -1,18 +1,16 @@
 //! `halfrow verify`
 
-mod board;
 mod recorded;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::Args;
 use clap::builder::FalseyValueParser;
 
+use super::board::BoardArguments;
 use super::inputs::{InputArguments, file_hash, frame_sources};
 use super::lens::{self, LensArguments};
 use super::{Context, Failure, print};
-use crate::board::deadlines::RetryLimit;
 use crate::frames::Builtin;
 use crate::link::{Candidate, Recorder};
 use crate::progress;
@@ -20,8 +18,6 @@ use crate::report::{self, Report, ReportError, ReportFolder};
 use crate::session::{self, Circumstances, Finished, FrameSource, Plan, Timing};
 use crate::settings::Settings;
 use crate::verdict::{Exit, Verdict};
-
-pub(super) use board::BoardArguments;
 
 /// Judge a board: stream frames through it and compare every sample with the reference
 ///
@@ -111,7 +107,8 @@ fn lose(report: &mut Report, error: &ReportError) {
     report.headline = format!("the report could not be written: {:#}", anyhow::anyhow!("{error}"));
     report.verdict = Verdict::Error;
     report.exit_code = Exit::Error;
-    report.remedy = Some("Free some space or choose another folder with --report, then run again.".to_owned());
+    report.remedy =
+        Some("Free some space or choose another folder with --report, then run again.".to_owned());
 }
 
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
@@ -148,7 +145,8 @@ impl Arguments {
         let geometry = chosen.tables.geometry();
         chosen.tables.check_ring(geometry.width().next_power_of_two())?;
         let how = self.input.read_options(geometry, self.lens.phase);
-        let names = if self.frame.is_empty() { settings.frame.as_deref().unwrap_or_default() } else { &self.frame };
+        let names =
+            if self.frame.is_empty() { settings.frame.as_deref().unwrap_or_default() } else { &self.frame };
         let frames = if names.is_empty() {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
@@ -182,21 +180,5 @@ impl Arguments {
             files: files.map(|path| file_hash(&path)).collect::<Result<_, _>>()?,
             draws: session::Draws::draw(),
         })
-    }
-}
-
-impl BoardArguments {
-    fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
-        let seconds = self.timeout.or(settings.timeout);
-        let limit = seconds.map(Duration::try_from_secs_f64).transpose();
-        limit.map_err(|_| anyhow::anyhow!("--timeout takes a number of seconds, 0 or more").into())
-    }
-
-    fn retry_limit(&self, settings: &Settings) -> RetryLimit {
-        let limit = RetryLimit::default();
-        match self.retry_limit.or(settings.retry_limit) {
-            Some(percent) => RetryLimit { share: percent / 100.0, ..limit },
-            None => limit,
-        }
     }
 }

@@ -195,8 +195,8 @@ impl Recording {
     /// # Errors
     /// [`RecordingError`] when it cannot be read or is something else.
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
-        let bytes = std::fs::read(path)
-            .map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
+        let bytes =
+            std::fs::read(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
         Self::parse(path, &bytes).ok_or_else(|| RecordingError::Foreign(path.to_owned()))
     }
 

@@ -6,7 +6,8 @@
 use std::time::Duration;
 
 use quick_junit::{
-    NonSuccessKind, Property, Report as Document, SerializeError, TestCase, TestCaseStatus as Status, TestSuite,
+    NonSuccessKind, Property, Report as Document, SerializeError, TestCase, TestCaseStatus as Status,
+    TestSuite,
 };
 
 use super::wording::{self, plain};

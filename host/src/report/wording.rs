@@ -2,7 +2,9 @@
 
 use std::borrow::Cow;
 
-use crate::report::{BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, Outcome, Report, StreetReport};
+use crate::report::{
+    BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, Outcome, Report, StreetReport,
+};
 use crate::verdict::Verdict;
 
 /// What a check's outcome is called. The loud ones are those to act on.
@@ -82,7 +84,9 @@ fn measured(latency: &LatencyReport) -> String {
         None => latency.claimed.to_string(),
     };
     match (latency.least, latency.most) {
-        (least, most) if (least, most) == (latency.claimed, latency.claimed) => format!("{claim} pixel clocks"),
+        (least, most) if (least, most) == (latency.claimed, latency.claimed) => {
+            format!("{claim} pixel clocks")
+        }
         (least, most) if least == most => format!("{least} pixel clocks instead of {claim}"),
         (least, most) => format!("{least} to {most} pixel clocks instead of {claim}"),
     }
@@ -187,7 +191,8 @@ pub(super) fn plain(text: &str) -> Cow<'_, str> {
     if !text.contains(unfit) {
         return Cow::Borrowed(text);
     }
-    let spelt = |letter: char| if unfit(letter) { letter.escape_default().to_string() } else { letter.into() };
+    let spelt =
+        |letter: char| if unfit(letter) { letter.escape_default().to_string() } else { letter.into() };
     Cow::Owned(text.chars().map(spelt).collect())
 }
 

@@ -110,7 +110,11 @@ fn counters(status: &Status, seen: &Seen) -> Result<String, End> {
     let rows: usize = seen.frames.iter().map(|frame| frame.rows).sum();
     let expected = u32::try_from(rows).unwrap_or(u32::MAX);
     let failed = |what: String| {
-        Err(End::failed("counters", what, "Check the board's counters and its row player; the samples themselves were right."))
+        Err(End::failed(
+            "counters",
+            what,
+            "Check the board's counters and its row player; the samples themselves were right.",
+        ))
     };
     if (status.rows_in, status.rows_out) != (expected, expected) {
         return failed(format!(

@@ -8,9 +8,7 @@ use super::findings::{CHECKS, End, Findings};
 use super::judge::{STREET, Seen};
 use super::{Circumstances, Finished, Plan};
 use crate::frames::street;
-use crate::report::{
-    Check, LinkReport, Outcome, Report, RunReport, StreetReport, Suspect, TablesReport,
-};
+use crate::report::{Check, LinkReport, Outcome, Report, RunReport, StreetReport, Suspect, TablesReport};
 use crate::target::BoardKind;
 use crate::verdict::{Exit, Verdict};
 

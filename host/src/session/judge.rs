@@ -141,7 +141,8 @@ impl<'a> Judge<'a> {
         let Prepared { name, number, generation, input, expected } = prepared;
         let differs = comparison.differences > 0;
         let kept = self.seen.evidence.len();
-        let differing = self.seen.evidence.iter().filter(|evidence| evidence.found != evidence.expected).count();
+        let differing =
+            self.seen.evidence.iter().filter(|evidence| evidence.found != evidence.expected).count();
         let wanted = match differs {
             true => differing < self.manner.differing,
             false => kept < self.manner.pictures || name == STREET,
@@ -206,7 +207,8 @@ impl RowTraffic for Judge<'_> {
         frame.found[row.row * width..][..width].copy_from_slice(row.samples);
         frame.rows += 1;
         let mut flow = ControlFlow::Continue(());
-        while let Some(front) = self.in_flight.pop_front_if(|front| front.rows == front.prepared.expected.height())
+        while let Some(front) =
+            self.in_flight.pop_front_if(|front| front.rows == front.prepared.expected.height())
         {
             if front.comparison.differences > 0 && self.manner.fail_fast {
                 flow = ControlFlow::Break(());

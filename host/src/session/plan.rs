@@ -177,7 +177,9 @@ impl Plan {
     pub fn render(&self, scheduled: &ScheduledFrame) -> Result<Arc<Frame>, FrameError> {
         match &scheduled.source {
             FrameSource::File { frame, .. } => Ok(Arc::clone(frame)),
-            FrameSource::Builtin(builtin) => builtin.render(&self.scene(scheduled.number.into())).map(Arc::new),
+            FrameSource::Builtin(builtin) => {
+                builtin.render(&self.scene(scheduled.number.into())).map(Arc::new)
+            }
         }
     }
 

@@ -86,7 +86,8 @@ impl Run<'_> {
         }
         let latency = self.board.capabilities.latency;
         if latency > MAX_LATENCY {
-            let headline = format!("the board claims L = {latency}, and no datapath may take over {MAX_LATENCY}");
+            let headline =
+                format!("the board claims L = {latency}, and no datapath may take over {MAX_LATENCY}");
             let remedy = "Check the pipeline's depth in the design that was loaded.";
             return Err(End::failed("identity", headline, remedy));
         }
@@ -134,7 +135,8 @@ impl Run<'_> {
             if !same {
                 return Err(End::failed(
                     "link",
-                    "the board returns other bytes than it was sent, under a CRC that it computed itself".to_owned(),
+                    "the board returns other bytes than it was sent, under a CRC that it computed itself"
+                        .to_owned(),
                     "Check the board's packet buffers: the link carried what the board sent.",
                 ));
             }

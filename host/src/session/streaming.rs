@@ -95,7 +95,8 @@ impl Run<'_> {
         self.board.drop_rows()?;
         self.board.status(true)?;
         let damaged = self.board.tally().damaged_in;
-        let Ok(frame) = self.plan.render(frame).map(|input| NumberedFrame { number: frame.number, frame: input })
+        let Ok(frame) =
+            self.plan.render(frame).map(|input| NumberedFrame { number: frame.number, frame: input })
         else {
             return Ok(None);
         };
@@ -133,8 +134,7 @@ fn make_ready(
     let name = frame.source.name();
     let decoy = generations.iter().find(|generation| generation.number == frame.generation);
     let (tables, kernel) = decoy.map_or((&plan.tables, &plan.kernel), |found| (&found.tables, &found.kernel));
-    let input =
-        plan.render(frame).map_err(|source| PrepareError::Render { name: name.clone(), source })?;
+    let input = plan.render(frame).map_err(|source| PrepareError::Render { name: name.clone(), source })?;
     let expected = correct(tables, kernel, &input)
         .map_err(|source| PrepareError::Correct { name: name.clone(), source })?;
     Ok(Prepared {

@@ -88,8 +88,8 @@ impl Run<'_> {
             Some(suspect) => format!("{}: {}", suspect.place, suspect.evidence),
             None => "a table's CRC is wrong although every entry reads back right".to_owned(),
         };
-        let remedy =
-            "Check the table memory named above, its write path and its supply; then upload again.".to_owned();
+        let remedy = "Check the table memory named above, its write path and its supply; then upload again."
+            .to_owned();
         End::Failed { check, headline, remedy, suspects }
     }
 }

@@ -59,7 +59,9 @@ fn the_banner_says_that_no_hardware_was_tested() {
 fn a_fail_shows_suspects_and_what_to_do() {
     let (report, evidence) = made::fail();
     let page = page(&report, &evidence);
-    for words in ["row factor, row 3, bit 4", "Check the table memory's data line 4.", "Read the tables back."] {
+    for words in
+        ["row factor, row 3, bit 4", "Check the table memory's data line 4.", "Read the tables back."]
+    {
         assert!(page.contains(words), "{words}");
     }
     assert!(page.contains("row 3, column 0: expected 193, found 209"));
@@ -74,14 +76,16 @@ fn sixteen_frames_of_noise_stay_under_ten_megabytes_and_all_are_shown() {
         (state >> 40) as usize
     };
     let samples: Vec<usize> = (0..3 * 640 * 360).map(|_| noise()).collect();
-    let frame = |which: usize| made::sized_frame(640, 360, |row, column| samples[(which * 360 + row) * 640 + column]);
+    let frame =
+        |which: usize| made::sized_frame(640, 360, |row, column| samples[(which * 360 + row) * 640 + column]);
     let (input, expected, found) = (frame(0), frame(1), frame(2));
     let (mut report, _) = made::fail();
     report.frames = (0..16).map(|number| made::equal_frame((number, "builtin:noise"))).collect();
     for frame in &mut report.frames {
         frame.comparison = Comparison::of_frames(&expected, &found);
     }
-    let kept = |index| Evidence { index, input: input.clone(), found: found.clone(), expected: expected.clone() };
+    let kept =
+        |index| Evidence { index, input: input.clone(), found: found.clone(), expected: expected.clone() };
     let page = page(&report, &(0..16).map(kept).collect::<Vec<_>>());
     assert!(page.len() < 10_000_000, "{} bytes", page.len());
     assert_eq!(page.matches("As it went in").count(), 32, "a caption and a description for each");

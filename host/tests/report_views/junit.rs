@@ -36,7 +36,11 @@ fn a_pass_has_a_case_for_the_verdict_each_check_and_each_frame() {
 fn the_suite_says_which_kind_of_board_it_was() {
     let suite = suite(&made::pass());
     let value = |name| {
-        suite.properties.iter().find(|property| property.name.as_str() == name).map(|found| found.value.as_str())
+        suite
+            .properties
+            .iter()
+            .find(|property| property.name.as_str() == name)
+            .map(|found| found.value.as_str())
     };
     assert_eq!(value("board.kind"), Some("mock"));
     assert_eq!(value("board.target"), Some("mock,fault=flip"));

@@ -3,8 +3,8 @@
 use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
 use halfrow::report::{
-    BoardKind, BoardReport, Check, Evidence, FrameReport, Identity, LatencyReport, LinkReport, Outcome, Report,
-    RunReport, StreetReport, Suspect, TablesReport,
+    BoardKind, BoardReport, Check, Evidence, FrameReport, Identity, LatencyReport, LinkReport, Outcome,
+    Report, RunReport, StreetReport, Suspect, TablesReport,
 };
 use halfrow::verdict::{Exit, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
@@ -19,7 +19,10 @@ pub(crate) fn pass() -> Report {
         headline: "2 frames, all equal to the reference".to_owned(),
         remedy: None,
         suspects: Vec::new(),
-        checks: vec![check("judge", Outcome::Passed, "the golden values agree"), check("frames", Outcome::Passed, "all equal")],
+        checks: vec![
+            check("judge", Outcome::Passed, "the golden values agree"),
+            check("frames", Outcome::Passed, "all equal"),
+        ],
         latency: Some(latency(2160)),
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
         link: link(),
@@ -31,7 +34,8 @@ pub(crate) fn pass() -> Report {
 
 /// Row 3 of the second frame is wrong; the frames are 64 × 40.
 pub(crate) fn fail() -> (Report, Vec<Evidence>) {
-    let (input, expected) = (frame(|row, column| row * 64 + column), frame(|row, column| row * 64 + column + 1));
+    let (input, expected) =
+        (frame(|row, column| row * 64 + column), frame(|row, column| row * 64 + column + 1));
     let found = frame(|row, column| row * 64 + column + if row == 3 && column < 5 { 17 } else { 1 });
     let mut second = equal_frame((2, "frames/<script>alert(1)</script>&.pgm"));
     second.comparison = Comparison::of_frames(&expected, &found);
@@ -64,7 +68,11 @@ pub(crate) fn error() -> Report {
     Report {
         verdict: Verdict::Error,
         exit_code: Exit::Error,
-        board: BoardReport { kind: BoardKind::Hardware, target: "serial:/dev/ttyUSB1".to_owned(), identity: None },
+        board: BoardReport {
+            kind: BoardKind::Hardware,
+            target: "serial:/dev/ttyUSB1".to_owned(),
+            identity: None,
+        },
         headline: "no answer within 2 s".to_owned(),
         remedy: Some("Check cable and power.".to_owned()),
         checks: vec![

@@ -31,7 +31,9 @@ fn no_pass_without_hardware_is_taken_for_one_with() {
     }
     let mut report = made::pass();
     report.board.kind = BoardKind::Hardware;
-    assert!(last_line(&plain(&report)).starts_with("PASS (hardware mock, serial 000000000000002a)  2 frames"));
+    assert!(
+        last_line(&plain(&report)).starts_with("PASS (hardware mock, serial 000000000000002a)  2 frames")
+    );
 }
 
 #[test]
@@ -88,8 +90,12 @@ fn nothing_but_the_verdict_is_wider_than_80_columns() {
     report.frames[1].name = "a/very/deep/folder/".repeat(9);
     report.suspects[0].evidence = "There is a long story to tell about this suspect. ".repeat(5);
     let difference = Difference { row: 2047, column: 2591, expected: 4095, found: 4094 };
-    report.frames[1].comparison =
-        Comparison { differences: 5_308_416, first: Some(difference), largest: 4095, ..Comparison::new(2592, 2048) };
+    report.frames[1].comparison = Comparison {
+        differences: 5_308_416,
+        first: Some(difference),
+        largest: 4095,
+        ..Comparison::new(2592, 2048)
+    };
     for line in plain(&report).lines().filter(|line| !line.starts_with("FAIL:")) {
         assert!(line.chars().count() <= 80, "{line}");
     }
@@ -108,7 +114,8 @@ fn a_wrong_latency_says_what_was_claimed() {
     report.verdict = Verdict::Fail;
     let latency = report.latency.as_mut().unwrap();
     (latency.most, latency.wrong_rows) = (975, 1200);
-    let expected = "latency  972 to 975 pixel clocks instead of 972 = 960 + 12; wrong in 1,200 of\n         2,160 rows";
+    let expected =
+        "latency  972 to 975 pixel clocks instead of 972 = 960 + 12; wrong in 1,200 of\n         2,160 rows";
     let text = plain(&report);
     assert!(text.contains(expected), "{text}");
 }

@@ -98,6 +98,9 @@ impl BrokenRing {
     fn followed_by(self, next: &[u16], witness: &Witness<'_>, base: usize, undisturbed: &[u16]) -> Vec<u16> {
         let with = |blanking| self.read_row(witness, base, Some((next, blanking)));
         let at_once = with(0);
+        if at_once == witness.found || at_once == undisturbed {
+            return at_once;
+        }
         let longest = (next.len() / 2 + LOOK_AHEAD + 1) as i64;
         let enough =
             |blanking: i64| !is_too_short(&with(blanking as usize), witness.found, &at_once, undisturbed);

@@ -69,7 +69,9 @@ fn section(
 fn came_out(frame: &FrameReport) -> String {
     match frame.comparison.by_row.len().saturating_sub(frame.rows) {
         0 => "As the board corrected it".to_owned(),
-        missing => format!("As the board corrected it; {} never came back and are black", count(missing, "row")),
+        missing => {
+            format!("As the board corrected it; {} never came back and are black", count(missing, "row"))
+        }
     }
 }
 
@@ -124,7 +126,9 @@ fn details(frame: &FrameReport, kept: &Evidence) -> Result<(Markup, usize), Enco
             "Largest |found − expected| in each " (BOX) " × " (BOX) " samples:"
             @for step in pictures::steps_up_to(frame.comparison.largest) {
                 @let [red, green, blue] = step.colour;
-                " " span.swatch style=(format!("background:rgb({red} {green} {blue})")) {} " from " (step.from)
+                " " span.key {
+                    span.swatch style=(format!("background:rgb({red} {green} {blue})")) {} " from " (step.from)
+                }
             }
             ". The bars count the differences by row and by column."
         }

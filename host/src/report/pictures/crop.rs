@@ -3,8 +3,8 @@
 use halfrow_model::Frame;
 use png::EncodingError;
 
-use super::scale::colour;
 use super::Picture;
+use super::scale::colour;
 use crate::compare::Difference;
 use crate::frames::preview::RgbImage;
 use crate::report::Evidence;
@@ -71,7 +71,8 @@ impl Window {
     /// The window with `around` in its middle, or as near as the frame allows.
     fn around(around: Difference, frame: &Frame) -> Self {
         let (width, height) = (Self::WIDTH.min(frame.width()), Self::HEIGHT.min(frame.height()));
-        let start = |middle: usize, length: usize, all: usize| middle.saturating_sub(length / 2).min(all - length);
+        let start =
+            |middle: usize, length: usize, all: usize| middle.saturating_sub(length / 2).min(all - length);
         let top = start(around.row, height, frame.height());
         let left = start(around.column, width, frame.width());
         Self { around, top, left, height, width }

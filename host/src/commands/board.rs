@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::Failure;
+use crate::board::deadlines::RetryLimit;
 use crate::board::{OpenOptions, Stop};
 use crate::link::{self, Candidate, Recording};
 use crate::session::Draws;
@@ -17,16 +18,16 @@ use crate::verdict::Exit;
 /// Which board, and how patiently.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Board")]
-pub(in crate::commands) struct BoardArguments {
+pub(super) struct BoardArguments {
     /// The board: mock, mock,fault=NAME, replay:FILE …; see `halfrow boards` [default: mock]
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD")]
     board: Option<Target>,
     /// The longest that the run may take, in seconds of the link's clock
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
-    pub(super) timeout: Option<f64>,
+    timeout: Option<f64>,
     /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5]
     #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = percent)]
-    pub(super) retry_limit: Option<f64>,
+    retry_limit: Option<f64>,
     /// Take the board over from another host that holds it
     #[arg(long)]
     pub(super) take_over: bool,
@@ -38,6 +39,11 @@ fn percent(text: &str) -> Result<f64, String> {
 }
 
 impl BoardArguments {
+    /// Whether a board was named at all.
+    pub(super) fn is_named(&self, settings: &Settings) -> bool {
+        self.board.is_some() || settings.board.is_some()
+    }
+
     fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
@@ -47,7 +53,7 @@ impl BoardArguments {
     }
 
     /// The link to the board that is named; by default the mock, never a guess.
-    pub(in crate::commands) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
+    pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
         Ok(link::open(&self.target(settings)?)?)
     }
 
@@ -57,7 +63,7 @@ impl BoardArguments {
         Ok(file.map(|file| Recording::read(&file)).transpose()?)
     }
 
-    pub(in crate::commands) fn open_options(
+    pub(super) fn open_options(
         &self,
         settings: &Settings,
         draws: Option<Draws>,
@@ -85,5 +91,19 @@ impl BoardArguments {
             signal_hook::flag::register_usize(number, Arc::clone(&signal), code).map_err(Failure::error)?;
         }
         Ok(Stop::new(signal, limit))
+    }
+
+    pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
+        let seconds = self.timeout.or(settings.timeout);
+        let limit = seconds.map(Duration::try_from_secs_f64).transpose();
+        limit.map_err(|_| anyhow::anyhow!("--timeout takes a number of seconds, 0 or more").into())
+    }
+
+    pub(super) fn retry_limit(&self, settings: &Settings) -> RetryLimit {
+        let limit = RetryLimit::default();
+        match self.retry_limit.or(settings.retry_limit) {
+            Some(percent) => RetryLimit { share: percent / 100.0, ..limit },
+            None => limit,
+        }
     }
 }
