@@ -14,7 +14,7 @@ use super::{Context, Failure, print};
 use crate::frames::Builtin;
 use crate::link::{Candidate, Recorder};
 use crate::progress;
-use crate::report::{self, Report, ReportError, ReportFolder};
+use crate::report::{self, Report, ReportFolder};
 use crate::session::{self, Circumstances, Finished, FrameSource, Plan, Timing};
 use crate::settings::Settings;
 use crate::verdict::{Exit, Verdict};
@@ -94,17 +94,21 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     let stop = arguments.board.stop(plan.timeout)?;
     let watched = progress::for_stderr(context.quiet || arguments.json);
-    let mut finished = session::verify(&plan, candidate, &circumstances, stop, watched.as_ref());
+    let mut finished = session::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
+    if finished.report.exit_code == Exit::Usage {
+        // The call does not fit the board: there is no verdict, and so nothing to report on.
+        return Err(anyhow::anyhow!(finished.report.headline).into());
+    }
     let written = folder.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
-    if let Err(error) = &written {
-        lose(&mut finished.report, error);
+    if let Err(error) = written {
+        lose(&mut finished.report, &error.into());
     }
     conclude(&finished, arguments.json)
 }
 
 /// A result that could not be written is none, even when all samples were equal.
-fn lose(report: &mut Report, error: &ReportError) {
-    report.headline = format!("the report could not be written: {:#}", anyhow::anyhow!("{error}"));
+fn lose(report: &mut Report, error: &anyhow::Error) {
+    report.headline = format!("the report could not be written: {error:#}");
     report.verdict = Verdict::Error;
     report.exit_code = Exit::Error;
     report.remedy =

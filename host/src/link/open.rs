@@ -49,7 +49,7 @@ pub enum OpenError {
         target: String,
         /// Why.
         #[source]
-        source: WireError,
+        source: Box<WireError>,
     },
     /// An option whose value is none.
     #[error("`{key}={value}` is not an option of the mock board; write {key}=virtual or {key}=real")]
@@ -98,7 +98,7 @@ fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
         }
     }
     let wire = Wire::from_options(&options)
-        .map_err(|source| OpenError::Mock { target: target.to_string(), source })?;
+        .map_err(|source| OpenError::Mock { target: target.to_string(), source: Box::new(source) })?;
     Ok(Box::new(MockLink::new(wire, paced)))
 }
 

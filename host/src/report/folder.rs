@@ -13,6 +13,8 @@ use super::{Evidence, Report, html, json, junit};
 const JSON: &str = "report.json";
 const JUNIT: &str = "report.xml";
 const HTML: &str = "report.html";
+/// What an earlier report is called while it is out of the way.
+const EARLIER: &str = "earlier";
 
 /// A report that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -127,18 +129,26 @@ impl ReportFolder {
     /// Renames the new folder into place. An earlier report is moved out of the way, and back when the new one is not
     /// taken; it goes for good only when the new one stands.
     fn place(&self) -> io::Result<()> {
-        let earlier = if self.path.exists() { Some(beside(&self.parent)?) } else { None };
-        let kept = earlier.as_ref().map(|folder| folder.path().join("earlier"));
-        if let Some(kept) = &kept {
-            fs::rename(&self.path, kept)?;
-        }
+        let earlier = if self.path.exists() { Some(self.moved_away()?) } else { None };
         if let Err(refused) = fs::rename(self.aside.path(), &self.path) {
-            if let Some(kept) = &kept {
-                fs::rename(kept, &self.path)?;
-            }
+            earlier.map_or(Ok(()), |earlier| self.move_back(earlier))?;
             return Err(refused);
         }
         sync(&self.parent)
+    }
+
+    /// The earlier report, in a folder beside it that goes when it is dropped.
+    fn moved_away(&self) -> io::Result<TempDir> {
+        let folder = beside(&self.parent)?;
+        fs::rename(&self.path, folder.path().join(EARLIER))?;
+        Ok(folder)
+    }
+
+    /// Puts the earlier report back. When even that fails it stays where it is, never to be removed.
+    fn move_back(&self, earlier: TempDir) -> io::Result<()> {
+        let folder = earlier.keep();
+        fs::rename(folder.join(EARLIER), &self.path)?;
+        fs::remove_dir(folder)
     }
 }
 
@@ -196,4 +206,22 @@ fn beside(parent: &Path) -> io::Result<TempDir> {
 /// Makes a folder's entries last through a power cut, where the system can.
 fn sync(folder: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_earlier_report_comes_back_when_the_new_one_is_not_taken() {
+        let station = TempDir::new().unwrap();
+        let path = station.path().join("today");
+        fs::create_dir(&path).unwrap();
+        fs::write(path.join(JSON), r#"{"verdict": "PASS", "exit_code": 0}"#).unwrap();
+        let folder = ReportFolder::prepare(&path, true).unwrap();
+        fs::remove_dir(folder.aside.path()).unwrap();
+        assert_eq!(folder.place().unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert!(is_report(&path.join(JSON)));
+        assert_eq!(fs::read_dir(station.path()).unwrap().count(), 1);
+    }
 }

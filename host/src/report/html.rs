@@ -9,6 +9,7 @@ use png::EncodingError;
 
 use super::wording::{self, plain};
 use super::{Check, Evidence, Report, Suspect};
+use crate::verdict::Verdict;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -42,6 +43,7 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
                     (facts::frames(report))
                     (pictures)
                     (facts::figures(report))
+                    (facts::link(&report.link))
                     (facts::board(report))
                     (facts::run(report))
                 }
@@ -51,15 +53,22 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
     Ok(page.into_string())
 }
 
+/// The verdict and what it rests on: for PASS the figures say it all, for the others the headline comes first.
 fn banner(report: &Report) -> Markup {
+    let (facts, started) = (wording::facts(report), plain(&report.run.started));
     html! {
         header.(report.verdict.to_string().to_lowercase()) {
             div {
                 p.verdict { (report.verdict) }
                 p.kind { (wording::remark(&report.board)) }
             }
-            h1 { (plain(&report.headline)) }
-            p.facts { (wording::facts(report)) " · " (plain(&report.run.started)) }
+            @if report.verdict == Verdict::Pass {
+                h1 { (facts) }
+                p.facts { (started) }
+            } @else {
+                h1 { (plain(&report.headline)) }
+                p.facts { (facts) " · " (started) }
+            }
         }
     }
 }

@@ -58,6 +58,7 @@ pub(super) fn facts(report: &Report) -> String {
     let differences: usize = report.frames.iter().map(|frame| frame.comparison.differences).sum();
     let mut facts = vec![count(report.frames.len(), "frame")];
     facts.push(match differences {
+        _ if samples == 0 => "nothing judged".to_owned(),
         0 => format!("{} equal", count(samples, "sample")),
         _ => format!("{} of {} different", grouped(differences), count(samples, "sample")),
     });

@@ -12,7 +12,7 @@ impl Run<'_> {
     /// Judges what was seen, then the tables and the counters.
     pub(super) fn judge(&mut self) -> Result<(), End> {
         let after = self.tables_after();
-        let status = self.board.status(false).map_err(|error| End::board("counters", error))?;
+        let status = self.board.status(false).map_err(|error| End::board("counters", &error))?;
         self.findings.note_status(&status);
         self.frames(after.as_ref().err())?;
         latency(&self.findings.seen)?;
@@ -65,15 +65,14 @@ impl Run<'_> {
         let suspects = self.diagnose();
         let wrong = seen.differences();
         let found = format!("{wrong} of {samples} samples differ, in {differing} of {frames} frames");
-        let (headline, remedy) = match suspects.first() {
-            Some(suspect) => {
-                (format!("{}: {}; {found}", suspect.place, suspect.evidence), suspect.next_step.clone())
-            }
+        let (suspicion, remedy) = match suspects.first() {
+            Some(suspect) => (format!("the suspect is {}", suspect.place), suspect.next_step.clone()),
             None => (
-                format!("{found}, and no single defect that is known explains them"),
+                "no single defect that is known explains them".to_owned(),
                 "Make a report with --report and look at the difference maps.".to_owned(),
             ),
         };
+        let headline = format!("{found}; {suspicion}");
         Err(End::Failed { check: "frames", headline, remedy, suspects })
     }
 

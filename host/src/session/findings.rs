@@ -21,10 +21,10 @@ pub(super) enum End {
 
 impl End {
     /// The run could not go on since the board could not be driven.
-    pub(super) fn board(check: &'static str, error: BoardError) -> Self {
+    pub(super) fn board(check: &'static str, error: &BoardError) -> Self {
         let unreachable =
             matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
-        Self::Error { check, exit: error.exit(), headline: chain(&error), remedy: None, unreachable }
+        Self::Error { check, exit: error.exit(), headline: chain(error), remedy: None, unreachable }
     }
 
     pub(super) fn error(check: &'static str, exit: Exit, headline: String) -> Self {

@@ -147,12 +147,10 @@ impl<'a> Judge<'a> {
             true => differing < self.manner.differing,
             false => kept < self.manner.pictures || name == STREET,
         };
-        if wanted {
-            if let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found) {
-                let index = self.seen.frames.len();
-                let (input, expected) = ((*input).clone(), (*expected).clone());
-                self.seen.evidence.push(Evidence { index, input, found, expected });
-            }
+        if wanted && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found) {
+            let index = self.seen.frames.len();
+            let (input, expected) = ((*input).clone(), (*expected).clone());
+            self.seen.evidence.push(Evidence { index, input, found, expected });
         }
         self.seen.frames.push(FrameReport {
             name,

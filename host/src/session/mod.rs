@@ -71,7 +71,7 @@ pub fn verify(
     plan: &Plan,
     candidate: Candidate,
     circumstances: &Circumstances,
-    stop: Stop,
+    stop: &Stop,
     progress: &dyn Progress,
 ) -> Finished {
     let started = jiff::Timestamp::now();
@@ -85,7 +85,7 @@ fn run(
     plan: &Plan,
     link: Box<dyn Link>,
     draws: Draws,
-    stop: Stop,
+    stop: &Stop,
     progress: &dyn Progress,
     findings: &mut Findings,
 ) -> Result<(), End> {
@@ -101,9 +101,9 @@ fn run(
     };
     let mut board = Board::open(link, &options).map_err(|(error, tally)| {
         findings.tally = tally;
-        End::board("identity", error)
+        End::board("identity", &error)
     })?;
-    let generations = plan.generations();
+    let generations = plan.generations(board.capabilities.taps);
     let end = Run { plan, board: &mut board, generations, progress, findings }.all_steps();
     findings.note_link(&board);
     // Whatever happened, the next run must find the board free; a board that is gone need not be asked again.

@@ -122,19 +122,34 @@ pub const DECOY: u8 = 1;
 pub const JUDGED: u8 = 2;
 
 impl Plan {
-    /// The tables that a run uploads, in order. The first are a decoy, legal wherever the others are and different in
-    /// every row that is stretched: a board that goes on using them is caught.
+    /// The tables that a run uploads, in order, to a board of `taps` taps. The first are a decoy, legal wherever the others
+    /// are and different in every row that is stretched: a board that goes on using them is caught.
     ///
     /// A row factor half way to 1 reaches half as far, so the ring's limits hold.
     #[must_use]
-    pub fn generations(&self) -> Vec<Generation> {
+    pub fn generations(&self, taps: u8) -> Vec<Generation> {
         let steps = self.tables.steps().iter().map(|&step| u32::midpoint(step, STEP_ONE)).collect();
-        let linear = Kernel::from(Interpolant::Linear);
-        let kernel = if self.kernel == linear { Kernel::from(Interpolant::Hermite) } else { linear };
+        let kernel = self.decoy_kernel(taps);
         let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
         match TableSet::new(*self.tables.geometry(), steps) {
             Ok(tables) => vec![Generation { number: DECOY, tables, kernel }, judged],
             Err(_) => vec![judged],
+        }
+    }
+
+    /// A kernel other than the one to judge with. It weighs every tap that the board has, since that one may leave some
+    /// out, and then a dead one would not be seen.
+    fn decoy_kernel(&self, taps: u8) -> Kernel {
+        let hermite = Kernel::from(Interpolant::Hermite);
+        let mut nodes = hermite.nodes().to_vec();
+        if taps >= 7 {
+            let keys = Kernel::from(Interpolant::Keys);
+            let weights = nodes.as_flattened_mut().iter_mut().zip(keys.nodes().as_flattened());
+            weights.for_each(|(weight, &keys)| *weight = i16::midpoint(*weight, keys));
+        }
+        match Kernel::from_nodes(nodes) {
+            Ok(kernel) if kernel != self.kernel => kernel,
+            _ => Kernel::from(Interpolant::Linear),
         }
     }
 

@@ -51,7 +51,7 @@ impl Run<'_> {
         let height = self.plan.tables.geometry().height() as u64;
         let frames: usize = schedule.iter().map(|segment| segment.frames.len()).sum();
         self.progress.rows_expected(frames as u64 * height);
-        self.board.status(true).map_err(|error| End::board("link", error))?;
+        self.board.status(true).map_err(|error| End::board("link", &error))?;
         for segment in &schedule {
             self.prepare(segment)?;
             self.stream(segment)?;
@@ -125,7 +125,7 @@ impl Run<'_> {
     }
 
     fn link(&mut self) -> Result<(), End> {
-        let board_error = |error| End::board("link", error);
+        let board_error = |error| End::board("link", &error);
         let (_, round_trip) = self.board.echo(&[]).map_err(board_error)?;
         self.findings.link.round_trip_us = Some(round_trip.as_micros() as u64);
         let patterns = patterns(self.plan.seed);

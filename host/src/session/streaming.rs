@@ -39,7 +39,7 @@ impl Run<'_> {
         streamed.map_err(|error| self.interrupted(segment, error))?;
         prepared.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
         if plan.fail_fast && self.findings.seen.differences() > 0 {
-            self.board.drop_rows().map_err(|error| End::board("frames", error))?;
+            self.board.drop_rows().map_err(|error| End::board("frames", &error))?;
         }
         Ok(())
     }
@@ -72,7 +72,7 @@ impl Run<'_> {
                 let remedy = "Check how the board keeps a row's place with its samples.";
                 return End::failed("frames", error.to_string(), remedy);
             }
-            other => return End::board("frames", other),
+            other => return End::board("frames", &other),
         };
         let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
         match frame.map(|frame| self.lost_again(frame)) {
@@ -85,8 +85,8 @@ impl Run<'_> {
                 ),
                 "Check the row banks and the row player: the board took the row and lost it inside.",
             ),
-            Some(Err(other)) => End::board("frames", other),
-            Some(Ok(None)) | None => End::board("frames", error),
+            Some(Err(other)) => End::board("frames", &other),
+            Some(Ok(None)) | None => End::board("frames", &error),
         }
     }
 

@@ -24,7 +24,7 @@ impl Run<'_> {
             gap_seed,
             bits: geometry.depth().bits() as u8,
         };
-        self.board.configure(&configuration).map_err(|error| End::board("upload", error))?;
+        self.board.configure(&configuration).map_err(|error| End::board("upload", &error))?;
         let Some((number, first_frame)) = segment.commit else { return Ok(()) };
         let generation = self.generations.iter().find(|generation| generation.number == number).cloned();
         generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame))
@@ -32,7 +32,7 @@ impl Run<'_> {
 
     fn upload(&mut self, generation: &Generation, first_frame: u16) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
-        self.board.upload(tables, kernel).map_err(|error| End::board("upload", error))?;
+        self.board.upload(tables, kernel).map_err(|error| End::board("upload", &error))?;
         let ports = self.check_read_back("read-back", Bank::Shadow, generation)?;
         self.board.commit(tables, kernel, first_frame, *number).map_err(|error| match error {
             BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::TableCrc => End::failed(
@@ -40,7 +40,7 @@ impl Run<'_> {
                 "the tables read back right, and the board finds another CRC when it commits them".to_owned(),
                 "Check the board's CRC unit and whether the tables change on their own.",
             ),
-            error => End::board("upload", error),
+            error => End::board("upload", &error),
         })?;
         if *number == JUDGED {
             let (rows, nodes) = (tables.steps().len(), kernel.nodes().len());
@@ -60,7 +60,7 @@ impl Run<'_> {
         generation: &Generation,
     ) -> Result<usize, End> {
         let Generation { tables, kernel, .. } = generation;
-        let read = self.board.read_back(bank, tables, kernel).map_err(|error| End::board(check, error))?;
+        let read = self.board.read_back(bank, tables, kernel).map_err(|error| End::board(check, &error))?;
         match read.iter().find(|read| !read.agrees()) {
             None => Ok(read.len()),
             Some(wrong) => Err(self.wrong_entries(check, bank, generation, wrong)),
@@ -81,7 +81,7 @@ impl Run<'_> {
         let entries = expected.len() / wrong.port.table.entry_bytes();
         let found = match self.board.read_entries(bank, wrong.port, entries) {
             Ok(found) => found,
-            Err(error) => return End::board(check, error),
+            Err(error) => return End::board(check, &error),
         };
         let suspects = diagnosis::read_back(wrong.port.table, &expected, &found);
         let headline = match suspects.first() {

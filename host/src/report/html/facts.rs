@@ -56,8 +56,11 @@ fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
     }
 }
 
-/// Latency, street and link.
+/// Latency and street.
 pub(super) fn figures(report: &Report) -> Markup {
+    if report.latency.is_none() && report.street.is_none() {
+        return Markup::default();
+    }
     html! {
         section {
             h2 { "Figures" }
@@ -65,15 +68,14 @@ pub(super) fn figures(report: &Report) -> Markup {
                 @if let Some(latency) = &report.latency { (pair("Latency", wording::latency(latency))) }
                 @if let Some(street) = &report.street { (pair("Street", wording::street(street))) }
             }
-            (link(&report.link))
         }
     }
 }
 
-fn link(link: &LinkReport) -> Markup {
+/// What the link did.
+pub(super) fn link(link: &LinkReport) -> Markup {
     html! {
-        h3 { "Link" }
-        dl {
+        section { h2 { "Link" } dl {
             (pair("Name", &link.name))
             (pair("Bytes", format!("{} out, {} in", grouped(link.bytes_out), grouped(link.bytes_in))))
             (pair("Packets", format!("{} out, {} in", grouped(link.packets_out), grouped(link.packets_in))))
@@ -81,7 +83,7 @@ fn link(link: &LinkReport) -> Markup {
             (pair("Sent again", format!("{}; too poor from {} on", grouped(link.retries), grouped(link.retry_limit))))
             @if let Some(time) = link.round_trip_us { (pair("Round trip", format!("{} µs", grouped(time)))) }
             (pair("Time", format!("{:.3} s on the link's clock", link.seconds)))
-        }
+        } }
     }
 }
 
@@ -92,7 +94,7 @@ pub(super) fn board(report: &Report) -> Markup {
         section {
             h2 { "Board" }
             dl {
-                (pair("Kind", format!("{} ({})", board.kind, wording::remark(board))))
+                (pair("Kind", board.kind.to_string()))
                 (pair("Target", &board.target))
                 @match &board.identity {
                     Some(identity) => @for (name, value) in identity.lines() { (pair(name, value)) },
@@ -125,7 +127,7 @@ pub(super) fn run(report: &Report) -> Markup {
             h2 { "Run" }
             pre { (plain(&command.join(" "))) }
             dl {
-                (pair("halfrow", format!("{} ({})", run.version, run.commit)))
+                (pair("Program", format!("halfrow {} ({})", run.version, run.commit)))
                 (pair("Exit code", report.exit_code.code().to_string()))
                 (pair("Seed", run.seed.to_string()))
                 (pair("Began", &run.started))
