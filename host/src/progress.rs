@@ -1,11 +1,12 @@
 //! Progress of a long run, for whoever watches: a bar on a terminal, plain lines otherwise, or nothing.
 
+use std::fmt::Write;
 use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 /// Told what a run does.
 pub trait Progress: Sync {
@@ -60,9 +61,13 @@ impl Progress for Bar {
     }
 
     fn rows_expected(&self, rows: u64) {
-        let template = "{bar:30} {pos}/{len} rows  {per_sec}  {eta} left  {msg}";
+        let template = "{bar:30} {pos}/{len} rows  {rate}  {eta} left  {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
-            self.0.set_style(style);
+            let rate = |state: &ProgressState, text: &mut dyn Write| {
+                // A watcher whose terminal went away needs no number.
+                let _ = write!(text, "{:.0} rows/s", state.per_sec());
+            };
+            self.0.set_style(style.with_key("rate", rate));
         }
         self.0.set_length(rows);
     }
