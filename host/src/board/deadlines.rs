@@ -38,7 +38,7 @@ impl Step {
     /// on the wire is given, since chips and kernels queue. A link that does not know its rate is taken for a slow one.
     #[must_use]
     pub fn wait(self, bytes: usize, bytes_per_second: Option<f64>) -> Duration {
-        const SLOW: f64 = 10_000.0;
+        const SLOW: f64 = 100_000.0;
         let rate = bytes_per_second.unwrap_or(SLOW).max(1.0);
         self.deadline().fixed + Duration::from_secs_f64(2.0 * bytes as f64 / rate)
     }
@@ -77,7 +77,7 @@ mod tests {
         // 2,922 bytes both ways at 1.2 MB/s are 4.87 ms, twice that is 9.74 ms.
         let wait = Step::Row.wait(5844, Some(1.2e6));
         assert_eq!(wait.as_micros(), 250_000 + 9_740);
-        assert!(Step::Request.wait(4096, None) > Duration::from_secs(1));
+        assert_eq!(Step::Request.wait(5000, None).as_millis(), 200 + 100);
     }
 
     #[test]

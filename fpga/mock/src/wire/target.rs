@@ -13,12 +13,13 @@ use crate::options::{OptionError, Options};
 const FAULT: &str = "fault";
 
 /// The keys that [`Options::set`] takes.
-const BOARD_KEYS: [&str; 10] = [
+const BOARD_KEYS: [&str; 11] = [
     "latency",
     "ring",
     "least-blanking",
     "row-banks-in",
     "row-banks-out",
+    "table-banks",
     "taps",
     "max-width",
     "max-height",
@@ -147,16 +148,24 @@ impl Faults {
         let wire = self.wire.map(|fault| WireFault::from_name(fault.name, &mut left_by_wire)).transpose()?;
         let board =
             self.board.map(|fault| BoardFault::from_name(fault.name, &mut left_by_board)).transpose()?;
-        for key in parameters.keys() {
-            match (left_by_wire.contains_key(key), left_by_board.contains_key(key)) {
-                (true, true) => {
-                    return Err(WireError::UnknownKey { key: key.clone(), known: self.known_keys() });
-                }
-                (false, false) => return Err(self.ambiguous(key)),
-                _ => {}
-            }
-        }
+        self.check_use(parameters, &left_by_wire, &left_by_board)?;
         Ok((wire, board))
+    }
+
+    /// Whether each of the `given` parameters was taken, and left over by all but one fault.
+    fn check_use(
+        &self,
+        given: &Parameters,
+        left_by_wire: &Parameters,
+        left_by_board: &Parameters,
+    ) -> Result<(), WireError> {
+        given.keys().try_for_each(|key| {
+            match (left_by_wire.contains_key(key), left_by_board.contains_key(key)) {
+                (true, true) => Err(WireError::UnknownKey { key: key.clone(), known: self.known_keys() }),
+                (false, false) => Err(self.ambiguous(key)),
+                _ => Ok(()),
+            }
+        })
     }
 
     fn ambiguous(&self, key: &str) -> WireError {
@@ -187,5 +196,17 @@ mod tests {
     fn every_key_of_the_board_that_an_error_names_exists() {
         // A value that is wrong for all of them: what is refused is known.
         assert!(BOARD_KEYS.iter().all(|key| Options::default().set(key, "none").is_err()));
+    }
+
+    #[test]
+    fn a_parameter_that_two_faults_take_is_refused() {
+        let mut faults = Faults::default();
+        faults.add("flip").unwrap();
+        faults.add("lost-row").unwrap();
+        let given = Parameters::from([("row".to_owned(), "3".to_owned())]);
+        let none = Parameters::new();
+        let (key, wire, board) = ("row".to_owned(), "flip".to_owned(), "lost-row".to_owned());
+        assert_eq!(faults.check_use(&given, &none, &none), Err(WireError::Ambiguous { key, wire, board }));
+        assert_eq!(faults.check_use(&given, &given, &none), Ok(()));
     }
 }

@@ -75,6 +75,27 @@ fn without_a_buffer_a_wire_without_limit_takes_bytes_only_up_to_an_answer() {
     assert_eq!(wire.now(), before);
 }
 
+#[test]
+fn without_a_buffer_the_board_is_listened_to_even_if_its_words_get_lost() {
+    let options =
+        [("buffer", "0"), ("speed", "1000"), ("fault", "drop"), ("packet", "1"), ("toward", "host")];
+    let mut wire = wire(&options);
+    answer(&mut wire, &hello());
+    // Request and answer have 1000 + 16 bytes, 4 of COBS and two zeros.
+    let (sent, before) = (echo(1, &[1; 1000]), wire.now());
+    assert_eq!((sent.len(), echo_reply(1, &[1; 1000]).len()), (1022, 1022));
+    let mut incoming = Vec::new();
+    assert_eq!(wire.exchange(&sent, &mut incoming, Duration::ZERO), Ok(512));
+    assert_eq!(wire.exchange(&sent[512..], &mut incoming, Duration::from_secs(1)), Ok(510));
+    // It is with the board at 1.022 s. The zero in front of the answer comes in its first slice, the one behind it in the
+    // second.
+    assert_eq!(wire.exchange(&[2], &mut incoming, Duration::from_secs(9)), Ok(0));
+    assert_eq!((wire.now() - before, incoming.len()), (Duration::from_millis(1534), 1));
+    assert_eq!(wire.exchange(&[2], &mut incoming, Duration::from_secs(9)), Ok(0));
+    assert_eq!((wire.now() - before, incoming.len()), (Duration::from_millis(2044), 2));
+    assert_eq!(wire.exchange(&[2], &mut incoming, Duration::ZERO), Ok(1));
+}
+
 proptest! {
     #[test]
     fn whatever_is_sent_over_whatever_wire_the_clock_goes_on_and_all_is_taken(

@@ -163,6 +163,16 @@ fn a_stream_stands_still_before_its_place() {
 }
 
 #[test]
+fn a_stall_does_not_see_how_the_stream_is_cut() {
+    for (key, number, place) in [("byte", "7", 7), ("packet", "1", 6)] {
+        let mut damage = damage("stall", &[(key, number)]);
+        let mut out = Vec::new();
+        let stops = |byte| damage.pass(&[byte], &mut out).interruption.is_some();
+        assert_eq!(STREAM.iter().copied().position(stops), Some(place));
+    }
+}
+
+#[test]
 fn a_rate_of_stalls_is_one_of_packets() {
     let mut damage = damage("stall", &[("rate", "1")]);
     let (mut rest, mut places, mut out) = (STREAM, Vec::new(), Vec::new());
