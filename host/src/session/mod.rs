@@ -1,6 +1,6 @@
 //! A run of `verify`: from the plan to the report.
 //!
-//! The steps stand in [`steps`] in their order; each adds its check to the findings or ends the run.
+//! The steps stand in `steps` in their order; each adds its check to the findings or ends the run.
 
 mod after;
 mod conclude;

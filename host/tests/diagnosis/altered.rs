@@ -1,9 +1,9 @@
 //! Frames that were altered by hand, for defects that the mock does not make.
 
 use halfrow::report::Suspect;
-use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, TableSet, correct, correct_row, source};
+use halfrow_model::{Frame, Kernel, TableSet, correct, correct_row, source};
 
-use crate::bench::{Bench, Generation, Seen, WHITE, fault, narrow, wide};
+use crate::bench::{Bench, Generation, Seen, WHITE, fault, narrow, off_centre, wide};
 
 /// What is said of a board that gives `found` of a frame that went in, frame by frame.
 fn diagnose(bench: &Bench, found: impl Fn(usize, &Frame, &Frame) -> Vec<u16>) -> Vec<Suspect> {
@@ -277,8 +277,7 @@ fn evidence_of_another_size_is_left_aside() {
 
 #[test]
 fn a_narrower_depth_and_a_shifted_centre_are_no_obstacle() {
-    let geometry = Geometry::new(192, 24, BitDepth::Eight, 150).unwrap();
-    let bench = Bench::with(geometry, 30.0, 256, Interpolant::Keys);
+    let bench = off_centre();
     let suspects = diagnose(&bench, |frame, input, _| {
         let Generation { tables, kernel, .. } = &bench.generations[generation(frame)];
         let mut nodes = kernel.nodes().to_vec();

@@ -268,6 +268,12 @@ pub(crate) fn wide() -> Bench {
     Bench::new(192, 24, 13.0, 256, Interpolant::Hermite)
 }
 
+/// Frames of 8 bits whose optical centre is not in the middle, through a seven-tap kernel.
+pub(crate) fn off_centre() -> Bench {
+    let geometry = Geometry::new(192, 24, BitDepth::Eight, 150).unwrap();
+    Bench::with(geometry, 30.0, 256, Interpolant::Keys)
+}
+
 /// A fault must be explained by the part at `place`, wholly and by nothing else.
 pub(crate) fn assert_named(bench: &Bench, text: &str, place: &str) {
     let suspects = bench.diagnose(fault(text));

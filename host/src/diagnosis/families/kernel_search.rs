@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use halfrow_model::{TAP_NAMES, source};
+use halfrow_model::source;
 
 use super::first_where;
-use super::kernel_word::{cause, common_nodes, with_word};
+use super::kernel_word::{KernelWord, common_words};
 use crate::diagnosis::Uploaded;
 use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::Hypothesis;
@@ -16,26 +16,20 @@ const ROWS: usize = 192;
 /// All values of a word, and one.
 const VALUES: Range<i64> = i16::MIN as i64..i16::MAX as i64 + 1;
 
-/// The weights that outputs were really made with, at the nodes that all differing samples interpolate with.
+/// The weights that outputs of one generation were really made with, at the nodes that all differing samples need.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    let Some(uploaded) = witnesses.differing.first().map(|witness| witness.uploaded) else {
-        return Vec::new();
-    };
-    common_nodes(witnesses)
+    let Some(first) = witnesses.differing.first() else { return Vec::new() };
+    common_words(witnesses)
         .into_iter()
-        .flat_map(|node| (0..TAP_NAMES.len()).map(move |tap| Word { node, tap }))
-        .filter_map(|word| any_value(witnesses, &uploaded, word))
+        .filter_map(|word| any_value(witnesses, &first.uploaded, word))
         .collect()
 }
 
-/// A word of the kernel.
-#[derive(Clone, Copy)]
-struct Word {
-    node: usize,
-    tap: usize,
-}
-
-fn any_value<'a>(witnesses: &Witnesses<'a>, uploaded: &Uploaded<'a>, word: Word) -> Option<Hypothesis<'a>> {
+fn any_value<'a>(
+    witnesses: &Witnesses<'a>,
+    uploaded: &Uploaded<'a>,
+    word: KernelWord,
+) -> Option<Hypothesis<'a>> {
     let mut values = VALUES;
     let rows = witnesses.sample(ROWS).filter(|row| row.uploaded.generation == uploaded.generation);
     for row in rows {
@@ -46,31 +40,26 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, uploaded: &Uploaded<'a>, word: Word)
             }
         }
     }
-    let Word { node, tap } = word;
     let (least, most) = (values.start, values.end - 1);
     let others = if least == most { String::new() } else { format!(" (or another up to {most})") };
-    let generation = uploaded.generation;
-    let old = uploaded.kernel.nodes().get(node)?.get(tap)?;
+    let (generation, old) = (uploaded.generation, word.of(uploaded.kernel)?);
     let defect = format!("reading {least}{others} for {old} in the tables of generation {generation}");
-    let kernel = with_word(uploaded.kernel, node, tap, least as i16)?;
-    Some(super::with_kernels(cause(node, tap, "", defect), [(generation, kernel)].into()))
+    let kernel = word.replaced(uploaded.kernel, least as i16)?;
+    Some(super::with_kernels(word.cause("", defect), [(generation, kernel)].into()))
 }
 
 /// Those of the values that give the sample that was found; none if none does. An output moves one way with a weight.
-fn narrowed(values: Range<i64>, row: &Witness<'_>, column: usize, word: Word) -> Option<Range<i64>> {
+fn narrowed(values: Range<i64>, row: &Witness<'_>, column: usize, word: KernelWord) -> Option<Range<i64>> {
     let found = *row.found.get(column)?;
     let output = |value: i64| {
-        let kernel = with_word(row.uploaded.kernel, word.node, word.tap, value as i16);
+        let kernel = word.replaced(row.uploaded.kernel, value as i16);
         kernel.map_or(found, |kernel| {
             RowTables { kernel: &kernel, ..row.tables() }.output(row.samples(), column)
         })
     };
     let rises = output(values.start) <= output(values.end - 1);
-    let start =
-        first_where(
-            values.clone(),
-            |value| if rises { output(value) >= found } else { output(value) <= found },
-        );
+    let reached = |value| if rises { output(value) >= found } else { output(value) <= found };
+    let start = first_where(values.clone(), reached);
     let end = first_where(start..values.end, |value| output(value) != found);
     (start < end).then_some(start..end)
 }

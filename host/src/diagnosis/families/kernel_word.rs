@@ -2,7 +2,8 @@
 
 use halfrow_model::{Kernel, NODES, TAP_NAMES, source};
 
-use super::table_word::{inversions, reading};
+use super::table_word::{Word, changed, inversions, reading};
+use crate::diagnosis::Uploaded;
 use crate::diagnosis::hypothesis::{Cause, Hypothesis};
 use crate::diagnosis::witnesses::Witnesses;
 
@@ -13,15 +14,26 @@ const ROWS: usize = 48;
 
 /// Every bit of every weight of the nodes that all differing samples interpolate with.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    common_nodes(witnesses)
-        .into_iter()
-        .flat_map(|node| (0..TAP_NAMES.len()).map(move |tap| (node, tap)))
-        .flat_map(|(node, tap)| word(witnesses, node, tap))
-        .collect()
+    common_words(witnesses).into_iter().flat_map(|word| word.inverted(&witnesses.generations())).collect()
+}
+
+/// A word of the kernel.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct KernelWord {
+    /// Its node, 0 to 64.
+    pub(super) node: usize,
+    /// Its weight, an index of [`TAP_NAMES`].
+    pub(super) tap: usize,
+}
+
+/// The words that every differing sample depends on.
+pub(super) fn common_words(witnesses: &Witnesses<'_>) -> Vec<KernelWord> {
+    let weights = |node| (0..TAP_NAMES.len()).map(move |tap| KernelWord { node, tap });
+    common_nodes(witnesses).into_iter().flat_map(weights).collect()
 }
 
 /// The nodes k for which every differing sample lies between k − 1 and k or between k and k + 1.
-pub(super) fn common_nodes(witnesses: &Witnesses<'_>) -> Vec<usize> {
+fn common_nodes(witnesses: &Witnesses<'_>) -> Vec<usize> {
     let mut uses = [0_usize; NODES];
     let mut samples = 0;
     for witness in witnesses.differing.iter().take(ROWS) {
@@ -38,44 +50,48 @@ pub(super) fn common_nodes(witnesses: &Witnesses<'_>) -> Vec<usize> {
     (0..NODES).filter(is_common).collect()
 }
 
-fn word<'a>(witnesses: &Witnesses<'a>, node: usize, tap: usize) -> Vec<Hypothesis<'a>> {
-    let generations = witnesses.generations();
-    let words: Vec<_> = generations
-        .iter()
-        .filter_map(|uploaded| {
-            let weight = *uploaded.kernel.nodes().get(node)?.get(tap)?;
-            Some((uploaded.generation, u32::from(weight.cast_unsigned())))
-        })
-        .collect();
-    let bits = (0..BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
-    bits.map(|(bit, read)| {
-        let defect = reading(&words, &read, |word| i64::from(word as u16 as i16));
-        let cause = cause(node, tap, &format!(", bit {bit}"), defect);
-        let kernels = super::kernels(&generations, |uploaded| {
-            let weight = super::table_word::changed(&read, uploaded)?;
-            with_word(uploaded.kernel, node, tap, weight as u16 as i16)
-        });
-        super::with_kernels(cause, kernels)
-    })
-    .collect()
-}
-
-/// A word as a suspect; `bit` names the bit, if it is one.
-pub(super) fn cause(node: usize, tap: usize, bit: &str, defect: String) -> Cause {
-    let weight = TAP_NAMES.get(tap).copied().unwrap_or_default();
-    Cause {
-        part: "kernel word",
-        place: format!("kernel node {node}, weight {weight}{bit}"),
-        defect,
-        next_step: format!(
-            "Check node {node} of the kernel as the datapath reads it, and the memory that holds weight {weight}."
-        ),
+impl KernelWord {
+    /// The word in a kernel, in units of 2^-14.
+    pub(super) fn of(self, kernel: &Kernel) -> Option<i16> {
+        kernel.nodes().get(self.node)?.get(self.tap).copied()
     }
-}
 
-/// The kernel with another weight at one place.
-pub(super) fn with_word(kernel: &Kernel, node: usize, tap: usize, weight: i16) -> Option<Kernel> {
-    let mut nodes = kernel.nodes().to_vec();
-    *nodes.get_mut(node)?.get_mut(tap)? = weight;
-    Kernel::from_nodes(nodes).ok()
+    /// The kernel with this word replaced.
+    pub(super) fn replaced(self, kernel: &Kernel, weight: i16) -> Option<Kernel> {
+        let mut nodes = kernel.nodes().to_vec();
+        *nodes.get_mut(self.node)?.get_mut(self.tap)? = weight;
+        Kernel::from_nodes(nodes).ok()
+    }
+
+    /// The word as a suspect; `bit` names the bit, if it is one.
+    pub(super) fn cause(self, bit: &str, defect: String) -> Cause {
+        let Self { node, tap } = self;
+        let weight = TAP_NAMES.get(tap).copied().unwrap_or_default();
+        Cause {
+            part: "kernel word",
+            place: format!("kernel node {node}, weight {weight}{bit}"),
+            defect,
+            next_step: format!(
+                "Check node {node} of the kernel as the datapath reads it, and the memory that holds weight {weight}."
+            ),
+        }
+    }
+
+    /// The word with each of its bits broken.
+    fn inverted<'a>(self, generations: &[Uploaded<'_>]) -> Vec<Hypothesis<'a>> {
+        let word = |uploaded: &Uploaded<'_>| {
+            Some((uploaded.generation, self.of(uploaded.kernel)?.cast_unsigned().into()))
+        };
+        let words: Vec<Word> = generations.iter().filter_map(word).collect();
+        let signed = |word: u32| word as u16 as i16;
+        let broken = |bit, read: &[Word]| {
+            let defect = reading(&words, read, |word| signed(word).into());
+            let kernels = super::kernels(generations, |uploaded| {
+                self.replaced(uploaded.kernel, signed(changed(read, uploaded)?))
+            });
+            super::with_kernels(self.cause(&format!(", bit {bit}"), defect), kernels)
+        };
+        let of_bit = |bit| inversions(&words, bit).iter().map(|read| broken(bit, read)).collect::<Vec<_>>();
+        (0..BITS).flat_map(of_bit).collect()
+    }
 }

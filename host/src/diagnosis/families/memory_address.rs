@@ -13,6 +13,10 @@ use crate::diagnosis::witnesses::{Witness, Witnesses};
 /// Columns that the newest sample is ahead of the middle of the row when the first output is read.
 const LOOK_AHEAD: usize = 3;
 
+/// On what conditions other ways of counting explain what was seen.
+const FRAME: &str = " if addresses are counted from each frame's start,";
+const ROW: &str = " if addresses are counted from each row's start,";
+
 /// From where the ring's addresses are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Origin {
@@ -52,9 +56,6 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         .flat_map(|ring| origins.map(|(origin, counted)| hypothesis(ring, origin, counted)))
         .collect()
 }
-
-const FRAME: &str = " if addresses are counted from each frame's start,";
-const ROW: &str = " if addresses are counted from each row's start,";
 
 /// The ring with each of its address lines stuck.
 pub(super) fn rings(witnesses: &Witnesses<'_>) -> impl Iterator<Item = BrokenRing> + use<> {

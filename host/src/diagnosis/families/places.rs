@@ -3,7 +3,6 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::diagnosis::Case;
-use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::{Cause, Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 
@@ -72,8 +71,7 @@ fn in_frame(case: &Case<'_>, row: &Witness<'_>, frame: usize) -> Option<Place> {
 }
 
 fn of_input(row: &Witness<'_>, rows: isize) -> Option<Place> {
-    let tables: RowTables<'_> = row.tables();
-    (tables.corrected(row.samples_at(rows)?) == row.found).then_some(Place::Input { rows })
+    (row.tables().corrected(row.samples_at(rows)?) == row.found).then_some(Place::Input { rows })
 }
 
 impl Place {

@@ -1,6 +1,8 @@
 //! One row's table entry with a bit inverted.
 
-use super::table_word::{changed, inversions, reading};
+use halfrow_model::STEP_ONE;
+
+use super::table_word::{Word, changed, inversions, reading};
 use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::{Cause, Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
@@ -24,15 +26,20 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
         .collect();
     let bits = (0..BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
     bits.map(|(bit, read)| {
-        let cause = cause(row, format!("row {row}'s factor, bit {bit}"), reading(&words, &read, i64::from));
+        let defect = format!("{}{}", reading(&words, &read, i64::from), illegal(&read));
+        let cause = cause(row, format!("row {row}'s factor, bit {bit}"), defect);
         Hypothesis::new(cause, move |witness| {
-            (witness.row == row)
-                .then(|| changed(&read, &witness.uploaded))
-                .flatten()
-                .map(|step| with_step(witness, step))
+            let read = changed(&read, &witness.uploaded).filter(|_| witness.row == row);
+            read.map(|step| with_step(witness, step))
         })
     })
     .collect()
+}
+
+/// A factor above 1 reads ahead of what the ring holds, where the simulation ends.
+fn illegal(read: &[Word]) -> &'static str {
+    let is_illegal = read.iter().any(|word| word.1 > STEP_ONE);
+    if is_illegal { ", above 1, where only part of the row can be foretold," } else { "" }
 }
 
 /// The entry of `row` as a suspect.

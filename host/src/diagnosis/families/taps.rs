@@ -1,6 +1,6 @@
 //! Taps that carry other samples than their own.
 
-use crate::diagnosis::datapath::{DeadTap, RowTables, Wiring};
+use crate::diagnosis::datapath::{DeadTap, Wiring};
 use crate::diagnosis::hypothesis::{Cause, Hypothesis};
 use crate::diagnosis::witnesses::Witnesses;
 
@@ -63,7 +63,7 @@ fn other_colour<'a>() -> Hypothesis<'a> {
 /// The defect of a datapath that is wired like this.
 pub(super) fn wired<'a>(wiring: Wiring, cause: Cause) -> Hypothesis<'a> {
     Hypothesis::new(cause, move |witness| {
-        let (tables, samples): (RowTables<'_>, _) = (witness.tables(), witness.samples());
+        let (tables, samples) = (witness.tables(), witness.samples());
         Some(tables.run(&wiring, |column, _| tables.sample_of(samples, column)).into())
     })
 }
