@@ -62,6 +62,12 @@ impl OutBanks {
         self.filling.len() + self.full.len() < self.count
     }
 
+    /// Whether all banks are free.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.filling.is_empty() && self.full.is_empty()
+    }
+
     /// Whether no row is being collected, so that the core is empty.
     #[must_use]
     pub fn is_idle(&self) -> bool {
@@ -77,6 +83,12 @@ impl OutBanks {
     /// The complete rows, oldest first.
     pub fn complete(&self) -> impl Iterator<Item = &RowOut> {
         self.full.iter()
+    }
+
+    /// The oldest complete row from the number `sequence` on.
+    #[must_use]
+    pub fn first_from(&self, sequence: u32) -> Option<&RowOut> {
+        self.full.iter().find(|row| row.name.sequence >= sequence)
     }
 
     /// Takes the oldest complete row and frees its bank.

@@ -4,10 +4,14 @@ mod identity;
 mod rows;
 mod session;
 mod setup;
+#[cfg(test)]
+mod tests;
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{Entries, Malformed, Refusal, RefusalCode, Reply, Request, ResetLevel, Status};
+use halfrow_protocol::message::{
+    Entries, Malformed, Refusal, RefusalCode, Reply, Request, ResetLevel, Status,
+};
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Packet};
 
 use crate::faults::BoardFault;
@@ -58,7 +62,8 @@ impl Board {
         })
     }
 
-    /// Takes bytes from the host at the time `now` since the board was switched on.
+    /// Takes bytes from the host that arrive together, at the time `now` since the board was switched on. A frame's last
+    /// row leaves behind them, so that a next frame among them enters while it leaves.
     pub fn receive(&mut self, bytes: &[u8], now: Duration) {
         let mut decoder = std::mem::take(&mut self.decoder);
         let mut bytes = bytes;
@@ -71,6 +76,7 @@ impl Board {
             self.play();
         }
         self.decoder = decoder;
+        self.flush();
     }
 
     /// Bytes that wait to be sent to the host.
@@ -81,16 +87,12 @@ impl Board {
     fn packet(&mut self, packet: &Packet<'_>, now: Duration) {
         let header = packet.header;
         count(&mut self.status.packets);
-        if self.session.is_open(header.session) {
-            self.session.heard(now);
-            self.rows.acknowledge(header.window);
-            self.free_acknowledged();
-        } else if header.kind != Kind::Hello.code() {
-            count(&mut self.status.foreign_packets);
-            if header.kind != Kind::RowAck.code() {
-                self.refuse(&header, (RefusalCode::Session, 0));
+        if header.kind != Kind::Hello.code() {
+            if !self.session.is_open(header.session) {
+                return self.turn_away(&header);
             }
-            return;
+            self.session.heard(now);
+            self.acknowledge(header.window);
         }
         let done = match Request::read(packet) {
             Ok(request) => self.carry_out(&header, &request, now),
@@ -99,6 +101,14 @@ impl Board {
         };
         if let Err(refused) = done {
             self.refuse(&header, refused);
+        }
+    }
+
+    /// Counts a packet of a session that is not open, and says so.
+    fn turn_away(&mut self, header: &Header) {
+        count(&mut self.status.foreign_packets);
+        if header.kind != Kind::RowAck.code() {
+            self.refuse(header, (RefusalCode::Session, 0));
         }
     }
 
@@ -118,7 +128,7 @@ impl Board {
                 Reply::TableWrite
             }
             Request::TableRead(span) => {
-                read = self.read_entries(span)?;
+                read = self.read_packet(span)?;
                 Reply::TableRead(Entries { span: *span, bytes: &read })
             }
             Request::TableCrc(span) => Reply::TableCrc(crc32fast::hash(&self.read_entries(span)?)),
@@ -133,29 +143,29 @@ impl Board {
             Request::RowIn(row) => return self.row_in(row),
             Request::RowAck => return Ok(()),
         };
-        self.reply(header, &reply);
+        self.answer(header, self.session.number(), &reply);
         if matches!(request, Request::Reset(reset) if reset.level == ResetLevel::Session) {
             self.session.close();
         }
         Ok(())
     }
 
-    fn reply(&mut self, request: &Header, reply: &Reply<'_>) {
-        // A refusal to a foreign session carries that session's number, so that its host can tell.
-        let foreign = !self.session.is_open(request.session) && request.session != 0;
+    fn answer(&mut self, request: &Header, session: u8, reply: &Reply<'_>) {
         let header = Header {
             kind: reply.kind().code(),
             sequence: request.sequence,
             reply: true,
-            session: if foreign { request.session } else { self.session.number() },
+            session,
             window: self.rows.credit(),
         };
         self.send(&header, reply);
     }
 
+    /// Refuses under the request's own session number, so that a host of another session knows that it is meant.
     fn refuse(&mut self, request: &Header, (code, detail): Refused) {
         count(&mut self.status.refusals);
-        self.reply(request, &Reply::Refusal(Refusal { code, kind: request.kind, detail }));
+        let refusal = Reply::Refusal(Refusal { code, kind: request.kind, detail });
+        self.answer(request, request.session, &refusal);
     }
 
     fn send(&mut self, header: &Header, reply: &Reply<'_>) {

@@ -42,6 +42,8 @@ pub use crate::kernel::{Kernel, NODES, Node, Weight};
 pub use crate::options::{OptionError, Options, TapCount};
 pub use crate::player::{PlayError, Player, RowIn};
 pub use crate::settings::{Settings, SettingsError};
-pub use crate::tables::{Bank, Bound, Port, TABLE_BANKS, TableError, Tables, UNSTRETCHED};
+pub use crate::tables::{Bank, Bound, Port, TableError, Tables, UNSTRETCHED};
 pub use crate::value::ValueError;
-pub use crate::wire::{Disconnected, Wire, WireError, WireFault, WireFaultError, WireOptions, WireValueError};
+pub use crate::wire::{
+    Disconnected, Wire, WireError, WireFault, WireFaultError, WireOptions, WireValueError,
+};

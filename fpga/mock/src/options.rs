@@ -8,6 +8,7 @@ const RING: Limits = Limits::new("ring", 64, 16384);
 const LEAST_BLANKING: Limits = Limits::new("least-blanking", 0, 4095);
 const ROW_BANKS_IN: Limits = Limits::new("row-banks-in", 2, 255);
 const ROW_BANKS_OUT: Limits = Limits::new("row-banks-out", 2, 255);
+const TABLE_BANKS: Limits = Limits::new("table-banks", 1, 2);
 const MAX_WIDTH: Limits = Limits::new("max-width", 64, 2592);
 const MAX_HEIGHT: Limits = Limits::new("max-height", 1, 2048);
 const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
@@ -70,6 +71,8 @@ pub struct Options {
     pub row_banks_in: u8,
     /// Rows that were played and wait to be fetched, 2 to 255.
     pub row_banks_out: u8,
+    /// Banks of tables, 1 or 2: with one, what is written is what rows use.
+    pub table_banks: u8,
     /// Taps of the core.
     pub taps: TapCount,
     /// Columns of the widest row, even, 64 to 2592.
@@ -90,6 +93,7 @@ impl Default for Options {
             least_blanking: 0,
             row_banks_in: 4,
             row_banks_out: 4,
+            table_banks: 2,
             taps: TapCount::Seven,
             max_width: 2048,
             max_height: 2048,
@@ -112,6 +116,7 @@ impl Options {
             "least-blanking" => self.least_blanking = LEAST_BLANKING.parse(value)?,
             "row-banks-in" => self.row_banks_in = ROW_BANKS_IN.parse(value)?,
             "row-banks-out" => self.row_banks_out = ROW_BANKS_OUT.parse(value)?,
+            "table-banks" => self.table_banks = TABLE_BANKS.parse(value)?,
             "max-width" => self.max_width = MAX_WIDTH.parse(value)?,
             "max-height" => self.max_height = MAX_HEIGHT.parse(value)?,
             "pixel-clock" => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
@@ -140,6 +145,7 @@ impl Options {
         LEAST_BLANKING.check(self.least_blanking.into())?;
         ROW_BANKS_IN.check(self.row_banks_in.into())?;
         ROW_BANKS_OUT.check(self.row_banks_out.into())?;
+        TABLE_BANKS.check(self.table_banks.into())?;
         MAX_WIDTH.check(self.max_width.into())?;
         MAX_HEIGHT.check(self.max_height.into())?;
         PIXEL_CLOCK.check(self.pixel_clock.into())?;

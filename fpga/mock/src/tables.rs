@@ -1,13 +1,11 @@
-//! The tables that rows are made with, in two banks: one is written while rows use the other.
+//! The tables that rows are made with, in two banks: one is written while rows use the other. A small build has one
+//! bank, which is both.
 
 use std::sync::Arc;
 
 use crate::faults::BoardFault;
 use crate::kernel::{Kernel, NODES, Node};
 use crate::options::{Options, TapCount};
-
-/// Banks of tables: a shadow bank and an active one.
-pub const TABLE_BANKS: u8 = 2;
 
 /// The table entry of a row that is not stretched, 1.0; also the largest.
 pub const UNSTRETCHED: u32 = 1 << 24;
@@ -89,10 +87,11 @@ struct Commit {
     first_frame: u16,
 }
 
-/// Both banks of tables, and the faults that lie in them.
+/// The banks of tables, and the faults that lie in them.
 #[derive(Debug)]
 pub struct Tables {
-    shadow: Contents,
+    /// None where the active bank itself is written.
+    shadow: Option<Contents>,
     active: Contents,
     commit: Option<Commit>,
     taps: TapCount,
@@ -110,7 +109,7 @@ impl Tables {
             generation: 0,
         };
         Self {
-            shadow: contents(),
+            shadow: (options.table_banks > 1).then(contents),
             active: contents(),
             commit: None,
             taps: options.taps,
@@ -125,7 +124,7 @@ impl Tables {
     /// If a row is not in the table, a factor is not from 1 to 2^24, or the shadow bank waits for its frame.
     pub fn write_factors(&mut self, first: usize, factors: &[u32]) -> Result<(), TableError> {
         self.check_writable()?;
-        let entries = span(&mut self.shadow.factors, first, factors.len())?;
+        let entries = span(&mut self.shadow_mut().factors, first, factors.len())?;
         if let Some(place) = factors.iter().position(|factor| !(1..=UNSTRETCHED).contains(factor)) {
             return Err(TableError::Factor { row: first + place, factor: factors[place] });
         }
@@ -139,32 +138,37 @@ impl Tables {
     /// If a node is not in the kernel, needs taps that the build lacks, or the shadow bank waits for its frame.
     pub fn write_nodes(&mut self, first: usize, nodes: &[Node]) -> Result<(), TableError> {
         self.check_writable()?;
-        let entries = span(&mut Arc::make_mut(&mut self.shadow.kernel).nodes, first, nodes.len())?;
-        if self.taps == TapCount::Five
-            && let Some(place) = nodes.iter().position(Node::needs_outer_taps)
-        {
+        let five = self.taps == TapCount::Five;
+        let entries = span(&mut Arc::make_mut(&mut self.shadow_mut().kernel).nodes, first, nodes.len())?;
+        if five && let Some(place) = nodes.iter().position(Node::needs_outer_taps) {
             return Err(TableError::OuterTaps { node: first + place });
         }
         entries.copy_from_slice(nodes);
         Ok(())
     }
 
-    /// Commits the shadow bank: from row 0 of `first_frame` on it is the active one and has this generation.
+    /// Commits the shadow bank: from row 0 of `first_frame` on it is the active one and has this generation. With one bank
+    /// it has it at once.
     ///
     /// # Errors
     /// If an earlier commit has not taken effect yet.
     pub fn commit(&mut self, generation: u8, first_frame: u16) -> Result<(), TableError> {
         self.check_writable()?;
-        self.commit = Some(Commit { generation, first_frame });
+        if self.shadow.is_some() {
+            self.commit = Some(Commit { generation, first_frame });
+        } else {
+            self.begin(generation);
+        }
         Ok(())
     }
 
     /// Row 0 of `frame` begins: a commit for this frame takes effect.
     pub fn start_frame(&mut self, frame: u16) {
         if let Some(commit) = self.commit.take_if(|commit| commit.first_frame == frame) {
-            std::mem::swap(&mut self.shadow, &mut self.active);
-            self.active.generation = commit.generation;
-            self.rows_bound = 0;
+            if let Some(shadow) = &mut self.shadow {
+                std::mem::swap(shadow, &mut self.active);
+            }
+            self.begin(commit.generation);
         }
     }
 
@@ -219,7 +223,13 @@ impl Tables {
     /// The generation of the shadow bank: of rows that entered before the last commit took effect.
     #[must_use]
     pub fn shadow_generation(&self) -> u8 {
-        self.shadow.generation
+        self.contents(Bank::Shadow).generation
+    }
+
+    /// Whether a commit has not taken effect yet.
+    #[must_use]
+    pub fn has_commit(&self) -> bool {
+        self.commit.is_some()
     }
 
     /// Whether this generation is the active one, or waits for its frame.
@@ -242,9 +252,19 @@ impl Tables {
 
     fn contents(&self, bank: Bank) -> &Contents {
         match bank {
-            Bank::Shadow => &self.shadow,
+            Bank::Shadow => self.shadow.as_ref().unwrap_or(&self.active),
             Bank::Active => &self.active,
         }
+    }
+
+    fn shadow_mut(&mut self) -> &mut Contents {
+        self.shadow.as_mut().unwrap_or(&mut self.active)
+    }
+
+    /// What the active bank holds is a new generation.
+    fn begin(&mut self, generation: u8) {
+        self.active.generation = generation;
+        self.rows_bound = 0;
     }
 
     fn check_writable(&self) -> Result<(), TableError> {

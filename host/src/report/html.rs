@@ -91,8 +91,11 @@ fn next(report: &Report) -> Markup {
 fn suspect(suspect: &Suspect) -> Markup {
     html! {
         li {
-            h3 { (plain(suspect.part)) ", " (plain(&suspect.place)) }
-            p { (plain(&suspect.evidence)) " It explains " (wording::percent(suspect.explained)) " of the differences." }
+            h3 {
+                (plain(suspect.part)) ", " (plain(&suspect.place))
+                span.share { " explains " (wording::percent(suspect.explained)) " of the differences" }
+            }
+            p { (plain(&suspect.evidence)) }
             p { strong { "Next: " } (plain(&suspect.next_step)) }
         }
     }

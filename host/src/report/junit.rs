@@ -63,12 +63,12 @@ fn verdict_case(report: &Report) -> TestCase {
         Verdict::Fail => Outcome::Failed,
         Verdict::Error => Outcome::Error,
     };
-    let suspicion = |suspect: &Suspect| {
+    let said = |suspect: &Suspect| {
         let (part, place) = (suspect.part, &suspect.place);
-        format!("{part}, {place}: {} {}", suspect.evidence, suspect.next_step)
+        [format!("{part}, {place}: {}", suspect.evidence), format!("Next: {}", suspect.next_step)]
     };
-    let details = report.suspects.iter().map(suspicion).chain(report.remedy.clone());
-    let details: Vec<_> = details.map(|detail| plain(&detail).into_owned()).collect();
+    let details = report.suspects.iter().flat_map(said).chain(wording::remedy(report).map(str::to_owned));
+    let details: Vec<_> = details.map(|line| plain(&line).into_owned()).collect();
     case("verify", "verdict", status(outcome, &report.headline, &details.join("\n")))
 }
 

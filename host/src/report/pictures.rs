@@ -15,8 +15,6 @@ pub(super) use crop::{Window, windows};
 pub(super) use map::{BOX, difference_map};
 pub(super) use scale::steps_up_to;
 
-/// The widest preview, in pixels.
-const MAX_WIDTH: usize = 960;
 /// The narrowest preview that still shows something.
 const MIN_WIDTH: usize = 64;
 
@@ -48,13 +46,17 @@ impl Picture {
     }
 }
 
-/// The frame as a picture of at most `most_bytes` and [`MAX_WIDTH`] columns, as large as that allows; none when not even
+/// The frame as a picture of at most `max_width` columns and `most_bytes`, as large as that allows; none when not even
 /// [`MIN_WIDTH`] columns fit.
 ///
 /// # Errors
 /// The PNG encoder's.
-pub(super) fn preview(frame: &Frame, most_bytes: usize) -> Result<Option<Picture>, EncodingError> {
-    let mut side = frame.width().div_ceil(MAX_WIDTH);
+pub(super) fn preview(
+    frame: &Frame,
+    max_width: usize,
+    most_bytes: usize,
+) -> Result<Option<Picture>, EncodingError> {
+    let mut side = frame.width().div_ceil(max_width);
     loop {
         let picture = Picture::new(&preview::thumbnail(frame, frame.width().div_ceil(side)))?;
         if picture.len() <= most_bytes {

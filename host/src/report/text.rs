@@ -77,7 +77,7 @@ fn frames(report: &Report) -> String {
             frame.number.to_string(),
             shortened(&plain(&frame.name)),
             grouped(frame.rows),
-            grouped(comparison.differences),
+            wording::differences(report, frame),
             comparison.first.map_or_else(String::new, |first| format!("{}, {}", first.row, first.column)),
             comparison.first.map_or_else(String::new, |_| comparison.largest.to_string()),
         ]);

@@ -121,7 +121,10 @@ pub(super) fn link(link: &LinkReport) -> String {
             grouped(link.retry_limit)
         )),
     }
-    parts.extend(link.round_trip_us.map(|time| format!("round trip {} µs", grouped(time))));
+    // A virtual clock may stand still over a round trip.
+    parts.extend(
+        link.round_trip_us.filter(|&time| time > 0).map(|time| format!("round trip {} µs", grouped(time))),
+    );
     format!("{}: {}", link.name, parts.join(", "))
 }
 
@@ -132,6 +135,14 @@ pub(super) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
         (_, 0) if judged => Outcome::Passed,
         (Verdict::Error, _) | (_, 0) => Outcome::Error,
         _ => Outcome::Failed,
+    }
+}
+
+/// How many samples of a frame differ. None is only said of a frame that came back whole.
+pub(super) fn differences(report: &Report, frame: &FrameReport) -> String {
+    match (frame.comparison.differences, frame_outcome(report, frame)) {
+        (0, Outcome::Error) => "not whole".to_owned(),
+        (some, _) => grouped(some),
     }
 }
 

@@ -103,6 +103,7 @@ fn run(
         findings.tally = tally;
         End::board("identity", &error)
     })?;
+    tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
     let generations = plan.generations(board.capabilities.taps);
     let end = Run { plan, board: &mut board, generations, progress, findings }.all_steps();
     findings.note_link(&board);

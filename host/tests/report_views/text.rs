@@ -1,5 +1,5 @@
 use halfrow::compare::{Comparison, Difference};
-use halfrow::report::{self, BoardKind, Report};
+use halfrow::report::{self, BoardKind, FrameReport, Report};
 use halfrow::verdict::Verdict;
 
 use crate::made;
@@ -82,6 +82,16 @@ fn a_table_too_long_keeps_the_frames_that_differ() {
     assert!(text.contains("3, 0") && text.contains("alert(1)"), "{text}");
     assert!(!text.contains("builtin:grey"), "{text}");
     assert!(text.contains("… and 49 more frames\n"), "{text}");
+}
+
+#[test]
+fn a_frame_that_did_not_come_back_whole_is_not_said_to_be_equal() {
+    let mut report = made::error();
+    report.frames = vec![FrameReport { rows: 17, ..made::equal_frame((3, "builtin:grey")) }];
+    let text = plain(&report);
+    let words: Vec<_> =
+        text.lines().find(|line| line.contains("builtin:grey")).unwrap().split_whitespace().collect();
+    assert_eq!(words, ["3", "builtin:grey", "17", "not", "whole"]);
 }
 
 #[test]

@@ -5,7 +5,6 @@ use halfrow_protocol::message::{BoardNature, Capabilities, Status};
 use super::Board;
 use crate::faults::BoardFault;
 use crate::options::TapCount;
-use crate::tables::TABLE_BANKS;
 
 /// The arithmetic of fpga/DATAPATH.md.
 const DATAPATH: u16 = 1;
@@ -23,7 +22,7 @@ impl Board {
             datapath: DATAPATH + another,
             max_width: options.max_width,
             max_height: options.max_height,
-            depths: options.depths.iter().map(|depth| 1 << ((depth.bits() - 8) / 2)).sum(),
+            depths: options.depths.iter().fold(0, |bits, depth| bits | 1 << ((depth.bits() - 8) / 2)),
             taps: match options.taps {
                 TapCount::Five => 5,
                 TapCount::Seven => 7,
@@ -31,7 +30,7 @@ impl Board {
             latency: options.latency + claims_more,
             ring: options.ring_size(),
             least_blanking: options.least_blanking,
-            table_banks: TABLE_BANKS,
+            table_banks: options.table_banks,
             row_banks_in: options.row_banks_in,
             row_banks_out: options.row_banks_out,
             step_ports: STEP_PORTS,

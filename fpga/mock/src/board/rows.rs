@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use halfrow_protocol::message::{RefusalCode, Reply, RowIn, RowOut, RowPlace};
+use halfrow_protocol::message::{RefusalCode, Reply, RowIn, RowOut, RowPlace, Status};
 use halfrow_protocol::{Header, Kind, samples};
 
 use super::{Board, Refused, count};
@@ -11,7 +11,7 @@ use crate::player;
 /// Rows that wait to be played, and the numbers that credit and acknowledgement are counted by.
 #[derive(Debug)]
 pub(super) struct RowBanks {
-    banks: u32,
+    banks: u8,
     waiting: BTreeMap<u32, (RowPlace, Vec<u16>)>,
     next_to_play: u32,
     acknowledged: u32,
@@ -27,7 +27,7 @@ pub(super) struct RowBanks {
 impl RowBanks {
     pub(super) fn new(banks: u8) -> Self {
         Self {
-            banks: banks.into(),
+            banks,
             waiting: BTreeMap::new(),
             next_to_play: 0,
             acknowledged: 0,
@@ -38,20 +38,20 @@ impl RowBanks {
         }
     }
 
-    /// Forgets all rows, and waits for `next_row`.
-    pub(super) fn restart(&mut self, next_row: u32) {
-        *self = Self {
+    /// The same banks in the same session, empty, and waiting for `next_row`.
+    pub(super) fn restarted(&self, next_row: u32) -> Self {
+        Self {
             next_to_play: next_row,
             acknowledged: next_row,
             unsent: next_row,
             packets: self.packets,
-            ..Self::new(u8::try_from(self.banks).unwrap_or(u8::MAX))
-        };
+            ..Self::new(self.banks)
+        }
     }
 
     /// The row sequence number before which the host may send.
     pub(super) fn credit(&self) -> u32 {
-        self.next_to_play.saturating_add(self.banks)
+        self.next_to_play.saturating_add(self.banks.into())
     }
 
     pub(super) fn acknowledged(&self) -> u32 {
@@ -59,7 +59,7 @@ impl RowBanks {
     }
 
     /// The host has every row before `window`. It cannot have one that was never sent.
-    pub(super) fn acknowledge(&mut self, window: u32) {
+    fn acknowledge(&mut self, window: u32) {
         self.acknowledged = self.acknowledged.max(window.min(self.unsent));
     }
 
@@ -69,7 +69,7 @@ impl RowBanks {
 
     /// The first row that has not arrived.
     pub(super) fn next_row_in(&self) -> u32 {
-        (self.next_to_play..).find(|row| !self.waiting.contains_key(row)).unwrap_or(u32::MAX)
+        (self.next_to_play..=u32::MAX).find(|row| !self.waiting.contains_key(row)).unwrap_or(u32::MAX)
     }
 
     /// The row in front of `row_sequence`, as far as it is known.
@@ -84,7 +84,8 @@ impl Board {
     /// Takes a row into its bank, or deals with one that came again.
     pub(super) fn row_in(&mut self, row: &RowIn<'_>) -> Result<(), Refused> {
         let place = row.place;
-        if place.row_sequence < self.rows.next_to_play || self.rows.waiting.contains_key(&place.row_sequence) {
+        if place.row_sequence < self.rows.next_to_play || self.rows.waiting.contains_key(&place.row_sequence)
+        {
             self.row_again(place.row_sequence);
             return Ok(());
         }
@@ -104,36 +105,48 @@ impl Board {
     }
 
     fn check_place(&self, place: &RowPlace) -> Result<(), Refused> {
-        let settings = self.player.settings();
-        if !self.configured || place.row == 0 && !self.tables.are_ready_for(place.frame) {
+        if !self.configured || !self.finds_tables(place) {
             return Err((RefusalCode::NotReady, 0));
         }
+        let settings = self.player.settings();
         let fits = place.width == settings.width
             && place.row < settings.height
             && place.last == (place.row == settings.height - 1);
-        let follows = self.rows.predecessor(place.row_sequence).is_none_or(|before| match place.row {
-            0 => before.last,
-            row => before.frame == place.frame && before.row == row - 1,
-        });
-        if fits && follows { Ok(()) } else { Err((RefusalCode::Row, 0)) }
+        if fits && self.follows(place) { Ok(()) } else { Err((RefusalCode::Row, 0)) }
+    }
+
+    /// Whether committed tables will be there when the row enters. While a row in front of it is missing, that may be the
+    /// one that a commit waits for.
+    fn finds_tables(&self, place: &RowPlace) -> bool {
+        let is_next = place.row_sequence == self.rows.next_to_play;
+        self.tables.are_ready_for(place.frame) || !is_next && self.tables.has_commit()
+    }
+
+    /// Whether the row begins a frame or is the one behind its predecessor. One that has not arrived may be the right one.
+    fn follows(&self, place: &RowPlace) -> bool {
+        place.row == 0
+            || match self.rows.predecessor(place.row_sequence) {
+                Some(before) => before.frame == place.frame && before.row == place.row - 1,
+                None => place.row_sequence != self.rows.next_to_play,
+            }
     }
 
     /// A row that is known: if its result is in an out-bank, the host has not got it.
     fn row_again(&mut self, row_sequence: u32) {
-        let complete = self.player.banks.complete().find(|row| row.name.sequence == row_sequence).cloned();
-        match complete {
-            Some(row) if row_sequence >= self.rows.acknowledged => {
-                count(&mut self.status.rows_repeated);
-                let repeats = self.rows.repeats.entry(row_sequence).or_default();
-                *repeats = repeats.saturating_add(1);
-                let repeats = *repeats;
-                self.send_row(&row, repeats);
-            }
-            _ => count(&mut self.status.rows_unneeded),
+        if self.player.banks.first_from(row_sequence).is_some_and(|row| row.name.sequence == row_sequence) {
+            count(&mut self.status.rows_repeated);
+            let repeats = self.rows.repeats.entry(row_sequence).or_default();
+            *repeats = repeats.saturating_add(1);
+            let repeats = *repeats;
+            self.send_row(row_sequence, repeats);
+        } else {
+            count(&mut self.status.rows_unneeded);
         }
     }
 
-    pub(super) fn free_acknowledged(&mut self) {
+    /// Frees the out-banks of all rows before `window`.
+    pub(super) fn acknowledge(&mut self, window: u32) {
+        self.rows.acknowledge(window);
         let acknowledged = self.rows.acknowledged;
         while self.player.banks.complete().next().is_some_and(|row| row.name.sequence < acknowledged) {
             self.player.banks.fetch();
@@ -160,34 +173,48 @@ impl Board {
             self.rows.last_played = Some(place);
             self.send_complete();
         }
+    }
+
+    /// Brings the rest of a frame's last row out.
+    pub(super) fn flush(&mut self) {
         self.player.flush();
         self.send_complete();
     }
 
+    /// Sends the rows that have left the core since the last call.
     fn send_complete(&mut self) {
-        let unsent = self.rows.unsent;
-        let complete: Vec<_> =
-            self.player.banks.complete().filter(|row| row.name.sequence >= unsent).cloned().collect();
-        for row in complete {
-            count(&mut self.status.rows_out);
+        while let Some(row) = self.player.banks.first_from(self.rows.unsent) {
+            let sequence = row.name.sequence;
             let (first, last) = (u32::from(row.first_latency), u32::from(row.last_latency));
-            let least = &mut self.status.least_latency;
-            *least = if *least == 0 { first } else { first.min(*least) }.min(last);
-            self.status.most_latency = self.status.most_latency.max(first).max(last);
-            self.rows.unsent = row.name.sequence + 1;
-            self.send_row(&row, 0);
+            let Status { rows_out, least_latency, most_latency, .. } = &mut self.status;
+            count(rows_out);
+            *least_latency = if *least_latency == 0 { first } else { first.min(*least_latency) }.min(last);
+            *most_latency = first.max(last).max(*most_latency);
+            self.rows.unsent = sequence + 1;
+            self.send_row(sequence, 0);
         }
     }
 
-    fn send_row(&mut self, row: &crate::banks::RowOut, repeats: u16) {
+    /// Sends a row that is in an out-bank.
+    fn send_row(&mut self, sequence: u32, repeats: u16) {
+        let Some(row) = self.player.banks.first_from(sequence) else { return };
+        let settings = self.player.settings();
         let mut packed = Vec::with_capacity(samples::packed_length(row.samples.len()));
         samples::pack(&row.samples, &mut packed);
-        let place = RowPlace {
-            row_sequence: row.name.sequence,
-            frame: row.name.frame,
-            row: row.name.row,
-            width: self.player.settings().width,
-            last: row.name.row + 1 == self.player.settings().height,
+        let out = RowOut {
+            place: RowPlace {
+                row_sequence: row.name.sequence,
+                frame: row.name.frame,
+                row: row.name.row,
+                width: settings.width,
+                last: row.name.row + 1 == settings.height,
+            },
+            generation: row.name.generation,
+            first_latency: row.first_latency,
+            last_latency: row.last_latency,
+            pauses: row.pauses,
+            repeats,
+            packed: &packed,
         };
         let header = Header {
             kind: Kind::RowOut.code(),
@@ -197,15 +224,6 @@ impl Board {
             window: self.rows.credit(),
         };
         self.rows.packets = self.rows.packets.wrapping_add(1);
-        let out = RowOut {
-            place,
-            generation: row.name.generation,
-            first_latency: row.first_latency,
-            last_latency: row.last_latency,
-            pauses: row.pauses,
-            repeats,
-            packed: &packed,
-        };
         self.send(&header, &Reply::RowOut(out));
     }
 }

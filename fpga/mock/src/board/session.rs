@@ -13,6 +13,9 @@ use crate::tables::Tables;
 /// After this silence another host may have the board.
 const SILENCE: Duration = Duration::from_secs(10);
 
+/// The unit in which a host is told how long the board is held.
+const TENTH: Duration = Duration::from_millis(100);
+
 /// The open session, if there is one.
 #[derive(Debug, Default)]
 pub(super) struct Session {
@@ -44,6 +47,13 @@ impl Session {
         }
     }
 
+    /// A host was heard that may be the holder.
+    fn heard_from(&mut self, host: u32, now: Duration) {
+        if self.holder.as_ref().is_some_and(|holder| holder.host == host) {
+            self.heard(now);
+        }
+    }
+
     pub(super) fn close(&mut self) {
         self.holder = None;
     }
@@ -51,7 +61,7 @@ impl Session {
     /// What is left of the silence that a host other than `host` has to wait for.
     fn held_for(&self, host: u32, now: Duration) -> Duration {
         match &self.holder {
-            Some(holder) if holder.host != host => (holder.heard + SILENCE).saturating_sub(now),
+            Some(holder) if holder.host != host => SILENCE.saturating_sub(now.saturating_sub(holder.heard)),
             _ => Duration::ZERO,
         }
     }
@@ -62,27 +72,26 @@ impl Session {
     }
 
     fn was_opened_by(&self, hello: &Hello) -> bool {
-        self.holder
-            .as_ref()
-            .is_some_and(|holder| (holder.nonce, holder.host) == (hello.nonce, hello.host))
+        self.holder.as_ref().is_some_and(|holder| (holder.nonce, holder.host) == (hello.nonce, hello.host))
     }
 }
 
 impl Board {
     /// Opens a session, or answers again the greeting that opened it.
     pub(super) fn greet(&mut self, hello: &Hello, now: Duration) -> Result<Welcome, Refused> {
+        self.session.heard_from(hello.host, now);
         if !(hello.version_min..=hello.version_max).contains(&VERSION) {
             return Err((RefusalCode::Version, VERSION.into()));
         }
         let left = self.session.held_for(hello.host, now);
         if !left.is_zero() && !hello.take_over {
-            let tenths = left.as_millis().div_ceil(100);
+            // Rounded up, so that the board is free once the host has waited for so long.
+            let tenths = left.as_nanos().div_ceil(TENTH.as_nanos());
             return Err((RefusalCode::Held, u16::try_from(tenths).unwrap_or(u16::MAX)));
         }
         if !self.session.was_opened_by(hello) {
             self.session.open(hello, now);
-            self.drop_rows(0);
-            self.rows = RowBanks::new(self.options.row_banks_in);
+            self.drop_rows(RowBanks::new(self.options.row_banks_in));
             self.status = Status::default();
         }
         Ok(Welcome {
@@ -96,16 +105,17 @@ impl Board {
 
     /// Drops what `reset` says. The session itself is closed when the reply is out.
     pub(super) fn reset(&mut self, reset: &Reset) {
-        self.drop_rows(reset.next_row);
+        self.drop_rows(self.rows.restarted(reset.next_row));
         if reset.level == ResetLevel::Tables {
             self.tables = Tables::new(&self.options, self.fault);
             self.configured = false;
         }
     }
 
-    /// Drops the rows in the banks and in the core, and a commit that waits for one of them.
-    fn drop_rows(&mut self, next_row: u32) {
-        self.rows.restart(next_row);
+    /// Drops the rows in the banks and in the core, and a commit that waits for one of them. `rows` are the banks from then
+    /// on.
+    fn drop_rows(&mut self, rows: RowBanks) {
+        self.rows = rows;
         self.tables.forget_commit();
         let settings = self.player.settings().clone();
         // The same build with the same settings stood before, so it can be made again.

@@ -1,8 +1,7 @@
 //! Geometry and tables: written, read back through the datapath's ports, committed.
 
-use halfrow_protocol::message::{
-    Bank, Commit, Configuration, Entries, NODES, RefusalCode, Span, Table,
-};
+use halfrow_protocol::MAX_PAYLOAD;
+use halfrow_protocol::message::{Bank, Commit, Configuration, Entries, NODES, RefusalCode, Span, Table};
 
 use super::identity::{KERNEL_PORTS, STEP_PORTS};
 use super::{Board, Refused};
@@ -11,9 +10,12 @@ use crate::kernel::Node;
 use crate::settings::{Settings, SettingsError};
 use crate::tables::{self, Port, TableError};
 
+/// Bytes of a span in front of the entries.
+const SPAN: usize = 7;
+
 impl Board {
     pub(super) fn configure(&mut self, wanted: &Configuration) -> Result<(), Refused> {
-        if !self.player.banks.is_idle() || self.rows.is_waiting() {
+        if !self.player.banks.is_empty() || self.rows.is_waiting() {
             return Err((RefusalCode::Busy, 0));
         }
         let settings = Settings {
@@ -53,11 +55,18 @@ impl Board {
         };
         let entry = |place: usize| u16::try_from(place).unwrap_or(u16::MAX);
         written.map_err(|error| match error {
-            TableError::NoSuchEntry { entry: place, .. } => (RefusalCode::Range, entry(place)),
+            TableError::NoSuchEntry { .. } => (RefusalCode::Range, entries.span.first),
             TableError::Factor { row, .. } => (RefusalCode::Range, entry(row)),
             TableError::OuterTaps { node } => (RefusalCode::Taps, entry(node)),
             TableError::CommitPending { .. } => (RefusalCode::Busy, 0),
         })
+    }
+
+    /// The bytes of entries for a reply, as the datapath's port reads them.
+    pub(super) fn read_packet(&self, span: &Span) -> Result<Vec<u8>, Refused> {
+        let bytes = self.read_entries(span)?;
+        let fits = SPAN + bytes.len() <= MAX_PAYLOAD;
+        if fits { Ok(bytes) } else { Err((RefusalCode::Range, span.first)) }
     }
 
     /// The bytes of entries as the datapath's port reads them.
@@ -100,6 +109,9 @@ impl Board {
         }
         if commit.generation == 0 {
             return Err((RefusalCode::Range, 0));
+        }
+        if self.tables.has_commit() {
+            return Err((RefusalCode::Busy, 0));
         }
         let height = self.player.settings().height;
         for (table, ports, count, crc) in [

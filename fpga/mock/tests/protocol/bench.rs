@@ -137,7 +137,10 @@ impl Bench {
     pub(crate) fn greet(&mut self, hello: &Hello) -> Welcome {
         let answer = self.done(&Request::Hello(*hello));
         let Reply::Hello(welcome) = answer.reply() else { panic!("{answer:?}") };
-        assert_eq!(answer.header.session, welcome.session, "the reply to HELLO is the session's first packet");
+        assert_eq!(
+            answer.header.session, welcome.session,
+            "the reply to HELLO is the session's first packet"
+        );
         (self.session, self.window) = (welcome.session, 0);
         welcome
     }

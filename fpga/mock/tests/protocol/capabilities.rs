@@ -62,8 +62,7 @@ fn the_options_of_the_build_show() {
         ..Options::default()
     };
     let values = values(&options, None);
-    let shown: Vec<_> =
-        [2, 3, 4, 5, 6, 7, 8, 0x0a, 0x0b, 0x0f].iter().map(|tag| values[tag]).collect();
+    let shown: Vec<_> = [2, 3, 4, 5, 6, 7, 8, 0x0a, 0x0b, 0x0f].iter().map(|tag| values[tag]).collect();
     assert_eq!(shown, [1920, 1080, 0b101, 5, 17, 4096, 300, 5, 6, 74_250_000]);
 }
 

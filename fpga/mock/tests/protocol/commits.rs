@@ -1,12 +1,13 @@
 //! COMMIT: when tables become active, and when they do not.
 
 use halfrow_mock::{BoardFault, Options, UNSTRETCHED};
-use halfrow_protocol::message::{Bank, Commit, Hello, RefusalCode, Reply, Request, Reset, ResetLevel, Span, Table};
+use halfrow_protocol::message::{Bank, Commit, Hello, RefusalCode, Reply, Request, Reset, ResetLevel, Table};
 
 use crate::bench::{Bench, HELLO, Heard};
-use crate::frames::{TableSet, configuration, ready, row, samples_of};
+use crate::frames::{configuration, ready, row, samples_of};
 use crate::golden_rows::HERMITE;
-use crate::material::{GOLDEN_FACTOR, hermite};
+use crate::material::{GOLDEN_FACTOR, hermite, noise_row};
+use crate::uploads::{TableSet, span};
 
 /// Generation and samples of the rows that came back.
 fn made(heard: &[Heard]) -> Vec<(u8, Vec<u16>)> {
@@ -51,7 +52,7 @@ fn two_frames_back_to_back_have_their_own_tables() {
     bench.done(&golden_tables().commit(2, 2));
     let (mut first, mut second) = (row(1, 1), row(1, 2));
     for row in [&mut first, &mut second] {
-        row.samples = crate::material::noise_row(0, 64);
+        row.samples = noise_row(0, 64);
     }
     // Both are there before the first one's rest has left.
     let both = [bench.row_packet(&first), bench.row_packet(&second)].concat();
@@ -60,7 +61,7 @@ fn two_frames_back_to_back_have_their_own_tables() {
 }
 
 #[test]
-fn rows_of_a_frame_that_has_begun_keep_their_tables() {
+fn every_row_of_the_frame_is_made_with_the_new_tables() {
     let mut bench = ready(&Options::default(), 2);
     bench.send_all(2, [0, 1]);
     bench.window = 2;
@@ -163,20 +164,16 @@ fn another_commit_is_refused_while_one_is_pending_whatever_its_crcs() {
     assert_eq!(bench.refused(&golden_tables().commit(2, 1)), (RefusalCode::Busy, 0));
 }
 
-fn shadow_kernel(bench: &mut Bench) -> Heard {
-    let span = Span { table: Table::Kernel, bank: Bank::Shadow, port: 0, first: 0, count: 65 };
-    bench.done(&Request::TableCrc(span))
-}
-
 #[test]
 fn hello_and_reset_forget_a_pending_commit_and_keep_its_tables() {
     let reset = Request::Reset(Reset { level: ResetLevel::Rows, next_row: 0 });
+    let shadow_kernel = span(Table::Kernel, Bank::Shadow, 0, 0, 65);
     for request in [Request::Hello(Hello { nonce: 7, ..HELLO }), reset] {
         let mut bench = ready(&Options::default(), 1);
-        let kernel = shadow_kernel(&mut bench).payload;
+        let kernel = bench.crc(shadow_kernel);
         bench.session = bench.done(&request).header.session;
         assert_eq!(bench.send(&row(1, 0))[0].refusal(), Some((RefusalCode::NotReady, 0)));
-        assert_eq!(shadow_kernel(&mut bench).payload, kernel);
+        assert_eq!(bench.crc(shadow_kernel), kernel);
         bench.done(&TableSet::unstretched(1).commit(9, 0));
         assert_eq!(made(&bench.send_all(1, [0]))[0].0, 9);
     }

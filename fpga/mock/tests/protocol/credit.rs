@@ -3,8 +3,8 @@
 use halfrow_mock::Options;
 use halfrow_protocol::message::{RefusalCode, Request};
 
-use crate::bench::{Bench, HELLO, rows_of};
-use crate::frames::{make_ready, ready, row};
+use crate::bench::{Bench, rows_of, wire};
+use crate::frames::{ready, row};
 
 fn banks(row_banks_in: u8, row_banks_out: u8) -> Options {
     Options { row_banks_in, row_banks_out, ..Options::default() }
@@ -64,7 +64,7 @@ fn even_a_refused_packet_acknowledges() {
     bench.send_all(8, 0..4);
     bench.window = 1;
     let header = bench.header(0x55);
-    let heard = bench.receive(&crate::bench::wire(&header, |_| {}));
+    let heard = bench.receive(&wire(&header, |_| {}));
     assert_eq!(heard.len(), 2);
     assert_eq!(heard[1].row().place.row_sequence, 1);
 }
@@ -97,24 +97,28 @@ fn one_acknowledgement_may_free_many_banks() {
     assert_eq!(rows_of(&bench.acknowledge(6)), [6, 7]);
 }
 
+/// Streams 60 rows in frames of 20, and fails when nothing moves any more.
+fn stream(row_banks_in: u8, row_banks_out: u8) {
+    let mut bench = ready(&banks(row_banks_in, row_banks_out), 20);
+    let mut credit = window(&mut bench);
+    let mut sent = 0;
+    while bench.window < 60 {
+        let mut heard = bench.send_all(20, sent..credit.min(60));
+        sent = credit.min(60);
+        heard.extend(bench.say(&Request::RowAck));
+        assert!(!heard.is_empty(), "{row_banks_in} in, {row_banks_out} out: stuck at {}", bench.window);
+        let back = bench.window + heard.len() as u32;
+        assert_eq!(rows_of(&heard), (bench.window..back).collect::<Vec<_>>());
+        bench.window = back;
+        credit = heard.iter().map(|packet| packet.header.window).fold(credit, u32::max);
+    }
+}
+
 #[test]
-fn a_frame_streams_through_any_number_of_banks() {
+fn frames_stream_through_any_number_of_banks() {
     for row_banks_in in [2, 3, 4, 255] {
         for row_banks_out in [2, 3, 4, 255] {
-            let mut bench = Bench::switched_on(&banks(row_banks_in, row_banks_out), None);
-            bench.greet(&HELLO);
-            make_ready(&mut bench, 20);
-            let (mut sent, mut back) = (0, 0);
-            while back < 60 {
-                let credit = window(&mut bench).min(60);
-                let mut heard = bench.send_all(20, sent..credit);
-                sent = credit;
-                heard.extend(bench.say(&Request::RowAck));
-                assert!(!heard.is_empty(), "{row_banks_in} in, {row_banks_out} out: stuck at {back}");
-                assert_eq!(rows_of(&heard), (back..back + heard.len() as u32).collect::<Vec<_>>());
-                back += heard.len() as u32;
-                bench.window = back;
-            }
+            stream(row_banks_in, row_banks_out);
         }
     }
 }

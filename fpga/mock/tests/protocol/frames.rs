@@ -1,13 +1,12 @@
 //! Frames of the specification's samples, 64 columns wide, and boards that are ready for them.
 
-use halfrow_mock::{BoardFault, Kernel, Node, Options, UNSTRETCHED};
-use halfrow_protocol::message::{
-    Bank, Commit, Configuration, Entries, Request, RowIn, RowOut, RowPlace, Span, Table,
-};
+use halfrow_mock::{BoardFault, Options};
+use halfrow_protocol::message::{Configuration, Request, RowIn, RowOut, RowPlace};
 use halfrow_protocol::samples;
 
 use crate::bench::{Bench, HELLO, Heard};
-use crate::material::{hermite, noise_row};
+use crate::material::noise_row;
+use crate::uploads::TableSet;
 
 /// Columns of a row.
 pub(crate) const WIDTH: u16 = 64;
@@ -24,7 +23,8 @@ pub(crate) fn row(height: u16, row_sequence: u32) -> Row {
     let frame = (row_sequence / u32::from(height)) as u16;
     let row = (row_sequence % u32::from(height)) as u16;
     let place = RowPlace { row_sequence, frame, row, width: WIDTH, last: row + 1 == height };
-    Row { place, samples: noise_row(row_sequence, WIDTH) }
+    // The formula multiplies by the width.
+    Row { place, samples: noise_row(row_sequence % 10_000, WIDTH) }
 }
 
 /// The samples of a row that came back.
@@ -37,45 +37,6 @@ pub(crate) fn samples_of(row: &RowOut<'_>) -> Vec<u16> {
 /// A configuration for 12-bit rows with the centre in the middle.
 pub(crate) fn configuration(height: u16) -> Configuration {
     Configuration { width: WIDTH, height, centre2: WIDTH - 1, blanking: 0, gap_seed: 0, bits: 12 }
-}
-
-/// Row factors and a kernel, as a host uploads them.
-#[derive(Clone)]
-pub(crate) struct TableSet {
-    factors: Vec<u8>,
-    nodes: Vec<u8>,
-}
-
-impl TableSet {
-    pub(crate) fn new(factors: &[u32], kernel: &Kernel) -> Self {
-        let words = kernel.nodes.iter().flat_map(Node::words);
-        Self {
-            factors: factors.iter().flat_map(|factor| factor.to_le_bytes()).collect(),
-            nodes: words.flat_map(i16::to_le_bytes).collect(),
-        }
-    }
-
-    /// Tables that change no sample.
-    pub(crate) fn unstretched(height: u16) -> Self {
-        Self::new(&vec![UNSTRETCHED; height.into()], &hermite())
-    }
-
-    pub(crate) fn upload(&self, bench: &mut Bench) {
-        bench.done(&write(Table::Steps, 0, &self.factors));
-        bench.done(&write(Table::Kernel, 0, &self.nodes));
-    }
-
-    pub(crate) fn commit(&self, generation: u8, first_frame: u16) -> Request<'static> {
-        let steps_crc = crc32fast::hash(&self.factors);
-        let kernel_crc = crc32fast::hash(&self.nodes);
-        Request::Commit(Commit { steps_crc, kernel_crc, first_frame, generation })
-    }
-}
-
-/// A write of whole entries, from the entry `first` on.
-pub(crate) fn write(table: Table, first: u16, bytes: &[u8]) -> Request<'_> {
-    let count = (bytes.len() / table.entry_bytes()) as u16;
-    Request::TableWrite(Entries { span: Span { table, bank: Bank::Shadow, port: 0, first, count }, bytes })
 }
 
 /// A board of this build that is ready for frames of `height` rows and changes no sample.

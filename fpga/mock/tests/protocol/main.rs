@@ -1,6 +1,6 @@
 //! The board against `protocol/WIRE.md`, rule by rule, through its bytes.
 
-#![expect(clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
+#![expect(clippy::panic, clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
 
 mod bench;
 mod capabilities;
@@ -27,3 +27,4 @@ mod silence;
 mod status;
 mod table_reads;
 mod table_writes;
+mod uploads;

@@ -1,15 +1,12 @@
 //! TABLE_READ and TABLE_CRC: what comes back, through which port, and when.
 
-use halfrow_mock::{BoardFault, Options, Weight};
-use halfrow_protocol::message::{Bank, RefusalCode, Reply, Request, Span, Table};
+use halfrow_mock::{BoardFault, Node, Options, Weight};
+use halfrow_protocol::message::{Bank, RefusalCode, Request, Table};
 
-use crate::bench::Bench;
-use crate::frames::{TableSet, ready, ready_with, write};
+use crate::bench::{Bench, HELLO};
+use crate::frames::{ready, ready_with};
 use crate::material::{crc_of_words, factors, hermite, keys};
-
-fn span(table: Table, bank: Bank, port: u8, first: u16, count: u16) -> Span {
-    Span { table, bank, port, first, count }
-}
+use crate::uploads::{TableSet, span, write};
 
 /// The golden tables of 1080 rows, in the shadow bank.
 fn golden() -> Bench {
@@ -17,24 +14,18 @@ fn golden() -> Bench {
     let bytes: Vec<_> = factors(1080, 1106.697).into_iter().flat_map(u32::to_le_bytes).collect();
     bench.done(&write(Table::Steps, 0, &bytes[..2160]));
     bench.done(&write(Table::Steps, 540, &bytes[2160..]));
-    let words: Vec<_> = hermite().nodes.iter().flat_map(|node| node.words()).collect();
+    let words: Vec<_> = hermite().nodes.iter().flat_map(Node::words).collect();
     let bytes: Vec<_> = words.into_iter().flat_map(i16::to_le_bytes).collect();
     bench.done(&write(Table::Kernel, 0, &bytes));
     bench
 }
 
-fn crc(bench: &mut Bench, span: Span) -> u32 {
-    let answer = bench.done(&Request::TableCrc(span));
-    let Reply::TableCrc(crc) = answer.reply() else { panic!("{answer:?}") };
-    crc
-}
-
 #[test]
 fn the_golden_tables_read_back_with_the_golden_crcs_through_every_port() {
     let mut bench = golden();
-    assert_eq!(crc(&mut bench, span(Table::Steps, Bank::Shadow, 0, 0, 1080)), 0x5f5a_7553);
+    assert_eq!(bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 1080)), 0x5f5a_7553);
     for port in 0..2 {
-        assert_eq!(crc(&mut bench, span(Table::Kernel, Bank::Shadow, port, 0, 65)), 0x16e2_9b0f);
+        assert_eq!(bench.crc(span(Table::Kernel, Bank::Shadow, port, 0, 65)), 0x16e2_9b0f);
     }
 }
 
@@ -52,8 +43,8 @@ fn a_read_answers_with_its_span_and_the_entries() {
 #[test]
 fn the_crc_of_no_entries_is_that_of_no_bytes() {
     let mut bench = Bench::greeted();
-    assert_eq!(crc(&mut bench, span(Table::Steps, Bank::Shadow, 0, 2048, 0)), 0);
-    assert_eq!(crc(&mut bench, span(Table::Kernel, Bank::Active, 1, 65, 0)), 0);
+    assert_eq!(bench.crc(span(Table::Steps, Bank::Shadow, 0, 2048, 0)), 0);
+    assert_eq!(bench.crc(span(Table::Kernel, Bank::Active, 1, 65, 0)), 0);
 }
 
 #[test]
@@ -82,23 +73,23 @@ fn a_read_that_fits_no_packet_is_refused_and_its_crc_is_not() {
     assert_eq!(payload.len(), 7 + 4 * 1018);
     let longer = span(Table::Steps, Bank::Shadow, 0, 5, 1019);
     assert_eq!(bench.refused(&Request::TableRead(longer)), (RefusalCode::Range, 5));
-    crc(&mut bench, longer);
-    crc(&mut bench, span(Table::Steps, Bank::Shadow, 0, 0, 2048));
+    bench.crc(longer);
+    bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 2048));
 }
 
 #[test]
 fn both_banks_are_read_and_a_commit_that_takes_effect_swaps_them() {
     let mut bench = ready(&Options::default(), 1);
-    let mut steps = |bench: &mut Bench, bank| crc(bench, span(Table::Kernel, bank, 0, 0, 65));
-    let none = steps(&mut bench, Bank::Active);
+    let kernel = |bench: &mut Bench, bank| bench.crc(span(Table::Kernel, bank, 0, 0, 65));
+    let none = kernel(&mut bench, Bank::Active);
     assert_eq!(none, crc_of_words([0; 325]));
-    assert_eq!(steps(&mut bench, Bank::Shadow), 0x16e2_9b0f);
+    assert_eq!(kernel(&mut bench, Bank::Shadow), 0x16e2_9b0f);
     bench.send_all(1, [0]);
-    assert_eq!(steps(&mut bench, Bank::Active), 0x16e2_9b0f);
-    assert_eq!(steps(&mut bench, Bank::Shadow), none);
+    assert_eq!(kernel(&mut bench, Bank::Active), 0x16e2_9b0f);
+    assert_eq!(kernel(&mut bench, Bank::Shadow), none);
     TableSet::new(&[1], &keys()).upload(&mut bench);
-    assert_eq!(steps(&mut bench, Bank::Active), 0x16e2_9b0f);
-    assert_eq!(steps(&mut bench, Bank::Shadow), 0x54f5_e990);
+    assert_eq!(kernel(&mut bench, Bank::Active), 0x16e2_9b0f);
+    assert_eq!(kernel(&mut bench, Bank::Shadow), 0x54f5_e990);
 }
 
 #[test]
@@ -121,16 +112,16 @@ fn nothing_is_read_while_a_row_is_inside() {
 #[test]
 fn a_read_shows_what_the_datapath_gets_not_what_was_written() {
     let flipped = BoardFault::KernelWord { node: 16, weight: Weight::G4, bit: 12, hidden: false };
-    let mut bench = ready_with_kernel(flipped);
+    let mut bench = with_hermite(flipped);
     let payload = bench.done(&Request::TableRead(span(Table::Kernel, Bank::Shadow, 0, 16, 1))).payload;
     // Hermite at x = 1/2: g4 = 5/32, 2560 in units of 2^-14; with bit 12 it is 6656.
     assert_eq!(payload[11..13], 6656_u16.to_le_bytes());
 }
 
 /// A board with this fault and Hermite's kernel in its shadow bank.
-fn ready_with_kernel(fault: BoardFault) -> Bench {
+fn with_hermite(fault: BoardFault) -> Bench {
     let mut bench = Bench::switched_on(&Options::default(), Some(fault));
-    bench.greet(&crate::bench::HELLO);
+    bench.greet(&HELLO);
     TableSet::unstretched(1).upload(&mut bench);
     bench
 }
@@ -140,7 +131,7 @@ fn a_hidden_fault_does_not_show_in_a_read() {
     let hidden = BoardFault::RowFactor { row: 0, bit: 3, hidden: true };
     let mut bench = ready_with(&Options::default(), Some(hidden), 1);
     assert_eq!(
-        crc(&mut bench, span(Table::Steps, Bank::Shadow, 0, 0, 1)),
+        bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 1)),
         crc32fast::hash(&(1_u32 << 24).to_le_bytes())
     );
 }

@@ -1,10 +1,11 @@
 //! TABLE_WRITE: what may be written, and when.
 
 use halfrow_mock::{Options, TapCount};
-use halfrow_protocol::message::{Bank, Entries, RefusalCode, Reply, Request, Span, Table};
+use halfrow_protocol::message::{Bank, Entries, RefusalCode, Request, Span, Table};
 
 use crate::bench::{Bench, HELLO};
-use crate::frames::{ready, write};
+use crate::frames::ready;
+use crate::uploads::{span, write};
 
 fn factors(values: &[u32]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
@@ -15,10 +16,7 @@ fn node(words: [i16; 5]) -> Vec<u8> {
 }
 
 fn read(bench: &mut Bench, table: Table, first: u16, count: u16) -> Vec<u8> {
-    let span = Span { table, bank: Bank::Shadow, port: 0, first, count };
-    let answer = bench.done(&Request::TableRead(span));
-    let Reply::TableRead(entries) = answer.reply() else { panic!("{answer:?}") };
-    entries.bytes.to_vec()
+    bench.read(span(table, Bank::Shadow, 0, first, count))
 }
 
 #[test]

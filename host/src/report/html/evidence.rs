@@ -11,6 +11,8 @@ use crate::report::{Evidence, FrameReport, Report};
 
 /// Bytes of all pictures together. Base 64 makes 8.8 MB of them, which leaves over 1 MB of 10 MB to text and charts.
 const MOST_BYTES: usize = 6_600_000;
+/// The widest preview of a frame that is wrong, and of one that is right, in pixels.
+const MAX_WIDTH: (usize, usize) = (960, 480);
 /// Bytes that the map and the crops of one frame stay under, even of noise.
 const DETAIL_BYTES: usize = 150_000;
 /// Windows of a frame that are shown sample by sample.
@@ -43,11 +45,13 @@ fn section(
     kept: &Evidence,
     most_bytes: usize,
 ) -> Result<(Markup, usize), EncodingError> {
-    let differs = frame.comparison.differences > 0 && most_bytes > DETAIL_BYTES;
-    let (details, used) = if differs { details(frame, kept)? } else { Default::default() };
+    let differs = frame.comparison.differences > 0;
+    let (details, used) =
+        if differs && most_bytes > DETAIL_BYTES { details(frame, kept)? } else { Default::default() };
     let left = most_bytes.saturating_sub(used);
-    let input = pictures::preview(&kept.input, left / 2)?;
-    let found = pictures::preview(&kept.found, left - input.as_ref().map_or(0, Picture::len))?;
+    let width = if differs { MAX_WIDTH.0 } else { MAX_WIDTH.1 };
+    let input = pictures::preview(&kept.input, width, left / 2)?;
+    let found = pictures::preview(&kept.found, width, left - input.as_ref().map_or(0, Picture::len))?;
     let used = used + [&input, &found].into_iter().flatten().map(Picture::len).sum::<usize>();
     let markup = html! {
         section.frame {

@@ -45,7 +45,7 @@ fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
             td { (plain(&frame.name)) }
             td { (plain(&frame.timing)) }
             td.number { (grouped(frame.rows)) }
-            td.number { (grouped(comparison.differences)) }
+            td.number { (wording::differences(report, frame)) }
             @if let Some(first) = comparison.first {
                 td.number { (first.row) ", " (first.column) }
                 td.number { (first.expected) }

@@ -1,0 +1,222 @@
+//! Requests and bytes that no host would send: the board stays up, keeps its promises and answers the next HELLO.
+
+use halfrow_mock::{Depth, Options, TapCount};
+use halfrow_protocol::message::{
+    Bank, Commit, Configuration, Entries, Hello, Reply, Request, Reset, ResetLevel, RowIn, RowPlace, Span,
+    Table,
+};
+use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
+use proptest::prelude::*;
+
+use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
+use crate::frames::{make_ready, ready, row, samples_of};
+
+const HEIGHT: u16 = 2;
+
+/// Something that comes over the wire.
+#[derive(Clone, Debug)]
+enum Event {
+    /// The row that the board waits for, or one so far behind it.
+    Row(u32),
+    /// A packet of the open session, or of another one.
+    Packet { kind: u8, payload: Vec<u8>, foreign: bool },
+    /// Bytes that are no packet.
+    Bytes(Vec<u8>),
+    /// The host has so many rows more.
+    Acknowledge(u32),
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    let fields = [field(), field(), field(), field()];
+    let request = (prop::sample::select(Kind::ALL.to_vec()), fields)
+        .prop_map(|(kind, fields)| (kind.code(), payload(kind, fields)));
+    let packet = (any::<u8>(), prop::collection::vec(any::<u8>(), 0..60));
+    let foreign = prop::bool::weighted(0.1);
+    prop_oneof![
+        4 => (0_u32..6).prop_map(Event::Row),
+        1 => (0_u32..4).prop_map(Event::Acknowledge),
+        3 => (prop_oneof![4 => request, 1 => packet], foreign)
+            .prop_map(|((kind, payload), foreign)| Event::Packet { kind, payload, foreign }),
+        1 => prop::collection::vec(any::<u8>(), 0..60).prop_map(Event::Bytes),
+    ]
+}
+
+/// A number near a limit of some field, or any.
+fn field() -> impl Strategy<Value = u32> + Clone {
+    prop_oneof![0_u32..5, 60_u32..70, 1010_u32..1030, 2040_u32..2060, Just(u32::MAX), any::<u32>()]
+}
+
+fn build() -> impl Strategy<Value = Options> {
+    (2_u8..5, 2_u8..5, 1_u8..3, any::<bool>()).prop_map(|(row_banks_in, row_banks_out, table_banks, five)| {
+        let taps = if five { TapCount::Five } else { TapCount::Seven };
+        let depths = vec![Depth::Eight, Depth::Twelve];
+        Options { row_banks_in, row_banks_out, table_banks, taps, depths, ..Options::default() }
+    })
+}
+
+/// The payload of a request of this kind, made of four numbers.
+fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
+    let mut payload = Vec::new();
+    match kind {
+        Kind::Hello => {
+            Request::Hello(Hello { nonce: a, host: b, take_over: c > 9, ..HELLO }).write(&mut payload);
+        }
+        Kind::Status => payload.push(a as u8),
+        Kind::Reset => {
+            let level = [ResetLevel::Rows, ResetLevel::Session, ResetLevel::Tables][a as usize % 3];
+            Request::Reset(Reset { level, next_row: b }).write(&mut payload);
+        }
+        Kind::Echo => payload.resize(a as usize % (MAX_PAYLOAD + 1), b as u8),
+        Kind::TableWrite => {
+            let span = span([a, b, c, d % 400]);
+            let bytes = vec![d as u8; usize::from(span.count) * span.table.entry_bytes()];
+            Request::TableWrite(Entries { span, bytes: &bytes }).write(&mut payload);
+        }
+        Kind::TableRead | Kind::TableCrc => Request::TableCrc(span([a, b, c, d])).write(&mut payload),
+        Kind::Commit => {
+            let (first_frame, generation) = (c as u16, d as u8);
+            Request::Commit(Commit { steps_crc: a, kernel_crc: b, first_frame, generation })
+                .write(&mut payload);
+        }
+        Kind::Configure => Request::Configure(configuration([a, b, c, d])).write(&mut payload),
+        Kind::RowIn => {
+            let (frame, row, width) = (b as u16, c as u16, d as u16 % 2600);
+            let place = RowPlace { row_sequence: a, frame, row, width, last: c > d };
+            let packed = vec![d as u8; samples::packed_length(width.into())];
+            Request::RowIn(RowIn { place, packed: &packed }).write(&mut payload);
+        }
+        Kind::Capabilities | Kind::RowOut | Kind::RowAck | Kind::Refusal => {}
+    }
+    payload
+}
+
+fn span([a, b, c, d]: [u32; 4]) -> Span {
+    let table = if a.is_multiple_of(2) { Table::Steps } else { Table::Kernel };
+    let bank = if b.is_multiple_of(3) { Bank::Active } else { Bank::Shadow };
+    Span { table, bank, port: a as u8 % 4, first: c as u16, count: d as u16 }
+}
+
+fn configuration([a, b, c, d]: [u32; 4]) -> Configuration {
+    let bits = [8, 10, 12, 0][d as usize % 4];
+    Configuration {
+        width: a as u16,
+        height: b as u16,
+        centre2: c as u16,
+        blanking: d as u16 % 1000,
+        gap_seed: d,
+        bits,
+    }
+}
+
+/// A host that checks what holds for every packet of a board, whatever made it come.
+struct Observer {
+    bench: Bench,
+    /// The greatest window since the session or the last RESET.
+    credit: u32,
+    /// The count that the next ROW_OUT carries, if one has come in this session.
+    next_count: Option<u16>,
+}
+
+impl Observer {
+    fn receive(&mut self, bytes: &[u8]) -> Vec<Heard> {
+        let heard = self.bench.receive(bytes);
+        for packet in &heard {
+            let window = packet.header.window;
+            match packet.reply() {
+                Reply::Hello(welcome) => self.enter(welcome.session, window),
+                Reply::Reset => self.credit = window,
+                Reply::RowOut(out) => {
+                    assert!(self.next_count.is_none_or(|count| count == packet.header.sequence));
+                    assert_eq!(packet.header.session, self.bench.session);
+                    assert_eq!(out.packed.len(), samples::packed_length(out.place.width.into()));
+                    assert_ne!(out.generation, 0, "a row without tables");
+                    self.next_count = Some(packet.header.sequence.wrapping_add(1));
+                }
+                _ => {}
+            }
+            assert!(window >= self.credit, "the window went from {} to {window}", self.credit);
+            self.credit = window;
+        }
+        heard
+    }
+
+    /// A session was opened, or its HELLO was repeated.
+    fn enter(&mut self, session: u8, window: u32) {
+        if session != self.bench.session {
+            (self.bench.session, self.bench.window) = (session, 0);
+            (self.credit, self.next_count) = (window, Some(0));
+        }
+    }
+
+    /// The row that the board waits for; 0 when no session is open.
+    fn next_row_in(&mut self) -> u32 {
+        let packet = self.bench.packet(&Request::Status { clear: false });
+        let next_row_in = self.receive(&packet).iter().find_map(|packet| match packet.reply() {
+            Reply::Status(status) => Some(status.next_row_in),
+            _ => None,
+        });
+        next_row_in.unwrap_or(0)
+    }
+
+    fn meet(&mut self, event: Event) {
+        let bytes = match event {
+            Event::Row(behind) => {
+                let number = self.next_row_in().saturating_add(behind);
+                self.bench.row_packet(&row(HEIGHT, number))
+            }
+            Event::Packet { kind, payload, foreign } => {
+                let mut header = self.bench.header(kind);
+                header.session = header.session.wrapping_add(foreign.into());
+                wire(&header, |to| to.extend(payload))
+            }
+            Event::Bytes(bytes) => bytes,
+            Event::Acknowledge(more) => {
+                self.bench.window = self.bench.window.saturating_add(more);
+                self.bench.packet(&Request::RowAck)
+            }
+        };
+        self.receive(&bytes);
+    }
+
+    /// A greeting behind two zeros must be answered, and a frame must come out as it went in.
+    fn recover(mut self) {
+        self.bench.receive(&[0, 0]);
+        self.bench.greet(&Hello { nonce: 0xffff_0000, host: 1, take_over: true, ..HELLO });
+        self.bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }));
+        make_ready(&mut self.bench, HEIGHT);
+        let heard = self.bench.send_all(HEIGHT, 0..2);
+        assert_eq!(rows_of(&heard), [0, 1]);
+        for (number, packet) in (0..).zip(&heard) {
+            assert_eq!(samples_of(&packet.row()), row(HEIGHT, number).samples);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn whatever_comes_the_board_keeps_its_promises_and_answers_the_next_hello(
+        build in build(),
+        events in prop::collection::vec(event(), 0..40),
+    ) {
+        let bench = ready(&build, HEIGHT);
+        let mut observer = Observer { bench, credit: 0, next_count: Some(0) };
+        for event in events {
+            observer.meet(event);
+        }
+        observer.recover();
+    }
+
+    #[test]
+    fn any_bytes_in_any_pieces_are_survived(
+        bytes in prop::collection::vec(prop_oneof![2 => Just(0_u8), 1 => any::<u8>()], 0..9000),
+        size in 1_usize..300,
+    ) {
+        let mut bench = ready(&Options::default(), HEIGHT);
+        for piece in bytes.chunks(size) {
+            bench.receive(piece);
+        }
+        Observer { bench, credit: 0, next_count: None }.recover();
+    }
+}
