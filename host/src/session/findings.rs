@@ -76,7 +76,9 @@ impl Findings {
         }
     }
 
+    /// A check passed; of one that is made again the last word stands.
     pub(super) fn passed(&mut self, name: &'static str, detail: String) {
+        self.checks.retain(|check| check.name != name);
         self.checks.push(Check { name, outcome: Outcome::Passed, detail });
     }
 

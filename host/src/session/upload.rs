@@ -1,7 +1,7 @@
 //! Geometry and tables on their way to the board, and back through the datapath's own ports.
 
 use super::findings::End;
-use super::plan::{Generation, JUDGED, SENSOR_BLANKING, Segment, Timing};
+use super::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
 use super::steps::Run;
 use crate::board::{Bank, BoardError, Configuration, ReadBack, RefusalCode, Table};
 use crate::diagnosis;
@@ -33,6 +33,9 @@ impl Run<'_> {
     fn upload(&mut self, generation: &Generation, first_frame: u16) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         self.board.upload(tables, kernel).map_err(|error| End::board("upload", &error))?;
+        let (rows, nodes) = (tables.steps().len(), kernel.nodes().len());
+        let detail = format!("{rows} row factors and {nodes} kernel nodes, as generation {number}");
+        self.findings.passed("upload", detail);
         let ports = self.check_read_back("read-back", Bank::Shadow, generation)?;
         self.board.commit(tables, kernel, first_frame, *number).map_err(|error| match error {
             BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::TableCrc => End::failed(
@@ -42,12 +45,7 @@ impl Run<'_> {
             ),
             error => End::board("upload", &error),
         })?;
-        if *number == JUDGED {
-            let (rows, nodes) = (tables.steps().len(), kernel.nodes().len());
-            let detail = format!("{rows} row factors and {nodes} kernel nodes, as generation {number}");
-            self.findings.passed("upload", detail);
-            self.findings.passed("read-back", format!("{ports} datapath ports read what was uploaded"));
-        }
+        self.findings.passed("read-back", format!("{ports} datapath ports read what was uploaded"));
         Ok(())
     }
 
@@ -84,12 +82,13 @@ impl Run<'_> {
             Err(error) => return End::board(check, &error),
         };
         let suspects = diagnosis::read_back(wrong.port.table, &expected, &found);
-        let headline = match suspects.first() {
-            Some(suspect) => format!("{}: {}", suspect.place, suspect.evidence),
-            None => "a table's CRC is wrong although every entry reads back right".to_owned(),
+        let (headline, remedy) = match suspects.first() {
+            Some(suspect) => (format!("{}: {}", suspect.place, suspect.evidence), suspect.next_step.clone()),
+            None => (
+                "a table's CRC is wrong although every entry reads back right".to_owned(),
+                "Check the board's CRC unit, and whether the tables change on their own.".to_owned(),
+            ),
         };
-        let remedy = "Check the table memory named above, its write path and its supply; then upload again."
-            .to_owned();
         End::Failed { check, headline, remedy, suspects }
     }
 }
