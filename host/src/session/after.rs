@@ -9,30 +9,39 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::report::Suspect;
 
 impl Run<'_> {
-    /// Judges what was seen, then the tables and the counters.
+    /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
+    /// stands among the checks.
     pub(super) fn judge(&mut self) -> Result<(), End> {
         let after = self.tables_after();
         let status = self.board.status(false).map_err(|error| End::board("counters", &error))?;
         self.findings.note_status(&status);
-        self.frames(after.as_ref().err())?;
-        latency(&self.findings.seen)?;
-        if let Some(latency) = self.findings.seen.latency {
-            let detail = format!("every row takes {} pixel clocks, first and last sample", latency.claimed);
-            self.findings.passed("latency", detail);
+        let frames = self.frames(after.as_ref().err());
+        // Counters are of rows that came back as they should; a run that ends early leaves rows inside.
+        let counters = frames.is_ok().then(|| counters(&status, &self.findings.seen));
+        let latency = latency(&self.findings.seen);
+        let mut ends = Vec::new();
+        let results = [("frames", Some(frames)), ("latency", Some(latency)), ("tables after", Some(after))];
+        for (check, result) in results.into_iter().chain([("counters", counters)]) {
+            match result {
+                Some(Ok(detail)) => self.findings.passed(check, detail),
+                Some(Err(end)) => ends.push(end),
+                None => {}
+            }
         }
-        after?;
-        self.findings.passed("tables after", "the tables are still what was uploaded".to_owned());
-        let detail = counters(&status, &self.findings.seen)?;
-        self.findings.passed("counters", detail);
-        Ok(())
+        let mut ends = ends.into_iter();
+        let first = ends.next();
+        self.findings.also_wrong(ends);
+        first.map_or(Ok(()), Err)
     }
 
     /// The tables must still be what was uploaded.
-    fn tables_after(&mut self) -> Result<(), End> {
+    fn tables_after(&mut self) -> Result<String, End> {
         let judged = self.generations.iter().find(|generation| generation.number == JUDGED).cloned();
-        let Some(judged) = judged.filter(|_| self.streamed_judged()) else { return Ok(()) };
-        let checked = self.check_read_back("tables after", Bank::Active, &judged).map(|_| ());
-        checked.map_err(|end| match end {
+        let Some(judged) = judged.filter(|_| self.streamed_judged()) else {
+            return Ok("no frame came to use them".to_owned());
+        };
+        let checked = self.check_read_back("tables after", Bank::Active, &judged);
+        checked.map(|_| "the tables are still what was uploaded".to_owned()).map_err(|end| match end {
             End::Failed { check, headline, remedy, suspects } => {
                 let headline = format!("the tables changed during the run: {headline}");
                 End::Failed { check, headline, remedy, suspects }
@@ -46,7 +55,7 @@ impl Run<'_> {
         self.findings.seen.frames.iter().any(|frame| frame.generation == JUDGED)
     }
 
-    fn frames(&mut self, tables_after: Option<&End>) -> Result<(), End> {
+    fn frames(&self, tables_after: Option<&End>) -> Result<String, End> {
         let seen = &self.findings.seen;
         if let Some(sentence) = &seen.wrong_generation {
             let remedy = "The board uses stale tables: check when its bank switch takes effect.";
@@ -55,12 +64,12 @@ impl Run<'_> {
         let differing = seen.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
         let (samples, frames) = (seen.samples(), seen.frames.len());
         if differing == 0 {
-            self.findings.passed("frames", format!("{frames} frames, {samples} samples, all equal"));
-            return Ok(());
+            return Ok(format!("{frames} frames, {samples} samples, all equal"));
         }
         // Tables that changed explain the differences better than their pattern does.
-        if let Some(changed @ End::Failed { .. }) = tables_after {
-            return Err(changed.clone());
+        if let Some(End::Failed { headline, remedy, suspects, .. }) = tables_after {
+            let (headline, remedy, suspects) = (headline.clone(), remedy.clone(), suspects.clone());
+            return Err(End::Failed { check: "frames", headline, remedy, suspects });
         }
         let suspects = self.diagnose();
         let wrong = seen.differences();
@@ -91,18 +100,17 @@ impl Run<'_> {
     }
 }
 
-fn latency(seen: &Seen) -> Result<(), End> {
-    match &seen.wrong_latency {
-        None => Ok(()),
-        Some(sentence) => {
-            let wrong = seen.latency.map_or(0, |latency| latency.wrong_rows);
-            Err(End::failed(
-                "latency",
-                format!("{wrong} rows have another latency than the board claims: {sentence}"),
-                "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise.",
-            ))
-        }
-    }
+fn latency(seen: &Seen) -> Result<String, End> {
+    let Some(sentence) = &seen.wrong_latency else {
+        let clocks = seen.latency.map_or(0, |latency| latency.claimed);
+        return Ok(format!("every row takes {clocks} pixel clocks, first and last sample"));
+    };
+    let wrong = seen.latency.map_or(0, |latency| latency.wrong_rows);
+    Err(End::failed(
+        "latency",
+        format!("{wrong} rows have another latency than the board claims: {sentence}"),
+        "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise.",
+    ))
 }
 
 fn counters(status: &Status, seen: &Seen) -> Result<String, End> {

@@ -69,6 +69,9 @@ pub(super) fn conclude(
 }
 
 fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
+    if let Some(end) = &end {
+        findings.note(end.check());
+    }
     match end {
         None if findings.seen.samples() == 0 => Ending {
             exit: Exit::NothingJudged,
@@ -77,12 +80,10 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
             suspects: Vec::new(),
         },
         None => Ending { exit: Exit::Pass, headline: pass(findings), remedy: None, suspects: Vec::new() },
-        Some(End::Failed { check, headline, remedy, suspects }) => {
-            findings.checks.push(Check { name: check, outcome: Outcome::Failed, detail: headline.clone() });
+        Some(End::Failed { headline, remedy, suspects, .. }) => {
             Ending { exit: Exit::Fail, headline, remedy: Some(remedy), suspects }
         }
-        Some(End::Error { check, exit, headline, remedy, .. }) => {
-            findings.checks.push(Check { name: check, outcome: Outcome::Error, detail: headline.clone() });
+        Some(End::Error { exit, headline, remedy, .. }) => {
             Ending { exit, headline, remedy, suspects: Vec::new() }
         }
     }

@@ -35,6 +35,15 @@ impl End {
         Self::Failed { check, headline, remedy: remedy.to_owned(), suspects: Vec::new() }
     }
 
+    /// The check that ended the run.
+    pub(super) fn check(&self) -> Check {
+        let (name, outcome, detail) = match self {
+            Self::Failed { check, headline, .. } => (check, Outcome::Failed, headline),
+            Self::Error { check, headline, .. } => (check, Outcome::Error, headline),
+        };
+        Check { name, outcome, detail: detail.clone() }
+    }
+
     pub(super) fn is_unreachable(&self) -> bool {
         matches!(self, Self::Error { unreachable: true, .. })
     }
@@ -76,10 +85,19 @@ impl Findings {
         }
     }
 
-    /// A check passed; of one that is made again the last word stands.
     pub(super) fn passed(&mut self, name: &'static str, detail: String) {
-        self.checks.retain(|check| check.name != name);
-        self.checks.push(Check { name, outcome: Outcome::Passed, detail });
+        self.note(Check { name, outcome: Outcome::Passed, detail });
+    }
+
+    /// Takes the outcome of a check; of one that is made again the last word stands.
+    pub(super) fn note(&mut self, check: Check) {
+        self.checks.retain(|earlier| earlier.name != check.name);
+        self.checks.push(check);
+    }
+
+    /// What is wrong beside that which ends the run.
+    pub(super) fn also_wrong(&mut self, ends: impl Iterator<Item = End>) {
+        ends.for_each(|end| self.note(end.check()));
     }
 
     /// Takes what the board says of itself.
