@@ -1,1 +1,17 @@
-//! Placeholder.
+//! The same scenarios on every kind of board, the command line from outside, and campaigns of drawn faults.
+//!
+//! [`scenarios`] says what `halfrow verify` must find on which board; [`program`] starts the program as a user does.
+//! [`campaign`] draws single faults of the board by the hundred, and [`poor_links`] links by the thousand; both call the
+//! library, so that a run costs no more than its samples.
+
+// A crate of tests alone: a panic is how it says that something is wrong.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+pub mod campaign;
+pub mod dice;
+pub mod parallel;
+pub mod poor_links;
+pub mod program;
+pub mod scenario;
+pub mod scenarios;
+pub mod system;

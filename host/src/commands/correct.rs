@@ -14,8 +14,8 @@ use super::inputs::{InputArguments, frame_sources};
 use super::lens::{self, Chosen, LensArguments};
 use super::{Context, Failure, print, print_json};
 use crate::board::{Board, BoardError, Configuration, NumberedFrame, ReturnedRow, RowTraffic};
-use crate::frames;
-use crate::session::{FrameSource, JUDGED};
+use crate::frames::{self, Scene, WriteError};
+use crate::session::{self, FrameSource, JUDGED};
 use crate::target::BoardKind;
 use crate::verdict::Exit;
 
@@ -52,10 +52,13 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    if !arguments.model && !arguments.board.is_named(&context.settings) {
+    let settings = &context.settings;
+    if !arguments.model && !arguments.board.is_named(settings) {
         return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
     }
-    let chosen = lens::choose(arguments.tables.as_deref(), &arguments.lens, arguments.kernel.as_deref())?;
+    let file = arguments.tables.as_deref().or(settings.tables.as_deref());
+    let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
+    let chosen = lens::choose(file, &arguments.lens, kernel)?;
     let geometry = chosen.tables.geometry();
     let how = arguments.input.read_options(geometry, arguments.lens.phase);
     let sources = frame_sources(&arguments.inputs, &how, geometry)?;
@@ -65,7 +68,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
             anyhow::anyhow!("{} is there already; give --overwrite to replace it", taken.display()).into()
         );
     }
-    let scene = arguments.lens.scene(1)?;
+    let scene = Scene { geometry: *geometry, ..arguments.lens.scene(1)? };
     let inputs = sources
         .iter()
         .map(|source| match source {
@@ -73,29 +76,41 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
             FrameSource::Builtin(builtin) => builtin.render(&scene).map(Arc::new),
         })
         .collect::<Result<Vec<_>, _>>()?;
-    let (kind, corrected) = if arguments.model {
-        ("model".to_owned(), by_model(&chosen, &inputs)?)
+    let (board, corrected) = if arguments.model {
+        (None, by_model(&chosen, &inputs)?)
     } else {
-        by_board(arguments, context, &chosen, &inputs)?
+        let (kind, corrected) = by_board(arguments, context, &chosen, &inputs)?;
+        (Some(kind), corrected)
     };
     if arguments.output.extension().is_none() {
         std::fs::create_dir_all(&arguments.output).map_err(Failure::error)?;
     }
     for (path, frame) in outputs.iter().zip(&corrected) {
-        frames::write(path, frame, arguments.overwrite).map_err(Failure::error)?;
+        frames::write(path, frame, arguments.overwrite).map_err(unwritten)?;
     }
-    report(arguments.json, &kind, &outputs)
+    report(arguments.json, board, &outputs)
 }
 
-fn report(as_json: bool, kind: &str, outputs: &[PathBuf]) -> Result<Exit, Failure> {
+/// A name without a format is the caller's fault, and nothing was written.
+fn unwritten(error: WriteError) -> Failure {
+    match error {
+        WriteError::Extension { .. } => error.into(),
+        error => Failure::error(error),
+    }
+}
+
+/// Says what was written, and by whom it was corrected: a board, or else the model.
+fn report(as_json: bool, board: Option<BoardKind>, outputs: &[PathBuf]) -> Result<Exit, Failure> {
     if as_json {
+        let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
         let outputs: Vec<_> = outputs.iter().map(|path| path.display().to_string()).collect();
         print_json(
             &json!({ "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs }),
         )?;
     } else {
+        let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
         for path in outputs {
-            print(&format!("wrote {}, corrected by the {kind}, not judged", path.display()))?;
+            print(&format!("wrote {}, corrected by the {whom}, not judged", path.display()))?;
         }
     }
     Ok(Exit::Pass)
@@ -138,7 +153,7 @@ fn by_board(
     context: &Context,
     chosen: &Chosen,
     inputs: &[Arc<Frame>],
-) -> Result<(String, Vec<Frame>), Failure> {
+) -> Result<(BoardKind, Vec<Frame>), Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     if candidate.kind == BoardKind::Replay {
         return Err(
@@ -148,17 +163,21 @@ fn by_board(
     let options = arguments.board.open_options(&context.settings, None)?;
     let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
     let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
-    chosen.tables.check_ring(board.capabilities.ring.into())?;
-    let rows = stream(&mut board, chosen, inputs).map_err(failed)?;
-    board.close().map_err(failed)?;
+    let rows = match session::misfit(&chosen.tables, &chosen.kernel, &board.capabilities) {
+        None => stream(&mut board, chosen, inputs).map_err(failed),
+        Some(misfit) => Err(anyhow::anyhow!(misfit).into()),
+    };
+    // Whatever happened, the next run must find the board free.
+    let closed = board.close();
+    let rows = rows?;
+    closed.map_err(failed)?;
     let frames = rows
         .into_iter()
         .zip(inputs)
         .map(|(samples, input)| Frame::new(input.width(), input.depth(), input.phase(), samples))
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::error)?;
-    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
-    Ok((format!("{kind} board"), frames))
+    Ok((candidate.kind.confirmed_by(board.capabilities.nature), frames))
 }
 
 fn stream(board: &mut Board, chosen: &Chosen, inputs: &[Arc<Frame>]) -> Result<Vec<Vec<u16>>, BoardError> {

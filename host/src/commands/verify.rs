@@ -73,9 +73,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
     let (plan, circumstances) = match &recording {
-        Some(recording) => recorded::restore(recording)?,
+        Some(recording) => recorded::restore(recording, arguments.requires_hardware(settings))?,
         None => (arguments.plan(settings)?, arguments.circumstances(settings)?),
     };
+    plan.check_length()?;
     let candidate = arguments.board.candidate(settings)?;
     if arguments.list {
         print(&listing(&plan))?;
@@ -149,8 +150,7 @@ impl Arguments {
         let geometry = chosen.tables.geometry();
         chosen.tables.check_ring(geometry.width().next_power_of_two())?;
         let how = self.input.read_options(geometry, self.lens.phase);
-        let names =
-            if self.frame.is_empty() { settings.frame.as_deref().unwrap_or_default() } else { &self.frame };
+        let names = self.frame_names(settings);
         let frames = if names.is_empty() {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
@@ -166,7 +166,7 @@ impl Arguments {
             frames,
             repeat: self.repeat,
             fail_fast: self.fail_fast,
-            require_hardware: self.require_hardware || settings.require_hardware.unwrap_or(false),
+            require_hardware: self.requires_hardware(settings),
             take_over: self.board.take_over,
             seed: self.seed.or(settings.seed).unwrap_or(1),
             timeout: self.board.timeout(settings)?,
@@ -175,9 +175,18 @@ impl Arguments {
         })
     }
 
+    fn frame_names<'a>(&'a self, settings: &'a Settings) -> &'a [String] {
+        if self.frame.is_empty() { settings.frame.as_deref().unwrap_or_default() } else { &self.frame }
+    }
+
+    fn requires_hardware(&self, settings: &Settings) -> bool {
+        self.require_hardware || settings.require_hardware.unwrap_or(false)
+    }
+
     fn circumstances(&self, settings: &Settings) -> Result<Circumstances, Failure> {
         let tables = self.tables.as_ref().or(settings.tables.as_ref());
-        let frames = self.frame.iter().filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
+        let names = self.frame_names(settings).iter();
+        let frames = names.filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
         let files = tables.cloned().into_iter().chain(frames);
         Ok(Circumstances {
             arguments: std::env::args().collect(),

@@ -23,8 +23,10 @@ use steps::Run;
 
 pub use golden::judge_the_judge;
 pub use plan::{
-    DECOY, FrameSource, Generation, JUDGED, Plan, SENSOR_BLANKING, ScheduledFrame, Segment, Timing,
+    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, SENSOR_BLANKING, ScheduledFrame, Segment, Timing,
+    TooManyFrames,
 };
+pub use steps::misfit;
 
 /// What the report says of the run beside its findings.
 #[derive(Clone, Debug, Default)]

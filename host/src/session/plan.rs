@@ -23,6 +23,20 @@ pub struct Generation {
     pub kernel: Kernel,
 }
 
+/// The most frames that a plan can have, all repetitions counted: frame numbers have 16 bits, and four frames of noise
+/// are the run's own.
+pub const MOST_FRAMES: usize = (1 << 16) - 4;
+
+/// A plan of more frames than can be numbered.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{frames} frames are more than the {MOST_FRAMES} that a run can number; name fewer, or lower --repeat"
+)]
+pub struct TooManyFrames {
+    /// Frames, all repetitions counted.
+    pub frames: usize,
+}
+
 /// Where a frame comes from.
 #[derive(Clone, Debug)]
 pub enum FrameSource {
@@ -122,6 +136,15 @@ pub const DECOY: u8 = 1;
 pub const JUDGED: u8 = 2;
 
 impl Plan {
+    /// Whether all frames can be numbered.
+    ///
+    /// # Errors
+    /// [`TooManyFrames`] when they cannot.
+    pub fn check_length(&self) -> Result<(), TooManyFrames> {
+        let frames = self.frames.len().saturating_mul(self.repeat as usize);
+        if frames <= MOST_FRAMES { Ok(()) } else { Err(TooManyFrames { frames }) }
+    }
+
     /// The tables that a run uploads, in order, to a board of `taps` taps. The first are a decoy, legal wherever the others
     /// are and different in every row that is stretched: a board that goes on using them is caught.
     ///
@@ -158,7 +181,7 @@ impl Plan {
     /// frames that follow closely, so there the second segment begins with the frames to judge.
     #[must_use]
     pub fn schedule(&self, table_banks: u8) -> Vec<Segment> {
-        let mut numbers = 0_u16..;
+        let mut numbers = 0..=u16::MAX;
         let mut frame = |source: FrameSource, generation| ScheduledFrame {
             number: numbers.next().unwrap_or_default(),
             source,

@@ -1,12 +1,12 @@
 //! The steps of a run, in their order.
 
-use halfrow_model::Taps;
+use halfrow_model::{Kernel, TableSet, Taps};
 
 use super::findings::{End, Findings};
 use super::golden;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan};
-use crate::board::Board;
+use crate::board::{Board, Capabilities};
 use crate::progress::Progress;
 use crate::tables::DATAPATH;
 use crate::target::BoardKind;
@@ -81,7 +81,7 @@ impl Run<'_> {
                     .to_owned(),
             );
         }
-        if let Some(misfit) = self.misfit() {
+        if let Some(misfit) = misfit(&self.plan.tables, &self.plan.kernel, &self.board.capabilities) {
             return error(Exit::Usage, misfit);
         }
         let latency = self.board.capabilities.latency;
@@ -97,31 +97,6 @@ impl Run<'_> {
         );
         self.findings.passed("identity", detail);
         Ok(())
-    }
-
-    /// Why the plan cannot be carried out on this board, if it cannot.
-    fn misfit(&self) -> Option<String> {
-        let (geometry, capabilities) = (self.plan.tables.geometry(), &self.board.capabilities);
-        let (width, height) = (usize::from(capabilities.max_width), usize::from(capabilities.max_height));
-        if geometry.width() > width || geometry.height() > height {
-            return Some(format!(
-                "frames of {} x {} do not fit the board, which takes {width} x {height} at most; use smaller \
-                 frames and tables",
-                geometry.width(),
-                geometry.height()
-            ));
-        }
-        let bits = geometry.depth().bits();
-        if !capabilities.sample_depths().has(bits as u8) {
-            return Some(format!("the board has no {bits}-bit samples; use tables of another depth"));
-        }
-        if self.plan.kernel.taps() == Taps::Seven && capabilities.taps < 7 {
-            return Some(
-                "the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite"
-                    .to_owned(),
-            );
-        }
-        self.plan.tables.check_ring(usize::from(capabilities.ring)).err().map(|error| error.to_string())
     }
 
     fn link(&mut self) -> Result<(), End> {
@@ -145,4 +120,30 @@ impl Run<'_> {
         self.findings.passed("link", detail);
         Ok(())
     }
+}
+
+/// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
+#[must_use]
+pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<String> {
+    let geometry = tables.geometry();
+    let (width, height) = (usize::from(capabilities.max_width), usize::from(capabilities.max_height));
+    if geometry.width() > width || geometry.height() > height {
+        return Some(format!(
+            "frames of {} x {} do not fit the board, which takes {width} x {height} at most; use smaller \
+             frames and tables",
+            geometry.width(),
+            geometry.height()
+        ));
+    }
+    let bits = geometry.depth().bits();
+    if !capabilities.sample_depths().has(bits as u8) {
+        return Some(format!("the board has no {bits}-bit samples; use tables of another depth"));
+    }
+    if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
+        return Some(
+            "the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite"
+                .to_owned(),
+        );
+    }
+    tables.check_ring(usize::from(capabilities.ring)).err().map(|error| error.to_string())
 }

@@ -105,7 +105,7 @@ impl Board {
     }
 
     fn check_place(&self, place: &RowPlace) -> Result<(), Refused> {
-        if !self.configured || !self.finds_tables(place) {
+        if !self.finds_tables(place) {
             return Err((RefusalCode::NotReady, 0));
         }
         let settings = self.player.settings();
@@ -115,7 +115,7 @@ impl Board {
         if fits && self.follows(place) { Ok(()) } else { Err((RefusalCode::Row, 0)) }
     }
 
-    /// Whether committed tables will be there when the row enters. While a row in front of it is missing, that may be the
+    /// Whether committed tables will be there when the row enters; without a configuration there are none. While a row in front of it is missing, that may be the
     /// one that a commit waits for.
     fn finds_tables(&self, place: &RowPlace) -> bool {
         let is_next = place.row_sequence == self.rows.next_to_play;

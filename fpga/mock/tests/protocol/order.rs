@@ -103,6 +103,7 @@ fn nothing_but_row_0_follows_the_last_row() {
     let mut bench = board(2);
     bench.send_all(2, 0..2);
     assert_eq!(refusals(&bench.send(&moved(2, 2, |place| (place.row, place.last) = (1, true)))), ROW);
+    assert_eq!(refusals(&bench.send(&moved(2, 2, |place| (place.frame, place.row) = (0, 2)))), ROW);
     assert_eq!(bench.send_all(2, [2]), []);
 }
 

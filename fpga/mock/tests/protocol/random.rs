@@ -3,7 +3,7 @@
 use halfrow_mock::{Depth, Options, TapCount};
 use halfrow_protocol::message::{
     Bank, Commit, Configuration, Entries, Hello, Reply, Request, Reset, ResetLevel, RowIn, RowPlace, Span,
-    Table,
+    Status, Table,
 };
 use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
 use proptest::prelude::*;
@@ -33,8 +33,8 @@ fn event() -> impl Strategy<Value = Event> {
     let packet = (any::<u8>(), prop::collection::vec(any::<u8>(), 0..60));
     let foreign = prop::bool::weighted(0.1);
     prop_oneof![
-        4 => (0_u32..6).prop_map(Event::Row),
-        1 => (0_u32..4).prop_map(Event::Acknowledge),
+        4 => (0_u32..4).prop_map(Event::Row),
+        3 => (0_u32..4).prop_map(Event::Acknowledge),
         3 => (prop_oneof![4 => request, 1 => packet], foreign)
             .prop_map(|((kind, payload), foreign)| Event::Packet { kind, payload, foreign }),
         1 => prop::collection::vec(any::<u8>(), 0..60).prop_map(Event::Bytes),
@@ -148,20 +148,20 @@ impl Observer {
         }
     }
 
-    /// The row that the board waits for; 0 when no session is open.
-    fn next_row_in(&mut self) -> u32 {
+    /// The board's counters; all 0 when no session is open.
+    fn status(&mut self) -> Status {
         let packet = self.bench.packet(&Request::Status { clear: false });
-        let next_row_in = self.receive(&packet).iter().find_map(|packet| match packet.reply() {
-            Reply::Status(status) => Some(status.next_row_in),
+        let status = self.receive(&packet).iter().find_map(|packet| match packet.reply() {
+            Reply::Status(status) => Some(status),
             _ => None,
         });
-        next_row_in.unwrap_or(0)
+        status.unwrap_or_default()
     }
 
     fn meet(&mut self, event: Event) {
         let bytes = match event {
             Event::Row(behind) => {
-                let number = self.next_row_in().saturating_add(behind);
+                let number = self.status().next_row_in.saturating_add(behind);
                 self.bench.row_packet(&row(HEIGHT, number))
             }
             Event::Packet { kind, payload, foreign } => {
@@ -171,7 +171,7 @@ impl Observer {
             }
             Event::Bytes(bytes) => bytes,
             Event::Acknowledge(more) => {
-                self.bench.window = self.bench.window.saturating_add(more);
+                self.bench.window = self.status().next_row_out.saturating_add(more);
                 self.bench.packet(&Request::RowAck)
             }
         };

@@ -90,21 +90,18 @@ fn samples_beyond_the_depth_are_counted_in_accepted_rows_alone() {
 }
 
 #[test]
-fn latencies_are_the_smallest_and_the_largest_of_any_row() {
+fn latencies_are_the_smallest_and_the_largest_of_any_row_since_the_clear() {
     let mut bench = ready(&Options::default(), 1);
     let latencies = |status: Status| (status.least_latency, status.most_latency);
-    assert_eq!(latencies(bench.status()), (0, 0));
-    bench.send_all(1, [0]);
-    assert_eq!(latencies(bench.status()), (44, 44));
-    bench.window = 1;
-    bench.done(&Request::Configure(Configuration { width: 128, ..configuration(1) }));
-    let place = RowPlace { width: 128, ..row(1, 1).place };
-    bench.send(&Row { place, samples: vec![0; 128] });
-    assert_eq!(latencies(bench.status()), (44, 76));
-    bench.status_and(true);
-    bench.window = 2;
-    bench.send(&Row { place: RowPlace { row_sequence: 2, frame: 2, ..place }, samples: vec![0; 128] });
-    assert_eq!(latencies(bench.status()), (76, 76));
+    let mut found = vec![latencies(bench.status())];
+    for (row_sequence, width) in [(0, 64), (1, 128), (2, 64), (3, 96)] {
+        bench.window = row_sequence;
+        bench.done(&Request::Configure(Configuration { width, ..configuration(1) }));
+        let place = RowPlace { width, ..row(1, row_sequence).place };
+        bench.send(&Row { place, samples: vec![0; width.into()] });
+        found.push(latencies(bench.status_and(row_sequence == 2)));
+    }
+    assert_eq!(found, [(0, 0), (44, 44), (44, 76), (44, 76), (60, 60)]);
 }
 
 #[test]

@@ -61,8 +61,12 @@ impl RecordedRun {
     }
 }
 
-/// The plan and the circumstances of the run that `recording` holds.
-pub(super) fn restore(recording: &Recording) -> Result<(Plan, Circumstances), Failure> {
+/// The plan and the circumstances of the run that `recording` holds. Whether hardware is required is for the present
+/// call to say.
+pub(super) fn restore(
+    recording: &Recording,
+    require_hardware: bool,
+) -> Result<(Plan, Circumstances), Failure> {
     let run: RecordedRun = recording.run()?;
     let file = TableFile::parse(&run.tables).map_err(|error| Failure {
         exit: if matches!(error, ContentError::Datapath(_)) { Exit::Refused } else { Exit::Usage },
@@ -79,7 +83,7 @@ pub(super) fn restore(recording: &Recording) -> Result<(Plan, Circumstances), Fa
         phase,
         repeat: run.repeat,
         fail_fast: run.fail_fast,
-        require_hardware: false,
+        require_hardware,
         take_over: run.take_over,
         seed: run.seed,
         timeout: run.timeout,

@@ -1,0 +1,155 @@
+//! The `halfrow` program, started as a user starts it.
+
+mod built;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::OnceLock;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// How a started program ended.
+#[derive(Clone, Debug)]
+pub struct Ended {
+    /// The exit code; none if a signal ended it.
+    pub code: Option<i32>,
+    /// All of the standard output.
+    pub stdout: String,
+    /// All of the standard error.
+    pub stderr: String,
+}
+
+impl Ended {
+    /// The JSON document on stdout; null if there is none.
+    #[must_use]
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout).unwrap_or(Value::Null)
+    }
+}
+
+/// A command that will start `halfrow` with `arguments`, in the environment of a user who has set nothing for it.
+///
+/// # Panics
+/// If the program cannot be built.
+pub fn command<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Command {
+    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+    let mut command = Command::new(PROGRAM.get_or_init(built::program));
+    let ours = std::env::vars_os().map(|(name, _)| name);
+    for name in ours.filter(|name| name.to_string_lossy().starts_with("HALFROW_")) {
+        command.env_remove(name);
+    }
+    command.env_remove("NO_COLOR").env_remove("CLICOLOR_FORCE");
+    command.env("XDG_CONFIG_HOME", "/nonexistent").stdin(Stdio::null()).args(arguments);
+    command
+}
+
+/// Runs `command` to its end.
+///
+/// # Panics
+/// If it cannot be started or prints what is no UTF-8.
+#[must_use]
+pub fn finish(command: &mut Command) -> Ended {
+    let output = command.output().unwrap();
+    Ended {
+        code: output.status.code(),
+        stdout: String::from_utf8(output.stdout).unwrap(),
+        stderr: String::from_utf8(output.stderr).unwrap(),
+    }
+}
+
+/// Runs `halfrow` with `arguments` to its end.
+///
+/// # Panics
+/// As [`command`] and [`finish`].
+#[must_use]
+pub fn halfrow<'a>(arguments: impl IntoIterator<Item = &'a str>) -> Ended {
+    finish(&mut command(arguments))
+}
+
+/// A folder of its own that `halfrow` is started in. It goes when it is dropped.
+#[derive(Debug)]
+pub struct Folder(TempDir);
+
+impl Folder {
+    /// An empty folder.
+    ///
+    /// # Panics
+    /// If none can be made.
+    #[must_use]
+    pub fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    /// A command that will start `halfrow` in this folder.
+    ///
+    /// # Panics
+    /// As [`command`].
+    #[must_use]
+    pub fn command<'a>(&self, arguments: impl IntoIterator<Item = &'a str>) -> Command {
+        let mut command = command(arguments);
+        command.current_dir(self.path());
+        command
+    }
+
+    /// Runs `halfrow` in this folder to its end.
+    ///
+    /// # Panics
+    /// As [`halfrow()`].
+    #[must_use]
+    pub fn halfrow<'a>(&self, arguments: impl IntoIterator<Item = &'a str>) -> Ended {
+        finish(&mut self.command(arguments))
+    }
+
+    /// Writes a file.
+    ///
+    /// # Panics
+    /// If it cannot be written.
+    pub fn write(&self, name: &str, content: impl AsRef<[u8]>) {
+        fs::write(self.path().join(name), content).unwrap();
+    }
+
+    /// The content of a file.
+    ///
+    /// # Panics
+    /// If it cannot be read.
+    #[must_use]
+    pub fn read(&self, name: &str) -> Vec<u8> {
+        fs::read(self.path().join(name)).unwrap()
+    }
+
+    /// The content of a text file.
+    ///
+    /// # Panics
+    /// If it cannot be read or is no UTF-8.
+    #[must_use]
+    pub fn text(&self, name: &str) -> String {
+        String::from_utf8(self.read(name)).unwrap()
+    }
+
+    /// The names of all that is in a folder inside, or in this one for `.`, in order.
+    ///
+    /// # Panics
+    /// If it cannot be listed.
+    #[must_use]
+    pub fn names(&self, folder: &str) -> Vec<String> {
+        let entries = fs::read_dir(self.path().join(folder)).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Default for Folder {
+    fn default() -> Self {
+        Self::new()
+    }
+}

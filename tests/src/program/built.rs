@@ -1,0 +1,52 @@
+//! Where the program is, built anew if a source of it is newer.
+//!
+//! `cargo test --workspace` has built it before the tests run, and with the same features. `cargo test -p halfrow-tests`
+//! has not, and a program of yesterday must not be tested.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::SystemTime;
+
+/// The program that belongs to this test: of the same target folder and profile.
+pub(super) fn program() -> PathBuf {
+    let test = std::env::current_exe().unwrap();
+    // target/PROFILE/deps/TEST
+    let folder = test.ancestors().nth(2).unwrap();
+    let program = folder.join(format!("halfrow{}", std::env::consts::EXE_SUFFIX));
+    if !is_fresh(&program) {
+        build(folder);
+    }
+    assert!(program.is_file(), "{} was not built", program.display());
+    program
+}
+
+fn build(folder: &Path) {
+    let profile = match folder.file_name().and_then(|name| name.to_str()) {
+        Some("debug") | None => "dev",
+        Some(profile) => profile,
+    };
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["build", "--package", "halfrow", "--bin", "halfrow", "--profile", profile, "--target-dir"]);
+    cargo.arg(folder.parent().unwrap()).current_dir(env!("CARGO_MANIFEST_DIR"));
+    let built = cargo.output().unwrap();
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+}
+
+/// Whether the program is there and no source that Cargo notes beside it is newer.
+fn is_fresh(program: &Path) -> bool {
+    let noted = fs::read_to_string(program.with_extension("d")).unwrap_or_default();
+    let Some((_, sources)) = noted.trim_end().split_once(": ") else { return false };
+    // A space inside a path is written as `\ `.
+    let sources = sources.replace("\\ ", "\0");
+    let built = changed(program);
+    sources.split(' ').all(|source| {
+        let source = source.replace('\0', " ");
+        changed(Path::new(&source)).is_some_and(|source| Some(source) <= built)
+    })
+}
+
+/// When a file was last written; none if it is not there.
+fn changed(file: &Path) -> Option<SystemTime> {
+    fs::metadata(file).and_then(|found| found.modified()).ok()
+}

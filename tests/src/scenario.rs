@@ -1,0 +1,118 @@
+//! What a run must come to.
+
+use std::fmt;
+
+use serde_json::Value;
+
+use crate::parallel;
+use crate::program::{Ended, halfrow};
+
+/// The boards that a scenario makes sense on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum On {
+    /// Every kind.
+    AnyBoard,
+    /// The mock alone: it can be built and broken by options.
+    MockOnly,
+}
+
+/// A board, a call, and what must come of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Scenario {
+    /// What it is about, in a sentence.
+    pub name: &'static str,
+    /// Where it runs.
+    pub on: On,
+    /// What is appended to the board's target, as in `,fault=late`.
+    pub options: &'static str,
+    /// Further arguments of `verify`.
+    pub arguments: &'static [&'static str],
+    /// `PASS`, `FAIL` or `ERROR`; null, which is empty here, when the call itself is refused.
+    pub verdict: &'static str,
+    /// The exit code.
+    pub exit_code: i32,
+    /// What the headline or the first suspect must say.
+    pub sentence: &'static str,
+}
+
+/// A scenario that came out otherwise.
+#[derive(Clone, Debug)]
+pub struct Surprise {
+    scenario: Scenario,
+    board: String,
+    ended: Ended,
+}
+
+impl fmt::Display for Surprise {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { scenario, board, ended } = self;
+        let Scenario { name, options, arguments, verdict, exit_code, sentence, .. } = scenario;
+        writeln!(f, "{name}: expected {verdict} with {exit_code} and `{sentence}` of")?;
+        writeln!(f, "  halfrow verify --json --board {board}{options} {}", arguments.join(" "))?;
+        let said = ended.json();
+        let what = if said.is_null() { &Value::Null } else { headline(&said) };
+        writeln!(f, "  and it ended with {:?}, {} {what}", ended.code, said["verdict"])?;
+        writeln!(f, "  suspects: {}", said["suspects"])?;
+        write!(f, "  stderr: {}", ended.stderr)
+    }
+}
+
+impl Scenario {
+    /// Whether it makes sense on `board`, a target.
+    #[must_use]
+    pub fn suits(&self, board: &str) -> bool {
+        self.on == On::AnyBoard || board.split([':', ',']).next() == Some("mock")
+    }
+
+    /// Runs it on `board`, a target, and returns the report as JSON.
+    ///
+    /// # Errors
+    /// [`Surprise`] when it comes to anything else than it should.
+    pub fn run(&self, board: &str) -> Result<Value, Box<Surprise>> {
+        let target = format!("{board}{}", self.options);
+        let ended = halfrow(
+            ["verify", "--json", "--board", &target].into_iter().chain(self.arguments.iter().copied()),
+        );
+        let said = ended.json();
+        let as_expected = ended.code == Some(self.exit_code)
+            && said["exit_code"] == self.exit_code
+            && said["verdict"].as_str().unwrap_or_default() == self.verdict
+            && sentences(&said).any(|sentence| sentence.contains(self.sentence));
+        if as_expected {
+            return Ok(said);
+        }
+        Err(Box::new(Surprise { scenario: *self, board: board.to_owned(), ended }))
+    }
+}
+
+/// Runs those of `scenarios` that suit `board`, and returns their reports.
+///
+/// # Panics
+/// When any of them comes to anything else than it should.
+#[must_use]
+pub fn run_all(scenarios: &[Scenario], board: &str) -> Vec<Value> {
+    let suited: Vec<_> = scenarios.iter().filter(|scenario| scenario.suits(board)).collect();
+    let (reports, surprises): (Vec<_>, Vec<_>) =
+        parallel::map(&suited, |scenario| scenario.run(board)).into_iter().partition(Result::is_ok);
+    let surprises: Vec<_> = surprises.into_iter().filter_map(Result::err).map(|it| it.to_string()).collect();
+    assert!(surprises.is_empty(), "{} of {}:\n{}", surprises.len(), suited.len(), surprises.join("\n"));
+    reports.into_iter().filter_map(Result::ok).collect()
+}
+
+/// The targets to run scenarios on: the mock, or those that `HALFROW_TEST_BOARDS` names, with spaces between.
+#[must_use]
+pub fn boards() -> Vec<String> {
+    let named = std::env::var("HALFROW_TEST_BOARDS").unwrap_or_else(|_| "mock".to_owned());
+    named.split_whitespace().map(str::to_owned).collect()
+}
+
+/// The result in one sentence: of a run, or of a call that was refused.
+fn headline(said: &Value) -> &Value {
+    if said["headline"].is_null() { &said["error"] } else { &said["headline"] }
+}
+
+/// The headline, and where and why the first suspect is suspected.
+fn sentences(said: &Value) -> impl Iterator<Item = &str> {
+    let suspect = &said["suspects"][0];
+    [headline(said), &suspect["place"], &suspect["evidence"]].into_iter().filter_map(Value::as_str)
+}

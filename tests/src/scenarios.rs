@@ -1,0 +1,38 @@
+//! All scenarios, as data: sound boards, broken boards, poor links, and calls that fit no board.
+
+mod broken_boards;
+mod misfits;
+mod poor_links;
+mod sound_boards;
+
+pub use broken_boards::BROKEN_BOARDS;
+pub use misfits::MISFITS;
+pub use poor_links::{HOPELESS_LINKS, REPAIRED_LINKS, SLOW_LINKS};
+pub use sound_boards::SOUND_BOARDS;
+
+use crate::scenario::{On, Scenario};
+
+/// Every scenario there is.
+pub fn all() -> impl Iterator<Item = &'static Scenario> {
+    [SOUND_BOARDS, BROKEN_BOARDS, REPAIRED_LINKS, SLOW_LINKS, HOPELESS_LINKS, MISFITS].into_iter().flatten()
+}
+
+/// What a run ends with when nothing is wrong.
+const ALL_EQUAL: &str = "all equal to the reference";
+
+/// A sound board behind a link that can be mended: PASS.
+const fn passes(name: &'static str, options: &'static str, arguments: &'static [&'static str]) -> Scenario {
+    expect("PASS", 0, name, options, arguments, ALL_EQUAL)
+}
+
+const fn expect(
+    verdict: &'static str,
+    exit_code: i32,
+    name: &'static str,
+    options: &'static str,
+    arguments: &'static [&'static str],
+    sentence: &'static str,
+) -> Scenario {
+    let on = if options.is_empty() { On::AnyBoard } else { On::MockOnly };
+    Scenario { name, on, options, arguments, verdict, exit_code, sentence }
+}

@@ -1,0 +1,67 @@
+//! Poor links: what can be repaired is, and the rest is an ERROR. A bad cable is never a FAIL.
+
+use super::{expect, passes};
+use crate::scenario::Scenario;
+
+/// Links that lose or spoil something, and not too much.
+pub const REPAIRED_LINKS: &[Scenario] = &[
+    passes("a flipped bit in a row", ",fault=flip,byte=60000", SMALL),
+    passes("a flipped bit in a packet to the board", ",fault=flip,packet=60,toward=board", SMALL),
+    passes("a flipped bit in a packet to the host", ",fault=flip,packet=60,toward=host", SMALL),
+    passes("bits that flip now and then", ",fault=flip,rate=5e-5,seed=2", SMALL),
+    passes("bits that flip often", ",fault=flip,rate=1e-4,seed=3", SMALL),
+    passes("a lost byte", ",fault=drop,byte=50000", SMALL),
+    passes("a lost greeting", ",fault=drop,packet=0,toward=board", SMALL),
+    passes("a lost answer to the greeting", ",fault=drop,packet=0,toward=host", SMALL),
+    passes("a lost packet of the tables", ",fault=drop,packet=15,toward=board", SMALL),
+    passes("lost packets", ",fault=drop,packet=100", SMALL),
+    passes("bytes that get lost", ",fault=drop,rate=5e-5,seed=4", SMALL),
+    passes("a byte that comes twice", ",fault=duplicate,byte=50000,toward=host", SMALL),
+    passes("bytes that come twice", ",fault=duplicate,rate=5e-5,seed=5", SMALL),
+    passes("a packet that ends early", ",fault=truncate,packet=50,toward=host", SMALL),
+    passes("packets that end early", ",fault=truncate,rate=0.01,seed=6", SMALL),
+];
+
+/// Links that stand still for a while, or deliver more or in another order than they should, which costs nothing or
+/// time alone.
+pub const SLOW_LINKS: &[Scenario] = &[
+    passes("a packet that comes twice", ",fault=duplicate,packet=70", SMALL),
+    passes("a greeting that comes twice", ",fault=duplicate,packet=0", SMALL),
+    passes("packets that overtake each other", ",fault=reorder,rate=0.02,seed=7", SMALL),
+    passes("a tenth of a second of silence", ",fault=stall,seconds=0.1", SMALL),
+    passes("a second of silence", ",fault=stall,packet=90,seconds=1,toward=host", SMALL),
+];
+
+/// Links over which nothing can be judged.
+pub const HOPELESS_LINKS: &[Scenario] = &[
+    stops("no byte gets through", ",fault=drop,rate=1", "no answer to Hello in 6 tries"),
+    stops("no answer gets through", ",fault=drop,rate=1,toward=host", "no answer to Hello in 6 tries"),
+    stops("bits that flip all the time", ",fault=flip,rate=1e-2", "no answer to Echo in 8 tries"),
+    stops("bits that flip far too often", ",fault=flip,rate=1e-3,seed=1", "no answer to Echo in 8 tries"),
+    stops("bytes that get lost far too often", ",fault=drop,rate=1e-3", "no answer to Echo in 8 tries"),
+    stops(
+        "bytes that come twice far too often",
+        ",fault=duplicate,rate=1e-3",
+        "no answer to Echo in 8 tries",
+    ),
+    stops(
+        "packets that end early far too often",
+        ",fault=truncate,rate=0.2",
+        "the link is too poor to judge a board over",
+    ),
+    stops(
+        "a cable that was never plugged in",
+        ",fault=disconnect,byte=0",
+        "the link broke while waiting for the answer to Hello",
+    ),
+    stops("a cable that was pulled", ",fault=disconnect,packet=90", "the link broke while waiting for row"),
+    stops("a cable pulled at the end", ",fault=disconnect,packet=280,toward=host", "the link broke"),
+    stops("a minute of silence", ",fault=stall,packet=20,seconds=60", "no answer to"),
+    stops("a minute of silence in a frame", ",fault=stall,packet=90,seconds=60", "no answer to"),
+];
+
+const SMALL: &[&str] = &["--width", "128", "--height", "16"];
+
+const fn stops(name: &'static str, options: &'static str, sentence: &'static str) -> Scenario {
+    expect("ERROR", 3, name, options, SMALL, sentence)
+}

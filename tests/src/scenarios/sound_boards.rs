@@ -1,0 +1,46 @@
+//! Sound boards: every build, kernel, depth, phase and size passes.
+
+use super::passes;
+use crate::scenario::Scenario;
+
+/// Boards in which nothing is wrong, and links that only take their time.
+pub const SOUND_BOARDS: &[Scenario] = &[
+    passes("the paper's system", "", &[]),
+    passes("the paper's system with seven taps", "", &["--kernel", "keys", "--frame", "builtin:noise"]),
+    passes("nearest neighbour", "", &[W, "128", H, "72", R, "73.78", "--kernel", "nearest"]),
+    passes("linear", "", &[W, "128", H, "72", R, "73.78", "--kernel", "linear"]),
+    passes("Keys", "", &[W, "128", H, "72", R, "73.78", "--kernel", "keys"]),
+    passes("five taps", ",taps=five", &[W, "128", H, "72", R, "73.78", "--kernel", "hermite"]),
+    passes("8 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "8"]),
+    passes("10 bits", "", &[W, "128", H, "72", R, "73.78", "--bits", "10", "--kernel", "keys"]),
+    passes("a board of one depth", ",depths=10", &[W, "128", H, "16", "--bits", "10"]),
+    passes("RGGB", "", &[W, "128", H, "72", R, "73.78", "--phase", "rggb"]),
+    passes("BGGR", "", &[W, "128", H, "72", R, "73.78", "--phase", "bggr"]),
+    passes("GBRG", "", &[W, "128", H, "72", R, "73.78", "--phase", "gbrg"]),
+    passes("a centre between two columns", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "40.5"]),
+    passes("a centre on a column", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "88"]),
+    passes("a centre at the left edge", "", &[W, "128", H, "72", R, "73.78", "--centre-x", "0"]),
+    passes("a centre above the frame", "", &[W, "128", H, "16", R, "73.78", "--centre-y", "-50"]),
+    passes("rows outside the image circle", "", &[W, "128", H, "72", R, "20"]),
+    passes("the smallest frame", "", &[W, "64", H, "1"]),
+    passes("the widest frame", ",max-width=2592", &[W, "2592", H, "8", R, "4"]),
+    passes("the highest frame", "", &[W, "64", H, "2048", R, "1030"]),
+    passes("a ring that just holds a row", ",max-width=128,ring=128", &[W, "128", H, "72", R, "73.78"]),
+    passes("blank clocks between rows", ",least-blanking=7", &[W, "128", H, "72", R, "73.78"]),
+    passes("the longest pipeline", ",latency=32", &[W, "64", H, "72", R, "40"]),
+    passes("the shortest pipeline", ",latency=4", &[W, "64", H, "72", R, "40"]),
+    passes("two banks each way", ",row-banks-in=2,row-banks-out=2", &[W, "128", H, "72", R, "73.78"]),
+    passes("many banks", ",row-banks-in=255,row-banks-out=255", &[W, "128", H, "16"]),
+    passes("more banks in than out", ",row-banks-in=16,row-banks-out=2", &[W, "128", H, "16"]),
+    passes("more banks out than in", ",row-banks-in=2,row-banks-out=16", &[W, "128", H, "16"]),
+    passes("a serial line", ",speed=11520", &[W, "128", H, "16"]),
+    passes("a distant board", ",speed=1200000,delay=0.05", &[W, "128", H, "16"]),
+    passes("a pipe without a buffer", ",buffer=0,speed=100000", &[W, "128", H, "16"]),
+    passes("every frame three times", "", &[W, "128", H, "16", "--repeat", "3"]),
+    passes("ready to stop at a difference", "", &[W, "128", H, "16", "--fail-fast"]),
+    passes("another seed", "", &[W, "128", H, "16", "--seed", "18446744073709551615"]),
+];
+
+const W: &str = "--width";
+const H: &str = "--height";
+const R: &str = "--radius";

@@ -1,0 +1,83 @@
+//! Boards judged in this process: the library's own run, without the program around it.
+
+use halfrow::board::Stop;
+use halfrow::board::deadlines::RetryLimit;
+use halfrow::frames::Builtin;
+use halfrow::link;
+use halfrow::progress::Silent;
+use halfrow::report::{Outcome, Report};
+use halfrow::session::{Circumstances, FrameSource, Plan, verify};
+use halfrow::target::Target;
+use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
+
+/// A lens, a frame behind it, and the mock board that is built for it.
+#[derive(Clone, Copy, Debug)]
+pub struct System {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Radius of the image of 180°, in pixels.
+    pub radius: f64,
+    /// The board's target.
+    pub board: &'static str,
+    /// M, the samples in that board's line memory.
+    pub ring: usize,
+}
+
+impl System {
+    /// The paper's: 1920 × 1080 samples.
+    pub const PAPER: Self = Self { width: 1920, height: 1080, radius: 1106.697, board: "mock", ring: 2048 };
+
+    /// The same at 2/15 of the size. A row fills the line memory, so that all of its address lines matter.
+    pub const SMALL: Self = Self {
+        width: 256,
+        height: 144,
+        radius: 147.56,
+        board: "mock,max-width=256,max-height=144",
+        ring: 256,
+    };
+
+    /// As small as rows may be, for runs by the thousand.
+    pub const TINY: Self = Self { width: 64, height: 8, radius: 10.0, board: "mock", ring: 2048 };
+
+    /// The report on the board with `options` behind its target. The run streams the built-in frames and ends with the
+    /// first that differs.
+    ///
+    /// # Panics
+    /// If there is no such board.
+    #[must_use]
+    pub fn judge(&self, options: &str) -> Report {
+        let target: Target = format!("{}{options}", self.board).parse().unwrap();
+        let candidate = link::open(&target).unwrap();
+        verify(&self.plan(), candidate, &Circumstances::default(), &Stop::default(), &Silent).report
+    }
+
+    fn plan(&self) -> Plan {
+        let lens = Equidistant::from_radius(self.radius).unwrap();
+        let geometry = Geometry::centred(self.width, self.height, BitDepth::Twelve).unwrap();
+        Plan {
+            tables: TableSet::from_lens(geometry, &lens, None).unwrap(),
+            kernel: Kernel::from(Interpolant::Hermite),
+            tables_source: String::new(),
+            lens,
+            centre_y: None,
+            phase: Phase::Grbg,
+            frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
+            repeat: 1,
+            fail_fast: true,
+            require_hardware: false,
+            take_over: false,
+            seed: 1,
+            timeout: None,
+            retry_limit: RetryLimit::default(),
+            keep_pictures: false,
+        }
+    }
+}
+
+/// The check that found the board wrong, if one did.
+#[must_use]
+pub fn failed_check(report: &Report) -> Option<&'static str> {
+    report.checks.iter().find(|check| check.outcome == Outcome::Failed).map(|check| check.name)
+}

@@ -1,0 +1,49 @@
+//! Campaigns of drawn faults: small ones here, large ones when `scripts/soak` asks for them.
+
+use halfrow_tests::campaign::{self, Found};
+use halfrow_tests::poor_links;
+use halfrow_tests::system::System;
+
+/// Any drawing will do; this one can be drawn again.
+const SEED: u64 = 20_140_401;
+
+/// Judges so many faults, prints what found them, and allows none that nothing finds.
+#[track_caller]
+fn every_fault_is_found(system: &System, count: usize) {
+    let campaign = campaign::run(system, count, SEED);
+    println!("{campaign}");
+    assert_eq!(campaign.0.iter().map(|case| case.drawn).sum::<usize>(), count);
+    let unfound: Vec<_> = campaign.that_were(Found::ByNothing).collect();
+    assert!(unfound.is_empty(), "{unfound:?}");
+}
+
+/// Judges over so many poor links, prints the verdicts, and allows no false one.
+#[track_caller]
+fn no_verdict_is_false(count: usize) {
+    let links = poor_links::run(count, SEED);
+    println!("{links}");
+    let wrong: Vec<_> = links.false_verdicts().collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn every_single_fault_of_a_small_board_is_found() {
+    every_fault_is_found(&System::SMALL, 200);
+}
+
+#[test]
+fn no_poor_link_gives_a_false_verdict() {
+    no_verdict_is_false(200);
+}
+
+#[test]
+#[ignore = "minutes long; scripts/soak runs it"]
+fn every_one_of_a_thousand_faults_is_found_at_the_paper_s_size() {
+    every_fault_is_found(&System::PAPER, 1000);
+}
+
+#[test]
+#[ignore = "minutes long; scripts/soak runs it"]
+fn none_of_ten_thousand_poor_links_gives_a_false_verdict() {
+    no_verdict_is_false(10_000);
+}

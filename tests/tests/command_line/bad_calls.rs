@@ -1,0 +1,74 @@
+//! Sizes and names that do not exist.
+
+use halfrow_tests::program::Folder;
+
+use crate::refused;
+
+#[test]
+fn a_frame_that_no_datapath_takes_is_refused() {
+    let folder = Folder::new();
+    for command in ["verify", "tables", "frames", "correct"] {
+        let more: &[&str] = match command {
+            "verify" => &[],
+            "correct" => &["builtin:black", "--model", "-o", "out.pgm"],
+            _ => &["-o", "out.json"],
+        };
+        let call = |size: [&'static str; 2]| {
+            [command].into_iter().chain(size).chain(more.iter().copied()).collect::<Vec<_>>()
+        };
+        refused(
+            &folder,
+            &call(["--width", "129"]),
+            "a width of 129 columns is not an even number from 64 to 2592",
+        );
+        refused(&folder, &call(["--width", "0"]), "a width of 0 columns");
+        refused(&folder, &call(["--width", "62"]), "a width of 62 columns");
+        refused(&folder, &call(["--width", "2594"]), "a width of 2594 columns");
+        refused(&folder, &call(["--height", "0"]), "a height of 0 rows is outside 1 to 2048");
+        refused(&folder, &call(["--height", "2049"]), "a height of 2049 rows");
+        refused(&folder, &call(["--centre-x", "-1"]), "the optical centre is at column -1");
+        refused(&folder, &call(["--centre-x", "1920"]), "the optical centre is at column 1920");
+        refused(&folder, &call(["--width", "wide"]), "invalid value 'wide'");
+    }
+}
+
+#[test]
+fn names_of_nothing_are_refused_with_those_that_there_are() {
+    let folder = Folder::new();
+    refused(
+        &folder,
+        &["verify", "--frame", "builtin:moon"],
+        "`moon` is no built-in frame; use one of black, white",
+    );
+    refused(&folder, &["frames", "--only", "moon", "-o", "."], "`moon` is no built-in frame");
+    refused(&folder, &["verify", "--kernel", "moon"], "moon");
+    refused(&folder, &["verify", "--phase", "moon"], "moon");
+    refused(&folder, &["verify", "--raw", "u15"], "u15");
+    refused(&folder, &["verify", "--moon"], "unexpected argument '--moon'");
+    refused(&folder, &["moon"], "unrecognized subcommand 'moon'");
+    refused(&folder, &["completions", "moon"], "invalid value 'moon'");
+    refused(&folder, &["info", "--board", "replay:moon"], "moon");
+}
+
+#[test]
+fn more_frames_than_can_be_numbered_are_refused() {
+    let folder = Folder::new();
+    let call = |frames, repeat| {
+        let size = ["verify", "--list", "--width", "64", "--height", "1", "--repeat", repeat];
+        let frames = std::iter::repeat_n(["--frame", "builtin:black"], frames).flatten();
+        size.into_iter().chain(frames).collect::<Vec<_>>()
+    };
+    refused(&folder, &call(66, "993"), "65538 frames are more than the 65532 that a run can number");
+    // 86 · 762 = 65532
+    let most = folder.halfrow(call(86, "762"));
+    assert_eq!((most.code, most.stdout.lines().count()), (Some(0), 65536));
+    assert!(most.stdout.contains("\n65535  builtin:noise"));
+}
+
+#[test]
+fn places_that_are_not_there_are_refused() {
+    let folder = Folder::new();
+    refused(&folder, &["manual", "missing"], "name a folder that is there");
+    refused(&folder, &["verify", "--tables", "missing.json"], "cannot read missing.json");
+    refused(&folder, &["verify", "--frame", "missing.pgm"], "cannot read missing.pgm");
+}

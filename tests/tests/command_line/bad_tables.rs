@@ -1,0 +1,112 @@
+//! Table files that no board may be given: each is refused with its own message, before a board is opened.
+
+use halfrow_tests::program::Folder;
+use serde_json::{Value, json};
+
+use crate::{refused, refused_with};
+
+/// A folder with a legal table file of 64 x 4.
+fn legal() -> (Folder, Value) {
+    let folder = Folder::new();
+    let made = folder.halfrow(["tables", "--width", "64", "--height", "4", "-o", "legal.json"]);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    let file = serde_json::from_slice(&folder.read("legal.json")).unwrap();
+    (folder, file)
+}
+
+/// What `verify` says to the legal file after `change`.
+#[track_caller]
+fn bad_tables(change: impl FnOnce(&mut Value), sentence: &str) {
+    changed(2, change, sentence);
+}
+
+#[track_caller]
+fn changed(code: i32, change: impl FnOnce(&mut Value), sentence: &str) {
+    let (folder, mut file) = legal();
+    change(&mut file);
+    folder.write("changed.json", file.to_string());
+    refused_with(code, &folder, &["verify", "--tables", "changed.json", "--report", "out"], sentence);
+    let correct = ["correct", "builtin:black", "--model", "--tables", "changed.json", "-o", "out.pgm"];
+    refused_with(code, &folder, &correct, sentence);
+}
+
+#[test]
+fn the_legal_file_itself_is_taken() {
+    let (folder, file) = legal();
+    folder.write("again.json", file.to_string());
+    assert_eq!(folder.halfrow(["verify", "--tables", "again.json"]).code, Some(0));
+}
+
+#[test]
+fn entries_that_are_missing_or_too_many_are_refused() {
+    bad_tables(|file| _ = file["step"].as_array_mut().unwrap().pop(), "has 3 entries instead of 4");
+    bad_tables(|file| file["step"].as_array_mut().unwrap().push(1.into()), "has 5 entries instead of 4");
+    bad_tables(|file| _ = file["kernel"].as_array_mut().unwrap().pop(), "has 64 entries instead of 65");
+    bad_tables(|file| _ = file["kernel"][7].as_array_mut().unwrap().pop(), "has 4 entries instead of 5");
+    bad_tables(|file| _ = file.as_object_mut().unwrap().remove("step"), "it lacks");
+}
+
+#[test]
+fn factors_out_of_range_are_refused_with_their_row() {
+    bad_tables(|file| file["step"][2] = 0.into(), "is 0, outside 1 to 16777216");
+    bad_tables(|file| file["step"][2] = 16_777_217.into(), "is 16777217, outside 1 to 16777216");
+    bad_tables(|file| file["step"][2] = (-1).into(), "row 2");
+    bad_tables(|file| file["step"][2] = 1e30.into(), "row 2");
+    bad_tables(|file| file["step"][2] = "many".into(), "row 2");
+}
+
+#[test]
+fn a_weight_of_two_is_refused_with_its_node() {
+    bad_tables(|file| file["kernel"][9][2] = 32768.into(), "is 32768, outside -32768 to 32767");
+    bad_tables(|file| file["kernel"][9][2] = 32768.into(), "node 9");
+    bad_tables(|file| file["kernel"][64][0] = (-32769).into(), "node 64");
+    bad_tables(|file| file["kernel"][0][1] = 0.5.into(), "node 0");
+}
+
+/// From the right edge's point of view a row with a small factor lies far ahead; from the left edge's, far back.
+#[test]
+fn rows_that_reach_beyond_the_ring_are_refused() {
+    let (folder, mut file) = legal();
+    let call = ["verify", "--tables", "far.json", "--report", "out"];
+    file["step"][1] = 1.into();
+    file["centre2"] = 126.into();
+    folder.write("far.json", file.to_string());
+    // Column 0 comes from column 63, whose window reaches to 67: 32 beyond W/2 + 3.
+    refused(&folder, &call, "row 1 needs samples 32 columns later than half a row of delay brings them");
+    file["centre2"] = 0.into();
+    folder.write("far.json", file.to_string());
+    // Column 63 comes from column 0, 63 + W/2 - 1 columns back, and the ring holds 63 before the newest.
+    refused(&folder, &call, "row 1 needs samples 31 columns older than a ring of 64 still holds");
+    assert_eq!(folder.halfrow(["verify", "--tables", "legal.json"]).code, Some(0));
+}
+
+#[test]
+fn tables_of_another_datapath_are_refused_like_boards_of_another_datapath() {
+    changed(
+        6,
+        |file| file["datapath"] = 2.into(),
+        "the tables are for datapath 2, and this program knows datapath 1",
+    );
+}
+
+#[test]
+fn what_no_table_file_has_is_refused() {
+    bad_tables(|file| file["steps"] = json!([]), "it has the key \"steps\"");
+    bad_tables(|file| file["width"] = 65.into(), "65");
+    bad_tables(|file| file["bits"] = 9.into(), "is 9; ");
+    bad_tables(|file| file["centre2"] = 127.into(), "is 127, outside 0 to 126");
+    bad_tables(|file| *file = json!([]), "it is not the JSON object it should be");
+    let (folder, _) = legal();
+    let text = folder.text("legal.json");
+    folder.write("half.json", &text[..text.len() / 2]);
+    refused(&folder, &["verify", "--tables", "half.json"], "it breaks off at line");
+}
+
+#[test]
+fn a_kernel_file_is_checked_as_a_table_file_is() {
+    let folder = Folder::new();
+    folder.write("kernel.json", json!({ "datapath": 3, "kernel": [] }).to_string());
+    refused_with(6, &folder, &["verify", "--kernel", "kernel.json"], "datapath 3");
+    folder.write("kernel.json", json!({ "kernel": [[0, 0, 0, 0, 0]] }).to_string());
+    refused(&folder, &["verify", "--kernel", "kernel.json"], "has 1 entries instead of 65");
+}

@@ -1,0 +1,60 @@
+//! Boards that cannot be named.
+
+use halfrow_tests::program::Folder;
+
+use crate::refused;
+
+#[track_caller]
+fn no_such_board(target: &str, sentence: &str) {
+    let folder = Folder::new();
+    refused(&folder, &["verify", "--board", target], sentence);
+    refused(&folder, &["info", "--board", target], sentence);
+}
+
+#[test]
+fn an_unknown_kind_is_refused() {
+    no_such_board("moon", "`moon` is no kind of board that this program knows");
+    no_such_board("", "names no board");
+    no_such_board("mock:7", "`mock` takes no address");
+    no_such_board("mock,latency", "write KEY=VALUE");
+    no_such_board("mock,=3", "write KEY=VALUE");
+}
+
+#[test]
+fn an_unknown_option_of_the_mock_is_refused_with_those_that_there_are() {
+    no_such_board("mock,colour=red", "colour is no option of this mock board; choose from latency, ring");
+    no_such_board("mock,bit=3", "a fault's parameters need fault=NAME");
+    no_such_board("mock,latency=12,latency=13", "latency is given twice");
+    no_such_board("mock,pace=fast", "pace=virtual or pace=real");
+}
+
+#[test]
+fn a_build_that_cannot_exist_is_refused() {
+    no_such_board("mock,latency=33", "latency=33 is out of range; give a number from 4 to 32");
+    no_such_board("mock,latency=soon", "latency=soon is not a whole number");
+    no_such_board("mock,ring=100", "ring=100 is not a power of two");
+    no_such_board("mock,ring=64,max-width=128", "ring=64 is shorter than a row of max-width=128");
+    no_such_board("mock,max-width=65", "max-width=65 is odd");
+    no_such_board("mock,taps=six", "taps=six is not known; give one of five, seven");
+    no_such_board("mock,depths=9", "depths=9 is not known");
+    no_such_board("mock,speed=0", "speed=0 is out of range");
+    no_such_board("mock,delay=-1", "delay=-1 is not a number from 0 to 60");
+}
+
+#[test]
+fn a_fault_that_does_not_exist_is_refused() {
+    no_such_board("mock,fault=moon", "no fault is called moon; choose from flip, drop");
+    no_such_board(
+        "mock,fault=late,fault=no-rounding",
+        "fault=late and fault=no-rounding cannot be had together",
+    );
+    no_such_board("mock,fault=late,bit=1", "bit is no option");
+    no_such_board("mock,fault=stuck-data,bit=12", "bit=12 is out of range; give a number from 0 to 11");
+    no_such_board(
+        "mock,fault=kernel-word,weight=g2",
+        "weight=g2 is not known; give one of g0, r1, g4, r5, g6",
+    );
+    no_such_board("mock,fault=flip,rate=2", "rate=2 is not a number from 0 to 1");
+    no_such_board("mock,fault=flip,rate=1e-3,byte=1", "both say where the fault strikes");
+    no_such_board("mock,fault=reorder,byte=3", "byte is no option");
+}

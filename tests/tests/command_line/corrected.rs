@@ -1,0 +1,151 @@
+//! `correct`: by the reference model and by a board.
+
+use halfrow_tests::program::Folder;
+
+use crate::{refused, small};
+
+/// Golden values: one row of 64 samples, C = 63, Q = 14648488, corrected with the Keys kernel by a program outside this
+/// project.
+const GOLDEN: [u16; 64] = [
+    1931, 464, 2776, 1089, 3910, 1995, 1820, 3119, 952, 2005, 2057, 131, 2989, 1276, 3450, 2119, 530, 2964,
+    1302, 4074, 2182, 1772, 3322, 1166, 1947, 2245, 317, 3208, 1464, 3470, 2325, 621, 3212, 1509, 363, 2370,
+    625, 3517, 1588, 1887, 2432, 512, 3429, 1652, 3470, 2532, 731, 3304, 1710, 382, 2558, 844, 3703, 1776,
+    1829, 2620, 715, 3650, 1839, 3453, 2745, 857, 3370, 1902,
+];
+
+/// A PGM of one row, 12 bits.
+fn pgm(samples: &[u16]) -> Vec<u8> {
+    let header = format!("P5\n{} 1\n4095\n", samples.len()).into_bytes();
+    header.into_iter().chain(samples.iter().flat_map(|sample| sample.to_be_bytes())).collect()
+}
+
+#[test]
+fn both_model_and_mock_give_the_golden_row() {
+    let folder = Folder::new();
+    let samples: Vec<_> =
+        (0..64_u32).map(|column| (column.wrapping_mul(2_654_435_761) >> 20) as u16).collect();
+    folder.write("in.pgm", pgm(&samples));
+    let made =
+        folder.halfrow(["tables", "--width", "64", "--height", "1", "--kernel", "keys", "-o", "made.json"]);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    // In the middle row nothing is stretched.
+    folder.write("tables.json", folder.text("made.json").replace("16777216", "14648488"));
+    for how in [["--model", "--quiet"], ["--board", "mock"]] {
+        let call = ["correct", "in.pgm", "--tables", "tables.json", "-o", "out.pgm", "--overwrite"];
+        let ended = folder.halfrow(call.into_iter().chain(how));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        assert_eq!(folder.read("out.pgm"), pgm(&GOLDEN), "{how:?}");
+    }
+}
+
+#[test]
+fn the_model_gives_what_the_mock_gives_byte_for_byte() {
+    let kinds = [
+        ["--kernel", "nearest", "--bits", "12"],
+        ["--kernel", "linear", "--bits", "8"],
+        ["--kernel", "keys", "--bits", "12"],
+        ["--kernel", "hermite", "--bits", "10"],
+    ];
+    for kind in kinds {
+        let folder = Folder::new();
+        let frames = ["correct", "builtin:noise", "builtin:street", "builtin:extremes"];
+        let size = ["--width", "128", "--height", "72", "--radius", "73.78", "--centre-x", "50"];
+        let call = |how: &[&'static str]| {
+            frames.into_iter().chain(size).chain(kind).chain(how.to_vec()).collect::<Vec<_>>()
+        };
+        assert_eq!(folder.halfrow(call(&["--model", "-o", "model"])).code, Some(0));
+        assert_eq!(
+            folder.halfrow(call(&["--board", "mock,latency=20,speed=1000000", "-o", "mock"])).code,
+            Some(0)
+        );
+        assert_eq!(folder.names("model"), ["extremes.pgm", "noise.pgm", "street.pgm"]);
+        assert_eq!(folder.names("mock"), folder.names("model"));
+        for name in folder.names("model") {
+            let (model, mock) = (format!("model/{name}"), format!("mock/{name}"));
+            assert!(folder.read(&model) == folder.read(&mock), "{name} with {kind:?}");
+        }
+    }
+}
+
+#[test]
+fn a_broken_board_gives_another_frame_than_the_model() {
+    let folder = Folder::new();
+    let call = small("correct", &["builtin:noise", "--model", "-o", "model.pgm"]);
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    let call = small("correct", &["builtin:noise", "--board", "mock,fault=no-rounding", "-o", "board.pgm"]);
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    assert!(folder.read("model.pgm") != folder.read("board.pgm"));
+}
+
+#[test]
+fn every_format_can_be_written_and_read_again() {
+    let folder = Folder::new();
+    let call = small("correct", &["builtin:street", "--model", "-o", "once.pgm"]);
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    for file in ["once.png", "once.tif", "once.raw"] {
+        let call = small("correct", &["builtin:street", "--model", "-o", file]);
+        assert_eq!(folder.halfrow(call).code, Some(0), "{file}");
+    }
+    let again = |file: &'static str, out: &'static str, more: &[&'static str]| {
+        let call = small("correct", &[file, "--model", "-o", out]).into_iter().chain(more.to_vec());
+        let ended = folder.halfrow(call);
+        assert_eq!(ended.code, Some(0), "{file}: {}", ended.stderr);
+        folder.read(out)
+    };
+    let expected = again("once.pgm", "pgm.pgm", &[]);
+    assert!(again("once.png", "png.pgm", &[]) == expected);
+    assert!(again("once.tif", "tif.pgm", &[]) == expected);
+    assert!(again("once.raw", "raw.pgm", &["--raw", "u16le"]) == expected);
+}
+
+#[test]
+fn json_names_the_outputs_and_the_kind_of_board_and_judges_nothing() {
+    let folder = Folder::new();
+    for (how, kind) in [(["--model", "--json"], "model"), (["--board=mock", "--json"], "mock")] {
+        let call = small("correct", &["builtin:black", "-o", "out.pgm", "--overwrite", how[0], how[1]]);
+        let said = folder.halfrow(call).json();
+        assert!(said["verdict"].is_null() && said["exit_code"] == 0);
+        assert_eq!(said["board"]["kind"], kind);
+        assert_eq!(said["outputs"], serde_json::json!(["out.pgm"]));
+    }
+}
+
+#[test]
+fn what_does_not_fit_the_board_is_refused() {
+    let folder = Folder::new();
+    let on = |board, kernel| {
+        small("correct", &["builtin:black", "-o", "out.pgm", "--kernel", kernel, "--board", board])
+    };
+    refused(&folder, &on("mock,max-width=64", "linear"), "frames of 128 x 16 do not fit the board");
+    refused(&folder, &on("mock,depths=8", "linear"), "the board has no 12-bit samples");
+    refused(&folder, &on("mock,taps=five", "keys"), "the kernel needs seven taps");
+}
+
+#[test]
+fn a_file_that_is_there_is_replaced_only_when_that_is_allowed() {
+    let folder = Folder::new();
+    folder.write("out.pgm", "precious");
+    refused(&folder, &small("correct", &["builtin:black", "--model", "-o", "out.pgm"]), "give --overwrite");
+    assert_eq!(folder.text("out.pgm"), "precious");
+    let call = small("correct", &["builtin:black", "--model", "-o", "out.pgm", "--overwrite"]);
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    assert!(folder.read("out.pgm").starts_with(b"P5"));
+}
+
+#[test]
+fn outputs_that_have_no_place_are_refused() {
+    let folder = Folder::new();
+    let black = "builtin:black";
+    refused(
+        &folder,
+        &small("correct", &[black, "builtin:white", "--model", "-o", "one.pgm"]),
+        "one file for 2 frames",
+    );
+    refused(
+        &folder,
+        &small("correct", &[black, black, "--model", "-o", "out"]),
+        "two inputs would both be written",
+    );
+    refused(&folder, &small("correct", &[black, "--model", "-o", "out.jpg"]), "names no format");
+    refused(&folder, &small("correct", &[black, "-o", "out.pgm"]), "--model");
+}

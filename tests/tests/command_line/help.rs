@@ -1,0 +1,97 @@
+//! Help, version, completions and manual pages.
+
+use std::process::{Command, Stdio};
+
+use halfrow_tests::program::{Folder, halfrow};
+
+/// All commands, and how each one's help begins.
+const COMMANDS: [(&str, &str); 9] = [
+    ("verify", "Judge a board"),
+    ("correct", "Correct frames"),
+    ("tables", "Make a table file"),
+    ("frames", "Write the built-in frames"),
+    ("boards", "List the boards"),
+    ("info", "Say what a board is"),
+    ("faults", "List the faults"),
+    ("completions", "Print a completion script"),
+    ("manual", "Write the manual pages"),
+];
+
+#[test]
+fn every_command_is_listed_and_explains_itself() {
+    let overview = halfrow(["help"]).stdout;
+    let commands = overview.split("Commands:").nth(1).unwrap().split("Options:").next().unwrap();
+    let listed: Vec<_> = commands.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    let expected: Vec<_> = COMMANDS.iter().map(|(name, _)| *name).chain(["help"]).collect();
+    assert_eq!(listed, expected);
+    for (name, beginning) in COMMANDS {
+        let help = halfrow(["help", name]);
+        assert_eq!(help.code, Some(0));
+        assert!(help.stdout.starts_with(beginning), "{name}: {}", help.stdout);
+        assert!(help.stdout.contains(&format!("Usage: halfrow {name}")), "{name}: {}", help.stdout);
+        assert_eq!(halfrow([name, "--help"]).stdout, help.stdout);
+    }
+}
+
+#[test]
+fn the_help_of_verify_says_what_the_exit_codes_mean() {
+    let help = halfrow(["help", "verify"]).stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    let codes = "0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged, 6 identity or version refused, 130 or 143 interrupted";
+    assert!(help.contains(codes), "{help}");
+}
+
+#[test]
+fn the_version_names_the_commit() {
+    let version = halfrow(["--version"]).stdout;
+    let (number, commit) = version.trim_end().strip_prefix("halfrow ").unwrap().split_once(' ').unwrap();
+    assert_eq!(number, env!("CARGO_PKG_VERSION"));
+    assert!(commit.starts_with('(') && commit.ends_with(')') && commit.len() > 2, "{version}");
+}
+
+#[test]
+fn a_call_without_a_command_shows_help_and_is_a_usage_error() {
+    let ended = halfrow([]);
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.stderr.contains("Usage: halfrow"), "{}", ended.stderr);
+}
+
+#[test]
+fn every_completion_script_knows_every_command() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = halfrow(["completions", shell]);
+        assert_eq!(script.code, Some(0));
+        let unknown: Vec<_> = COMMANDS.iter().filter(|(name, _)| !script.stdout.contains(name)).collect();
+        assert!(unknown.is_empty(), "{shell}: {unknown:?}");
+        assert!(script.stdout.contains("retry-limit"), "{shell}");
+    }
+}
+
+#[test]
+fn bash_reads_its_completion_script() {
+    let script = halfrow(["completions", "bash"]).stdout;
+    let folder = Folder::new();
+    folder.write("halfrow", script);
+    let read = Command::new("bash")
+        .args(["-euc", "source ./halfrow; complete -p halfrow"])
+        .current_dir(folder.path())
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let said = String::from_utf8(read.stdout).unwrap();
+    assert!(read.status.success() && said.contains("-F _halfrow"), "{said}{:?}", read.stderr);
+}
+
+#[test]
+fn there_is_a_manual_page_for_the_program_and_for_every_command() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(["manual", "."]).code, Some(0));
+    let mut pages: Vec<_> = COMMANDS.iter().map(|(name, _)| format!("halfrow-{name}.1")).collect();
+    pages.push("halfrow.1".to_owned());
+    pages.sort();
+    assert_eq!(folder.names("."), pages);
+    for page in pages {
+        let text = folder.text(&page);
+        let title = format!(".TH {}", page.trim_end_matches(".1"));
+        assert!(text.contains(&title) && text.contains(".SH SYNOPSIS"), "{page}: {text}");
+    }
+}

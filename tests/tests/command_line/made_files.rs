@@ -1,0 +1,142 @@
+//! `tables` and `frames`: what they write, and that `verify` takes it.
+
+use halfrow_tests::program::{Folder, halfrow};
+
+use crate::{refused, small};
+
+/// Row factors of the paper's system that a program outside this project computed.
+const FIRST_FACTOR: u32 = 14_648_698;
+const MIDDLE_FACTOR: u32 = 16_777_214;
+
+#[test]
+fn the_paper_s_table_file_holds_the_golden_factors() {
+    let folder = Folder::new();
+    let ended = folder.halfrow(["tables", "--radius", "1106.697", "-o", "lens.json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(
+        ended.stdout.starts_with("wrote lens.json: equidistant lens, R = 1106.697 pixels"),
+        "{}",
+        ended.stdout
+    );
+    let file: serde_json::Value = serde_json::from_slice(&folder.read("lens.json")).unwrap();
+    assert_eq!((&file["step"][0], &file["step"][539]), (&FIRST_FACTOR.into(), &MIDDLE_FACTOR.into()));
+    assert_eq!(file["step"].as_array().unwrap().len(), 1080);
+    assert_eq!((&file["datapath"], &file["centre2"]), (&1.into(), &1919.into()));
+}
+
+/// CRC-32 of the factors and of each kernel, also from the outside program.
+#[test]
+fn what_is_uploaded_has_the_golden_checksums() {
+    for (kernel, crc) in [("hermite", "16e29b0f"), ("keys", "54f5e990")] {
+        let frame = ["--frame", "builtin:black", "--radius", "1106.697", "--kernel", kernel];
+        let tables = halfrow(["verify", "--json"].into_iter().chain(frame)).json()["tables"].clone();
+        assert_eq!((&tables["steps_crc32"], &tables["kernel_crc32"]), (&"5f5a7553".into(), &crc.into()));
+    }
+}
+
+#[test]
+fn memory_images_hold_the_same_words() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(["tables", "--radius", "1106.697", "-o", "lens.mem"]).code, Some(0));
+    assert_eq!(folder.names("."), ["lens.kernel.mem", "lens.steps.mem"]);
+    let steps = folder.text("lens.steps.mem");
+    let words: Vec<_> = steps.lines().filter(|line| !line.starts_with("//")).collect();
+    assert_eq!(
+        (words[0], words[539]),
+        (format!("{FIRST_FACTOR:07x}").as_str(), format!("{MIDDLE_FACTOR:07x}").as_str())
+    );
+    assert_eq!(words.len(), 1080);
+    assert_eq!(folder.text("lens.kernel.mem").lines().filter(|line| line.len() == 20).count(), 65);
+}
+
+#[test]
+fn a_table_file_and_written_frames_can_be_judged_with() {
+    let folder = Folder::new();
+    let lens = ["--width", "128", "--height", "72", "--radius", "73.78", "--bits", "10", "--centre-x", "60"];
+    assert_eq!(
+        folder.halfrow(["tables", "--kernel", "keys", "-o", "lens.json"].into_iter().chain(lens)).code,
+        Some(0)
+    );
+    assert_eq!(folder.halfrow(["frames", "-o", "frames"].into_iter().chain(lens)).code, Some(0));
+    assert_eq!(folder.names("frames").len(), 12);
+    let frames: Vec<_> = folder.names("frames").iter().map(|name| format!("--frame=frames/{name}")).collect();
+    let call =
+        ["verify", "--json", "--tables", "lens.json"].into_iter().chain(frames.iter().map(String::as_str));
+    let said = folder.halfrow(call).json();
+    assert_eq!(said["verdict"], "PASS", "{}", said["headline"]);
+    assert_eq!(said["tables"]["source"], "lens.json");
+    assert_eq!(said["run"]["files"].as_array().unwrap().len(), 13);
+}
+
+#[test]
+fn written_frames_are_what_they_are_called() {
+    let folder = Folder::new();
+    let only = ["--only", "black", "--only", "white", "--only", "grey"];
+    let call = small("frames", &["-o", "."]).into_iter().chain(only);
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    assert_eq!(folder.names("."), ["black.pgm", "grey.pgm", "white.pgm"]);
+    for (name, sample) in [("black.pgm", 0_u16), ("grey.pgm", 2048), ("white.pgm", 4095)] {
+        let samples = sample.to_be_bytes().repeat(128 * 16);
+        assert!(folder.read(name) == [b"P5\n128 16\n4095\n".as_slice(), &samples].concat(), "{name}");
+    }
+}
+
+#[test]
+fn a_seed_gives_the_same_noise_again_and_another_seed_other_noise() {
+    let folder = Folder::new();
+    for (seed, name) in [("7", "a"), ("7", "b"), ("8", "c")] {
+        let call = small("frames", &["--only", "noise", "--seed", seed, "-o", name]);
+        assert_eq!(folder.halfrow(call).code, Some(0));
+    }
+    let noise = |name| folder.read(&format!("{name}/noise.pgm"));
+    assert!(noise("a") == noise("b") && noise("a") != noise("c"));
+}
+
+#[test]
+fn files_that_are_there_stay_as_they_are() {
+    let folder = Folder::new();
+    folder.write("lens.json", "precious");
+    folder.write("black.pgm", "precious");
+    folder.write("lens.kernel.mem", "precious");
+    let exists = |arguments: &[&str]| {
+        let ended = folder.halfrow(arguments.iter().copied());
+        assert_ne!(ended.code, Some(0), "{arguments:?}");
+        assert!(ended.stderr.contains("--overwrite"), "{}", ended.stderr);
+    };
+    exists(&small("tables", &["-o", "lens.json"]));
+    exists(&small("tables", &["-o", "lens.mem"]));
+    exists(&small("frames", &["--only", "black", "-o", "."]));
+    assert_eq!(folder.names("."), ["black.pgm", "lens.json", "lens.kernel.mem"]);
+    assert!(folder.names(".").iter().all(|name| folder.text(name) == "precious"));
+    assert_eq!(folder.halfrow(small("tables", &["-o", "lens.json", "--overwrite"])).code, Some(0));
+    assert!(folder.text("lens.json").starts_with('{'));
+}
+
+#[test]
+fn rows_outside_the_image_circle_are_allowed_and_counted() {
+    let folder = Folder::new();
+    let size = ["--width", "64", "--height", "100", "--radius", "40"];
+    let ended = folder.halfrow(["tables", "-o", "lens.json"].into_iter().chain(size));
+    assert_eq!(ended.code, Some(0));
+    // |y| is 0.5, 1.5, … 49.5; ten of the 50 rows on either side have |y| of 40.5 or more.
+    assert!(ended.stdout.contains("20 rows lie outside the image circle"), "{}", ended.stdout);
+    let said = halfrow(["verify", "--json"].into_iter().chain(size)).json();
+    assert_eq!((&said["verdict"], &said["tables"]["rows_outside_circle"]), (&"PASS".into(), &20.into()));
+}
+
+#[test]
+fn a_lens_that_cannot_be_is_refused() {
+    let folder = Folder::new();
+    refused(&folder, &["tables", "--radius", "0", "-o", "x.json"], "radius");
+    refused(&folder, &["tables", "--radius", "nan", "-o", "x.json"], "radius");
+    refused(&folder, &["tables", "--focal-length=-1", "-o", "x.json"], "focal length");
+    refused(&folder, &["tables", "--field-of-view", "0", "-o", "x.json"], "field of view");
+    refused(
+        &folder,
+        &["tables", "--radius", "9", "--focal-length", "1", "-o", "x.json"],
+        "cannot be used with",
+    );
+    refused(&folder, &["tables", "--centre-y", "nan", "-o", "x.json"], "optical centre");
+    refused(&folder, &["tables", "--bits", "9", "-o", "x.json"], "8, 10 or 12");
+    refused(&folder, &["tables", "--phase", "rgbg", "-o", "x.json"], "rgbg");
+}

@@ -1,0 +1,45 @@
+//! The command line from outside: what it prints, what it writes, what it refuses, and with which exit code.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+mod bad_calls;
+mod bad_frames;
+mod bad_tables;
+mod bad_targets;
+mod corrected;
+mod help;
+mod made_files;
+mod replay;
+mod report_folder;
+mod settings;
+mod signals;
+mod verdicts;
+
+use halfrow_tests::program::{Ended, Folder};
+
+/// The options of a frame so small that a whole run takes a moment.
+const SMALL: [&str; 4] = ["--width", "128", "--height", "16"];
+
+/// `command`, then the size of a small frame, then `more`.
+fn small<'a>(command: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    [command].into_iter().chain(SMALL).chain(more.iter().copied()).collect()
+}
+
+/// Runs a call that is wrong. It must end with `code`, say `sentence` on stderr, print nothing, and write nothing.
+#[track_caller]
+fn refused_with(code: i32, folder: &Folder, arguments: &[&str], sentence: &str) -> Ended {
+    let before = folder.names(".");
+    let ended = folder.halfrow(arguments.iter().copied());
+    assert_eq!(ended.code, Some(code), "{arguments:?}: {}{}", ended.stdout, ended.stderr);
+    assert!(ended.stderr.contains(sentence), "{arguments:?} says: {}", ended.stderr);
+    assert_eq!(ended.stdout, "", "{arguments:?}");
+    assert_eq!(folder.names("."), before, "{arguments:?}");
+    ended
+}
+
+/// [`refused_with`] the exit code of wrong usage.
+#[track_caller]
+fn refused(folder: &Folder, arguments: &[&str], sentence: &str) {
+    refused_with(2, folder, arguments, sentence);
+}

@@ -1,0 +1,161 @@
+//! `--record` and `replay:FILE`: the same judgement once more, without the board and without the files.
+
+use halfrow_tests::program::{Ended, Folder};
+use serde_json::Value;
+
+use crate::{refused, small};
+
+/// Judges a board and records it; `files` are gone by the time that the recording is judged again.
+#[track_caller]
+fn both(board: &str, arguments: &[&str], prepare: impl Fn(&Folder) -> Vec<&'static str>) -> [Ended; 2] {
+    let folder = Folder::new();
+    let files = prepare(&folder);
+    let call = small("verify", &["--json", "--board", board, "--record", "run.rec"]);
+    let first = folder.halfrow(call.into_iter().chain(arguments.iter().copied()));
+    assert!(folder.names(".").contains(&"run.rec".to_owned()), "{}", first.stderr);
+    for file in files {
+        std::fs::remove_file(folder.path().join(file)).unwrap();
+    }
+    let again = folder.halfrow(["verify", "--json", "--board", "replay:run.rec"]);
+    assert_eq!(folder.names("."), ["run.rec"]);
+    [first, again]
+}
+
+/// What a run found, without what depends on where the bytes came from.
+fn findings(ended: &Ended) -> [Value; 7] {
+    let said = ended.json();
+    assert!(said.is_object(), "{}", ended.stderr);
+    let headline = said["headline"].as_str().unwrap().split(" (").next().unwrap().to_owned();
+    let what = ["verdict", "exit_code", "suspects", "frames", "latency", "tables"];
+    let [verdict, exit_code, suspects, frames, latency, tables] = what.map(|what| said[what].clone());
+    [verdict, exit_code, headline.into(), suspects, frames, latency, tables]
+}
+
+#[track_caller]
+fn comes_out_the_same(
+    code: i32,
+    board: &str,
+    arguments: &[&str],
+    prepare: impl Fn(&Folder) -> Vec<&'static str>,
+) {
+    let [first, again] = both(board, arguments, prepare);
+    assert_eq!((first.code, again.code), (Some(code), Some(code)), "{board}: {}", again.stdout);
+    assert_eq!(findings(&first), findings(&again), "{board}");
+    assert_eq!(again.json()["board"]["kind"], "replay");
+}
+
+fn no_files(_: &Folder) -> Vec<&'static str> {
+    Vec::new()
+}
+
+/// A frame file and a table file.
+fn frame_and_tables(folder: &Folder) -> Vec<&'static str> {
+    assert_eq!(folder.halfrow(small("frames", &["--only", "street", "-o", "."])).code, Some(0));
+    assert_eq!(folder.halfrow(small("tables", &["--kernel", "keys", "-o", "lens.json"])).code, Some(0));
+    vec!["street.pgm", "lens.json"]
+}
+
+#[test]
+fn a_pass_passes_again() {
+    comes_out_the_same(0, "mock", &[], no_files);
+    comes_out_the_same(0, "mock,speed=100000,delay=0.01", &["--repeat", "2", "--kernel", "linear"], no_files);
+    comes_out_the_same(0, "mock,fault=flip,rate=1e-4,seed=3", &["--seed", "99"], no_files);
+}
+
+#[test]
+fn a_failure_fails_again() {
+    comes_out_the_same(1, "mock,fault=stuck-address", &[], no_files);
+    comes_out_the_same(1, "mock,fault=no-rounding", &["--fail-fast"], no_files);
+    comes_out_the_same(1, "mock,fault=row-factor", &[], no_files);
+    comes_out_the_same(1, "mock,fault=lost-row", &[], no_files);
+    comes_out_the_same(1, "mock,fault=late", &["--phase", "bggr", "--centre-y", "3"], no_files);
+}
+
+#[test]
+fn an_error_is_one_again() {
+    comes_out_the_same(3, "mock,fault=truncate,rate=0.2", &[], no_files);
+    comes_out_the_same(3, "mock,speed=1000", &["--timeout", "20"], no_files);
+    comes_out_the_same(3, "mock,fault=stall,packet=90,seconds=60", &[], no_files);
+    comes_out_the_same(6, "mock,fault=wrong-datapath", &[], no_files);
+}
+
+#[test]
+fn a_broken_link_breaks_again() {
+    let [first, again] = both("mock,fault=disconnect,packet=90", &[], no_files);
+    assert_eq!((first.code, again.code), (Some(3), Some(3)));
+    let headline =
+        |ended: &Ended| ended.json()["headline"].as_str().unwrap().split(": ").next().unwrap().to_owned();
+    assert_eq!(headline(&first), headline(&again));
+    assert!(headline(&first).starts_with("the link broke while waiting for row"), "{}", headline(&first));
+}
+
+#[test]
+fn frames_and_tables_come_from_the_recording_when_their_files_are_gone() {
+    let arguments = ["--frame", "street.pgm", "--frame", "builtin:bars", "--tables", "lens.json"];
+    comes_out_the_same(0, "mock", &arguments, frame_and_tables);
+    comes_out_the_same(1, "mock,fault=dead-tap,tap=6", &arguments, frame_and_tables);
+    comes_out_the_same(3, "mock,fault=truncate,rate=0.2", &arguments, frame_and_tables);
+}
+
+#[test]
+fn a_recording_can_be_reported_on() {
+    let folder = Folder::new();
+    let board = "mock,fault=dead-tap";
+    assert_eq!(folder.halfrow(small("verify", &["--board", board, "--record", "run.rec"])).code, Some(1));
+    let call = ["verify", "--board", "replay:run.rec", "--report", "out"];
+    assert_eq!(folder.halfrow(call).code, Some(1));
+    assert!(folder.text("out/report.html").contains("tap G4"));
+}
+
+#[test]
+fn a_recording_is_no_hardware() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    let call = ["verify", "--json", "--board", "replay:run.rec", "--require-hardware"];
+    assert_eq!(folder.halfrow(call).code, Some(5));
+}
+
+#[test]
+fn a_recording_that_breaks_off_is_judged_as_far_as_it_goes() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    let whole = folder.read("run.rec");
+    folder.write("half.rec", &whole[..whole.len() / 2]);
+    let ended = folder.halfrow(["verify", "--json", "--board", "replay:half.rec"]);
+    assert_eq!((ended.code, &ended.json()["verdict"]), (Some(3), &"ERROR".into()));
+    assert!(ended.json()["headline"].as_str().unwrap().starts_with("the link broke"), "{}", ended.stdout);
+}
+
+#[test]
+fn what_is_no_recording_is_refused() {
+    let folder = Folder::new();
+    folder.write("notes.txt", "halfrow recording of Tuesday\n");
+    folder.write("head.rec", "halfrow recording 1\n{\"link\":\"x\"}\n");
+    let replay = |target| ["verify", "--board", target];
+    refused(&folder, &replay("replay:missing.rec"), "the recording missing.rec cannot be read");
+    refused(&folder, &replay("replay:notes.txt"), "notes.txt is no recording of this version");
+    refused(&folder, &replay("replay:head.rec"), "the head of the recording head.rec is damaged");
+    refused(&folder, &replay("replay"), "write replay:FILE");
+    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    refused(&folder, &replay("replay:run.rec,speed=1"), "takes no option");
+}
+
+#[test]
+fn a_recording_that_is_there_is_kept() {
+    let folder = Folder::new();
+    folder.write("run.rec", "precious");
+    refused(&folder, &small("verify", &["--record", "run.rec"]), "run.rec is there already");
+    assert_eq!(folder.text("run.rec"), "precious");
+    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec", "--overwrite"])).code, Some(0));
+    assert!(folder.read("run.rec").starts_with(b"halfrow recording 1\n"));
+    assert_eq!(folder.names("."), ["run.rec"]);
+}
+
+#[test]
+fn a_recording_cannot_be_written_nowhere() {
+    refused(
+        &Folder::new(),
+        &small("verify", &["--record", "missing/run.rec"]),
+        "choose another place with --record",
+    );
+}

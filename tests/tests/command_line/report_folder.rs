@@ -1,0 +1,101 @@
+//! `--report`: all three files or none, and nothing of anybody else's is touched.
+
+use halfrow_tests::program::Folder;
+
+use crate::{refused, refused_with, small};
+
+const FILES: [&str; 3] = ["report.html", "report.json", "report.xml"];
+
+#[test]
+fn the_folder_holds_the_report_in_three_views() {
+    let folder = Folder::new();
+    let ended = folder.halfrow(small("verify", &["--report", "out", "--json"]));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(folder.names("."), ["out"]);
+    assert_eq!(folder.names("out"), FILES);
+    let written: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    assert_eq!(written, ended.json());
+    assert!(folder.text("out/report.html").contains("PASS"));
+    let junit = folder.text("out/report.xml");
+    assert!(junit.starts_with("<?xml") && junit.contains("<testcase name="), "{junit}");
+    assert!(junit.contains("failures=\"0\" errors=\"0\""), "{junit}");
+}
+
+#[test]
+fn a_failure_is_reported_with_its_suspect() {
+    let folder = Folder::new();
+    let ended = folder.halfrow(small("verify", &["--report", "out", "--board", "mock,fault=dead-tap"]));
+    assert_eq!(ended.code, Some(1));
+    for name in FILES {
+        assert!(folder.text(&format!("out/{name}")).contains("tap G4, stuck at 0"), "{name}");
+    }
+    assert!(folder.text("out/report.xml").contains("<failure"));
+}
+
+#[test]
+fn an_error_is_reported_as_an_error() {
+    let folder = Folder::new();
+    let ended = folder.halfrow(small("verify", &["--report", "out", "--board", "mock,fault=disconnect"]));
+    assert_eq!(ended.code, Some(3));
+    let junit = folder.text("out/report.xml");
+    assert!(junit.contains("<error") && !junit.contains("<failure"), "{junit}");
+}
+
+#[test]
+fn an_earlier_report_is_kept_unless_it_may_be_replaced() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("verify", &["--report", "out"])).code, Some(0));
+    let earlier = FILES.map(|name| folder.read(&format!("out/{name}")));
+    let broken = small("verify", &["--report", "out", "--board", "mock,fault=late"]);
+    refused(&folder, &broken, "out exists");
+    assert_eq!(folder.names("out"), FILES);
+    assert!(FILES.map(|name| folder.read(&format!("out/{name}"))) == earlier);
+    assert_eq!(folder.halfrow(broken.into_iter().chain(["--overwrite"])).code, Some(1));
+    assert_eq!(
+        (folder.names("."), folder.names("out")),
+        (vec!["out".to_owned()], FILES.map(str::to_owned).to_vec())
+    );
+    assert!(folder.text("out/report.json").contains("\"verdict\": \"FAIL\""));
+}
+
+#[test]
+fn what_is_no_report_is_never_replaced() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("photos")).unwrap();
+    folder.write("photos/holiday.jpg", "precious");
+    folder.write("file", "precious");
+    let into = |place| small("verify", &["--overwrite", "--report", place]);
+    refused(&folder, &into("photos"), "it also holds `holiday.jpg`");
+    refused(&folder, &into("file"), "is no earlier report");
+    refused(&folder, &into("."), "names no folder of its own");
+    assert_eq!(folder.text("photos/holiday.jpg"), "precious");
+    assert_eq!(folder.names("photos"), ["holiday.jpg"]);
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_refused_before_the_board_is_opened() {
+    let folder = Folder::new();
+    folder.write("file", "");
+    // A run on this board would end with another code.
+    let board = "mock,fault=disconnect,byte=0";
+    for place in ["missing/out", "file/out"] {
+        refused(&folder, &small("verify", &["--report", place, "--board", board]), "folder");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_place_in_a_file_system_without_files_is_refused() {
+    refused(
+        &Folder::new(),
+        &small("verify", &["--report", "/proc/halfrow"]),
+        "cannot make the folder /proc/halfrow",
+    );
+}
+
+#[test]
+fn a_call_that_fits_no_board_leaves_no_report() {
+    let folder = Folder::new();
+    let call = ["verify", "--report", "out", "--board", "mock,max-width=128"];
+    refused_with(2, &folder, &call, "do not fit the board");
+}

@@ -1,0 +1,142 @@
+//! Settings: the flag, else the environment, else the settings file, else the default.
+
+use halfrow_tests::program::{Ended, Folder, finish};
+
+use crate::{refused, small};
+
+const FILE: &str = "settings.toml";
+
+/// Runs `verify` on a small frame with a settings file, a variable and arguments.
+fn run(folder: &Folder, settings: &str, variable: Option<(&str, &str)>, arguments: &[&str]) -> Ended {
+    folder.write(FILE, settings);
+    let mut command = folder.command(small("verify", &["--json", "--settings", FILE]));
+    command.args(arguments).envs(variable);
+    finish(&mut command)
+}
+
+/// The seed, the target and the kernel's CRC of a run.
+fn seed(ended: &Ended) -> u64 {
+    ended.json()["run"]["seed"].as_u64().unwrap()
+}
+
+#[test]
+fn the_flag_beats_the_variable_beats_the_file_beats_the_default() {
+    let folder = Folder::new();
+    let (file, variable) = ("seed = 5\n", Some(("HALFROW_SEED", "6")));
+    assert_eq!(seed(&run(&folder, "", None, &[])), 1);
+    assert_eq!(seed(&run(&folder, file, None, &[])), 5);
+    assert_eq!(seed(&run(&folder, file, variable, &[])), 6);
+    assert_eq!(seed(&run(&folder, file, variable, &["--seed", "7"])), 7);
+}
+
+#[test]
+fn the_board_is_chosen_in_the_same_order() {
+    let folder = Folder::new();
+    let target = |ended: &Ended| ended.json()["board"]["target"].as_str().unwrap().to_owned();
+    let (file, variable) = ("board = 'mock,latency=5'\n", Some(("HALFROW_BOARD", "mock,latency=6")));
+    assert_eq!(target(&run(&folder, "", None, &[])), "mock");
+    assert_eq!(target(&run(&folder, file, None, &[])), "mock,latency=5");
+    assert_eq!(target(&run(&folder, file, variable, &[])), "mock,latency=6");
+    assert_eq!(target(&run(&folder, file, variable, &["--board", "mock,latency=7"])), "mock,latency=7");
+}
+
+#[test]
+fn the_kernel_is_chosen_in_the_same_order() {
+    let folder = Folder::new();
+    // CRC-32 of each kernel's nodes, the first from a program outside this project.
+    let crc = |ended: &Ended| ended.json()["tables"]["kernel_crc32"].as_str().unwrap().to_owned();
+    let named = |kernel| crc(&run(&folder, "", None, &["--kernel", kernel]));
+    assert_eq!(named("keys"), "54f5e990");
+    let (file, variable) = ("kernel = 'keys'\n", Some(("HALFROW_KERNEL", "linear")));
+    assert_eq!(crc(&run(&folder, "", None, &[])), "16e29b0f");
+    assert_eq!(crc(&run(&folder, file, None, &[])), "54f5e990");
+    assert_eq!(crc(&run(&folder, file, variable, &[])), named("linear"));
+    assert_eq!(crc(&run(&folder, file, variable, &["--kernel", "nearest"])), named("nearest"));
+}
+
+#[test]
+fn a_station_that_requires_hardware_judges_nothing_else() {
+    let folder = Folder::new();
+    assert_eq!(run(&folder, "require_hardware = true\n", None, &[]).code, Some(5));
+    assert_eq!(run(&folder, "require_hardware = false\n", None, &[]).code, Some(0));
+    assert_eq!(run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "true")), &[]).code, Some(5));
+    assert_eq!(run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "0")), &[]).code, Some(0));
+}
+
+#[test]
+fn frames_tables_and_report_come_from_the_file_too() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(["tables", "--width", "64", "--height", "9", "-o", "lens.json"]).code, Some(0));
+    let settings = "frame = ['builtin:bars']\ntables = 'lens.json'\nreport = 'out'\n";
+    let ended = run(&folder, settings, None, &[]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let names: Vec<_> =
+        ended.json()["frames"].as_array().unwrap().iter().map(|it| it["name"].clone()).collect();
+    assert_eq!(names.iter().filter(|name| *name == "builtin:bars").count(), 1);
+    assert_eq!(names.len(), 5);
+    assert_eq!(ended.json()["tables"]["height"], 9);
+    assert_eq!(folder.names("out").len(), 3);
+    assert_eq!(run(&folder, settings, None, &[]).code, Some(2));
+    assert_eq!(run(&folder, &format!("{settings}overwrite = true\n"), None, &[]).code, Some(0));
+}
+
+#[test]
+fn limits_come_from_the_file_too() {
+    let folder = Folder::new();
+    let slow = ["--board", "mock,speed=1000"];
+    assert_eq!(run(&folder, "timeout = 20\n", None, &slow).code, Some(3));
+    assert_eq!(run(&folder, "timeout = 20\n", Some(("HALFROW_TIMEOUT", "100000")), &slow).code, Some(0));
+    let poor = ["--board", "mock,fault=truncate,rate=0.05,seed=1"];
+    assert_eq!(run(&folder, "retry_limit = 100\n", None, &poor).code, Some(0));
+    assert_eq!(run(&folder, "retry_limit = 0\n", None, &poor).code, Some(3));
+}
+
+#[test]
+fn what_corrects_takes_tables_and_kernel_from_the_file_too() {
+    let folder = Folder::new();
+    let made =
+        folder.halfrow(["tables", "--width", "64", "--height", "9", "--radius", "9", "-o", "lens.json"]);
+    assert_eq!(made.code, Some(0));
+    let correct = ["correct", "builtin:noise", "--model", "--overwrite", "-o"];
+    let corrected = |output, more: &[&'static str]| {
+        let ended = folder.halfrow(correct.into_iter().chain([output]).chain(more.iter().copied()));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        folder.read(output)
+    };
+    folder.write(FILE, "tables = 'lens.json'\nkernel = 'keys'\n");
+    let named = corrected("named.pgm", &["--tables", "lens.json", "--kernel", "keys"]);
+    assert!(corrected("set.pgm", &["--settings", FILE]) == named);
+    assert!(corrected("other.pgm", &["--settings", FILE, "--kernel", "linear"]) != named);
+}
+
+#[test]
+fn the_user_s_own_settings_file_is_read() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("halfrow")).unwrap();
+    folder.write("halfrow/settings.toml", "seed = 11\n");
+    let mut command = folder.command(small("verify", &["--json"]));
+    assert_eq!(seed(&finish(command.env("XDG_CONFIG_HOME", folder.path()))), 11);
+    folder.write(FILE, "seed = 12\n");
+    assert_eq!(seed(&finish(command.env("HALFROW_SETTINGS", FILE))), 12);
+}
+
+#[test]
+fn a_settings_file_that_is_wrong_is_never_passed_over() {
+    let folder = Folder::new();
+    let call = small("verify", &["--settings", FILE]);
+    refused(&folder, &call, "cannot read the settings file settings.toml");
+    folder.write(FILE, "seed = 1\nbord = 'mock'\n");
+    refused(&folder, &call, "settings.toml, line 2: there is no setting \"bord\"");
+    folder.write(FILE, "\n\nseed = 'one'\n");
+    refused(&folder, &call, "settings.toml, line 3: ");
+    folder.write(FILE, "retry_limit = 101\n");
+    refused(&folder, &call, "101 is no share in percent");
+    folder.write(FILE, "timeout = -1\n");
+    refused(&folder, &call, "-1 is no time in seconds");
+    folder.write(FILE, "seed = \n");
+    refused(&folder, &call, "settings.toml, line 1: ");
+    folder.write(FILE, "board = 'moon'\n");
+    refused(&folder, &call, "`moon` is no kind of board");
+    folder.write(FILE, "frame = ['builtin:moon']\n");
+    refused(&folder, &call, "`moon` is no built-in frame");
+}

@@ -1,0 +1,143 @@
+//! What `verify` prints, and where.
+
+use std::fs::File;
+use std::process::Stdio;
+
+use halfrow_tests::program::{Folder, command, finish, halfrow};
+
+use crate::{refused, small};
+
+const ESCAPE: char = '\u{1b}';
+
+#[test]
+fn json_begins_with_verdict_exit_code_and_kind_of_board() {
+    let ended = halfrow(small("verify", &["--json"]));
+    let beginning =
+        "{\n  \"verdict\": \"PASS\",\n  \"exit_code\": 0,\n  \"board\": {\n    \"kind\": \"mock\",";
+    assert!(ended.stdout.starts_with(beginning), "{}", ended.stdout);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+    assert!(ended.json().is_object());
+}
+
+#[test]
+fn json_of_a_refused_call_has_no_verdict() {
+    let ended = halfrow(["verify", "--json", "--width", "63"]);
+    assert_eq!(ended.code, Some(2));
+    let said = ended.json();
+    assert!(said["verdict"].is_null() && said["board"]["kind"].is_null());
+    assert_eq!(said["exit_code"], 2);
+    assert!(ended.stderr.contains(said["error"].as_str().unwrap()));
+}
+
+#[test]
+fn the_text_ends_with_the_verdict_and_says_that_no_hardware_was_tested() {
+    let ended = halfrow(small("verify", &[]));
+    let last = ended.stdout.trim_end().lines().last().unwrap();
+    assert!(
+        last.starts_with("PASS (mock board: no hardware was tested)  16 frames, 32,768 samples equal"),
+        "{last}"
+    );
+}
+
+#[test]
+fn the_text_of_a_failure_names_the_suspect_and_what_to_do() {
+    let ended = halfrow(small("verify", &["--board", "mock,fault=stuck-data"]));
+    assert_eq!(ended.code, Some(1));
+    let last = ended.stdout.split("\n\n").last().unwrap();
+    assert!(last.starts_with("FAIL: "), "{last}");
+    assert!(last.contains("line memory, data bit 5, stuck at 1"), "{last}");
+    assert!(last.contains("Next: Check data line 5"), "{last}");
+}
+
+#[test]
+fn colours_are_for_terminals_and_for_those_who_ask() {
+    let arguments = small("verify", &["--frame", "builtin:black"]);
+    let plain = finish(&mut command(arguments.clone()));
+    let forced = finish(command(arguments.clone()).env("CLICOLOR_FORCE", "1"));
+    let refused = finish(command(arguments).env("CLICOLOR_FORCE", "1").env("NO_COLOR", "1"));
+    assert!(!plain.stdout.contains(ESCAPE) && !plain.stderr.contains(ESCAPE));
+    assert!(forced.stdout.contains(ESCAPE));
+    assert!(!refused.stdout.contains(ESCAPE) && !refused.stderr.contains(ESCAPE));
+}
+
+#[test]
+fn the_list_names_every_frame_and_opens_no_board() {
+    let ended = halfrow(small("verify", &["--list", "--board", "mock,fault=disconnect,byte=0"]));
+    assert_eq!(ended.code, Some(0));
+    assert_eq!(ended.stdout.lines().count(), 16);
+    assert!(ended.stdout.contains("builtin:zone-plate"), "{}", ended.stdout);
+}
+
+#[test]
+fn where_hardware_is_required_the_mock_is_not_judged() {
+    let flag = halfrow(small("verify", &["--json", "--require-hardware"]));
+    let variable = finish(command(small("verify", &["--json"])).env("HALFROW_REQUIRE_HARDWARE", "1"));
+    for ended in [flag, variable] {
+        assert_eq!((ended.code, &ended.json()["verdict"]), (Some(5), &"ERROR".into()));
+        assert_eq!(ended.json()["frames"], serde_json::json!([]));
+    }
+}
+
+#[test]
+fn the_log_goes_to_stderr_alone() {
+    let poor = small("verify", &["--board", "mock,fault=drop,packet=60,toward=board"]);
+    let quiet = halfrow(poor.clone());
+    assert_eq!((quiet.code, quiet.stderr.as_str()), (Some(0), ""));
+    let talkative = halfrow(poor.into_iter().chain(["-v"]));
+    assert_eq!(talkative.code, Some(0));
+    assert!(talkative.stderr.contains("is missing; sending it again"), "{}", talkative.stderr);
+    assert!(!talkative.stdout.contains("INFO"), "{}", talkative.stdout);
+}
+
+#[test]
+fn more_of_the_log_tells_of_damaged_packets() {
+    let arguments = small("verify", &["--board", "mock,fault=flip,packet=60,toward=host", "-vv"]);
+    assert!(halfrow(arguments).stderr.contains("a damaged packet: "));
+}
+
+#[test]
+fn a_reader_that_goes_away_changes_no_verdict() {
+    let mut run = command(small("verify", &["--board", "mock,fault=late"]));
+    let mut child = run.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+    drop(child.stdout.take());
+    assert_eq!(child.wait().unwrap().code(), Some(1));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_cannot_be_printed_is_no_pass() {
+    let full = File::options().write(true).open("/dev/full").unwrap();
+    let child = command(small("verify", &[])).stdout(full).stderr(Stdio::piped()).spawn().unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_run_ends_at_its_time_limit() {
+    let arguments = small("verify", &["--json", "--board", "mock,speed=1000", "--timeout", "20"]);
+    let ended = halfrow(arguments);
+    assert_eq!(ended.code, Some(3));
+    let headline = ended.json()["headline"].as_str().unwrap().to_owned();
+    assert!(headline.contains("the run took longer than the 20 s of --timeout"), "{headline}");
+}
+
+#[test]
+fn a_stricter_limit_on_retries_makes_a_link_too_poor() {
+    let board = "mock,fault=truncate,rate=0.05,seed=1";
+    let lenient = halfrow(small("verify", &["--board", board, "--retry-limit", "100"]));
+    assert_eq!(lenient.code, Some(0), "{}", lenient.stdout);
+    let strict = halfrow(small("verify", &["--board", board, "--retry-limit", "0"]));
+    assert_eq!(strict.code, Some(3), "{}", strict.stdout);
+    assert!(strict.stdout.contains("the link is too poor to judge a board over"), "{}", strict.stdout);
+}
+
+#[test]
+fn limits_that_make_no_sense_are_refused() {
+    let folder = Folder::new();
+    refused(&folder, &["verify", "--repeat", "0"], "0 is not in 1..=1000");
+    refused(&folder, &["verify", "--timeout=-1"], "--timeout takes a number of seconds");
+    refused(&folder, &["verify", "--timeout=soon"], "invalid value 'soon'");
+    refused(&folder, &["verify", "--retry-limit=-1"], "percent");
+    refused(&folder, &["verify", "--retry-limit=nan"], "percent");
+    refused(&folder, &["verify", "--seed=-1"], "invalid value '-1'");
+}
