@@ -77,7 +77,9 @@ fn draw_tables(draw: &mut Draw, geometry: Geometry, ring: usize) -> TableSet {
 fn draw_kernel(draw: &mut Draw) -> Kernel {
     match draw.number(0, 5) {
         named @ 0..4 => Kernel::from(Interpolant::ALL[named]),
-        _ => Kernel::from_nodes((0..65).map(|_| [(); 5].map(|()| draw.0.next_u32() as i16)).collect()).unwrap(),
+        _ => {
+            Kernel::from_nodes((0..65).map(|_| [(); 5].map(|()| draw.0.next_u32() as i16)).collect()).unwrap()
+        }
     }
 }
 
@@ -108,7 +110,8 @@ fn play(case: &Case) -> (Vec<u16>, Vec<u16>) {
         for (row, input) in frame.rows().enumerate() {
             let last = row + 1 == frame.height();
             let samples_in = input.to_vec();
-            let row_in = RowIn { sequence: 0, frame: number as u16, row: row as u16, last, samples: samples_in };
+            let row_in =
+                RowIn { sequence: 0, frame: number as u16, row: row as u16, last, samples: samples_in };
             player.play(&row_in, &mut tables).unwrap();
             while let Some(out) = player.banks.fetch() {
                 samples.extend(out.samples);
@@ -126,7 +129,8 @@ fn play(case: &Case) -> (Vec<u16>, Vec<u16>) {
 
 #[test]
 fn model_and_mock_agree_on_every_sample_and_every_latency() {
-    let cases = std::env::var("HALFROW_EQUALITY_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(4000);
+    let cases =
+        std::env::var("HALFROW_EQUALITY_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(4000);
     let (mut samples, mut rows) = (0, 0);
     for seed in 0..cases {
         let case = draw_case(seed);

@@ -54,6 +54,9 @@ fn on_photographs_the_integers_are_within_one_of_double_precision() {
         total += frame.samples().len();
     }
     let share = 100.0 * equal as f64 / total as f64;
-    println!("{} photographs: {share:.2} % of {total} samples equal double precision, the rest within 1", paths.len());
+    println!(
+        "{} photographs: {share:.2} % of {total} samples equal double precision, the rest within 1",
+        paths.len()
+    );
     assert!(share > 97.0, "{share:.2} %");
 }

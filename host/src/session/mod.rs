@@ -23,8 +23,8 @@ use steps::Run;
 
 pub use golden::judge_the_judge;
 pub use plan::{
-    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, SENSOR_BLANKING, ScheduledFrame, Segment, Timing,
-    TooManyFrames,
+    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, SENSOR_BLANKING, ScheduledFrame, Segment,
+    Timing, TooManyFrames,
 };
 pub use steps::misfit;
 
