@@ -73,8 +73,14 @@ const FAULTS: &[FaultInfo] = &[
     board("late", "samples leave one pixel clock later than claimed"),
     board("wrong-latency-claim", "the claimed latency is one pixel clock too long"),
     board("lost-row", "a row goes in and never comes out (row=3)"),
-    board("stale-table", "after a commit, rows are made with the tables before it and say so"),
-    board("stale-table-hidden", "after a commit, rows are made with the tables before it and deny it"),
+    board(
+        "stale-table",
+        "after a commit, rows are made with the tables before it and say so (two table banks)",
+    ),
+    board(
+        "stale-table-hidden",
+        "after a commit, rows are made with the tables before it and deny it (two table banks)",
+    ),
     board("drifting-table", "a bit of a table entry flips some rows after a commit (after=8, row=3, bit=18)"),
     board("wrong-datapath", "the board claims another datapath id"),
 ];
