@@ -111,8 +111,12 @@ impl Kind {
         }
     }
 
-    /// Looks for the fault in the samples alone, and then in what reads back.
-    fn search(self, system: &System, options: &str) -> Found {
+    /// Looks for a fault of this kind, given as options of a target: in the samples alone, and then in what reads back.
+    ///
+    /// # Panics
+    /// When the run comes to anything but PASS or FAIL, or a check fails that has nothing to do with the fault.
+    #[must_use]
+    pub fn search(self, system: &System, options: &str) -> Found {
         let is_in_table = matches!(self, Self::RowFactor | Self::KernelWord);
         let hidden = if is_in_table { ",hidden=true" } else { "" };
         match check_of(system, &format!("{options}{hidden}")) {

@@ -108,6 +108,31 @@ impl Folder {
         finish(&mut self.command(arguments))
     }
 
+    /// Runs `halfrow` in this folder where no file can be longer than `blocks` of 512 bytes, as on a full disk.
+    ///
+    /// # Panics
+    /// As [`halfrow()`].
+    #[cfg(unix)]
+    #[must_use]
+    pub fn halfrow_on_a_full_disk<'a>(
+        &self,
+        blocks: usize,
+        arguments: impl IntoIterator<Item = &'a str>,
+    ) -> Ended {
+        let command = self.command(arguments);
+        let mut shell = Command::new("sh");
+        // POSIX counts in blocks of 512 bytes. Ignoring the signal makes the write fail instead.
+        shell.args(["-c", &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\""), "sh"]);
+        shell.arg(command.get_program()).args(command.get_args()).current_dir(self.path());
+        for (name, value) in command.get_envs() {
+            match value {
+                Some(value) => shell.env(name, value),
+                None => shell.env_remove(name),
+            };
+        }
+        finish(shell.stdin(Stdio::null()))
+    }
+
     /// Writes a file.
     ///
     /// # Panics

@@ -1,6 +1,6 @@
 //! Campaigns of drawn faults: small ones here, large ones when `scripts/soak` asks for them.
 
-use halfrow_tests::campaign::{self, Found};
+use halfrow_tests::campaign::{self, Found, Kind};
 use halfrow_tests::poor_links;
 use halfrow_tests::system::System;
 
@@ -29,6 +29,15 @@ fn no_verdict_is_false(count: usize) {
 #[test]
 fn every_single_fault_of_a_small_board_is_found() {
     every_fault_is_found(&System::SMALL, 200);
+}
+
+/// Where nothing is stretched no output lies near node 40, and rows of 64 samples never meet in a memory of 2048.
+#[test]
+fn what_no_sample_can_show_is_left_to_read_back_or_to_nobody() {
+    let unstretched = System { radius: 1e8, ..System::TINY };
+    let word = Kind::KernelWord.search(&unstretched, ",fault=kernel-word,node=40,bit=9");
+    let line = Kind::AddressLine.search(&System::TINY, ",fault=stuck-address,bit=10");
+    assert_eq!((word, line), (Found::ByReadBack, Found::ByNothing));
 }
 
 #[test]

@@ -12,7 +12,7 @@ use super::inputs::{InputArguments, file_hash, frame_sources};
 use super::lens::{self, LensArguments};
 use super::{Context, Failure, print};
 use crate::frames::Builtin;
-use crate::link::{Candidate, Recorder};
+use crate::link::{Candidate, Recorder, Unfinished};
 use crate::progress;
 use crate::report::{self, Report, ReportFolder};
 use crate::session::{self, Circumstances, Finished, FrameSource, Plan, Timing};
@@ -85,11 +85,13 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let overwrite = arguments.overwrite || settings.overwrite.unwrap_or(false);
     let folder = arguments.report.as_ref().or(settings.report.as_ref());
     let folder = folder.map(|path| ReportFolder::prepare(path, overwrite)).transpose()?;
+    let mut unfinished = Unfinished::default();
     let candidate = match &arguments.record {
         None => candidate,
         Some(path) => {
             let run = recorded::RecordedRun::of(&plan, &circumstances);
             let link = Recorder::create(candidate.link, path, &run, overwrite)?;
+            unfinished = link.unfinished();
             Candidate { link: Box::new(link), ..candidate }
         }
     };
@@ -100,20 +102,23 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         // The call does not fit the board: there is no verdict, and so nothing to report on.
         return Err(anyhow::anyhow!(finished.report.headline).into());
     }
+    if let Some(error) = unfinished.get() {
+        lose(&mut finished.report, format!("the recording could not be written: {error}"), "--record");
+    }
     let written = folder.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
     if let Err(error) = written {
-        lose(&mut finished.report, &error.into());
+        let error = anyhow::Error::from(error);
+        lose(&mut finished.report, format!("the report could not be written: {error:#}"), "--report");
     }
     conclude(&finished, arguments.json)
 }
 
 /// A result that could not be written is none, even when all samples were equal.
-fn lose(report: &mut Report, error: &anyhow::Error) {
-    report.headline = format!("the report could not be written: {error:#}");
+fn lose(report: &mut Report, headline: String, option: &str) {
+    report.headline = headline;
     report.verdict = Verdict::Error;
     report.exit_code = Exit::Error;
-    report.remedy =
-        Some("Free some space or choose another folder with --report, then run again.".to_owned());
+    report.remedy = Some(format!("Free some space or choose another place with {option}, then run again."));
 }
 
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {

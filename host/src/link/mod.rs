@@ -9,7 +9,7 @@ use std::time::Duration;
 
 pub use mock::MockLink;
 pub use open::{Candidate, OpenError, open, replayed_file};
-pub use recording::{Recorder, Recording, RecordingError};
+pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
 
 /// A byte pipe to a board.

@@ -10,6 +10,7 @@
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
 use serde::de::DeserializeOwned;
@@ -104,7 +105,11 @@ pub struct Recorder {
     file: BufWriter<File>,
     partial: PathBuf,
     path: PathBuf,
+    unfinished: Unfinished,
 }
+
+/// Why a recording could not be finished, once its recorder is gone; empty when it is whole.
+pub type Unfinished = Arc<OnceLock<std::io::Error>>;
 
 impl Recorder {
     /// Records what `link` carries to `path`, with `run` in front.
@@ -132,7 +137,13 @@ impl Recorder {
             file.write_all(b"\n")
         };
         write_head(&mut file).map_err(create)?;
-        Ok(Self { link, file, partial, path: path.to_owned() })
+        Ok(Self { link, file, partial, path: path.to_owned(), unfinished: Unfinished::default() })
+    }
+
+    /// Where it will be said if the recording cannot be finished.
+    #[must_use]
+    pub fn unfinished(&self) -> Unfinished {
+        Arc::clone(&self.unfinished)
     }
 
     fn finish(&mut self) -> std::io::Result<()> {
@@ -146,6 +157,7 @@ impl Drop for Recorder {
     fn drop(&mut self) {
         if let Err(error) = self.finish() {
             tracing::error!("the recording stays in {}: {error}", self.partial.display());
+            let _ = self.unfinished.set(error);
         }
     }
 }

@@ -41,6 +41,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=drifting-table,after=15119,row=1079,bit=0",
         "the tables changed during the run: row 1079's factor, bit 0",
     ),
+    fails(
+        "a row factor in the only bank",
+        ",table-banks=1,fault=row-factor,row=1079,bit=0,hidden=true",
+        "row 1079's factor, bit 0",
+    ),
     expect("ERROR", 6, "another datapath", ",fault=wrong-datapath", &[], "this program judges datapath 1"),
 ];
 

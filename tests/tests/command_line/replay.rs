@@ -151,6 +151,21 @@ fn a_recording_that_is_there_is_kept() {
     assert_eq!(folder.names("."), ["run.rec"]);
 }
 
+#[cfg(unix)]
+#[test]
+fn a_recording_that_finds_no_space_is_no_pass_even_if_only_its_end_is_missing() {
+    let folder = Folder::new();
+    let call = |file| small("verify", &["--json", "--record", file]);
+    assert_eq!(folder.halfrow(call("whole.rec")).code, Some(0));
+    for blocks in [0, 8, folder.read("whole.rec").len() / 512 - 1] {
+        let ended = folder.halfrow_on_a_full_disk(blocks, call("run.rec"));
+        let said = ended.json();
+        assert_ne!(ended.code, Some(0), "{blocks} blocks");
+        assert_ne!(said["verdict"], "PASS", "{blocks} blocks");
+        assert!(!folder.names(".").contains(&"run.rec".to_owned()));
+    }
+}
+
 #[test]
 fn a_recording_cannot_be_written_nowhere() {
     refused(

@@ -93,6 +93,17 @@ fn a_place_in_a_file_system_without_files_is_refused() {
     );
 }
 
+#[cfg(unix)]
+#[test]
+fn a_report_that_finds_no_space_leaves_none_and_is_no_pass() {
+    let folder = Folder::new();
+    let ended = folder.halfrow_on_a_full_disk(8, small("verify", &["--json", "--report", "out"]));
+    assert_eq!((ended.code, &ended.json()["verdict"]), (Some(3), &"ERROR".into()));
+    let headline = ended.json()["headline"].as_str().unwrap().to_owned();
+    assert!(headline.starts_with("the report could not be written: cannot write report.json"), "{headline}");
+    assert_eq!(folder.names("."), [""; 0]);
+}
+
 #[test]
 fn a_call_that_fits_no_board_leaves_no_report() {
     let folder = Folder::new();
