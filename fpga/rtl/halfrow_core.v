@@ -53,13 +53,9 @@ module halfrow_core #(
     wire ring_write, ring_read;
     wire [11:0] newest;
     wire row_begin, row_end, start_waits;
-    wire [10:0] half_less_1;
     wire [36:0] start_position;
     wire start_bank;
     wire [12*SLOTS-1:0] opening;
-
-    assign half_less_1 = width[11:1] - 11'd1;
-    wire unused = &{1'b0, width[0]};         // W is even
 
     halfrow_row_start #(.MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .TABLE_BANKS(TABLE_BANKS)) row_start (
         .clk(clk), .rst(rst), .centre2(centre2),
@@ -70,7 +66,7 @@ module halfrow_core #(
         .table_data(table_data[24:0]));
 
     halfrow_entry #(.RING_BITS(RING_BITS), .SPAN(SPAN)) entry (
-        .clk(clk), .rst(rst), .enable(enable), .half_less_1(half_less_1), .first_column(start_position[36:25]),
+        .clk(clk), .rst(rst), .enable(enable), .width(width), .first_column(start_position[36:25]),
         .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample),
         .ring_write(ring_write), .write_address(write_address), .first_address(first_address),
         .last_address(last_address), .opening(opening), .row_end(row_end), .row_begin(row_begin), .waiting(start_waits),
@@ -86,7 +82,7 @@ module halfrow_core #(
     wire made_valid, made_start, made_last;
 
     halfrow_source #(.RING_BITS(RING_BITS)) source (
-        .clk(clk), .rst(rst), .enable(enable), .half_less_1(half_less_1),
+        .clk(clk), .rst(rst), .enable(enable), .width(width),
         .row_begin(row_begin), .position(start_position), .step(step_port), .bank(start_bank),
         .first_address(first_address), .row_end(row_end), .last_address(last_address), .read_address(read_address),
         .node(node), .fraction(fraction), .leaving_bank(leaving_bank),

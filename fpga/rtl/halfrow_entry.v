@@ -9,7 +9,7 @@ module halfrow_entry #(
     input  wire                      clk,
     input  wire                      rst,
     input  wire                      enable,
-    input  wire [10:0]               half_less_1,   // W/2 - 1
+    input  wire [11:0]               width,
     input  wire [11:0]               first_column,  // n of column 0, until row_begin
 
     input  wire                      in_valid,
@@ -19,10 +19,10 @@ module halfrow_entry #(
     output wire                      ring_write,
     output reg  [RING_BITS-1:0]      write_address,
     output reg  [RING_BITS-1:0]      first_address, // of column n + SPAN
-    output reg  [RING_BITS-1:0]      last_address,  // of column W - 1, from row_end on
+    output reg  [RING_BITS-1:0]      last_address,  // of column W - 1, behind row_end
     output wire [12*(2*SPAN+1)-1:0]  opening,       // the leftmost in the lowest bits
 
-    output wire                      row_end,       // with the sample of column W - 1
+    output wire                      row_end,       // the row has got all of its samples
     output wire                      row_begin,     // with the sample of column W/2: the row begins to leave
     output reg                       waiting,       // it has not yet
     output reg                       row_short,
@@ -31,15 +31,16 @@ module halfrow_entry #(
     localparam SLOTS = 2 * SPAN + 1;
 
     reg        open;                          // the row may go on
-    reg [11:0] column;                        // of the newest sample
-    wire       full = column == {half_less_1, 1'b1};
+    reg [11:0] taken;                         // samples of the row
+    reg [RING_BITS-1:0] newest_address;
+    wire       full = taken == width;
     wire       start = in_valid && in_start;
     wire       goes_on = in_valid && !in_start && open && !full;
     wire       cut = open && !full && (start || !in_valid);
 
     assign ring_write = enable && (start || goes_on);
-    assign row_end = enable && goes_on && column == {half_less_1, 1'b0};
-    assign row_begin = enable && goes_on && waiting && column == {1'b0, half_less_1};
+    assign row_end = enable && open && full;
+    assign row_begin = enable && goes_on && waiting && taken == {1'b0, width[11:1]};
 
     always @(posedge clk)
         if (rst)
@@ -49,10 +50,13 @@ module halfrow_entry #(
 
     always @(posedge clk)
         if (ring_write) begin
-            column <= in_start ? 12'd0 : column + 12'd1;
-            if (row_end)
-                last_address <= write_address;
+            taken <= in_start ? 12'd1 : taken + 12'd1;
+            newest_address <= write_address;
         end
+
+    always @(posedge clk)
+        if (row_end)
+            last_address <= newest_address;
 
     always @(posedge clk)
         if (rst) begin
@@ -69,16 +73,16 @@ module halfrow_entry #(
             end
         end
 
-    // The newest sample stands in `sample`, and its column in `column`.
+    // The newest sample stands in `sample`.
     reg [11:0]   sample;
     reg          collecting;
-    reg [SPAN:1] since_first;                 // bit k: column n is k samples old
-    wire         at_first = column == first_column;
+    reg [SPAN:0] since_first;                 // bit k: column n is k samples old
 
     always @(posedge clk)
         if (enable) begin
             sample <= in_sample;
-            since_first <= start ? {SPAN{1'b0}} : {since_first[SPAN-1:1], at_first};
+            since_first <= start ? {{SPAN{1'b0}}, first_column == 12'd0}
+                                 : {since_first[SPAN-1:0], taken == first_column};
             collecting <= start || (collecting && !since_first[SPAN]);
             if (collecting && since_first[SPAN-1])
                 first_address <= write_address;
@@ -86,7 +90,7 @@ module halfrow_entry #(
 
     // Left of column 0 stands the nearest sample of the same colour, so columns 0 and 1 fill all of it at once.
     reg [11:0] slots [0:SLOTS-1];
-    wire       fill = column == 12'd1;
+    wire       fill = taken == 12'd2;
     genvar k;
     generate
         for (k = 0; k < SLOTS; k = k + 1) begin : slot

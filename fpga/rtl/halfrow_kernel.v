@@ -70,8 +70,8 @@ module halfrow_kernel #(
                     end
 
                 halfrow_multiply_add interpolate (
-                    .clk(clk), .enable(enable), .minuend({to[15], to}), .subtrahend({from[15], from}),
-                    .factor({9'd0, fractions[23:16]}), .addend({{24{from_2[15]}}, from_2, 8'd128}), .sum(sum));
+                    .clk(clk), .enable(enable), .minuend(to), .subtrahend(from),
+                    .factor({8'd0, fractions[23:16]}), .addend({{24{from_2[15]}}, from_2, 8'd128}), .sum(sum));
                 assign weights[16*k +: 16] = sum[23:8];
                 wire unused_sum = &{1'b0, sum[47:24], sum[7:0]};
             end else begin : absent

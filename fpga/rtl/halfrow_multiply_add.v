@@ -2,23 +2,26 @@
 // behind the minuend, the addend two. The sum has the slice's 48 bits: narrower ones are not mapped soundly by every tool.
 `default_nettype none
 
-module halfrow_multiply_add (
-    input  wire               clk,
-    input  wire               enable,
-    input  wire signed [16:0] minuend,
-    input  wire signed [16:0] subtrahend,
-    input  wire signed [16:0] factor,
-    input  wire signed [47:0] addend,
-    output reg  signed [47:0] sum
+module halfrow_multiply_add #(
+    parameter BITS = 16,
+    parameter DIFFERENCE_BITS = 17           // no more than it needs: a tool gives the pre-adder to the narrower operand
+) (
+    input  wire                   clk,
+    input  wire                   enable,
+    input  wire signed [BITS-1:0] minuend,
+    input  wire signed [BITS-1:0] subtrahend,
+    input  wire signed [15:0]     factor,
+    input  wire signed [47:0]     addend,
+    output reg  signed [47:0]     sum
 );
-    reg signed [17:0] difference;
-    reg signed [34:0] product;
+    reg signed [DIFFERENCE_BITS-1:0] difference;
+    reg signed [DIFFERENCE_BITS+15:0] product;
 
     always @(posedge clk)
         if (enable) begin
             difference <= minuend - subtrahend;
-            product <= difference * factor;
-            sum <= addend + {{13{product[34]}}, product};
+            product <= factor * difference;
+            sum <= addend + {{32-DIFFERENCE_BITS{product[DIFFERENCE_BITS+15]}}, product};
         end
 endmodule
 

@@ -32,7 +32,8 @@ module halfrow_row_start #(
     reg [ROW_BITS-1:0] row;
     reg                row_bank;
     reg                wanted, fetched, multiplying;
-    reg [3:0]          bit_of_centre;
+    reg [3:0]          next_bit;
+    reg                centre_bit;             // C from its top bit down, one of them a clock
 
     wire fetch = wanted && !in_use && !row_entered;
 
@@ -46,21 +47,21 @@ module halfrow_row_start #(
             row_bank <= prepare ? prepare_bank : table_bank;
         end
 
-    wire [24:0] subtrahend = centre2[bit_of_centre] ? step : 25'd0;
-    wire        last_bit = bit_of_centre == 4'd0;
+    always @(posedge clk) begin
+        next_bit <= fetch ? 4'd12 : next_bit - 4'd1;
+        centre_bit <= centre2[next_bit];
+    end
+
+    wire [24:0] subtrahend = centre_bit ? step : 25'd0;
+    wire        second_bit = next_bit == 4'd10;
+    wire        last_bit = next_bit == 4'd15;
 
     // Thirteen doublings make C * 2^24 of C * 2^11, and 2^11 of the one that enters with the second of them.
     always @(posedge clk)
         if (fetched)
             position <= {13'd0, centre2, 11'd0};
         else if (multiplying)
-            position <= {position[35:0], bit_of_centre == 4'd11} - {12'd0, subtrahend};
-
-    always @(posedge clk)
-        if (fetched)
-            bit_of_centre <= 4'd12;
-        else
-            bit_of_centre <= bit_of_centre - 4'd1;
+            position <= {position[35:0], second_bit} - {12'd0, subtrahend};
 
     always @(posedge clk)
         if (rst) begin

@@ -8,7 +8,7 @@ module halfrow_source #(
     input  wire                 clk,
     input  wire                 rst,
     input  wire                 enable,
-    input  wire [10:0]          half_less_1,   // W/2 - 1
+    input  wire [11:0]          width,
 
     input  wire                 row_begin,
     input  wire [36:0]          position,      // S[0] + 2^11
@@ -16,7 +16,7 @@ module halfrow_source #(
     input  wire                 bank,
 
     input  wire [RING_BITS-1:0] first_address, // of the sample in front of the first to be read
-    input  wire                 row_end,       // the row that enters has got its column W - 1
+    input  wire                 row_end,       // the row that enters has got all of its samples
     input  wire [RING_BITS-1:0] last_address,  // of that column
     output reg  [RING_BITS-1:0] read_address,
 
@@ -35,11 +35,11 @@ module halfrow_source #(
 );
     reg [36:0] s;
     reg [24:0] row_step;
-    reg [11:0] column;
+    reg [11:0] begun;                         // columns, with the present one
     reg        reading, starting;
-    wire       last = column == {half_less_1, 1'b1};
+    wire       last = begun == width;
     wire       n_is_odd = s[25];
-    wire       not_own = n_is_odd ^ column[0];
+    wire       not_own = n_is_odd ^ !begun[0];
 
     always @(posedge clk)
         if (enable)
@@ -53,7 +53,7 @@ module halfrow_source #(
 
     always @(posedge clk)
         if (enable)
-            column <= row_begin ? 12'd0 : column + 12'd1;
+            begun <= row_begin ? 12'd1 : begun + 12'd1;
 
     always @(posedge clk)
         if (rst)
@@ -109,7 +109,7 @@ module halfrow_source #(
 
     always @(posedge clk)
         if (enable && (loads[1] || moves[1]))
-            read_address <= from + {{RING_BITS-1{back}}, 1'b1};
+            read_address <= {{RING_BITS-1{back}}, 1'b1} + from;
 endmodule
 
 `default_nettype wire

@@ -38,15 +38,15 @@ module halfrow_weigh #(
     wire signed [47:0] sum_g4, sum_r1, sum_r5;
     wire signed [33:0] acc;
 
-    halfrow_multiply_add weigh_g4 (
-        .clk(clk), .enable(enable), .minuend({5'd0, g4}), .subtrahend({5'd0, g2}),
-        .factor({weight_g4[15], weight_g4}), .addend({22'd0, g2_2, 14'h2000}), .sum(sum_g4));
-    halfrow_multiply_add weigh_r1 (
-        .clk(clk), .enable(enable), .minuend({5'd0, r1_1}), .subtrahend({5'd0, r3_1}),
-        .factor({weight_r1_1[15], weight_r1_1}), .addend(sum_g4), .sum(sum_r1));
-    halfrow_multiply_add weigh_r5 (
-        .clk(clk), .enable(enable), .minuend({5'd0, r5_2}), .subtrahend({5'd0, r3_2}),
-        .factor({weight_r5_2[15], weight_r5_2}), .addend(sum_r1), .sum(sum_r5));
+    halfrow_multiply_add #(.BITS(13), .DIFFERENCE_BITS(13)) weigh_g4 (
+        .clk(clk), .enable(enable), .minuend({1'b0, g4}), .subtrahend({1'b0, g2}),
+        .factor(weight_g4), .addend({22'd0, g2_2, 14'h2000}), .sum(sum_g4));
+    halfrow_multiply_add #(.BITS(13), .DIFFERENCE_BITS(13)) weigh_r1 (
+        .clk(clk), .enable(enable), .minuend({1'b0, r1_1}), .subtrahend({1'b0, r3_1}),
+        .factor(weight_r1_1), .addend(sum_g4), .sum(sum_r1));
+    halfrow_multiply_add #(.BITS(13), .DIFFERENCE_BITS(13)) weigh_r5 (
+        .clk(clk), .enable(enable), .minuend({1'b0, r5_2}), .subtrahend({1'b0, r3_2}),
+        .factor(weight_r5_2), .addend(sum_r1), .sum(sum_r5));
 
     generate
         if (TAPS == 7) begin : outer
@@ -61,12 +61,12 @@ module halfrow_weigh #(
             wire signed [47:0] sum_g0, sum_g6;
             reg  signed [33:0] sum_all;
 
-            halfrow_multiply_add weigh_g0 (
-                .clk(clk), .enable(enable), .minuend({5'd0, g0_1}), .subtrahend({5'd0, g2_1}),
-                .factor({weight_g0_1[15], weight_g0_1}), .addend(48'd0), .sum(sum_g0));
-            halfrow_multiply_add weigh_g6 (
-                .clk(clk), .enable(enable), .minuend({5'd0, g6_2}), .subtrahend({5'd0, g2_2}),
-                .factor({weight_g6_2[15], weight_g6_2}), .addend(sum_g0), .sum(sum_g6));
+            halfrow_multiply_add #(.BITS(13), .DIFFERENCE_BITS(13)) weigh_g0 (
+                .clk(clk), .enable(enable), .minuend({1'b0, g0_1}), .subtrahend({1'b0, g2_1}),
+                .factor(weight_g0_1), .addend(48'd0), .sum(sum_g0));
+            halfrow_multiply_add #(.BITS(13), .DIFFERENCE_BITS(13)) weigh_g6 (
+                .clk(clk), .enable(enable), .minuend({1'b0, g6_2}), .subtrahend({1'b0, g2_2}),
+                .factor(weight_g6_2), .addend(sum_g0), .sum(sum_g6));
             always @(posedge clk)
                 if (enable)
                     sum_all <= sum_r5[33:0] + sum_g6[33:0];
