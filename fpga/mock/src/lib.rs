@@ -45,5 +45,5 @@ pub use crate::settings::{Settings, SettingsError};
 pub use crate::tables::{Bank, Bound, Port, TableError, Tables, UNSTRETCHED};
 pub use crate::value::ValueError;
 pub use crate::wire::{
-    Disconnected, Wire, WireError, WireFault, WireFaultError, WireOptions, WireValueError,
+    Broken, Endpoint, Wire, WireError, WireFault, WireFaultError, WireOptions, WireSetup, WireValueError,
 };

@@ -1,9 +1,9 @@
 //! The wire: a board behind a byte pipe, on a virtual clock.
 //!
 //! ```text
-//! host ── exchange ─► Lane to the board ─► Board::receive
+//! host ── exchange ─► Lane to the board ─► Endpoint::receive
 //!          │           speed, delay,          │
-//!          ◄────────── Lane to the host ◄─────┘ Board::outgoing
+//!          ◄────────── Lane to the host ◄─────┘ Endpoint::outgoing
 //!                      damage by a fault
 //! ```
 //!
@@ -12,6 +12,7 @@
 
 mod chance;
 mod damage;
+mod endpoint;
 mod fault;
 mod lane;
 mod options;
@@ -27,23 +28,36 @@ use damage::{Damage, Side};
 use lane::Lane;
 use queue::ByteQueue;
 
+pub use endpoint::Endpoint;
 pub use fault::{WireFault, WireFaultError};
 pub use options::WireOptions;
-pub use target::WireError;
+pub use target::{WireError, WireSetup};
 pub use value::WireValueError;
 
-/// The wire broke: the fault `disconnect` has struck.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the mock board's wire broke at {:.3} s and stays broken; open a new one", at.as_secs_f64())]
-pub struct Disconnected {
-    /// When it broke, on the wire's clock.
-    pub at: Duration,
+/// A wire that carries nothing any more.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Broken<F> {
+    /// The fault `disconnect` has struck.
+    #[error("the wire broke at {:.3} s and stays broken; open a new one", at.as_secs_f64())]
+    Disconnected {
+        /// When it broke, on the wire's clock.
+        at: Duration,
+    },
+    /// The board has failed.
+    #[error("the board stopped at {:.3} s", at.as_secs_f64())]
+    Board {
+        /// When, on the wire's clock.
+        at: Duration,
+        /// Why.
+        #[source]
+        failure: F,
+    },
 }
 
 /// A board and the byte pipe to it.
 #[derive(Debug)]
-pub struct Wire {
-    board: Board,
+pub struct Wire<B: Endpoint = Board> {
+    board: B,
     options: WireOptions,
     now: Duration,
     to_board: Lane,
@@ -52,13 +66,13 @@ pub struct Wire {
     unsent: ByteQueue,
     /// What reaches the board at one instant; kept for its memory.
     arrived: Vec<u8>,
-    broken_at: Option<Duration>,
+    broken: Option<Broken<B::Failure>>,
 }
 
-impl Wire {
+impl<B: Endpoint> Wire<B> {
     /// A wire to `board`, which is switched on now: the clock starts at 0.
     #[must_use]
-    pub fn new(board: Board, options: WireOptions, fault: Option<WireFault>) -> Self {
+    pub fn new(board: B, options: WireOptions, fault: Option<WireFault>) -> Self {
         let lane = |side| Lane::new(&options, Damage::new(fault, side));
         Self {
             to_board: lane(Side::Board),
@@ -68,7 +82,7 @@ impl Wire {
             now: Duration::ZERO,
             unsent: ByteQueue::default(),
             arrived: Vec::new(),
-            broken_at: None,
+            broken: None,
         }
     }
 
@@ -77,14 +91,14 @@ impl Wire {
     /// `wait` has passed on the virtual clock, 0.
     ///
     /// # Errors
-    /// [`Disconnected`] once the wire is broken. Bytes that moved in the call in which it broke are returned by that
+    /// [`Broken`] once the wire is broken. Bytes that moved in the call in which it broke are returned by that
     /// call, and the next one fails.
     pub fn exchange(
         &mut self,
         outgoing: &[u8],
         incoming: &mut Vec<u8>,
         wait: Duration,
-    ) -> Result<usize, Disconnected> {
+    ) -> Result<usize, Broken<B::Failure>> {
         let deadline = self.now.saturating_add(wait);
         let before = incoming.len();
         loop {
@@ -92,8 +106,8 @@ impl Wire {
             if taken > 0 || incoming.len() > before {
                 return Ok(taken);
             }
-            if let Some(at) = self.broken_at {
-                return Err(Disconnected { at });
+            if let Some(broken) = &self.broken {
+                return Err(broken.clone());
             }
             match self.next_arrival().filter(|&arrival| arrival <= deadline) {
                 Some(arrival) => self.now = arrival,
@@ -121,7 +135,7 @@ impl Wire {
     fn settle(&mut self, outgoing: &[u8], incoming: &mut Vec<u8>) -> usize {
         let before = incoming.len();
         let mut rest = outgoing;
-        while self.broken_at.is_none() {
+        while self.broken.is_none() {
             let accepted =
                 if self.accepts(incoming.len() > before) { self.to_board.accept(rest, self.now) } else { 0 };
             rest = &rest[accepted..];
@@ -144,14 +158,15 @@ impl Wire {
         self.arrived.clear();
         let to_board = self.to_board.deliver(self.now, &mut self.arrived);
         if !self.arrived.is_empty() {
-            self.board.receive(&self.arrived, self.now);
+            let received = self.board.receive(&self.arrived, self.now);
+            self.broken = received.err().map(|failure| Broken::Board { at: self.now, failure });
         }
         self.unsent.take_over(self.board.outgoing());
         let sent = self.to_host.accept(self.unsent.as_slice(), self.now);
         self.unsent.consume(sent);
         let to_host = self.to_host.deliver(self.now, incoming);
         if to_board.broken || to_host.broken {
-            self.broken_at = Some(self.now);
+            self.broken.get_or_insert(Broken::Disconnected { at: self.now });
         }
         to_board.bytes + sent + to_host.bytes
     }

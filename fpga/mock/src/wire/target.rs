@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use super::fault::{WireFault, WireFaultError};
 use super::options::WireOptions;
 use super::value::WireValueError;
-use super::{Board, Wire};
+use super::{Board, Endpoint, Wire};
 use crate::faults::{BoardFault, FaultError, FaultInfo, Parameters, Place, catalogue};
 use crate::options::{OptionError, Options};
 
@@ -27,7 +27,7 @@ const BOARD_KEYS: [&str; 11] = [
     "pixel-clock",
 ];
 
-/// Options that make no mock board.
+/// Options that make no wire, or no mock board at its end.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum WireError {
     /// An option of the board's build is wrong, or does not fit another.
@@ -50,6 +50,14 @@ pub enum WireError {
         /// The names that exist.
         known: String,
     },
+    /// A fault that this board cannot have.
+    #[error("fault={name} is one of the mock board; leave it out, or choose one of the wire: {known}")]
+    MockFault {
+        /// The name that was given.
+        name: String,
+        /// The names that the wire's faults have.
+        known: String,
+    },
     /// Two faults of the same kind.
     #[error(
         "fault={first} and fault={second} cannot be had together; keep one, or combine one of the wire with one of the board"
@@ -61,7 +69,7 @@ pub enum WireError {
         second: String,
     },
     /// A key that nothing takes.
-    #[error("{key} is no option of this mock board; choose from {known}")]
+    #[error("{key} is no option of this board; choose from {known}")]
     UnknownKey {
         /// The key that was given.
         key: String,
@@ -88,6 +96,31 @@ pub enum WireError {
     },
 }
 
+/// A wire that no board is connected to yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WireSetup {
+    options: WireOptions,
+    fault: Option<WireFault>,
+}
+
+impl WireSetup {
+    /// The wire that the options of a target string describe, as in `speed=1200000,fault=flip,rate=1e-4`, to a board that
+    /// has no options itself: those of the wire ([`WireOptions::set`]), and at most one of its faults with its parameters
+    /// ([`WireFault::from_name`]).
+    ///
+    /// # Errors
+    /// [`WireError`] when a key is unknown or given twice, or a value is out of range.
+    pub fn from_options(options: &[(&str, &str)]) -> Result<Self, WireError> {
+        parse(options, None).map(|(setup, _)| setup)
+    }
+
+    /// The wire with `board` at its end, which is switched on now.
+    #[must_use]
+    pub fn connect<B: Endpoint>(self, board: B) -> Wire<B> {
+        Wire::new(board, self.options, self.fault)
+    }
+}
+
 impl Wire {
     /// The mock board that the options of a target string describe, as in
     /// `mock,fault=flip,rate=1e-4,seed=3,latency=10,speed=1200000,delay=0.001`: those of the board's build
@@ -99,37 +132,55 @@ impl Wire {
     /// cannot exist.
     pub fn from_options(options: &[(&str, &str)]) -> Result<Self, WireError> {
         let mut build = Options::default();
-        let mut wire = WireOptions::default();
-        let mut faults = Faults::default();
-        let mut parameters = Parameters::new();
-        let mut seen = BTreeSet::new();
-        for &(key, value) in options {
-            if key == FAULT {
-                faults.add(value)?;
-            } else if !seen.insert(key) {
-                return Err(WireError::Duplicate { key: key.to_owned() });
-            } else if !build.set(key, value)? && !wire.set(key, value)? {
+        let (setup, board_fault) = parse(options, Some(&mut build))?;
+        Ok(setup.connect(Board::new(&build, board_fault)?))
+    }
+}
+
+/// The wire and the board's fault that `options` describe. Without a `build` the board is no mock, which alone has options and
+/// faults.
+fn parse(
+    options: &[(&str, &str)],
+    mut build: Option<&mut Options>,
+) -> Result<(WireSetup, Option<BoardFault>), WireError> {
+    let mut wire = WireOptions::default();
+    let mut faults = Faults { of_mock: build.is_some(), ..Faults::default() };
+    let mut parameters = Parameters::new();
+    let mut seen = BTreeSet::new();
+    for &(key, value) in options {
+        if key == FAULT {
+            faults.add(value)?;
+        } else if !seen.insert(key) {
+            return Err(WireError::Duplicate { key: key.to_owned() });
+        } else {
+            let of_build = build.as_deref_mut().map_or(Ok(false), |build| build.set(key, value))?;
+            if !of_build && !wire.set(key, value)? {
                 parameters.insert(key.to_owned(), value.to_owned());
             }
         }
-        let (wire_fault, board_fault) = faults.make(&parameters)?;
-        Ok(Self::new(Board::new(&build, board_fault)?, wire, wire_fault))
     }
+    let (fault, board_fault) = faults.make(&parameters)?;
+    Ok((WireSetup { options: wire, fault }, board_fault))
 }
 
 /// The faults that were asked for.
 #[derive(Debug, Default)]
 struct Faults {
+    /// Whether the board is the mock, which can have some.
+    of_mock: bool,
     wire: Option<&'static FaultInfo>,
     board: Option<&'static FaultInfo>,
 }
 
 impl Faults {
     fn add(&mut self, name: &str) -> Result<(), WireError> {
-        let fault = catalogue().iter().find(|fault| fault.name == name).ok_or_else(|| {
-            let names: Vec<_> = catalogue().iter().map(|fault| fault.name).collect();
-            WireError::UnknownFault { name: name.to_owned(), known: names.join(", ") }
-        })?;
+        let fault = catalogue()
+            .iter()
+            .find(|fault| fault.name == name)
+            .ok_or_else(|| WireError::UnknownFault { name: name.to_owned(), known: self.known_faults() })?;
+        if fault.place == Place::Board && !self.of_mock {
+            return Err(WireError::MockFault { name: name.to_owned(), known: self.known_faults() });
+        }
         let place = match fault.place {
             Place::Wire => &mut self.wire,
             Place::Board => &mut self.board,
@@ -173,9 +224,17 @@ impl Faults {
         WireError::Ambiguous { key: key.to_owned(), wire: name(self.wire), board: name(self.board) }
     }
 
+    /// The names of the faults that the wire and this board can have.
+    fn known_faults(&self) -> String {
+        let can_be = |fault: &&FaultInfo| self.of_mock || fault.place == Place::Wire;
+        let names: Vec<_> = catalogue().iter().filter(can_be).map(|fault| fault.name).collect();
+        names.join(", ")
+    }
+
     /// The options that exist; and what the chosen faults take, which their summaries say.
     fn known_keys(&self) -> String {
-        let options: Vec<_> = BOARD_KEYS.into_iter().chain(WireOptions::KEYS).chain([FAULT]).collect();
+        let build = BOARD_KEYS.into_iter().filter(|_| self.of_mock);
+        let options: Vec<_> = build.chain(WireOptions::KEYS).chain([FAULT]).collect();
         let options = options.join(", ");
         let chosen = [self.wire, self.board].into_iter().flatten();
         let faults: Vec<_> =
@@ -200,7 +259,7 @@ mod tests {
 
     #[test]
     fn a_parameter_that_two_faults_take_is_refused() {
-        let mut faults = Faults::default();
+        let mut faults = Faults { of_mock: true, ..Faults::default() };
         faults.add("flip").unwrap();
         faults.add("lost-row").unwrap();
         let given = Parameters::from([("row".to_owned(), "3".to_owned())]);

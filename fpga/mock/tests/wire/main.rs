@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod clock;
+mod endpoint;
 mod exchange;
 mod faults;
 mod options;

@@ -4,7 +4,8 @@ use std::num::NonZeroU64;
 use std::time::Duration;
 
 use halfrow_mock::{
-    FaultError, OptionError, Parameters, WireError, WireFault, WireFaultError, WireOptions, WireValueError,
+    FaultError, OptionError, Parameters, WireError, WireFault, WireFaultError, WireOptions, WireSetup,
+    WireValueError,
 };
 
 use crate::support::{refusal, wire};
@@ -144,4 +145,15 @@ fn a_build_that_cannot_exist_is_refused() {
     let (error, _) = refusal(&[("ring", "1024")]);
     let expected = OptionError::RingTooShort { ring: 1024, max_width: 2048 };
     assert_eq!(error, WireError::Board(expected));
+}
+
+#[test]
+fn a_wire_to_another_board_takes_what_the_wire_takes_alone() {
+    let fine = [("speed", "5"), ("fault", "flip"), ("rate", "0.1")];
+    WireSetup::from_options(&fine).unwrap();
+    let (name, known) =
+        ("late".to_owned(), "flip, drop, duplicate, reorder, stall, truncate, disconnect".to_owned());
+    assert_eq!(WireSetup::from_options(&[("fault", "late")]), Err(WireError::MockFault { name, known }));
+    let error = WireSetup::from_options(&[("latency", "12")]).unwrap_err();
+    assert!(matches!(&error, WireError::UnknownKey { known, .. } if !known.contains("latency")), "{error}");
 }

@@ -1,8 +1,9 @@
 //! A host's side of the wire, as thin as it can be.
 
+use std::convert::Infallible;
 use std::time::Duration;
 
-use halfrow_mock::{Disconnected, Wire, WireError};
+use halfrow_mock::{Broken, Wire, WireError};
 use halfrow_protocol::message::{Hello, Status};
 use halfrow_protocol::{Decoder, Encoder, Header, Reply, Request};
 
@@ -58,7 +59,7 @@ pub(crate) fn hello() -> Vec<u8> {
 }
 
 /// Sends `bytes` and listens until the wire is silent. Returns what came, or with the error what came before it.
-pub(crate) fn talk(wire: &mut Wire, bytes: &[u8]) -> (Vec<u8>, Result<(), Disconnected>) {
+pub(crate) fn talk(wire: &mut Wire, bytes: &[u8]) -> (Vec<u8>, Result<(), Broken<Infallible>>) {
     let (mut rest, mut incoming) = (bytes, Vec::new());
     loop {
         let heard = incoming.len();
