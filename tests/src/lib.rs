@@ -8,10 +8,13 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 pub mod campaign;
+pub mod cases;
 pub mod dice;
 pub mod parallel;
 pub mod poor_links;
 pub mod program;
 pub mod scenario;
 pub mod scenarios;
+#[cfg(feature = "sim")]
+pub mod simulated_core;
 pub mod system;

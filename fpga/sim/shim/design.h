@@ -1,0 +1,67 @@
+// A verilated design with its clock, its context and its waveform.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "verilated.h"
+#include "verilated_vcd_c.h"
+
+template <class Model>
+struct Design {
+    VerilatedContext context;
+    std::unique_ptr<Model> model;
+    std::unique_ptr<VerilatedVcdC> trace;
+
+    // Registers and memories power up with what `seed` draws.
+    explicit Design(uint32_t seed) {
+        context.randReset(2);
+        context.randSeed(static_cast<int>(seed & 0x7fffffff));
+        context.traceEverOn(true);
+        model = std::make_unique<Model>(&context, "");
+    }
+
+    ~Design() {
+        if (trace) trace->close();
+        model->final();
+    }
+
+    bool trace_to(const char* path) {
+        trace = std::make_unique<VerilatedVcdC>();
+        model->trace(trace.get(), 99);
+        trace->open(path);
+        return trace->isOpen();
+    }
+
+    // Settles what hangs on the inputs, with all clocks low. Outputs are now what a register sees at the next edge.
+    void settle() {
+        model->eval();
+        if (VL_UNLIKELY(trace)) trace->dump(context.time());
+        context.timeInc(1);
+    }
+};
+
+// What Rust calls of a design.
+template <class Inputs, class Outputs>
+struct Functions {
+    void* (*create)(uint32_t seed);
+    void (*destroy)(void* design);
+    bool (*trace)(void* design, const char* path);
+    void (*clock)(void* design, const Inputs* inputs, Outputs* outputs);
+};
+
+template <class Model, class Inputs, class Outputs, void (*clock)(Design<Model>&, const Inputs&, Outputs&)>
+constexpr Functions<Inputs, Outputs> functions() {
+    return {
+        [](uint32_t seed) -> void* { return new Design<Model>(seed); },
+        [](void* design) { delete static_cast<Design<Model>*>(design); },
+        [](void* design, const char* path) { return static_cast<Design<Model>*>(design)->trace_to(path); },
+        [](void* design, const Inputs* inputs, Outputs* outputs) {
+            clock(*static_cast<Design<Model>*>(design), *inputs, *outputs);
+        },
+    };
+}
+
+#define DESIGN(name, Model, Inputs, Outputs, clock) \
+    extern "C" const Functions<Inputs, Outputs> halfrow_##name; \
+    const Functions<Inputs, Outputs> halfrow_##name = functions<Model, Inputs, Outputs, clock<Model>>();

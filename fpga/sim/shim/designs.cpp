@@ -1,0 +1,65 @@
+// The designs for Rust: made, clocked, dropped. Each call sets all inputs, returns what a register at the outputs would
+// sample at the clock edge, and then lets the edge happen.
+
+#include "Core5.h"
+#include "Core7.h"
+#include "CoreShort.h"
+#include "design.h"
+
+// The same structures stand in src/ffi.rs.
+struct CoreInputs {
+    bool rst, enable;
+    uint8_t depth;
+    bool prepare, prepare_bank, in_valid, in_start, step_write, node_write, table_bank, table_read;
+    uint16_t width, centre2, prepare_row, in_sample, table_entry;
+    uint32_t table_data[3];
+};
+
+struct CoreOutputs {
+    bool prepared, out_valid, out_start, out_last, row_short, row_long, row_unprepared;
+    uint16_t out_sample;
+    uint32_t step_port, node_port_0[3], node_port_1[3];
+};
+
+template <class Model>
+void clock_core(Design<Model>& design, const CoreInputs& in, CoreOutputs& out) {
+    Model& model = *design.model;
+    model.clk = 0;
+    model.rst = in.rst;
+    model.enable = in.enable;
+    model.depth = in.depth;
+    model.prepare = in.prepare;
+    model.prepare_bank = in.prepare_bank;
+    model.in_valid = in.in_valid;
+    model.in_start = in.in_start;
+    model.step_write = in.step_write;
+    model.node_write = in.node_write;
+    model.table_bank = in.table_bank;
+    model.table_read = in.table_read;
+    model.width = in.width;
+    model.centre2 = in.centre2;
+    model.prepare_row = in.prepare_row;
+    model.in_sample = in.in_sample;
+    model.table_entry = in.table_entry;
+    for (int word = 0; word < 3; ++word) model.table_data[word] = in.table_data[word];
+    design.settle();
+    out.prepared = model.prepared;
+    out.out_valid = model.out_valid;
+    out.out_start = model.out_start;
+    out.out_last = model.out_last;
+    out.row_short = model.row_short;
+    out.row_long = model.row_long;
+    out.row_unprepared = model.row_unprepared;
+    out.out_sample = model.out_sample;
+    out.step_port = model.step_port;
+    for (int word = 0; word < 3; ++word) {
+        out.node_port_0[word] = model.node_port_0[word];
+        out.node_port_1[word] = model.node_port_1[word];
+    }
+    model.clk = 1;
+    design.settle();
+}
+
+DESIGN(core7, Core7, CoreInputs, CoreOutputs, clock_core)
+DESIGN(core5, Core5, CoreInputs, CoreOutputs, clock_core)
+DESIGN(core_short, CoreShort, CoreInputs, CoreOutputs, clock_core)

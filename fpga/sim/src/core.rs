@@ -1,0 +1,54 @@
+//! The core alone, clock by clock.
+
+use std::path::Path;
+
+use crate::ffi::{CoreInputs, CoreOutputs, Design};
+
+/// A build of the core.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CoreBuild {
+    /// Seven taps, a ring of 2048 samples, two banks of tables.
+    SevenTaps,
+    /// The same with five taps.
+    FiveTaps,
+    /// Seven taps and a ring of 128 samples, so that it wraps in every row.
+    ShortRing,
+}
+
+impl CoreBuild {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::SevenTaps, Self::FiveTaps, Self::ShortRing];
+
+    /// Pixel clocks L that an output leaves after half a row.
+    #[must_use]
+    pub fn latency(self) -> u8 {
+        if self == Self::FiveTaps { 11 } else { 12 }
+    }
+
+    /// Samples M in the ring.
+    #[must_use]
+    pub fn ring(self) -> u16 {
+        if self == Self::ShortRing { 128 } else { 2048 }
+    }
+}
+
+/// `halfrow_core` under simulation.
+pub struct Core(Design<CoreInputs, CoreOutputs>);
+
+impl Core {
+    /// A core whose registers and memories hold what `seed` draws, and which was not reset.
+    #[must_use]
+    pub fn new(build: CoreBuild, seed: u32) -> Self {
+        Self(Design::core(build, seed))
+    }
+
+    /// One clock. Returns what a register at the core's outputs samples at its edge.
+    pub fn clock(&mut self, inputs: &CoreInputs) -> CoreOutputs {
+        self.0.clock(inputs)
+    }
+
+    /// Writes a waveform to `path` from now on. Returns whether it could be opened.
+    pub fn trace(&mut self, path: &Path) -> bool {
+        self.0.trace(path)
+    }
+}

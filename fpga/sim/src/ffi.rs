@@ -1,0 +1,126 @@
+//! The verilated designs, as C++ offers them.
+//!
+//! `unsafe` is allowed here and nowhere else: a design is a C++ object, and only C can be called from Rust. What makes it sound:
+//! a [`Design`] owns its object from `create` to `destroy`, hands no pointer out, and every call goes through `&mut self`; the structures are `repr(C)`,
+//! of integers alone, field for field those of `shim/designs.cpp`,
+//! whose `bool` is one byte of 0 or 1 as Rust's is.
+#![allow(unsafe_code)]
+
+use std::ffi::{CString, c_char, c_void};
+use std::os::unix::ffi::OsStrExt;
+use std::path::Path;
+
+use crate::core::CoreBuild;
+
+/// The inputs of `halfrow_core`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/halfrow_core.v")]
+pub struct CoreInputs {
+    pub rst: bool,
+    pub enable: bool,
+    pub depth: u8,
+    pub prepare: bool,
+    pub prepare_bank: bool,
+    pub in_valid: bool,
+    pub in_start: bool,
+    pub step_write: bool,
+    pub node_write: bool,
+    pub table_bank: bool,
+    pub table_read: bool,
+    pub width: u16,
+    pub centre2: u16,
+    pub prepare_row: u16,
+    pub in_sample: u16,
+    pub table_entry: u16,
+    /// 80 bits in 32-bit words, least significant first.
+    pub table_data: [u32; 3],
+}
+
+/// Its outputs.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+#[expect(missing_docs, reason = "the ports of that name in fpga/rtl/halfrow_core.v")]
+pub struct CoreOutputs {
+    pub prepared: bool,
+    pub out_valid: bool,
+    pub out_start: bool,
+    pub out_last: bool,
+    pub row_short: bool,
+    pub row_long: bool,
+    pub row_unprepared: bool,
+    pub out_sample: u16,
+    pub step_port: u32,
+    /// 80 bits in 32-bit words, least significant first.
+    pub node_port_0: [u32; 3],
+    /// The same at the other port.
+    pub node_port_1: [u32; 3],
+}
+
+/// What can be done with one design.
+#[repr(C)]
+struct Functions<I, O> {
+    create: unsafe extern "C" fn(u32) -> *mut c_void,
+    destroy: unsafe extern "C" fn(*mut c_void),
+    trace: unsafe extern "C" fn(*mut c_void, *const c_char) -> bool,
+    clock: unsafe extern "C" fn(*mut c_void, *const I, *mut O),
+}
+
+unsafe extern "C" {
+    safe static halfrow_core7: Functions<CoreInputs, CoreOutputs>;
+    safe static halfrow_core5: Functions<CoreInputs, CoreOutputs>;
+    safe static halfrow_core_short: Functions<CoreInputs, CoreOutputs>;
+}
+
+/// A verilated design with the inputs `I` and the outputs `O`.
+pub(crate) struct Design<I: 'static, O: 'static> {
+    object: *mut c_void,
+    functions: &'static Functions<I, O>,
+}
+
+// SAFETY: an object is used by whoever owns it and by nobody else; Verilator keeps what belongs to a model in its own
+// context, and no part of it belongs to a thread.
+unsafe impl<I, O> Send for Design<I, O> {}
+
+impl Design<CoreInputs, CoreOutputs> {
+    /// A core that holds what `seed` draws.
+    pub(crate) fn core(build: CoreBuild, seed: u32) -> Self {
+        Self::new(
+            match build {
+                CoreBuild::SevenTaps => &halfrow_core7,
+                CoreBuild::FiveTaps => &halfrow_core5,
+                CoreBuild::ShortRing => &halfrow_core_short,
+            },
+            seed,
+        )
+    }
+}
+
+impl<I, O: Default> Design<I, O> {
+    fn new(functions: &'static Functions<I, O>, seed: u32) -> Self {
+        // SAFETY: the function takes any number and returns an object that is ours.
+        Self { object: unsafe { (functions.create)(seed) }, functions }
+    }
+
+    /// Lets the inputs settle, takes the outputs, and then lets the clock rise.
+    pub(crate) fn clock(&mut self, inputs: &I) -> O {
+        let mut outputs = O::default();
+        // SAFETY: the object is alive, and both structures are for as long as the call takes.
+        unsafe { (self.functions.clock)(self.object, inputs, &raw mut outputs) };
+        outputs
+    }
+
+    /// Writes all that happens from now on to a waveform in VCD. Returns whether the file could be opened.
+    pub(crate) fn trace(&mut self, path: &Path) -> bool {
+        let Ok(path) = CString::new(path.as_os_str().as_bytes()) else { return false };
+        // SAFETY: the object is alive, and the string is for as long as the call takes.
+        unsafe { (self.functions.trace)(self.object, path.as_ptr()) }
+    }
+}
+
+impl<I, O> Drop for Design<I, O> {
+    fn drop(&mut self) {
+        // SAFETY: the object came from this design's `create` and is destroyed once.
+        unsafe { (self.functions.destroy)(self.object) };
+    }
+}

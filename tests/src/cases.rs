@@ -1,0 +1,193 @@
+//! Cases for everything that computes as DATAPATH.md says: builds, legal tables, kernels, sizes, depths, blankings and gaps,
+//! drawn by a number, with frames that follow each other under tables of their own.
+
+use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
+use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, STEP_ONE, TableSet, correct};
+
+use crate::dice::Dice;
+
+/// What a case is drawn for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Build {
+    /// L.
+    pub latency: u8,
+    /// M.
+    pub ring: u16,
+    /// Pixel clocks that the build needs between rows.
+    pub least_blanking: u16,
+    /// Whether the kernel may have outer taps.
+    pub outer_taps: bool,
+}
+
+impl Build {
+    /// Any build that can exist, for rows of at least 64 samples.
+    pub fn draw(dice: &mut Dice) -> Self {
+        Self {
+            latency: 4 + dice.below(29) as u8,
+            ring: 64 << dice.below(3),
+            least_blanking: dice.one_of(&[0, 1, 7]),
+            outer_taps: true,
+        }
+    }
+}
+
+/// A build, the way its rows are played, and frames with tables of their own.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The build, as the mock takes it.
+    pub options: Options,
+    /// How rows are played.
+    pub settings: Settings,
+    /// The frames in their order.
+    pub frames: Vec<(TableSet, Kernel, Frame)>,
+}
+
+/// What came out for a case.
+#[derive(Debug, Default, PartialEq, Eq)]
+pub struct Played {
+    /// The samples of all rows.
+    pub samples: Vec<u16>,
+    /// First and last latency of every row, in pixel clocks.
+    pub latencies: Vec<u16>,
+}
+
+impl Case {
+    /// The case of `build` with so many frames.
+    ///
+    /// # Panics
+    /// Never: what is drawn is legal.
+    pub fn draw(dice: &mut Dice, build: Build, frames: usize) -> Self {
+        let width = draw_width(dice, build.ring.into());
+        let height = 1 + dice.below(6);
+        let depth = dice.one_of(&BitDepth::ALL);
+        let centre2 = if dice.below(3) == 0 { dice.below(2 * width - 1) } else { width - 1 };
+        let geometry = Geometry::new(width, height, depth, centre2 as u32).unwrap();
+        let options = Options {
+            latency: build.latency,
+            ring: Some(build.ring),
+            least_blanking: build.least_blanking,
+            max_width: build.ring.min(2048),
+            ..Options::default()
+        };
+        let settings = Settings {
+            width: width as u16,
+            height: height as u16,
+            centre2: centre2 as u16,
+            depth: Depth::from_bits(depth.bits() as u8).unwrap(),
+            blanking: build.least_blanking + dice.one_of(&[0, 0, 1, 13, 900]),
+            gap_seed: dice.one_of(&[0, 1, 0x8000_0000]) ^ dice.below(2) as u32,
+        };
+        let mut frame = || {
+            let tables = draw_tables(dice, geometry, build.ring.into());
+            (tables, draw_kernel(dice, build.outer_taps), draw_frame(dice, width, height, depth))
+        };
+        Self { options, settings, frames: (0..frames).map(|_| frame()).collect() }
+    }
+
+    /// D, the pixel clocks from a sample to its output.
+    #[must_use]
+    pub fn delay(&self) -> u16 {
+        self.settings.width / 2 + u16::from(self.options.latency)
+    }
+
+    /// What the model says that comes out.
+    ///
+    /// # Panics
+    /// Never: tables and frames are of one size.
+    #[must_use]
+    pub fn expected(&self) -> Played {
+        let corrected = self.frames.iter().map(|(set, kernel, frame)| correct(set, kernel, frame).unwrap());
+        let samples = corrected.flat_map(|frame| frame.samples().to_vec()).collect();
+        let rows = self.frames.len() * usize::from(self.settings.height);
+        Played { samples, latencies: vec![self.delay(); 2 * rows] }
+    }
+
+    /// What comes out of the mock, one frame close behind the other.
+    ///
+    /// # Panics
+    /// If the mock refuses what is legal.
+    #[must_use]
+    pub fn play_on_mock(&self) -> Played {
+        let no_fault: Option<BoardFault> = None;
+        let mut player = Player::new(&self.options, no_fault).unwrap();
+        let mut tables = Tables::new(&self.options, no_fault);
+        player.configure(self.settings.clone()).unwrap();
+        let mut played = Played::default();
+        for (number, (set, kernel, frame)) in self.frames.iter().enumerate() {
+            tables.write_factors(0, set.steps()).unwrap();
+            let nodes: Vec<Node> = kernel.nodes().iter().map(|&node| node.into()).collect();
+            tables.write_nodes(0, &nodes).unwrap();
+            tables.commit(number as u8 + 1, number as u16).unwrap();
+            for (row, input) in frame.rows().enumerate() {
+                let (frame_number, last) = (number as u16, row + 1 == frame.height());
+                let (row, samples) = (row as u16, input.to_vec());
+                let row = RowIn { sequence: 0, frame: frame_number, row, last, samples };
+                player.play(&row, &mut tables).unwrap();
+                played.fetch(&mut player);
+            }
+        }
+        player.flush();
+        played.fetch(&mut player);
+        played
+    }
+}
+
+impl Played {
+    fn fetch(&mut self, player: &mut Player) {
+        while let Some(out) = player.banks.fetch() {
+            self.samples.extend(out.samples);
+            self.latencies.extend([out.first_latency, out.last_latency]);
+        }
+    }
+}
+
+/// Columns of rows that the ring holds: mostly few, so that there can be many cases, and now and then the most.
+fn draw_width(dice: &mut Dice, ring: usize) -> usize {
+    match dice.below(16) {
+        0 => ring.min(2048) - 2 * dice.below(2),
+        _ => 64 + 2 * dice.below((ring.min(200) - 64) / 2 + 1),
+    }
+    .max(64)
+}
+
+/// Row factors that the ring can serve: drawn from one up to 2^24, and again where they reach too far.
+fn draw_tables(dice: &mut Dice, geometry: Geometry, ring: usize) -> TableSet {
+    let one_row = Geometry::new(geometry.width(), 1, geometry.depth(), geometry.centre2()).unwrap();
+    let mut steps = Vec::new();
+    while steps.len() < geometry.height() {
+        let step = 1 + dice.below(STEP_ONE as usize) as u32;
+        let step = if dice.below(8) == 0 { STEP_ONE } else { step };
+        if TableSet::new(one_row, vec![step]).unwrap().check_ring(ring).is_ok() {
+            steps.push(step);
+        }
+    }
+    TableSet::new(geometry, steps).unwrap()
+}
+
+/// One of the four kernels, or any weights at all.
+fn draw_kernel(dice: &mut Dice, outer_taps: bool) -> Kernel {
+    let any = dice.below(3) == 0;
+    let named: Vec<_> = Interpolant::ALL.into_iter().map(Kernel::from).collect();
+    let five = |kernel: &Kernel| kernel.nodes().iter().all(|node| (node[0], node[4]) == (0, 0));
+    if !any {
+        let fitting: Vec<_> = named.into_iter().filter(|kernel| outer_taps || five(kernel)).collect();
+        return fitting[dice.below(fitting.len())].clone();
+    }
+    let weight = |dice: &mut Dice, outer: bool| {
+        if outer && !outer_taps { 0 } else { dice.below(1 << 16) as u16 as i16 }
+    };
+    let node = |dice: &mut Dice| [true, false, false, false, true].map(|outer| weight(dice, outer));
+    Kernel::from_nodes((0..65).map(|_| node(dice)).collect()).unwrap()
+}
+
+/// Noise, or samples at both ends of the range alone.
+fn draw_frame(dice: &mut Dice, width: usize, height: usize, depth: BitDepth) -> Frame {
+    let extremes = dice.below(3) == 0;
+    let samples = (0..width * height)
+        .map(|_| match extremes {
+            true => dice.one_of(&[0, depth.max()]),
+            false => dice.below(usize::from(depth.max()) + 1) as u16,
+        })
+        .collect();
+    Frame::new(width, depth, dice.one_of(&Phase::ALL), samples).unwrap()
+}
