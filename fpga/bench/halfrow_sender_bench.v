@@ -190,7 +190,10 @@ module halfrow_sender_bench;
                             drive;
                             #1 edge_of_clock;
                         end
-                        if (out != wanted_total || !idle) fault("bytes missing");
+                        if (out != wanted_total || !idle) begin
+                            fault("bytes missing");
+                            $finish;
+                        end
                         if (gaps == 0 && stalls == 0 && clocks > wanted_total + 4 * total + 600) fault("too slow");
                         if (faults == 0)
                             $display("PASS %0d packets, order %0d, gaps %0d, stalls %0d: %0d bytes in %0d clocks", total, order,
