@@ -250,7 +250,7 @@ module halfrow_camera_bench;
             idle(54, 1'b1, 1'b1);
             row(10, 0, 64, 1'b1, 1'b1); idle(30, 1'b1, 1'b1);
             for (i = 0; i < 64; i = i + 1)
-                tick(i < 20, i < 40, sample(10, 1, i), i < 20 ? 15'h2000 : 15'h0000);
+                tick(i < 20, 1'b1, sample(10, 1, i), i < 20 ? 15'h2000 : 15'h4000);
             frame(11, 4);
             settle("FRAME_VALID falls in mid row, the next frame exact", 1);
 
@@ -276,13 +276,67 @@ module halfrow_camera_bench;
         end
     endtask
 
+    integer seed = 1;
+
+    function integer draw(input integer from, input integer to);
+        draw = from + $unsigned($random(seed)) % (to - from + 1);
+    endfunction
+
+    // One row of a frame: good three times in four, else too short, or too long.
+    task any_row(input integer number, input integer r);
+        integer c, extra;
+        case (draw(0, 7))
+            0: row(number, r, draw(1, width - 1), 1'b1, 1'b0);
+            1: begin
+                extra = draw(1, 90);
+                for (c = 0; c < width + extra; c = c + 1)
+                    tick(1'b1, 1'b1, sample(number, r, c), c < width ? 15'h2000 : 15'h6000);
+            end
+            default: row(number, r, width, 1'b1, 1'b1);
+        endcase
+    endtask
+
+    task any_frame(input integer number);
+        integer r, rows, cut, c;
+        begin
+            rows = draw(0, height + 2);
+            idle(draw(24, 90), 1'b1, 1'b1);
+            for (r = 0; r < rows; r = r + 1) begin
+                if (r < height) any_row(number, r);
+                else repeat (draw(1, 2 * width)) tick(1'b1, 1'b1, 12'h123, 15'h6000);
+                idle(draw(24, 90), 1'b1, 1'b1);
+            end
+            cut = draw(0, 2 * width);
+            if (cut < width && rows < height)      // FRAME_VALID falls in mid row
+                for (c = 0; c < width + 30; c = c + 1)
+                    tick(c < cut, c < cut + 9, 12'h321, c < cut ? 15'h2000 : 15'h4000);
+            idle(draw(1, 200), 1'b0, 1'b0);
+        end
+    endtask
+
+    task any_frames;
+        integer k, n;
+        begin
+            for (k = 0; k < 12; k = k + 1) begin
+                size(2 * draw(32, 60), draw(1, 5), 30, 1'b1);
+                for (n = 0; n < 12; n = n + 1) any_frame(20 + 12 * k + n);
+                frame(200 + k, height);
+                idle(width / 2 + LATENCY + 4, 1'b0, 1'b0);
+            end
+            faults = 0;
+            settle("144 drawn frames of all kinds, good rows exact", 0);
+        end
+    endtask
+
     initial begin
+        if (!$value$plusargs("seed=%d", seed)) seed = 1;
         for (i = 0; i < LINE; i = i + 1) expected[i] = 15'h4000;
         now = 15'h4000;
         @(negedge clk);
         good_frames;
         spoilt_rows;
         spoilt_frames;
+        any_frames;
         sensor_frame;
         $display("DONE");
         $finish;

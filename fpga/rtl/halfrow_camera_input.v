@@ -34,12 +34,13 @@ module halfrow_camera_input #(
         if (rst) begin
             armed <= 1'b0;
             frame_before <= 1'b0;
-            line_before <= 1'b1;
         end else begin
             armed <= armed || !camera_frame_valid;
             frame_before <= frame_valid;
-            line_before <= camera_line_valid;
         end
+
+    always @(posedge clk)
+        line_before <= camera_line_valid;
 
     reg [11:0] row;                               // that starts next
     reg        asked;                             // the core was told so
