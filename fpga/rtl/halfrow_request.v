@@ -1,0 +1,54 @@
+// What a request's kind is to the dispatcher, and whether its payload has all fields and each of them a meaning.
+`default_nettype none
+
+module halfrow_request (
+    input  wire        clk,
+    input  wire [ 7:0] kind,
+    input  wire [15:0] length,        // bytes of payload, at most 4080
+    input  wire [55:0] fields,        // the payload's start, its first byte in [7:0]
+    // two clocks behind the inputs
+    output reg         unknown,       // no request that the board knows
+    output reg         malformed,
+    output reg  [12:0] read_length    // of the reply to a TABLE_READ
+);
+    localparam [7:0] HELLO = 8'h00, CAPABILITIES = 8'h01, STATUS = 8'h02, RESET = 8'h03, ECHO = 8'h04, TABLE_WRITE = 8'h10,
+                     TABLE_READ = 8'h11, TABLE_CRC = 8'h12, COMMIT = 8'h13, CONFIGURE = 8'h18, ROW_IN = 8'h20, ROW_ACK = 8'h22;
+
+    wire [ 7:0] first_byte  = fields[7:0];
+    wire        span_kernel = fields[0];
+    wire [15:0] count       = fields[55:40];
+    reg  [ 3:0] least;               // bytes
+    reg         short, meaningless, count_too_large;
+    reg  [13:0] span_length;         // with its entries; 0 to 1023 of them
+
+    always @* begin
+        case (kind)
+            HELLO, COMMIT:                     least = 4'd11;
+            STATUS:                            least = 4'd1;
+            RESET:                             least = 4'd5;
+            TABLE_WRITE, TABLE_READ, TABLE_CRC: least = 4'd7;
+            CONFIGURE:                         least = 4'd13;
+            default:                           least = 4'd0;
+        endcase
+    end
+
+    always @(posedge clk) begin
+        short           <= length[11:4] == 8'd0 && length[3:0] < least;
+        meaningless     <= (kind == RESET && first_byte > 8'd2)
+                        || (kind[7:2] == TABLE_WRITE[7:2] && kind != COMMIT && (fields[7:1] != 7'd0 || fields[15:9] != 7'd0));
+        count_too_large <= count[15:10] != 6'd0;
+        span_length     <= {1'b0, span_kernel ? count[9:0] : 10'd0, 3'd0} + {3'd0, count[9:0], 1'b0}
+                         + (span_kernel ? 14'd7 : {3'd0, count[9:0], 1'b0} + 14'd7);
+        malformed       <= short || meaningless || (kind == TABLE_WRITE && (count_too_large || span_length > length[13:0]));
+        read_length     <= span_length[12:0];
+        case (kind)
+            HELLO, CAPABILITIES, STATUS, RESET, ECHO, TABLE_WRITE, TABLE_READ, TABLE_CRC, COMMIT, CONFIGURE, ROW_IN, ROW_ACK:
+            unknown <= 1'b0;
+            default: unknown <= 1'b1;
+        endcase
+    end
+
+    wire unused = &{1'b0, length[15:14], fields[39:16], fields[8], span_length[13]};
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,186 @@
+// The counters of STATUS. Those that count lie as bytes in one small memory and are counted up a byte a clock, so an event may
+// have to wait for its turn; nothing is lost while it waits.
+`default_nettype none
+
+module halfrow_status (
+    input  wire        clk,
+    input  wire        rst,
+    input  wire        clear,            // pulse: all events so far are forgotten
+    output wire        idle,             // every event has been counted
+
+    // one-clock pulses
+    input  wire        packet,
+    input  wire        crc_error,
+    input  wire        framing_error,    // may come every third clock
+    input  wire        foreign_packet,
+    input  wire        refusal,
+    input  wire        row_accepted,
+    input  wire        row_left,         // at most three while a report is made
+    input  wire        row_repeated,
+    input  wire        row_unneeded,
+    input  wire        sample_over,      // may come every clock
+    input  wire        latency_valid,
+    input  wire [15:0] first_latency,
+    input  wire [15:0] last_latency,
+
+    input  wire [31:0] next_row_in,
+    input  wire [31:0] acknowledged,
+    input  wire        core_busy,
+    input  wire [ 7:0] generation,
+
+    // The payload of the reply to STATUS. While `report` is high events wait.
+    input  wire        report,
+    input  wire        report_clears,    // a byte is set to 0 as it is taken
+    input  wire [ 5:0] index,
+    input  wire        take,             // pulse; indices come in order
+    output reg  [ 7:0] value
+);
+    localparam IDLE = 2'd0, COUNT = 2'd1, SATURATE = 2'd2, SWEEP = 2'd3;
+
+    localparam [3:0] PACKETS = 4'd0, CRC_ERRORS = 4'd1, FRAMING_ERRORS = 4'd2, FOREIGN_PACKETS = 4'd3, REFUSALS = 4'd4,
+                     ROWS_IN = 4'd5, ROWS_OUT = 4'd6, ROWS_REPEATED = 4'd7, ROWS_UNNEEDED = 4'd8, SAMPLES_OVER = 4'd9,
+                     NEXT_ROW_IN = 4'd10, NEXT_ROW_OUT = 4'd11, CORE_BUSY = 4'd12, GENERATION = 4'd13, LEAST_LATENCY = 4'd14;
+
+    reg [1:0] state;
+    reg [3:0] counter;
+    reg [1:0] place;        // byte of the counter
+    reg [4:0] amount;       // to add: events at byte 0, then the carry
+
+    // Events that wait. Of three kinds more than one can.
+    reg       packet_waits, crc_waits, foreign_waits, refusal_waits, in_waits, repeated_waits, unneeded_waits;
+    reg [2:0] framing_wait;
+    reg [1:0] left_wait;
+    reg [4:0] over_wait;
+
+    reg  [3:0] next;
+    reg  [4:0] next_amount;
+    reg        any;
+    always @* begin
+        any         = 1'b1;
+        next_amount = 5'd1;
+        if (over_wait != 5'd0) begin
+            next        = SAMPLES_OVER;
+            next_amount = over_wait;
+        end else if (framing_wait != 3'd0) begin
+            next        = FRAMING_ERRORS;
+            next_amount = {2'd0, framing_wait};
+        end else if (left_wait != 2'd0) begin
+            next        = ROWS_OUT;
+            next_amount = {3'd0, left_wait};
+        end else if (packet_waits) next = PACKETS;
+        else if (crc_waits) next = CRC_ERRORS;
+        else if (foreign_waits) next = FOREIGN_PACKETS;
+        else if (refusal_waits) next = REFUSALS;
+        else if (in_waits) next = ROWS_IN;
+        else if (repeated_waits) next = ROWS_REPEATED;
+        else begin
+            next = ROWS_UNNEEDED;
+            any  = unneeded_waits;
+        end
+    end
+
+    wire       begins = state == IDLE && any && !report;
+    wire       forget = rst || clear;
+
+    always @(posedge clk) begin
+        packet_waits   <= packet || (packet_waits && !(begins && next == PACKETS));
+        crc_waits      <= crc_error || (crc_waits && !(begins && next == CRC_ERRORS));
+        foreign_waits  <= foreign_packet || (foreign_waits && !(begins && next == FOREIGN_PACKETS));
+        refusal_waits  <= refusal || (refusal_waits && !(begins && next == REFUSALS));
+        in_waits       <= row_accepted || (in_waits && !(begins && next == ROWS_IN));
+        repeated_waits <= row_repeated || (repeated_waits && !(begins && next == ROWS_REPEATED));
+        unneeded_waits <= row_unneeded || (unneeded_waits && !(begins && next == ROWS_UNNEEDED));
+        framing_wait   <= (begins && next == FRAMING_ERRORS ? 3'd0 : framing_wait) + {2'd0, framing_error};
+        left_wait      <= (begins && next == ROWS_OUT ? 2'd0 : left_wait) + {1'b0, row_left};
+        over_wait      <= (begins && next == SAMPLES_OVER ? 5'd0 : over_wait) + {4'd0, sample_over};
+        if (forget) begin
+            {packet_waits, crc_waits, foreign_waits, refusal_waits, in_waits, repeated_waits, unneeded_waits} <= 7'd0;
+            framing_wait <= 3'd0;
+            left_wait    <= 2'd0;
+            over_wait    <= 5'd0;
+        end
+    end
+
+    (* ram_style = "distributed" *) reg [7:0] counters [0:63];
+    wire [5:0] address = report ? index : {counter, place};
+    wire [7:0] stored  = counters[address];
+    wire [8:0] sum     = {1'b0, stored} + {4'd0, amount};
+    wire       write   = report ? report_clears && take : state != IDLE;
+    wire [7:0] written = report || state == SWEEP ? 8'd0 : state == SATURATE ? 8'hff : sum[7:0];
+
+    always @(posedge clk) if (write) counters[address] <= written;
+
+    always @(posedge clk) begin
+        case (state)
+            IDLE:
+            if (begins) begin
+                state   <= COUNT;
+                counter <= next;
+                amount  <= next_amount;
+                place   <= 2'd0;
+            end
+            COUNT: begin
+                place  <= place + 2'd1;
+                amount <= 5'd1;
+                if (!sum[8]) state <= IDLE;
+                else if (place == 2'd3) state <= SATURATE;
+            end
+            SATURATE: begin
+                place <= place + 2'd1;
+                if (place == 2'd3) state <= IDLE;
+            end
+            default: begin
+                {counter, place} <= {counter, place} + 6'd1;
+                if (&{counter, place}) state <= IDLE;
+            end
+        endcase
+        if (forget) begin
+            state            <= SWEEP;
+            {counter, place} <= 6'd0;
+        end
+    end
+
+    // The latencies of a row are looked at one after the other.
+    reg         first_due, last_due, measured;
+    reg  [15:0] latency, other_latency, least, most;
+    reg  [23:0] reported;   // most and the upper half of least, as they were when the lower half was taken
+    wire        latch = report && take && index == {LEAST_LATENCY, 2'd0};
+    wire        look  = (first_due || last_due) && !latch;
+
+    always @(posedge clk) begin
+        if (latency_valid) begin
+            latency       <= first_latency;
+            other_latency <= last_latency;
+        end else if (look) latency <= other_latency;
+        first_due <= latency_valid || (first_due && latch);
+        last_due  <= (last_due && latch) || (first_due && !latch);
+        if (look) begin
+            measured <= 1'b1;
+            if (!measured || latency < least) least <= latency;
+            if (latency > most) most <= latency;
+        end
+        if (latch) reported <= {most, least[15:8]};
+        if (forget || (latch && report_clears)) begin
+            measured <= 1'b0;
+            least    <= 16'd0;
+            most     <= 16'd0;
+        end
+        if (forget) {first_due, last_due} <= 2'd0;
+    end
+
+    assign idle = state == IDLE && !any && !first_due && !last_due;
+
+    always @* begin
+        case (index[5:2])
+            NEXT_ROW_IN:   value = next_row_in[{index[1:0], 3'd0} +: 8];
+            NEXT_ROW_OUT:  value = acknowledged[{index[1:0], 3'd0} +: 8];
+            CORE_BUSY:     value = index[1:0] == 2'd0 ? {7'd0, core_busy} : 8'd0;
+            GENERATION:    value = index[1:0] == 2'd0 ? generation : 8'd0;
+            LEAST_LATENCY: value = index[1] ? 8'd0 : index[0] ? reported[7:0] : least[7:0];
+            4'd15:         value = index[1] ? 8'd0 : index[0] ? reported[23:16] : reported[15:8];
+            default:       value = stored;
+        endcase
+    end
+endmodule
+
+`default_nettype wire
