@@ -52,25 +52,32 @@ module halfrow_uart_bench;
                 endcase
             endfunction
 
-            task put(input [7:0] value, input stop);
-                integer b;
-                begin
-                    rxd = 0;
-                    #bit_time;
-                    for (b = 0; b < 8; b = b + 1) begin
-                        rxd = value[b];
-                        #bit_time;
-                    end
-                    rxd = stop;
-                    #bit_time rxd = 1;
-                end
-            endtask
-
-            // One clock of noise somewhere in a bit that holds its level for it.
+            // One clock of noise.
             task noise;
                 begin
                     rxd = ~rxd;
                     #(PERIOD - 20) rxd = ~rxd;
+                end
+            endtask
+
+            // A bit, in one mix with noise where it hurts most, in its middle.
+            task level(input value);
+                begin
+                    rxd = value;
+                    if (gaps == 1) begin
+                        #(bit_time / 2 - PERIOD / 2) noise;
+                        #(bit_time - bit_time / 2 - PERIOD / 2 + 20);
+                    end else #bit_time;
+                end
+            endtask
+
+            task put(input [7:0] value, input stop);
+                integer b;
+                begin
+                    level(1'b0);
+                    for (b = 0; b < 8; b = b + 1) level(value[b]);
+                    level(stop);
+                    rxd = 1;
                 end
             endtask
 

@@ -3,11 +3,11 @@
 `default_nettype none
 
 module halfrow_ft245 #(
-    // clocks, 1 to 255
+    // clocks: QUIET 1 to 4095, the others 1 to 255
     parameter SETUP   = 1,               // of data in front of WR#, 5 ns, and behind it
     parameter PULSE   = 4,               // RD# or WR# low, 30 ns; read data is good 14 ns after RD# fell
     parameter RECOVER = 6,               // up to where RXF# and TXE# answer to the last byte: 14 ns and their synchroniser
-    parameter QUIET   = 200,             // without a byte to write before what was written is sent off
+    parameter QUIET   = 1000,            // without a byte to write before SIWU#: more than a run of 255 takes to be stuffed
     parameter STROBE  = 32               // SIWU# low, 250 ns
 ) (
     input  wire       clk,
@@ -36,20 +36,21 @@ module halfrow_ft245 #(
     localparam [7:0] SETUP_LAST   = SETUP - 1;
     localparam [7:0] PULSE_LAST   = PULSE - 1;
     localparam [7:0] RECOVER_LAST = RECOVER - 1;
-    localparam [7:0] QUIET_LAST   = QUIET - 1;
     localparam [7:0] STROBE_LAST  = STROBE - 1;
 
-    reg [2:0] state;
-    reg [7:0] count;                     // clocks of the state to come
-    reg [7:0] quiet;
-    reg       unsent;                    // bytes were written since SIWU# was last low
-    reg       reads_next;                // when both directions wait
-    reg [1:0] rxf_n, txe_n;              // [1] is synchronous
+    localparam [11:0] QUIET_LAST = QUIET - 1;
+
+    reg [ 2:0] state;
+    reg [ 7:0] count;                    // clocks of the state to come
+    reg [11:0] quiet;                    // clocks up to SIWU#
+    reg        unsent;                   // bytes were written since SIWU# was last low
+    reg        reads_next;               // when both directions wait
+    reg [ 1:0] rxf_n, txe_n;             // [1] is synchronous
 
     wire may_read  = !rxf_n[1] && !rx_valid;
     wire may_write = !txe_n[1] && ft_control_drive;
     wire due       = count == 8'd0;
-    wire send      = unsent && quiet == 8'd0 && !tx_valid;
+    wire send      = unsent && quiet == 12'd0;
 
     assign tx_ready = state == IDLE && may_write && !(may_read && reads_next);
 
@@ -111,7 +112,7 @@ module halfrow_ft245 #(
         if (state == OFFER) unsent <= 1'b1;
         if (state == SEND) unsent <= 1'b0;
         if (tx_valid || state == OFFER) quiet <= QUIET_LAST;
-        else if (quiet != 8'd0) quiet <= quiet - 8'd1;
+        else if (quiet != 12'd0) quiet <= quiet - 12'd1;
         if (rst) begin
             rx_valid   <= 1'b0;
             reads_next <= 1'b1;
