@@ -33,7 +33,8 @@ module halfrow_ft245_bench;
     );
 
     integer half, gaps, stalls, seed, faults, given, got, sent, taken, unsent, n;
-    integer rd_fell, wr_fell, siwu_fell, data_changed, wr_rose, began, finished;
+    integer rd_fell, wr_fell, siwu_fell, data_changed, wr_rose, began;
+    integer finished;  // bytes of the slower direction when the faster one had all
     reg     trap;
 
     initial begin
@@ -136,8 +137,8 @@ module halfrow_ft245_bench;
         if (rx_valid && rx_ready) begin
             if (rx_data !== word(got)) fault("wrong byte read");
             got = got + 1;
-            if (got == BYTES && finished == 0) finished = taken;
         end
+        if (finished == 0 && (got == BYTES || taken == BYTES)) finished = got == BYTES ? taken : got;
         if (tx_valid && tx_ready) sent = sent + 1;
         #1 rx_ready = !pause(stalls, got);
         if (!tx_valid || sent != n) begin
@@ -168,7 +169,7 @@ module halfrow_ft245_bench;
             repeat (1100) @(posedge clk) #2;
             if (got != BYTES || taken != BYTES || rx_valid) fault("bytes missing or too many");
             if (unsent != 0) fault("bytes not sent off");
-            if (gaps == 0 && stalls == 0 && (finished < BYTES - 30 || finished > BYTES)) fault("one side starves");
+            if (gaps == 0 && stalls == 0 && finished < BYTES - 30) fault("one side starves");
         end
     endtask
 
