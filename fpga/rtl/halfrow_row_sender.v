@@ -1,0 +1,168 @@
+// Sends rows that have left the core: each one once as soon as it can, before any that is asked for again.
+`default_nettype none
+
+module halfrow_row_sender #(
+    parameter ROW_BANKS_OUT = 2,
+    parameter OUT_BITS = 1,
+    parameter ENTRY_BITS = 2,
+    parameter COLUMN_BITS = 11
+) (
+    input  wire                   clk,
+    input  wire                   rst,
+    input  wire                   drop,            // pulse: rows are dropped; a packet under way is still sent
+    input  wire                   new_session,     // with drop: packets are counted from 0
+
+    input  wire [11:0]            width,
+    input  wire                   unsent,          // row `unsent_entry` has left the core and was never sent
+    input  wire [ENTRY_BITS-1:0]  unsent_entry,
+    output wire                   sent,            // pulse: it has been
+    input  wire                   again,           // pulse, while again_waiting is low
+    input  wire [ENTRY_BITS-1:0]  again_entry,
+    output reg                    again_waiting,
+    input  wire [OUT_BITS-1:0]    wanted_bank,
+    output wire                   wanted_held,     // that out-bank is still to be sent
+    output wire                   place_held,      // the place of a row that was dropped is still to be sent
+
+    output wire [ENTRY_BITS+2:0]  place_address,
+    input  wire [7:0]             place_byte,
+    output wire [OUT_BITS-1:0]    bank,            // whose row's name, times and samples are sent
+    input  wire                   is_last,
+    input  wire [7:0]             generation,
+    input  wire [15:0]            first_latency,
+    input  wire [15:0]            last_latency,
+    input  wire [15:0]            pauses,
+    output wire                   sample_read,
+    output reg  [COLUMN_BITS-1:0] column,          // to be read next
+    input  wire [11:0]            sample,          // of the last sample_read
+
+    output wire                   row_valid,
+    output wire [7:0]             row_kind,
+    output reg  [15:0]            row_sequence,    // counts ROW_OUT packets
+    output wire [15:0]            row_length,
+    output wire                   row_flag,
+    input  wire                   row_taken,
+    output wire                   row_byte_valid,
+    output reg  [7:0]             row_byte,
+    input  wire                   row_byte_ready,
+    output wire                   idle
+);
+    localparam IDLE = 2'd0, OFFER = 2'd1, HEAD = 2'd2, SAMPLES = 2'd3;
+    localparam [4:0] HEAD_BYTES = 5'd20;
+
+    reg [1:0]            state;
+    reg [ENTRY_BITS-1:0] entry, waiting_entry;
+    reg                  first_time;
+    reg                  dropped;                  // while it was sent
+    reg [11:0]           row_width;
+    reg [15:0]           repeats [0:ROW_BANKS_OUT-1];
+    wire [15:0]          row_repeats = repeats[bank];
+
+    assign bank = entry[OUT_BITS-1:0];
+    assign row_kind = 8'h21;
+    assign row_flag = 1'b0;
+    assign row_length = {4'd0, row_width} + {5'd0, row_width[11:1]} + {11'd0, HEAD_BYTES};
+    assign row_valid = state == OFFER;
+    assign row_byte_valid = state == HEAD || state == SAMPLES;
+    assign idle = state == IDLE && !unsent && !again_waiting;
+    assign wanted_held = (state != IDLE && bank == wanted_bank)
+                         || (again_waiting && waiting_entry[OUT_BITS-1:0] == wanted_bank);
+    assign place_held = dropped && state == HEAD;
+
+    reg [4:0]             head;                    // byte of the head
+    reg [1:0]             phase;                   // byte of three
+    reg [3:0]             earlier;                 // bits of the sample before
+    wire                  move = row_byte_valid && row_byte_ready;
+    wire                  head_ends = move && state == HEAD && head == HEAD_BYTES - 5'd1;
+    wire                  row_ends = move && state == SAMPLES && phase == 2'd2 && column == row_width[COLUMN_BITS-1:0];
+
+    assign place_address = {entry, head[2:0]};
+    assign sent = row_ends && first_time && !dropped;
+
+    always @(posedge clk) begin
+        if (again) begin
+            again_waiting <= 1'b1;
+            waiting_entry <= again_entry;
+        end else if (state == IDLE && !unsent)
+            again_waiting <= 1'b0;
+        if (rst || drop)
+            again_waiting <= 1'b0;
+    end
+
+    always @(posedge clk)
+        if (rst)
+            state <= IDLE;
+        else
+            case (state)
+                IDLE:    if ((unsent || again_waiting) && !drop) state <= OFFER;
+                OFFER:   state <= row_taken ? HEAD : drop ? IDLE : OFFER;
+                HEAD:    if (head_ends) state <= SAMPLES;
+                default: if (row_ends) state <= IDLE;
+            endcase
+
+    always @(posedge clk) begin
+        if (state == IDLE) begin
+            entry <= unsent ? unsent_entry : waiting_entry;
+            first_time <= unsent;
+            row_width <= width;
+        end
+        dropped <= state != IDLE && (dropped || drop);
+    end
+
+    always @(posedge clk)
+        if (rst || (drop && new_session))
+            row_sequence <= 16'd0;
+        else if (row_taken)
+            row_sequence <= row_sequence + 16'd1;
+
+    always @(posedge clk)
+        if (row_taken)
+            repeats[bank] <= first_time ? 16'd0 : row_repeats + {15'd0, row_repeats != 16'hffff};
+
+    always @*
+        if (state == SAMPLES)
+            case (phase)
+                2'd0:    row_byte = sample[7:0];
+                2'd1:    row_byte = {sample[3:0], earlier};
+                default: row_byte = sample[11:4];
+            endcase
+        else
+            case (head)
+                5'd8:    row_byte = row_width[7:0];
+                5'd9:    row_byte = {4'd0, row_width[11:8]};
+                5'd10:   row_byte = {7'd0, is_last};
+                5'd11:   row_byte = generation;
+                5'd12:   row_byte = first_latency[7:0];
+                5'd13:   row_byte = first_latency[15:8];
+                5'd14:   row_byte = last_latency[7:0];
+                5'd15:   row_byte = last_latency[15:8];
+                5'd16:   row_byte = pauses[7:0];
+                5'd17:   row_byte = pauses[15:8];
+                5'd18:   row_byte = row_repeats[7:0];
+                5'd19:   row_byte = row_repeats[15:8];
+                default: row_byte = place_byte;
+            endcase
+
+    // The first sample is read all through the head, and each further one when the one before has lent its last whole byte.
+    assign sample_read = state == HEAD || (move && phase != 2'd1);
+
+    always @(posedge clk) begin
+        if (state == OFFER) begin
+            head <= 5'd0;
+            phase <= 2'd0;
+            column <= {COLUMN_BITS{1'b0}};
+        end else if (head_ends)
+            column <= column + 1'b1;
+        else if (move) begin
+            if (state == HEAD)
+                head <= head + 5'd1;
+            else begin
+                phase <= phase == 2'd2 ? 2'd0 : phase + 2'd1;
+                if (phase != 2'd1)
+                    column <= column + 1'b1;
+                earlier <= sample[11:8];
+            end
+        end
+    end
+endmodule
+
+`default_nettype wire
