@@ -3,7 +3,7 @@
 `default_nettype none
 
 module halfrow_receiver_bench;
-    localparam LONG = 600;  // bytes from which a case is played under a sixth of the patterns only, since it takes long
+    localparam LONG = 600;  // bytes from which a case is played under one pattern only, in turn, since it takes long
 
     reg         clk, rst, rx_valid, packet_done;
     reg  [ 7:0] rx_data;
@@ -171,7 +171,7 @@ module halfrow_receiver_bench;
                 cases_read = 0;
                 while ($fscanf(file, "%s", name) == 1) begin
                     read_case;
-                    if (count < LONG || (cases_read + 3 * idle + hold) % 6 == 0) play;
+                    if (count < LONG || (cases_read + 3 * idle + hold) % 12 == 0) play;
                     cases_read = cases_read + 1;
                 end
                 $fclose(file);

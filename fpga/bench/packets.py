@@ -116,7 +116,7 @@ def receiver_cases(draw):
     streams = [("long_run", bytes([255]) * long + after) for long in (4112, 4113, 4114, 8192 + 12, 12300)]
     streams += [("long_zeros", bytes([1]) * long + after) for long in (16, 17, 4097, 4098, 8193 + 12, 12300)]
     streams += [("size", stuff(draw_packet(draw, size)) + after) for size in (*SIZES, 4081, 4085) for _ in range(3)]
-    streams += [(f"drawn_{place}", draw_stream(draw)) for place in range(300)]
+    streams += [(f"drawn_{place}", draw_stream(draw)) for place in range(180)]
     for name, data in streams:
         yield name, data, [event(piece) for piece in data.split(b"\0")[:-1] if piece]
 
