@@ -32,17 +32,19 @@ module core_stand_in #(parameter L = 12) (
     reg        bank_of [0:4095];
     integer    blank_before [0:4095];
 
-    task check(input ok, input [8*40-1:0] what);
-        if (!ok) begin
+    task fail(input [8*40-1:0] what);
+        begin
             failures = failures + 1;
             $display("FAIL %0s at %0t", what, $time);
         end
     endtask
 
     always @(posedge clk) begin
-        check(enable || !in_valid, "a sample without enable");
+        if (in_valid && !enable)
+            fail("a sample without enable");
         if (enable) begin
-            check(in_valid == (in_start || (column >= 0 && column < width - 1)), "a row without a break");
+            if (in_valid != (in_start || (column >= 0 && column < width - 1)))
+                fail("a row with a break");
             ring[now] = {in_valid, in_start, in_valid && column == width - 2, in_sample};
             {out_valid, out_start, out_last, out_sample} <= ring[(now - width / 2 - L + 1) & 4095];
             ring[(now - width / 2 - L + 1) & 4095] = 0;
@@ -51,7 +53,8 @@ module core_stand_in #(parameter L = 12) (
             since_start <= in_start ? 0 : since_start + 1;
             clocks_off <= in_valid ? 0 : clocks_off + 1;
             if (in_start) begin
-                check(prepared, "a row that was prepared");
+                if (!prepared)
+                    fail("a row that was not prepared");
                 row_of[rows[11:0]] = prepared_row;
                 blank_before[rows[11:0]] = clocks_off;
                 rows <= rows + 1;
@@ -71,7 +74,8 @@ module core_stand_in #(parameter L = 12) (
             multiplying <= 20;
         end
         if (prepare) begin
-            check(!wanted && multiplying == 0 && !prepared, "one row prepared at a time");
+            if (wanted || multiplying != 0 || prepared)
+                fail("two rows prepared");
             prepared_row <= prepare_row;
             bank_of[rows[11:0]] = prepare_bank;
             wanted <= 1;
@@ -366,6 +370,7 @@ module halfrow_rows_bench;
             base = next;
             next_new = next;
             window = next;
+            @(negedge clk);
         end
     endtask
 

@@ -90,6 +90,7 @@ module halfrow_collector #(
     reg [COLUMN_BITS-1:0] next_column;
     reg [OUT_BITS-1:0]    left_bank;
     reg [15:0]            left_pauses;
+    wire [15:0]           latency = now - (out_last ? last_in : first_in);
 
     assign column = out_start ? {COLUMN_BITS{1'b0}} : next_column;
     assign sample_write = enable && out_valid && inside_banks[leaving_bank];
@@ -99,9 +100,9 @@ module halfrow_collector #(
         if (sample_write) begin
             next_column <= column + 1'b1;
             if (out_start)
-                first_latency <= now - first_in;
+                first_latency <= latency;
             if (out_last) begin
-                last_latency <= now - last_in;
+                last_latency <= latency;
                 left_pauses <= row_pauses;
                 left_bank <= leaving_bank;
             end

@@ -24,7 +24,7 @@ module halfrow_row_numbers #(
 
     output reg  [31:0]             acknowledged,   // the first row that is not acknowledged
     output reg  [31:0]             credit_window,
-    output wire [31:0]             next_row_in,
+    output reg  [31:0]             next_row_in,    // one clock late
     output reg  [ENTRY_BITS-1:0]   rows_entered,   // rows from `acknowledged` on that have entered
     output reg  [ENTRY_BITS-1:0]   rows_left,      // of them, rows that have left the core
     output reg  [ENTRY_BITS-1:0]   rows_sent,      // of them, rows that have been sent
@@ -71,13 +71,14 @@ module halfrow_row_numbers #(
         end
 
     // The window never wraps, so the last number of all gets no credit.
-    wire [32:0] credit = {1'b0, drop ? drop_next_row : credit_window} + {1'b0, drop ? BANKS_IN : {31'd0, entered}};
+    wire [31:0] credit_from = rst ? 32'd0 : drop ? drop_next_row : credit_window;
+    wire [32:0] credit = {1'b0, credit_from} + {1'b0, rst || drop ? BANKS_IN : {31'd0, entered}};
 
     always @(posedge clk)
-        if (rst)
-            credit_window <= BANKS_IN;
+        if (credit[32])
+            credit_window <= 32'hffffffff;
         else
-            credit_window <= credit[32] ? 32'hffffffff : credit[31:0];
+            credit_window <= credit[31:0];
 
     assign next_entry = acknowledged[ENTRY_BITS-1:0] + rows_entered;
 
@@ -113,7 +114,8 @@ module halfrow_row_numbers #(
 
     wire [ENTRY_BITS:0] known = {1'b0, rows_entered} + {1'b0, in_line};
 
-    assign next_row_in = acknowledged + {{31-ENTRY_BITS{1'b0}}, known};
+    always @(posedge clk)
+        next_row_in <= acknowledged + {{31-ENTRY_BITS{1'b0}}, known};
 endmodule
 
 `default_nettype wire

@@ -56,6 +56,7 @@ module halfrow_row_sender #(
     reg [11:0]           row_width;
     reg [15:0]           repeats [0:ROW_BANKS_OUT-1];
     wire [15:0]          row_repeats = repeats[bank];
+    wire [15:0]          sent_before = first_time ? 16'd0 : row_repeats;
 
     assign bank = entry[OUT_BITS-1:0];
     assign row_kind = 8'h21;
@@ -116,7 +117,7 @@ module halfrow_row_sender #(
 
     always @(posedge clk)
         if (row_taken)
-            repeats[bank] <= first_time ? 16'd0 : row_repeats + {15'd0, row_repeats != 16'hffff};
+            repeats[bank] <= sent_before + {15'd0, !first_time && row_repeats != 16'hffff};
 
     always @*
         if (state == SAMPLES)
