@@ -17,23 +17,23 @@ module halfrow_camera_output #(
     output wire        isp_line_valid,
     output wire [11:0] isp_data
 );
-    localparam [11:0] BEHIND_HALF = LATENCY - 2;
+    localparam [10:0] BEHIND_HALF = LATENCY - 2;
 
-    wire [11:0] delay = {1'b0, width[11:1]} + BEHIND_HALF;
+    wire [10:0] delay = width[11:1] + BEHIND_HALF;
     wire        unused = &{1'b0, width[0]};       // W is even
 
     reg         frame_before;
     reg         rising, falling;                  // an edge is on its way
-    reg  [11:0] until_rise, until_fall;
+    reg  [10:0] since_rise, since_fall;
     reg         frame;
 
     always @(posedge clk) begin
-        until_rise <= (frame_valid && !frame_before) ? delay : until_rise - 12'd1;
-        until_fall <= (!frame_valid && frame_before) ? delay : until_fall - 12'd1;
+        since_rise <= (frame_valid && !frame_before) ? 11'd0 : since_rise + 11'd1;
+        since_fall <= (!frame_valid && frame_before) ? 11'd0 : since_fall + 11'd1;
     end
 
-    wire rise = rising && until_rise == 12'd0;
-    wire fall = falling && until_fall == 12'd0;
+    wire rise = rising && since_rise == delay;
+    wire fall = falling && since_fall == delay;
 
     always @(posedge clk)
         if (rst) begin
