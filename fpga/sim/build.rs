@@ -1,5 +1,5 @@
-//! Translates the Verilog in `fpga/rtl` to C++ with Verilator and compiles it, once for every build of the design that
-//! `src/builds.rs` offers.
+//! Translates the Verilog in `fpga/rtl` to C++ with Verilator and compiles it, once for every build of the design that the
+//! crate offers.
 
 use std::env;
 use std::fs;
@@ -13,11 +13,28 @@ struct Model {
     parameters: &'static [&'static str],
 }
 
-const MODELS: [Model; 3] = [
+const BOARDS: [Model; 3] = [
+    Model { class: "Bridge", top: "halfrow_bridge", parameters: &[] },
+    Model { class: "UartBridge", top: "halfrow_uart_bridge", parameters: &[] },
+    Model { class: "FifoBridge", top: "halfrow_fifo_bridge", parameters: &[] },
+];
+
+/// What tests alone need.
+const BUILDS: [Model; 6] = [
     Model { class: "Core7", top: "halfrow_core", parameters: &["TAPS=7"] },
     Model { class: "Core5", top: "halfrow_core", parameters: &["TAPS=5"] },
     Model { class: "CoreShort", top: "halfrow_core", parameters: &["TAPS=7", "RING_BITS=7"] },
+    Model { class: "BridgeFour", top: "halfrow_bridge", parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4"] },
+    Model { class: "BridgeIn", top: "halfrow_bridge", parameters: &["ROW_BANKS_IN=4"] },
+    Model {
+        class: "BridgeLean",
+        top: "halfrow_bridge",
+        parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4", "TABLE_BANKS=1", "TAPS=5"],
+    },
 ];
+
+/// What every board under simulation says of itself.
+const IDENTITY: [&str; 3] = ["NATURE=2", "NAME_LENGTH=23", "NAME=\"halfrow simulated board\""];
 
 const REMEDY: &str = "install it with `apt-get install verilator g++`, or build without `--features sim`";
 
@@ -29,8 +46,12 @@ fn main() {
     println!("cargo::rerun-if-env-changed=VERILATOR");
     let verilator = Verilator::find();
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
-    let sources = MODELS.iter().flat_map(|model| verilator.translate(model, &rtl, &out)).collect();
-    verilator.compile(sources, &out);
+    let all = env::var_os("CARGO_FEATURE_BUILDS").is_some();
+    let models: Vec<_> = BOARDS.iter().chain(BUILDS.iter().filter(|_| all)).collect();
+    for model in &models {
+        verilator.translate(model, &rtl, &out.join(model.class));
+    }
+    verilator.compile(&models, &out);
 }
 
 /// The Verilator of this machine.
@@ -55,25 +76,25 @@ impl Verilator {
         Self { program, include: Path::new(root.trim()).join("include") }
     }
 
-    /// Translates one model. Returns its C++ files.
-    fn translate(&self, model: &Model, rtl: &Path, out: &Path) -> Vec<PathBuf> {
-        let folder = out.join(model.class);
+    /// Translates one model into `folder`.
+    fn translate(&self, model: &Model, rtl: &Path, folder: &Path) {
         // What a module that is gone left behind would be compiled as well.
-        let _ = fs::remove_dir_all(&folder);
+        let _ = fs::remove_dir_all(folder);
         let mut command = Command::new(&self.program);
         command.args(["--cc", "-O3", "--trace", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal"]);
-        command.args(["--top-module", model.top, "--prefix", model.class]).arg("--Mdir").arg(&folder);
-        command.args(model.parameters.iter().map(|parameter| format!("-G{parameter}")));
+        command.args(["--top-module", model.top, "--prefix", model.class]).arg("--Mdir").arg(folder);
+        let identity = IDENTITY.iter().filter(|_| model.top != "halfrow_core");
+        command.args(model.parameters.iter().chain(identity).map(|parameter| format!("-G{parameter}")));
         command.arg("-y").arg(rtl).arg(rtl.join(model.top).with_extension("v"));
         match command.output() {
             Ok(output) if output.status.success() => {}
             Ok(output) => fail(&format!("{command:?} failed:\n{}", String::from_utf8_lossy(&output.stderr))),
             Err(error) => fail(&format!("{command:?} failed: {error}")),
         }
-        files(&folder, "cpp")
     }
 
-    fn compile(&self, mut sources: Vec<PathBuf>, out: &Path) {
+    fn compile(&self, models: &[&Model], out: &Path) {
+        let mut sources: Vec<_> = models.iter().flat_map(|model| cpp_files(&out.join(model.class))).collect();
         for file in ["verilated.cpp", "verilated_threads.cpp", "verilated_vcd_c.cpp"] {
             sources.push(self.include.join(file));
         }
@@ -87,10 +108,13 @@ impl Verilator {
             .define("VL_TIME_CONTEXT", None);
         build.define("VM_TRACE", "1").define("VM_TRACE_VCD", "1").define("VM_TRACE_FST", "0");
         build.include(&self.include).include(self.include.join("vltstd"));
-        for model in &MODELS {
+        for model in models {
             build.include(out.join(model.class));
         }
-        build.files(sources).file("shim/designs.cpp").compile("halfrow_designs");
+        if models.len() > BOARDS.len() {
+            sources.push("shim/builds.cpp".into());
+        }
+        build.files(sources).file("shim/boards.cpp").compile("halfrow_designs");
         println!("cargo::rustc-link-lib=pthread");
     }
 }
@@ -101,10 +125,10 @@ fn said(command: &mut Command) -> Option<String> {
     String::from_utf8(output.stdout).ok()
 }
 
-fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
+fn cpp_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<_> = entries.map(|entry| entry.path()).collect();
-    files.retain(|path| path.extension().is_some_and(|found| found == extension));
+    files.retain(|path| path.extension().is_some_and(|found| found == "cpp"));
     files.sort();
     files
 }

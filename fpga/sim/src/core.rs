@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::ffi::{CoreInputs, CoreOutputs, Design};
+use crate::ffi::{self, CoreInputs, CoreOutputs, Design};
 
 /// A build of the core.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,7 +39,12 @@ impl Core {
     /// A core whose registers and memories hold what `seed` draws, and which was not reset.
     #[must_use]
     pub fn new(build: CoreBuild, seed: u32) -> Self {
-        Self(Design::core(build, seed))
+        let functions = match build {
+            CoreBuild::SevenTaps => &ffi::halfrow_core7,
+            CoreBuild::FiveTaps => &ffi::halfrow_core5,
+            CoreBuild::ShortRing => &ffi::halfrow_core_short,
+        };
+        Self(Design::new(functions, seed))
     }
 
     /// One clock. Returns what a register at the core's outputs samples at its edge.

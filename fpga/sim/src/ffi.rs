@@ -1,18 +1,86 @@
 //! The verilated designs, as C++ offers them.
 //!
-//! `unsafe` is allowed here and nowhere else: a design is a C++ object, and only C can be called from Rust. What makes it sound:
-//! a [`Design`] owns its object from `create` to `destroy`, hands no pointer out, and every call goes through `&mut self`; the structures are `repr(C)`,
-//! of integers alone, field for field those of `shim/designs.cpp`,
-//! whose `bool` is one byte of 0 or 1 as Rust's is.
+//! `unsafe` is allowed here and nowhere else: a design is a C++ object, and only C can be called from Rust. What makes it
+//! sound: a [`Design`] owns its object from `create` to `destroy`, hands no pointer out, and every call goes through
+//! `&mut self`; the structures are `repr(C)`, of integers alone, field for field those in `shim/`, whose `bool` is one byte
+//! of 0 or 1 as Rust's is.
 #![allow(unsafe_code)]
 
 use std::ffi::{CString, c_char, c_void};
 use std::os::unix::ffi::OsStrExt;
 use std::path::Path;
 
-use crate::core::CoreBuild;
+/// The inputs of `halfrow_bridge` that a board under simulation has a use for.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BridgeInputs {
+    pub(crate) rst: bool,
+    pub(crate) rx_valid: bool,
+    pub(crate) rx_data: u8,
+    pub(crate) tx_ready: bool,
+    pub(crate) millisecond: bool,
+}
+
+/// Its outputs.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct BridgeOutputs {
+    pub(crate) rx_ready: bool,
+    pub(crate) tx_valid: bool,
+    pub(crate) tx_data: u8,
+    pub(crate) quiet: bool,
+}
+
+/// The inputs of `halfrow_uart_bridge`, and which of its clocks rise.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct UartInputs {
+    pub(crate) link_edge: bool,
+    pub(crate) core_edge: bool,
+    pub(crate) rst: bool,
+    pub(crate) rxd: bool,
+    pub(crate) cts_n: bool,
+    pub(crate) millisecond: bool,
+}
+
+/// Its outputs.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct UartOutputs {
+    pub(crate) txd: bool,
+    pub(crate) rts_n: bool,
+    pub(crate) quiet: bool,
+}
+
+/// The inputs of `halfrow_fifo_bridge`, and which of its clocks rise.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FifoInputs {
+    pub(crate) link_edge: bool,
+    pub(crate) core_edge: bool,
+    pub(crate) rst: bool,
+    pub(crate) rxf_n: bool,
+    pub(crate) txe_n: bool,
+    pub(crate) data: u8,
+    pub(crate) millisecond: bool,
+}
+
+/// Its outputs.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct FifoOutputs {
+    pub(crate) rd_n: bool,
+    pub(crate) wr_n: bool,
+    pub(crate) siwu_n: bool,
+    /// WR# and SIWU# are driven.
+    pub(crate) control_drive: bool,
+    pub(crate) data: u8,
+    pub(crate) data_drive: bool,
+    pub(crate) quiet: bool,
+}
 
 /// The inputs of `halfrow_core`.
+#[cfg(feature = "builds")]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(missing_docs, reason = "the ports of that name in fpga/rtl/halfrow_core.v")]
@@ -38,6 +106,7 @@ pub struct CoreInputs {
 }
 
 /// Its outputs.
+#[cfg(feature = "builds")]
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(missing_docs, reason = "the ports of that name in fpga/rtl/halfrow_core.v")]
@@ -59,7 +128,7 @@ pub struct CoreOutputs {
 
 /// What can be done with one design.
 #[repr(C)]
-struct Functions<I, O> {
+pub(crate) struct Functions<I, O> {
     create: unsafe extern "C" fn(u32) -> *mut c_void,
     destroy: unsafe extern "C" fn(*mut c_void),
     trace: unsafe extern "C" fn(*mut c_void, *const c_char) -> bool,
@@ -67,9 +136,19 @@ struct Functions<I, O> {
 }
 
 unsafe extern "C" {
-    safe static halfrow_core7: Functions<CoreInputs, CoreOutputs>;
-    safe static halfrow_core5: Functions<CoreInputs, CoreOutputs>;
-    safe static halfrow_core_short: Functions<CoreInputs, CoreOutputs>;
+    pub(crate) safe static halfrow_bridge: Functions<BridgeInputs, BridgeOutputs>;
+    pub(crate) safe static halfrow_uart: Functions<UartInputs, UartOutputs>;
+    pub(crate) safe static halfrow_fifo: Functions<FifoInputs, FifoOutputs>;
+}
+
+#[cfg(feature = "builds")]
+unsafe extern "C" {
+    pub(crate) safe static halfrow_bridge_four: Functions<BridgeInputs, BridgeOutputs>;
+    pub(crate) safe static halfrow_bridge_in: Functions<BridgeInputs, BridgeOutputs>;
+    pub(crate) safe static halfrow_bridge_lean: Functions<BridgeInputs, BridgeOutputs>;
+    pub(crate) safe static halfrow_core7: Functions<CoreInputs, CoreOutputs>;
+    pub(crate) safe static halfrow_core5: Functions<CoreInputs, CoreOutputs>;
+    pub(crate) safe static halfrow_core_short: Functions<CoreInputs, CoreOutputs>;
 }
 
 /// A verilated design with the inputs `I` and the outputs `O`.
@@ -82,27 +161,15 @@ pub(crate) struct Design<I: 'static, O: 'static> {
 // context, and no part of it belongs to a thread.
 unsafe impl<I, O> Send for Design<I, O> {}
 
-impl Design<CoreInputs, CoreOutputs> {
-    /// A core that holds what `seed` draws.
-    pub(crate) fn core(build: CoreBuild, seed: u32) -> Self {
-        Self::new(
-            match build {
-                CoreBuild::SevenTaps => &halfrow_core7,
-                CoreBuild::FiveTaps => &halfrow_core5,
-                CoreBuild::ShortRing => &halfrow_core_short,
-            },
-            seed,
-        )
-    }
-}
-
 impl<I, O: Default> Design<I, O> {
-    fn new(functions: &'static Functions<I, O>, seed: u32) -> Self {
+    /// A design whose registers and memories hold what `seed` draws.
+    pub(crate) fn new(functions: &'static Functions<I, O>, seed: u32) -> Self {
         // SAFETY: the function takes any number and returns an object that is ours.
         Self { object: unsafe { (functions.create)(seed) }, functions }
     }
 
-    /// Lets the inputs settle, takes the outputs, and then lets the clock rise.
+    /// Lets the inputs settle, and then the clock rise. The outputs are those that a register samples at this edge; of a
+    /// design with pins, those behind it.
     pub(crate) fn clock(&mut self, inputs: &I) -> O {
         let mut outputs = O::default();
         // SAFETY: the object is alive, and both structures are for as long as the call takes.

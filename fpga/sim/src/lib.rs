@@ -1,7 +1,27 @@
 //! The board's Verilog under Verilator, as a board.
+//!
+//! ```text
+//! halfrow_mock::Wire ─ Board ─┬─ byte ports ───────────────────────────► halfrow_bridge
+//!   speed, delay, faults      ├─ a UART's other end ── txd rxd rts cts ► halfrow_uart_bridge
+//!                             └─ an FT2232H ── rd wr rxf txe siwu data ► halfrow_fifo_bridge
+//! ```
+//!
+//! [`Board`] is what stands at the end of the mock's wire, so the wire's options and faults are the same for both. The
+//! clock of the wire stands still while the design is simulated, as it does while the mock computes.
+//!
+//! [`Core`] is the corrector alone, clock by clock, for tests (feature `builds`).
 
+mod board;
+mod byte_port;
+#[cfg(feature = "builds")]
 mod core;
 mod ffi;
+mod ft2232h;
+mod port;
+mod uart;
 
+pub use crate::board::{Board, Build, Failure, Front, TraceError};
+#[cfg(feature = "builds")]
 pub use crate::core::{Core, CoreBuild};
+#[cfg(feature = "builds")]
 pub use crate::ffi::{CoreInputs, CoreOutputs};

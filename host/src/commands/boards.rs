@@ -22,12 +22,20 @@ struct Entry {
     summary: &'static str,
 }
 
-const BOARDS: [Entry; 2] = [
+const BOARDS: [Entry; 5] = [
     Entry {
         target: "mock",
         kind: BoardKind::Mock,
         summary: "a board in this program; mock,KEY=VALUE sets its build, its wire and its fault",
     },
+    Entry {
+        target: "sim",
+        kind: BoardKind::Sim,
+        summary: "the board's Verilog under simulation; sim,KEY=VALUE sets its wire and that wire's fault, trace=FILE \
+                  writes a waveform (in programs built with --features sim)",
+    },
+    Entry { target: "sim:uart", kind: BoardKind::Sim, summary: "the same behind the pins of its UART" },
+    Entry { target: "sim:fifo", kind: BoardKind::Sim, summary: "the same behind the pins of its FT2232H" },
     Entry {
         target: "replay:FILE",
         kind: BoardKind::Replay,

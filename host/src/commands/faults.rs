@@ -8,7 +8,7 @@ use crate::verdict::Exit;
 
 /// List the faults that the mock board can have
 ///
-/// Use one as `--board mock,fault=NAME`, with its parameters behind further commas.
+/// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Print a JSON list of objects with name, where (wire or board) and summary

@@ -1,16 +1,18 @@
 //! A link: a pipe that carries bytes to a board and back, with deadlines.
 
-mod mock;
 mod open;
 mod recording;
 mod replay;
+#[cfg(feature = "sim")]
+mod simulated;
+mod wire;
 
 use std::time::Duration;
 
-pub use mock::MockLink;
 pub use open::{Candidate, OpenError, open, replayed_file};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
+pub use wire::WireLink;
 
 /// A byte pipe to a board.
 ///
@@ -50,6 +52,17 @@ pub enum LinkError {
         link: String,
         /// When, on the link's clock.
         at: Duration,
+    },
+    /// A board in this process has failed.
+    #[error("{board} stopped at {:.3} s", at.as_secs_f64())]
+    Stopped {
+        /// Which board.
+        board: &'static str,
+        /// When, on the link's clock.
+        at: Duration,
+        /// Why.
+        #[source]
+        source: Box<dyn std::error::Error + Send + Sync>,
     },
     /// What the host sends is not what it sent when the recording was made.
     #[error(

@@ -4,8 +4,12 @@ use std::path::{Path, PathBuf};
 
 use halfrow_mock::{Wire, WireError};
 
-use super::{Link, MockLink, Recording, RecordingError, ReplayLink};
+#[cfg(feature = "sim")]
+use super::simulated::open_simulated;
+use super::{Link, Recording, RecordingError, ReplayLink, WireLink};
 use crate::target::{BoardKind, Target};
+
+const MOCK: &str = "the mock board";
 
 /// A board that is about to be opened.
 pub struct Candidate {
@@ -21,7 +25,9 @@ pub struct Candidate {
 #[derive(Debug, thiserror::Error)]
 pub enum OpenError {
     /// The kind is not known.
-    #[error("`{0}` is no kind of board that this program knows; it knows mock and replay:FILE")]
+    #[error(
+        "`{0}` is no kind of board that this program knows; it knows mock, sim, sim:uart, sim:fifo and replay:FILE"
+    )]
     UnknownKind(String),
     /// A kind that has no address.
     #[error("`{kind}` takes no address, and got `{address}`; write `{kind}` alone, options behind a comma")]
@@ -42,9 +48,11 @@ pub enum OpenError {
         /// The option.
         option: String,
     },
-    /// The mock board does not take these options.
-    #[error("the target `{target}` is not one that the mock board takes")]
-    Mock {
+    /// The board does not take these options.
+    #[error("the target `{target}` is not one that {board} takes")]
+    Options {
+        /// Which board.
+        board: &'static str,
         /// The target.
         target: String,
         /// Why.
@@ -52,13 +60,26 @@ pub enum OpenError {
         source: Box<WireError>,
     },
     /// An option whose value is none.
-    #[error("`{key}={value}` is not an option of the mock board; write {key}=virtual or {key}=real")]
+    #[error("`{key}={value}` is not an option of this board; write {key}=virtual or {key}=real")]
     Pace {
         /// The key.
         key: String,
         /// Its value.
         value: String,
     },
+    /// A simulation behind another front end than there is.
+    #[error("`sim:{0}` is no simulated board; write sim, sim:uart or sim:fifo")]
+    UnknownFront(String),
+    /// This program was built without the simulation.
+    #[error(
+        "this program was built without the simulated board, which needs Verilator; with it, from the project's folder: \
+         `apt-get install verilator g++`, then `cargo run --release --features sim -- verify --board {0}`"
+    )]
+    NoSimulation(String),
+    /// The waveform cannot be written.
+    #[cfg(feature = "sim")]
+    #[error(transparent)]
+    Trace(#[from] halfrow_sim::TraceError),
     /// The recording cannot be played.
     #[error(transparent)]
     Recording(#[from] RecordingError),
@@ -77,6 +98,7 @@ pub fn replayed_file(target: &Target) -> Option<PathBuf> {
 pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let (kind, link) = match target.kind.as_str() {
         "mock" => (BoardKind::Mock, open_mock(target)?),
+        "sim" => (BoardKind::Sim, open_simulated(target)?),
         "replay" => (BoardKind::Replay, open_replay(target)?),
         other => return Err(OpenError::UnknownKind(other.to_owned())),
     };
@@ -87,6 +109,18 @@ fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
     if let Some(address) = &target.address {
         return Err(OpenError::NoAddress { kind: target.kind.clone(), address: address.clone() });
     }
+    let (paced, options) = pace(target)?;
+    let wire = Wire::from_options(&options).map_err(|source| wrong_options(MOCK, target, source))?;
+    Ok(Box::new(WireLink::new(wire, MOCK, paced)))
+}
+
+#[cfg(not(feature = "sim"))]
+fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+    Err(OpenError::NoSimulation(target.to_string()))
+}
+
+/// Whether the wire of a board in this process is paced, and the other options.
+pub(super) fn pace(target: &Target) -> Result<(bool, Vec<(&str, &str)>), OpenError> {
     let mut paced = false;
     let mut options = Vec::new();
     for (key, value) in &target.options {
@@ -97,9 +131,11 @@ fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
             option => options.push(option),
         }
     }
-    let wire = Wire::from_options(&options)
-        .map_err(|source| OpenError::Mock { target: target.to_string(), source: Box::new(source) })?;
-    Ok(Box::new(MockLink::new(wire, paced)))
+    Ok((paced, options))
+}
+
+pub(super) fn wrong_options(board: &'static str, target: &Target, source: WireError) -> OpenError {
+    OpenError::Options { board, target: target.to_string(), source: Box::new(source) }
 }
 
 fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {

@@ -2,9 +2,11 @@
 
 use std::time::Duration;
 
-use halfrow_mock::{Board, BoardFault, Options};
+use halfrow_mock::{BoardFault, Endpoint, Options};
 use halfrow_protocol::message::{Hello, Refusal, RefusalCode, RowOut, Status, Welcome};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply, Request};
+
+use crate::subject;
 
 /// The greeting of the host that the tests speak for.
 pub(crate) const HELLO: Hello =
@@ -41,9 +43,22 @@ pub(crate) fn rows_of(heard: &[Heard]) -> Vec<u32> {
     heard.iter().map(|packet| packet.row().place.row_sequence).collect()
 }
 
+/// A board, whatever it is made of.
+trait Subject {
+    /// What it sends when it gets these bytes.
+    fn answer(&mut self, bytes: &[u8], now: Duration) -> Vec<u8>;
+}
+
+impl<B: Endpoint> Subject for B {
+    fn answer(&mut self, bytes: &[u8], now: Duration) -> Vec<u8> {
+        self.receive(bytes, now).unwrap();
+        std::mem::take(self.outgoing())
+    }
+}
+
 /// A board, and a host at the other end of its wire.
 pub(crate) struct Bench {
-    board: Board,
+    board: Box<dyn Subject>,
     /// Time since the board was switched on.
     pub(crate) now: Duration,
     /// The session that packets name.
@@ -56,7 +71,7 @@ pub(crate) struct Bench {
 impl Bench {
     /// A board that was just switched on.
     pub(crate) fn switched_on(options: &Options, fault: Option<BoardFault>) -> Self {
-        let board = Board::new(options, fault).unwrap();
+        let board = Box::new(subject::switched_on(options, fault));
         Self { board, now: Duration::ZERO, session: 0, window: 0, sequence: 0 }
     }
 
@@ -69,8 +84,7 @@ impl Bench {
 
     /// Hands bytes to the board. Whatever it answers must be whole packets.
     pub(crate) fn receive(&mut self, bytes: &[u8]) -> Vec<Heard> {
-        self.board.receive(bytes, self.now);
-        let outgoing = std::mem::take(self.board.outgoing());
+        let outgoing = self.board.answer(bytes, self.now);
         assert!(outgoing.is_empty() || outgoing.starts_with(&[0]) && outgoing.ends_with(&[0]));
         let (mut decoder, mut rest, mut heard) = (Decoder::new(), outgoing.as_slice(), Vec::new());
         while let Some(packet) = decoder.next(&mut rest) {

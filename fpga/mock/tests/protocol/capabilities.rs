@@ -1,14 +1,16 @@
-//! CAPABILITIES: what the board says of its build, and what a lying one says.
+//! CAPABILITIES: what the board says of its build.
 
 use std::collections::BTreeMap;
 
-use halfrow_mock::{BoardFault, Depth, Options, TapCount};
+use halfrow_mock::{BoardFault, Options, TapCount};
 use halfrow_protocol::message::Request;
 
 use crate::bench::{Bench, HELLO};
+use crate::frames::lean;
+use crate::subject::offered;
 
 /// The values by their tags, little endian; the name left out.
-fn values(options: &Options, fault: Option<BoardFault>) -> BTreeMap<u8, u32> {
+pub(crate) fn values(options: &Options, fault: Option<BoardFault>) -> BTreeMap<u8, u32> {
     let mut bench = Bench::switched_on(options, fault);
     bench.greet(&HELLO);
     let payload = bench.done(&Request::Capabilities).payload;
@@ -40,53 +42,17 @@ fn every_board_sends_all_tags_in_their_widths() {
 }
 
 #[test]
-fn the_default_build_is_a_mock_of_datapath_1() {
-    let values = values(&Options::default(), None);
-    assert_eq!((values[&0x01], values[&0x20], values[&0x0e]), (1, 3, 0));
-    assert_eq!((values[&0x0c], values[&0x0d]), (1, 2), "one port for factors, two for nodes");
-}
-
-#[test]
-fn the_options_of_the_build_show() {
-    let options = Options {
-        latency: 17,
-        ring: Some(4096),
-        least_blanking: 300,
-        row_banks_in: 5,
-        row_banks_out: 6,
-        taps: TapCount::Five,
-        max_width: 1920,
-        max_height: 1080,
-        depths: vec![Depth::Eight, Depth::Twelve],
-        pixel_clock: 74_250_000,
-        ..Options::default()
-    };
-    let values = values(&options, None);
-    let shown: Vec<_> = [2, 3, 4, 5, 6, 7, 8, 0x0a, 0x0b, 0x0f].iter().map(|tag| values[tag]).collect();
-    assert_eq!(shown, [1920, 1080, 0b101, 5, 17, 4096, 300, 5, 6, 74_250_000]);
-}
-
-#[test]
-fn every_depth_has_its_bit_however_often_it_is_listed() {
-    for (depth, bit) in [(Depth::Eight, 1), (Depth::Ten, 2), (Depth::Twelve, 4)] {
-        let options = Options { depths: vec![depth; 70], ..Options::default() };
-        assert_eq!(values(&options, None)[&4], bit);
+fn the_build_shows() {
+    let two = Options { row_banks_in: 2, row_banks_out: 2, ..Options::default() };
+    for build in offered([Options::default(), lean(), two]) {
+        let values = values(&build, None);
+        let taps = if build.taps == TapCount::Five { 5 } else { 7 };
+        let expected = [1, 2048, 2048, 7, taps, build.latency.into(), 2048, 0, build.table_banks.into()];
+        let shown: Vec<_> = (0x01..=0x09).map(|tag| values[&tag]).collect();
+        assert_eq!(shown, expected);
+        let banks = [build.row_banks_in, build.row_banks_out].map(u32::from);
+        assert_eq!([values[&0x0a], values[&0x0b]], banks);
+        assert_eq!((values[&0x0c], values[&0x0d]), (1, 2), "one port for factors, two for nodes");
+        assert_eq!(values[&0x0e], 0, "the clock is the host's");
     }
-    assert_eq!(values(&Options::default(), None)[&4], 7);
-}
-
-#[test]
-fn a_board_may_lie_about_its_latency() {
-    let honest = values(&Options::default(), None);
-    let lying = values(&Options::default(), Some(BoardFault::WrongLatencyClaim));
-    assert_eq!((honest[&6], lying[&6]), (12, 13));
-    assert!(honest.keys().all(|tag| *tag == 6 || honest[tag] == lying[tag]));
-}
-
-#[test]
-fn a_board_may_claim_another_datapath() {
-    let honest = values(&Options::default(), None);
-    let lying = values(&Options::default(), Some(BoardFault::WrongDatapath));
-    assert_ne!(lying[&1], 1);
-    assert!(honest.keys().all(|tag| *tag == 1 || honest[tag] == lying[tag]));
 }

@@ -1,6 +1,6 @@
 //! COMMIT: when tables become active, and when they do not.
 
-use halfrow_mock::{BoardFault, Options, UNSTRETCHED};
+use halfrow_mock::{Options, UNSTRETCHED};
 use halfrow_protocol::message::{Bank, Commit, Hello, RefusalCode, Reply, Request, Reset, ResetLevel, Table};
 
 use crate::bench::{Bench, HELLO, Heard};
@@ -86,17 +86,6 @@ fn a_crc_that_is_not_the_tables_is_refused_with_the_table() {
     }
     assert_eq!(made(&bench.send_all(1, [1]))[0].0, 1, "everything stays as it was");
     bench.done(&Request::Commit(Commit { first_frame: 2, ..right }));
-}
-
-#[test]
-fn a_table_that_reads_back_wrong_is_not_committed() {
-    let fault = BoardFault::RowFactor { row: 0, bit: 9, hidden: false };
-    let mut bench = Bench::switched_on(&Options::default(), Some(fault));
-    bench.greet(&HELLO);
-    bench.done(&Request::Configure(configuration(1)));
-    TableSet::unstretched(1).upload(&mut bench);
-    let commit = TableSet::unstretched(1).commit(1, 0);
-    assert_eq!(bench.refused(&commit), (RefusalCode::TableCrc, 0));
 }
 
 #[test]

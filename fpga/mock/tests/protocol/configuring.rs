@@ -5,60 +5,80 @@ use halfrow_protocol::message::{Configuration, RefusalCode, Request};
 
 use crate::bench::{Bench, HELLO};
 use crate::frames::{configuration, ready};
+use crate::subject::offered;
 
-fn build() -> Options {
+/// The builds whose limits are tried.
+fn builds() -> Vec<Options> {
     let depths = vec![Depth::Eight, Depth::Twelve];
-    Options { max_width: 640, max_height: 480, least_blanking: 7, depths, ..Options::default() }
+    let small = Options { max_width: 640, max_height: 480, least_blanking: 7, depths, ..Options::default() };
+    offered([small, Options::default()])
 }
 
 /// A configuration that the build can just have.
-const FINE: Configuration =
-    Configuration { width: 640, height: 480, centre2: 1278, blanking: 7, gap_seed: u32::MAX, bits: 12 };
+fn fine(build: &Options) -> Configuration {
+    let (width, height, blanking) = (build.max_width, build.max_height, build.least_blanking);
+    Configuration { width, height, centre2: 2 * width - 2, blanking, gap_seed: u32::MAX, bits: 12 }
+}
 
-/// What the board says to these configurations.
-fn refusals(configurations: impl IntoIterator<Item = Configuration>) -> Vec<Option<(RefusalCode, u16)>> {
-    let mut bench = Bench::switched_on(&build(), None);
-    bench.greet(&HELLO);
-    configurations.into_iter().map(|wanted| bench.ask(&Request::Configure(wanted)).refusal()).collect()
+/// Tries configurations on every build, and expects the same of all.
+fn expect(expected: Option<u16>, configurations: impl Fn(&Options, Configuration) -> Vec<Configuration>) {
+    for build in builds() {
+        let mut bench = Bench::switched_on(&build, None);
+        bench.greet(&HELLO);
+        for wanted in configurations(&build, fine(&build)) {
+            let refusal = bench.ask(&Request::Configure(wanted)).refusal();
+            assert_eq!(refusal, expected.map(|field| (RefusalCode::Range, field)), "{wanted:?}");
+        }
+    }
 }
 
 #[test]
 fn values_at_their_limits_are_taken_and_the_reply_is_empty() {
-    let least = Configuration { width: 64, height: 1, centre2: 0, blanking: 7, gap_seed: 0, bits: 8 };
-    let most = Configuration { blanking: u16::MAX, ..FINE };
-    assert_eq!(refusals([least, FINE, most]), [None; 3]);
+    expect(None, |build, fine| {
+        let blanking = build.least_blanking;
+        let least = Configuration { width: 64, height: 1, centre2: 0, blanking, gap_seed: 0, bits: 8 };
+        vec![least, fine, Configuration { blanking: u16::MAX, ..fine }]
+    });
     assert_eq!(Bench::greeted().done(&Request::Configure(configuration(1))).payload, []);
 }
 
 #[test]
 fn a_width_that_is_odd_or_out_of_range_is_field_0() {
-    let wrong = [0, 1, 62, 63, 65, 639, 641, 642, 65535].map(|width| Configuration { width, ..FINE });
-    assert_eq!(refusals(wrong), [Some((RefusalCode::Range, 0)); 9]);
+    expect(Some(0), |build, fine| {
+        let most = build.max_width;
+        let wrong = [0, 1, 62, 63, 65, most - 1, most + 1, most + 2, 2 * most, 65535];
+        wrong.map(|width| Configuration { width, ..fine }).to_vec()
+    });
 }
 
 #[test]
 fn a_height_out_of_range_is_field_1() {
-    let wrong = [0, 481, 65535].map(|height| Configuration { height, ..FINE });
-    assert_eq!(refusals(wrong), [Some((RefusalCode::Range, 1)); 3]);
+    expect(Some(1), |build, fine| {
+        [0, build.max_height + 1, 65535].map(|height| Configuration { height, ..fine }).to_vec()
+    });
 }
 
 #[test]
 fn a_centre_outside_the_row_is_field_2() {
-    let wrong = [(640, 1279), (64, 127), (64, 65535)];
-    let wrong = wrong.map(|(width, centre2)| Configuration { width, centre2, ..FINE });
-    assert_eq!(refusals(wrong), [Some((RefusalCode::Range, 2)); 3]);
+    expect(Some(2), |_, fine| {
+        let wrong = [(fine.width, 2 * fine.width - 1), (64, 127), (64, 65535)];
+        wrong.map(|(width, centre2)| Configuration { width, centre2, ..fine }).to_vec()
+    });
 }
 
 #[test]
 fn too_little_blanking_is_field_3() {
-    let wrong = [0, 6].map(|blanking| Configuration { blanking, ..FINE });
-    assert_eq!(refusals(wrong), [Some((RefusalCode::Range, 3)); 2]);
+    expect(Some(3), |build, fine| {
+        (0..build.least_blanking).map(|blanking| Configuration { blanking, ..fine }).collect()
+    });
 }
 
 #[test]
 fn a_depth_that_the_build_does_not_have_is_field_5() {
-    let wrong = [0, 7, 9, 10, 11, 13, 16, 255].map(|bits| Configuration { bits, ..FINE });
-    assert_eq!(refusals(wrong), [Some((RefusalCode::Range, 5)); 8]);
+    expect(Some(5), |build, fine| {
+        let had = |bits| build.depths.iter().any(|depth| depth.bits() == bits);
+        (0..=255).filter(|&bits| !had(bits)).map(|bits| Configuration { bits, ..fine }).collect()
+    });
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Frames of the specification's samples, 64 columns wide, and boards that are ready for them.
 
-use halfrow_mock::{BoardFault, Options};
+use halfrow_mock::{BoardFault, Options, TapCount};
 use halfrow_protocol::message::{Configuration, Request, RowIn, RowOut, RowPlace};
 use halfrow_protocol::samples;
 
@@ -37,6 +37,11 @@ pub(crate) fn samples_of(row: &RowOut<'_>) -> Vec<u16> {
 /// A configuration for 12-bit rows with the centre in the middle.
 pub(crate) fn configuration(height: u16) -> Configuration {
     Configuration { width: WIDTH, height, centre2: WIDTH - 1, blanking: 0, gap_seed: 0, bits: 12 }
+}
+
+/// A build with five taps and one bank of tables.
+pub(crate) fn lean() -> Options {
+    Options { taps: TapCount::Five, latency: 11, table_banks: 1, ..Options::default() }
 }
 
 /// A board of this build that is ready for frames of `height` rows and changes no sample.

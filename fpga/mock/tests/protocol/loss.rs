@@ -1,10 +1,10 @@
 //! Section 4 of WIRE.md: what the board does with a row that is sent again.
 
-use halfrow_mock::{BoardFault, Options};
+use halfrow_mock::Options;
 use halfrow_protocol::message::RowOut;
 
 use crate::bench::{Bench, Heard, rows_of};
-use crate::frames::{Row, ready, ready_with, row, samples_of};
+use crate::frames::{Row, ready, row, samples_of};
 
 fn board() -> Bench {
     ready(&Options::default(), 4)
@@ -94,12 +94,4 @@ fn sending_a_row_again_frees_no_bank_and_blocks_none() {
     assert_eq!(rows_of(&bench.send_all(8, [0, 0])), [0, 0]);
     assert_eq!(bench.status().rows_out, 1);
     assert_eq!(rows_of(&bench.acknowledge(1)), [1]);
-}
-
-#[test]
-fn a_row_that_the_core_loses_never_comes_out_and_those_behind_it_do() {
-    let mut bench = ready_with(&Options::default(), Some(BoardFault::LostRow { row: 2 }), 4);
-    assert_eq!(rows_of(&bench.send_all(4, [0, 1, 2, 3, 2, 2])), [0, 1, 3]);
-    let status = bench.status();
-    assert_eq!((status.rows_in, status.rows_out, status.rows_unneeded), (4, 3, 2));
 }

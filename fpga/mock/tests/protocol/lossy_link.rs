@@ -6,6 +6,7 @@ use proptest::prelude::*;
 
 use crate::bench::{Bench, Heard};
 use crate::frames::{ready, row, samples_of};
+use crate::subject::{CASES, offered};
 
 const ROWS: u32 = 24;
 const HEIGHT: u16 = 6;
@@ -48,15 +49,26 @@ impl LossyHost {
     }
 }
 
+fn builds() -> Vec<Options> {
+    let pairs =
+        (2..6).flat_map(|row_banks_in| (2..6).map(move |row_banks_out| (row_banks_in, row_banks_out)));
+    offered(pairs.map(|(row_banks_in, row_banks_out)| Options {
+        row_banks_in,
+        row_banks_out,
+        ..Options::default()
+    }))
+}
+
 proptest! {
+    #![proptest_config(ProptestConfig::with_cases(CASES / 8))]
+
     #[test]
     fn every_row_comes_back_once_played(
-        row_banks_in in 2_u8..6,
-        row_banks_out in 2_u8..6,
+        build in prop::sample::select(builds()),
         losses in prop::collection::vec(any::<(u32, u32)>(), 0..60),
     ) {
-        let bench = ready(&Options { row_banks_in, row_banks_out, ..Options::default() }, HEIGHT);
-        let mut host = LossyHost { bench, credit: row_banks_in.into(), back: [false; ROWS as usize] };
+        let bench = ready(&build, HEIGHT);
+        let mut host = LossyHost { bench, credit: build.row_banks_in.into(), back: [false; ROWS as usize] };
         for (lost_out, lost_in) in losses {
             host.round(lost_out, lost_in);
         }

@@ -17,6 +17,7 @@ mod lossy_link;
 #[expect(dead_code, reason = "it was made for the tests of the board's parts")]
 #[path = "../board/support.rs"]
 mod material;
+mod mock_only;
 mod one_bank;
 mod order;
 mod playing;
@@ -25,6 +26,7 @@ mod resets;
 mod sessions;
 mod silence;
 mod status;
+mod subject;
 mod table_reads;
 mod table_writes;
 mod uploads;

@@ -4,14 +4,14 @@ use halfrow_mock::Options;
 use halfrow_protocol::message::{Bank, RefusalCode, Reply, Request, Table};
 
 use crate::bench::{Bench, HELLO};
-use crate::frames::{configuration, row, samples_of};
+use crate::frames::{configuration, lean, row, samples_of};
 use crate::golden_rows::HERMITE;
 use crate::material::{GOLDEN_FACTOR, hermite, noise_row};
 use crate::uploads::{TableSet, span, write};
 
 /// A configured board with one bank of tables.
 fn one_bank(height: u16) -> Bench {
-    let mut bench = Bench::switched_on(&Options { table_banks: 1, ..Options::default() }, None);
+    let mut bench = Bench::switched_on(&lean(), None);
     bench.greet(&HELLO);
     bench.done(&Request::Configure(configuration(height)));
     bench
@@ -27,12 +27,12 @@ fn ready(height: u16) -> Bench {
 
 #[test]
 fn the_board_says_how_many_banks_it_has() {
-    for table_banks in [1, 2] {
-        let mut bench = Bench::switched_on(&Options { table_banks, ..Options::default() }, None);
+    for build in [lean(), Options::default()] {
+        let mut bench = Bench::switched_on(&build, None);
         bench.greet(&HELLO);
         let answer = bench.done(&Request::Capabilities);
         let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
-        assert_eq!(capabilities.table_banks, table_banks);
+        assert_eq!(capabilities.table_banks, build.table_banks);
     }
 }
 

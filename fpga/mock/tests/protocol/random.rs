@@ -9,7 +9,8 @@ use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
 use proptest::prelude::*;
 
 use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
-use crate::frames::{make_ready, ready, row, samples_of};
+use crate::frames::{lean, make_ready, ready, row, samples_of};
+use crate::subject::{CASES, offered};
 
 const HEIGHT: u16 = 2;
 
@@ -47,11 +48,19 @@ fn field() -> impl Strategy<Value = u32> + Clone {
 }
 
 fn build() -> impl Strategy<Value = Options> {
-    (2_u8..5, 2_u8..5, 1_u8..3, any::<bool>()).prop_map(|(row_banks_in, row_banks_out, table_banks, five)| {
-        let taps = if five { TapCount::Five } else { TapCount::Seven };
-        let depths = vec![Depth::Eight, Depth::Twelve];
-        Options { row_banks_in, row_banks_out, table_banks, taps, depths, ..Options::default() }
-    })
+    let mut builds = vec![lean()];
+    for banks in 0..16 {
+        for (taps, latency) in [(TapCount::Five, 11), (TapCount::Seven, 12)] {
+            for table_banks in [1, 2] {
+                let (row_banks_in, row_banks_out) = (2 + banks % 4, 2 + banks / 4);
+                let build =
+                    Options { row_banks_in, row_banks_out, table_banks, taps, latency, ..Options::default() };
+                builds
+                    .extend([build.clone(), Options { depths: vec![Depth::Eight, Depth::Twelve], ..build }]);
+            }
+        }
+    }
+    prop::sample::select(offered(builds))
 }
 
 /// The payload of a request of this kind, made of four numbers.
@@ -193,7 +202,7 @@ impl Observer {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(CASES))]
 
     #[test]
     fn whatever_comes_the_board_keeps_its_promises_and_answers_the_next_hello(

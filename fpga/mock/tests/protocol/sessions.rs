@@ -6,6 +6,7 @@ use halfrow_protocol::{Header, Kind};
 
 use crate::bench::{Bench, HELLO, rows_of, wire};
 use crate::frames::{ready, row};
+use crate::subject::offered;
 
 const OTHER: Hello = Hello { nonce: 0x0bad_cafe, host: 0x0000_0b0b, take_over: false, ..HELLO };
 
@@ -25,8 +26,13 @@ fn hello_is_answered_with_nonce_magic_version_and_session() {
 
 #[test]
 fn the_reply_to_hello_gives_credit_for_the_input_banks() {
-    let mut bench = Bench::switched_on(&Options { row_banks_in: 7, ..Options::default() }, None);
-    assert_eq!(bench.done(&Request::Hello(HELLO)).header.window, 7);
+    for row_banks_in in [2, 4, 7] {
+        let build = Options { row_banks_in, row_banks_out: row_banks_in.min(4), ..Options::default() };
+        for build in offered([build]) {
+            let mut bench = Bench::switched_on(&build, None);
+            assert_eq!(bench.done(&Request::Hello(HELLO)).header.window, row_banks_in.into());
+        }
+    }
 }
 
 #[test]

@@ -1,10 +1,10 @@
 //! TABLE_READ and TABLE_CRC: what comes back, through which port, and when.
 
-use halfrow_mock::{BoardFault, Node, Options, Weight};
+use halfrow_mock::{Node, Options};
 use halfrow_protocol::message::{Bank, RefusalCode, Request, Table};
 
-use crate::bench::{Bench, HELLO};
-use crate::frames::{ready, ready_with};
+use crate::bench::Bench;
+use crate::frames::ready;
 use crate::material::{crc_of_words, factors, hermite, keys};
 use crate::uploads::{TableSet, span, write};
 
@@ -107,31 +107,4 @@ fn nothing_is_read_while_a_row_is_inside() {
     for request in &requests {
         bench.done(request);
     }
-}
-
-#[test]
-fn a_read_shows_what_the_datapath_gets_not_what_was_written() {
-    let flipped = BoardFault::KernelWord { node: 16, weight: Weight::G4, bit: 12, hidden: false };
-    let mut bench = with_hermite(flipped);
-    let payload = bench.done(&Request::TableRead(span(Table::Kernel, Bank::Shadow, 0, 16, 1))).payload;
-    // Hermite at x = 1/2: g4 = 5/32, 2560 in units of 2^-14; with bit 12 it is 6656.
-    assert_eq!(payload[11..13], 6656_u16.to_le_bytes());
-}
-
-/// A board with this fault and Hermite's kernel in its shadow bank.
-fn with_hermite(fault: BoardFault) -> Bench {
-    let mut bench = Bench::switched_on(&Options::default(), Some(fault));
-    bench.greet(&HELLO);
-    TableSet::unstretched(1).upload(&mut bench);
-    bench
-}
-
-#[test]
-fn a_hidden_fault_does_not_show_in_a_read() {
-    let hidden = BoardFault::RowFactor { row: 0, bit: 3, hidden: true };
-    let mut bench = ready_with(&Options::default(), Some(hidden), 1);
-    assert_eq!(
-        bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 1)),
-        crc32fast::hash(&(1_u32 << 24).to_le_bytes())
-    );
 }

@@ -1,10 +1,11 @@
 //! TABLE_WRITE: what may be written, and when.
 
-use halfrow_mock::{Options, TapCount};
+use halfrow_mock::Options;
 use halfrow_protocol::message::{Bank, Entries, RefusalCode, Request, Span, Table};
 
 use crate::bench::{Bench, HELLO};
-use crate::frames::ready;
+use crate::frames::{lean, ready};
+use crate::subject::offered;
 use crate::uploads::{span, write};
 
 fn factors(values: &[u32]) -> Vec<u8> {
@@ -54,14 +55,19 @@ fn a_factor_out_of_range_is_named_by_its_index_and_nothing_is_written() {
 
 #[test]
 fn spans_end_before_max_height_and_node_65() {
-    let mut bench = Bench::switched_on(&Options { max_height: 100, ..Options::default() }, None);
-    bench.greet(&HELLO);
-    bench.done(&write(Table::Steps, 99, &factors(&[1])));
-    bench.done(&write(Table::Kernel, 64, &node([0; 5])));
-    for first in [99, 100, 0xffff] {
-        let refusal = bench.refused(&write(Table::Steps, first, &factors(&[1, 1])));
-        assert_eq!(refusal, (RefusalCode::Range, first));
+    for max_height in [100, 2048] {
+        for build in offered([Options { max_height, ..Options::default() }]) {
+            let mut bench = Bench::switched_on(&build, None);
+            bench.greet(&HELLO);
+            bench.done(&write(Table::Steps, max_height - 1, &factors(&[1])));
+            for first in [max_height - 1, max_height, 0xffff] {
+                let refusal = bench.refused(&write(Table::Steps, first, &factors(&[1, 1])));
+                assert_eq!(refusal, (RefusalCode::Range, first));
+            }
+        }
     }
+    let mut bench = Bench::greeted();
+    bench.done(&write(Table::Kernel, 64, &node([0; 5])));
     for first in [64, 65, 0xffff] {
         let refusal = bench.refused(&write(Table::Kernel, first, &[0; 20]));
         assert_eq!(refusal, (RefusalCode::Range, first));
@@ -90,7 +96,7 @@ fn the_active_bank_is_not_written() {
 
 #[test]
 fn five_taps_refuse_a_node_that_needs_seven_and_name_it() {
-    let mut bench = Bench::switched_on(&Options { taps: TapCount::Five, ..Options::default() }, None);
+    let mut bench = Bench::switched_on(&lean(), None);
     bench.greet(&HELLO);
     let five = node([0, -1, 2, -3, 0]);
     bench.done(&write(Table::Kernel, 10, &five));

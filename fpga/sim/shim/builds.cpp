@@ -1,12 +1,14 @@
-// The designs for Rust: made, clocked, dropped. Each call sets all inputs, returns what a register at the outputs would
-// sample at the clock edge, and then lets the edge happen.
+// The core alone, and boards of other builds than the one that ships.
 
+#include "BridgeFour.h"
+#include "BridgeIn.h"
+#include "BridgeLean.h"
 #include "Core5.h"
 #include "Core7.h"
 #include "CoreShort.h"
-#include "design.h"
+#include "bridge.h"
 
-// The same structures stand in src/ffi.rs.
+// The same structures stand in src/ffi/core.rs.
 struct CoreInputs {
     bool rst, enable;
     uint8_t depth;
@@ -63,3 +65,6 @@ void clock_core(Design<Model>& design, const CoreInputs& in, CoreOutputs& out) {
 DESIGN(core7, Core7, CoreInputs, CoreOutputs, clock_core)
 DESIGN(core5, Core5, CoreInputs, CoreOutputs, clock_core)
 DESIGN(core_short, CoreShort, CoreInputs, CoreOutputs, clock_core)
+DESIGN(bridge_four, BridgeFour, BridgeInputs, BridgeOutputs, clock_bridge)
+DESIGN(bridge_in, BridgeIn, BridgeInputs, BridgeOutputs, clock_bridge)
+DESIGN(bridge_lean, BridgeLean, BridgeInputs, BridgeOutputs, clock_bridge)

@@ -1,0 +1,184 @@
+//! A simulated board at the end of a wire.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use halfrow_mock::Endpoint;
+
+use crate::byte_port::BytePort;
+use crate::ffi;
+use crate::ft2232h::Ft2232h;
+use crate::port::{Port, Step};
+use crate::uart::Uart;
+
+/// Steps without a byte taken after which a design that is not at rest never will be. The longest that it may work of
+/// itself is playing the rows of all its banks with the most blanking, a hundred thousand clocks a row.
+const PATIENCE: u32 = 1_000_000;
+
+/// The 10 s rule is the only thing that time is for.
+const MOST_MILLISECONDS: u64 = 11_000;
+
+/// The way bytes take into the board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Front {
+    /// None: the bridge's own byte ports.
+    Bytes,
+    /// A UART with RTS and CTS, 8 clocks a bit.
+    Uart,
+    /// An FT2232H as asynchronous FIFO.
+    Fifo,
+}
+
+/// A build of the board with byte ports.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Build {
+    /// The one that ships: seven taps, two banks of everything.
+    Shipped,
+    /// Four row banks each way.
+    #[cfg(feature = "builds")]
+    FourRowBanks,
+    /// Four row banks in, two out.
+    #[cfg(feature = "builds")]
+    FourRowBanksIn,
+    /// Five taps and one bank of tables, with four row banks each way.
+    #[cfg(feature = "builds")]
+    FiveTapsOneBank,
+}
+
+/// Why a simulated board will not answer any more.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Failure {
+    /// It works for ever.
+    #[error(
+        "the design was not at rest {PATIENCE} clocks behind the last byte that it took; look at its waveform with trace=FILE"
+    )]
+    Hung,
+    /// It does what a chip at its pins does not allow.
+    #[error("the design breaks the FT2232H's rules at {} ns: {rule}", picoseconds / 1000)]
+    Rule {
+        /// What is broken.
+        rule: &'static str,
+        /// When, in simulated time.
+        picoseconds: u64,
+    },
+}
+
+/// A waveform that cannot be written.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the waveform {0} cannot be written; choose another place with trace=FILE")]
+pub struct TraceError(PathBuf);
+
+/// The Verilog under simulation. It takes no time of its own, as the mock does not: when bytes arrive it is clocked until it is at
+/// rest.
+pub struct Board {
+    machine: Box<dyn Machine>,
+    outgoing: Vec<u8>,
+    /// Milliseconds that the design was told of.
+    milliseconds: u64,
+    failure: Option<Failure>,
+}
+
+impl Board {
+    /// The build that ships behind `front`, switched on and reset. `seed` draws what its memories hold then.
+    #[must_use]
+    pub fn new(front: Front, seed: u32) -> Self {
+        match front {
+            Front::Bytes => Self::of_build(Build::Shipped, seed),
+            Front::Uart => Self::with(Uart::new(seed)),
+            Front::Fifo => Self::with(Ft2232h::new(seed)),
+        }
+    }
+
+    /// A build with byte ports, switched on and reset.
+    #[must_use]
+    pub fn of_build(build: Build, seed: u32) -> Self {
+        let functions = match build {
+            Build::Shipped => &ffi::halfrow_bridge,
+            #[cfg(feature = "builds")]
+            Build::FourRowBanks => &ffi::halfrow_bridge_four,
+            #[cfg(feature = "builds")]
+            Build::FourRowBanksIn => &ffi::halfrow_bridge_in,
+            #[cfg(feature = "builds")]
+            Build::FiveTapsOneBank => &ffi::halfrow_bridge_lean,
+        };
+        Self::with(BytePort::new(functions, seed))
+    }
+
+    fn with<P: Port + 'static>(mut port: P) -> Self {
+        port.reset();
+        Self { machine: Box::new(Clocked(port)), outgoing: Vec::new(), milliseconds: 0, failure: None }
+    }
+
+    /// Writes a waveform of the whole design, from now on, to `path` in VCD.
+    ///
+    /// # Errors
+    /// [`TraceError`] if the file cannot be opened.
+    pub fn trace(&mut self, path: &Path) -> Result<(), TraceError> {
+        if self.machine.trace(path) { Ok(()) } else { Err(TraceError(path.to_owned())) }
+    }
+
+    /// Milliseconds that have passed since the design was told of any.
+    fn pass(&mut self, now: Duration) -> u64 {
+        let now = u64::try_from(now.as_millis()).unwrap_or(u64::MAX);
+        let passed = now.saturating_sub(self.milliseconds);
+        self.milliseconds = self.milliseconds.max(now);
+        passed.min(MOST_MILLISECONDS)
+    }
+}
+
+impl Endpoint for Board {
+    type Failure = Failure;
+
+    fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), Failure> {
+        if let Some(failure) = &self.failure {
+            return Err(failure.clone());
+        }
+        let milliseconds = self.pass(now);
+        let done = self.machine.run(milliseconds, bytes, &mut self.outgoing);
+        self.failure = done.clone().err();
+        done
+    }
+
+    fn outgoing(&mut self) -> &mut Vec<u8> {
+        &mut self.outgoing
+    }
+}
+
+/// A design and the far end of its link, whichever they are.
+trait Machine: Send {
+    /// Lets milliseconds pass, then hands over bytes, then clocks the design until it is at rest. Appends what it says.
+    fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure>;
+
+    fn trace(&mut self, path: &Path) -> bool;
+}
+
+struct Clocked<P>(P);
+
+impl<P: Port> Machine for Clocked<P> {
+    fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure> {
+        for _ in 0..milliseconds {
+            let Step { sent, .. } = self.0.step(None, true)?;
+            said.extend(sent);
+        }
+        let mut bytes = bytes.iter().copied().peekable();
+        let (mut waited, mut rested) = (0, 0);
+        while rested < P::REST {
+            let Step { taken, sent, quiet } = self.0.step(bytes.peek().copied(), false)?;
+            said.extend(sent);
+            rested = if quiet { rested + 1 } else { 0 };
+            waited += 1;
+            if taken {
+                bytes.next();
+                waited = 0;
+            }
+            if waited == PATIENCE {
+                return Err(Failure::Hung);
+            }
+        }
+        Ok(())
+    }
+
+    fn trace(&mut self, path: &Path) -> bool {
+        self.0.trace(path)
+    }
+}

@@ -1,0 +1,33 @@
+//! The board's Verilog under simulation, as a link.
+
+use std::path::Path;
+
+use halfrow_mock::WireSetup;
+use halfrow_sim::{Board, Front};
+
+use super::open::{OpenError, pace, wrong_options};
+use super::{Link, WireLink};
+use crate::target::Target;
+
+const SIMULATED: &str = "the simulated board";
+
+/// What memories and registers hold when the board is switched on is drawn by this number.
+const SEED: u32 = 1;
+
+pub(super) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+    let front = match target.address.as_deref() {
+        None => Front::Bytes,
+        Some("uart") => Front::Uart,
+        Some("fifo") => Front::Fifo,
+        Some(other) => return Err(OpenError::UnknownFront(other.to_owned())),
+    };
+    let (paced, mut options) = pace(target)?;
+    let trace = options.iter().position(|(key, _)| *key == "trace").map(|place| options.remove(place).1);
+    let setup =
+        WireSetup::from_options(&options).map_err(|source| wrong_options(SIMULATED, target, source))?;
+    let mut board = Board::new(front, SEED);
+    if let Some(file) = trace {
+        board.trace(Path::new(file))?;
+    }
+    Ok(Box::new(WireLink::new(setup.connect(board), SIMULATED, paced)))
+}
