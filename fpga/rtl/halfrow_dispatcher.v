@@ -63,7 +63,7 @@ module halfrow_dispatcher #(
     input  wire [3:0]          row_refusal,        // with row_done: a refusal's code, or 0
     output reg                 acknowledge,        // pulse, before the packet is carried out
     output wire [31:0]         acknowledge_window,
-    output wire                drop_rows,          // pulse: drop all rows and wait for drop_next_row
+    output reg                 drop_rows,          // pulse: drop all rows and wait for drop_next_row
     output wire [31:0]         drop_next_row,
     output wire                new_session,        // with drop_rows
     output wire                hold,               // no further row starts: a request is carried out
@@ -141,7 +141,8 @@ module halfrow_dispatcher #(
     wire [12:0] read_length;
 
     always @(posedge clk)
-        if (state == LOAD && packet_address[3:0] != 4'd0 && packet_address[3:1] != 3'd7) fields <= {packet_byte, fields[103:8]};
+        if (opens) fields <= 104'd0;   // a session's first row is row 0
+        else if (state == LOAD && packet_address[3:0] != 4'd0 && packet_address[3:1] != 3'd7) fields <= {packet_byte, fields[103:8]};
 
     halfrow_request request (
         .clk(clk), .kind(packet_kind), .length(packet_length), .fields(fields[55:0]), .unknown(unknown),
@@ -166,8 +167,8 @@ module halfrow_dispatcher #(
     // RESET
     wire resets = accepted && is_reset;
     wire wipe   = resets && level == TABLES_TOO;
-    assign drop_rows     = opens || resets;
-    assign drop_next_row = is_hello ? 32'd0 : fields[39:8];
+    always @(posedge clk) drop_rows <= (opens || resets) && !rst;
+    assign drop_next_row = fields[39:8];
     assign new_session   = is_hello;
 
     // CONFIGURE

@@ -23,21 +23,21 @@ module halfrow_session (
 
     reg [ 7:0] number;
     reg [31:0] holder_nonce, holder_host;
-    reg        same_nonce, same_host;
+    wire       same_nonce, same_host;
     reg [ 6:0] milliseconds;
 
     assign session  = session_open ? number : 8'd0;
     assign repeated = session_open && same_nonce && same_host;
     assign held     = session_open && !same_host && tenths_left != 7'd0;
 
-    always @(posedge clk) begin
-        same_nonce <= nonce == holder_nonce;
-        same_host  <= host == holder_host;
+    halfrow_equal #(.WIDTH(32)) nonces (.clk(clk), .a(nonce), .b(holder_nonce), .equal(same_nonce));
+    halfrow_equal #(.WIDTH(32)) hosts (.clk(clk), .a(host), .b(holder_host), .equal(same_host));
+
+    always @(posedge clk)
         if (open) begin
             holder_nonce <= nonce;
             holder_host  <= host;
         end
-    end
 
     always @(posedge clk) begin
         if (rst) begin

@@ -117,8 +117,14 @@ module halfrow_tables #(
         else if (byte_valid) crc <= crc_next;
     end
 
-    wire crc_right = (walk == 2'd0 ? steps_crc : kernel_crc) == ~crc;
-    wire commit    = committing && walked && crc_right && walk == 2'd2;
+    wire steps_right, kernel_right;
+    halfrow_equal #(.WIDTH(32)) steps_equal (.clk(clk), .a(~crc), .b(steps_crc), .equal(steps_right));
+    halfrow_equal #(.WIDTH(32)) kernel_equal (.clk(clk), .a(~crc), .b(kernel_crc), .equal(kernel_right));
+
+    reg  compared;                // a commit's walk is over and its CRC was looked at
+    wire crc_right = walk == 2'd0 ? steps_right : kernel_right;
+    wire commit    = committing && compared && crc_right && walk == 2'd2;
+    always @(posedge clk) compared <= walked;
 
     halfrow_generations #(.TABLE_BANKS(TABLE_BANKS)) generations (
         .clk(clk), .wipe(rst || wipe), .forget(rst || forget), .commit(commit), .new_generation(new_generation),
@@ -185,7 +191,7 @@ module halfrow_tables #(
             WRITING: if (walked) state <= FINISH;
             READING: if (walked) state <= request == TABLE_CRC ? FINISH : IDLE;
             COMMITTING:
-            if (walked) begin
+            if (compared) begin
                 walk       <= walk + 2'd1;
                 begin_walk <= crc_right && walk != 2'd2;
                 if (!crc_right) {refusal, detail} <= {TABLE_CRC_WRONG, 15'd0, walk != 2'd0};
