@@ -1,0 +1,83 @@
+#!/usr/bin/env python3
+"""Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25, prints what each takes in percent of it and how
+much logic stands between its registers, and fails where budget.ini is exceeded.
+    resources.py WORK [BUILD ...]     WORK: a directory for logs and netlists; BUILD: a section's name"""
+
+import concurrent.futures
+import configparser
+import json
+import pathlib
+import subprocess
+import sys
+
+import netlist
+
+CHECKS = pathlib.Path(__file__).resolve().parent
+RTL = CHECKS.parent / "rtl"
+LX25 = {"luts": 15032, "registers": 30064, "block_rams": 52, "dsps": 38}
+
+
+def synthesise(work, name, build):
+    """The flat netlist of a build, as yosys writes it in JSON."""
+    stem = work / "".join(c if c.isalnum() else "_" for c in name)
+    top = build["top"]
+    source = RTL / f"{top}.v"
+    if not source.is_file():
+        sys.exit(f"resources: {source.relative_to(CHECKS.parent.parent)} is missing")
+    parameters = [f"-chparam {key} {value}" for key, value in (word.split("=") for word in build["parameters"].split())]
+    script = (f"read_verilog {source}; hierarchy -libdir {RTL} -top {top} {' '.join(parameters)}; "
+              f"synth_xilinx -family xc6s -flatten -noiopad -noclkbuf -nosrl; rename -top top; write_json {stem}.json")
+    done = subprocess.run(["yosys", "-q", "-l", f"{stem}.log", "-p", script], capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(f"resources: yosys failed on {name}, see {stem}.log\n{done.stderr[-2000:]}")
+    return json.loads(pathlib.Path(f"{stem}.json").read_text())["modules"]["top"]
+
+
+def measure(module):
+    counts = netlist.resources(module)
+    depth = netlist.Depth(module)
+    shares = {name: 100 * counts[name] / LX25[name] for name in LX25}
+    counts["mean"] = sum(shares.values()) / len(shares)
+    counts["arithmetic"] = depth.arithmetic
+    counts["carry_bits"] = depth.carry_bits
+    counts["lut_levels"] = depth.lut_levels
+    return counts, shares, depth
+
+
+def excesses(build, counts, shares):
+    for name in (*LX25, "mean", "arithmetic", "carry_bits", "lut_levels"):
+        if name not in build:
+            continue
+        limit = build[name]
+        value = shares.get(name, counts[name]) if limit.endswith("%") else counts[name]
+        # A share has to stay below its limit, a count may reach it.
+        if value > float(limit.rstrip("%")) or (name == "mean" and value >= float(limit.rstrip("%"))):
+            yield f"{name} {value:g}, allowed {limit}"
+
+
+def main():
+    work = pathlib.Path(sys.argv[1])
+    work.mkdir(parents=True, exist_ok=True)
+    budget = configparser.ConfigParser(interpolation=None)
+    budget.read_string((CHECKS / "budget.ini").read_text())
+    names = sys.argv[2:] or budget.sections()
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        modules = list(pool.map(lambda name: synthesise(work, name, budget[name]), names))
+    print("XC6SLX25: 15,032 LUTs, 30,064 registers, 52 block RAMs, 38 DSP48A1. yosys gives no slices.\n")
+    print(f"{'':28} {'LUTs':>13} {'registers':>13} {'block RAM':>13} {'no 9K':>6} {'DSP48A1':>11} {'mean':>6}"
+          f" {'carry bits':>10} {'LUT levels':>10}")
+    exceeded = []
+    for name, module in zip(names, modules):
+        counts, shares, depth = measure(module)
+        cells = " ".join(f"{counts[key]:6g} {shares[key]:4.1f} %" for key in ("luts", "registers", "block_rams"))
+        print(f"{name:28} {cells} {counts['whole_rams']:6} {counts['dsps']:4} {shares['dsps']:4.1f} %"
+              f" {counts['mean']:4.1f} % {depth.carry_bits:9} {depth.lut_levels:10}")
+        exceeded += [f"{name}: {excess}" for excess in excesses(budget[name], counts, shares)]
+        exceeded += [f"{name}: {path}" for path in depth.offences(int(budget[name]["arithmetic"]),
+                                                                 int(budget[name]["lut_levels"]))]
+    if exceeded:
+        sys.exit("\nover the budget:\n  " + "\n  ".join(exceeded))
+
+
+if __name__ == "__main__":
+    main()
