@@ -91,6 +91,26 @@ module halfrow_dispatcher_bench;
         end
     endtask
 
+    task silence;
+        begin
+            milliseconds(150);
+            hello(8, OTHER, 1, 1, 0);
+            refused(HELLO, HELD, 99);
+            hello(8, HOST, 2, 2, 0);
+            hello(8, OTHER, 1, 1, 0);
+            refused(HELLO, HELD, 100);
+            milliseconds(9999);
+            hello(8, OTHER, 1, 1, 0);
+            refused(HELLO, HELD, 1);
+            give(ROW_ACK, 0, session);
+            milliseconds(9999);
+            give(ROW_ACK, 0, session + 1);
+            milliseconds(1);
+            hello(8, OTHER, 1, 1, 0);
+            replied(HELLO, 22);
+        end
+    endtask
+
     task sessions;
         begin
             what = "sessions";
@@ -111,21 +131,8 @@ module halfrow_dispatcher_bench;
             refused(HELLO, VERSION_WRONG, 1);
             hello(7, HOST, 0, 0, 0);
             refused(HELLO, VERSION_WRONG, 1);
-            milliseconds(150);
-            hello(8, OTHER, 1, 1, 0);
-            refused(HELLO, HELD, 99);
-            hello(8, HOST, 2, 2, 0);
-            hello(8, OTHER, 1, 1, 0);
-            refused(HELLO, HELD, 100);
-            milliseconds(9999);
-            hello(8, OTHER, 1, 1, 0);
-            refused(HELLO, HELD, 1);
-            give(ROW_ACK, 0, session);
-            milliseconds(9999);
-            give(ROW_ACK, 0, session + 1);
-            milliseconds(1);
-            hello(8, OTHER, 1, 1, 0);
-            replied(HELLO, 22);
+            if (stall == 0) silence;
+            else hello(8, OTHER, 1, 1, 1);
             hello(9, HOST, 1, 1, 0);
             refused(HELLO, HELD, 100);
             hello(9, HOST, 1, 1, 64);
