@@ -14,12 +14,15 @@ module halfrow_request (
     localparam [7:0] HELLO = 8'h00, CAPABILITIES = 8'h01, STATUS = 8'h02, RESET = 8'h03, ECHO = 8'h04, TABLE_WRITE = 8'h10,
                      TABLE_READ = 8'h11, TABLE_CRC = 8'h12, COMMIT = 8'h13, CONFIGURE = 8'h18, ROW_IN = 8'h20, ROW_ACK = 8'h22;
 
+    localparam [15:0] SPAN = 16'd7;   // bytes
+
     wire [ 7:0] first_byte  = fields[7:0];
     wire        span_kernel = fields[0];
     wire [15:0] count       = fields[55:40];
     reg  [ 3:0] least;               // bytes
     reg         short, meaningless, count_too_large;
-    reg  [13:0] span_length;         // with its entries; 0 to 1023 of them
+    reg  [13:0] entries_length;      // bytes of up to 1023 entries
+    reg  [15:0] behind_span;         // bytes
 
     always @* begin
         case (kind)
@@ -37,10 +40,12 @@ module halfrow_request (
         meaningless     <= (kind == RESET && first_byte > 8'd2)
                         || (kind[7:2] == TABLE_WRITE[7:2] && kind != COMMIT && (fields[7:1] != 7'd0 || fields[15:9] != 7'd0));
         count_too_large <= count[15:10] != 6'd0;
-        span_length     <= {1'b0, span_kernel ? count[9:0] : 10'd0, 3'd0} + {3'd0, count[9:0], 1'b0}
-                         + (span_kernel ? 14'd7 : {3'd0, count[9:0], 1'b0} + 14'd7);
-        malformed       <= short || meaningless || (kind == TABLE_WRITE && (count_too_large || span_length > length[13:0]));
-        read_length     <= span_length[12:0];
+        entries_length  <= (span_kernel ? {1'b0, count[9:0], 3'd0} : {2'd0, count[9:0], 2'd0})
+                         + (span_kernel ? {3'd0, count[9:0], 1'b0} : 14'd0);
+        behind_span     <= length - SPAN;
+        malformed       <= short || meaningless
+                        || (kind == TABLE_WRITE && (count_too_large || {2'd0, entries_length} > behind_span));
+        read_length     <= entries_length[12:0] + SPAN[12:0];
         case (kind)
             HELLO, CAPABILITIES, STATUS, RESET, ECHO, TABLE_WRITE, TABLE_READ, TABLE_CRC, COMMIT, CONFIGURE, ROW_IN, ROW_ACK:
             unknown <= 1'b0;
@@ -48,7 +53,7 @@ module halfrow_request (
         endcase
     end
 
-    wire unused = &{1'b0, length[15:14], fields[39:16], fields[8], span_length[13]};
+    wire unused = &{1'b0, fields[39:16], fields[8]};
 endmodule
 
 `default_nettype wire

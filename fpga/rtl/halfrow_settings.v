@@ -35,7 +35,7 @@ module halfrow_settings #(
     wire [31:0] new_gap_seed = wanted[95:64];
     wire [ 7:0] new_bits     = wanted[103:96];
 
-    wire [16:0] least_width2   = {1'b0, new_centre2} + 17'd2;
+    reg  [16:0] least_width2;
     wire        bits_wrong     = new_bits != 8'd8 && new_bits != 8'd10 && new_bits != 8'd12;
     wire        width_wrong    = new_width[0] || {16'd0, new_width} < LEAST_WIDTH || {16'd0, new_width} > MAX_WIDTH;
     wire        height_wrong   = new_height == 16'd0 || {16'd0, new_height} > MAX_HEIGHT;
@@ -45,6 +45,7 @@ module halfrow_settings #(
     wire        unused         = &{1'b0, above_blanking[15:0]};
 
     always @(posedge clk) begin
+        least_width2 <= {1'b0, new_centre2} + 17'd2;
         out_of_range <= bits_wrong || width_wrong || height_wrong || centre_wrong || blanking_wrong;
         wrong_field  <= bits_wrong ? 3'd5 : width_wrong ? 3'd0 : height_wrong ? 3'd1 : centre_wrong ? 3'd2 : 3'd3;
     end

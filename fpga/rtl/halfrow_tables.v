@@ -73,8 +73,9 @@ module halfrow_tables #(
     wire [ 7:0] new_generation = fields[87:80];
 
     reg past_end, no_such_port, too_long;
-    wire [16:0] span_end = {1'b0, span_first} + {1'b0, span_count};
+    reg [16:0] span_end;
     always @(posedge clk) begin
+        span_end     <= {1'b0, span_first} + {1'b0, span_count};
         past_end     <= span_end > {5'd0, span_kernel ? NODES : STEPS};
         no_such_port <= span_kernel ? span_port[7:1] != 7'd0 : span_port != 8'd0;
         too_long     <= span_count > MOST_STEPS_OF_A_READ;   // a kernel always fits
