@@ -12,6 +12,8 @@ use crate::program::{Ended, halfrow};
 pub enum On {
     /// Every kind.
     AnyBoard,
+    /// Those behind the wire in this process, which options make slow or spoil: the mock and the simulated Verilog.
+    OwnWire,
     /// The mock alone: it can be built and broken by options.
     MockOnly,
 }
@@ -25,7 +27,7 @@ pub struct Scenario {
     pub on: On,
     /// What is appended to the board's target, as in `,fault=late`.
     pub options: &'static str,
-    /// Further arguments of `verify`.
+    /// Further arguments of `verify`. Without a width it is the paper's system, which a simulated board runs smaller.
     pub arguments: &'static [&'static str],
     /// `PASS`, `FAIL` or `ERROR`; null, which is empty here, when the call itself is refused.
     pub verdict: &'static str,
@@ -57,11 +59,28 @@ impl fmt::Display for Surprise {
     }
 }
 
+/// The paper's lens on fewer pixels.
+const SMALLER: &[&str] = &["--width", "128", "--height", "72", "--radius", "73.78"];
+
+/// The kind of board that a target names.
+fn kind(board: &str) -> &str {
+    board.split([':', ',']).next().unwrap_or(board)
+}
+
 impl Scenario {
     /// Whether it makes sense on `board`, a target.
     #[must_use]
     pub fn suits(&self, board: &str) -> bool {
-        self.on == On::AnyBoard || board.split([':', ',']).next() == Some("mock")
+        match self.on {
+            On::AnyBoard => true,
+            On::OwnWire => ["mock", "sim"].contains(&kind(board)),
+            On::MockOnly => kind(board) == "mock",
+        }
+    }
+
+    /// The same scenario on other boards.
+    pub(crate) const fn on(self, on: On) -> Self {
+        Self { on, ..self }
     }
 
     /// Runs it on `board`, a target, and returns the report as JSON.
@@ -70,9 +89,10 @@ impl Scenario {
     /// [`Surprise`] when it comes to anything else than it should.
     pub fn run(&self, board: &str) -> Result<Value, Box<Surprise>> {
         let target = format!("{board}{}", self.options);
-        let ended = halfrow(
-            ["verify", "--json", "--board", &target].into_iter().chain(self.arguments.iter().copied()),
-        );
+        let slow = kind(board) == "sim" && !self.arguments.contains(&"--width");
+        let smaller = if slow { SMALLER } else { &[] };
+        let arguments = self.arguments.iter().chain(smaller).copied();
+        let ended = halfrow(["verify", "--json", "--board", &target].into_iter().chain(arguments));
         let said = ended.json();
         let as_expected = ended.code == Some(self.exit_code)
             && said["exit_code"] == self.exit_code

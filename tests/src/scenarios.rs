@@ -33,6 +33,7 @@ const fn expect(
     arguments: &'static [&'static str],
     sentence: &'static str,
 ) -> Scenario {
+    // Options build a board, unless the scenario says otherwise.
     let on = if options.is_empty() { On::AnyBoard } else { On::MockOnly };
     Scenario { name, on, options, arguments, verdict, exit_code, sentence }
 }

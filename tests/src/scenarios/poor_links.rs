@@ -1,7 +1,7 @@
 //! Poor links: what can be repaired is, and the rest is an ERROR. A bad cable is never a FAIL.
 
-use super::{expect, passes};
-use crate::scenario::Scenario;
+use super::expect;
+use crate::scenario::{On, Scenario};
 
 /// Links that lose or spoil something, and not too much.
 pub const REPAIRED_LINKS: &[Scenario] = &[
@@ -62,6 +62,10 @@ pub const HOPELESS_LINKS: &[Scenario] = &[
 
 const SMALL: &[&str] = &["--width", "128", "--height", "16"];
 
+const fn passes(name: &'static str, options: &'static str, arguments: &'static [&'static str]) -> Scenario {
+    super::passes(name, options, arguments).on(On::OwnWire)
+}
+
 const fn stops(name: &'static str, options: &'static str, sentence: &'static str) -> Scenario {
-    expect("ERROR", 3, name, options, SMALL, sentence)
+    expect("ERROR", 3, name, options, SMALL, sentence).on(On::OwnWire)
 }

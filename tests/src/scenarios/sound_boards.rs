@@ -1,7 +1,7 @@
 //! Sound boards: every build, kernel, depth, phase and size passes.
 
 use super::passes;
-use crate::scenario::Scenario;
+use crate::scenario::{On, Scenario};
 
 /// Boards in which nothing is wrong, and links that only take their time.
 pub const SOUND_BOARDS: &[Scenario] = &[
@@ -34,9 +34,9 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("many banks", ",row-banks-in=255,row-banks-out=255", &[W, "128", H, "16"]),
     passes("more banks in than out", ",row-banks-in=16,row-banks-out=2", &[W, "128", H, "16"]),
     passes("more banks out than in", ",row-banks-in=2,row-banks-out=16", &[W, "128", H, "16"]),
-    passes("a serial line", ",speed=11520", &[W, "128", H, "16"]),
-    passes("a distant board", ",speed=1200000,delay=0.05", &[W, "128", H, "16"]),
-    passes("a pipe without a buffer", ",buffer=0,speed=100000", &[W, "128", H, "16"]),
+    passes("a serial line", ",speed=11520", &[W, "128", H, "16"]).on(On::OwnWire),
+    passes("a distant board", ",speed=1200000,delay=0.05", &[W, "128", H, "16"]).on(On::OwnWire),
+    passes("a pipe without a buffer", ",buffer=0,speed=100000", &[W, "128", H, "16"]).on(On::OwnWire),
     passes("every frame three times", "", &[W, "128", H, "16", "--repeat", "3"]),
     passes("ready to stop at a difference", "", &[W, "128", H, "16", "--fail-fast"]),
     passes("another seed", "", &[W, "128", H, "16", "--seed", "18446744073709551615"]),
