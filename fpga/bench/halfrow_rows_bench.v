@@ -288,13 +288,14 @@ module halfrow_rows_bench;
         begin
             @(negedge clk) acknowledge = 1;
             @(negedge clk) acknowledge = 0;
+            repeat (16) @(negedge clk);           // the next packet takes longer to come
         end
     endtask
 
     task deliver;
         begin
-            pulse_acknowledge;
-            row_start = 1;
+            @(negedge clk) acknowledge = 1;
+            @(negedge clk) {acknowledge, row_start} = 2'b01;
             @(negedge clk) row_start = 0;
             waited = 0;
             while (!row_done && waited < 100000) begin
@@ -348,6 +349,7 @@ module halfrow_rows_bench;
             end
             if (!quiet)
                 expect_equal("quiet", 0, 1);
+            repeat (20) @(negedge clk);           // numbers may show so late
         end
     endtask
 
@@ -370,7 +372,7 @@ module halfrow_rows_bench;
             base = next;
             next_new = next;
             window = next;
-            @(negedge clk);
+            repeat (16) @(negedge clk);           // the reply is not made before
         end
     endtask
 

@@ -35,6 +35,7 @@ module halfrow_sender_bench;
     integer     file, got, value, count, i, seed, faults, order, gaps, stalls, clocks;
     integer     next_offer, next_byte, left, out;
     reg         sender_of;            // the client whose payload is under way
+    reg         row_header;           // the header of a row may still be under way, so its fields stay
     reg         was_offered;
     reg  [ 7:0] was_data;
 
@@ -115,7 +116,7 @@ module halfrow_sender_bench;
             valid[sender_of] = 0;
             flag[sender_of]  = 1'bx;
             window           = 32'hx;
-            if (sender_of) {row_session, row_length, row_sequence, row_kind} = 48'hx;
+            if (sender_of) {row_header, flag[1]} = {1'b1, fields[next_offer-1][40]};
             else {reply_session, reply_length, reply_sequence, reply_kind} = 48'hx;
         end
     endtask
@@ -123,6 +124,11 @@ module halfrow_sender_bench;
     task edge_of_clock;
         reg [1:0] took, moved;
         begin
+            if (row_header && (byte_ready[1] || idle)) begin
+                row_header = 0;
+                flag[1]    = 1'bx;
+                {row_session, row_length, row_sequence, row_kind} = 48'hx;
+            end
             took        = taken;
             moved       = byte_valid & byte_ready;
             was_offered = tx_valid && !tx_ready;
@@ -153,7 +159,7 @@ module halfrow_sender_bench;
     task drive;
         begin
             tx_ready = !pause(stalls);
-            if (next_offer < total && !valid && left == 0 && !pause(gaps)) begin
+            if (next_offer < total && !valid && left == 0 && !row_header && !pause(gaps)) begin
                 offer(next_offer);
                 if (order == 3 && !owner(next_offer) && next_offer + 1 < total) offer(next_offer + 1);
             end
@@ -178,7 +184,7 @@ module halfrow_sender_bench;
             for (gaps = 0; gaps < 4; gaps = gaps + 1)
                 for (stalls = 0; stalls < 4; stalls = stalls + 1)
                     if ((order + gaps + stalls) % 4 == 0) begin
-                        {valid, byte_valid, next_offer, next_byte, left, out, clocks, sender_of} = 0;
+                        {valid, byte_valid, next_offer, next_byte, left, out, clocks, sender_of, row_header} = 0;
                         rst = 1;
                         @(posedge clk) #1;
                         rst = 0;

@@ -12,8 +12,6 @@ module halfrow_collector #(
 
     input  wire                     start,         // pulse: a row starts, one clock before its first sample is at the pins
     input  wire [OUT_BITS-1:0]      start_bank,
-    input  wire                     start_is_last,
-    input  wire [7:0]               start_generation,
     input  wire                     start_tables,  // bank of the tables that it is bound to
     input  wire                     active_bank,
 
@@ -32,31 +30,21 @@ module halfrow_collector #(
     output wire [COLUMN_BITS-1:0]   column,
     output wire                     leaves,        // pulse: and is the row's last
 
-    output reg                      row_left,      // pulse, with both latencies
+    output reg                      row_left,      // pulse; what follows stays until the next row has left
+    output reg  [OUT_BITS-1:0]      left_bank,
     output reg  [15:0]              first_latency, // pixel clocks
     output reg  [15:0]              last_latency,
-
-    input  wire [OUT_BITS-1:0]      read_bank,     // of a row that has left
-    output wire                     read_is_last,
-    output wire [7:0]               read_generation,
-    output wire [15:0]              read_first,
-    output wire [15:0]              read_last,
-    output wire [15:0]              read_pauses,
+    output reg  [15:0]              left_pauses,
 
     output wire                     row_inside,    // a row is
     output wire                     other_tables   // a row inside is bound to the bank that is not active
 );
-    (* ram_style = "distributed" *) reg [8:0]  names [0:ROW_BANKS_OUT-1];      // is_last, generation
-    (* ram_style = "distributed" *) reg [47:0] times [0:ROW_BANKS_OUT-1];      // pauses, last, first
-
     reg [ROW_BANKS_OUT-1:0] inside_banks;
     reg [ROW_BANKS_OUT-1:0] tables_of;
 
     always @(posedge clk)
-        if (start) begin
-            names[start_bank] <= {start_is_last, start_generation};
+        if (start)
             tables_of[start_bank] <= start_tables;
-        end
 
     always @(posedge clk)
         if (rst)
@@ -72,7 +60,7 @@ module halfrow_collector #(
     assign other_tables = (inside_banks & (tables_of ^ {ROW_BANKS_OUT{active_bank}})) != {ROW_BANKS_OUT{1'b0}};
 
     // A row's first sample has left before the next one's enters, and so has its last, since W/2 + L <= W.
-    reg [15:0] now, first_in, last_in, row_pauses;
+    reg [15:0] now, first_in, last_in, row_pauses, first;
 
     always @(posedge clk)
         if (rst)
@@ -88,8 +76,6 @@ module halfrow_collector #(
         end
 
     reg [COLUMN_BITS-1:0] next_column;
-    reg [OUT_BITS-1:0]    left_bank;
-    reg [15:0]            left_pauses;
     wire [15:0]           latency = now - (out_last ? last_in : first_in);
 
     assign column = out_start ? {COLUMN_BITS{1'b0}} : next_column;
@@ -100,8 +86,9 @@ module halfrow_collector #(
         if (sample_write) begin
             next_column <= column + 1'b1;
             if (out_start)
-                first_latency <= latency;
+                first <= latency;
             if (out_last) begin
+                first_latency <= first;
                 last_latency <= latency;
                 left_pauses <= row_pauses;
                 left_bank <= leaving_bank;
@@ -109,13 +96,6 @@ module halfrow_collector #(
         end
         row_left <= leaves && !rst;
     end
-
-    always @(posedge clk)
-        if (row_left)
-            times[left_bank] <= {left_pauses, last_latency, first_latency};
-
-    assign {read_is_last, read_generation} = names[read_bank];
-    assign {read_pauses, read_last, read_first} = times[read_bank];
 endmodule
 
 `default_nettype wire

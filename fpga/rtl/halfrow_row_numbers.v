@@ -1,5 +1,5 @@
 // The row sequence numbers that credit, order and acknowledgement are counted by. One number is kept whole, that of the
-// first row that is not acknowledged; the others are counted from it.
+// first row that is not acknowledged; the others are counted from it, and the 32-bit ones show up to 20 clocks late.
 `default_nettype none
 
 module halfrow_row_numbers #(
@@ -24,7 +24,7 @@ module halfrow_row_numbers #(
 
     output reg  [31:0]             acknowledged,   // the first row that is not acknowledged
     output reg  [31:0]             credit_window,
-    output reg  [31:0]             next_row_in,    // one clock late
+    output reg  [31:0]             next_row_in,
     output reg  [ENTRY_BITS-1:0]   rows_entered,   // rows from `acknowledged` on that have entered
     output reg  [ENTRY_BITS-1:0]   rows_left,      // of them, rows that have left the core
     output reg  [ENTRY_BITS-1:0]   rows_sent,      // of them, rows that have been sent
@@ -32,32 +32,111 @@ module halfrow_row_numbers #(
     output reg  [ROW_BANKS_IN-1:0] waiting,        // in-banks that hold a row, until it has entered
     output reg                     played          // a row has entered since rows were dropped
 );
-    localparam [31:0] BANKS_IN = ROW_BANKS_IN;
+    localparam LOAD = 3'd0, COMPARE = 3'd1, RELEASE = 3'd2, CREDIT = 3'd3, NEXT = 3'd4;
+    localparam [7:0] BANKS_IN = ROW_BANKS_IN;
+    localparam [2:0] PREPARE = 3'd4;
 
-    // A host cannot have a row that was never sent, so a window beyond those that were counts as far as they go.
-    reg                   comparing, releasing;
-    reg  [32:0]           ahead;
-    reg  [ENTRY_BITS-1:0] release_rows;
-    wire                  far = ahead[31:ENTRY_BITS] != {32-ENTRY_BITS{1'b0}};
-    wire [ENTRY_BITS-1:0] near = ahead[ENTRY_BITS-1:0];
-    wire [ENTRY_BITS-1:0] released = release_rows & {ENTRY_BITS{releasing}};
+    // One adder goes round: bytes 0 to 3 of one number in four clocks, and a clock to choose the next.
+    reg [2:0]             operation, place;
+    reg [7:0]             addend;
+    reg                   carry;
+    reg [23:0]            lower;
+    reg                   load_waits, compare_waits, release_waits, credit_was_last;
+    reg [31:0]            window;
+    wire [ENTRY_BITS-1:0] release_rows;
+    wire [ENTRY_BITS:0]   known;                   // rows from `acknowledged` on without one missing
 
-    assign settling = acknowledge || comparing || releasing;
+    wire [7:0]  acknowledged_byte = acknowledged[{place[1:0], 3'd0} +: 8];
+    wire [7:0]  drop_byte = drop_next_row[{place[1:0], 3'd0} +: 8];
+    wire [7:0]  number = operation == LOAD ? drop_byte : acknowledged_byte;
+    wire [9:0]  sum = {1'b0, number, 1'b1} + {1'b0, addend & {8{place == 3'd0}}, carry};
+    wire [31:0] result = {sum[8:1], lower};
+    wire        complete = place == 3'd3;
+    wire        releases = complete && operation == RELEASE;
+
+    assign settling = acknowledge || load_waits || compare_waits || release_waits;
 
     always @(posedge clk) begin
-        comparing <= acknowledge && !drop && !rst;
-        releasing <= comparing && !drop && !rst;
-        ahead <= {1'b0, acknowledge_window} - {1'b0, acknowledged};
-        release_rows <= ahead[32] ? {ENTRY_BITS{1'b0}} : far || near > rows_sent ? rows_sent : near;
+        carry <= place != PREPARE && sum[9];
+        lower <= {sum[8:1], lower[23:8]};
+        if (place == PREPARE) begin
+            place <= 3'd0;
+            if (load_waits) begin
+                operation <= LOAD;
+                addend <= 8'd0;
+            end else if (compare_waits)
+                operation <= COMPARE;
+            else if (release_waits) begin
+                operation <= RELEASE;
+                addend <= {{8-ENTRY_BITS{1'b0}}, release_rows};
+            end else if (credit_was_last) begin
+                operation <= NEXT;
+                addend <= {{7-ENTRY_BITS{1'b0}}, known};
+            end else begin
+                operation <= CREDIT;
+                addend <= {{8-ENTRY_BITS{1'b0}}, rows_entered} + BANKS_IN;
+            end
+        end else
+            place <= place + 3'd1;
+        if (complete) begin
+            if (operation == LOAD)
+                load_waits <= 1'b0;
+            if (operation == COMPARE) begin
+                compare_waits <= 1'b0;
+                release_waits <= 1'b1;
+            end
+            if (operation == RELEASE)
+                release_waits <= 1'b0;
+            credit_was_last <= operation == CREDIT;
+        end
+        if (acknowledge) begin
+            compare_waits <= 1'b1;
+            window <= acknowledge_window;
+        end
+        if (rst || drop) begin
+            place <= PREPARE;
+            operation <= NEXT;
+            load_waits <= drop && !rst;
+            compare_waits <= 1'b0;
+            release_waits <= 1'b0;
+            credit_was_last <= 1'b0;
+        end
     end
 
-    always @(posedge clk)
+    // The window never wraps, so the last number of all gets no credit.
+    always @(posedge clk) begin
         if (rst)
             acknowledged <= 32'd0;
-        else if (drop)
-            acknowledged <= drop_next_row;
-        else
-            acknowledged <= acknowledged + {{32-ENTRY_BITS{1'b0}}, released};
+        else if (complete && (operation == LOAD || operation == RELEASE))
+            acknowledged <= result;
+        if (complete && operation == CREDIT && sum[9])
+            credit_window <= 32'hffffffff;
+        else if (complete && operation == CREDIT)
+            credit_window <= result;
+        if (complete && operation == NEXT)
+            next_row_in <= result;
+    end
+
+    // A host cannot have a row that was never sent, so a window beyond those that were counts as far as they go.
+    reg                   before, far;
+    reg  [ENTRY_BITS-1:0] near;
+    wire [9:0]            ahead = {1'b0, window[{place[1:0], 3'd0} +: 8], 1'b0} - {1'b0, acknowledged_byte, before};
+
+    always @(posedge clk)
+        if (operation == COMPARE && place != PREPARE) begin
+            before <= ahead[9];
+            if (place == 3'd0) begin
+                near <= ahead[ENTRY_BITS:1];
+                far <= ahead[8:ENTRY_BITS+1] != {8-ENTRY_BITS{1'b0}};
+            end else
+                far <= far || ahead[8:1] != 8'd0;
+        end else if (operation != COMPARE)
+            before <= 1'b0;
+
+    assign release_rows = before ? {ENTRY_BITS{1'b0}} : far || near > rows_sent ? rows_sent : near;
+
+    wire                  unused = &{1'b0, sum[0], ahead[0]};
+    wire [ENTRY_BITS-1:0] released = addend[ENTRY_BITS-1:0] & {ENTRY_BITS{releases}};
 
     always @(posedge clk)
         if (rst || drop) begin
@@ -69,16 +148,6 @@ module halfrow_row_numbers #(
             rows_left <= rows_left + {{ENTRY_BITS-1{1'b0}}, left} - released;
             rows_sent <= rows_sent + {{ENTRY_BITS-1{1'b0}}, sent} - released;
         end
-
-    // The window never wraps, so the last number of all gets no credit.
-    wire [31:0] credit_from = rst ? 32'd0 : drop ? drop_next_row : credit_window;
-    wire [32:0] credit = {1'b0, credit_from} + {1'b0, rst || drop ? BANKS_IN : {31'd0, entered}};
-
-    always @(posedge clk)
-        if (credit[32])
-            credit_window <= 32'hffffffff;
-        else
-            credit_window <= credit[31:0];
 
     assign next_entry = acknowledged[ENTRY_BITS-1:0] + rows_entered;
 
@@ -112,10 +181,7 @@ module halfrow_row_numbers #(
         end
     end
 
-    wire [ENTRY_BITS:0] known = {1'b0, rows_entered} + {1'b0, in_line};
-
-    always @(posedge clk)
-        next_row_in <= acknowledged + {{31-ENTRY_BITS{1'b0}}, known};
+    assign known = {1'b0, rows_entered} + {1'b0, in_line};
 endmodule
 
 `default_nettype wire

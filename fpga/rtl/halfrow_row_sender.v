@@ -11,6 +11,7 @@ module halfrow_row_sender #(
     input  wire                   rst,
     input  wire                   drop,            // pulse: rows are dropped; a packet under way is still sent
     input  wire                   new_session,     // with drop: packets are counted from 0
+    input  wire [7:0]             session,
 
     input  wire [11:0]            width,
     input  wire                   unsent,          // row `unsent_entry` has left the core and was never sent
@@ -25,12 +26,11 @@ module halfrow_row_sender #(
 
     output wire [ENTRY_BITS+2:0]  place_address,
     input  wire [7:0]             place_byte,
-    output wire [OUT_BITS-1:0]    bank,            // whose row's name, times and samples are sent
-    input  wire                   is_last,
-    input  wire [7:0]             generation,
-    input  wire [15:0]            first_latency,
-    input  wire [15:0]            last_latency,
-    input  wire [15:0]            pauses,
+    output wire [OUT_BITS-1:0]    bank,            // whose row's head and samples are sent
+    output wire [3:0]             head_index,      // byte 8 to 19 of the payload, modulo 16
+    input  wire [7:0]             head_byte,
+    output wire                   counted,         // pulse: it becomes counted_byte
+    output wire [7:0]             counted_byte,
     output wire                   sample_read,
     output reg  [COLUMN_BITS-1:0] column,          // to be read next
     input  wire [11:0]            sample,          // of the last sample_read
@@ -38,10 +38,11 @@ module halfrow_row_sender #(
     output wire                   row_valid,
     output wire [7:0]             row_kind,
     output reg  [15:0]            row_sequence,    // counts ROW_OUT packets
-    output wire [15:0]            row_length,
+    output reg  [7:0]             row_session,
+    output reg  [15:0]            row_length,
     output wire                   row_flag,
     input  wire                   row_taken,
-    output wire                   row_byte_valid,
+    output reg                    row_byte_valid,
     output reg  [7:0]             row_byte,
     input  wire                   row_byte_ready,
     output wire                   idle
@@ -53,18 +54,15 @@ module halfrow_row_sender #(
     reg [ENTRY_BITS-1:0] entry, waiting_entry;
     reg                  first_time;
     reg                  dropped;                  // while it was sent
-    reg [11:0]           row_width;
-    reg [15:0]           repeats [0:ROW_BANKS_OUT-1];
-    wire [15:0]          row_repeats = repeats[bank];
-    wire [15:0]          sent_before = first_time ? 16'd0 : row_repeats;
+    reg [COLUMN_BITS-1:0] row_width;
+    reg [15:0]           packets;
+    reg [11:0]           sample_bytes;
 
     assign bank = entry[OUT_BITS-1:0];
     assign row_kind = 8'h21;
     assign row_flag = 1'b0;
-    assign row_length = {4'd0, row_width} + {5'd0, row_width[11:1]} + {11'd0, HEAD_BYTES};
     assign row_valid = state == OFFER;
-    assign row_byte_valid = state == HEAD || state == SAMPLES;
-    assign idle = state == IDLE && !unsent && !again_waiting;
+    assign idle = state == IDLE && !unsent && !again_waiting && !row_byte_valid;
     assign wanted_held = (state != IDLE && bank == wanted_bank)
                          || (again_waiting && waiting_entry[OUT_BITS-1:0] == wanted_bank);
     assign place_held = dropped && state == HEAD;
@@ -72,9 +70,9 @@ module halfrow_row_sender #(
     reg [4:0]             head;                    // byte of the head
     reg [1:0]             phase;                   // byte of three
     reg [3:0]             earlier;                 // bits of the sample before
-    wire                  move = row_byte_valid && row_byte_ready;
+    wire                  move = (state == HEAD || state == SAMPLES) && (!row_byte_valid || row_byte_ready);
     wire                  head_ends = move && state == HEAD && head == HEAD_BYTES - 5'd1;
-    wire                  row_ends = move && state == SAMPLES && phase == 2'd2 && column == row_width[COLUMN_BITS-1:0];
+    wire                  row_ends = move && state == SAMPLES && phase == 2'd2 && column == row_width;
 
     assign place_address = {entry, head[2:0]};
     assign sent = row_ends && first_time && !dropped;
@@ -104,44 +102,54 @@ module halfrow_row_sender #(
         if (state == IDLE) begin
             entry <= unsent ? unsent_entry : waiting_entry;
             first_time <= unsent;
-            row_width <= width;
+            row_width <= width[COLUMN_BITS-1:0];
+            row_length <= {4'd0, sample_bytes} + {11'd0, HEAD_BYTES};
+            row_sequence <= packets;
+            row_session <= session;
         end
+        sample_bytes <= width + {1'b0, width[11:1]};
         dropped <= state != IDLE && (dropped || drop);
     end
 
     always @(posedge clk)
         if (rst || (drop && new_session))
-            row_sequence <= 16'd0;
+            packets <= 16'd0;
         else if (row_taken)
-            row_sequence <= row_sequence + 16'd1;
+            packets <= packets + 16'd1;
+
+    // How often the row was sent before, byte by byte; it stays at the greatest number.
+    reg [ROW_BANKS_OUT-1:0] greatest;
+    reg                     low_greatest, carry;
+    wire                    high = head[0];
+    wire [9:0]              next_count = {1'b0, head_byte, 1'b1} + {9'd0, high ? carry : !greatest[bank]};
+    wire                    unused = &{1'b0, next_count[0]};
+
+    assign head_index = head[3:0];
+    assign counted = move && state == HEAD && head[4] && head[1];
+    assign counted_byte = first_time ? 8'd0 : next_count[8:1];
 
     always @(posedge clk)
-        if (row_taken)
-            repeats[bank] <= sent_before + {15'd0, !first_time && row_repeats != 16'hffff};
+        if (counted) begin
+            carry <= next_count[9];
+            low_greatest <= counted_byte == 8'hff;
+            if (high)
+                greatest[bank] <= low_greatest && counted_byte == 8'hff;
+        end
+
+    reg [7:0] sample_byte;
 
     always @*
-        if (state == SAMPLES)
-            case (phase)
-                2'd0:    row_byte = sample[7:0];
-                2'd1:    row_byte = {sample[3:0], earlier};
-                default: row_byte = sample[11:4];
-            endcase
-        else
-            case (head)
-                5'd8:    row_byte = row_width[7:0];
-                5'd9:    row_byte = {4'd0, row_width[11:8]};
-                5'd10:   row_byte = {7'd0, is_last};
-                5'd11:   row_byte = generation;
-                5'd12:   row_byte = first_latency[7:0];
-                5'd13:   row_byte = first_latency[15:8];
-                5'd14:   row_byte = last_latency[7:0];
-                5'd15:   row_byte = last_latency[15:8];
-                5'd16:   row_byte = pauses[7:0];
-                5'd17:   row_byte = pauses[15:8];
-                5'd18:   row_byte = row_repeats[7:0];
-                5'd19:   row_byte = row_repeats[15:8];
-                default: row_byte = place_byte;
-            endcase
+        case (phase)
+            2'd0:    sample_byte = sample[7:0];
+            2'd1:    sample_byte = {sample[3:0], earlier};
+            default: sample_byte = sample[11:4];
+        endcase
+
+    always @(posedge clk) begin
+        if (move)
+            row_byte <= state == SAMPLES ? sample_byte : head[4:3] == 2'd0 ? place_byte : head[4] && head[1] ? counted_byte : head_byte;
+        row_byte_valid <= !rst && (move || (row_byte_valid && !row_byte_ready));
+    end
 
     // The first sample is read all through the head, and each further one when the one before has lent its last whole byte.
     assign sample_read = state == HEAD || (move && phase != 2'd1);

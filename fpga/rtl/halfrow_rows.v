@@ -191,23 +191,28 @@ module halfrow_rows #(
     wire [ENTRY_BITS-1:0]  leaving_entry = acknowledged[ENTRY_BITS-1:0] + rows_left;
     wire                   sample_out_write, row_inside, other_tables;
     wire [COLUMN_BITS-1:0] column_collected, column_sent;
-    wire [OUT_BITS-1:0]    sent_bank;
-    wire                   sent_is_last;
-    wire [7:0]             sent_generation;
-    wire [15:0]            sent_first, sent_last, sent_pauses;
+    wire [OUT_BITS-1:0]    left_bank, sent_bank;
+    wire [15:0]            left_pauses;
 
     halfrow_collector #(.ROW_BANKS_OUT(ROW_BANKS_OUT), .OUT_BITS(OUT_BITS), .COLUMN_BITS(COLUMN_BITS)) collector (
-        .clk(clk), .rst(clear), .start(start), .start_bank(ready_entry[OUT_BITS-1:0]), .start_is_last(next_is_last),
-        .start_generation(next_generation), .start_tables(prepare_bank), .active_bank(active_bank),
-        .enable(enable), .in_valid(in_valid), .in_start(in_start), .in_last(in_last), .pauses(pauses),
+        .clk(clk), .rst(clear), .start(start), .start_bank(ready_entry[OUT_BITS-1:0]), .start_tables(prepare_bank),
+        .active_bank(active_bank), .enable(enable), .in_valid(in_valid), .in_start(in_start), .in_last(in_last), .pauses(pauses),
         .out_valid(out_valid), .out_start(out_start), .out_last(out_last),
         .leaving_bank(leaving_entry[OUT_BITS-1:0]), .sample_write(sample_out_write), .column(column_collected),
-        .leaves(leaves), .row_left(row_left), .first_latency(first_latency), .last_latency(last_latency),
-        .read_bank(sent_bank), .read_is_last(sent_is_last), .read_generation(sent_generation),
-        .read_first(sent_first), .read_last(sent_last), .read_pauses(sent_pauses),
-        .row_inside(row_inside), .other_tables(other_tables));
+        .leaves(leaves), .row_left(row_left), .left_bank(left_bank), .first_latency(first_latency),
+        .last_latency(last_latency), .left_pauses(left_pauses), .row_inside(row_inside), .other_tables(other_tables));
 
     assign latency_valid = row_left;
+
+    wire [3:0] head_index;
+    wire [7:0] head_byte, counted_byte;
+    wire       counted;
+
+    halfrow_row_heads #(.OUT_BITS(OUT_BITS)) heads (
+        .clk(clk), .rst(rst), .start(start), .start_bank(ready_entry[OUT_BITS-1:0]), .width(width),
+        .start_is_last(next_is_last), .start_generation(next_generation), .left(row_left), .left_bank(left_bank),
+        .first_latency(first_latency), .last_latency(last_latency), .pauses(left_pauses), .bank(sent_bank),
+        .index(head_index), .value(head_byte), .replace(counted), .replacement(counted_byte));
 
     wire        sample_out_read;
     wire [11:0] sample_sent;
@@ -223,18 +228,17 @@ module halfrow_rows #(
     halfrow_row_sender #(
         .ROW_BANKS_OUT(ROW_BANKS_OUT), .OUT_BITS(OUT_BITS), .ENTRY_BITS(ENTRY_BITS), .COLUMN_BITS(COLUMN_BITS)
     ) row_sender (
-        .clk(clk), .rst(rst), .drop(drop_rows), .new_session(new_session), .width(width),
+        .clk(clk), .rst(rst), .drop(drop_rows), .new_session(new_session), .session(session), .width(width),
         .unsent(rows_left != rows_sent), .unsent_entry(unsent_entry), .sent(sent),
         .again(again), .again_entry(gate_entry), .again_waiting(again_waiting),
         .wanted_bank(next_entry[OUT_BITS-1:0]), .wanted_held(wanted_held), .place_held(place_held),
-        .place_address(send_address), .place_byte(send_byte), .bank(sent_bank), .is_last(sent_is_last),
-        .generation(sent_generation), .first_latency(sent_first), .last_latency(sent_last), .pauses(sent_pauses),
+        .place_address(send_address), .place_byte(send_byte), .bank(sent_bank),
+        .head_index(head_index), .head_byte(head_byte), .counted(counted), .counted_byte(counted_byte),
         .sample_read(sample_out_read), .column(column_sent), .sample(sample_sent),
         .row_valid(row_valid), .row_kind(row_kind), .row_sequence(row_sequence), .row_length(row_length),
-        .row_flag(row_flag), .row_taken(row_taken), .row_byte_valid(row_byte_valid), .row_byte(row_byte),
-        .row_byte_ready(row_byte_ready), .idle(sender_idle));
+        .row_flag(row_flag), .row_session(row_session), .row_taken(row_taken),
+        .row_byte_valid(row_byte_valid), .row_byte(row_byte), .row_byte_ready(row_byte_ready), .idle(sender_idle));
 
-    assign row_session = session;
     assign core_reset = drop_rows;
     assign rows_waiting = waiting != {ROW_BANKS_IN{1'b0}};
     assign rows_held = row_inside || rows_left != {ENTRY_BITS{1'b0}};

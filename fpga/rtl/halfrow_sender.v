@@ -6,25 +6,24 @@ module halfrow_sender (
     input  wire        clk,
     input  wire        rst,
 
-    // header fields: stable from valid to taken
-    input  wire        reply_valid,
+    input  wire        reply_valid,       // the header's fields are stable up to `taken`
     input  wire [ 7:0] reply_kind,
     input  wire [15:0] reply_sequence,
     input  wire [15:0] reply_length,      // bytes of payload, 0 to 4080
     input  wire        reply_flag,        // bit 0 of the header's flags
     input  wire [ 7:0] reply_session,
-    output wire        reply_taken,       // pulse: the header is latched, exactly length bytes must follow
+    output wire        reply_taken,       // pulse: the header has gone, exactly length bytes must follow
     input  wire        reply_byte_valid,
     input  wire [ 7:0] reply_byte,
     output wire        reply_byte_ready,
 
-    input  wire        row_valid,
+    input  wire        row_valid,         // may be taken back; the fields are stable up to the payload's first byte
     input  wire [ 7:0] row_kind,
     input  wire [15:0] row_sequence,
     input  wire [15:0] row_length,
     input  wire        row_flag,
     input  wire [ 7:0] row_session,
-    output wire        row_taken,
+    output wire        row_taken,         // pulse: the header goes now, at least one byte of payload must follow
     input  wire        row_byte_valid,
     input  wire [ 7:0] row_byte,
     output wire        row_byte_ready,
@@ -42,9 +41,10 @@ module halfrow_sender (
 
     reg [ 1:0] state;
     reg        of_row;     // the packet under way is the row client's
-    reg [ 3:0] count;      // bytes of header and CRC that went
+    reg [ 3:0] count;      // bytes of header and CRC that went, and one more
     reg [11:0] left;       // bytes of payload to come
-    reg [95:0] header;     // the byte to go in [7:0]
+    reg [ 7:0] header;     // its byte to go
+    reg [31:0] window_now;
     reg [31:0] crc;
     reg        stage_valid;
     reg [ 7:0] stage_byte;
@@ -56,43 +56,58 @@ module halfrow_sender (
     wire        offered      = of_row ? row_byte_valid : reply_byte_valid;
     wire        move         = free && (state == HEADER || state == CLOSE || (state == PAYLOAD && offered));
     wire [ 7:0] payload_byte = of_row ? row_byte : reply_byte;
-    wire [ 7:0] body_byte    = state == HEADER ? header[7:0] : payload_byte;
-    wire        last         = count == 4'd15;
+    wire [ 7:0] body_byte    = state == HEADER ? header : payload_byte;
+    wire        header_ends  = state == HEADER && move && count == 4'd12;
+    wire        last         = count == 4'd0;
 
-    assign reply_taken      = state == IDLE && reply_valid;
+    assign reply_taken      = header_ends && !of_row;
     assign row_taken        = state == IDLE && row_valid && !reply_valid;
     assign reply_byte_ready = state == PAYLOAD && !of_row && free;
     assign row_byte_ready   = state == PAYLOAD && of_row && free;
     assign idle             = state == IDLE && !stage_valid && stuffer_idle;
 
-    wire [87:0] reply_header = {window, reply_session, 7'd0, reply_flag, reply_length, reply_sequence, reply_kind};
-    wire [87:0] row_header   = {window, row_session, 7'd0, row_flag, row_length, row_sequence, row_kind};
+    wire [15:0] sequence      = of_row ? row_sequence : reply_sequence;
+    wire [15:0] length        = of_row ? row_length : reply_length;
+    wire [ 7:0] sequence_byte = count[0] ? sequence[15:8] : sequence[7:0];
+    wire [ 7:0] length_byte   = count[0] ? length[15:8] : length[7:0];
+    wire [ 7:0] window_byte   = window_now[{count[1:0], 3'd0} +: 8];
+    reg  [ 7:0] field;
 
-    // Header and CRC are shifted out, and what is shifted in is what the next packet begins with: version and preset.
+    always @* begin
+        case (count)
+            4'd1:       field = of_row ? row_kind : reply_kind;
+            4'd2, 4'd3: field = sequence_byte;
+            4'd4, 4'd5: field = length_byte;
+            4'd6:       field = {7'd0, of_row ? row_flag : reply_flag};
+            4'd7:       field = of_row ? row_session : reply_session;
+            default:    field = window_byte;
+        endcase
+    end
+
     always @(posedge clk) begin
         if (state == IDLE) begin
-            of_row       <= !reply_valid;
-            header[95:8] <= reply_valid ? reply_header : row_header;
-        end else if (state == HEADER && move) begin
-            header <= {VERSION, header[95:8]};
-            if (count == 4'd4) left <= header[11:0];
-        end
+            of_row     <= !reply_valid;
+            window_now <= window;
+            header     <= VERSION;
+        end else if (move) header <= field;
+        if (state == HEADER && count == 4'd5) left[7:0] <= header;
+        if (state == HEADER && count == 4'd6) left[11:8] <= header[3:0];
         if (state == PAYLOAD && move) left <= left - 12'd1;
+        // What is shifted in is what the next packet's CRC begins with.
         if (move) begin
             crc <= state == CLOSE ? {8'hff, crc[31:8]} : crc_next;
-            if (state != PAYLOAD) count <= count + 4'd1;
+            if (state != PAYLOAD) count <= last ? 4'd1 : count + 4'd1;
         end
         if (rst) begin
-            header[7:0] <= VERSION;
-            crc         <= 32'hFFFFFFFF;
-            count       <= 4'd0;
+            crc   <= 32'hFFFFFFFF;
+            count <= 4'd1;
         end
     end
 
     always @(posedge clk) begin
         case (state)
             IDLE:    if (reply_valid || row_valid) state <= HEADER;
-            HEADER:  if (move && count == 4'd11) state <= left == 12'd0 ? CLOSE : PAYLOAD;
+            HEADER:  if (header_ends) state <= left == 12'd0 ? CLOSE : PAYLOAD;
             PAYLOAD: if (move && left == 12'd1) state <= CLOSE;
             default: if (move && last) state <= IDLE;
         endcase
