@@ -273,7 +273,7 @@ module halfrow_dispatcher_bench;
         begin
             {latency_valid, row_left, first_latency, last_latency} = {2'b11, first, last};
             @(negedge clk);
-            {latency_valid, row_left, first_latency, last_latency} = {2'b00, 32'hx};
+            {latency_valid, row_left} = 2'b00;   // the latencies stay
         end
     endtask
 

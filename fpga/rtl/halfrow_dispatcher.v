@@ -207,6 +207,11 @@ module halfrow_dispatcher #(
     // Counters
     wire [7:0] status_byte;
     wire       advance_reply;
+    reg        report;
+
+    always @(posedge clk)
+        if (rst || state == DONE) report <= 1'b0;
+        else if (state == COUNTED && status_idle) report <= 1'b1;
 
     halfrow_status status (
         .clk(clk), .rst(rst), .clear(opens), .idle(status_idle), .packet(begins), .crc_error(crc_error),
@@ -214,7 +219,7 @@ module halfrow_dispatcher #(
         .row_accepted(row_accepted), .row_left(row_left), .row_repeated(row_repeated), .row_unneeded(row_unneeded),
         .sample_over(sample_over), .latency_valid(latency_valid), .first_latency(first_latency),
         .last_latency(last_latency), .next_row_in(next_row_in), .acknowledged(acknowledged), .core_busy(core_busy),
-        .generation(generation), .report((state == REPLY || state == SEND) && is_status && !refused),
+        .generation(generation), .report(report),
         .report_clears(level != 8'd0), .index(packet_address[5:0]), .take(advance_reply), .value(status_byte)
     );
 

@@ -13,11 +13,11 @@ module halfrow_reply #(
     input  wire [11:0] index,            // of the byte that is fetched, 0 with begin_payload
     output wire        advance,          // on to the next index
 
-    input  wire [ 7:0] packet_byte,      // each belongs to the index of one clock before
+    input  wire [ 7:0] packet_byte,      // one clock behind its index
+    input  wire [ 7:0] status_byte,      // two
+    input  wire [ 7:0] capabilities_byte,
     input  wire [ 7:0] session,
     input  wire [63:0] serial,
-    input  wire [ 7:0] capabilities_byte,
-    input  wire [ 7:0] status_byte,
     input  wire [31:0] crc,
     input  wire [ 7:0] generation,
     input  wire [31:0] refusal,
@@ -29,50 +29,70 @@ module halfrow_reply #(
     output reg  [ 7:0] byte_data,
     input  wire        byte_ready
 );
-    localparam [2:0] ECHO = 3'd0, HELLO = 3'd1, CAPABILITIES = 3'd2, STATUS = 3'd3, TABLE_READ = 3'd4, TABLE_CRC = 3'd5, COMMIT = 3'd6;
+    // Further ones by their bits: CAPABILITIES 2, STATUS 3, TABLE_CRC 5, COMMIT 6, a refusal 7
+    localparam [2:0] ECHO = 3'd0, HELLO = 3'd1, TABLE_READ = 3'd4;
 
     localparam [ 7:0] VERSION = 8'd1;
     localparam [31:0] MAGIC   = "1WRH";    // the first byte in [7:0]
 
-    // The hello's bytes from 4 on, moved so that index[4:0] selects them.
-    wire [255:0] hello = {80'd0, serial, BUILD, session, VERSION, MAGIC, 32'd0};
-    wire [  7:0] hello_byte = index[4:2] == 3'd0 ? packet_byte : hello[{index[4:0], 3'd0} +: 8];
-    wire [  7:0] crc_byte = crc[{index[1:0], 3'd0} +: 8];
-    wire [  7:0] refusal_byte = refusal[{index[1:0], 3'd0} +: 8];
+    // The hello's bytes: the packet's, these, and from 14 on the serial number, turned so that index[2:0] selects its bytes.
+    wire [63:0] turned_serial = {serial[15:0], serial[63:16]};
+    wire [ 7:0] build_low     = index[0] ? BUILD[15:8] : BUILD[7:0];
+    wire [ 7:0] build_high    = index[0] ? BUILD[31:24] : BUILD[23:16];
+    wire [ 7:0] build_byte    = index[2] ? build_high : build_low;
+    wire [ 7:0] session_byte  = index[0] ? session : VERSION;
+    reg  [ 7:0] serial_high, serial_low, middle_byte, capability, crc_byte, refusal_byte;
+    reg         in_serial;
 
-    reg [7:0] value;
-    reg       in_table;                  // behind the span
-    always @* begin
-        case (source)
-            ECHO:         value = packet_byte;
-            HELLO:        value = hello_byte;
-            CAPABILITIES: value = capabilities_byte;
-            STATUS:       value = status_byte;
-            TABLE_READ:   value = in_table ? table_byte : packet_byte;
-            TABLE_CRC:    value = crc_byte;
-            COMMIT:       value = generation;
-            default:      value = refusal_byte;
-        endcase
+    always @(posedge clk) begin
+        serial_low   <= turned_serial[{1'b0, index[1:0], 3'd0} +: 8];
+        serial_high  <= turned_serial[{1'b1, index[1:0], 3'd0} +: 8];
+        middle_byte  <= !index[3] ? MAGIC[{index[1:0], 3'd0} +: 8] : index[2:1] != 2'd0 ? build_byte : session_byte;
+        in_serial    <= index[4] || &index[3:1];
+        capability   <= capabilities_byte;
+        crc_byte     <= crc[{index[1:0], 3'd0} +: 8];
+        refusal_byte <= refusal[{index[1:0], 3'd0} +: 8];
     end
 
-    reg  active, fetched;
+    wire [7:0] serial_byte = index[2] ? serial_high : serial_low;
+    wire [7:0] hello_byte  = in_serial ? serial_byte : middle_byte;
+    wire [7:0] word_byte   = source[1] ? refusal_byte : crc_byte;
+
+    // Only bytes from memories come as they are, the rest is two clocks behind its index.
+    reg [7:0] greeting, made;
+    reg       in_table;                  // behind the span
+    reg       from_packet;
+
+    always @(posedge clk) begin
+        greeting    <= hello_byte;
+        made        <= source[2] ? (source[0] ? word_byte : generation) : capability;
+        in_table    <= source == TABLE_READ && index >= 12'd7;
+        from_packet <= source == ECHO || (source == TABLE_READ && index < 12'd7) || (source == HELLO && index < 12'd4);
+    end
+
+    wire       from_memory = from_packet || in_table;
+    wire [7:0] memory_byte = in_table ? table_byte : packet_byte;
+    wire [7:0] fixed_byte  = source[2] || !source[0] ? made : source[1] ? status_byte : greeting;
+    wire [7:0] value       = from_memory ? memory_byte : fixed_byte;
+
+    reg  active, settled, fetched;
     wire last      = index == length;
-    wire wait_table = source == TABLE_READ && in_table && !table_byte_valid;
+    wire wait_table = in_table && !table_byte_valid;
 
     assign done = active && last && !byte_valid;
     assign advance = active && fetched && !last && !wait_table && (!byte_valid || byte_ready);
-    assign table_byte_ready = advance && source == TABLE_READ && in_table;
+    assign table_byte_ready = advance && in_table;
 
     always @(posedge clk) begin
-        fetched  <= active && !advance;
-        in_table <= index >= 12'd7;
+        settled <= active && !advance;
+        fetched <= settled && !advance;
         if (begin_payload) active <= 1'b1;
         else if (done) active <= 1'b0;
         if (advance) begin
             byte_valid <= 1'b1;
             byte_data  <= value;
         end else if (byte_ready) byte_valid <= 1'b0;
-        if (rst) {active, byte_valid, fetched} <= 3'd0;
+        if (rst) {active, byte_valid, settled, fetched} <= 4'd0;
     end
 endmodule
 

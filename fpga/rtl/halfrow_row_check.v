@@ -30,7 +30,7 @@ module halfrow_row_check #(
     output reg                   short             // the payload has not all samples of its width
 );
     wire [7:0] acknowledged_byte = acknowledged[{byte_index[1:0], 3'd0} +: 8];
-    wire [8:0] difference = {1'b0, place_byte} - {1'b0, acknowledged_byte} - {8'd0, passed};
+    wire [9:0] difference = {1'b0, place_byte, 1'b0} - {1'b0, acknowledged_byte, passed};
 
     always @(posedge clk)
         if (begins) begin
@@ -38,14 +38,14 @@ module halfrow_row_check #(
             far <= 1'b0;
             last_number <= 1'b1;
         end else if (byte_valid && byte_index < 4'd4) begin
-            passed <= difference[8];
+            passed <= difference[9];
             last_number <= last_number && place_byte == 8'hff;
             if (byte_index == 4'd0) begin
                 entry <= place_byte[ENTRY_BITS-1:0];
-                distance <= difference[ENTRY_BITS-1:0];
-                far <= difference[7:ENTRY_BITS] != {8-ENTRY_BITS{1'b0}};
+                distance <= difference[ENTRY_BITS:1];
+                far <= difference[8:ENTRY_BITS+1] != {8-ENTRY_BITS{1'b0}};
             end else
-                far <= far || difference[7:0] != 8'd0;
+                far <= far || difference[8:1] != 8'd0;
         end
 
     wire       in_frame = byte_index[3:1] == 3'd2;
@@ -56,10 +56,11 @@ module halfrow_row_check #(
     // Rows below this one: height - 1 - row.
     reg        row_outside, row_is_last;
     wire [7:0] height_byte = high ? {4'd0, height[11:8]} : height[7:0];
-    wire [8:0] rows_below = {1'b0, height_byte} - {1'b0, place_byte} - {8'd0, !high || row_outside};
+    wire [9:0] rows_below = {1'b0, height_byte, 1'b0} - {1'b0, place_byte, !high || row_outside};
 
     reg        carry;
-    wire [8:0] expected = {1'b0, before_byte} + {8'd0, in_row && (!high || carry)};
+    wire [9:0] expected = {1'b0, before_byte, 1'b1} + {9'd0, in_row && (!high || carry)};
+    wire       unused = &{1'b0, difference[0], rows_below[0], expected[0]};
 
     always @(posedge clk)
         if (begins) begin
@@ -71,12 +72,12 @@ module halfrow_row_check #(
             if (in_frame)
                 commit_fits <= commit_fits && place_byte == commit_byte;
             if (in_frame || in_row)
-                follows <= follows && place_byte == expected[7:0];
+                follows <= follows && place_byte == expected[8:1];
             if (in_row) begin
-                carry <= expected[8];
+                carry <= expected[9];
                 row_0 <= row_0 && place_byte == 8'd0;
-                row_outside <= rows_below[8];
-                row_is_last <= row_is_last && rows_below[7:0] == 8'd0;
+                row_outside <= rows_below[9];
+                row_is_last <= row_is_last && rows_below[8:1] == 8'd0;
             end
         end
 

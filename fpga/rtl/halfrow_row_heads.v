@@ -23,7 +23,8 @@ module halfrow_row_heads #(
     input  wire [OUT_BITS-1:0] bank,
     input  wire [3:0]          index,          // byte 8 to 19, modulo 16
     output wire [7:0]          value,
-    input  wire                replace,        // pulse: by `replacement`
+    input  wire                replace,        // pulse: replacement becomes byte 18 or 19 of that bank
+    input  wire                replace_high,   // byte 19
     input  wire [7:0]          replacement
 );
     (* ram_style = "distributed" *) reg [7:0] bytes [0:(16<<OUT_BITS)-1];
@@ -32,31 +33,21 @@ module halfrow_row_heads #(
     reg [1:0]          start_place;
     reg [2:0]          left_place;
     reg [OUT_BITS-1:0] started_bank;
-    reg [7:0]          start_byte, left_byte;
 
-    always @* begin
-        case (start_place)
-            2'd0:    start_byte = width[7:0];
-            2'd1:    start_byte = {4'd0, width[11:8]};
-            2'd2:    start_byte = {7'd0, start_is_last};
-            default: start_byte = start_generation;
-        endcase
-        case (left_place)
-            3'd0:    left_byte = first_latency[7:0];
-            3'd1:    left_byte = first_latency[15:8];
-            3'd2:    left_byte = last_latency[7:0];
-            3'd3:    left_byte = last_latency[15:8];
-            3'd4:    left_byte = pauses[7:0];
-            default: left_byte = pauses[15:8];
-        endcase
-    end
+    wire [7:0] width_byte = start_place[0] ? {4'd0, width[11:8]} : width[7:0];
+    wire [7:0] name_byte = start_place[0] ? start_generation : {7'd0, start_is_last};
+    wire [7:0] start_byte = start_place[1] ? name_byte : width_byte;
+    wire [7:0] first_byte = left_place[0] ? first_latency[15:8] : first_latency[7:0];
+    wire [7:0] last_byte = left_place[0] ? last_latency[15:8] : last_latency[7:0];
+    wire [7:0] pauses_byte = left_place[0] ? pauses[15:8] : pauses[7:0];
+    wire [7:0] left_byte = left_place[2] ? pauses_byte : left_place[1] ? last_byte : first_byte;
 
-    wire [OUT_BITS+3:0] place = {bank, index};
     wire [OUT_BITS+3:0] started_at = {started_bank, 2'b10, start_place};
     wire [OUT_BITS+3:0] left_at = {left_bank, {2{!left_place[2]}}, left_place[1:0]};
-    wire [OUT_BITS+3:0] address = replace ? place : start_due ? started_at : left_at;
+    wire [OUT_BITS+3:0] replaced_at = {bank, 3'b001, replace_high};
+    wire [OUT_BITS+3:0] address = replace ? replaced_at : start_due ? started_at : left_at;
 
-    assign value = bytes[place];
+    assign value = bytes[{bank, index}];
 
     always @(posedge clk)
         if (replace || start_due || left_due)

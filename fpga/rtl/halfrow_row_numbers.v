@@ -34,7 +34,7 @@ module halfrow_row_numbers #(
 );
     localparam LOAD = 3'd0, COMPARE = 3'd1, RELEASE = 3'd2, CREDIT = 3'd3, NEXT = 3'd4;
     localparam [7:0] BANKS_IN = ROW_BANKS_IN;
-    localparam [2:0] PREPARE = 3'd4;
+    localparam [2:0] PREPARE = 3'd7;
 
     // One adder goes round: bytes 0 to 3 of one number in four clocks, and a clock to choose the next.
     reg [2:0]             operation, place;
@@ -46,8 +46,8 @@ module halfrow_row_numbers #(
     wire [ENTRY_BITS-1:0] release_rows;
     wire [ENTRY_BITS:0]   known;                   // rows from `acknowledged` on without one missing
 
-    wire [7:0]  acknowledged_byte = acknowledged[{place[1:0], 3'd0} +: 8];
-    wire [7:0]  drop_byte = drop_next_row[{place[1:0], 3'd0} +: 8];
+    reg [7:0]   acknowledged_byte, drop_byte, window_byte;
+    wire [1:0]  next_byte = place[1:0] + 2'd1;
     wire [7:0]  number = operation == LOAD ? drop_byte : acknowledged_byte;
     wire [9:0]  sum = {1'b0, number, 1'b1} + {1'b0, addend & {8{place == 3'd0}}, carry};
     wire [31:0] result = {sum[8:1], lower};
@@ -59,8 +59,11 @@ module halfrow_row_numbers #(
     always @(posedge clk) begin
         carry <= place != PREPARE && sum[9];
         lower <= {sum[8:1], lower[23:8]};
+        acknowledged_byte <= acknowledged[{next_byte, 3'd0} +: 8];
+        drop_byte <= drop_next_row[{next_byte, 3'd0} +: 8];
+        window_byte <= window[{next_byte, 3'd0} +: 8];
+        place <= complete ? PREPARE : place + 3'd1;
         if (place == PREPARE) begin
-            place <= 3'd0;
             if (load_waits) begin
                 operation <= LOAD;
                 addend <= 8'd0;
@@ -76,8 +79,7 @@ module halfrow_row_numbers #(
                 operation <= CREDIT;
                 addend <= {{8-ENTRY_BITS{1'b0}}, rows_entered} + BANKS_IN;
             end
-        end else
-            place <= place + 3'd1;
+        end
         if (complete) begin
             if (operation == LOAD)
                 load_waits <= 1'b0;
@@ -120,7 +122,7 @@ module halfrow_row_numbers #(
     // A host cannot have a row that was never sent, so a window beyond those that were counts as far as they go.
     reg                   before, far;
     reg  [ENTRY_BITS-1:0] near;
-    wire [9:0]            ahead = {1'b0, window[{place[1:0], 3'd0} +: 8], 1'b0} - {1'b0, acknowledged_byte, before};
+    wire [9:0]            ahead = {1'b0, window_byte, 1'b0} - {1'b0, acknowledged_byte, before};
 
     always @(posedge clk)
         if (operation == COMPARE && place != PREPARE) begin

@@ -29,8 +29,9 @@ module halfrow_row_sender #(
     output wire [OUT_BITS-1:0]    bank,            // whose row's head and samples are sent
     output wire [3:0]             head_index,      // byte 8 to 19 of the payload, modulo 16
     input  wire [7:0]             head_byte,
-    output wire                   counted,         // pulse: it becomes counted_byte
-    output wire [7:0]             counted_byte,
+    output reg                    counted,         // pulse: counted_byte becomes byte 18 or 19
+    output reg                    counted_high,    // byte 19
+    output reg  [7:0]             counted_byte,
     output wire                   sample_read,
     output reg  [COLUMN_BITS-1:0] column,          // to be read next
     input  wire [11:0]            sample,          // of the last sample_read
@@ -124,17 +125,22 @@ module halfrow_row_sender #(
     wire [9:0]              next_count = {1'b0, head_byte, 1'b1} + {9'd0, high ? carry : !greatest[bank]};
     wire                    unused = &{1'b0, next_count[0]};
 
-    assign head_index = head[3:0];
-    assign counted = move && state == HEAD && head[4] && head[1];
-    assign counted_byte = first_time ? 8'd0 : next_count[8:1];
+    wire                    counts = head[4] && head[1];
+    wire [7:0]              count_byte = first_time ? 8'd0 : next_count[8:1];
 
-    always @(posedge clk)
-        if (counted) begin
+    assign head_index = head[3:0];
+
+    always @(posedge clk) begin
+        counted <= move && state == HEAD && counts;
+        counted_high <= high;
+        counted_byte <= count_byte;
+        if (move)
             carry <= next_count[9];
+        if (counted && counted_high)
+            greatest[bank] <= low_greatest && counted_byte == 8'hff;
+        else if (counted)
             low_greatest <= counted_byte == 8'hff;
-            if (high)
-                greatest[bank] <= low_greatest && counted_byte == 8'hff;
-        end
+    end
 
     reg [7:0] sample_byte;
 
@@ -147,7 +153,7 @@ module halfrow_row_sender #(
 
     always @(posedge clk) begin
         if (move)
-            row_byte <= state == SAMPLES ? sample_byte : head[4:3] == 2'd0 ? place_byte : head[4] && head[1] ? counted_byte : head_byte;
+            row_byte <= state == SAMPLES ? sample_byte : head[4:3] == 2'd0 ? place_byte : counts ? count_byte : head_byte;
         row_byte_valid <= !rst && (move || (row_byte_valid && !row_byte_ready));
     end
 

@@ -206,13 +206,13 @@ module halfrow_rows #(
 
     wire [3:0] head_index;
     wire [7:0] head_byte, counted_byte;
-    wire       counted;
+    wire       counted, counted_high;
 
     halfrow_row_heads #(.OUT_BITS(OUT_BITS)) heads (
         .clk(clk), .rst(rst), .start(start), .start_bank(ready_entry[OUT_BITS-1:0]), .width(width),
         .start_is_last(next_is_last), .start_generation(next_generation), .left(row_left), .left_bank(left_bank),
         .first_latency(first_latency), .last_latency(last_latency), .pauses(left_pauses), .bank(sent_bank),
-        .index(head_index), .value(head_byte), .replace(counted), .replacement(counted_byte));
+        .index(head_index), .value(head_byte), .replace(counted), .replace_high(counted_high), .replacement(counted_byte));
 
     wire        sample_out_read;
     wire [11:0] sample_sent;
@@ -233,7 +233,8 @@ module halfrow_rows #(
         .again(again), .again_entry(gate_entry), .again_waiting(again_waiting),
         .wanted_bank(next_entry[OUT_BITS-1:0]), .wanted_held(wanted_held), .place_held(place_held),
         .place_address(send_address), .place_byte(send_byte), .bank(sent_bank),
-        .head_index(head_index), .head_byte(head_byte), .counted(counted), .counted_byte(counted_byte),
+        .head_index(head_index), .head_byte(head_byte), .counted(counted), .counted_high(counted_high),
+        .counted_byte(counted_byte),
         .sample_read(sample_out_read), .column(column_sent), .sample(sample_sent),
         .row_valid(row_valid), .row_kind(row_kind), .row_sequence(row_sequence), .row_length(row_length),
         .row_flag(row_flag), .row_session(row_session), .row_taken(row_taken),

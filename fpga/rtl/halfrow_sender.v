@@ -71,18 +71,12 @@ module halfrow_sender (
     wire [ 7:0] sequence_byte = count[0] ? sequence[15:8] : sequence[7:0];
     wire [ 7:0] length_byte   = count[0] ? length[15:8] : length[7:0];
     wire [ 7:0] window_byte   = window_now[{count[1:0], 3'd0} +: 8];
-    reg  [ 7:0] field;
-
-    always @* begin
-        case (count)
-            4'd1:       field = of_row ? row_kind : reply_kind;
-            4'd2, 4'd3: field = sequence_byte;
-            4'd4, 4'd5: field = length_byte;
-            4'd6:       field = {7'd0, of_row ? row_flag : reply_flag};
-            4'd7:       field = of_row ? row_session : reply_session;
-            default:    field = window_byte;
-        endcase
-    end
+    wire [ 7:0] kind          = of_row ? row_kind : reply_kind;
+    wire [ 7:0] flags         = {7'd0, of_row ? row_flag : reply_flag};
+    wire [ 7:0] session       = of_row ? row_session : reply_session;
+    wire [ 7:0] low_byte      = count[1] ? sequence_byte : kind;
+    wire [ 7:0] high_byte     = !count[1] ? length_byte : count[0] ? session : flags;
+    wire [ 7:0] field         = count[3] ? window_byte : count[2] ? high_byte : low_byte;
 
     always @(posedge clk) begin
         if (state == IDLE) begin

@@ -20,7 +20,7 @@ module halfrow_status (
     input  wire        row_unneeded,
     input  wire        sample_over,      // may come every clock
     input  wire        latency_valid,
-    input  wire [15:0] first_latency,
+    input  wire [15:0] first_latency,    // both stay for 8 clocks
     input  wire [15:0] last_latency,
 
     input  wire [31:0] next_row_in,
@@ -33,13 +33,13 @@ module halfrow_status (
     input  wire        report_clears,    // a byte is set to 0 as it is taken
     input  wire [ 5:0] index,
     input  wire        take,             // pulse; indices come in order
-    output reg  [ 7:0] value
+    output reg  [ 7:0] value             // two clocks behind its index
 );
     localparam IDLE = 2'd0, COUNT = 2'd1, SATURATE = 2'd2, SWEEP = 2'd3;
 
     localparam [3:0] PACKETS = 4'd0, CRC_ERRORS = 4'd1, FRAMING_ERRORS = 4'd2, FOREIGN_PACKETS = 4'd3, REFUSALS = 4'd4,
-                     ROWS_IN = 4'd5, ROWS_OUT = 4'd6, ROWS_REPEATED = 4'd7, ROWS_UNNEEDED = 4'd8, SAMPLES_OVER = 4'd9,
-                     NEXT_ROW_IN = 4'd10, NEXT_ROW_OUT = 4'd11, CORE_BUSY = 4'd12, GENERATION = 4'd13, LEAST_LATENCY = 4'd14;
+                     ROWS_IN = 4'd5, ROWS_OUT = 4'd6, ROWS_REPEATED = 4'd7, ROWS_UNNEEDED = 4'd8, SAMPLES_OVER = 4'd9;
+    localparam [5:0] BOUNDS_TAKEN = 6'd48;
 
     reg [1:0] state;
     reg [3:0] counter;
@@ -140,46 +140,50 @@ module halfrow_status (
         end
     end
 
-    // The latencies of a row are looked at one after the other.
-    reg         first_due, last_due, measured;
-    reg  [15:0] latency, other_latency, least, most;
-    reg  [23:0] reported;   // most and the upper half of least, as they were when the lower half was taken
-    wire        latch = report && take && index == {LEAST_LATENCY, 2'd0};
-    wire        look  = (first_due || last_due) && !latch;
+    // Both latencies of a row are held against both bounds, one after the other. A report takes the bounds some bytes before they
+    // are sent, between two rows.
+    reg         measuring, measured;
+    reg         of_last, of_most;
+    reg         report_due;
+    reg  [15:0] least, most;
+    reg  [31:0] reported;
+    wire [15:0] latency = of_last ? last_latency : first_latency;
+    wire        below   = latency < (of_most ? most : least);
+    wire        latch   = report_due && !measuring;
 
     always @(posedge clk) begin
-        if (latency_valid) begin
-            latency       <= first_latency;
-            other_latency <= last_latency;
-        end else if (look) latency <= other_latency;
-        first_due <= latency_valid || (first_due && latch);
-        last_due  <= (last_due && latch) || (first_due && !latch);
-        if (look) begin
-            measured <= 1'b1;
-            if (!measured || latency < least) least <= latency;
-            if (latency > most) most <= latency;
-        end
-        if (latch) reported <= {most, least[15:8]};
+        report_due         <= (report && take && index == BOUNDS_TAKEN) || (report_due && !latch);
+        measuring          <= latency_valid || (measuring && !(of_last && of_most));
+        {of_last, of_most} <= measuring ? {of_last ^ of_most, !of_most} : 2'd0;
+        if (measuring && of_most) measured <= 1'b1;
+        if (measuring && !of_most && (below || !measured)) least <= latency;
+        if (measuring && of_most && !below) most <= latency;
+        if (latch) reported <= {most, least};
         if (forget || (latch && report_clears)) begin
             measured <= 1'b0;
             least    <= 16'd0;
             most     <= 16'd0;
         end
-        if (forget) {first_due, last_due} <= 2'd0;
+        if (forget) {measuring, report_due} <= 2'd0;
     end
 
-    assign idle = state == IDLE && !any && !first_due && !last_due;
+    assign idle = state == IDLE && !any && !measuring;
 
-    always @* begin
-        case (index[5:2])
-            NEXT_ROW_IN:   value = next_row_in[{index[1:0], 3'd0} +: 8];
-            NEXT_ROW_OUT:  value = acknowledged[{index[1:0], 3'd0} +: 8];
-            CORE_BUSY:     value = index[1:0] == 2'd0 ? {7'd0, core_busy} : 8'd0;
-            GENERATION:    value = index[1:0] == 2'd0 ? generation : 8'd0;
-            LEAST_LATENCY: value = index[1] ? 8'd0 : index[0] ? reported[7:0] : least[7:0];
-            4'd15:         value = index[1] ? 8'd0 : index[0] ? reported[23:16] : reported[15:8];
-            default:       value = stored;
-        endcase
+    // Counters up to byte 39; then four words from elsewhere and the two bounds.
+    reg  [7:0] next_row_byte, acknowledged_byte, now_byte, latency_byte, counter_byte;
+    reg        from_counter, from_number;
+    wire [7:0] number_byte = index[2] ? acknowledged_byte : next_row_byte;
+    wire [7:0] own_byte    = index[3] ? latency_byte : now_byte;
+
+    always @(posedge clk) begin
+        next_row_byte     <= next_row_in[{index[1:0], 3'd0} +: 8];
+        acknowledged_byte <= acknowledged[{index[1:0], 3'd0} +: 8];
+        now_byte          <= index[1:0] != 2'd0 ? 8'd0 : index[2] ? generation : {7'd0, core_busy};
+        latency_byte      <= reported[{index[2], index[0], 3'd0} +: 8] & {8{!index[1]}};
+        counter_byte      <= stored;
+        from_counter      <= !index[5] || index[4:3] == 2'd0;
+        from_number       <= !index[4];
+        value             <= from_counter ? counter_byte : from_number ? number_byte : own_byte;
     end
 endmodule
 
