@@ -321,9 +321,9 @@ module halfrow_dispatcher #(
                 end else if (of_tables) state <= TABLES;
             end
             TABLES:
-            if (tables_finished) begin
+            begin
                 {code, detail} <= {table_refusal, table_detail};
-                state          <= table_refusal != 4'd0 ? REFUSE : REPLY;
+                if (tables_finished) state <= table_refusal != 4'd0 ? REFUSE : REPLY;
             end
             COUNTED: if (status_idle) state <= REPLY;
             SETTLE: if (settled && status_idle && tables_ready) state <= REPLY;

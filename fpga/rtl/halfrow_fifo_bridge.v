@@ -8,7 +8,7 @@ module halfrow_fifo_bridge #(
     parameter SETUP = 1,
     parameter PULSE = 4,
     parameter RECOVER = 6,
-    parameter QUIET = 200,
+    parameter QUIET = 1000,
     parameter STROBE = 32,
     parameter MAX_WIDTH = 2048,
     parameter MAX_HEIGHT = 2048,
@@ -68,8 +68,12 @@ module halfrow_fifo_bridge #(
         else if (packet_seen)
             proven <= 1'b1;
 
+    // With a reset it stays two registers and becomes no shift register.
     always @(posedge link_clk)
-        armed <= {armed[0], proven};
+        if (link_rst)
+            armed <= 2'b00;
+        else
+            armed <= {armed[0], proven};
 
     halfrow_ft245 #(
         .SETUP(SETUP), .PULSE(PULSE), .RECOVER(RECOVER), .QUIET(QUIET), .STROBE(STROBE)

@@ -11,7 +11,9 @@ module halfrow_gaps (
     output reg         on          // there are gaps
 );
     reg  [31:0] x;
-    wire [31:0] a = x ^ {x[18:0], 13'd0};
+    // Kept, because the mapper would trade look-up tables for depth.
+    (* keep = "true" *) wire [31:0] a;
+    assign a = x ^ {x[18:0], 13'd0};
     wire [31:0] b = a ^ {17'd0, a[31:17]};
     wire [31:0] c = b ^ {b[26:0], 5'd0};
 

@@ -14,7 +14,7 @@ module halfrow_reply #(
     output wire        advance,          // on to the next index
 
     input  wire [ 7:0] packet_byte,      // one clock behind its index
-    input  wire [ 7:0] status_byte,      // two
+    input  wire [ 7:0] status_byte,      // two, and 0 unless the reply is its
     input  wire [ 7:0] capabilities_byte,
     input  wire [ 7:0] session,
     input  wire [63:0] serial,
@@ -29,8 +29,8 @@ module halfrow_reply #(
     output reg  [ 7:0] byte_data,
     input  wire        byte_ready
 );
-    // Further ones by their bits: CAPABILITIES 2, STATUS 3, TABLE_CRC 5, COMMIT 6, a refusal 7
-    localparam [2:0] ECHO = 3'd0, HELLO = 3'd1, TABLE_READ = 3'd4;
+    // and 3 for STATUS
+    localparam [2:0] ECHO = 3'd0, HELLO = 3'd1, CAPABILITIES = 3'd2, TABLE_READ = 3'd4, TABLE_CRC = 3'd5, COMMIT = 3'd6, REFUSAL = 3'd7;
 
     localparam [ 7:0] VERSION = 8'd1;
     localparam [31:0] MAGIC   = "1WRH";    // the first byte in [7:0]
@@ -41,39 +41,37 @@ module halfrow_reply #(
     wire [ 7:0] build_high    = index[0] ? BUILD[31:24] : BUILD[23:16];
     wire [ 7:0] build_byte    = index[2] ? build_high : build_low;
     wire [ 7:0] session_byte  = index[0] ? session : VERSION;
+    wire        in_serial     = index[4] || &index[3:1];
     reg  [ 7:0] serial_high, serial_low, middle_byte, capability, crc_byte, refusal_byte;
-    reg         in_serial;
 
+    // All but one of these are 0.
     always @(posedge clk) begin
-        serial_low   <= turned_serial[{1'b0, index[1:0], 3'd0} +: 8];
-        serial_high  <= turned_serial[{1'b1, index[1:0], 3'd0} +: 8];
-        middle_byte  <= !index[3] ? MAGIC[{index[1:0], 3'd0} +: 8] : index[2:1] != 2'd0 ? build_byte : session_byte;
-        in_serial    <= index[4] || &index[3:1];
-        capability   <= capabilities_byte;
-        crc_byte     <= crc[{index[1:0], 3'd0} +: 8];
-        refusal_byte <= refusal[{index[1:0], 3'd0} +: 8];
+        if (source != HELLO || !in_serial || index[2]) serial_low <= 8'd0;
+        else serial_low <= turned_serial[{1'b0, index[1:0], 3'd0} +: 8];
+        if (source != HELLO || !in_serial || !index[2]) serial_high <= 8'd0;
+        else serial_high <= turned_serial[{1'b1, index[1:0], 3'd0} +: 8];
+        if (source != HELLO || in_serial) middle_byte <= 8'd0;
+        else middle_byte <= !index[3] ? MAGIC[{index[1:0], 3'd0} +: 8] : index[2:1] != 2'd0 ? build_byte : session_byte;
+        if (source != CAPABILITIES && source != COMMIT) capability <= 8'd0;
+        else capability <= source[2] ? generation : capabilities_byte;
+        if (source != TABLE_CRC) crc_byte <= 8'd0;
+        else crc_byte <= crc[{index[1:0], 3'd0} +: 8];
+        if (source != REFUSAL) refusal_byte <= 8'd0;
+        else refusal_byte <= refusal[{index[1:0], 3'd0} +: 8];
     end
 
-    wire [7:0] serial_byte = index[2] ? serial_high : serial_low;
-    wire [7:0] hello_byte  = in_serial ? serial_byte : middle_byte;
-    wire [7:0] word_byte   = source[1] ? refusal_byte : crc_byte;
-
     // Only bytes from memories come as they are, the rest is two clocks behind its index.
-    reg [7:0] greeting, made;
+    reg [7:0] made;
     reg       in_table;                  // behind the span
     reg       from_packet;
 
     always @(posedge clk) begin
-        greeting    <= hello_byte;
-        made        <= source[2] ? (source[0] ? word_byte : generation) : capability;
+        made        <= serial_low | serial_high | middle_byte | capability | crc_byte | refusal_byte;
         in_table    <= source == TABLE_READ && index >= 12'd7;
         from_packet <= source == ECHO || (source == TABLE_READ && index < 12'd7) || (source == HELLO && index < 12'd4);
     end
 
-    wire       from_memory = from_packet || in_table;
-    wire [7:0] memory_byte = in_table ? table_byte : packet_byte;
-    wire [7:0] fixed_byte  = source[2] || !source[0] ? made : source[1] ? status_byte : greeting;
-    wire [7:0] value       = from_memory ? memory_byte : fixed_byte;
+    wire [7:0] value = in_table ? table_byte : from_packet ? packet_byte : made | status_byte;
 
     reg  active, settled, fetched;
     wire last      = index == length;

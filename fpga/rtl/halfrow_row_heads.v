@@ -36,11 +36,14 @@ module halfrow_row_heads #(
 
     wire [7:0] width_byte = start_place[0] ? {4'd0, width[11:8]} : width[7:0];
     wire [7:0] name_byte = start_place[0] ? start_generation : {7'd0, start_is_last};
-    wire [7:0] start_byte = start_place[1] ? name_byte : width_byte;
+    // Kept, because the mapper would trade look-up tables for depth.
+    (* keep = "true" *) wire [7:0] start_byte;
+    assign start_byte = start_place[1] ? name_byte : width_byte;
     wire [7:0] first_byte = left_place[0] ? first_latency[15:8] : first_latency[7:0];
     wire [7:0] last_byte = left_place[0] ? last_latency[15:8] : last_latency[7:0];
     wire [7:0] pauses_byte = left_place[0] ? pauses[15:8] : pauses[7:0];
-    wire [7:0] left_byte = left_place[2] ? pauses_byte : left_place[1] ? last_byte : first_byte;
+    (* keep = "true" *) wire [7:0] left_byte;
+    assign left_byte = left_place[2] ? pauses_byte : left_place[1] ? last_byte : first_byte;
 
     wire [OUT_BITS+3:0] started_at = {started_bank, 2'b10, start_place};
     wire [OUT_BITS+3:0] left_at = {left_bank, {2{!left_place[2]}}, left_place[1:0]};
@@ -49,9 +52,17 @@ module halfrow_row_heads #(
 
     assign value = bytes[{bank, index}];
 
-    always @(posedge clk)
-        if (replace || start_due || left_due)
-            bytes[address] <= replace ? replacement : start_due ? start_byte : left_byte;
+    reg                write;
+    reg [OUT_BITS+3:0] write_address;
+    reg [7:0]          write_byte;
+
+    always @(posedge clk) begin
+        write <= replace || start_due || left_due;
+        write_address <= address;
+        write_byte <= replace ? replacement : start_due ? start_byte : left_byte;
+        if (write)
+            bytes[write_address] <= write_byte;
+    end
 
     always @(posedge clk) begin
         if (start) begin

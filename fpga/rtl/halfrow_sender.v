@@ -66,17 +66,24 @@ module halfrow_sender (
     assign row_byte_ready   = state == PAYLOAD && of_row && free;
     assign idle             = state == IDLE && !stage_valid && stuffer_idle;
 
-    wire [15:0] sequence      = of_row ? row_sequence : reply_sequence;
-    wire [15:0] length        = of_row ? row_length : reply_length;
-    wire [ 7:0] sequence_byte = count[0] ? sequence[15:8] : sequence[7:0];
-    wire [ 7:0] length_byte   = count[0] ? length[15:8] : length[7:0];
-    wire [ 7:0] window_byte   = window_now[{count[1:0], 3'd0} +: 8];
     wire [ 7:0] kind          = of_row ? row_kind : reply_kind;
     wire [ 7:0] flags         = {7'd0, of_row ? row_flag : reply_flag};
     wire [ 7:0] session       = of_row ? row_session : reply_session;
-    wire [ 7:0] low_byte      = count[1] ? sequence_byte : kind;
-    wire [ 7:0] high_byte     = !count[1] ? length_byte : count[0] ? session : flags;
-    wire [ 7:0] field         = count[3] ? window_byte : count[2] ? high_byte : low_byte;
+    wire [15:0] sequence      = of_row ? row_sequence : reply_sequence;
+    wire [15:0] length        = of_row ? row_length : reply_length;
+
+    // Kept, because the mapper would trade look-up tables for depth.
+    (* keep = "true" *) wire [7:0] sequence_byte;
+    assign sequence_byte = count[0] ? sequence[15:8] : sequence[7:0];
+    (* keep = "true" *) wire [7:0] length_byte;
+    assign length_byte = count[0] ? length[15:8] : length[7:0];
+    (* keep = "true" *) wire [7:0] window_byte;
+    assign window_byte = window_now[{count[1:0], 3'd0} +: 8];
+    (* keep = "true" *) wire [7:0] name_byte;
+    assign name_byte = count[2] ? session : kind;
+    wire        named         = !count[3] && count[2] == count[1];
+    wire [ 7:0] counted       = count[2] ? length_byte : sequence_byte;
+    wire [ 7:0] field         = count == 4'd6 ? flags : count[3] ? window_byte : named ? name_byte : counted;
 
     always @(posedge clk) begin
         if (state == IDLE) begin

@@ -33,7 +33,7 @@ module halfrow_status (
     input  wire        report_clears,    // a byte is set to 0 as it is taken
     input  wire [ 5:0] index,
     input  wire        take,             // pulse; indices come in order
-    output reg  [ 7:0] value             // two clocks behind its index
+    output reg  [ 7:0] value             // two clocks behind its index, 0 without `report`
 );
     localparam IDLE = 2'd0, COUNT = 2'd1, SATURATE = 2'd2, SWEEP = 2'd3;
 
@@ -169,21 +169,22 @@ module halfrow_status (
 
     assign idle = state == IDLE && !any && !measuring;
 
-    // Counters up to byte 39; then four words from elsewhere and the two bounds.
+    // Counters up to byte 39; then four words from elsewhere and the two bounds. All but one of these are 0.
     reg  [7:0] next_row_byte, acknowledged_byte, now_byte, latency_byte, counter_byte;
-    reg        from_counter, from_number;
-    wire [7:0] number_byte = index[2] ? acknowledged_byte : next_row_byte;
-    wire [7:0] own_byte    = index[3] ? latency_byte : now_byte;
+    wire       high = index[5] && index[4:3] != 2'd0;
 
     always @(posedge clk) begin
-        next_row_byte     <= next_row_in[{index[1:0], 3'd0} +: 8];
-        acknowledged_byte <= acknowledged[{index[1:0], 3'd0} +: 8];
-        now_byte          <= index[1:0] != 2'd0 ? 8'd0 : index[2] ? generation : {7'd0, core_busy};
-        latency_byte      <= reported[{index[2], index[0], 3'd0} +: 8] & {8{!index[1]}};
-        counter_byte      <= stored;
-        from_counter      <= !index[5] || index[4:3] == 2'd0;
-        from_number       <= !index[4];
-        value             <= from_counter ? counter_byte : from_number ? number_byte : own_byte;
+        if (high || !report) counter_byte <= 8'd0;
+        else counter_byte <= stored;
+        if (!high || index[4] || index[2] || !report) next_row_byte <= 8'd0;
+        else next_row_byte <= next_row_in[{index[1:0], 3'd0} +: 8];
+        if (!high || index[4] || !index[2] || !report) acknowledged_byte <= 8'd0;
+        else acknowledged_byte <= acknowledged[{index[1:0], 3'd0} +: 8];
+        if (!high || !index[4] || index[3] || index[1:0] != 2'd0 || !report) now_byte <= 8'd0;
+        else now_byte <= index[2] ? generation : {7'd0, core_busy};
+        if (!high || !index[4] || !index[3] || index[1] || !report) latency_byte <= 8'd0;
+        else latency_byte <= reported[{index[2], index[0], 3'd0} +: 8];
+        value <= counter_byte | next_row_byte | acknowledged_byte | now_byte | latency_byte;
     end
 endmodule
 

@@ -71,12 +71,22 @@ module halfrow_table_port #(
         end
     end
 
-    wire [ 6:0] at     = {place, 3'd0};
-    wire [31:0] step   = {7'd0, step_port};
-    wire [ 7:0] node_0 = node_port_0[at +: 8];
-    wire [ 7:0] node_1 = node_port_1[at +: 8];
+    // Both ports by pairs of bytes, and the step. Kept, because the mapper would trade look-up tables for depth.
+    wire [31:0] step = {7'd0, step_port};
+    (* keep = "true" *) wire [39:0] pairs;
+    (* keep = "true" *) wire [7:0] step_byte;
+    assign step_byte = step[{place[1:0], 3'd0} +: 8];
+    genvar i;
+    generate
+        for (i = 0; i < 5; i = i + 1) begin : pair
+            wire [15:0] both = port ? node_port_1[16*i +: 16] : node_port_0[16*i +: 16];
+            assign pairs[8*i +: 8] = place[0] ? both[15:8] : both[7:0];
+        end
+    endgenerate
+    wire [7:0] lower_byte = pairs[{1'b0, place[2:1], 3'd0} +: 8];
+
     always @(posedge clk)
-        if (state == SELECT) byte_read <= !kernel ? step[at[4:0] +: 8] : port ? node_1 : node_0;
+        if (state == SELECT) byte_read <= !kernel ? step_byte : place[3] ? pairs[39:32] : lower_byte;
 
     always @(posedge clk) begin
         case (state)
