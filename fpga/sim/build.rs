@@ -94,28 +94,29 @@ impl Verilator {
     }
 
     fn compile(&self, models: &[&Model], out: &Path) {
-        let mut sources: Vec<_> = models.iter().flat_map(|model| cpp_files(&out.join(model.class))).collect();
+        let all = models.iter().flat_map(|model| cpp_files(&out.join(model.class)));
+        let (seldom, mut sources): (Vec<_>, Vec<_>) = all.partition(|file| runs_seldom(file));
         for file in ["verilated.cpp", "verilated_threads.cpp", "verilated_vcd_c.cpp"] {
             sources.push(self.include.join(file));
         }
+        if models.len() > BOARDS.len() {
+            sources.push("shim/builds.cpp".into());
+        }
+        sources.push("shim/boards.cpp".into());
+        self.compiler(models, out).opt_level(3).files(sources).compile("halfrow_designs");
+        self.compiler(models, out).opt_level(0).files(seldom).compile("halfrow_designs_seldom");
+        println!("cargo::rustc-link-lib=pthread");
+    }
+
+    fn compiler(&self, models: &[&Model], out: &Path) -> cc::Build {
         let mut build = cc::Build::new();
-        build
-            .cpp(true)
-            .std("c++17")
-            .opt_level(3)
-            .debug(false)
-            .warnings(false)
-            .define("VL_TIME_CONTEXT", None);
+        build.cpp(true).std("c++17").debug(false).warnings(false).define("VL_TIME_CONTEXT", None);
         build.define("VM_TRACE", "1").define("VM_TRACE_VCD", "1").define("VM_TRACE_FST", "0");
         build.include(&self.include).include(self.include.join("vltstd"));
         for model in models {
             build.include(out.join(model.class));
         }
-        if models.len() > BOARDS.len() {
-            sources.push("shim/builds.cpp".into());
-        }
-        build.files(sources).file("shim/boards.cpp").compile("halfrow_designs");
-        println!("cargo::rustc-link-lib=pthread");
+        build
     }
 }
 
@@ -123,6 +124,12 @@ impl Verilator {
 fn said(command: &mut Command) -> Option<String> {
     let output = command.output().ok().filter(|output| output.status.success())?;
     String::from_utf8(output.stdout).ok()
+}
+
+/// Whether Verilator keeps code apart there that runs at the start, or for a waveform.
+fn runs_seldom(file: &Path) -> bool {
+    let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    name.contains("__Slow") || name.contains("__Trace")
 }
 
 fn cpp_files(folder: &Path) -> Vec<PathBuf> {
