@@ -1,8 +1,9 @@
 //! The Verilog against `protocol/WIRE.md`, rule by rule, through its bytes: the tests of the mock, but for those in its
-//! `mock_only.rs`.
+//! `mock_only.rs`. Beside every board stands the mock, which gets the same bytes and must answer the same.
 
 #![expect(clippy::panic, clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
 
+mod judged;
 mod subject;
 
 #[path = "../../../mock/tests/protocol/bench.rs"]

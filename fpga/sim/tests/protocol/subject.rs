@@ -3,6 +3,8 @@
 use halfrow_mock::{BoardFault, Options, TapCount};
 use halfrow_sim::{Board, Build};
 
+use crate::judged::Judged;
+
 /// Cases of the properties that take longest. `scripts/soak` tries more.
 pub(crate) const CASES: u32 = 64;
 
@@ -24,11 +26,11 @@ fn build(options: &Options) -> Option<Build> {
     builds().into_iter().find(|(_, described)| described == options).map(|(build, _)| build)
 }
 
-/// A board of this build that was just switched on.
-pub(crate) fn switched_on(options: &Options, fault: Option<BoardFault>) -> Board {
+/// A board of this build that was just switched on, and the mock beside it.
+pub(crate) fn switched_on(options: &Options, fault: Option<BoardFault>) -> Judged {
     assert_eq!(fault, None, "the Verilog has no faults to be asked for");
     let build = build(options).unwrap_or_else(|| panic!("no such build: {options:?}"));
-    Board::of_build(build, 1)
+    Judged::new(Board::of_build(build, 1), options)
 }
 
 /// Those of these builds that there are.

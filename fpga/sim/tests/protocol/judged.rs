@@ -1,0 +1,61 @@
+//! The Verilog with the mock as its judge: both get the same bytes, and must say the same.
+
+use std::time::Duration;
+
+use halfrow_mock::{Endpoint, Options};
+use halfrow_protocol::{Decoder, Header, Kind};
+use halfrow_sim::{Board, Failure};
+
+/// A board, and the mock that was built as it is.
+pub(crate) struct Judged {
+    board: Board,
+    judge: halfrow_mock::Board,
+    outgoing: Vec<u8>,
+}
+
+impl Judged {
+    pub(crate) fn new(board: Board, options: &Options) -> Self {
+        Self { board, judge: halfrow_mock::Board::new(options, None).unwrap(), outgoing: Vec::new() }
+    }
+}
+
+impl Endpoint for Judged {
+    type Failure = Failure;
+
+    fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), Failure> {
+        self.board.receive(bytes, now)?;
+        self.judge.receive(bytes, now);
+        let said = std::mem::take(self.board.outgoing());
+        compare(&packets(&said), &packets(self.judge.outgoing()));
+        self.judge.outgoing().clear();
+        self.outgoing.extend(said);
+        Ok(())
+    }
+
+    fn outgoing(&mut self) -> &mut Vec<u8> {
+        &mut self.outgoing
+    }
+}
+
+/// Both must be the same packets in the same order. A row that leaves the Verilog while the next one enters names a smaller
+/// window than the mock's, which has no such while.
+fn compare(said: &[(Header, Vec<u8>)], expected: &[(Header, Vec<u8>)]) {
+    let headers = |packets: &[(Header, Vec<u8>)]| packets.iter().map(|it| it.0).collect::<Vec<_>>();
+    assert_eq!(said.len(), expected.len(), "{:?}, expected {:?}", headers(said), headers(expected));
+    for ((header, payload), (expected_header, expected_payload)) in said.iter().zip(expected) {
+        let window = expected_header.window.min(header.window);
+        assert_eq!(header, &Header { window, ..*expected_header });
+        assert_eq!(payload, expected_payload, "of {header:?}");
+    }
+}
+
+/// What is said in these bytes, without what a board says of itself.
+fn packets(mut wire: &[u8]) -> Vec<(Header, Vec<u8>)> {
+    let (mut decoder, mut packets) = (Decoder::new(), Vec::new());
+    while let Some(packet) = decoder.next(&mut wire) {
+        let packet = packet.unwrap();
+        let own = packet.header.kind == Kind::Capabilities.code();
+        packets.push((packet.header, if own { Vec::new() } else { packet.payload.to_vec() }));
+    }
+    packets
+}
