@@ -11,6 +11,7 @@ pub mod campaign;
 pub mod cases;
 pub mod dice;
 pub mod parallel;
+pub mod photographs;
 pub mod poor_links;
 pub mod program;
 pub mod scenario;
@@ -18,3 +19,4 @@ pub mod scenarios;
 #[cfg(feature = "sim")]
 pub mod simulated_core;
 pub mod system;
+pub mod whole_board;

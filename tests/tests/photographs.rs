@@ -2,37 +2,14 @@
 //!
 //! The photographs are taken from the folder `HALFROW_IMAGES`, or from `../shared/kodak` beside the project.
 
-#![allow(clippy::unwrap_used, reason = "clippy.toml allows it in tests, but not in their helpers")]
-
-use std::path::PathBuf;
-
-use halfrow::frames::{ReadOptions, read};
 use halfrow_model::{
-    Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet, correct, correct_real, round_to_frame,
+    Equidistant, Geometry, Interpolant, Kernel, TableSet, correct, correct_real, round_to_frame,
 };
-
-fn photographs() -> Vec<PathBuf> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/kodak");
-    let folder = std::env::var_os("HALFROW_IMAGES").map_or_else(|| PathBuf::from(beside), PathBuf::from);
-    let Ok(entries) = std::fs::read_dir(&folder) else { return Vec::new() };
-    let mut paths: Vec<_> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    paths.retain(|path| path.extension().is_some_and(|extension| extension == "png"));
-    paths.sort();
-    paths
-}
-
-/// The photograph's mosaic, repeated until it fills the frame. Its sides are even, so the colours go on.
-fn fill(photograph: &Frame, geometry: &Geometry) -> Frame {
-    let samples = (0..geometry.height())
-        .flat_map(|row| photograph.row(row % photograph.height()).iter().cycle().take(geometry.width()))
-        .copied()
-        .collect();
-    Frame::new(geometry.width(), geometry.depth(), photograph.phase(), samples).unwrap()
-}
+use halfrow_tests::photographs::{self, filled};
 
 #[test]
 fn on_photographs_the_integers_are_within_one_of_double_precision() {
-    let paths = photographs();
+    let paths = photographs::paths();
     if paths.is_empty() {
         println!("no photographs: set HALFROW_IMAGES to a folder with PNG files to measure on them");
         return;
@@ -42,8 +19,7 @@ fn on_photographs_the_integers_are_within_one_of_double_precision() {
     let kernel = Kernel::from(Interpolant::Hermite);
     let (mut equal, mut total) = (0, 0);
     for path in &paths {
-        let photograph = read(path, &ReadOptions::default()).unwrap();
-        let frame = fill(&photograph, &geometry);
+        let frame = filled(path, &geometry);
         let integer = correct(&tables, &kernel, &frame).unwrap();
         let real = correct_real(&geometry, &lens, None, Interpolant::Hermite, &frame).unwrap();
         let real = round_to_frame(&real, &frame).unwrap();

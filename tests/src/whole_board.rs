@@ -1,0 +1,112 @@
+//! Cases played through a whole board, by its bytes: upload, commit, rows, credit, acknowledgement.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use halfrow::board::{Board, Configuration, NumberedFrame, OpenOptions, ReturnedRow, RowTraffic};
+use halfrow::link::Link;
+use halfrow_model::{Frame, Kernel, TableSet};
+
+use crate::cases::{Build, Case, Played};
+
+/// An open session in which case follows case.
+pub struct WholeBoard {
+    board: Board,
+    next_frame: u16,
+}
+
+impl WholeBoard {
+    /// Opens a session over `link`.
+    ///
+    /// # Panics
+    /// When nobody answers.
+    #[must_use]
+    pub fn open(link: Box<dyn Link>) -> Self {
+        let board = Board::open(link, &OpenOptions::default()).map_err(|(error, _)| error).unwrap();
+        Self { board, next_frame: 0 }
+    }
+
+    /// What cases for this board are drawn for.
+    #[must_use]
+    pub fn build(&self) -> Build {
+        let capabilities = &self.board.capabilities;
+        Build {
+            latency: capabilities.latency,
+            ring: capabilities.ring,
+            least_blanking: capabilities.least_blanking,
+            outer_taps: capabilities.taps == 7,
+        }
+    }
+
+    /// Plays the first frame alone; then the tables of the second are committed in advance, and the first once more with
+    /// the second close behind.
+    ///
+    /// # Panics
+    /// When the board refuses anything.
+    pub fn play(&mut self, case: &Case) -> Played {
+        let [(tables, kernel, first), (next_tables, next_kernel, second)] = &case.frames[..] else {
+            panic!("{} frames instead of two", case.frames.len())
+        };
+        let settings = &case.settings;
+        let configuration = Configuration {
+            width: settings.width,
+            height: settings.height,
+            centre2: settings.centre2,
+            blanking: settings.blanking,
+            gap_seed: settings.gap_seed,
+            bits: settings.depth.bits() as u8,
+        };
+        self.board.configure(&configuration).unwrap();
+        let mut played = Played::default();
+        self.commit(tables, kernel, 0);
+        self.stream(&[first], &mut played);
+        self.commit(next_tables, next_kernel, 1);
+        self.stream(&[first, second], &mut played);
+        played
+    }
+
+    /// Commits tables for the frame that many behind the next one.
+    fn commit(&mut self, tables: &TableSet, kernel: &Kernel, behind: u16) {
+        let first_frame = self.next_frame.wrapping_add(behind);
+        self.board.upload(tables, kernel).unwrap();
+        self.board.commit(tables, kernel, first_frame, generation(first_frame)).unwrap();
+    }
+
+    fn stream(&mut self, frames: &[&Frame], played: &mut Played) {
+        let frames: Vec<_> = frames.iter().map(|&frame| Arc::new(frame.clone())).collect();
+        let mut numbers = self.next_frame..;
+        self.next_frame += frames.len() as u16;
+        let frames = frames.into_iter().map(|frame| NumberedFrame { number: numbers.next().unwrap(), frame });
+        self.board.stream(&mut Collector { frames: frames.collect::<Vec<_>>().into_iter(), played }).unwrap();
+    }
+}
+
+/// Never 0, which is no generation, and never that of the tables before.
+fn generation(first_frame: u16) -> u8 {
+    (first_frame % 255) as u8 + 1
+}
+
+/// What the model says that comes out of [`WholeBoard::play`].
+#[must_use]
+pub fn expected(case: &Case) -> Played {
+    let mut whole = case.clone();
+    whole.frames.insert(0, whole.frames[0].clone());
+    whole.expected()
+}
+
+struct Collector<'a> {
+    frames: std::vec::IntoIter<NumberedFrame>,
+    played: &'a mut Played,
+}
+
+impl RowTraffic for Collector<'_> {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        self.frames.next()
+    }
+
+    fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        self.played.samples.extend(row.samples);
+        self.played.latencies.extend([row.first_latency, row.last_latency]);
+        ControlFlow::Continue(())
+    }
+}
