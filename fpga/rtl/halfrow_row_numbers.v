@@ -120,22 +120,22 @@ module halfrow_row_numbers #(
     end
 
     // A host cannot have a row that was never sent, so a window beyond those that were counts as far as they go.
-    reg                   before, far;
+    reg                   behind, far;
     reg  [ENTRY_BITS-1:0] near;
-    wire [9:0]            ahead = {1'b0, window_byte, 1'b0} - {1'b0, acknowledged_byte, before};
+    wire [9:0]            ahead = {1'b0, window_byte, 1'b0} - {1'b0, acknowledged_byte, behind};
 
     always @(posedge clk)
         if (operation == COMPARE && place != PREPARE) begin
-            before <= ahead[9];
+            behind <= ahead[9];
             if (place == 3'd0) begin
                 near <= ahead[ENTRY_BITS:1];
                 far <= ahead[8:ENTRY_BITS+1] != {8-ENTRY_BITS{1'b0}};
             end else
                 far <= far || ahead[8:1] != 8'd0;
         end else if (operation != COMPARE)
-            before <= 1'b0;
+            behind <= 1'b0;
 
-    assign release_rows = before ? {ENTRY_BITS{1'b0}} : far || near > rows_sent ? rows_sent : near;
+    assign release_rows = behind ? {ENTRY_BITS{1'b0}} : far || near > rows_sent ? rows_sent : near;
 
     wire                  unused = &{1'b0, sum[0], ahead[0]};
     wire [ENTRY_BITS-1:0] released = addend[ENTRY_BITS-1:0] & {ENTRY_BITS{releases}};

@@ -69,12 +69,12 @@ module halfrow_sender (
     wire [ 7:0] kind          = of_row ? row_kind : reply_kind;
     wire [ 7:0] flags         = {7'd0, of_row ? row_flag : reply_flag};
     wire [ 7:0] session       = of_row ? row_session : reply_session;
-    wire [15:0] sequence      = of_row ? row_sequence : reply_sequence;
+    wire [15:0] sequence_now  = of_row ? row_sequence : reply_sequence;
     wire [15:0] length        = of_row ? row_length : reply_length;
 
     // Kept, because the mapper would trade look-up tables for depth.
     (* keep = "true" *) wire [7:0] sequence_byte;
-    assign sequence_byte = count[0] ? sequence[15:8] : sequence[7:0];
+    assign sequence_byte = count[0] ? sequence_now[15:8] : sequence_now[7:0];
     (* keep = "true" *) wire [7:0] length_byte;
     assign length_byte = count[0] ? length[15:8] : length[7:0];
     (* keep = "true" *) wire [7:0] window_byte;
