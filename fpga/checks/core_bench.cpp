@@ -4,8 +4,10 @@
 //   random N SEED   N cases: widths, depths, centres, steps, kernels, blankings, gaps, tables changed between rows
 //   hostile N SEED  the same behind rows too short and too long, rows unprepared, resets in mid row
 //   frame KERNEL    the golden frame of 1920 x 1080 by its CRC-32: hermite or keys
+//   fault N         turns fault N on; in a model of mutation.py
 #include "Vcore.h"
 #include "datapath.hpp"
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -18,7 +20,10 @@
 #ifndef TABLE_BANKS
 #define TABLE_BANKS 2
 #endif
-constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048;
+#ifndef RING_BITS
+#define RING_BITS 11
+#endif
+constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 1 << RING_BITS;
 
 struct Bench {
     static constexpr uint64_t UNKNOWN = ~0ull;
@@ -291,7 +296,7 @@ static void rows(Bench &bench, int count) {
 static void random_cases(Bench &bench, int cases, int widest) {
     for (int k = 0; k < cases; k++) {
         bench.reset();
-        bench.configure(bench.drawn_frame(bench.draw(4) ? 100 : widest));
+        bench.configure(bench.drawn_frame(bench.draw(4) ? std::min(100, widest) : widest));
         bench.gaps = bench.draw(2) ? 0 : 2 + bench.draw(6);
         bench.shorts = bench.longs = bench.unprepared = 0;
         rows(bench, 2 + bench.draw(3));
@@ -362,17 +367,23 @@ static void golden_frame(Bench &bench, Interpolant interpolant) {
 
 int main(int argc, char **argv) {
     Bench bench;
+    const int widest = std::min(200, RING);
     for (int k = 1; k < argc; k++) {
         const char *what = argv[k];
         int count = k + 1 < argc ? std::atoi(argv[k + 1]) : 0;
         if (std::strcmp(what, "golden") == 0) {
             golden(bench);
+#ifdef FAULTS
+        } else if (std::strcmp(what, "fault") == 0) {
+            bench.core.mutsel = count;
+            k++;
+#endif
         } else if (std::strcmp(what, "frame") == 0 && k + 1 < argc) {
             golden_frame(bench, argv[++k][0] == 'k' ? Interpolant::keys : Interpolant::hermite);
         } else if (k + 2 < argc && count > 0) {
             bench.random.seed(std::atoi(argv[k + 2]));
             k += 2;
-            std::strcmp(what, "hostile") == 0 ? hostile_cases(bench, count, 200) : random_cases(bench, count, 200);
+            std::strcmp(what, "hostile") == 0 ? hostile_cases(bench, count, widest) : random_cases(bench, count, widest);
         } else {
             std::printf("core_bench: what is %s?\n", what);
             return 2;

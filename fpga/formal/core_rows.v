@@ -117,6 +117,7 @@ module core_rows #(
     always @(posedge clk)
         if (running && !rst) begin
             writes_each_sample_once: assert (ring_write == (enable && in_valid));
+            reads_on_pixel_clocks: assert (enable || !ring_read);
             if (reads && enable) begin
                 if (ring_read) begin
                     own_sample: assert (read_address == leaving_base + newest[RING_BITS-1:0]);

@@ -9,9 +9,9 @@ module credit #(
 ) (
     input wire        clk,
     input wire        drop,
-    input wire [31:0] drop_next_row,
+    input wire [4:0]  drop_number,           // the rows' numbers lie near 0 or near the last of all
     input wire        acknowledge,
-    input wire [31:0] acknowledge_window,
+    input wire [4:0]  acknowledge_number,
     input wire        wants_entry,
     input wire        wants_exit,
     input wire        wants_sending
@@ -19,6 +19,9 @@ module credit #(
     localparam BANKS = 1 << IN_BITS;
     localparam ENTRY_BITS = IN_BITS + 1;
     localparam [31:0] MOST = 32'hffffffff;
+
+    wire [31:0] drop_next_row = {{28{drop_number[4]}}, drop_number[3:0]};
+    wire [31:0] acknowledge_window = {{28{acknowledge_number[4]}}, acknowledge_number[3:0]};
 
     reg running = 1'b0;
     always @(posedge clk) running <= 1'b1;
