@@ -7,9 +7,7 @@ module core_rows #(
     parameter W = 12,                        // columns
     parameter RING_BITS = 4,
     parameter TAPS = 7,
-    parameter GAPS = 0,                      // 1: clocks without enable
-    parameter LOOK_AHEAD = 0,                // samples beyond what is legal
-    parameter HELD = 16                      // samples that a table may count on: M
+    parameter GAPS = 0                       // 1: clocks without enable
 ) (
     input wire clk,
     input wire wants_gap,
@@ -17,7 +15,6 @@ module core_rows #(
     input wire junk,
     input wire [36:0] s                      // the source coordinate
 );
-    localparam SPAN = TAPS == 7 ? 3 : 2;
     localparam D = W / 2 + (TAPS == 7 ? 12 : 11);
     localparam BEGUN = W / 2 + 1;            // pixel clocks from a sample to its column's source coordinate
     localparam READ = BEGUN + 3;             // and to the read that its taps need
@@ -83,18 +80,18 @@ module core_rows #(
             begun_row <= begun_row ^ lasts[BEGUN-1];
         end
 
-    // The two conditions of DATAPATH.md's section "Ring", and what legal_line.v proves.
+    // The two conditions of DATAPATH.md's section "Ring"; and that a row reads beyond its last column late only (README.md).
     always @(posedge clk)
         if (running && begun) begin
             assume (n < W && (begins ? n == (begun_row ? first_1 : first_0) : n == n_1 || n == n_1 + 12'd1));
-            assume (!begins || n + 12'd4 <= W / 2 + 3 + LOOK_AHEAD);
-            assume (begun_column + W / 2 - 1 < HELD + n);
+            assume (!begins || n + 12'd4 <= W / 2 + 3);
+            assume (begun_column + W / 2 - 1 < M + n);
             assume (n + 12'd4 < W || begun_column >= W / 2 - 2);
         end
 
     // The newest column that the taps need, three pixel clocks later, and where the row's first sample lies.
     wire        reads = valids[READ-1];
-    wire [11:0] m = n_3 + SPAN + 1;
+    wire [11:0] m = n_3 + 12'd4;
     wire [11:0] newest = m >= W ? W - 12'd2 + {11'd0, m[0]} : m;
     reg  [RING_BITS-1:0] entering_base, leaving_base;
     reg  [RING_BITS+1:0] entering_age, leaving_age;              // samples since it

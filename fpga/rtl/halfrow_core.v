@@ -46,8 +46,7 @@ module halfrow_core #(
     output wire [79:0]         node_port_0,
     output wire [79:0]         node_port_1
 );
-    localparam SPAN = (TAPS == 7) ? 3 : 2;    // the window without its newest sample is n - SPAN ... n + SPAN
-    localparam SLOTS = 2 * SPAN + 1;
+    localparam LEFT = (TAPS == 7) ? 3 : 2;    // the window is n - LEFT ... n + 4
 
     wire [RING_BITS-1:0] write_address, first_address, last_address, read_address;
     wire ring_write, ring_read;
@@ -55,7 +54,7 @@ module halfrow_core #(
     wire row_begin, row_end, start_waits;
     wire [36:0] start_position;
     wire start_bank;
-    wire [12*SLOTS-1:0] opening;
+    wire [12*(LEFT+4)-1:0] opening;
 
     halfrow_row_start #(.MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .TABLE_BANKS(TABLE_BANKS)) row_start (
         .clk(clk), .rst(rst), .centre2(centre2),
@@ -65,7 +64,7 @@ module halfrow_core #(
         .step_write(step_write), .table_read(table_read), .table_bank(table_bank), .table_entry(table_entry),
         .table_data(table_data[24:0]));
 
-    halfrow_entry #(.RING_BITS(RING_BITS), .SPAN(SPAN)) entry (
+    halfrow_entry #(.RING_BITS(RING_BITS), .LEFT(LEFT)) entry (
         .clk(clk), .rst(rst), .enable(enable), .width(width), .first_column(start_position[36:25]),
         .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample),
         .ring_write(ring_write), .write_address(write_address), .first_address(first_address),
@@ -92,7 +91,7 @@ module halfrow_core #(
     assign ring_read = enable && (load || move);
 
     wire [12*7-1:0] taps;
-    halfrow_window #(.SPAN(SPAN)) tap_window (
+    halfrow_window #(.LEFT(LEFT)) tap_window (
         .clk(clk), .enable(ring_read), .load(load), .opening(opening), .newest(newest),
         .other_colour(other_colour), .taps(taps));
 

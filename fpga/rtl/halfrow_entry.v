@@ -4,7 +4,7 @@
 
 module halfrow_entry #(
     parameter RING_BITS = 11,
-    parameter SPAN = 3                        // the opening is n - SPAN ... n + SPAN
+    parameter LEFT = 3                        // the opening is n - LEFT ... n + 3
 ) (
     input  wire                      clk,
     input  wire                      rst,
@@ -18,9 +18,9 @@ module halfrow_entry #(
 
     output wire                      ring_write,
     output reg  [RING_BITS-1:0]      write_address,
-    output reg  [RING_BITS-1:0]      first_address, // of column n + SPAN
+    output reg  [RING_BITS-1:0]      first_address, // of column n + 3
     output reg  [RING_BITS-1:0]      last_address,  // of column W - 1, behind row_end
-    output wire [12*(2*SPAN+1)-1:0]  opening,       // the leftmost in the lowest bits
+    output wire [12*(LEFT+4)-1:0]    opening,       // the leftmost in the lowest bits
 
     output wire                      row_end,       // the row has got all of its samples
     output wire                      row_begin,     // with the sample of column W/2: the row begins to leave
@@ -28,7 +28,7 @@ module halfrow_entry #(
     output reg                       row_short,
     output reg                       row_long
 );
-    localparam SLOTS = 2 * SPAN + 1;
+    localparam SLOTS = LEFT + 4;
 
     reg        open;                          // the row may go on
     reg [11:0] taken;                         // samples of the row
@@ -76,15 +76,15 @@ module halfrow_entry #(
     // The newest sample stands in `sample`.
     reg [11:0]   sample;
     reg          collecting;
-    reg [SPAN:0] since_first;                 // bit k: column n is k samples old
+    reg [3:0]    since_first;                 // bit k: column n is k samples old
 
     always @(posedge clk)
         if (enable) begin
             sample <= in_sample;
-            since_first <= start ? {{SPAN{1'b0}}, first_column == 12'd0}
-                                 : {since_first[SPAN-1:0], taken == first_column};
-            collecting <= start || (collecting && !since_first[SPAN]);
-            if (collecting && since_first[SPAN-1])
+            since_first <= start ? {3'b000, first_column == 12'd0}
+                                 : {since_first[2:0], taken == first_column};
+            collecting <= start || (collecting && !since_first[3]);
+            if (collecting && since_first[2])
                 first_address <= write_address;
         end
 
