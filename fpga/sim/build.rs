@@ -20,10 +20,11 @@ const BOARDS: [Model; 3] = [
 ];
 
 /// What tests alone need.
-const BUILDS: [Model; 6] = [
+const BUILDS: [Model; 7] = [
     Model { class: "Core7", top: "halfrow_core", parameters: &["TAPS=7"] },
     Model { class: "Core5", top: "halfrow_core", parameters: &["TAPS=5"] },
     Model { class: "CoreShort", top: "halfrow_core", parameters: &["TAPS=7", "RING_BITS=7"] },
+    Model { class: "CoreShort5", top: "halfrow_core", parameters: &["TAPS=5", "RING_BITS=7"] },
     Model { class: "BridgeFour", top: "halfrow_bridge", parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4"] },
     Model { class: "BridgeIn", top: "halfrow_bridge", parameters: &["ROW_BANKS_IN=4"] },
     Model {

@@ -60,7 +60,11 @@ impl Case {
         let width = draw_width(dice, build.ring.into());
         let height = 1 + dice.below(6);
         let depth = dice.one_of(&BitDepth::ALL);
-        let centre2 = if dice.below(3) == 0 { dice.below(2 * width - 1) } else { width - 1 };
+        let centre2 = match dice.below(8) {
+            0 => dice.one_of(&[0, 2 * width - 2]),
+            1 | 2 => dice.below(2 * width - 1),
+            _ => width - 1,
+        };
         let geometry = Geometry::new(width, height, depth, centre2 as u32).unwrap();
         let options = Options {
             latency: build.latency,
@@ -150,18 +154,28 @@ fn draw_width(dice: &mut Dice, ring: usize) -> usize {
     .max(64)
 }
 
-/// Row factors that the ring can serve: drawn from one up to 2^24, and again where they reach too far.
+/// Row factors that the ring can serve: drawn from the least that is legal up to 2^24, and often at one of these ends.
 fn draw_tables(dice: &mut Dice, geometry: Geometry, ring: usize) -> TableSet {
-    let one_row = Geometry::new(geometry.width(), 1, geometry.depth(), geometry.centre2()).unwrap();
-    let mut steps = Vec::new();
-    while steps.len() < geometry.height() {
-        let step = 1 + dice.below(STEP_ONE as usize) as u32;
-        let step = if dice.below(8) == 0 { STEP_ONE } else { step };
-        if TableSet::new(one_row, vec![step]).unwrap().check_ring(ring).is_ok() {
-            steps.push(step);
-        }
-    }
+    let least = least_step(geometry, ring);
+    let steps = (0..geometry.height()).map(|_| match dice.below(8) {
+        0 => STEP_ONE,
+        1 => least,
+        _ => least + dice.below((STEP_ONE - least) as usize + 1) as u32,
+    });
+    let steps = steps.collect();
     TableSet::new(geometry, steps).unwrap()
+}
+
+/// The least row factor that is legal. The less it is the further from its own column a row reads, so a bisection finds it.
+fn least_step(geometry: Geometry, ring: usize) -> u32 {
+    let one_row = Geometry::new(geometry.width(), 1, geometry.depth(), geometry.centre2()).unwrap();
+    let legal = |step| TableSet::new(one_row, vec![step]).unwrap().check_ring(ring).is_ok();
+    let (mut illegal, mut least) = (0, STEP_ONE);
+    while least - illegal > 1 {
+        let middle = illegal.midpoint(least);
+        *if legal(middle) { &mut least } else { &mut illegal } = middle;
+    }
+    least
 }
 
 /// One of the four kernels, or any weights at all.

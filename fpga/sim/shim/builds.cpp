@@ -6,6 +6,7 @@
 #include "Core5.h"
 #include "Core7.h"
 #include "CoreShort.h"
+#include "CoreShort5.h"
 #include "bridge.h"
 
 // The same structures stand in src/ffi/core.rs.
@@ -65,6 +66,7 @@ void clock_core(Design<Model>& design, const CoreInputs& in, CoreOutputs& out) {
 DESIGN(core7, Core7, CoreInputs, CoreOutputs, clock_core)
 DESIGN(core5, Core5, CoreInputs, CoreOutputs, clock_core)
 DESIGN(core_short, CoreShort, CoreInputs, CoreOutputs, clock_core)
+DESIGN(core_short5, CoreShort5, CoreInputs, CoreOutputs, clock_core)
 DESIGN(bridge_four, BridgeFour, BridgeInputs, BridgeOutputs, clock_bridge)
 DESIGN(bridge_in, BridgeIn, BridgeInputs, BridgeOutputs, clock_bridge)
 DESIGN(bridge_lean, BridgeLean, BridgeInputs, BridgeOutputs, clock_bridge)

@@ -13,22 +13,30 @@ pub enum CoreBuild {
     FiveTaps,
     /// Seven taps and a ring of 128 samples, so that it wraps in every row.
     ShortRing,
+    /// The same with five taps.
+    ShortRingFiveTaps,
 }
 
 impl CoreBuild {
     /// All of them.
-    pub const ALL: [Self; 3] = [Self::SevenTaps, Self::FiveTaps, Self::ShortRing];
+    pub const ALL: [Self; 4] = [Self::SevenTaps, Self::FiveTaps, Self::ShortRing, Self::ShortRingFiveTaps];
+
+    /// Whether the outer taps are there.
+    #[must_use]
+    pub fn has_outer_taps(self) -> bool {
+        matches!(self, Self::SevenTaps | Self::ShortRing)
+    }
 
     /// Pixel clocks L that an output leaves after half a row.
     #[must_use]
     pub fn latency(self) -> u8 {
-        if self == Self::FiveTaps { 11 } else { 12 }
+        if self.has_outer_taps() { 12 } else { 11 }
     }
 
     /// Samples M in the ring.
     #[must_use]
     pub fn ring(self) -> u16 {
-        if self == Self::ShortRing { 128 } else { 2048 }
+        if matches!(self, Self::ShortRing | Self::ShortRingFiveTaps) { 128 } else { 2048 }
     }
 }
 
@@ -43,6 +51,7 @@ impl Core {
             CoreBuild::SevenTaps => &ffi::halfrow_core7,
             CoreBuild::FiveTaps => &ffi::halfrow_core5,
             CoreBuild::ShortRing => &ffi::halfrow_core_short,
+            CoreBuild::ShortRingFiveTaps => &ffi::halfrow_core_short5,
         };
         Self(Design::new(functions, seed))
     }

@@ -149,6 +149,7 @@ unsafe extern "C" {
     pub(crate) safe static halfrow_core7: Functions<CoreInputs, CoreOutputs>;
     pub(crate) safe static halfrow_core5: Functions<CoreInputs, CoreOutputs>;
     pub(crate) safe static halfrow_core_short: Functions<CoreInputs, CoreOutputs>;
+    pub(crate) safe static halfrow_core_short5: Functions<CoreInputs, CoreOutputs>;
 }
 
 /// A verilated design with the inputs `I` and the outputs `O`.
