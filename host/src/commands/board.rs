@@ -54,7 +54,8 @@ impl BoardArguments {
 
     /// The link to the board that is named; by default the mock, never a guess.
     pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
-        Ok(link::open(&self.target(settings)?)?)
+        link::open(&self.target(settings)?)
+            .map_err(|error| Failure { exit: error.exit(), error: error.into() })
     }
 
     /// The recording, if the target is one.

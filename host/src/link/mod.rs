@@ -5,6 +5,7 @@ mod recording;
 mod replay;
 #[cfg(feature = "sim")]
 mod simulated;
+mod usb;
 mod wire;
 
 use std::time::Duration;
@@ -12,6 +13,7 @@ use std::time::Duration;
 pub use open::{Candidate, OpenError, open, replayed_file};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
+pub use usb::{Holder, LineErrors, Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
 pub use wire::WireLink;
 
 /// A byte pipe to a board.
@@ -40,6 +42,11 @@ pub trait Link {
 
     /// What it is, for people.
     fn name(&self) -> String;
+
+    /// What the chip at its near end has seen go wrong on the line; none for a link that cannot tell.
+    fn line_errors(&self) -> LineErrors {
+        LineErrors::default()
+    }
 }
 
 /// A pipe that broke.
@@ -63,6 +70,17 @@ pub enum LinkError {
         /// Why.
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A USB transfer failed, and the device is still there.
+    #[error("{link} failed at {:.3} s; unplug the board, plug it in, and run again", at.as_secs_f64())]
+    Usb {
+        /// The link's name.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+        /// How.
+        #[source]
+        source: UsbFailure,
     },
     /// What the host sends is not what it sent when the recording was made.
     #[error(

@@ -6,8 +6,9 @@ use halfrow_mock::{Wire, WireError};
 
 #[cfg(feature = "sim")]
 use super::simulated::open_simulated;
-use super::{Link, Recording, RecordingError, ReplayLink, WireLink};
+use super::{Link, Recording, RecordingError, ReplayLink, UsbError, UsbLink, WireLink};
 use crate::target::{BoardKind, Target};
+use crate::verdict::Exit;
 
 const MOCK: &str = "the mock board";
 
@@ -26,7 +27,7 @@ pub struct Candidate {
 pub enum OpenError {
     /// The kind is not known.
     #[error(
-        "`{0}` is no kind of board that this program knows; it knows mock, sim, sim:uart, sim:fifo and replay:FILE"
+        "`{0}` is no kind of board that this program knows; it knows mock, sim, sim:uart, sim:fifo, usb, usb:SERIAL and replay:FILE"
     )]
     UnknownKind(String),
     /// A kind that has no address.
@@ -80,9 +81,23 @@ pub enum OpenError {
     #[cfg(feature = "sim")]
     #[error(transparent)]
     Trace(#[from] halfrow_sim::TraceError),
+    /// The USB device cannot be opened.
+    #[error(transparent)]
+    Usb(#[from] UsbError),
     /// The recording cannot be played.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+}
+
+impl OpenError {
+    /// The exit code of a command that ends with it: what is wrong with the call is told from what is wrong at the station.
+    #[must_use]
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Usb(error) => error.exit(),
+            _ => Exit::Usage,
+        }
+    }
 }
 
 /// The file of a `replay:FILE` target.
@@ -96,9 +111,10 @@ pub fn replayed_file(target: &Target) -> Option<PathBuf> {
 /// # Errors
 /// [`OpenError`] when the target is none of ours, or its options are not.
 pub fn open(target: &Target) -> Result<Candidate, OpenError> {
-    let (kind, link) = match target.kind.as_str() {
+    let (kind, link): (_, Box<dyn Link>) = match target.kind.as_str() {
         "mock" => (BoardKind::Mock, open_mock(target)?),
         "sim" => (BoardKind::Sim, open_simulated(target)?),
+        "usb" => (BoardKind::Hardware, Box::new(UsbLink::open(target)?)),
         "replay" => (BoardKind::Replay, open_replay(target)?),
         other => return Err(OpenError::UnknownKind(other.to_owned())),
     };

@@ -16,7 +16,7 @@ use std::time::Duration;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-use super::{Link, LinkError};
+use super::{LineErrors, Link, LinkError};
 
 const MAGIC: &[u8] = b"halfrow recording 1\n";
 
@@ -190,6 +190,10 @@ impl Link for Recorder {
 
     fn name(&self) -> String {
         self.link.name()
+    }
+
+    fn line_errors(&self) -> LineErrors {
+        self.link.line_errors()
     }
 }
 

@@ -158,8 +158,11 @@ impl Channel {
 
     /// Takes back packets that the host did not wait for.
     pub(crate) fn take_back(&mut self, packets: &[u8]) {
-        let data: Vec<u8> =
-            packets.chunks(PACKET).flat_map(|packet| packet.get(STATUS..).unwrap_or_default()).copied().collect();
+        let data: Vec<u8> = packets
+            .chunks(PACKET)
+            .flat_map(|packet| packet.get(STATUS..).unwrap_or_default())
+            .copied()
+            .collect();
         self.to_host.splice(..0, data);
     }
 }

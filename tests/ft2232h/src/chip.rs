@@ -71,8 +71,7 @@ impl Chip {
                 _ => ChannelMode::Uart,
             })
         };
-        let mut channels =
-            [Channel::new(a, None, None), Channel::new(b, Some(board), options.board_baud)];
+        let mut channels = [Channel::new(a, None, None), Channel::new(b, Some(board), options.board_baud)];
         channels[1].put_in_fifo(&options.stale);
         Self { options, channels, configuration: 0 }
     }
@@ -186,9 +185,13 @@ mod tests {
 
     #[test]
     fn what_the_chip_does_not_know_stalls_and_so_does_a_write_of_the_eeprom() {
-        for (kind, code, value, index) in
-            [(0x40, 0x91, 0, 0), (0x40, 0x92, 0, 0), (0x40, 0x33, 0, 1), (0xc0, 10, 0, 3), (0x40, 11, 0x40ff, 2)]
-        {
+        for (kind, code, value, index) in [
+            (0x40, 0x91, 0, 0),
+            (0x40, 0x92, 0, 0),
+            (0x40, 0x33, 0, 1),
+            (0xc0, 10, 0, 3),
+            (0x40, 11, 0x40ff, 2),
+        ] {
             assert_eq!(chip().control(request(kind, code, value, index)), None, "{code:x}");
         }
     }

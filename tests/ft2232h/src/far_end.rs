@@ -14,12 +14,8 @@ pub trait FarEnd: Send {
     ///
     /// # Errors
     /// [`Unplugged`] when the whole chip is to vanish at this point.
-    fn exchange(
-        &mut self,
-        to_board: &[u8],
-        to_host: &mut Vec<u8>,
-        now: Duration,
-    ) -> Result<usize, Unplugged>;
+    fn exchange(&mut self, to_board: &[u8], to_host: &mut Vec<u8>, now: Duration)
+    -> Result<usize, Unplugged>;
 }
 
 /// Sends back what it gets.

@@ -74,7 +74,8 @@ impl Plugged {
         let attach = format!("{port} {} {} {HIGH_SPEED}", kernels.as_raw_fd(), 65536 + port + 1);
         fs::write(Path::new(CONTROLLER).join("attach"), attach)?;
         let (listening, ticking) = (Arc::clone(&shared), Arc::clone(&shared));
-        let threads = vec![thread::spawn(move || listening.listen(ours)), thread::spawn(move || ticking.tick())];
+        let threads =
+            vec![thread::spawn(move || listening.listen(ours)), thread::spawn(move || ticking.tick())];
         let plugged = Self { shared, threads, port };
         plugged.wait("no name from the kernel", || plugged.bus_name().is_some())?;
         Ok(plugged)

@@ -1,0 +1,142 @@
+//! The EEPROM beside a chip, which says what its channels are. It is read, and never written.
+
+use std::fmt;
+
+use super::chip::{Channel, Chip};
+
+/// Words that are read: an FT2232H has 64, 128 or 256, and their checksum comes last of the first 64 or 128.
+pub(super) const WORDS: u16 = 128;
+
+/// What a channel's pins are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ChannelMode {
+    Uart,
+    Fifo,
+    Opto,
+    Cpu,
+    Ft1248,
+}
+
+impl fmt::Display for ChannelMode {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Uart => "a UART",
+            Self::Fifo => "a FIFO",
+            Self::Opto => "an opto-isolated UART",
+            Self::Cpu => "a processor bus",
+            Self::Ft1248 => "an FT1248 bus",
+        })
+    }
+}
+
+/// What an EEPROM says of a channel, and on what ground.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Found {
+    /// Its words say so.
+    Stored(ChannelMode),
+    /// The chip ignores it, since it is blank, missing or its checksum is wrong, and takes its channels for UARTs.
+    Ignored,
+    /// It cannot be read.
+    Unknown,
+}
+
+impl Found {
+    /// What the pins are, if that is known.
+    pub(super) fn mode(self) -> Option<ChannelMode> {
+        match self {
+            Self::Stored(mode) => Some(mode),
+            Self::Ignored => Some(ChannelMode::Uart),
+            Self::Unknown => None,
+        }
+    }
+}
+
+impl fmt::Display for Found {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stored(mode) => write!(f, "{mode} by its EEPROM"),
+            Self::Ignored => f.write_str("a UART, since its EEPROM is blank or its checksum wrong"),
+            Self::Unknown => f.write_str("unknown, since its EEPROM cannot be read"),
+        }
+    }
+}
+
+/// What `words` say of `channel`; fewer than [`WORDS`] are an EEPROM that cannot be read.
+pub(super) fn channel_mode(chip: Chip, channel: Channel, words: &[u16]) -> Found {
+    // These are serial lines whatever their EEPROM says.
+    if matches!(chip, Chip::Ft4232h | Chip::FullSpeed) {
+        return Found::Stored(ChannelMode::Uart);
+    }
+    if words.len() < usize::from(WORDS) {
+        return Found::Unknown;
+    }
+    if !is_valid(words) {
+        return Found::Ignored;
+    }
+    let code = words[0].to_le_bytes()[usize::from(channel.0)];
+    let code = if chip == Chip::Ft232h { code & 0x0f } else { code & 0x07 };
+    match code {
+        0 => Found::Stored(ChannelMode::Uart),
+        1 => Found::Stored(ChannelMode::Fifo),
+        2 => Found::Stored(ChannelMode::Opto),
+        4 if chip == Chip::Ft232h => Found::Stored(ChannelMode::Ft1248),
+        3 | 4 => Found::Stored(ChannelMode::Cpu),
+        _ => Found::Unknown,
+    }
+}
+
+/// Whether the checksum fits an EEPROM of 64 words, which repeat, or of 128 and more.
+fn is_valid(words: &[u16]) -> bool {
+    [64, 128].into_iter().any(|length| {
+        let (content, last) = words[..length].split_at(length - 1);
+        content.iter().fold(0xaaaa_u16, |sum, word| (sum ^ word).rotate_left(1)) == last[0]
+    }) && words.iter().any(|&word| word != 0xffff)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const B: Channel = Channel(1);
+
+    /// An EEPROM of `length` words that repeats up to 128, with `first` in front.
+    fn words(first: u16, length: usize) -> Vec<u16> {
+        let mut words = vec![0x0403; length];
+        words[0] = first;
+        let (last, content) = words.split_last_mut().unwrap();
+        *last = content.iter().fold(0xaaaa, |sum: u16, word| (sum ^ *word).rotate_left(1));
+        words.into_iter().cycle().take(128).collect()
+    }
+
+    #[test]
+    fn each_channel_has_a_byte_of_its_own() {
+        // setmode.c of the miniSpartan6+: 0x0101 is FIFO, 0x0801 is UART at B with the driver's bit.
+        for length in [64, 128] {
+            let stored = |first| channel_mode(Chip::Ft2232h, B, &words(first, length));
+            assert_eq!(stored(0x0101), Found::Stored(ChannelMode::Fifo));
+            assert_eq!(stored(0x0801), Found::Stored(ChannelMode::Uart));
+            assert_eq!(stored(0x0200), Found::Stored(ChannelMode::Opto));
+            assert_eq!(stored(0x0400), Found::Stored(ChannelMode::Cpu));
+            assert_eq!(channel_mode(Chip::Ft2232h, Channel(0), &words(0x0801, length)), stored(0x0101));
+        }
+        assert_eq!(
+            channel_mode(Chip::Ft232h, Channel(0), &words(4, 128)),
+            Found::Stored(ChannelMode::Ft1248)
+        );
+    }
+
+    #[test]
+    fn a_chip_ignores_an_eeprom_that_is_blank_or_spoilt() {
+        assert_eq!(channel_mode(Chip::Ft2232h, B, &[0xffff; 128]), Found::Ignored);
+        let mut spoilt = words(0x0101, 64);
+        spoilt[1] ^= 1;
+        assert_eq!(channel_mode(Chip::Ft2232h, B, &spoilt), Found::Ignored);
+        assert_eq!(Found::Ignored.mode(), Some(ChannelMode::Uart));
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_not_guessed() {
+        assert_eq!(channel_mode(Chip::Ft2232h, B, &[]), Found::Unknown);
+        assert_eq!(channel_mode(Chip::FullSpeed, Channel(0), &[]), Found::Stored(ChannelMode::Uart));
+    }
+}

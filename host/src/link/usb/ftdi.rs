@@ -1,0 +1,129 @@
+//! FTDI's requests, and the order in which a channel is made ready.
+
+use super::chip::{Channel, Chip};
+use super::eeprom::{ChannelMode, WORDS, channel_mode};
+use super::error::UsbError;
+use super::options::{Mode, UsbOptions};
+use super::transport::{Failure, Transport};
+
+const RESET: u8 = 0;
+const MODEM: u8 = 1;
+const FLOW: u8 = 2;
+const BAUD: u8 = 3;
+const DATA: u8 = 4;
+const LATENCY: u8 = 9;
+const BIT_MODE: u8 = 11;
+const READ_EEPROM: u8 = 0x90;
+
+/// Values of [`RESET`]: the channel, the bytes to the board, the bytes to the host. Old libraries had the last two the
+/// other way round, and both are wanted anyway.
+const RESETS: [u16; 3] = [0, 1, 2];
+
+/// Both modem lines on, with the bits that say that they are meant.
+const DTR_AND_RTS_ON: u16 = 0x0303;
+
+const RTS_CTS: u16 = 0x0100;
+
+const EIGHT_BITS: u16 = 8;
+
+/// What a channel was made ready for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ready {
+    Fifo,
+    Uart { baud: u32 },
+}
+
+/// A channel of a chip, called `name` in errors.
+pub(super) struct Ftdi<'a> {
+    pub(super) transport: &'a dyn Transport,
+    pub(super) chip: Chip,
+    pub(super) channel: Channel,
+    pub(super) name: &'a str,
+}
+
+impl Ftdi<'_> {
+    /// Makes the channel ready, and throws away what was on its way.
+    pub(super) fn make_ready(&self, options: &UsbOptions) -> Result<Ready, UsbError> {
+        let ready = self.decide(options)?;
+        let index = self.chip.index(self.channel);
+        for what in RESETS {
+            self.request("resetting the chip", RESET, what, index)?;
+        }
+        self.leave_special_modes(index)?;
+        self.request("setting the latency timer", LATENCY, options.latency.into(), index)?;
+        if let Ready::Uart { baud } = ready {
+            self.set_up_line(baud, options.handshake, index)?;
+        }
+        Ok(ready)
+    }
+
+    /// What the pins are for: by the EEPROM, which must not contradict the target.
+    fn decide(&self, options: &UsbOptions) -> Result<Ready, UsbError> {
+        let found = channel_mode(self.chip, self.channel, &self.read_eeprom()?);
+        let (name, channel) = (self.name.to_owned(), self.channel.letter());
+        let stored = match found.mode() {
+            Some(ChannelMode::Uart | ChannelMode::Opto) => Some(Mode::Uart),
+            Some(ChannelMode::Fifo) => Some(Mode::Fifo),
+            None => None,
+            Some(_) => return Err(UsbError::NoMode { name, channel, found: found.to_string() }),
+        };
+        let mode = match (options.mode, stored) {
+            (Some(wanted), Some(stored)) if wanted != stored => {
+                let (found, wanted) = (found.to_string(), wanted.name());
+                return Err(UsbError::OtherMode { name, channel, found, wanted });
+            }
+            (Some(mode), _) | (None, Some(mode)) => mode,
+            (None, None) => return Err(UsbError::NoMode { name, channel, found: found.to_string() }),
+        };
+        match (mode, options.baud) {
+            (Mode::Fifo, Some(_)) => Err(UsbError::BaudOfFifo),
+            (Mode::Fifo, None) => Ok(Ready::Fifo),
+            (Mode::Uart, baud) => {
+                let baud = baud.unwrap_or_else(|| self.chip.fastest());
+                self.divisor(baud).map(|_| Ready::Uart { baud })
+            }
+        }
+    }
+
+    /// The EEPROM's words; none when the chip refuses to read them.
+    fn read_eeprom(&self) -> Result<Vec<u16>, UsbError> {
+        let words: Result<Vec<u16>, Failure> =
+            (0..WORDS).map(|address| self.transport.request_word(READ_EEPROM, 0, address)).collect();
+        match words {
+            Err(Failure::Refused) => Ok(Vec::new()),
+            words => words.map_err(|source| self.failed("reading the chip's EEPROM", source)),
+        }
+    }
+
+    /// Whoever had the channel before may have left it bit-banging. A chip that has no such modes refuses.
+    fn leave_special_modes(&self, index: u16) -> Result<(), UsbError> {
+        match self.transport.request(BIT_MODE, 0, index) {
+            Err(Failure::Refused) if !self.chip.is_high_speed() => Ok(()),
+            done => done.map_err(|source| self.failed("setting the bit mode", source)),
+        }
+    }
+
+    fn set_up_line(&self, baud: u32, handshake: bool, index: u16) -> Result<(), UsbError> {
+        let divisor = self.divisor(baud)?;
+        let high = (divisor >> 16) as u16;
+        let baud_index = if self.chip.is_high_speed() { high << 8 | index } else { high };
+        self.request("setting the baud rate", BAUD, divisor as u16, baud_index)?;
+        self.request("setting the data format", DATA, EIGHT_BITS, index)?;
+        let flow = if handshake { RTS_CTS } else { 0 };
+        self.request("setting the handshake", FLOW, 0, flow | index)?;
+        self.request("setting the modem lines", MODEM, DTR_AND_RTS_ON, index)
+    }
+
+    fn divisor(&self, baud: u32) -> Result<u32, UsbError> {
+        let chip = self.chip.name();
+        self.chip.divisor(baud).map_err(|nearest| UsbError::Rate { chip, baud, nearest })
+    }
+
+    fn request(&self, doing: &'static str, request: u8, value: u16, index: u16) -> Result<(), UsbError> {
+        self.transport.request(request, value, index).map_err(|source| self.failed(doing, source))
+    }
+
+    fn failed(&self, doing: &'static str, source: Failure) -> UsbError {
+        UsbError::Transfer { name: self.name.to_owned(), doing, source }
+    }
+}

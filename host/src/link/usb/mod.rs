@@ -1,0 +1,179 @@
+//! Boards behind one of FTDI's USB chips, without the system's serial driver.
+//!
+//! ```text
+//! UsbLink ─ Pump ─ a reading and a writing thread ─► Transport: libusb ─► chip ─ FIFO or UART ─► board
+//! ```
+//!
+//! The driver makes serial ports of both channels, moves 512 bytes at a time, and knows no FIFO. Here one interface is claimed,
+//! the other one stays with whoever has it, and a read is always under way.
+
+mod chip;
+mod eeprom;
+mod error;
+mod find;
+mod ftdi;
+mod holder;
+mod options;
+mod packets;
+mod pump;
+mod transport;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use chip::Channel;
+use find::{Found, choose, sysfs};
+use ftdi::{Ftdi, Ready};
+use holder::holders;
+use options::UsbOptions;
+use packets::strip;
+use pump::Pump;
+use transport::Libusb;
+
+use super::{Link, LinkError};
+use crate::target::Target;
+
+pub use error::UsbError;
+pub use find::{UsbBoard, usb_boards};
+pub use holder::Holder;
+pub use packets::LineErrors;
+pub use transport::{Failure as UsbFailure, Transport};
+
+/// What an FPGA with two synchronisers gets through a FIFO that is not synchronous: some 5 MB/s; its data sheet says 8.
+const FIFO_BYTES_PER_SECOND: f64 = 5e6;
+
+/// Bits of a byte on a line: a start bit, eight, a stop bit.
+const BITS_PER_BYTE: f64 = 10.0;
+
+/// A pipe through a channel of a chip.
+pub struct UsbLink {
+    pump: Pump,
+    name: String,
+    bytes_per_second: f64,
+    opened: Instant,
+}
+
+impl UsbLink {
+    /// Opens the channel that `target` names, and makes it ready; nothing is said over it yet.
+    ///
+    /// # Errors
+    /// [`UsbError`]
+    pub fn open(target: &Target) -> Result<Self, UsbError> {
+        let options = UsbOptions::of(target)?;
+        let found = choose(target.address.as_deref())?;
+        let (chip, name) = (found.chip, found.board.target());
+        let channel = options.channel.map_or(chip.usual_channel(), Channel);
+        if channel.0 >= chip.channels() {
+            let (channel, channels) = (channel.letter(), chip.channels());
+            return Err(UsbError::NoChannel { chip: chip.name(), name, channel, channels });
+        }
+        let transport = claim(&found, channel)?;
+        let ready = Ftdi { transport: &transport, chip, channel, name: &name }.make_ready(&options)?;
+        let (what, bytes_per_second) = match ready {
+            Ready::Fifo => ("FIFO".to_owned(), FIFO_BYTES_PER_SECOND),
+            Ready::Uart { baud } => (format!("{baud} baud"), f64::from(baud) / BITS_PER_BYTE),
+        };
+        let (packet, is_line) = (chip.packet(), ready != Ready::Fifo);
+        let unpack = Box::new(move |transfer: &[u8], data: &mut Vec<u8>, errors: &mut LineErrors| {
+            strip(transfer, packet, data, is_line, errors);
+        });
+        Ok(Self {
+            pump: Pump::start(Box::new(transport), unpack),
+            name: format!("{name} ({}, channel {}, {what})", chip.name(), channel.letter()),
+            bytes_per_second,
+            opened: Instant::now(),
+        })
+    }
+}
+
+/// Claims the channel's interface, unless a program has it or its serial port open.
+fn claim(found: &Found, channel: Channel) -> Result<Libusb, UsbError> {
+    let (chip, name) = (found.chip, found.board.target());
+    for port in serial_ports(&found.board.place, channel) {
+        if let Some(holders) = held(&port) {
+            return Err(UsbError::Busy { what: port.display().to_string(), holders });
+        }
+    }
+    let failed = |error| match error {
+        rusb::Error::Access => UsbError::NotPermitted { name: name.clone() },
+        rusb::Error::Busy => UsbError::Busy {
+            what: format!("channel {} of {name}", channel.letter()),
+            holders: holders(&device_file(found)),
+        },
+        other => {
+            let source = transport::failure(other);
+            UsbError::Transfer { name: name.clone(), doing: "opening the device", source }
+        }
+    };
+    let handle = found.device.open().map_err(failed)?;
+    Libusb::claim(handle, channel.0, chip.endpoints(channel)).map_err(failed)
+}
+
+fn device_file(found: &Found) -> PathBuf {
+    let (bus, address) = (found.device.bus_number(), found.device.address());
+    PathBuf::from(format!("/dev/bus/usb/{bus:03}/{address:03}"))
+}
+
+/// The serial ports that the system's driver has made of the channel.
+fn serial_ports(place: &str, channel: Channel) -> Vec<PathBuf> {
+    let interface = sysfs(place).join(format!("{place}:1.{}", channel.0));
+    let entries = fs::read_dir(interface).into_iter().flatten().flatten();
+    let names = entries.filter_map(|entry| entry.file_name().into_string().ok());
+    names.filter(|name| name.starts_with("ttyUSB")).map(|name| Path::new("/dev").join(name)).collect()
+}
+
+/// Who has a serial port open, if anybody has; they may be unknown. The driver would give the port up whoever reads it.
+fn held(port: &Path) -> Option<Vec<Holder>> {
+    let holders = holders(port);
+    (!holders.is_empty() || is_locked(port)).then_some(holders)
+}
+
+/// Whether another user's program, which cannot be seen, has said that it wants the port for itself.
+#[cfg(target_os = "linux")]
+fn is_locked(port: &Path) -> bool {
+    use std::io::ErrorKind::ResourceBusy;
+    use std::os::unix::fs::OpenOptionsExt as _;
+
+    // Neither wait for a carrier nor become the terminal of this process.
+    let flags = libc::O_NONBLOCK | libc::O_NOCTTY;
+    match fs::OpenOptions::new().read(true).write(true).custom_flags(flags).open(port) {
+        Ok(file) => matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock)),
+        Err(error) => error.kind() == ResourceBusy,
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn is_locked(_port: &Path) -> bool {
+    false
+}
+
+impl Link for UsbLink {
+    fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, LinkError> {
+        self.pump.exchange(outgoing, incoming, wait).map_err(|failure| match failure {
+            UsbFailure::Gone => LinkError::Closed { link: self.name(), at: self.now() },
+            source => LinkError::Usb { link: self.name(), at: self.now(), source },
+        })
+    }
+
+    fn now(&self) -> Duration {
+        self.opened.elapsed()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        Some(self.bytes_per_second)
+    }
+
+    fn name(&self) -> String {
+        self.name.clone()
+    }
+
+    fn line_errors(&self) -> LineErrors {
+        self.pump.errors()
+    }
+}

@@ -1,0 +1,136 @@
+//! Transfers to one interface of a USB device, however they are made. Another way to make them than libusb's blocking
+//! calls, and other chips than FTDI's, come in here.
+
+use std::time::Duration;
+
+use rusb::{Context, DeviceHandle};
+
+/// A transfer that came to nothing.
+#[derive(Debug, Clone, thiserror::Error)]
+pub enum Failure {
+    /// The device is gone.
+    #[error("the device is gone")]
+    Gone,
+    /// The device refuses the request.
+    #[error("the device refuses the request")]
+    Refused,
+    /// It took too long.
+    #[error("no answer in time")]
+    Late,
+    /// Anything else.
+    #[error("{0}")]
+    Other(String),
+}
+
+/// What the bytes go through. Several threads may call it at once.
+pub trait Transport: Send + Sync {
+    /// A vendor's request to the device.
+    ///
+    /// # Errors
+    /// [`Failure`]
+    fn request(&self, request: u8, value: u16, index: u16) -> Result<(), Failure>;
+
+    /// A vendor's request for two bytes, little endian.
+    ///
+    /// # Errors
+    /// [`Failure`]; fewer bytes are one as well.
+    fn request_word(&self, request: u8, value: u16, index: u16) -> Result<u16, Failure>;
+
+    /// Reads a transfer that ends with a packet that is not full, or with the buffer, whose length is a multiple of 512.
+    /// Nothing within `wait` is 0 bytes.
+    ///
+    /// # Errors
+    /// [`Failure`]
+    fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, Failure>;
+
+    /// Writes what goes out within `wait`, and returns its length.
+    ///
+    /// # Errors
+    /// [`Failure`]
+    fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, Failure>;
+}
+
+/// How long the chip may take for a request; it answers within a frame.
+const REQUEST: Duration = Duration::from_millis(500);
+
+const VENDOR_OUT: u8 = 0x40;
+const VENDOR_IN: u8 = 0xc0;
+
+/// An interface that libusb has claimed.
+pub(super) struct Libusb {
+    handle: DeviceHandle<Context>,
+    interface: u8,
+    endpoint_in: u8,
+    endpoint_out: u8,
+}
+
+impl Libusb {
+    /// Claims `interface` alone. The kernel's driver is detached from it, and comes back when this is dropped.
+    pub(super) fn claim(
+        handle: DeviceHandle<Context>,
+        interface: u8,
+        (endpoint_in, endpoint_out): (u8, u8),
+    ) -> Result<Self, rusb::Error> {
+        match handle.set_auto_detach_kernel_driver(true) {
+            // Systems without such drivers.
+            Ok(()) | Err(rusb::Error::NotSupported) => {}
+            Err(error) => return Err(error),
+        }
+        handle.claim_interface(interface)?;
+        Ok(Self { handle, interface, endpoint_in, endpoint_out })
+    }
+}
+
+impl Drop for Libusb {
+    fn drop(&mut self) {
+        // A device that is gone has nothing to release.
+        let _ = self.handle.release_interface(self.interface);
+    }
+}
+
+impl Transport for Libusb {
+    fn request(&self, request: u8, value: u16, index: u16) -> Result<(), Failure> {
+        self.handle.write_control(VENDOR_OUT, request, value, index, &[], REQUEST).map(drop).map_err(failure)
+    }
+
+    fn request_word(&self, request: u8, value: u16, index: u16) -> Result<u16, Failure> {
+        let mut word = [0; 2];
+        let read = self.handle.read_control(VENDOR_IN, request, value, index, &mut word, REQUEST);
+        match read.map_err(failure)? {
+            2 => Ok(u16::from_le_bytes(word)),
+            read => Err(Failure::Other(format!("{read} of 2 bytes came"))),
+        }
+    }
+
+    fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, Failure> {
+        in_time(self.handle.read_bulk(self.endpoint_in, buffer, whole_milliseconds(wait)))
+    }
+
+    fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, Failure> {
+        in_time(self.handle.write_bulk(self.endpoint_out, bytes, whole_milliseconds(wait)))
+    }
+}
+
+/// libusb counts in milliseconds, and takes none for ever.
+fn whole_milliseconds(wait: Duration) -> Duration {
+    wait.max(Duration::from_millis(1))
+}
+
+/// What moved before the time was over counts.
+fn in_time(moved: Result<usize, rusb::Error>) -> Result<usize, Failure> {
+    match moved {
+        Err(rusb::Error::Timeout | rusb::Error::Interrupted) => Ok(0),
+        moved => moved.map_err(failure),
+    }
+}
+
+pub(super) fn failure(error: rusb::Error) -> Failure {
+    match error {
+        rusb::Error::NoDevice | rusb::Error::NotFound => Failure::Gone,
+        rusb::Error::Pipe => Failure::Refused,
+        rusb::Error::Timeout => Failure::Late,
+        // A device that is pulled out in the middle of a transfer.
+        rusb::Error::Io => Failure::Gone,
+        other => Failure::Other(other.to_string()),
+    }
+}
