@@ -7,7 +7,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
-use crate::link::Link;
+use crate::link::{LineErrors, Link};
 
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +24,8 @@ pub struct Tally {
     pub damaged_in: u64,
     /// Packets sent again.
     pub retries: u64,
+    /// What the link's chip has seen go wrong on the line.
+    pub line_errors: LineErrors,
 }
 
 /// A packet that was kept.
@@ -140,10 +142,9 @@ impl Conversation {
     ) -> Result<(), BoardError> {
         self.stop.check(self.link.now())?;
         self.incoming.clear();
-        let taken = self
-            .link
-            .exchange(&self.outgoing, &mut self.incoming, wait)
-            .map_err(|source| BoardError::Link { doing: doing(), source })?;
+        let moved = self.link.exchange(&self.outgoing, &mut self.incoming, wait);
+        self.tally.line_errors = self.link.line_errors();
+        let taken = moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         self.outgoing.drain(..taken);
         self.tally.bytes_out += taken as u64;
         self.tally.bytes_in += self.incoming.len() as u64;

@@ -18,7 +18,7 @@ pub enum BoardError {
         doing: String,
         /// How.
         #[source]
-        source: LinkError,
+        source: Box<LinkError>,
     },
     /// Nobody answered.
     #[error(

@@ -14,6 +14,7 @@ use serde::Serialize;
 
 use crate::compare::Comparison;
 use crate::frames::street::EdgeDeviation;
+use crate::link::LineErrors;
 use crate::verdict::{Exit, Verdict};
 
 pub use crate::target::BoardKind;
@@ -172,6 +173,8 @@ pub struct LinkReport {
     pub damaged_out: u64,
     /// Packets sent again.
     pub retries: u64,
+    /// What the chip at the link's near end has seen go wrong on the line.
+    pub line_errors: LineErrors,
     /// Retries from which on the link is too poor to judge over.
     pub retry_limit: u64,
     /// The round trip of an empty request, in microseconds of the link's clock.

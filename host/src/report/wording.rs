@@ -121,6 +121,9 @@ pub(super) fn link(link: &LinkReport) -> String {
             grouped(link.retry_limit)
         )),
     }
+    if link.line_errors.sum() > 0 {
+        parts.push(format!("errors on the line: {}", link.line_errors));
+    }
     // A virtual clock may stand still over a round trip.
     parts.extend(
         link.round_trip_us.filter(|&time| time > 0).map(|time| format!("round trip {} µs", grouped(time))),

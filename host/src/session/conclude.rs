@@ -50,6 +50,7 @@ pub(super) fn conclude(
             packets_in: findings.tally.packets_in,
             damaged_in: findings.tally.damaged_in,
             retries: findings.tally.retries,
+            line_errors: findings.tally.line_errors,
             ..findings.link
         },
         tables: tables(plan),
@@ -84,6 +85,7 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
             Ending { exit: Exit::Fail, headline, remedy: Some(remedy), suspects }
         }
         Some(End::Error { exit, headline, remedy, .. }) => {
+            let remedy = remedy.or_else(|| findings.tally.line_errors.advice().map(str::to_owned));
             Ending { exit, headline, remedy, suspects: Vec::new() }
         }
     }

@@ -1,5 +1,7 @@
 //! Packets to the host: two status bytes in front of every one, whatever the transfer's length.
 
+use std::fmt;
+
 use serde::Serialize;
 
 const STATUS: usize = 2;
@@ -33,6 +35,26 @@ impl LineErrors {
         self.overrun + self.parity + self.framing + self.breaks
     }
 
+    /// What to do about them when nothing could be judged.
+    #[must_use]
+    pub fn advice(self) -> Option<&'static str> {
+        match self {
+            Self { framing: 1.., .. } => Some(
+                "The chip sees bytes without a stop bit: check that `baud=` is the board's rate, and the line.",
+            ),
+            Self { breaks: 1.., .. } => {
+                Some("The chip sees the board hold its line low: check power and bitstream.")
+            }
+            Self { overrun: 1.., .. } => Some(
+                "The chip lost bytes that nobody fetched: use flow=rtscts, or a lower rate if the board has no RTS.",
+            ),
+            Self { parity: 1.., .. } => {
+                Some("The chip sees wrong parity: the board must send eight bits without.")
+            }
+            _ => None,
+        }
+    }
+
     fn count(&mut self, line_status: u8) {
         let bit = |mask: u8| u64::from(line_status & mask != 0);
         // Bit 7 is set while any error lies in the receive FIFO, and names none.
@@ -40,6 +62,16 @@ impl LineErrors {
         self.parity += bit(0x04);
         self.framing += bit(0x08);
         self.breaks += bit(0x10);
+    }
+}
+
+impl fmt::Display for LineErrors {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { overrun, parity, framing, breaks } = self;
+        let named = [(overrun, "overrun"), (parity, "parity"), (framing, "framing"), (breaks, "break")];
+        let some = named.into_iter().filter(|(count, _)| **count > 0);
+        let words: Vec<String> = some.map(|(count, name)| format!("{count} {name}")).collect();
+        f.write_str(&if words.is_empty() { "none".to_owned() } else { words.join(", ") })
     }
 }
 
@@ -88,9 +120,9 @@ mod tests {
 
     #[test]
     fn status_alone_or_less_is_no_data() {
-        assert_eq!(stripped(&[0xb1, 0x60], 512).0, []);
-        assert_eq!(stripped(&[0xb1], 512).0, []);
-        assert_eq!(stripped(&[], 512).0, []);
+        assert!(stripped(&[0xb1, 0x60], 512).0.is_empty());
+        assert!(stripped(&[0xb1], 512).0.is_empty());
+        assert!(stripped(&[], 512).0.is_empty());
     }
 
     #[test]
@@ -100,6 +132,12 @@ mod tests {
         let expected = LineErrors { overrun: 1, parity: 1, framing: 1, breaks: 1 };
         assert_eq!(stripped(&transfer, 512).1, expected);
         assert_eq!(expected.sum(), 4);
+        assert_eq!(expected.to_string(), "1 overrun, 1 parity, 1 framing, 1 break");
+        assert!(expected.advice().unwrap().contains("baud="));
+        assert_eq!(
+            (LineErrors::default().to_string().as_str(), LineErrors::default().advice()),
+            ("none", None)
+        );
     }
 
     #[test]
