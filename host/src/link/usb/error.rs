@@ -25,6 +25,9 @@ pub enum UsbError {
          the device"
     )]
     NoneFound,
+    /// None of the chips that boards have.
+    #[error("no FT2232H or FT232H is plugged in; if the board is behind another chip, choose that: {}", targets(.0))]
+    OthersOnly(Vec<UsbBoard>),
     /// Nothing with that name is there.
     #[error("no FTDI chip is called `{wanted}`; {}", there_are(.found))]
     NotFound {
@@ -125,7 +128,7 @@ impl UsbError {
     pub fn exit(&self) -> Exit {
         match self {
             Self::Option(_) | Self::NoChannel { .. } | Self::BaudOfFifo | Self::Rate { .. } => Exit::Usage,
-            Self::Several(_) => Exit::Usage,
+            Self::Several(_) | Self::OthersOnly(_) => Exit::Usage,
             Self::Busy { .. } => Exit::Busy,
             _ => Exit::Error,
         }
@@ -137,7 +140,10 @@ fn there_are(found: &[UsbBoard]) -> String {
 }
 
 fn targets(found: &[UsbBoard]) -> String {
-    let lines: Vec<String> = found.iter().map(|board| format!("{} ({board})", board.target())).collect();
+    let is_unique = |board: &UsbBoard| found.iter().filter(|other| other.serial == board.serial).count() == 1;
+    let name =
+        |board: &UsbBoard| if is_unique(board) { board.target() } else { format!("usb:{}", board.place) };
+    let lines: Vec<String> = found.iter().map(|board| format!("{} ({board})", name(board))).collect();
     lines.join(", ")
 }
 

@@ -115,6 +115,7 @@ pub(super) fn choose(name: Option<&str>) -> Result<Found, UsbError> {
             Err(UsbError::Several(boards(&meant)))
         }
         (None, _, Some(name)) => Err(UsbError::NotFound { wanted: name.to_owned(), found: everything }),
-        (None, _, None) => Err(UsbError::NoneFound),
+        (None, _, None) if everything.is_empty() => Err(UsbError::NoneFound),
+        (None, _, None) => Err(UsbError::OthersOnly(everything)),
     }
 }
