@@ -15,6 +15,8 @@ use crate::urb::Command;
 
 const CONTROLLER: &str = "/sys/devices/platform/vhci_hcd.0";
 
+const DEVICES: &str = "/sys/bus/usb/devices";
+
 /// High speed, as the kernel counts.
 const HIGH_SPEED: u32 = 3;
 
@@ -26,6 +28,7 @@ pub struct Plugged {
     shared: Arc<Shared>,
     threads: Vec<JoinHandle<()>>,
     port: u32,
+    bus_name: String,
 }
 
 struct Shared {
@@ -76,19 +79,24 @@ impl Plugged {
         let (listening, ticking) = (Arc::clone(&shared), Arc::clone(&shared));
         let threads =
             vec![thread::spawn(move || listening.listen(ours)), thread::spawn(move || ticking.tick())];
-        let plugged = Self { shared, threads, port };
-        plugged.wait("no name from the kernel", || plugged.bus_name().is_some())?;
+        let mut plugged = Self { shared, threads, port, bus_name: String::new() };
+        plugged.wait("no name from the kernel", || plugged.name_now().is_some())?;
+        plugged.bus_name = plugged.name_now().unwrap_or_default();
         Ok(plugged)
     }
 
     /// The kernel's name for it, as `1-1`.
     #[must_use]
-    pub fn bus_name(&self) -> Option<String> {
+    pub fn bus_name(&self) -> &str {
+        &self.bus_name
+    }
+
+    fn name_now(&self) -> Option<String> {
         // A line a port: hub, port, state (6: in use), speed, device, socket, name.
         let line = self.status_line()?;
         let fields: Vec<&str> = line.split_whitespace().collect();
         let name = fields.get(6).filter(|_| fields.get(2) == Some(&"006"))?;
-        Path::new("/sys/bus/usb/devices").join(name).join("idProduct").exists().then(|| (*name).to_owned())
+        Path::new(DEVICES).join(name).join("idProduct").exists().then(|| (*name).to_owned())
     }
 
     fn status_line(&self) -> Option<String> {
@@ -122,14 +130,18 @@ impl Plugged {
 }
 
 impl Drop for Plugged {
-    /// Waits until the port can be used again.
+    /// Waits until the port can be used again: the hub takes a device for the old one if that is not gone yet.
     fn drop(&mut self) {
+        let folder = Path::new(DEVICES).join(&self.bus_name);
         self.unplug();
         for thread in self.threads.drain(..) {
             // A thread that panicked has said so.
             let _ = thread.join();
         }
-        let is_free = || self.status_line().is_none_or(|line| line.split_whitespace().nth(2) == Some("004"));
+        let is_free = || {
+            self.status_line().is_none_or(|line| line.split_whitespace().nth(2) == Some("004"))
+                && (self.bus_name.is_empty() || !folder.exists())
+        };
         if let Err(error) = self.wait("the kernel still holds it", is_free) {
             eprintln!("{error}");
         }
