@@ -19,4 +19,6 @@ pub mod scenarios;
 #[cfg(feature = "sim")]
 pub mod simulated_core;
 pub mod system;
+#[cfg(target_os = "linux")]
+pub mod usb;
 pub mod whole_board;

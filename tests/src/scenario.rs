@@ -41,16 +41,20 @@ pub struct Scenario {
 #[derive(Clone, Debug)]
 pub struct Surprise {
     scenario: Scenario,
-    board: String,
+    target: String,
     ended: Ended,
 }
 
 impl fmt::Display for Surprise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scenario, board, ended } = self;
+        let Self { scenario, target, ended } = self;
         let Scenario { name, options, arguments, verdict, exit_code, sentence, .. } = scenario;
         writeln!(f, "{name}: expected {verdict} with {exit_code} and `{sentence}` of")?;
-        writeln!(f, "  halfrow verify --json --board {board}{options} {}", arguments.join(" "))?;
+        writeln!(
+            f,
+            "  halfrow verify --json --board {target} {}, a board with `{options}`",
+            arguments.join(" ")
+        )?;
         let said = ended.json();
         let what = if said.is_null() { &Value::Null } else { headline(&said) };
         writeln!(f, "  and it ended with {:?}, {} {what}", ended.code, said["verdict"])?;
@@ -88,11 +92,17 @@ impl Scenario {
     /// # Errors
     /// [`Surprise`] when it comes to anything else than it should.
     pub fn run(&self, board: &str) -> Result<Value, Box<Surprise>> {
-        let target = format!("{board}{}", self.options);
-        let slow = kind(board) == "sim" && !self.arguments.contains(&"--width");
-        let smaller = if slow { SMALLER } else { &[] };
+        self.judge(&format!("{board}{}", self.options), kind(board) == "sim")
+    }
+
+    /// Judges `target`, a board that has the scenario's options already, with fewer pixels if that is `smaller`.
+    ///
+    /// # Errors
+    /// [`Surprise`] when it comes to anything else than it should.
+    pub fn judge(&self, target: &str, smaller: bool) -> Result<Value, Box<Surprise>> {
+        let smaller = if smaller && !self.arguments.contains(&"--width") { SMALLER } else { &[] };
         let arguments = self.arguments.iter().chain(smaller).copied();
-        let ended = halfrow(["verify", "--json", "--board", &target].into_iter().chain(arguments));
+        let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
         let said = ended.json();
         let as_expected = ended.code == Some(self.exit_code)
             && said["exit_code"] == self.exit_code
@@ -101,7 +111,7 @@ impl Scenario {
         if as_expected {
             return Ok(said);
         }
-        Err(Box::new(Surprise { scenario: *self, board: board.to_owned(), ended }))
+        Err(Box::new(Surprise { scenario: *self, target: target.to_owned(), ended }))
     }
 }
 

@@ -8,8 +8,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::SystemTime;
 
+/// Names the program where there is no Cargo: in the machine that `scripts/in-linux` boots.
+const PROGRAM: &str = "HALFROW_TEST_PROGRAM";
+
 /// The program that belongs to this test: of the same target folder and profile.
 pub(super) fn program() -> PathBuf {
+    if let Some(program) = std::env::var_os(PROGRAM) {
+        return program.into();
+    }
     let test = std::env::current_exe().unwrap();
     // target/PROFILE/deps/TEST
     let folder = test.ancestors().nth(2).unwrap();

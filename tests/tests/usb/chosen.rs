@@ -1,0 +1,61 @@
+//! Which of several chips is meant.
+
+use halfrow_ft2232h::{ChipOptions, Plugged};
+use halfrow_tests::usb::{QemuBoard, chip, plug, sentence, verify};
+
+fn plug_second(serial: &str) -> Plugged {
+    let options = ChipOptions { serial: serial.to_owned(), ..ChipOptions::default() };
+    Plugged::new(chip(options, ""), 1).unwrap()
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn of_two_boards_the_user_chooses_one() {
+    let (first, second) = (plug(""), plug_second("HR000002"));
+    let (first, second) = (first.bus_name(), second.bus_name());
+    let ended = verify("usb");
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    let expected = format!(
+        "several boards could be meant; choose one: usb:HR000001 (miniSpartan6+, FT2232H at {first}), usb:HR000002 \
+         (miniSpartan6+, FT2232H at {second})"
+    );
+    assert_eq!(sentence(&ended), expected);
+    for target in ["usb:HR000002".to_owned(), format!("usb:{second}")] {
+        let ended = verify(&target);
+        assert_eq!(ended.code, Some(0), "{ended:?}");
+        assert!(ended.json()["link"]["name"].as_str().unwrap().contains("HR000002"), "{ended:?}");
+    }
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn boards_of_one_name_are_told_by_their_places() {
+    let (first, second) = (plug(""), plug_second("HR000001"));
+    let ended = verify("usb:HR000001");
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    for board in [&first, &second] {
+        let place = board.bus_name();
+        assert!(sentence(&ended).contains(&format!("usb:{place} (")), "{ended:?}");
+    }
+    assert_eq!(verify(&format!("usb:{}", second.bus_name())).code, Some(0));
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn a_name_that_nobody_has_gets_the_names_that_there_are() {
+    let _board = plug("");
+    let ended = verify("usb:HR000009");
+    assert_eq!(ended.code, Some(3), "{ended:?}");
+    assert!(sentence(&ended).contains("no FTDI chip is called `HR000009`"), "{ended:?}");
+    assert!(sentence(&ended).contains("usb:HR000001 (miniSpartan6+, FT2232H at"), "{ended:?}");
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn a_chip_that_boards_do_not_have_is_never_taken_unasked() {
+    let _board = QemuBoard::new("");
+    let ended = verify("usb");
+    assert_eq!(ended.code, Some(2), "{ended:?}");
+    assert!(sentence(&ended).contains("no FT2232H or FT232H is plugged in"), "{ended:?}");
+    assert!(sentence(&ended).contains("usb:QEMU0001"), "{ended:?}");
+}

@@ -1,0 +1,14 @@
+//! The link over USB, on Debian's kernel and chips made of software. `scripts/in-linux` boots that kernel; see there.
+
+#![cfg(target_os = "linux")]
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+mod chosen;
+mod in_use;
+mod judged;
+mod kernels_driver;
+mod qemu;
+mod refused;
+mod scenarios;
+mod unplugged;

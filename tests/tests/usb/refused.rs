@@ -1,0 +1,55 @@
+//! What a chip is not set up for, or this user may not do.
+
+use std::os::unix::process::CommandExt as _;
+
+use halfrow_ft2232h::{ChannelMode, ChipOptions, Eeprom, Plugged};
+use halfrow_tests::program::{command, finish};
+use halfrow_tests::usb::{chip, plug, sentence, uart, verify};
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn an_eeprom_that_contradicts_the_target_is_explained() {
+    for (options, target, words) in [
+        (ChipOptions::default(), "usb,mode=uart", "channel B of usb:HR000001 is a FIFO by its EEPROM"),
+        (uart(), "usb,mode=fifo", "channel B of usb:HR000001 is a UART by its EEPROM"),
+        (
+            ChipOptions { eeprom: Eeprom::BLANK, ..uart() },
+            "usb,mode=fifo",
+            "is a UART, since its EEPROM is blank",
+        ),
+        (
+            ChipOptions { eeprom: Eeprom::new(ChannelMode::Uart, ChannelMode::Cpu), ..uart() },
+            "usb",
+            "is a processor bus by its EEPROM",
+        ),
+    ] {
+        let _board = Plugged::new(chip(options, ""), 0).unwrap();
+        let ended = verify(target);
+        assert_eq!(ended.code, Some(3), "{target}: {ended:?}");
+        assert!(sentence(&ended).contains(words), "{target}: {ended:?}");
+    }
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn what_the_chip_cannot_do_is_a_wrong_call() {
+    let _board = Plugged::new(chip(uart(), ""), 0).unwrap();
+    for (target, words) in [
+        ("usb,channel=d", "has no channel D"),
+        ("usb,baud=7000000", "the nearest rates that it makes: 6000000 and 12000000"),
+        ("usb,speed=5", "`speed=5` is no option of `usb`"),
+    ] {
+        let ended = verify(target);
+        assert_eq!(ended.code, Some(2), "{target}: {ended:?}");
+        assert!(sentence(&ended).contains(words), "{target}: {ended:?}");
+    }
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn a_user_without_permission_is_told_how_to_get_it() {
+    let _board = plug("");
+    let ended = finish(command(["verify", "--json", "--board", "usb"]).uid(65534));
+    assert_eq!(ended.code, Some(3), "{ended:?}");
+    assert!(sentence(&ended).contains("may not open the USB device usb:HR000001"), "{ended:?}");
+}

@@ -1,0 +1,43 @@
+//! A board that is pulled out at any moment: an error, no hang, no verdict, and a station that can go on.
+
+use std::time::{Duration, Instant};
+
+use halfrow_tests::dice::Dice;
+use halfrow_tests::usb::{plug, sentence, verify};
+
+/// Pulls the plug at byte `byte` on the way `toward` the board or the host, and plugs a whole board in afterwards.
+fn pull(byte: usize, toward: &str) {
+    let board = plug(&format!(",fault=disconnect,byte={byte},toward={toward}"));
+    let begun = Instant::now();
+    let ended = verify("usb");
+    let (took, said) = (begun.elapsed(), ended.json());
+    assert_eq!(
+        (ended.code, said["verdict"].as_str()),
+        (Some(3), Some("ERROR")),
+        "byte {byte} {toward}: {ended:?}"
+    );
+    assert!(sentence(&ended).contains("was closed at"), "byte {byte} {toward}: {ended:?}");
+    assert!(took < Duration::from_secs(10), "byte {byte} {toward}: {took:?}");
+    drop(board);
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn in_the_handshake_in_the_tables_and_in_a_row() {
+    for (byte, toward) in [(0, "board"), (10, "host"), (3000, "board"), (60_000, "board"), (60_000, "host")] {
+        pull(byte, toward);
+    }
+    let _board = plug("");
+    assert_eq!(verify("usb").code, Some(0));
+}
+
+#[test]
+#[ignore = "long"]
+fn at_every_one_of_two_hundred_bytes() {
+    let mut dice = Dice::new(20_261_121);
+    for _ in 0..200 {
+        pull(dice.below(60_000), dice.one_of(&["board", "host"]));
+    }
+    let _board = plug("");
+    assert_eq!(verify("usb").code, Some(0));
+}
