@@ -127,3 +127,94 @@ impl Ftdi<'_> {
         UsbError::Transfer { name: self.name.to_owned(), doing, source }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Mutex;
+    use std::time::Duration;
+
+    use super::*;
+
+    /// A chip that notes requests, has a blank EEPROM, and refuses one request.
+    #[derive(Default)]
+    struct Noting {
+        requests: Mutex<Vec<(u8, u16, u16)>>,
+        refused: Option<u8>,
+    }
+
+    impl Transport for Noting {
+        fn request(&self, request: u8, value: u16, index: u16) -> Result<(), Failure> {
+            self.requests.lock().unwrap().push((request, value, index));
+            if self.refused == Some(request) { Err(Failure::Refused) } else { Ok(()) }
+        }
+
+        fn request_word(&self, request: u8, _: u16, _: u16) -> Result<u16, Failure> {
+            if self.refused == Some(request) { Err(Failure::Refused) } else { Ok(0xffff) }
+        }
+
+        fn read(&self, _: &mut [u8], _: Duration) -> Result<usize, Failure> {
+            Ok(0)
+        }
+
+        fn write(&self, bytes: &[u8], _: Duration) -> Result<usize, Failure> {
+            Ok(bytes.len())
+        }
+    }
+
+    fn make_ready(transport: &Noting, chip: Chip, target: &str) -> Result<Ready, UsbError> {
+        let options = UsbOptions::of(&target.parse().unwrap())?;
+        Ftdi { transport, chip, channel: chip.usual_channel(), name: "usb:X" }.make_ready(&options)
+    }
+
+    #[test]
+    fn a_uart_at_b_gets_these_requests() {
+        let chip = Noting::default();
+        let ready = make_ready(&chip, Chip::Ft2232h, "usb,baud=3000000").unwrap();
+        assert_eq!(ready, Ready::Uart { baud: 3_000_000 });
+        // Request, wValue, wIndex, as AN232B-04 and libftdi's ftdi.h have them: channel B is index 2.
+        let expected = [
+            (0, 0, 2),
+            (0, 1, 2),
+            (0, 2, 2),
+            (11, 0, 2),
+            (9, 2, 2),
+            (3, 4, 0x0202),
+            (4, 8, 2),
+            (2, 0, 0x0102),
+            (1, 0x0303, 2),
+        ];
+        assert_eq!(*chip.requests.lock().unwrap(), expected);
+    }
+
+    #[test]
+    fn a_fifo_has_no_line_to_set_up() {
+        let chip = Noting { refused: Some(READ_EEPROM), ..Noting::default() };
+        assert_eq!(make_ready(&chip, Chip::Ft232h, "usb,mode=fifo,latency=16").unwrap(), Ready::Fifo);
+        assert_eq!(*chip.requests.lock().unwrap(), [(0, 0, 0), (0, 1, 0), (0, 2, 0), (11, 0, 0), (9, 16, 0)]);
+    }
+
+    #[test]
+    fn a_chip_of_full_speed_may_lack_bit_modes() {
+        let refusing = || Noting { refused: Some(BIT_MODE), ..Noting::default() };
+        assert!(make_ready(&refusing(), Chip::FullSpeed, "usb").is_ok());
+        assert!(matches!(
+            make_ready(&refusing(), Chip::Ft2232h, "usb"),
+            Err(UsbError::Transfer { doing: "setting the bit mode", source: Failure::Refused, .. })
+        ));
+    }
+
+    #[test]
+    fn nothing_is_set_before_it_is_clear_that_all_can_be() {
+        for target in ["usb,mode=fifo", "usb,baud=7000000"] {
+            let chip = Noting::default();
+            assert!(make_ready(&chip, Chip::Ft2232h, target).is_err(), "{target}");
+            assert!(chip.requests.lock().unwrap().is_empty(), "{target}");
+        }
+    }
+
+    #[test]
+    fn what_is_not_known_is_not_guessed() {
+        let chip = Noting { refused: Some(READ_EEPROM), ..Noting::default() };
+        assert!(matches!(make_ready(&chip, Chip::Ft2232h, "usb"), Err(UsbError::NoMode { .. })));
+    }
+}

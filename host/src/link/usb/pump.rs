@@ -30,6 +30,8 @@ pub(super) type Unpack = dyn Fn(&[u8], &mut Vec<u8>, &mut LineErrors) + Send + S
 struct Queues {
     incoming: Vec<u8>,
     outgoing: VecDeque<u8>,
+    /// Bytes that have left that queue and are not written yet.
+    in_flight: usize,
     errors: LineErrors,
     failure: Option<Failure>,
     is_over: bool,
@@ -100,12 +102,15 @@ impl Shared {
             }
             let more = queues.outgoing.len().min(WRITE - bytes.len());
             bytes.extend(queues.outgoing.drain(..more));
+            queues.in_flight = bytes.len();
             drop(queues);
             self.changed.notify_all();
             match self.transport.write(&bytes, BREATH) {
                 Ok(written) => drop(bytes.drain(..written)),
                 Err(failure) => return self.fail(failure),
             }
+            self.queues().in_flight = bytes.len();
+            self.changed.notify_all();
         }
     }
 }
@@ -169,7 +174,7 @@ impl Drop for Pump {
     fn drop(&mut self) {
         let deadline = Instant::now() + 2 * BREATH;
         let mut queues = self.shared.queues();
-        while !queues.outgoing.is_empty() && !queues.is_over && Instant::now() < deadline {
+        while queues.outgoing.len() + queues.in_flight > 0 && !queues.is_over && Instant::now() < deadline {
             queues = self.shared.wait(queues, BREATH / 10);
         }
         queues.is_over = true;
@@ -178,6 +183,118 @@ impl Drop for Pump {
         for thread in self.threads.drain(..) {
             // A thread that panicked has said so.
             let _ = thread.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LONG: Duration = Duration::from_secs(5);
+
+    /// A device that says what is put in it, in pieces, and then fails or is silent. It takes bytes until it is `stuck`.
+    #[derive(Default)]
+    struct Device {
+        says: Mutex<VecDeque<Result<Vec<u8>, Failure>>>,
+        heard: Arc<Mutex<Vec<u8>>>,
+        stuck: bool,
+    }
+
+    impl Transport for Device {
+        fn request(&self, _: u8, _: u16, _: u16) -> Result<(), Failure> {
+            Ok(())
+        }
+
+        fn request_word(&self, _: u8, _: u16, _: u16) -> Result<u16, Failure> {
+            Ok(0)
+        }
+
+        fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, Failure> {
+            let next = self.says.lock().unwrap().pop_front();
+            match next {
+                Some(said) => said.map(|bytes| {
+                    buffer[..bytes.len()].copy_from_slice(&bytes);
+                    bytes.len()
+                }),
+                None => {
+                    thread::sleep(wait);
+                    Ok(0)
+                }
+            }
+        }
+
+        fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, Failure> {
+            if self.stuck {
+                thread::sleep(wait);
+                return Ok(0);
+            }
+            // A device takes what it has room for.
+            let taken = bytes.len().min(1000);
+            self.heard.lock().unwrap().extend_from_slice(&bytes[..taken]);
+            Ok(taken)
+        }
+    }
+
+    fn pump(device: Device) -> Pump {
+        Pump::start(Box::new(device), Box::new(|transfer, data, _| data.extend_from_slice(transfer)))
+    }
+
+    #[test]
+    fn what_came_before_a_failure_is_handed_over_before_it() {
+        let says = [Ok(vec![1, 2]), Ok(vec![3]), Err(Failure::Gone)].into();
+        let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
+        let mut incoming = Vec::new();
+        let failure = loop {
+            match pump.exchange(&[], &mut incoming, LONG) {
+                Ok(_) => {}
+                Err(failure) => break failure,
+            }
+        };
+        assert!(matches!(failure, Failure::Gone));
+        assert_eq!(incoming, [1, 2, 3]);
+        // It stays so, and takes nothing more.
+        assert!(pump.exchange(&[7], &mut incoming, LONG).is_err());
+    }
+
+    #[test]
+    fn all_that_was_taken_is_written_in_order_before_the_end() {
+        let heard = Arc::new(Mutex::new(Vec::new()));
+        let pump = pump(Device { heard: Arc::clone(&heard), ..Device::default() });
+        let sent: Vec<u8> = (0..100_000_u32).map(|n| (n % 251) as u8).collect();
+        let mut left = sent.as_slice();
+        while !left.is_empty() {
+            let taken = pump.exchange(left, &mut Vec::new(), LONG).unwrap();
+            left = &left[taken..];
+        }
+        drop(pump);
+        assert!(*heard.lock().unwrap() == sent);
+    }
+
+    #[test]
+    fn a_device_that_takes_nothing_holds_up_neither_deadline_nor_end() {
+        let pump = pump(Device { stuck: true, ..Device::default() });
+        let begun = Instant::now();
+        let mut taken = 0;
+        while begun.elapsed() < Duration::from_millis(300) {
+            taken += pump.exchange(&[0; 10_000], &mut Vec::new(), Duration::from_millis(50)).unwrap();
+        }
+        // What waits to be written, and what the writing thread holds.
+        assert!(taken <= OUTGOING + WRITE, "{taken}");
+        drop(pump);
+        assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
+    }
+
+    #[test]
+    fn noise_without_end_does_not_fill_the_memory() {
+        let says = (0..200).map(|_| Ok(vec![0x55; READ])).collect();
+        let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
+        thread::sleep(Duration::from_millis(300));
+        let mut incoming = Vec::new();
+        pump.exchange(&[], &mut incoming, LONG).unwrap();
+        assert!(incoming.len() <= INCOMING + READ, "{}", incoming.len());
+        while incoming.len() < 200 * READ {
+            pump.exchange(&[], &mut incoming, LONG).unwrap();
         }
     }
 }
