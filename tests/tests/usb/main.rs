@@ -11,4 +11,5 @@ mod kernels_driver;
 mod qemu;
 mod refused;
 mod scenarios;
+mod speed;
 mod unplugged;
