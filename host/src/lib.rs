@@ -7,7 +7,7 @@
 //! ```
 //!
 //! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`session`] is the one that knows the order of
-//! things. [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
+//! things. [`serve`] puts a board of this program behind a device of its own. [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
 
 pub mod board;
 pub mod commands;
@@ -17,6 +17,7 @@ pub mod frames;
 pub mod link;
 pub mod progress;
 pub mod report;
+pub mod serve;
 pub mod session;
 pub mod settings;
 pub mod tables;

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use crate::parallel;
 use crate::program::{Ended, halfrow};
+use crate::served::Served;
 
 /// The boards that a scenario makes sense on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,9 +70,21 @@ impl Scenario {
     /// # Errors
     /// [`Surprise`] when it comes to anything else than it should.
     pub fn run(&self, board: &str) -> Result<Value, Box<Surprise>> {
-        let target = format!("{board}{}", self.options);
+        self.judge(&format!("{board}{}", self.options), board)
+    }
+
+    /// Runs it on the mock board behind a pseudo-terminal.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn run_on_a_serial_port(&self) -> Result<Value, Box<Surprise>> {
+        let served = Served::on_a_serial_port(&format!("mock{}", self.options));
+        self.judge(&served.target(), "mock behind a serial port: ")
+    }
+
+    fn judge(&self, target: &str, board: &str) -> Result<Value, Box<Surprise>> {
         let ended = halfrow(
-            ["verify", "--json", "--board", &target].into_iter().chain(self.arguments.iter().copied()),
+            ["verify", "--json", "--board", target].into_iter().chain(self.arguments.iter().copied()),
         );
         let said = ended.json();
         let as_expected = ended.code == Some(self.exit_code)
@@ -92,10 +105,23 @@ impl Scenario {
 #[must_use]
 pub fn run_all(scenarios: &[Scenario], board: &str) -> Vec<Value> {
     let suited: Vec<_> = scenarios.iter().filter(|scenario| scenario.suits(board)).collect();
-    let (reports, surprises): (Vec<_>, Vec<_>) =
-        parallel::map(&suited, |scenario| scenario.run(board)).into_iter().partition(Result::is_ok);
+    no_surprise(parallel::map(&suited, |scenario| scenario.run(board)))
+}
+
+/// Runs `scenarios` on mock boards behind serial ports of their own, and returns their reports.
+///
+/// # Panics
+/// When any of them comes to anything else than it should.
+#[must_use]
+pub fn run_all_on_serial_ports(scenarios: &[&Scenario]) -> Vec<Value> {
+    no_surprise(parallel::map(scenarios, |scenario| scenario.run_on_a_serial_port()))
+}
+
+fn no_surprise(results: Vec<Result<Value, Box<Surprise>>>) -> Vec<Value> {
+    let runs = results.len();
+    let (reports, surprises): (Vec<_>, Vec<_>) = results.into_iter().partition(Result::is_ok);
     let surprises: Vec<_> = surprises.into_iter().filter_map(Result::err).map(|it| it.to_string()).collect();
-    assert!(surprises.is_empty(), "{} of {}:\n{}", surprises.len(), suited.len(), surprises.join("\n"));
+    assert!(surprises.is_empty(), "{} of {runs}:\n{}", surprises.len(), surprises.join("\n"));
     reports.into_iter().filter_map(Result::ok).collect()
 }
 

@@ -41,6 +41,9 @@ impl System {
     /// As small as rows may be, for runs by the thousand.
     pub const TINY: Self = Self { width: 64, height: 8, radius: 10.0, board: "mock", ring: 2048 };
 
+    /// As short as a run may be, for runs at every packet of one.
+    pub const TINIEST: Self = Self { height: 1, ..Self::TINY };
+
     /// The report on the board with `options` behind its target. The run streams the built-in frames and ends with the
     /// first that differs.
     ///
@@ -48,7 +51,16 @@ impl System {
     /// If there is no such board.
     #[must_use]
     pub fn judge(&self, options: &str) -> Report {
-        let target: Target = format!("{}{options}", self.board).parse().unwrap();
+        self.judge_at(&format!("{}{options}", self.board))
+    }
+
+    /// The report on the board that `target` leads to.
+    ///
+    /// # Panics
+    /// If there is no such board.
+    #[must_use]
+    pub fn judge_at(&self, target: &str) -> Report {
+        let target: Target = target.parse().unwrap();
         let candidate = link::open(&target).unwrap();
         verify(&self.plan(), candidate, &Circumstances::default(), &Stop::default(), &Silent).report
     }

@@ -82,6 +82,15 @@ impl Conversation {
         self.link.name()
     }
 
+    pub(super) fn is_exclusive(&self) -> bool {
+        self.link.is_exclusive()
+    }
+
+    /// From now on nothing but a deadline ends a wait.
+    pub(super) fn disregard_stop(&mut self) {
+        self.stop = Stop::default();
+    }
+
     pub(super) fn wait_for(&self, step: Step, bytes: usize) -> Duration {
         step.wait(bytes, self.link.bytes_per_second())
     }
@@ -143,7 +152,7 @@ impl Conversation {
         let taken = self
             .link
             .exchange(&self.outgoing, &mut self.incoming, wait)
-            .map_err(|source| BoardError::Link { doing: doing(), source })?;
+            .map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         self.outgoing.drain(..taken);
         self.tally.bytes_out += taken as u64;
         self.tally.bytes_in += self.incoming.len() as u64;

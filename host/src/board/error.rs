@@ -18,7 +18,7 @@ pub enum BoardError {
         doing: String,
         /// How.
         #[source]
-        source: LinkError,
+        source: Box<LinkError>,
     },
     /// Nobody answered.
     #[error(
@@ -132,6 +132,7 @@ impl BoardError {
     pub fn exit(&self) -> Exit {
         match self {
             Self::Held { .. } => Exit::Busy,
+            Self::Link { source, .. } if matches!(**source, LinkError::InUse { .. }) => Exit::Busy,
             Self::NotABoard | Self::Version { .. } => Exit::Refused,
             Self::Stopped(exit) => *exit,
             _ => Exit::Error,

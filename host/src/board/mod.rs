@@ -61,7 +61,7 @@ impl Board {
     pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Tally)> {
         let mut conversation = Conversation::new(link, options.retry_limit, options.stop.clone());
         let mut open = || {
-            let welcome = greet(&mut conversation, options)?;
+            let welcome = greet_or_take_over(&mut conversation, options)?;
             conversation.session = welcome.session;
             let capabilities =
                 conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
@@ -150,11 +150,13 @@ impl Board {
         self.reset(ResetLevel::Rows)
     }
 
-    /// Closes the session, so that another host finds the board free. Waits for the board's answer, but not for ever.
+    /// Closes the session, so that another host finds the board free, also when the run was stopped. Waits for the board's
+    /// answer, but not for ever.
     ///
     /// # Errors
     /// [`BoardError`] when the board does not answer; it is then free after 10 s of silence.
     pub fn close(&mut self) -> Result<(), BoardError> {
+        self.conversation.disregard_stop();
         self.reset(ResetLevel::Session)
     }
 
@@ -166,6 +168,17 @@ impl Board {
             .request(&reset, Step::Request, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.acknowledged = next_row;
         Ok(())
+    }
+}
+
+/// Over a link that is this program's alone nobody can be cut off: whoever holds the board was killed.
+fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
+    match greet(conversation, options) {
+        Err(BoardError::Held { .. }) if conversation.is_exclusive() => {
+            tracing::warn!("the board is held by a run that was killed, and is taken over");
+            greet(conversation, &OpenOptions { take_over: true, ..options.clone() })
+        }
+        greeted => greeted,
     }
 }
 

@@ -9,6 +9,7 @@ mod frames;
 mod info;
 mod inputs;
 mod lens;
+mod serve;
 mod tables;
 mod verify;
 
@@ -54,6 +55,7 @@ enum Command {
     Frames(frames::Arguments),
     Boards(boards::Arguments),
     Info(info::Arguments),
+    Serve(serve::Arguments),
     Faults(faults::Arguments),
     Completions(completions::Completions),
     Manual(completions::Manual),
@@ -119,6 +121,7 @@ impl Cli {
             Command::Frames(arguments) => frames::run(arguments),
             Command::Boards(arguments) => boards::run(arguments),
             Command::Info(arguments) => info::run(arguments, &context),
+            Command::Serve(arguments) => serve::run(arguments),
             Command::Faults(arguments) => faults::run(arguments),
             Command::Completions(arguments) => completions::complete(arguments, &mut Self::command()),
             Command::Manual(arguments) => completions::manual(arguments, Self::command()),

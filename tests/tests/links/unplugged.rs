@@ -1,0 +1,46 @@
+//! Boards that are unplugged: at every packet, and in the middle of one.
+
+use std::time::{Duration, Instant};
+
+use halfrow::verdict::Exit;
+use halfrow_tests::parallel;
+use halfrow_tests::served::Served;
+use halfrow_tests::system::System;
+
+/// A run that hangs would take all of its deadlines, many times over.
+const SOON: Duration = Duration::from_secs(20);
+
+/// Judges a board that is unplugged as `options` say, which must end in an error. Returns whether the run came that far.
+fn is_unplugged(options: &str) -> bool {
+    let served = Served::on_a_serial_port(&format!("mock,fault=disconnect,{options}"));
+    let begun = Instant::now();
+    let report = System::TINIEST.judge_at(&served.target());
+    assert!(begun.elapsed() < SOON, "{options}: {:?}", begun.elapsed());
+    if report.exit_code == Exit::Pass {
+        return false;
+    }
+    let said = &report.headline;
+    assert_eq!(report.exit_code, Exit::Error, "{options}: {said}");
+    assert!(said.contains("the link broke while waiting for"), "{options}: {said}");
+    assert!(said.contains("went away at"), "{options}: {said}");
+    true
+}
+
+#[test]
+fn at_every_packet_it_is_an_error_that_names_the_place() {
+    for toward in ["board", "host"] {
+        let packets: Vec<u32> = (0..100).collect();
+        let unplugged =
+            parallel::map(&packets, |packet| is_unplugged(&format!("packet={packet},toward={toward}")));
+        let run = unplugged.iter().take_while(|&&unplugged| unplugged).count();
+        assert!((40..100).contains(&run), "{run} packets toward the {toward}");
+        assert!(!unplugged[run..].contains(&true), "{unplugged:?}");
+    }
+}
+
+#[test]
+fn in_the_middle_of_packets_it_is_an_error_too() {
+    let bytes: Vec<u32> = (0..20).map(|index| index * 331 + 7).collect();
+    let unplugged = parallel::map(&bytes, |byte| is_unplugged(&format!("byte={byte},toward=host")));
+    assert!(unplugged[0] && unplugged[3], "{unplugged:?}");
+}
