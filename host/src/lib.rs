@@ -7,12 +7,14 @@
 //! ```
 //!
 //! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`session`] is the one that knows the order of
-//! things. [`serve`] puts a board of this program behind a device of its own. [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
+//! things. [`discovery`] finds what could be a board, and [`serve`] puts a board of this program behind a device of its own.
+//! [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
 
 pub mod board;
 pub mod commands;
 pub mod compare;
 pub mod diagnosis;
+pub mod discovery;
 pub mod frames;
 pub mod link;
 pub mod progress;

@@ -37,6 +37,8 @@ pub struct OpenOptions {
     pub host: u32,
     /// Take the board from whoever holds it.
     pub take_over: bool,
+    /// Leave it to its holder even over a link that is this program's alone: a board can have two links.
+    pub polite: bool,
     /// How many packets may be sent again.
     pub retry_limit: RetryLimit,
     /// What ends the run early.
@@ -174,7 +176,7 @@ impl Board {
 /// Over a link that is this program's alone nobody can be cut off: whoever holds the board was killed.
 fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
     match greet(conversation, options) {
-        Err(BoardError::Held { .. }) if conversation.is_exclusive() => {
+        Err(BoardError::Held { .. }) if conversation.is_exclusive() && !options.polite => {
             tracing::warn!("the board is held by a run that was killed, and is taken over");
             greet(conversation, &OpenOptions { take_over: true, ..options.clone() })
         }

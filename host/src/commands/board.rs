@@ -74,6 +74,7 @@ impl BoardArguments {
             nonce,
             host,
             take_over: self.take_over,
+            polite: false,
             retry_limit: self.retry_limit(settings),
             stop: self.stop(self.timeout(settings)?)?,
         })

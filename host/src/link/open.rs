@@ -158,8 +158,11 @@ fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
     Err(OpenError::NoSimulation(target.to_string()))
 }
 
+/// Keys and values.
+type Options<'a> = Vec<(&'a str, &'a str)>;
+
 /// Whether the wire of a board in this process is paced, and the other options.
-pub(super) fn pace(target: &Target) -> Result<(bool, Vec<(&str, &str)>), OpenError> {
+pub(super) fn pace(target: &Target) -> Result<(bool, Options<'_>), OpenError> {
     let mut paced = false;
     let mut options = Vec::new();
     for (key, value) in &target.options {

@@ -98,6 +98,7 @@ fn run(
         nonce: draws.nonce,
         host: draws.host,
         take_over: plan.take_over,
+        polite: false,
         retry_limit: plan.retry_limit,
         stop: stop.clone(),
     };

@@ -27,13 +27,17 @@ fn for_anybody(folder: &Folder) -> PathBuf {
 }
 
 fn info_as_nobody(program: &Path, target: &str) -> Ended {
+    as_nobody(program, &["info", "--json", "--board", target])
+}
+
+fn as_nobody(program: &Path, arguments: &[&str]) -> Ended {
     let mut command = Command::new("setpriv");
     command.args(["--reuid=65534", "--regid=65534", "--clear-groups"]).arg(program);
     if !is_root() {
         command = Command::new(program);
     }
     command.env_clear().env("PATH", "/usr/bin:/bin").current_dir("/");
-    program::finish(command.args(["info", "--json", "--board", target]))
+    program::finish(command.args(arguments))
 }
 
 #[test]
@@ -45,6 +49,8 @@ fn a_port_that_one_may_not_open_is_told_from_one_that_is_not_there() {
     let target = format!("serial:{}", pty.path().display());
     ends(&info_as_nobody(&program, &target), 3, "you may not open /dev/pts/");
     ends(&info_as_nobody(&program, &target), 3, "install scripts/70-halfrow.rules");
+    let looked = as_nobody(&program, &["boards", "--json", "--ask", &target]).json();
+    assert_eq!(looked[0]["access"]["state"], "denied", "{looked}");
     fs::set_permissions(pty.path(), Permissions::from_mode(0o660)).unwrap();
     if is_root() {
         chown(pty.path(), None, Some(20)).unwrap();

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod access;
+mod discovered;
 mod scenarios;
 mod ser2net;
 mod serial;
