@@ -5,9 +5,22 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use halfrow::link;
 use halfrow::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
+
+/// How long a board is away that is plugged in again.
+const AWAY: Duration = Duration::from_millis(50);
+
+/// How a board comes back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Replug {
+    /// As it was: only its cable had been pulled.
+    Powered,
+    /// As this target, switched on a moment ago.
+    Switched(String),
+}
 
 /// A board that is served until this is dropped, or until its wire breaks.
 #[derive(Debug)]
@@ -31,13 +44,13 @@ impl Served {
         })
     }
 
-    /// The same under the name `path`, and unplugged when `byte` bytes have gone to the host. It is plugged in again
-    /// `replug` later, if that is given, with the board as it was.
+    /// The same under the name `path`, and unplugged when `byte` bytes have gone to the host. A moment later it is plugged
+    /// in again, if `replug` says how.
     ///
     /// # Panics
     /// If there is no such board or no pseudo-terminal.
     #[must_use]
-    pub fn unplugged_once(board: &str, path: &Path, byte: u64, replug: Option<std::time::Duration>) -> Self {
+    pub fn unplugged_once(board: &str, path: &Path, byte: u64, replug: Option<Replug>) -> Self {
         let path: PathBuf = path.to_owned();
         Self::start(board, move |board, mut ended, said| {
             let pty = Pty::open()?;
@@ -45,8 +58,11 @@ impl Served {
             said.send(format!("serial:{}", path.display())).unwrap();
             pty.serve(board, &mut |traffic| traffic.to_host >= byte || ended(traffic))?;
             drop((name, pty));
-            let Some(pause) = replug else { return Ok(()) };
-            std::thread::sleep(pause);
+            let Some(replug) = replug else { return Ok(()) };
+            std::thread::sleep(AWAY);
+            if let Replug::Switched(other) = replug {
+                *board = Hosted::new(link::open(&other.parse().unwrap()).unwrap().link);
+            }
             let pty = Pty::open()?;
             let _name = Name::link(&path, pty.path())?;
             pty.serve(board, &mut ended)

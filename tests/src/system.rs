@@ -1,5 +1,7 @@
 //! Boards judged in this process: the library's own run, without the program around it.
 
+use std::time::Duration;
+
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::frames::Builtin;
@@ -60,9 +62,19 @@ impl System {
     /// If there is no such board.
     #[must_use]
     pub fn judge_at(&self, target: &str) -> Report {
+        self.judge_patiently(target, None)
+    }
+
+    /// The same, going on when the board goes away for less than `patience`.
+    ///
+    /// # Panics
+    /// If there is no such board.
+    #[must_use]
+    pub fn judge_patiently(&self, target: &str, patience: Option<Duration>) -> Report {
         let target: Target = target.parse().unwrap();
         let candidate = link::open(&target).unwrap();
-        verify(&self.plan(), candidate, &Circumstances::default(), &Stop::default(), &Silent).report
+        let plan = Plan { reconnect: patience, ..self.plan() };
+        verify(&plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
     }
 
     fn plan(&self) -> Plan {
@@ -83,6 +95,7 @@ impl System {
             seed: 1,
             timeout: None,
             retry_limit: RetryLimit::default(),
+            reconnect: None,
             keep_pictures: false,
         }
     }

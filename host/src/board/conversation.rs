@@ -7,7 +7,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
-use crate::link::Link;
+use crate::link::{Link, Severed};
 
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +24,17 @@ pub struct Tally {
     pub damaged_in: u64,
     /// Packets sent again.
     pub retries: u64,
+}
+
+impl std::ops::AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.bytes_out += other.bytes_out;
+        self.bytes_in += other.bytes_in;
+        self.packets_out += other.packets_out;
+        self.packets_in += other.packets_in;
+        self.damaged_in += other.damaged_in;
+        self.retries += other.retries;
+    }
 }
 
 /// A packet that was kept.
@@ -72,6 +83,12 @@ impl Conversation {
             limit,
             stop,
         }
+    }
+
+    /// Closes the link and forgets what it did.
+    pub(super) fn hang_up(&mut self) {
+        self.link = Box::new(Severed);
+        self.tally = Tally::default();
     }
 
     pub(super) fn now(&self) -> Duration {

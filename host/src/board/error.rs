@@ -127,6 +127,19 @@ pub enum BoardError {
 }
 
 impl BoardError {
+    /// Whether the board is gone, as one is that was unplugged or lost power, and may come back.
+    #[must_use]
+    pub fn is_outage(&self) -> bool {
+        use LinkError::{Closed, Failed, Unplugged};
+        match self {
+            Self::Link { source, .. } => {
+                matches!(**source, Closed { .. } | Failed { .. } | Unplugged { .. })
+            }
+            Self::NoAnswer { .. } | Self::SessionLost => true,
+            _ => false,
+        }
+    }
+
     /// The exit code of a run that ends with this error.
     #[must_use]
     pub fn exit(&self) -> Exit {

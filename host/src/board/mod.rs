@@ -102,6 +102,11 @@ impl Board {
         self.conversation.link_name()
     }
 
+    /// Closes the link without a word, as when the board is gone. All that follows fails.
+    pub fn hang_up(&mut self) {
+        self.conversation.hang_up();
+    }
+
     /// Sends `bytes`, and says whether they came back as they went and how long that took on the link's clock.
     ///
     /// # Errors

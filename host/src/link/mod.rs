@@ -5,6 +5,7 @@ mod open;
 mod recording;
 mod replay;
 mod serial;
+mod severed;
 #[cfg(feature = "sim")]
 mod simulated;
 mod sysfs;
@@ -17,6 +18,7 @@ pub use open::{Candidate, OpenError, open, replayed_file};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
 pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
+pub use severed::Severed;
 pub use sysfs::{UsbDevice, usb_device};
 pub use tcp::{TcpError, TcpLink};
 pub use wire::WireLink;
