@@ -95,6 +95,10 @@ impl Conversation {
         self.link.now()
     }
 
+    pub(super) fn bytes_per_second(&self) -> Option<f64> {
+        self.link.bytes_per_second()
+    }
+
     pub(super) fn link_name(&self) -> String {
         self.link.name()
     }

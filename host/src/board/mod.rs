@@ -96,6 +96,12 @@ impl Board {
         self.conversation.now()
     }
 
+    /// The bytes a second that the link carries, when that is known.
+    #[must_use]
+    pub fn bytes_per_second(&self) -> Option<f64> {
+        self.conversation.bytes_per_second()
+    }
+
     /// The link, for people.
     #[must_use]
     pub fn link_name(&self) -> String {

@@ -5,6 +5,7 @@
 
 mod access;
 mod discovered;
+mod measured;
 mod reconnected;
 mod scenarios;
 mod ser2net;
