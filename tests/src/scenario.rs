@@ -104,8 +104,22 @@ impl Scenario {
 /// When any of them comes to anything else than it should.
 #[must_use]
 pub fn run_all(scenarios: &[Scenario], board: &str) -> Vec<Value> {
+    run_each(&scenarios.iter().collect::<Vec<_>>(), board)
+}
+
+/// The same for scenarios that were chosen.
+///
+/// # Panics
+/// As [`run_all`].
+#[must_use]
+pub fn run_each(scenarios: &[&Scenario], board: &str) -> Vec<Value> {
     let suited: Vec<_> = scenarios.iter().filter(|scenario| scenario.suits(board)).collect();
-    no_surprise(parallel::map(&suited, |scenario| scenario.run(board)))
+    let is_one_device = !["mock", "sim"].contains(&board.split([':', ',']).next().unwrap_or_default());
+    no_surprise(if is_one_device {
+        suited.iter().map(|scenario| scenario.run(board)).collect()
+    } else {
+        parallel::map(&suited, |scenario| scenario.run(board))
+    })
 }
 
 /// Runs `scenarios` on mock boards behind serial ports of their own, and returns their reports.

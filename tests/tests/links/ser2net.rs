@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 use halfrow_tests::program::Folder;
-use halfrow_tests::served::Served;
+use halfrow_tests::served::{Replug, Served};
 
 use crate::{ends, passes, verify};
 
@@ -99,4 +99,15 @@ fn a_board_unplugged_behind_ser2net_is_an_error() {
     let served = Served::on_a_serial_port("mock,fault=disconnect,packet=60");
     let ser2net = Ser2net::start(&folder, Path::new(served.address()));
     ends(&verify(&ser2net.target(), &[]), 3, "was closed at");
+}
+
+#[test]
+fn a_run_goes_on_when_the_board_behind_ser2net_comes_back() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    let served = Served::unplugged_once("mock", &path, 5000, Some(Replug::Powered));
+    let ser2net = Ser2net::start(&folder, Path::new(served.address()));
+    let ended = verify(&ser2net.target(), &["--reconnect=10"]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    assert_eq!(ended.json()["link"]["reconnections"].as_array().unwrap().len(), 1);
 }

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use halfrow::verdict::Exit;
+use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
 use halfrow_tests::served::Served;
 use halfrow_tests::system::System;
@@ -38,9 +39,32 @@ fn at_every_packet_it_is_an_error_that_names_the_place() {
     }
 }
 
+/// Unplugs boards after `count` numbers of bytes either way, drawn from all of a run.
+#[track_caller]
+fn is_unplugged_after(count: usize) {
+    let whole = System::TINIEST.judge_at(&Served::on_a_serial_port("mock").target());
+    assert_eq!(whole.exit_code, Exit::Pass, "{}", whole.headline);
+    let mut dice = Dice::new(7);
+    let ends = [("board", whole.link.bytes_out), ("host", whole.link.bytes_in)];
+    let cuts: Vec<_> = (0..count)
+        .map(|index| {
+            let (toward, bytes) = ends[index % 2];
+            // The last bytes either way are of the session's end, which comes behind the verdict.
+            format!("byte={},toward={toward}", dice.below(bytes as usize - 100))
+        })
+        .collect();
+    let unplugged = parallel::map(&cuts, |cut| is_unplugged(cut));
+    let passed: Vec<_> = cuts.iter().zip(&unplugged).filter(|(_, unplugged)| !**unplugged).collect();
+    assert!(passed.is_empty(), "{passed:?}");
+}
+
 #[test]
 fn in_the_middle_of_packets_it_is_an_error_too() {
-    let bytes: Vec<u32> = (0..20).map(|index| index * 331 + 7).collect();
-    let unplugged = parallel::map(&bytes, |byte| is_unplugged(&format!("byte={byte},toward=host")));
-    assert!(unplugged[0] && unplugged[3], "{unplugged:?}");
+    is_unplugged_after(20);
+}
+
+#[test]
+#[ignore = "minutes long; scripts/soak runs it"]
+fn at_each_of_two_hundred_bytes_it_is_an_error() {
+    is_unplugged_after(200);
 }
