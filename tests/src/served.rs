@@ -20,6 +20,8 @@ pub enum Replug {
     Powered,
     /// As this target, switched on a moment ago.
     Switched(String),
+    /// As this target, behind a port that was there all the time: the board alone had lost power.
+    Reset(String),
 }
 
 /// A board that is served until this is dropped, or until its wire breaks.
@@ -57,11 +59,16 @@ impl Served {
             let name = Name::link(&path, pty.path())?;
             said.send(format!("serial:{}", path.display())).unwrap();
             pty.serve(board, &mut |traffic| traffic.to_host >= byte || ended(traffic))?;
+            let switched_on = |other: &str| Hosted::new(link::open(&other.parse().unwrap()).unwrap().link);
+            if let Some(Replug::Reset(other)) = &replug {
+                *board = switched_on(other);
+                return pty.serve(board, &mut ended);
+            }
             drop((name, pty));
             let Some(replug) = replug else { return Ok(()) };
             std::thread::sleep(AWAY);
             if let Replug::Switched(other) = replug {
-                *board = Hosted::new(link::open(&other.parse().unwrap()).unwrap().link);
+                *board = switched_on(&other);
             }
             let pty = Pty::open()?;
             let _name = Name::link(&path, pty.path())?;

@@ -272,3 +272,55 @@ fn sha256(frame: &Frame) -> String {
 pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use halfrow_model::{BitDepth, Phase};
+
+    use super::*;
+    use crate::progress::Silent;
+
+    const HEIGHT: usize = 4;
+
+    fn frame(number: u16) -> Prepared {
+        let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![number; 64 * HEIGHT]).unwrap();
+        let frame = Arc::new(frame);
+        let name = String::new();
+        Prepared { name, number, generation: 2, input: Arc::clone(&frame), expected: frame }
+    }
+
+    fn give(judge: &mut Judge<'_>, frame: u16, row: usize, sample: u16) {
+        let samples = &[sample; 64];
+        let row = ReturnedRow { frame, row, generation: 2, first_latency: 44, last_latency: 44, samples };
+        assert!(judge.returned(&row).is_continue());
+    }
+
+    #[test]
+    fn a_frame_that_is_sent_again_has_every_row_judged_once() {
+        let (sender, source) = channel();
+        [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
+        drop(sender);
+        let mut seen = Seen::default();
+        let manner =
+            Manner { claimed_latency: 44, latency_limit: 64, fail_fast: false, pictures: 0, differing: 0 };
+        let mut judge = Judge::new(source, &mut seen, manner, String::new(), &Silent);
+        let sent = |judge: &mut Judge<'_>| judge.next_frame().map(|frame| frame.number);
+        assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
+        [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));
+        judge.begin_again();
+        assert_eq!((sent(&mut judge), sent(&mut judge), sent(&mut judge)), (Some(7), Some(8), None));
+        // Only what comes for the first time counts: the second row 0 is wrong, and so is the last row.
+        for (row, sample) in [(0, 0), (1, 7), (2, 7), (3, 0)] {
+            give(&mut judge, 7, row, sample);
+        }
+        (0..HEIGHT).for_each(|row| give(&mut judge, 8, row, 8));
+        assert_eq!((judge.rows, judge.frames_done()), (8, 2));
+        judge.finish().unwrap();
+        let found: Vec<_> =
+            seen.frames.iter().map(|frame| (frame.rows, frame.comparison.differences)).collect();
+        assert_eq!(found, [(4, 64), (4, 0)]);
+        assert_eq!(seen.latency.unwrap().rows, 8);
+    }
+}
