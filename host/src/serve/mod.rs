@@ -22,6 +22,8 @@ pub use tcp::Port;
 const QUEUE: usize = 64 * 1024;
 /// How often a board is looked after that has moved bytes of late, since they may be under way on its wire.
 const BUSY_TICK: Duration = Duration::from_millis(1);
+/// The same on a wire with a speed, where that would be too coarse.
+const PACED_TICK: Duration = Duration::from_micros(100);
 /// How often at other times.
 const IDLE_TICK: Duration = Duration::from_millis(20);
 /// How long after its last byte a board counts as busy.
@@ -119,11 +121,20 @@ impl Hosted {
             if self.traffic != before {
                 self.moved_at = Instant::now();
             } else if self.to_host.is_empty() || self.speak(door).is_ok_and(|()| self.traffic == before) {
-                let tick = if self.moved_at.elapsed() < BUSY { BUSY_TICK } else { IDLE_TICK };
-                // A door that is gone is found out by the next attempt to use it.
-                let _ = is_ready(door.as_raw_fd(), !self.to_host.is_empty(), tick);
+                self.wait(door);
             }
         }
+    }
+
+    fn wait(&self, door: &impl AsRawFd) {
+        let is_busy = self.moved_at.elapsed() < BUSY;
+        if is_busy && self.link.bytes_per_second().is_some() {
+            std::thread::sleep(PACED_TICK);
+            return;
+        }
+        let tick = if is_busy { BUSY_TICK } else { IDLE_TICK };
+        // A door that is gone is found out by the next attempt to use it.
+        let _ = is_ready(door.as_raw_fd(), !self.to_host.is_empty(), tick);
     }
 
     fn listen(&mut self, door: &impl AsRawFd) -> Result<(), Gone> {
