@@ -14,11 +14,19 @@ mod served;
 mod tcp;
 mod unplugged;
 
+use std::process::{Child, Command};
+
 use halfrow_tests::program::{Ended, halfrow};
 use halfrow_tests::served::Served;
 
 /// The options of a frame so small that a whole run takes a moment.
 const SMALL: [&str; 6] = ["--width", "64", "--height", "8", "--frame", "builtin:noise"];
+
+/// Sends a signal to a program that a test started.
+fn send(child: &Child, signal: &str) {
+    let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
+    assert!(kill.unwrap().success());
+}
 
 /// Judges the board behind `target`.
 fn verify(target: &str, more: &[&str]) -> Ended {

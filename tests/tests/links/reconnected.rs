@@ -1,12 +1,14 @@
 //! Boards that are unplugged and plugged in again: the run goes on where it stood.
 
+use std::io::{BufRead as _, BufReader};
+use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 use halfrow::report::Report;
 use halfrow::verdict::Exit;
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
-use halfrow_tests::program::{Folder, halfrow};
+use halfrow_tests::program::{Folder, command, halfrow};
 use halfrow_tests::served::{Replug, Served};
 use halfrow_tests::system::System;
 
@@ -117,4 +119,22 @@ fn the_report_says_that_the_board_was_away() {
     assert!(away[0]["seconds_away"].as_f64().unwrap() < 5.0, "{away}");
     let text = halfrow(["verify", "--board", "mock"].into_iter().chain(SMALL)).stdout;
     assert!(!text.contains("went away"), "{text}");
+}
+
+#[test]
+fn waiting_for_a_board_ends_at_once_when_it_is_told_to() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let served = Served::unplugged_once("mock", &path, 3000, None);
+        let target = served.target();
+        let call = ["verify", "--quiet", "--reconnect=60", "--board", &target].into_iter().chain(SMALL);
+        let mut child = command(call).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let log = BufReader::new(child.stderr.take().unwrap()).lines();
+        assert!(log.map_while(Result::ok).any(|line| line.contains("waiting 60 s for the board")));
+        let begun = Instant::now();
+        crate::send(&child, signal);
+        assert_eq!(child.wait().unwrap().code(), Some(code));
+        assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
+    }
 }

@@ -1,13 +1,13 @@
 //! `halfrow serve`, and what a host that vanishes leaves behind.
 
 use std::io::{BufRead as _, BufReader};
-use std::process::{Child, Command, Stdio};
+use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
 use halfrow_tests::program::{self, Folder};
 use halfrow_tests::served::Served;
 
-use crate::{ends, verify};
+use crate::{ends, send, verify};
 
 /// A running `halfrow serve`.
 struct Server {
@@ -36,11 +36,6 @@ impl Server {
             std::thread::sleep(Duration::from_millis(5));
         }
     }
-}
-
-fn send(child: &Child, signal: &str) {
-    let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
-    assert!(kill.unwrap().success());
 }
 
 #[test]
