@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use halfrow::report::{self, Outcome::Error, Outcome::Skipped};
 use halfrow::verdict::Exit;
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
@@ -67,4 +68,25 @@ fn in_the_middle_of_packets_it_is_an_error_too() {
 #[ignore = "minutes long; scripts/soak runs it"]
 fn at_each_of_two_hundred_bytes_it_is_an_error() {
     is_unplugged_after(200);
+}
+
+#[test]
+fn what_came_before_is_not_taken_for_a_whole_run() {
+    let packets: Vec<u32> = (60..70).collect();
+    let reports = parallel::map(&packets, |packet| {
+        let board = format!("mock,fault=disconnect,packet={packet},toward=host");
+        System::TINY.judge_at(&Served::on_a_serial_port(&board).target())
+    });
+    let mut partial = 0;
+    for report in reports {
+        assert_eq!(report.exit_code, Exit::Error, "{}", report.headline);
+        let of = |name| report.checks.iter().find(|check| check.name == name).unwrap().outcome;
+        assert_eq!((of("frames"), of("latency"), of("counters")), (Error, Skipped, Skipped));
+        let torn = report.frames.iter().filter(|frame| frame.rows < System::TINY.height).count();
+        let text = report::text(&report);
+        assert_eq!(text.matches("not whole").count(), torn, "{text}");
+        assert!(text.contains("ERROR") && !text.contains("PASS"), "{text}");
+        partial += torn;
+    }
+    assert!(partial > 0);
 }
