@@ -19,7 +19,7 @@ use crate::verdict::Exit;
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Board")]
 pub(super) struct BoardArguments {
-    /// The board: mock, mock,fault=NAME, sim, replay:FILE …; see `halfrow boards` [default: mock]
+    /// The board: mock, mock,fault=NAME, sim, serial:PATH, tcp:HOST:PORT, replay:FILE; see `halfrow boards` [default: mock]
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD")]
     board: Option<Target>,
     /// The longest that the run may take, in seconds of the link's clock
