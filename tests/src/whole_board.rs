@@ -54,7 +54,7 @@ impl WholeBoard {
             centre2: settings.centre2,
             blanking: settings.blanking,
             gap_seed: settings.gap_seed,
-            bits: settings.depth.bits() as u8,
+            bits: settings.depth.bits(),
         };
         self.board.configure(&configuration).unwrap();
         let mut played = Played::default();

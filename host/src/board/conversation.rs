@@ -7,7 +7,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
-use crate::link::Link;
+use crate::link::{Link, Severed};
 
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +24,17 @@ pub struct Tally {
     pub damaged_in: u64,
     /// Packets sent again.
     pub retries: u64,
+}
+
+impl std::ops::AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.bytes_out += other.bytes_out;
+        self.bytes_in += other.bytes_in;
+        self.packets_out += other.packets_out;
+        self.packets_in += other.packets_in;
+        self.damaged_in += other.damaged_in;
+        self.retries += other.retries;
+    }
 }
 
 /// A packet that was kept.
@@ -74,12 +85,31 @@ impl Conversation {
         }
     }
 
+    /// Closes the link and forgets what it did.
+    pub(super) fn hang_up(&mut self) {
+        self.link = Box::new(Severed);
+        self.tally = Tally::default();
+    }
+
     pub(super) fn now(&self) -> Duration {
         self.link.now()
     }
 
+    pub(super) fn bytes_per_second(&self) -> Option<f64> {
+        self.link.bytes_per_second()
+    }
+
     pub(super) fn link_name(&self) -> String {
         self.link.name()
+    }
+
+    pub(super) fn is_exclusive(&self) -> bool {
+        self.link.is_exclusive()
+    }
+
+    /// From now on nothing but a deadline ends a wait.
+    pub(super) fn disregard_stop(&mut self) {
+        self.stop = Stop::default();
     }
 
     pub(super) fn wait_for(&self, step: Step, bytes: usize) -> Duration {
@@ -143,7 +173,7 @@ impl Conversation {
         let taken = self
             .link
             .exchange(&self.outgoing, &mut self.incoming, wait)
-            .map_err(|source| BoardError::Link { doing: doing(), source })?;
+            .map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         self.outgoing.drain(..taken);
         self.tally.bytes_out += taken as u64;
         self.tally.bytes_in += self.incoming.len() as u64;
