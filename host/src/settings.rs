@@ -23,7 +23,7 @@ use toml::Spanned;
 use crate::tables::text::{self, quoted};
 
 /// The keys of a settings file.
-const KEYS: [&str; 10] = [
+const KEYS: [&str; 11] = [
     "board",
     "tables",
     "kernel",
@@ -32,6 +32,7 @@ const KEYS: [&str; 10] = [
     "overwrite",
     "timeout",
     "retry_limit",
+    "reconnect",
     "require_hardware",
     "seed",
 ];
@@ -59,6 +60,9 @@ pub struct Settings {
     /// The share of packets that may be sent again before a link is too poor to judge over, 0 to 100 percent.
     #[serde(deserialize_with = "percent")]
     pub retry_limit: Option<f64>,
+    /// How long a board that goes away may stay away, in seconds: 0 or more, and finite.
+    #[serde(deserialize_with = "seconds")]
+    pub reconnect: Option<f64>,
     /// Whether to refuse anything but hardware.
     pub require_hardware: Option<bool>,
     /// The seed of all that is random in a run.

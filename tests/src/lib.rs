@@ -1,6 +1,7 @@
 //! The same scenarios on every kind of board, the command line from outside, and campaigns of drawn faults.
 //!
 //! [`scenarios`] says what `halfrow verify` must find on which board; [`program`] starts the program as a user does.
+//! [`served`] puts boards behind serial ports and TCP ports that the tests make.
 //! [`campaign`] draws single faults of the board by the hundred, and [`poor_links`] links by the thousand; both call the
 //! library, so that a run costs no more than its samples.
 
@@ -16,6 +17,7 @@ pub mod poor_links;
 pub mod program;
 pub mod scenario;
 pub mod scenarios;
+pub mod served;
 #[cfg(feature = "sim")]
 pub mod simulated_core;
 pub mod system;

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use crate::parallel;
 use crate::program::{Ended, halfrow};
+use crate::served::Served;
 
 /// The boards that a scenario makes sense on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,20 +42,16 @@ pub struct Scenario {
 #[derive(Clone, Debug)]
 pub struct Surprise {
     scenario: Scenario,
-    target: String,
+    board: String,
     ended: Ended,
 }
 
 impl fmt::Display for Surprise {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { scenario, target, ended } = self;
+        let Self { scenario, board, ended } = self;
         let Scenario { name, options, arguments, verdict, exit_code, sentence, .. } = scenario;
         writeln!(f, "{name}: expected {verdict} with {exit_code} and `{sentence}` of")?;
-        writeln!(
-            f,
-            "  halfrow verify --json --board {target} {}, a board with `{options}`",
-            arguments.join(" ")
-        )?;
+        writeln!(f, "  halfrow verify --json --board {board}{options} {}", arguments.join(" "))?;
         let said = ended.json();
         let what = if said.is_null() { &Value::Null } else { headline(&said) };
         writeln!(f, "  and it ended with {:?}, {} {what}", ended.code, said["verdict"])?;
@@ -92,14 +89,23 @@ impl Scenario {
     /// # Errors
     /// [`Surprise`] when it comes to anything else than it should.
     pub fn run(&self, board: &str) -> Result<Value, Box<Surprise>> {
-        self.judge(&format!("{board}{}", self.options), kind(board) == "sim")
+        self.judge(&format!("{board}{}", self.options), board, kind(board) == "sim")
     }
 
-    /// Judges `target`, a board that has the scenario's options already, with fewer pixels if that is `smaller`.
+    /// Runs it on the mock board behind a pseudo-terminal.
     ///
     /// # Errors
-    /// [`Surprise`] when it comes to anything else than it should.
-    pub fn judge(&self, target: &str, smaller: bool) -> Result<Value, Box<Surprise>> {
+    /// As [`Self::run`].
+    pub fn run_on_a_serial_port(&self) -> Result<Value, Box<Surprise>> {
+        let served = Served::on_a_serial_port(&format!("mock{}", self.options));
+        self.judge(&served.target(), "mock behind a serial port: ", false)
+    }
+
+    /// Judges `target`, which leads to `board` with the scenario's options, with fewer pixels if that is `smaller`.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn judge(&self, target: &str, board: &str, smaller: bool) -> Result<Value, Box<Surprise>> {
         let smaller = if smaller && !self.arguments.contains(&"--width") { SMALLER } else { &[] };
         let arguments = self.arguments.iter().chain(smaller).copied();
         let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
@@ -111,7 +117,7 @@ impl Scenario {
         if as_expected {
             return Ok(said);
         }
-        Err(Box::new(Surprise { scenario: *self, target: target.to_owned(), ended }))
+        Err(Box::new(Surprise { scenario: *self, board: board.to_owned(), ended }))
     }
 }
 
@@ -121,11 +127,38 @@ impl Scenario {
 /// When any of them comes to anything else than it should.
 #[must_use]
 pub fn run_all(scenarios: &[Scenario], board: &str) -> Vec<Value> {
+    run_each(&scenarios.iter().collect::<Vec<_>>(), board)
+}
+
+/// The same for scenarios that were chosen.
+///
+/// # Panics
+/// As [`run_all`].
+#[must_use]
+pub fn run_each(scenarios: &[&Scenario], board: &str) -> Vec<Value> {
     let suited: Vec<_> = scenarios.iter().filter(|scenario| scenario.suits(board)).collect();
-    let (reports, surprises): (Vec<_>, Vec<_>) =
-        parallel::map(&suited, |scenario| scenario.run(board)).into_iter().partition(Result::is_ok);
+    let is_one_device = !["mock", "sim"].contains(&board.split([':', ',']).next().unwrap_or_default());
+    no_surprise(if is_one_device {
+        suited.iter().map(|scenario| scenario.run(board)).collect()
+    } else {
+        parallel::map(&suited, |scenario| scenario.run(board))
+    })
+}
+
+/// Runs `scenarios` on mock boards behind serial ports of their own, and returns their reports.
+///
+/// # Panics
+/// When any of them comes to anything else than it should.
+#[must_use]
+pub fn run_all_on_serial_ports(scenarios: &[&Scenario]) -> Vec<Value> {
+    no_surprise(parallel::map(scenarios, |scenario| scenario.run_on_a_serial_port()))
+}
+
+fn no_surprise(results: Vec<Result<Value, Box<Surprise>>>) -> Vec<Value> {
+    let runs = results.len();
+    let (reports, surprises): (Vec<_>, Vec<_>) = results.into_iter().partition(Result::is_ok);
     let surprises: Vec<_> = surprises.into_iter().filter_map(Result::err).map(|it| it.to_string()).collect();
-    assert!(surprises.is_empty(), "{} of {}:\n{}", surprises.len(), suited.len(), surprises.join("\n"));
+    assert!(surprises.is_empty(), "{} of {runs}:\n{}", surprises.len(), surprises.join("\n"));
     reports.into_iter().filter_map(Result::ok).collect()
 }
 

@@ -133,7 +133,7 @@ impl<'a> Bench<'a> {
         let inputs = CoreInputs {
             width: settings.width,
             centre2: settings.centre2,
-            depth: (settings.depth.bits() as u8 - 8) / 2,
+            depth: (settings.depth.bits() - 8) / 2,
             step_write: write.step_write,
             node_write: write.node_write,
             table_bank: write.table_bank,
@@ -158,7 +158,7 @@ impl<'a> Bench<'a> {
     fn collect(&mut self, outputs: &CoreOutputs) {
         let (first, last) = (self.left == 0, self.left + 1 == u64::from(self.case.settings.width));
         assert_eq!((outputs.out_start, outputs.out_last), (first, last), "column {}", self.left);
-        let entered = *self.entered.front().expect("no output without a row");
+        let entered = *self.entered.front().unwrap();
         if first || last {
             self.played.latencies.push((self.pixel_clock - entered - self.left) as u16);
         }

@@ -1,5 +1,7 @@
 //! Boards judged in this process: the library's own run, without the program around it.
 
+use std::time::Duration;
+
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::frames::Builtin;
@@ -41,6 +43,9 @@ impl System {
     /// As small as rows may be, for runs by the thousand.
     pub const TINY: Self = Self { width: 64, height: 8, radius: 10.0, board: "mock", ring: 2048 };
 
+    /// As short as a run may be, for runs at every packet of one.
+    pub const TINIEST: Self = Self { height: 1, ..Self::TINY };
+
     /// The report on the board with `options` behind its target. The run streams the built-in frames and ends with the
     /// first that differs.
     ///
@@ -48,9 +53,28 @@ impl System {
     /// If there is no such board.
     #[must_use]
     pub fn judge(&self, options: &str) -> Report {
-        let target: Target = format!("{}{options}", self.board).parse().unwrap();
+        self.judge_at(&format!("{}{options}", self.board))
+    }
+
+    /// The report on the board that `target` leads to.
+    ///
+    /// # Panics
+    /// If there is no such board.
+    #[must_use]
+    pub fn judge_at(&self, target: &str) -> Report {
+        self.judge_patiently(target, None)
+    }
+
+    /// The same, going on when the board goes away for less than `patience`.
+    ///
+    /// # Panics
+    /// If there is no such board.
+    #[must_use]
+    pub fn judge_patiently(&self, target: &str, patience: Option<Duration>) -> Report {
+        let target: Target = target.parse().unwrap();
         let candidate = link::open(&target).unwrap();
-        verify(&self.plan(), candidate, &Circumstances::default(), &Stop::default(), &Silent).report
+        let plan = Plan { reconnect: patience, ..self.plan() };
+        verify(&plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
     }
 
     fn plan(&self) -> Plan {
@@ -71,6 +95,7 @@ impl System {
             seed: 1,
             timeout: None,
             retry_limit: RetryLimit::default(),
+            reconnect: None,
             keep_pictures: false,
         }
     }

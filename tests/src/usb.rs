@@ -118,7 +118,7 @@ pub fn run_all<'a, B>(
     for scenario in scenarios {
         let begun = Instant::now();
         let _board = plug(scenario.options);
-        surprises.extend(scenario.judge(target, smaller).err());
+        surprises.extend(scenario.judge(target, &format!("mock behind {target}: "), smaller).err());
         println!("{:6.1} s  {}", begun.elapsed().as_secs_f64(), scenario.name);
     }
     let surprises: Vec<_> = surprises.iter().map(ToString::to_string).collect();

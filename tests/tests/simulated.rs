@@ -1,5 +1,8 @@
 //! The Verilog against model and mock, the core alone and the whole board: every sample and every latency.
 
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
 use std::collections::BTreeMap;
 
 use halfrow::link::{Link, WireLink};

@@ -65,8 +65,14 @@ pub enum Failure {
 
 /// A waveform that cannot be written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the waveform {0} cannot be written; choose another place with trace=FILE")]
-pub struct TraceError(PathBuf);
+pub enum TraceError {
+    /// Something has that name.
+    #[error("{0} is there already; remove it, or choose another place for the waveform with trace=FILE")]
+    Exists(PathBuf),
+    /// The file cannot be opened.
+    #[error("the waveform {0} cannot be written; choose another place with trace=FILE")]
+    Unwritable(PathBuf),
+}
 
 /// The Verilog under simulation. It takes no time of its own, as the mock does not: when bytes arrive it is clocked until it is at
 /// rest.
@@ -112,9 +118,12 @@ impl Board {
     /// Writes a waveform of the whole design, from now on, to `path` in VCD.
     ///
     /// # Errors
-    /// [`TraceError`] if the file cannot be opened.
+    /// [`TraceError`] if there is such a file already, or it cannot be opened.
     pub fn trace(&mut self, path: &Path) -> Result<(), TraceError> {
-        if self.machine.trace(path) { Ok(()) } else { Err(TraceError(path.to_owned())) }
+        if path.exists() {
+            return Err(TraceError::Exists(path.to_owned()));
+        }
+        if self.machine.trace(path) { Ok(()) } else { Err(TraceError::Unwritable(path.to_owned())) }
     }
 
     /// Milliseconds that have passed since the design was told of any.

@@ -7,7 +7,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
-use crate::link::{LineErrors, Link};
+use crate::link::{LineErrors, Link, Severed};
 
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,6 +26,18 @@ pub struct Tally {
     pub retries: u64,
     /// What the link's chip has seen go wrong on the line.
     pub line_errors: LineErrors,
+}
+
+impl std::ops::AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.bytes_out += other.bytes_out;
+        self.bytes_in += other.bytes_in;
+        self.packets_out += other.packets_out;
+        self.packets_in += other.packets_in;
+        self.damaged_in += other.damaged_in;
+        self.retries += other.retries;
+        self.line_errors += other.line_errors;
+    }
 }
 
 /// A packet that was kept.
@@ -76,12 +88,31 @@ impl Conversation {
         }
     }
 
+    /// Closes the link and forgets what it did.
+    pub(super) fn hang_up(&mut self) {
+        self.link = Box::new(Severed);
+        self.tally = Tally::default();
+    }
+
     pub(super) fn now(&self) -> Duration {
         self.link.now()
     }
 
+    pub(super) fn bytes_per_second(&self) -> Option<f64> {
+        self.link.bytes_per_second()
+    }
+
     pub(super) fn link_name(&self) -> String {
         self.link.name()
+    }
+
+    pub(super) fn is_exclusive(&self) -> bool {
+        self.link.is_exclusive()
+    }
+
+    /// From now on nothing but a deadline ends a wait.
+    pub(super) fn disregard_stop(&mut self) {
+        self.stop = Stop::default();
     }
 
     pub(super) fn wait_for(&self, step: Step, bytes: usize) -> Duration {

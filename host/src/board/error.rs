@@ -127,11 +127,25 @@ pub enum BoardError {
 }
 
 impl BoardError {
+    /// Whether the board is gone, as one is that was unplugged or lost power, and may come back.
+    #[must_use]
+    pub fn is_outage(&self) -> bool {
+        use LinkError::{Closed, Failed, Unplugged};
+        match self {
+            Self::Link { source, .. } => {
+                matches!(**source, Closed { .. } | Failed { .. } | Unplugged { .. })
+            }
+            Self::NoAnswer { .. } | Self::SessionLost => true,
+            _ => false,
+        }
+    }
+
     /// The exit code of a run that ends with this error.
     #[must_use]
     pub fn exit(&self) -> Exit {
         match self {
             Self::Held { .. } => Exit::Busy,
+            Self::Link { source, .. } if matches!(**source, LinkError::InUse { .. }) => Exit::Busy,
             Self::NotABoard | Self::Version { .. } => Exit::Refused,
             Self::Stopped(exit) => *exit,
             _ => Exit::Error,

@@ -37,6 +37,8 @@ pub struct OpenOptions {
     pub host: u32,
     /// Take the board from whoever holds it.
     pub take_over: bool,
+    /// Leave it to its holder even over a link that is this program's alone: a board can have two links.
+    pub polite: bool,
     /// How many packets may be sent again.
     pub retry_limit: RetryLimit,
     /// What ends the run early.
@@ -61,7 +63,7 @@ impl Board {
     pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Tally)> {
         let mut conversation = Conversation::new(link, options.retry_limit, options.stop.clone());
         let mut open = || {
-            let welcome = greet(&mut conversation, options)?;
+            let welcome = greet_or_take_over(&mut conversation, options)?;
             conversation.session = welcome.session;
             let capabilities =
                 conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
@@ -94,10 +96,21 @@ impl Board {
         self.conversation.now()
     }
 
+    /// The bytes a second that the link carries, when that is known.
+    #[must_use]
+    pub fn bytes_per_second(&self) -> Option<f64> {
+        self.conversation.bytes_per_second()
+    }
+
     /// The link, for people.
     #[must_use]
     pub fn link_name(&self) -> String {
         self.conversation.link_name()
+    }
+
+    /// Closes the link without a word, as when the board is gone. All that follows fails.
+    pub fn hang_up(&mut self) {
+        self.conversation.hang_up();
     }
 
     /// Sends `bytes`, and says whether they came back as they went and how long that took on the link's clock.
@@ -150,11 +163,13 @@ impl Board {
         self.reset(ResetLevel::Rows)
     }
 
-    /// Closes the session, so that another host finds the board free. Waits for the board's answer, but not for ever.
+    /// Closes the session, so that another host finds the board free, also when the run was stopped. Waits for the board's
+    /// answer, but not for ever.
     ///
     /// # Errors
     /// [`BoardError`] when the board does not answer; it is then free after 10 s of silence.
     pub fn close(&mut self) -> Result<(), BoardError> {
+        self.conversation.disregard_stop();
         self.reset(ResetLevel::Session)
     }
 
@@ -166,6 +181,17 @@ impl Board {
             .request(&reset, Step::Request, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.acknowledged = next_row;
         Ok(())
+    }
+}
+
+/// Over a link that is this program's alone nobody can be cut off: whoever holds the board was killed.
+fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
+    match greet(conversation, options) {
+        Err(BoardError::Held { .. }) if conversation.is_exclusive() && !options.polite => {
+            tracing::warn!("the board is held by a run that was killed, and is taken over");
+            greet(conversation, &OpenOptions { take_over: true, ..options.clone() })
+        }
+        greeted => greeted,
     }
 }
 

@@ -12,16 +12,23 @@ use crate::verdict::Exit;
 pub struct Stop {
     signal: Arc<AtomicUsize>,
     limit: Option<Duration>,
+    /// Of the limit, what had passed when the link's clock began.
+    spent: Duration,
 }
 
 impl Stop {
     /// Stops when `signal` holds an exit code other than 0, or when the link's clock has passed `limit`.
     #[must_use]
     pub fn new(signal: Arc<AtomicUsize>, limit: Option<Duration>) -> Self {
-        Self { signal, limit }
+        Self { signal, limit, spent: Duration::ZERO }
     }
 
-    pub(super) fn check(&self, now: Duration) -> Result<(), BoardError> {
+    /// The same for a link whose clock began when `spent` of the limit had passed.
+    pub(crate) fn after(&self, spent: Duration) -> Self {
+        Self { spent, ..self.clone() }
+    }
+
+    pub(crate) fn check(&self, now: Duration) -> Result<(), BoardError> {
         match self.signal.load(Ordering::Relaxed) {
             0 => {}
             code if code == usize::from(Exit::Terminated.code()) => {
@@ -30,7 +37,7 @@ impl Stop {
             _ => return Err(BoardError::Stopped(Exit::Interrupted)),
         }
         match self.limit {
-            Some(limit) if now > limit => Err(BoardError::Timeout { limit }),
+            Some(limit) if self.spent + now > limit => Err(BoardError::Timeout { limit }),
             _ => Ok(()),
         }
     }

@@ -57,8 +57,18 @@ impl Board {
         self.write(Table::Kernel, &kernel.to_bytes())
     }
 
-    fn write(&mut self, table: Table, bytes: &[u8]) -> Result<(), BoardError> {
-        let at_once = (MAX_PAYLOAD - SPAN) / table.entry_bytes();
+    /// Entries of a table that fit into one packet.
+    #[must_use]
+    pub const fn entries_at_once(table: Table) -> usize {
+        (MAX_PAYLOAD - SPAN) / table.entry_bytes()
+    }
+
+    /// Writes entries, as on the wire, into the shadow bank from its first on.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub fn write(&mut self, table: Table, bytes: &[u8]) -> Result<(), BoardError> {
+        let at_once = Self::entries_at_once(table);
         for (index, bytes) in bytes.chunks(at_once * table.entry_bytes()).enumerate() {
             let span = Span {
                 table,
@@ -118,7 +128,7 @@ impl Board {
         port: TablePort,
         entries: usize,
     ) -> Result<Vec<u8>, BoardError> {
-        let at_once = (MAX_PAYLOAD - SPAN) / port.table.entry_bytes();
+        let at_once = Self::entries_at_once(port.table);
         let mut bytes = Vec::new();
         for first in (0..entries).step_by(at_once) {
             let count = at_once.min(entries - first);

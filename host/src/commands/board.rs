@@ -19,7 +19,7 @@ use crate::verdict::Exit;
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Board")]
 pub(super) struct BoardArguments {
-    /// The board: mock, mock,fault=NAME, sim, replay:FILE …; see `halfrow boards` [default: mock]
+    /// The board: mock, mock,fault=NAME, sim, serial:PATH, tcp:HOST:PORT, replay:FILE; see `halfrow boards` [default: mock]
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD")]
     board: Option<Target>,
     /// The longest that the run may take, in seconds of the link's clock
@@ -74,6 +74,7 @@ impl BoardArguments {
             nonce,
             host,
             take_over: self.take_over,
+            polite: false,
             retry_limit: self.retry_limit(settings),
             stop: self.stop(self.timeout(settings)?)?,
         })
@@ -81,17 +82,7 @@ impl BoardArguments {
 
     /// What ends the run early: Ctrl-C, SIGTERM, or the time limit. A second signal ends the program at once.
     pub(super) fn stop(&self, limit: Option<Duration>) -> Result<Stop, Failure> {
-        use signal_hook::consts::{SIGINT, SIGTERM};
-        let signal = Arc::new(AtomicUsize::new(0));
-        for (number, exit) in [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated)] {
-            let code = usize::from(exit.code());
-            let second = Arc::new(std::sync::atomic::AtomicBool::new(false));
-            signal_hook::flag::register_conditional_shutdown(number, exit.code().into(), Arc::clone(&second))
-                .map_err(Failure::error)?;
-            signal_hook::flag::register(number, second).map_err(Failure::error)?;
-            signal_hook::flag::register_usize(number, Arc::clone(&signal), code).map_err(Failure::error)?;
-        }
-        Ok(Stop::new(signal, limit))
+        Ok(Stop::new(signals()?, limit))
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
@@ -107,4 +98,19 @@ impl BoardArguments {
             None => limit,
         }
     }
+}
+
+/// Holds the exit code of the signal that came, Ctrl-C or SIGTERM, and 0 before. A second one ends the program at once.
+pub(super) fn signals() -> Result<Arc<AtomicUsize>, Failure> {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    let signal = Arc::new(AtomicUsize::new(0));
+    for (number, exit) in [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated)] {
+        let code = usize::from(exit.code());
+        let second = Arc::new(std::sync::atomic::AtomicBool::new(false));
+        signal_hook::flag::register_conditional_shutdown(number, exit.code().into(), Arc::clone(&second))
+            .map_err(Failure::error)?;
+        signal_hook::flag::register(number, second).map_err(Failure::error)?;
+        signal_hook::flag::register_usize(number, Arc::clone(&signal), code).map_err(Failure::error)?;
+    }
+    Ok(signal)
 }

@@ -9,6 +9,8 @@ mod frames;
 mod info;
 mod inputs;
 mod lens;
+mod link;
+mod serve;
 mod tables;
 mod verify;
 
@@ -54,6 +56,8 @@ enum Command {
     Frames(frames::Arguments),
     Boards(boards::Arguments),
     Info(info::Arguments),
+    Link(link::Arguments),
+    Serve(serve::Arguments),
     Faults(faults::Arguments),
     Completions(completions::Completions),
     Manual(completions::Manual),
@@ -101,6 +105,7 @@ impl Cli {
             Command::Correct(arguments) => arguments.json,
             Command::Boards(arguments) => arguments.json,
             Command::Info(arguments) => arguments.json,
+            Command::Link(arguments) => arguments.json,
             _ => false,
         }
     }
@@ -119,6 +124,8 @@ impl Cli {
             Command::Frames(arguments) => frames::run(arguments),
             Command::Boards(arguments) => boards::run(arguments),
             Command::Info(arguments) => info::run(arguments, &context),
+            Command::Link(arguments) => link::run(arguments, &context),
+            Command::Serve(arguments) => serve::run(arguments),
             Command::Faults(arguments) => faults::run(arguments),
             Command::Completions(arguments) => completions::complete(arguments, &mut Self::command()),
             Command::Manual(arguments) => completions::manual(arguments, Self::command()),

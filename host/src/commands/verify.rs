@@ -3,6 +3,7 @@
 mod recorded;
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 use clap::builder::FalseyValueParser;
@@ -45,6 +46,10 @@ pub(super) struct Arguments {
     /// Keep every byte of the run with its time, for replay:FILE
     #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
+    /// Go on when the board goes away and comes back within so many seconds [30 if no number is given]
+    #[arg(long, value_name = "SECONDS", num_args = 0..=1, require_equals = true, default_missing_value = "30")]
+    #[arg(env = "HALFROW_RECONNECT", conflicts_with = "record")]
+    reconnect: Option<f64>,
     /// Replace a previous report or recording
     #[arg(long, env = "HALFROW_OVERWRITE", value_parser = FalseyValueParser::new())]
     overwrite: bool,
@@ -176,8 +181,16 @@ impl Arguments {
             seed: self.seed.or(settings.seed).unwrap_or(1),
             timeout: self.board.timeout(settings)?,
             retry_limit: self.board.retry_limit(settings),
+            reconnect: self.patience(settings)?,
             keep_pictures: self.report.is_some() || settings.report.is_some(),
         })
+    }
+
+    /// How long a board may stay away.
+    fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
+        let seconds = self.reconnect.or(settings.reconnect).filter(|_| self.record.is_none());
+        let patience = seconds.map(Duration::try_from_secs_f64).transpose();
+        patience.map_err(|_| anyhow::anyhow!("--reconnect takes a number of seconds, 0 or more").into())
     }
 
     fn frame_names<'a>(&'a self, settings: &'a Settings) -> &'a [String] {

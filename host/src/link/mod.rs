@@ -1,10 +1,15 @@
 //! A link: a pipe that carries bytes to a board and back, with deadlines.
 
+pub(crate) mod descriptor;
 mod open;
 mod recording;
 mod replay;
+mod serial;
+mod severed;
 #[cfg(feature = "sim")]
 mod simulated;
+mod sysfs;
+mod tcp;
 mod usb;
 mod wire;
 
@@ -13,7 +18,11 @@ use std::time::Duration;
 pub use open::{Candidate, OpenError, open, replayed_file};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
-pub use usb::{Holder, LineErrors, Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
+pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
+pub use severed::Severed;
+pub use sysfs::{UsbDevice, usb_device};
+pub use tcp::{TcpError, TcpLink};
+pub use usb::{LineErrors, Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
 pub use wire::WireLink;
 
 /// A byte pipe to a board.
@@ -39,6 +48,11 @@ pub trait Link {
 
     /// The bytes a second that the slower direction carries, when that is known.
     fn bytes_per_second(&self) -> Option<f64>;
+
+    /// Whether nobody else can reach the board while the link is open. Then a session of another host is one that was killed.
+    fn is_exclusive(&self) -> bool {
+        false
+    }
 
     /// What it is, for people.
     fn name(&self) -> String;
@@ -71,16 +85,46 @@ pub enum LinkError {
         #[source]
         source: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// A USB transfer failed, and the device is still there.
-    #[error("{link} failed at {:.3} s; unplug the board, plug it in, and run again", at.as_secs_f64())]
-    Usb {
+    /// A device that is gone.
+    #[error(
+        "{link} went away at {:.3} s: the board was unplugged or lost power; plug it in, then run again",
+        at.as_secs_f64()
+    )]
+    Unplugged {
         /// The link's name.
         link: String,
         /// When, on the link's clock.
         at: Duration,
-        /// How.
+    },
+    /// A server says that somebody else has the board.
+    #[error("{link} was turned away with `{text}`: another host is connected; wait until it is done")]
+    InUse {
+        /// The link's name.
+        link: String,
+        /// What the server said.
+        text: String,
+    },
+    /// A server has no board to connect to, and says so in words.
+    #[error(
+        "{link} answered with the words `{text}` and no board: plug the board in at the far end, and check the device \
+         that its ser2net names"
+    )]
+    NoBoardThere {
+        /// The link's name.
+        link: String,
+        /// What the server said.
+        text: String,
+    },
+    /// The system refuses to go on.
+    #[error("{link} failed at {:.3} s; check the cable, then run again", at.as_secs_f64())]
+    Failed {
+        /// The link's name.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+        /// Why.
         #[source]
-        source: UsbFailure,
+        source: std::io::Error,
     },
     /// What the host sends is not what it sent when the recording was made.
     #[error(

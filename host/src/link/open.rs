@@ -6,7 +6,10 @@ use halfrow_mock::{Wire, WireError};
 
 #[cfg(feature = "sim")]
 use super::simulated::open_simulated;
-use super::{Link, Recording, RecordingError, ReplayLink, UsbError, UsbLink, WireLink};
+use super::{
+    Link, Recording, RecordingError, ReplayLink, SerialError, SerialLink, TcpError, TcpLink, UsbError,
+    UsbLink, WireLink,
+};
 use crate::target::{BoardKind, Target};
 use crate::verdict::Exit;
 
@@ -27,7 +30,8 @@ pub struct Candidate {
 pub enum OpenError {
     /// The kind is not known.
     #[error(
-        "`{0}` is no kind of board that this program knows; it knows mock, sim, sim:uart, sim:fifo, usb, usb:SERIAL and replay:FILE"
+        "`{0}` is no kind of board that this program knows; it knows mock, sim, sim:uart, sim:fifo, serial:PATH, \
+         usb, usb:SERIAL, tcp:HOST:PORT and replay:FILE"
     )]
     UnknownKind(String),
     /// A kind that has no address.
@@ -39,8 +43,23 @@ pub enum OpenError {
         address: String,
     },
     /// A kind that needs an address.
-    #[error("`{0}` needs a file; write replay:FILE")]
-    AddressMissing(String),
+    #[error("`{kind}` needs to be told which; write {form}")]
+    AddressMissing {
+        /// The kind.
+        kind: String,
+        /// How such a target is written.
+        form: &'static str,
+    },
+    /// An option that the kind does not have, or not with this value.
+    #[error("`{option}` is no option of `{kind}`; it takes {known}")]
+    Option {
+        /// The kind.
+        kind: String,
+        /// The option.
+        option: String,
+        /// The options that there are.
+        known: &'static str,
+    },
     /// A kind that has no options.
     #[error("`{kind}` takes no option, and got `{option}`; leave it out")]
     NoOption {
@@ -81,6 +100,12 @@ pub enum OpenError {
     #[cfg(feature = "sim")]
     #[error(transparent)]
     Trace(#[from] halfrow_sim::TraceError),
+    /// The serial port cannot be opened.
+    #[error(transparent)]
+    Serial(#[from] SerialError),
+    /// There is no connection.
+    #[error(transparent)]
+    Tcp(#[from] TcpError),
     /// The USB device cannot be opened.
     #[error(transparent)]
     Usb(#[from] UsbError),
@@ -94,6 +119,8 @@ impl OpenError {
     #[must_use]
     pub fn exit(&self) -> Exit {
         match self {
+            Self::Serial(error) => error.exit(),
+            Self::Tcp(error) => error.exit(),
             Self::Usb(error) => error.exit(),
             _ => Exit::Usage,
         }
@@ -114,7 +141,9 @@ pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let (kind, link): (_, Box<dyn Link>) = match target.kind.as_str() {
         "mock" => (BoardKind::Mock, open_mock(target)?),
         "sim" => (BoardKind::Sim, open_simulated(target)?),
+        "serial" => (BoardKind::Hardware, Box::new(SerialLink::open(target)?)),
         "usb" => (BoardKind::Hardware, Box::new(UsbLink::open(target)?)),
+        "tcp" => (BoardKind::Hardware, Box::new(TcpLink::open(target)?)),
         "replay" => (BoardKind::Replay, open_replay(target)?),
         other => return Err(OpenError::UnknownKind(other.to_owned())),
     };
@@ -161,6 +190,9 @@ fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {
     if let Some((key, value)) = target.options.first() {
         return Err(OpenError::NoOption { kind: target.kind.clone(), option: format!("{key}={value}") });
     }
-    let file = target.address.as_deref().ok_or_else(|| OpenError::AddressMissing(target.kind.clone()))?;
+    let file = target
+        .address
+        .as_deref()
+        .ok_or_else(|| OpenError::AddressMissing { kind: target.kind.clone(), form: "replay:FILE" })?;
     Ok(Box::new(ReplayLink::new(Recording::read(Path::new(file))?)?))
 }

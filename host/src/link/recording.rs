@@ -62,6 +62,8 @@ pub enum RecordingError {
 struct Head<T> {
     link: String,
     bytes_per_second: Option<f64>,
+    #[serde(default)]
+    exclusive: bool,
     run: T,
 }
 
@@ -130,7 +132,12 @@ impl Recorder {
         let partial = PathBuf::from(partial);
         let create = |source| RecordingError::Create { path: path.to_owned(), source };
         let mut file = BufWriter::new(File::create(&partial).map_err(create)?);
-        let head = Head { link: link.name(), bytes_per_second: link.bytes_per_second(), run };
+        let head = Head {
+            link: link.name(),
+            bytes_per_second: link.bytes_per_second(),
+            exclusive: link.is_exclusive(),
+            run,
+        };
         let write_head = |file: &mut BufWriter<File>| {
             file.write_all(MAGIC)?;
             serde_json::to_writer(&mut *file, &head)?;
@@ -188,6 +195,10 @@ impl Link for Recorder {
         self.link.bytes_per_second()
     }
 
+    fn is_exclusive(&self) -> bool {
+        self.link.is_exclusive()
+    }
+
     fn name(&self) -> String {
         self.link.name()
     }
@@ -239,6 +250,14 @@ impl Recording {
     /// [`RecordingError::Head`] when the head does not parse.
     pub fn bytes_per_second(&self) -> Result<Option<f64>, RecordingError> {
         self.head::<serde::de::IgnoredAny>().map(|head| head.bytes_per_second)
+    }
+
+    /// Whether the recorded link was its program's alone.
+    ///
+    /// # Errors
+    /// [`RecordingError::Head`] when the head does not parse.
+    pub fn is_exclusive(&self) -> Result<bool, RecordingError> {
+        self.head::<serde::de::IgnoredAny>().map(|head| head.exclusive)
     }
 
     fn head<T: DeserializeOwned>(&self) -> Result<Head<T>, RecordingError> {

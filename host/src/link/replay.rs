@@ -10,6 +10,7 @@ use super::{Link, LinkError, Recording, RecordingError};
 pub struct ReplayLink {
     name: String,
     bytes_per_second: Option<f64>,
+    exclusive: bool,
     exchanges: std::vec::IntoIter<Exchange>,
     now: Duration,
     sent: u64,
@@ -23,8 +24,9 @@ impl ReplayLink {
     pub fn new(recording: Recording) -> Result<Self, RecordingError> {
         let name = format!("the recording {}", recording.path().display());
         let bytes_per_second = recording.bytes_per_second()?;
+        let exclusive = recording.is_exclusive()?;
         let exchanges = recording.into_exchanges().into_iter();
-        Ok(Self { name, bytes_per_second, exchanges, now: Duration::ZERO, sent: 0 })
+        Ok(Self { name, bytes_per_second, exclusive, exchanges, now: Duration::ZERO, sent: 0 })
     }
 }
 
@@ -55,6 +57,10 @@ impl Link for ReplayLink {
     // The deadlines are sized by it, so it is part of the conversation.
     fn bytes_per_second(&self) -> Option<f64> {
         self.bytes_per_second
+    }
+
+    fn is_exclusive(&self) -> bool {
+        self.exclusive
     }
 
     fn name(&self) -> String {

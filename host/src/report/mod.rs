@@ -181,6 +181,17 @@ pub struct LinkReport {
     pub round_trip_us: Option<u64>,
     /// The time that the run took on the link's clock, in seconds.
     pub seconds: f64,
+    /// Every time that the board went away and came back, in order.
+    pub reconnections: Vec<Reconnection>,
+}
+
+/// A board that went away during the run and came back.
+#[derive(Clone, Debug, Serialize)]
+pub struct Reconnection {
+    /// How it went, and what was under way.
+    pub reason: String,
+    /// How long it was away, in seconds.
+    pub seconds_away: f64,
 }
 
 /// What was uploaded.

@@ -128,6 +128,9 @@ pub(super) fn link(link: &LinkReport) -> String {
     parts.extend(
         link.round_trip_us.filter(|&time| time > 0).map(|time| format!("round trip {} µs", grouped(time))),
     );
+    if !link.reconnections.is_empty() {
+        parts.push(format!("the board went away and came back {}", count(link.reconnections.len(), "time")));
+    }
     format!("{}: {}", link.name, parts.join(", "))
 }
 

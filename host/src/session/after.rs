@@ -17,7 +17,8 @@ impl Run<'_> {
         self.findings.note_status(&status);
         let frames = self.frames(after.as_ref().err());
         // Counters are of rows that came back as they should; a run that ends early leaves rows inside.
-        let counters = frames.is_ok().then(|| counters(&status, &self.findings.seen));
+        let counters =
+            frames.is_ok().then(|| counters(&status, self.findings.rows_counted, &self.findings.seen));
         let latency = latency(&self.findings.seen);
         let mut ends = Vec::new();
         let results = [("frames", Some(frames)), ("latency", Some(latency)), ("tables after", Some(after))];
@@ -113,8 +114,7 @@ fn latency(seen: &Seen) -> Result<String, End> {
     ))
 }
 
-fn counters(status: &Status, seen: &Seen) -> Result<String, End> {
-    let rows: usize = seen.frames.iter().map(|frame| frame.rows).sum();
+fn counters(status: &Status, rows: usize, seen: &Seen) -> Result<String, End> {
     let expected = u32::try_from(rows).unwrap_or(u32::MAX);
     let failed = |what: String| {
         Err(End::failed(

@@ -104,7 +104,10 @@ fn pass(findings: &Findings) -> String {
         "{} frames, {} samples, all equal to the reference; every row takes {latency} pixel clocks{untested}",
         seen.frames.len(),
         seen.samples()
-    )
+    ) + &match findings.link.reconnections.len() {
+        0 => String::new(),
+        times => format!("; the board went away and came back, {times} x"),
+    }
 }
 
 fn skip_the_rest(checks: &mut Vec<Check>) {

@@ -1,5 +1,7 @@
 //! What a run has found so far, and why it ended where it did.
 
+use std::time::Duration;
+
 use super::judge::Seen;
 use super::{Candidate, Plan};
 use crate::board::{Board, BoardError, Status, Tally};
@@ -16,7 +18,14 @@ pub(super) enum End {
     /// The board is wrong.
     Failed { check: &'static str, headline: String, remedy: String, suspects: Vec<Suspect> },
     /// It could not be judged.
-    Error { check: &'static str, exit: Exit, headline: String, remedy: Option<String>, unreachable: bool },
+    Error {
+        check: &'static str,
+        exit: Exit,
+        headline: String,
+        remedy: Option<String>,
+        unreachable: bool,
+        outage: bool,
+    },
 }
 
 impl End {
@@ -24,11 +33,12 @@ impl End {
     pub(super) fn board(check: &'static str, error: &BoardError) -> Self {
         let unreachable =
             matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
-        Self::Error { check, exit: error.exit(), headline: chain(error), remedy: None, unreachable }
+        let (exit, headline, outage) = (error.exit(), chain(error), error.is_outage());
+        Self::Error { check, exit, headline, remedy: None, unreachable, outage }
     }
 
     pub(super) fn error(check: &'static str, exit: Exit, headline: String) -> Self {
-        Self::Error { check, exit, headline, remedy: None, unreachable: false }
+        Self::Error { check, exit, headline, remedy: None, unreachable: false, outage: false }
     }
 
     pub(super) fn failed(check: &'static str, headline: String, remedy: &str) -> Self {
@@ -47,6 +57,11 @@ impl End {
     pub(super) fn is_unreachable(&self) -> bool {
         matches!(self, Self::Error { unreachable: true, .. })
     }
+
+    /// Whether the board is gone and may come back.
+    pub(super) fn is_outage(&self) -> bool {
+        matches!(self, Self::Error { outage: true, .. })
+    }
 }
 
 /// An error with its causes, in one line.
@@ -60,6 +75,13 @@ fn chain(error: &dyn std::error::Error) -> String {
     text
 }
 
+/// What went over links that broke.
+#[derive(Default)]
+pub(super) struct Earlier {
+    pub(super) tally: Tally,
+    pub(super) seconds: Duration,
+}
+
 /// What a run has found so far.
 pub(super) struct Findings {
     pub(super) board: BoardReport,
@@ -67,6 +89,9 @@ pub(super) struct Findings {
     pub(super) seen: Seen,
     pub(super) tally: Tally,
     pub(super) link: LinkReport,
+    pub(super) earlier: Earlier,
+    /// Rows that the board should have counted since it was greeted.
+    pub(super) rows_counted: usize,
 }
 
 impl Findings {
@@ -82,6 +107,8 @@ impl Findings {
             seen: Seen::default(),
             tally: Tally::default(),
             link,
+            earlier: Earlier::default(),
+            rows_counted: 0,
         }
     }
 
@@ -108,10 +135,17 @@ impl Findings {
 
     /// Takes the link's counts at the end of the run.
     pub(super) fn note_link(&mut self, board: &Board) {
-        self.tally = board.tally();
-        self.link.name = board.link_name();
+        self.tally = self.earlier.tally;
+        self.tally += board.tally();
         self.link.retry_limit = board.retry_limit();
-        self.link.seconds = board.now().as_secs_f64();
+        self.link.seconds = (self.earlier.seconds + board.now()).as_secs_f64();
+    }
+
+    /// Takes the counts of a link that broke.
+    pub(super) fn keep_counts(&mut self, board: &Board) {
+        self.earlier.tally += board.tally();
+        self.earlier.seconds += board.now();
+        self.rows_counted = 0;
     }
 
     pub(super) fn note_status(&mut self, status: &Status) {

@@ -22,6 +22,12 @@ pub(super) struct Prepared {
     pub(super) expected: Arc<Frame>,
 }
 
+impl Prepared {
+    fn numbered(&self) -> NumberedFrame {
+        NumberedFrame { number: self.number, frame: Arc::clone(&self.input) }
+    }
+}
+
 /// A frame that could not be made ready.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum PrepareError {
@@ -71,6 +77,8 @@ pub(super) struct Manner {
 struct InFlight {
     prepared: Prepared,
     found: Vec<u16>,
+    /// Which rows have come back.
+    returned: Vec<bool>,
     rows: usize,
     comparison: Comparison,
 }
@@ -84,6 +92,12 @@ pub(super) struct Judge<'a> {
     progress: &'a dyn Progress,
     unprepared: Option<PrepareError>,
     in_flight: VecDeque<InFlight>,
+    /// Frames in flight that are to be sent once more.
+    again: VecDeque<NumberedFrame>,
+    /// Frames that have come back whole.
+    frames_done: usize,
+    /// Rows that have come back since the stream began, or began again.
+    pub(super) rows: usize,
 }
 
 impl<'a> Judge<'a> {
@@ -94,7 +108,29 @@ impl<'a> Judge<'a> {
         timing: String,
         progress: &'a dyn Progress,
     ) -> Self {
-        Self { source, seen, manner, timing, progress, unprepared: None, in_flight: VecDeque::new() }
+        Self {
+            source,
+            seen,
+            manner,
+            timing,
+            progress,
+            unprepared: None,
+            in_flight: VecDeque::new(),
+            again: VecDeque::new(),
+            frames_done: 0,
+            rows: 0,
+        }
+    }
+
+    /// The segment's first frame that has not come back whole.
+    pub(super) fn frames_done(&self) -> usize {
+        self.frames_done
+    }
+
+    /// Has the frames sent again that have not come back whole. Rows that did come back are not judged twice.
+    pub(super) fn begin_again(&mut self) {
+        self.again = self.in_flight.iter().map(|frame| frame.prepared.numbered()).collect();
+        self.rows = 0;
     }
 
     /// Takes what came back of frames that never came back whole.
@@ -137,7 +173,7 @@ impl<'a> Judge<'a> {
     }
 
     fn conclude(&mut self, frame: InFlight) {
-        let InFlight { prepared, found, rows, comparison } = frame;
+        let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, input, expected } = prepared;
         let differs = comparison.differences > 0;
         let kept = self.seen.evidence.len();
@@ -167,6 +203,9 @@ impl<'a> Judge<'a> {
 
 impl RowTraffic for Judge<'_> {
     fn next_frame(&mut self) -> Option<NumberedFrame> {
+        if let Some(frame) = self.again.pop_front() {
+            return Some(frame);
+        }
         let prepared = match self.source.recv().ok()? {
             Ok(prepared) => prepared,
             Err(error) => {
@@ -175,11 +214,12 @@ impl RowTraffic for Judge<'_> {
             }
         };
         let (width, height) = (prepared.expected.width(), prepared.expected.height());
-        let numbered = NumberedFrame { number: prepared.number, frame: Arc::clone(&prepared.input) };
+        let numbered = prepared.numbered();
         self.progress.frame(&prepared.name);
         self.in_flight.push_back(InFlight {
             prepared,
             found: vec![0; width * height],
+            returned: vec![false; height],
             rows: 0,
             comparison: Comparison::new(width, height),
         });
@@ -187,11 +227,15 @@ impl RowTraffic for Judge<'_> {
     }
 
     fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
-        self.check_latency(row);
-        self.progress.row();
-        let Some(frame) = self.in_flight.iter_mut().find(|frame| frame.prepared.number == row.frame) else {
+        self.rows += 1;
+        let is_new = |frame: &InFlight| frame.prepared.number == row.frame && !frame.returned[row.row];
+        let Some(place) = self.in_flight.iter().position(is_new) else {
             return ControlFlow::Continue(());
         };
+        self.check_latency(row);
+        self.progress.row();
+        let frame = &mut self.in_flight[place];
+        frame.returned[row.row] = true;
         if row.generation != frame.prepared.generation {
             self.seen.wrong_generation.get_or_insert_with(|| {
                 format!(
@@ -212,6 +256,7 @@ impl RowTraffic for Judge<'_> {
                 flow = ControlFlow::Break(());
             }
             self.conclude(front);
+            self.frames_done += 1;
         }
         flow
     }
@@ -226,4 +271,56 @@ fn sha256(frame: &Frame) -> String {
 /// Bytes in hexadecimal.
 pub(super) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use halfrow_model::{BitDepth, Phase};
+
+    use super::*;
+    use crate::progress::Silent;
+
+    const HEIGHT: usize = 4;
+
+    fn frame(number: u16) -> Prepared {
+        let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![number; 64 * HEIGHT]).unwrap();
+        let frame = Arc::new(frame);
+        let name = String::new();
+        Prepared { name, number, generation: 2, input: Arc::clone(&frame), expected: frame }
+    }
+
+    fn give(judge: &mut Judge<'_>, frame: u16, row: usize, sample: u16) {
+        let samples = &[sample; 64];
+        let row = ReturnedRow { frame, row, generation: 2, first_latency: 44, last_latency: 44, samples };
+        assert!(judge.returned(&row).is_continue());
+    }
+
+    #[test]
+    fn a_frame_that_is_sent_again_has_every_row_judged_once() {
+        let (sender, source) = channel();
+        [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
+        drop(sender);
+        let mut seen = Seen::default();
+        let manner =
+            Manner { claimed_latency: 44, latency_limit: 64, fail_fast: false, pictures: 0, differing: 0 };
+        let mut judge = Judge::new(source, &mut seen, manner, String::new(), &Silent);
+        let sent = |judge: &mut Judge<'_>| judge.next_frame().map(|frame| frame.number);
+        assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
+        [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));
+        judge.begin_again();
+        assert_eq!((sent(&mut judge), sent(&mut judge), sent(&mut judge)), (Some(7), Some(8), None));
+        // Only what comes for the first time counts: the second row 0 is wrong, and so are the last two.
+        for (row, sample) in [(0, 0), (1, 7), (2, 0), (3, 0)] {
+            give(&mut judge, 7, row, sample);
+        }
+        (0..HEIGHT).for_each(|row| give(&mut judge, 8, row, 8));
+        assert_eq!((judge.rows, judge.frames_done()), (8, 2));
+        judge.finish().unwrap();
+        let found: Vec<_> =
+            seen.frames.iter().map(|frame| (frame.rows, frame.comparison.differences)).collect();
+        assert_eq!(found, [(4, 128), (4, 0)]);
+        assert_eq!(seen.latency.unwrap().rows, 8);
+    }
 }

@@ -9,16 +9,18 @@ mod golden;
 mod judge;
 mod patterns;
 mod plan;
+mod reconnect;
 mod steps;
 mod streaming;
 mod upload;
 
-use crate::board::{Board, OpenOptions, Stop};
+use crate::board::{OpenOptions, Stop};
 use crate::link::{Candidate, Link};
 use crate::progress::Progress;
 use crate::report::{Evidence, FileHash, Report};
 
 use findings::{End, Findings};
+use reconnect::WayBack;
 use steps::Run;
 
 pub use golden::judge_the_judge;
@@ -78,7 +80,17 @@ pub fn verify(
 ) -> Finished {
     let started = jiff::Timestamp::now();
     let mut findings = Findings::new(plan, &candidate);
-    let end = run(plan, candidate.link, circumstances.draws, stop, progress, &mut findings).err();
+    let Draws { nonce, host } = circumstances.draws;
+    let options = OpenOptions {
+        nonce,
+        host,
+        take_over: plan.take_over,
+        polite: false,
+        retry_limit: plan.retry_limit,
+        stop: stop.clone(),
+    };
+    let way_back = WayBack { target: candidate.target, patience: plan.reconnect, options };
+    let end = run(plan, candidate.link, &way_back, progress, &mut findings).err();
     progress.done();
     conclude::conclude(plan, findings, end, circumstances, started)
 }
@@ -86,28 +98,17 @@ pub fn verify(
 fn run(
     plan: &Plan,
     link: Box<dyn Link>,
-    draws: Draws,
-    stop: &Stop,
+    way_back: &WayBack,
     progress: &dyn Progress,
     findings: &mut Findings,
 ) -> Result<(), End> {
     progress.step("judging the judge");
     steps::judge_the_judge(findings)?;
     progress.step("opening the board");
-    let options = OpenOptions {
-        nonce: draws.nonce,
-        host: draws.host,
-        take_over: plan.take_over,
-        retry_limit: plan.retry_limit,
-        stop: stop.clone(),
-    };
-    let mut board = Board::open(link, &options).map_err(|(error, tally)| {
-        findings.tally = tally;
-        End::board("identity", &error)
-    })?;
+    let mut board = way_back.open(link, findings)?;
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
     let generations = plan.generations(board.capabilities.taps);
-    let end = Run { plan, board: &mut board, generations, progress, findings }.all_steps();
+    let end = Run { plan, board: &mut board, generations, way_back, progress, findings }.all_steps();
     findings.note_link(&board);
     // Whatever happened, the next run must find the board free; a board that is gone need not be asked again.
     let reachable = !matches!(&end, Err(end) if end.is_unreachable());

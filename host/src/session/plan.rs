@@ -104,6 +104,8 @@ pub struct Plan {
     pub timeout: Option<Duration>,
     /// The retries that it may have.
     pub retry_limit: RetryLimit,
+    /// How long a board that goes away may stay away; none if the run ends then.
+    pub reconnect: Option<Duration>,
     /// Keep every frame for pictures, not only those that differ.
     pub keep_pictures: bool,
 }

@@ -5,7 +5,8 @@ use halfrow_model::{Kernel, TableSet, Taps};
 use super::findings::{End, Findings};
 use super::golden;
 use super::patterns::patterns;
-use super::plan::{Generation, Plan};
+use super::plan::{Generation, Plan, Segment};
+use super::reconnect::WayBack;
 use crate::board::{Board, Capabilities};
 use crate::progress::Progress;
 use crate::tables::DATAPATH;
@@ -20,6 +21,7 @@ pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
     pub(super) board: &'a mut Board,
     pub(super) generations: Vec<Generation>,
+    pub(super) way_back: &'a WayBack,
     pub(super) progress: &'a dyn Progress,
     pub(super) findings: &'a mut Findings,
 }
@@ -46,20 +48,33 @@ impl Run<'_> {
         self.findings.note_identity(self.board);
         self.identity()?;
         self.progress.step("testing the link");
-        self.link()?;
+        self.persist(Self::link)?;
         let schedule = self.plan.schedule(self.board.capabilities.table_banks);
         let height = self.plan.tables.geometry().height() as u64;
         let frames: usize = schedule.iter().map(|segment| segment.frames.len()).sum();
         self.progress.rows_expected(frames as u64 * height);
-        self.board.status(true).map_err(|error| End::board("link", &error))?;
+        let mut last = None;
         for segment in &schedule {
-            self.prepare(segment)?;
+            last = Some(segment);
+            if let Err(end) = self.prepare(segment) {
+                self.return_to(segment, 0, end)?;
+            }
             self.stream(segment)?;
             if self.plan.fail_fast && self.findings.seen.differences() > 0 {
                 break;
             }
         }
-        self.judge()
+        self.conclude(last)
+    }
+
+    /// Judges what was seen, with the board back where it was after `last` if it goes away meanwhile.
+    fn conclude(&mut self, last: Option<&Segment>) -> Result<(), End> {
+        loop {
+            match (self.judge(), last) {
+                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
+                (judged, _) => return judged,
+            }
+        }
     }
 
     fn identity(&mut self) -> Result<(), End> {
@@ -116,6 +131,7 @@ impl Run<'_> {
                 ));
             }
         }
+        self.board.status(true).map_err(board_error)?;
         let detail = format!("{bytes} bytes in {} echoes came back as they went", patterns.len());
         self.findings.passed("link", detail);
         Ok(())

@@ -24,23 +24,36 @@ impl Run<'_> {
     /// Streams a segment and judges what comes back.
     pub(super) fn stream(&mut self, segment: &Segment) -> Result<(), End> {
         let (manner, timing) = (self.manner(), self.timing(segment.timing));
-        let (plan, generations) = (self.plan, &self.generations);
+        let (plan, generations) = (self.plan, self.generations.clone());
         let (sender, source) = sync_channel(1);
+        // The judge has what is seen while the run has the board, and what it has to say of its link.
+        let mut seen = std::mem::take(&mut self.findings.seen);
         let (streamed, prepared) = std::thread::scope(|scope| {
             scope.spawn(move || {
-                let frames = segment.frames.iter().map(|frame| make_ready(plan, frame, generations));
+                let frames = segment.frames.iter().map(|frame| make_ready(plan, frame, &generations));
                 // The judge hangs up when the stream has ended.
                 let _ = frames.into_iter().try_for_each(|prepared| sender.send(prepared));
             });
-            let mut judge = Judge::new(source, &mut self.findings.seen, manner, timing, self.progress);
-            let streamed = self.board.stream(&mut judge);
+            let mut judge = Judge::new(source, &mut seen, manner, timing, self.progress);
+            let streamed = self.stream_to_the_end(segment, &mut judge);
             (streamed, judge.finish())
         });
-        streamed.map_err(|error| self.interrupted(segment, error))?;
+        self.findings.seen = seen;
+        streamed?;
         prepared.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
         if plan.fail_fast && self.findings.seen.differences() > 0 {
             self.board.drop_rows().map_err(|error| End::board("frames", &error))?;
         }
+        Ok(())
+    }
+
+    fn stream_to_the_end(&mut self, segment: &Segment, judge: &mut Judge<'_>) -> Result<(), End> {
+        while let Err(error) = self.board.stream(judge) {
+            let end = self.interrupted(segment, error);
+            self.return_to(segment, judge.frames_done(), end)?;
+            judge.begin_again();
+        }
+        self.findings.rows_counted += judge.rows;
         Ok(())
     }
 
@@ -114,7 +127,7 @@ impl Run<'_> {
 }
 
 /// A frame of which only the arrival matters.
-struct Unjudged(Option<NumberedFrame>);
+pub(super) struct Unjudged(pub(super) Option<NumberedFrame>);
 
 impl RowTraffic for Unjudged {
     fn next_frame(&mut self) -> Option<NumberedFrame> {

@@ -7,8 +7,13 @@ use crate::board::{Bank, BoardError, Configuration, ReadBack, RefusalCode, Table
 use crate::diagnosis;
 
 impl Run<'_> {
-    /// Sets the board for a segment.
+    /// Sets the board for a segment, its tables included.
     pub(super) fn prepare(&mut self, segment: &Segment) -> Result<(), End> {
+        self.configure(segment)?;
+        segment.commit.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame))
+    }
+
+    pub(super) fn configure(&mut self, segment: &Segment) -> Result<(), End> {
         let geometry = self.plan.tables.geometry();
         let least = self.board.capabilities.least_blanking;
         let (blanking, gap_seed) = match segment.timing {
@@ -24,8 +29,11 @@ impl Run<'_> {
             gap_seed,
             bits: geometry.depth().bits() as u8,
         };
-        self.board.configure(&configuration).map_err(|error| End::board("upload", &error))?;
-        let Some((number, first_frame)) = segment.commit else { return Ok(()) };
+        self.board.configure(&configuration).map_err(|error| End::board("upload", &error))
+    }
+
+    /// Uploads a generation, to be used from `first_frame` on.
+    pub(super) fn commit(&mut self, number: u8, first_frame: u16) -> Result<(), End> {
         let generation = self.generations.iter().find(|generation| generation.number == number).cloned();
         generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame))
     }

@@ -34,8 +34,10 @@ fn build(folder: &Path) {
     };
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["build", "--package", "halfrow", "--bin", "halfrow", "--profile", profile, "--target-dir"]);
-    cargo.args(if cfg!(feature = "sim") { ["--features", "sim"].as_slice() } else { &[] });
-    cargo.arg(folder.parent().unwrap()).current_dir(env!("CARGO_MANIFEST_DIR"));
+    cargo
+        .arg(folder.parent().unwrap())
+        .args(cfg!(feature = "sim").then_some("--features=sim"))
+        .current_dir(env!("CARGO_MANIFEST_DIR"));
     let built = cargo.output().unwrap();
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
 }

@@ -10,6 +10,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use halfrow_ft2232h::FarEnd as _;
+use nix::fcntl::OFlag;
 
 use super::{MockAtChip, wait_until};
 
@@ -83,7 +84,7 @@ fn port(name: &str) -> File {
         |folder: &Path| fs::read_to_string(folder.join("name")).is_ok_and(|found| found.trim() == name);
     let folder = ports.map(|entry| entry.path()).find(|folder| is_it(folder)).unwrap();
     let device = PathBuf::from("/dev").join(folder.file_name().unwrap());
-    OpenOptions::new().read(true).write(true).custom_flags(libc::O_NONBLOCK).open(device).unwrap()
+    OpenOptions::new().read(true).write(true).custom_flags(OFlag::O_NONBLOCK.bits()).open(device).unwrap()
 }
 
 /// Says `command` to QEMU's own monitor.

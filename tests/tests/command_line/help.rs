@@ -5,13 +5,15 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 9] = [
+const COMMANDS: [(&str, &str); 11] = [
     ("verify", "Judge a board"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
     ("frames", "Write the built-in frames"),
     ("boards", "List the boards"),
     ("info", "Say what a board is"),
+    ("link", "Test the link"),
+    ("serve", "Serve a mock or simulated board"),
     ("faults", "List the faults"),
     ("completions", "Print a completion script"),
     ("manual", "Write the manual pages"),

@@ -14,6 +14,8 @@ mod replay;
 mod report_folder;
 mod settings;
 mod signals;
+#[cfg(feature = "sim")]
+mod simulated;
 mod verdicts;
 
 use halfrow_tests::program::{Ended, Folder};

@@ -31,7 +31,7 @@ fn qemu_s_chip_is_pulled_out_in_the_middle_and_comes_back() {
     unplug_qemu_chip();
     let ended = run.join().unwrap();
     assert_eq!(ended.code, Some(3), "{ended:?}");
-    assert!(sentence(&ended).contains("was closed at"), "{ended:?}");
+    assert!(sentence(&ended).contains("went away at"), "{ended:?}");
     drop(board);
     plug_qemu_chip();
     let _board = QemuBoard::new("");

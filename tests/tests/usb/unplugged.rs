@@ -16,7 +16,7 @@ fn pull(byte: usize, toward: &str) {
         (Some(3), Some("ERROR")),
         "byte {byte} {toward}: {ended:?}"
     );
-    assert!(sentence(&ended).contains("was closed at"), "byte {byte} {toward}: {ended:?}");
+    assert!(sentence(&ended).contains("went away at"), "byte {byte} {toward}: {ended:?}");
     assert!(took < Duration::from_secs(10), "byte {byte} {toward}: {took:?}");
     drop(board);
 }

@@ -88,6 +88,7 @@ pub(super) fn restore(
         seed: run.seed,
         timeout: run.timeout,
         retry_limit: RetryLimit { fixed: run.retries, share: run.retry_share },
+        reconnect: None,
         keep_pictures: true,
     };
     let circumstances = Circumstances { arguments: run.arguments, files: Vec::new(), draws: run.draws };

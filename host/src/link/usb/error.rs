@@ -1,8 +1,8 @@
 //! Why a board cannot be opened over USB.
 
 use super::find::UsbBoard;
-use super::holder::Holder;
 use super::transport::Failure;
+use crate::link::Holder;
 use crate::verdict::Exit;
 
 /// Why a board cannot be opened over USB.

@@ -12,7 +12,6 @@ mod eeprom;
 mod error;
 mod find;
 mod ftdi;
-mod holder;
 mod options;
 mod packets;
 mod pump;
@@ -25,18 +24,17 @@ use std::time::{Duration, Instant};
 use chip::Channel;
 use find::{Found, choose, sysfs};
 use ftdi::{Ftdi, Ready};
-use holder::holders;
 use options::UsbOptions;
 use packets::strip;
 use pump::Pump;
 use transport::Libusb;
 
+use super::serial::{Holder, holders};
 use super::{Link, LinkError};
 use crate::target::Target;
 
 pub use error::UsbError;
 pub use find::{UsbBoard, usb_boards};
-pub use holder::Holder;
 pub use packets::LineErrors;
 pub use transport::{Failure as UsbFailure, Transport};
 
@@ -135,9 +133,11 @@ fn is_locked(port: &Path) -> bool {
     use std::io::ErrorKind::ResourceBusy;
     use std::os::unix::fs::OpenOptionsExt as _;
 
+    use nix::fcntl::OFlag;
+
     // Neither wait for a carrier nor become the terminal of this process.
-    let flags = libc::O_NONBLOCK | libc::O_NOCTTY;
-    match fs::OpenOptions::new().read(true).write(true).custom_flags(flags).open(port) {
+    let flags = OFlag::O_NONBLOCK | OFlag::O_NOCTTY;
+    match fs::OpenOptions::new().read(true).write(true).custom_flags(flags.bits()).open(port) {
         Ok(file) => matches!(file.try_lock(), Err(fs::TryLockError::WouldBlock)),
         Err(error) => error.kind() == ResourceBusy,
     }
@@ -156,8 +156,10 @@ impl Link for UsbLink {
         wait: Duration,
     ) -> Result<usize, LinkError> {
         self.pump.exchange(outgoing, incoming, wait).map_err(|failure| match failure {
-            UsbFailure::Gone => LinkError::Closed { link: self.name(), at: self.now() },
-            source => LinkError::Usb { link: self.name(), at: self.now(), source },
+            UsbFailure::Gone => LinkError::Unplugged { link: self.name(), at: self.now() },
+            other => {
+                LinkError::Failed { link: self.name(), at: self.now(), source: std::io::Error::other(other) }
+            }
         })
     }
 
@@ -167,6 +169,10 @@ impl Link for UsbLink {
 
     fn bytes_per_second(&self) -> Option<f64> {
         Some(self.bytes_per_second)
+    }
+
+    fn is_exclusive(&self) -> bool {
+        true
     }
 
     fn name(&self) -> String {

@@ -21,7 +21,7 @@ impl fmt::Display for Holder {
 
 /// Other processes that have `device` open, as far as this user may know: root sees all, others their own.
 #[must_use]
-pub(super) fn holders(device: &Path) -> Vec<Holder> {
+pub fn holders(device: &Path) -> Vec<Holder> {
     let Ok(device) = fs::canonicalize(device) else { return Vec::new() };
     let processes = fs::read_dir("/proc").into_iter().flatten().flatten();
     processes

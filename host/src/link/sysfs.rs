@@ -1,0 +1,97 @@
+//! What the kernel says of the USB device behind a serial port.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// A USB device that a serial port belongs to.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct UsbDevice {
+    /// Vendor id.
+    pub vendor_id: u16,
+    /// Product id.
+    pub product_id: u16,
+    /// The device's version, as `bcdDevice`: FTDI's chips tell their kind by it.
+    pub device_version: u16,
+    /// The manufacturer's name.
+    pub manufacturer: Option<String>,
+    /// The product's name.
+    pub product: Option<String>,
+    /// The serial number.
+    pub serial: Option<String>,
+    /// The interface that is this port.
+    pub interface: Option<u8>,
+}
+
+/// The USB device behind the serial port `port`, a path that may be a link; none if there is none.
+#[must_use]
+pub fn usb_device(port: &Path) -> Option<UsbDevice> {
+    let device = fs::canonicalize(port).ok()?;
+    usb_device_in(&Path::new("/sys/class/tty").join(device.file_name()?))
+}
+
+/// The same for `class`, the port's folder in sysfs.
+fn usb_device_in(class: &Path) -> Option<UsbDevice> {
+    let mut interface = None;
+    let mut folder: PathBuf = fs::canonicalize(class.join("device")).ok()?;
+    loop {
+        interface = interface.or_else(|| number(&folder, "bInterfaceNumber"));
+        if let Some(vendor_id) = number(&folder, "idVendor") {
+            return Some(UsbDevice {
+                vendor_id,
+                product_id: number(&folder, "idProduct")?,
+                device_version: number(&folder, "bcdDevice").unwrap_or_default(),
+                manufacturer: text(&folder, "manufacturer"),
+                product: text(&folder, "product"),
+                serial: text(&folder, "serial"),
+                interface: interface.and_then(|interface| u8::try_from(interface).ok()),
+            });
+        }
+        if !folder.pop() {
+            return None;
+        }
+    }
+}
+
+fn text(folder: &Path, file: &str) -> Option<String> {
+    let text = fs::read_to_string(folder.join(file)).ok()?;
+    Some(text.trim().to_owned()).filter(|text| !text.is_empty())
+}
+
+fn number(folder: &Path, file: &str) -> Option<u16> {
+    u16::from_str_radix(&text(folder, file)?, 16).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_device_is_found_above_its_interface() {
+        let root = tempfile::tempdir().unwrap();
+        let device = root.path().join("usb1/1-2");
+        let port = device.join("1-2:1.1/ttyUSB1");
+        fs::create_dir_all(&port).unwrap();
+        let file = |path: &Path, name: &str, content: &str| fs::write(path.join(name), content).unwrap();
+        file(&device, "idVendor", "0403\n");
+        file(&device, "idProduct", "6010\n");
+        file(&device, "bcdDevice", "0700\n");
+        file(&device, "serial", "FT3XYZ\n");
+        file(&device, "product", "\n");
+        file(&device.join("1-2:1.1"), "bInterfaceNumber", "01\n");
+        let class = root.path().join("class/ttyUSB1");
+        fs::create_dir_all(&class).unwrap();
+        std::os::unix::fs::symlink(&port, class.join("device")).unwrap();
+        let found = usb_device_in(&class).unwrap();
+        assert_eq!((found.vendor_id, found.product_id, found.device_version), (0x0403, 0x6010, 0x0700));
+        assert_eq!(
+            (found.serial.as_deref(), found.product, found.interface),
+            (Some("FT3XYZ"), None, Some(1))
+        );
+    }
+
+    #[test]
+    fn a_port_without_usb_has_no_usb_device() {
+        assert_eq!(usb_device(Path::new("/dev/null")), None);
+        assert_eq!(usb_device(Path::new("/dev/not-there")), None);
+    }
+}

@@ -1,0 +1,195 @@
+//! The figures of a link test.
+
+use std::time::Duration;
+
+use serde::Serialize;
+
+use crate::board::Tally;
+
+/// All that a link test measured.
+#[derive(Clone, Debug, Serialize)]
+pub struct Figures {
+    /// The link, for people.
+    pub link: String,
+    /// The bytes a second that the link itself carries each way; none if it does not know.
+    pub limit: Option<f64>,
+    /// What went wrong, in all parts together.
+    pub errors: Errors,
+    /// Empty requests and their answers.
+    pub round_trips: RoundTrips,
+    /// Full packets to the board, answered by short ones.
+    pub to_board: Throughput,
+    /// Full packets to the host, asked for by short ones.
+    pub to_host: Throughput,
+    /// Rows, both ways at once.
+    pub together: Throughput,
+}
+
+/// Errors of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Errors {
+    /// Packets, both ways.
+    pub packets: u64,
+    /// Bytes, both ways.
+    pub bytes: u64,
+    /// Packets that the board got damaged.
+    pub damaged_out: u64,
+    /// Packets that the host got damaged.
+    pub damaged_in: u64,
+    /// Packets sent again.
+    pub retries: u64,
+    /// Answers that hold something else than was sent, under a CRC that is right: not the link's fault.
+    pub wrong: u64,
+    /// Damaged packets by packets.
+    pub rate: f64,
+    /// The rate is below this at 95 % confidence.
+    pub bound: f64,
+}
+
+impl Errors {
+    pub(super) fn between(before: Tally, after: Tally, damaged_out: u64, wrong: u64) -> Self {
+        let damaged_in = after.damaged_in - before.damaged_in;
+        let packets =
+            after.packets_out + after.packets_in - before.packets_out - before.packets_in + damaged_in;
+        let (damaged, all) = ((damaged_out + damaged_in) as f64, packets.max(1) as f64);
+        Self {
+            packets,
+            bytes: after.bytes_out + after.bytes_in - before.bytes_out - before.bytes_in,
+            damaged_out,
+            damaged_in,
+            retries: after.retries - before.retries,
+            wrong,
+            rate: damaged / all,
+            // Never below the exact Poisson bound, which is 3.0 for none, 4.7 for one, 17.0 for ten.
+            bound: ((damaged + 3.0 + 1.645 * damaged.sqrt()) / all).min(1.0),
+        }
+    }
+}
+
+/// Times of round trips, in microseconds of the link's clock.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RoundTrips {
+    /// How many.
+    pub count: usize,
+    /// The shortest.
+    pub least_us: f64,
+    /// Half of them take no longer.
+    pub median_us: f64,
+    /// Nine in ten take no longer.
+    pub p90_us: f64,
+    /// Ninety-nine in a hundred take no longer.
+    pub p99_us: f64,
+    /// The longest.
+    pub most_us: f64,
+}
+
+impl RoundTrips {
+    /// Of `times`, which are at least one.
+    pub(super) fn of(mut times: Vec<Duration>) -> Self {
+        times.sort_unstable();
+        let at = |share: f64| {
+            let rank = (share * times.len() as f64).ceil() as usize;
+            let time = times.get(rank.saturating_sub(1)).copied().unwrap_or_default();
+            time.as_secs_f64() * 1e6
+        };
+        Self {
+            count: times.len(),
+            least_us: at(0.0),
+            median_us: at(0.5),
+            p90_us: at(0.9),
+            p99_us: at(0.99),
+            most_us: at(1.0),
+        }
+    }
+}
+
+/// Bytes on the wire, stuffing and headers included.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Throughput {
+    /// To the board.
+    pub out: Rate,
+    /// To the host.
+    #[serde(rename = "in")]
+    pub back: Rate,
+    /// In this time by the link's clock, in seconds.
+    pub seconds: f64,
+}
+
+/// How much went one way.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rate {
+    /// Bytes.
+    pub bytes: u64,
+    /// Bytes a second; none if the link's clock stood still.
+    pub bytes_per_second: Option<f64>,
+    /// That as a share of what the link itself carries, if it knows.
+    pub share: Option<f64>,
+}
+
+impl Throughput {
+    pub(super) fn between(before: Tally, after: Tally, time: Duration, limit: Option<f64>) -> Self {
+        let seconds = time.as_secs_f64();
+        let rate = |bytes: u64| {
+            let bytes_per_second = (seconds > 0.0).then(|| bytes as f64 / seconds);
+            let share = bytes_per_second.zip(limit).map(|(rate, limit)| rate / limit);
+            Rate { bytes, bytes_per_second, share }
+        };
+        let (out, back) = (after.bytes_out - before.bytes_out, after.bytes_in - before.bytes_in);
+        Self { out: rate(out), back: rate(back), seconds }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn percentiles_are_the_nearest_ranks() {
+        let times = (1..=200).rev().map(Duration::from_micros).collect();
+        let expected = RoundTrips {
+            count: 200,
+            least_us: 1.0,
+            median_us: 100.0,
+            p90_us: 180.0,
+            p99_us: 198.0,
+            most_us: 200.0,
+        };
+        let found = RoundTrips::of(times);
+        let close = |(a, b): (f64, f64)| (a - b).abs() < 1e-6;
+        assert_eq!(found.count, 200);
+        assert!(
+            [
+                (found.least_us, expected.least_us),
+                (found.median_us, expected.median_us),
+                (found.p90_us, expected.p90_us),
+                (found.p99_us, expected.p99_us),
+                (found.most_us, expected.most_us),
+            ]
+            .into_iter()
+            .all(close),
+            "{found:?}"
+        );
+    }
+
+    #[test]
+    fn no_error_among_n_packets_bounds_the_rate_by_three_in_n() {
+        let after =
+            Tally { packets_out: 500, packets_in: 500, bytes_out: 7, bytes_in: 8, ..Tally::default() };
+        let errors = Errors::between(Tally::default(), after, 0, 0);
+        assert_eq!((errors.packets, errors.bytes, errors.rate, errors.bound), (1000, 15, 0.0, 0.003));
+        let errors = Errors::between(Tally::default(), Tally { damaged_in: 4, ..after }, 6, 0);
+        // The exact bound for ten events is 16.96.
+        assert_eq!((errors.packets, errors.rate), (1004, 10.0 / 1004.0));
+        assert!((16.9..18.5).contains(&(errors.bound * 1004.0)), "{}", errors.bound);
+    }
+
+    #[test]
+    fn a_clock_that_stood_still_tells_no_rate() {
+        let after = Tally { bytes_out: 100, bytes_in: 50, ..Tally::default() };
+        let between = |time| Throughput::between(Tally::default(), after, time, Some(400.0));
+        let still = between(Duration::ZERO);
+        assert_eq!((still.out.bytes_per_second, still.back.share), (None, None));
+        let moving = between(Duration::from_millis(500));
+        assert_eq!((moving.out.bytes_per_second, moving.back.share), (Some(200.0), Some(0.25)));
+    }
+}

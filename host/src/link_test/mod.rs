@@ -1,0 +1,130 @@
+//! What a link can do, whatever the board behind it computes: errors, round trips, throughput.
+//!
+//! A board answers one request at a time, so each way alone is measured with full packets and short answers, turnaround
+//! included. Both ways together are measured as a run uses them, by rows as far as the board gives credit.
+
+mod figures;
+mod rows;
+
+use std::time::{Duration, Instant};
+
+use halfrow_protocol::MAX_PAYLOAD;
+use rand_core::Rng;
+use rand_pcg::Pcg64Mcg;
+
+use crate::board::{Bank, Board, BoardError, Table, TablePort, Tally};
+
+pub use figures::{Errors, Figures, Rate, RoundTrips, Throughput};
+
+/// A link test that did not come to an end.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkTestError {
+    /// The board could not be driven.
+    #[error(transparent)]
+    Board(#[from] BoardError),
+    /// What the board says that it can do leaves no frame to stream.
+    #[error("the board takes no frame that could be streamed; check its capabilities with `halfrow info`")]
+    NoFrame(#[source] Box<dyn std::error::Error + Send + Sync>),
+}
+
+/// Tests the link to `board`. Each of the five parts takes `seconds`, by the link's clock or the wall's, whichever is
+/// first; what is sent is drawn by `seed`. Tables and configuration of the board are lost.
+///
+/// # Errors
+/// [`LinkTestError`] when the board stops to answer, or the link is too poor.
+pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, LinkTestError> {
+    let random = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
+    let mut test = Test { board, seconds, random };
+    test.board.status(true)?;
+    let before = test.board.tally();
+    let round_trips = test.round_trips()?;
+    let wrong_echoes = test.echoes()?;
+    let to_board = test.outward()?;
+    let (to_host, wrong_reads) = test.inward()?;
+    let together = test.together()?;
+    let status = test.board.status(false)?;
+    let damaged_out = u64::from(status.crc_errors) + u64::from(status.framing_errors);
+    let errors = Errors::between(before, test.board.tally(), damaged_out, wrong_echoes + wrong_reads);
+    let limit = test.board.bytes_per_second();
+    Ok(Figures { link: test.board.link_name(), limit, errors, round_trips, to_board, to_host, together })
+}
+
+struct Test<'a> {
+    board: &'a mut Board,
+    seconds: Duration,
+    random: Pcg64Mcg,
+}
+
+/// When a part of the test began.
+struct Begun {
+    on_link: Duration,
+    on_wall: Instant,
+    tally: Tally,
+}
+
+impl Test<'_> {
+    fn begin(&self) -> Begun {
+        Begun { on_link: self.board.now(), on_wall: Instant::now(), tally: self.board.tally() }
+    }
+
+    /// A virtual clock may stand still, and then the wall's counts.
+    fn is_over(&self, begun: &Begun) -> bool {
+        self.board.now() - begun.on_link >= self.seconds || begun.on_wall.elapsed() >= self.seconds
+    }
+
+    fn throughput(&self, begun: &Begun) -> Throughput {
+        let seconds = self.board.now() - begun.on_link;
+        Throughput::between(begun.tally, self.board.tally(), seconds, self.board.bytes_per_second())
+    }
+
+    fn round_trips(&mut self) -> Result<RoundTrips, BoardError> {
+        let begun = self.begin();
+        let mut times = Vec::new();
+        while times.is_empty() || !self.is_over(&begun) {
+            times.push(self.board.echo(&[])?.1);
+        }
+        Ok(RoundTrips::of(times))
+    }
+
+    /// Random bytes of random length there and back. Returns the number of echoes that came back otherwise.
+    fn echoes(&mut self) -> Result<u64, BoardError> {
+        let begun = self.begin();
+        let mut wrong = 0;
+        while !self.is_over(&begun) {
+            let mut bytes = vec![0; self.random.next_u32() as usize % (MAX_PAYLOAD + 1)];
+            self.random.fill_bytes(&mut bytes);
+            wrong += u64::from(!self.board.echo(&bytes)?.0);
+        }
+        Ok(wrong)
+    }
+
+    /// Row factors, which are random: no frame is streamed with them.
+    fn outward(&mut self) -> Result<Throughput, BoardError> {
+        let begun = self.begin();
+        while !self.is_over(&begun) {
+            let entries = self.entries();
+            self.board.write(Table::Steps, &entries)?;
+        }
+        Ok(self.throughput(&begun))
+    }
+
+    /// The same read back. Returns the number of packets that hold something else as well.
+    fn inward(&mut self) -> Result<(Throughput, u64), BoardError> {
+        let entries = self.entries();
+        self.board.write(Table::Steps, &entries)?;
+        let begun = self.begin();
+        let port = TablePort { table: Table::Steps, port: 0 };
+        let mut wrong = 0;
+        while !self.is_over(&begun) {
+            let read = self.board.read_entries(Bank::Shadow, port, entries.len() / 4)?;
+            wrong += u64::from(read != entries);
+        }
+        Ok((self.throughput(&begun), wrong))
+    }
+
+    /// A packet of row factors, 1 to 2^24, as many as fit into packet and table.
+    fn entries(&mut self) -> Vec<u8> {
+        let count = Board::entries_at_once(Table::Steps).min(self.board.capabilities.max_height.into());
+        (0..count).flat_map(|_| (1 + (self.random.next_u32() >> 8)).to_le_bytes()).collect()
+    }
+}

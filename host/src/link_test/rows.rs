@@ -1,0 +1,96 @@
+//! Both ways together: rows, which nobody judges.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::time::Duration;
+
+use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, STEP_ONE, TableSet};
+use rand_core::Rng;
+
+use super::{LinkTestError, Test, Throughput};
+use crate::board::{Board, BoardError, Configuration, NumberedFrame, ReturnedRow, RowTraffic};
+
+/// Rows of a frame. The core runs empty behind its last one, which costs half a row.
+const HEIGHT: u16 = 64;
+/// Frames that are streamed without a look at the clock, at most.
+const MOST_FRAMES: f64 = 1000.0;
+
+impl Test<'_> {
+    pub(super) fn together(&mut self) -> Result<Throughput, LinkTestError> {
+        let frame = Arc::new(self.frame().map_err(LinkTestError::NoFrame)?);
+        let tables = straight_tables(&frame).map_err(LinkTestError::NoFrame)?;
+        self.set(&tables)?;
+        let mut number = 0;
+        // The pipe is filled once, so the first frame tells how many there is time for.
+        let first = self.stream(&frame, &mut number, 1)?;
+        let frames = self.seconds.as_secs_f64() / first.as_secs_f64().max(1e-6);
+        let begun = self.begin();
+        self.stream(&frame, &mut number, frames.clamp(1.0, MOST_FRAMES) as u16)?;
+        Ok(self.throughput(&begun))
+    }
+
+    /// Random samples, as wide as the board takes them.
+    fn frame(&mut self) -> Result<Frame, Box<dyn std::error::Error + Send + Sync>> {
+        let (width, height) = size(self.board);
+        let depths = self.board.capabilities.sample_depths();
+        let depth = BitDepth::ALL.into_iter().rev().find(|depth| depths.has(depth.bits() as u8));
+        let depth = depth.ok_or("it has no sample depth")?;
+        let samples = (0..width * height).map(|_| self.random.next_u32() as u16 & depth.max()).collect();
+        Ok(Frame::new(width, depth, Phase::Grbg, samples)?)
+    }
+
+    fn set(&mut self, tables: &TableSet) -> Result<(), BoardError> {
+        let geometry = tables.geometry();
+        self.board.configure(&Configuration {
+            width: geometry.width() as u16,
+            height: geometry.height() as u16,
+            centre2: geometry.centre2() as u16,
+            blanking: self.board.capabilities.least_blanking,
+            gap_seed: 0,
+            bits: geometry.depth().bits() as u8,
+        })?;
+        let kernel = Kernel::from(Interpolant::Hermite);
+        self.board.upload(tables, &kernel)?;
+        self.board.commit(tables, &kernel, 0, 1)
+    }
+
+    /// Streams `frame` so many times, and returns the time by the slower of the two clocks.
+    fn stream(&mut self, frame: &Arc<Frame>, number: &mut u16, times: u16) -> Result<Duration, BoardError> {
+        let begun = self.begin();
+        let mut traffic = Same { frame: Arc::clone(frame), number: *number, left: times };
+        self.board.stream(&mut traffic)?;
+        *number = traffic.number;
+        Ok(begun.on_wall.elapsed().max(self.board.now() - begun.on_link))
+    }
+}
+
+fn size(board: &Board) -> (usize, usize) {
+    let capabilities = &board.capabilities;
+    (usize::from(capabilities.max_width & !1), usize::from(capabilities.max_height.min(HEIGHT)))
+}
+
+/// Tables that leave every row as it is.
+fn straight_tables(frame: &Frame) -> Result<TableSet, Box<dyn std::error::Error + Send + Sync>> {
+    let geometry = Geometry::centred(frame.width(), frame.height(), frame.depth())?;
+    Ok(TableSet::new(geometry, vec![STEP_ONE; frame.height()])?)
+}
+
+/// The same frame over and over.
+struct Same {
+    frame: Arc<Frame>,
+    number: u16,
+    left: u16,
+}
+
+impl RowTraffic for Same {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        self.left = self.left.checked_sub(1)?;
+        let number = self.number;
+        self.number = number.wrapping_add(1);
+        Some(NumberedFrame { number, frame: Arc::clone(&self.frame) })
+    }
+
+    fn returned(&mut self, _row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,141 @@
+//! A board that goes away during a run and comes back: waiting for it, and bringing it to where the run stood.
+
+use std::time::{Duration, Instant};
+
+use super::findings::{End, Findings};
+use super::plan::Segment;
+use super::steps::Run;
+use super::streaming::Unjudged;
+use crate::board::{Board, BoardError, NumberedFrame, OpenOptions};
+use crate::link::{self, Link};
+use crate::report::Reconnection;
+use crate::target::Target;
+use crate::verdict::Exit;
+
+/// More often than this it is a loose contact, and waiting does not mend it.
+const MOST: usize = 16;
+/// How often it is tried. A system takes some tenths of a second to make a device known.
+const TICK: Duration = Duration::from_millis(100);
+
+/// How a board is opened, for the first time and again.
+pub(super) struct WayBack {
+    pub(super) target: String,
+    /// How long a board may stay away; none if the run ends when it goes.
+    pub(super) patience: Option<Duration>,
+    pub(super) options: OpenOptions,
+}
+
+impl WayBack {
+    /// Opens the board behind `link`, or behind the next one if that breaks.
+    pub(super) fn open(&self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
+        let (error, tally) = match Board::open(link, &self.options) {
+            Ok(board) => return Ok(board),
+            Err(failed) => failed,
+        };
+        findings.tally = tally;
+        let end = End::board("identity", &error);
+        match (&error, self.patience) {
+            (BoardError::Link { .. }, Some(patience)) if end.is_outage() => {
+                self.open_again(patience, &end, findings)
+            }
+            _ => Err(end),
+        }
+    }
+
+    /// Waits for the board, which was lost with `end`, and opens it.
+    fn open_again(&self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
+        let End::Error { check, exit, headline, .. } = end else { return Err(end.clone()) };
+        tracing::warn!("{headline}; waiting {} s for the board to come back", patience.as_secs_f64());
+        let left = Instant::now();
+        loop {
+            let spent = findings.earlier.seconds + left.elapsed();
+            self.options.stop.check(spent).map_err(|error| End::board(check, &error))?;
+            if let Some(board) = self.try_open(spent, findings.link.reconnections.len()) {
+                let away = left.elapsed();
+                findings.earlier.seconds += away;
+                let (reason, seconds_away) = (headline.clone(), away.as_secs_f64());
+                findings.link.reconnections.push(Reconnection { reason, seconds_away });
+                return Ok(board);
+            }
+            if left.elapsed() > patience {
+                let waited =
+                    format!("{headline}; the board did not come back in {} s", patience.as_secs_f64());
+                return Err(End::error(check, *exit, waited));
+            }
+            std::thread::sleep(TICK);
+        }
+    }
+
+    fn try_open(&self, spent: Duration, times: usize) -> Option<Board> {
+        let candidate = self.target.parse().ok().map(|target: Target| link::open(&target))?;
+        let link = candidate.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?.link;
+        // A board that never lost power must not take this for the greeting that it has answered.
+        let nonce = self.options.nonce.wrapping_add(1 + times as u32);
+        let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
+        Board::open(link, &options).inspect_err(|(error, _)| tracing::debug!("not there yet: {error}")).ok()
+    }
+}
+
+impl Run<'_> {
+    /// Does `step` again when the board went away during it and has come back.
+    pub(super) fn persist(&mut self, step: impl Fn(&mut Self) -> Result<(), End>) -> Result<(), End> {
+        while let Err(end) = step(self) {
+            self.come_back(end)?;
+        }
+        Ok(())
+    }
+
+    /// Waits for a board that went away with `end`, and brings it to where frame `at` of `segment` is the next to be
+    /// sent. Returns any other end as it is.
+    pub(super) fn return_to(&mut self, segment: &Segment, at: usize, end: End) -> Result<(), End> {
+        let mut end = end;
+        loop {
+            self.come_back(end)?;
+            match self.restore(segment, at) {
+                Ok(()) => return Ok(()),
+                Err(again) => end = again,
+            }
+        }
+    }
+
+    fn come_back(&mut self, end: End) -> Result<(), End> {
+        let again = self.findings.link.reconnections.len() < MOST;
+        let Some(patience) = self.way_back.patience.filter(|_| end.is_outage() && again) else {
+            return Err(end);
+        };
+        self.progress.step("waiting for the board to come back");
+        self.findings.keep_counts(self.board);
+        // What is left of the old link would keep the new one from being opened.
+        self.board.hang_up();
+        let board = self.way_back.open_again(patience, &end, self.findings)?;
+        let is_same = board.welcome.serial == self.board.welcome.serial
+            && board.welcome.build == self.board.welcome.build
+            && board.capabilities == self.board.capabilities;
+        *self.board = board;
+        if is_same {
+            return Ok(());
+        }
+        let headline = "another board, or another bitstream, came back than went away; run again".to_owned();
+        Err(End::error("identity", Exit::Refused, headline))
+    }
+
+    /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
+    /// behind a greeting.
+    fn restore(&mut self, segment: &Segment, at: usize) -> Result<(), End> {
+        self.configure(segment)?;
+        let next = segment.frames.get(at);
+        let Some(frame) = next.or(segment.frames.last()) else { return Ok(()) };
+        self.commit(frame.generation, frame.number)?;
+        let later = segment.commit.filter(|(number, _)| *number != frame.generation);
+        if next.is_none() || later.is_some() {
+            // Tables become the active ones when a frame enters.
+            let rendered = self.plan.render(frame);
+            let rendered = rendered.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+            self.findings.rows_counted += rendered.height();
+            let played = NumberedFrame { number: frame.number, frame: rendered };
+            let played = self.board.stream(&mut Unjudged(Some(played)));
+            played.map_err(|error| End::board("frames", &error))?;
+        }
+        later.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame))
+    }
+}

@@ -1,0 +1,138 @@
+//! Boards behind devices that the test makes, each served by a thread of its own.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use halfrow::link;
+use halfrow::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
+
+/// How long a board is away that is plugged in again.
+const AWAY: Duration = Duration::from_millis(50);
+
+/// How a board comes back.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Replug {
+    /// As it was: only its cable had been pulled.
+    Powered,
+    /// As this target, switched on a moment ago.
+    Switched(String),
+    /// As this target, behind a port that was there all the time: the board alone had lost power.
+    Reset(String),
+}
+
+/// A board that is served until this is dropped, or until its wire breaks.
+#[derive(Debug)]
+pub struct Served {
+    target: String,
+    ended: Arc<AtomicBool>,
+    thread: Option<JoinHandle<Result<(), ServeError>>>,
+}
+
+impl Served {
+    /// The board `board`, a target, behind a pseudo-terminal.
+    ///
+    /// # Panics
+    /// If there is no such board or no pseudo-terminal.
+    #[must_use]
+    pub fn on_a_serial_port(board: &str) -> Self {
+        Self::start(board, |board, mut ended, said| {
+            let pty = Pty::open()?;
+            said.send(format!("serial:{}", pty.path().display())).unwrap();
+            pty.serve(board, &mut ended)
+        })
+    }
+
+    /// The same under the name `path`, and unplugged when `byte` bytes have gone to the host. A moment later it is plugged
+    /// in again, if `replug` says how.
+    ///
+    /// # Panics
+    /// If there is no such board or no pseudo-terminal.
+    #[must_use]
+    pub fn unplugged_once(board: &str, path: &Path, byte: u64, replug: Option<Replug>) -> Self {
+        let path: PathBuf = path.to_owned();
+        Self::start(board, move |board, mut ended, said| {
+            let pty = Pty::open()?;
+            let name = Name::link(&path, pty.path())?;
+            said.send(format!("serial:{}", path.display())).unwrap();
+            pty.serve(board, &mut |traffic| traffic.to_host >= byte || ended(traffic))?;
+            let switched_on = |other: &str| Hosted::new(link::open(&other.parse().unwrap()).unwrap().link);
+            if let Some(Replug::Reset(other)) = &replug {
+                *board = switched_on(other);
+                return pty.serve(board, &mut ended);
+            }
+            drop((name, pty));
+            let Some(replug) = replug else { return Ok(()) };
+            std::thread::sleep(AWAY);
+            if let Replug::Switched(other) = replug {
+                *board = switched_on(&other);
+            }
+            let pty = Pty::open()?;
+            let _name = Name::link(&path, pty.path())?;
+            pty.serve(board, &mut ended)
+        })
+    }
+
+    /// The board `board` behind a TCP port of `host`.
+    ///
+    /// # Panics
+    /// If there is no such board or no port.
+    #[must_use]
+    pub fn on_a_tcp_port(host: &str, board: &str) -> Self {
+        let address = format!("{host}:0");
+        Self::start(board, move |board, mut ended, said| {
+            let port = Port::listen(&address)?;
+            said.send(format!("tcp:{}", port.address()?)).unwrap();
+            port.serve(board, &mut ended)
+        })
+    }
+
+    fn start(
+        board: &str,
+        serve: impl FnOnce(
+            &mut Hosted,
+            Box<dyn FnMut(Traffic) -> bool>,
+            &Sender<String>,
+        ) -> Result<(), ServeError>
+        + Send
+        + 'static,
+    ) -> Self {
+        let (said, heard) = channel();
+        let ended = Arc::new(AtomicBool::new(false));
+        let board = board.parse().unwrap();
+        let thread = std::thread::spawn({
+            let ended = Arc::clone(&ended);
+            move || {
+                let mut board = Hosted::new(link::open(&board).unwrap().link);
+                serve(&mut board, Box::new(move |_| ended.load(Ordering::Relaxed)), &said)
+            }
+        });
+        Self { target: heard.recv().unwrap(), ended, thread: Some(thread) }
+    }
+
+    /// The target that leads to it.
+    #[must_use]
+    pub fn target(&self) -> String {
+        self.target.clone()
+    }
+
+    /// The device's path, or host and port.
+    ///
+    /// # Panics
+    /// Never.
+    #[must_use]
+    pub fn address(&self) -> &str {
+        self.target.split_once(':').unwrap().1
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.ended.store(true, Ordering::Relaxed);
+        // A board whose wire broke is as good an end as any.
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}

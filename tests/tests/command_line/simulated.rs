@@ -1,0 +1,27 @@
+//! The simulated board as a target.
+
+use halfrow_tests::program::Folder;
+
+use crate::{refused, small};
+
+#[test]
+fn what_a_simulated_board_cannot_be_is_refused() {
+    let folder = Folder::new();
+    let refuse = |target, sentence| refused(&folder, &["verify", "--board", target], sentence);
+    refuse("sim:moon", "uart");
+    refuse("sim,latency=12", "latency is no option of this board");
+    refuse("sim,fault=late", "late");
+    refuse("sim,speed=0", "speed=0 is out of range");
+    refuse("sim,trace=no/such/folder.vcd", "the waveform no/such/folder.vcd cannot be written");
+}
+
+#[test]
+fn a_waveform_is_written_and_never_over_another_file() {
+    let folder = Folder::new();
+    let call = small("verify", &["--board", "sim,trace=run.vcd", "--frame", "builtin:ramp-down"]);
+    assert_eq!(folder.halfrow(call.iter().copied()).code, Some(0));
+    let waveform = folder.text("run.vcd");
+    assert!(waveform.contains("$timescale") && waveform.contains("out_sample"), "{}", &waveform[..400]);
+    refused(&folder, &call, "run.vcd is there already");
+    assert_eq!(folder.text("run.vcd"), waveform);
+}

@@ -1,0 +1,71 @@
+//! `halfrow boards` on ports that the test makes: what is free, busy, missing, and what answers.
+
+use halfrow::board::{Board, OpenOptions};
+use halfrow::link;
+use halfrow::serve::Pty;
+use halfrow_tests::program::halfrow;
+use halfrow_tests::served::Served;
+use serde_json::{Value, json};
+
+/// What `halfrow boards` says of `target` alone.
+fn look_at(target: &str, more: &[&str]) -> Value {
+    let ended = halfrow(["boards", "--json", target].into_iter().chain(more.iter().copied()));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    ended.json()[0].clone()
+}
+
+#[test]
+fn a_search_lists_devices_and_the_boards_that_need_none() {
+    let listed = halfrow(["boards", "--json"]).json();
+    let entries = listed.as_array().unwrap();
+    let mock = entries.iter().find(|entry| entry["target"] == "mock").unwrap();
+    assert_eq!(mock["kind"], "mock");
+    // A pseudo-terminal is no device that a board could be behind.
+    assert!(!listed.to_string().contains("/dev/pts"), "{listed}");
+}
+
+#[test]
+fn a_board_that_answers_is_named_and_left_free() {
+    for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
+        let looked = look_at(&served.target(), &[]);
+        assert_eq!((&looked["kind"], &looked["answer"]), (&json!("hardware"), &Value::Null));
+        let asked = look_at(&served.target(), &["--ask"]);
+        assert_eq!(asked["answer"], json!({ "state": "board", "name": "halfrow mock board", "datapath": 1 }));
+        crate::passes(&served);
+    }
+}
+
+#[test]
+fn what_is_no_board_is_told_from_what_is_not_there() {
+    let silent = Pty::open().unwrap();
+    let target = format!("serial:{}", silent.path().display());
+    assert_eq!(look_at(&target, &[])["access"], json!({ "state": "free" }));
+    assert_eq!(look_at(&target, &["--ask"])["answer"], json!({ "state": "silent" }));
+    let missing = look_at("serial:/dev/ttyUSB99", &["--ask"]);
+    assert_eq!((&missing["access"], &missing["answer"]), (&json!({ "state": "missing" }), &Value::Null));
+    let refused = look_at("tcp:127.0.0.1:1", &["--ask"]);
+    assert_eq!(refused["answer"]["state"], "failed");
+    let text = halfrow(["boards", "serial:/dev/ttyUSB99"]).stdout;
+    assert!(text.contains("is not there; check that the board is plugged in"), "{text}");
+}
+
+#[test]
+fn a_port_in_use_is_busy_and_its_holder_is_named() {
+    let served = Served::on_a_serial_port("mock");
+    let held = link::open(&served.target().parse().unwrap()).unwrap();
+    let looked = look_at(&served.target(), &["--ask"]);
+    assert_eq!((&looked["access"]["state"], &looked["answer"]), (&json!("busy"), &Value::Null));
+    assert_eq!(looked["access"]["holders"][0]["process"], std::process::id());
+    drop(held);
+    assert_eq!(look_at(&served.target(), &["--ask"])["answer"]["state"], "board");
+}
+
+#[test]
+fn a_board_that_another_host_holds_is_left_to_it() {
+    for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
+        let link = link::open(&served.target().parse().unwrap()).unwrap().link;
+        let options = OpenOptions { nonce: 1, host: 1, ..Default::default() };
+        drop(Board::open(link, &options).map_err(|(error, _)| error).unwrap());
+        assert_eq!(look_at(&served.target(), &["--ask"])["answer"], json!({ "state": "held" }));
+    }
+}

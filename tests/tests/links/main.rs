@@ -1,0 +1,55 @@
+//! Real links to mock boards: serial ports on pseudo-terminals that the tests make, TCP, and ser2net between the two.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+mod access;
+mod discovered;
+mod measured;
+mod reconnected;
+mod scenarios;
+mod ser2net;
+mod serial;
+mod served;
+mod tcp;
+mod unplugged;
+
+use std::process::{Child, Command};
+
+use halfrow_tests::program::{Ended, halfrow};
+use halfrow_tests::served::Served;
+
+/// The options of a frame so small that a whole run takes a moment.
+const SMALL: [&str; 6] = ["--width", "64", "--height", "8", "--frame", "builtin:noise"];
+
+/// Sends a signal to a program that a test started.
+fn send(child: &Child, signal: &str) {
+    let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
+    assert!(kill.unwrap().success());
+}
+
+/// Judges the board behind `target`.
+fn verify(target: &str, more: &[&str]) -> Ended {
+    let call = ["verify", "--json", "--board", target].into_iter();
+    halfrow(call.chain(SMALL).chain(more.iter().copied()))
+}
+
+/// Judges the board that is served, which must pass.
+#[track_caller]
+fn passes(served: &Served) {
+    let ended = verify(&served.target(), &[]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let said = ended.json();
+    assert_eq!(said["board"]["kind"], "mock");
+    assert_eq!(said["link"]["retries"], 0);
+}
+
+/// The run ends with `code` and says `sentence`.
+#[track_caller]
+fn ends(ended: &Ended, code: i32, sentence: &str) {
+    assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
+    let said = ended.json();
+    let headline = said["headline"].as_str().or(said["error"].as_str()).unwrap_or_default();
+    assert!(headline.contains(sentence), "{headline}");
+    assert_eq!(said["exit_code"], code);
+}

@@ -1,0 +1,70 @@
+//! `halfrow link` on wires whose figures are known.
+
+use halfrow_tests::program::{Ended, halfrow};
+use halfrow_tests::served::Served;
+
+use crate::ends;
+
+fn measure(target: &str) -> Ended {
+    halfrow(["link", "--json", "--seconds", "0.5", "--board", target])
+}
+
+#[test]
+fn a_wire_is_measured_to_be_what_it_is() {
+    // 1.2 MB/s, and 1 ms each way.
+    let ended = measure("mock,speed=1200000,delay=0.001");
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    let figures = &ended.json()["link"];
+    assert_eq!((figures["limit"].as_f64(), figures["errors"]["wrong"].as_u64()), (Some(1.2e6), Some(0)));
+    // An empty packet takes 18 or 19 bytes, so 2 ms and some 31 µs there and back.
+    let median = figures["round_trips"]["median_us"].as_f64().unwrap();
+    assert!((2000.0..2050.0).contains(&median), "{median}");
+    // A packet of 4,079 bytes and its answer of 18 need 3.44 ms on the wire and 2 ms of delay.
+    for (part, way, other) in [("to_board", "out", "in"), ("to_host", "in", "out")] {
+        let part = &figures[part];
+        let share = part[way]["share"].as_f64().unwrap();
+        assert!((0.60..0.65).contains(&share), "{part}");
+        assert!(part[other]["share"].as_f64().unwrap() < 0.01, "{part}");
+    }
+    for way in ["out", "in"] {
+        let share = figures["together"][way]["share"].as_f64().unwrap();
+        assert!((0.95..=1.0).contains(&share), "{}", figures["together"]);
+    }
+}
+
+#[test]
+fn errors_are_counted_on_either_side() {
+    for (toward, counter, other) in
+        [("board", "damaged_out", "damaged_in"), ("host", "damaged_in", "damaged_out")]
+    {
+        let ended = measure(&format!("mock,speed=1200000,fault=flip,rate=1e-5,toward={toward}"));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let errors = &ended.json()["link"]["errors"];
+        let (damaged, bytes) = (errors[counter].as_f64().unwrap(), errors["bytes"].as_f64().unwrap());
+        // One byte in 100,000, and about half of all bytes go that way.
+        assert!((0.3..1.5).contains(&(damaged / (bytes * 0.5e-5))), "{errors}");
+        assert_eq!(errors[other], 0);
+        assert!(errors["bound"].as_f64() > errors["rate"].as_f64());
+    }
+}
+
+#[test]
+fn a_real_link_is_measured_and_its_board_left_free() {
+    for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
+        let ended = measure(&served.target());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let said = ended.json();
+        assert_eq!((&said["board"]["kind"], &said["verdict"]), (&"mock".into(), &serde_json::Value::Null));
+        assert!(said["link"]["together"]["out"]["bytes_per_second"].as_f64().unwrap() > 0.0);
+        crate::passes(&served);
+    }
+}
+
+#[test]
+fn a_link_that_breaks_or_is_too_poor_is_an_error() {
+    ends(&measure("mock,speed=1200000,fault=flip,rate=1e-4"), 3, "the link is too poor");
+    let served = Served::on_a_serial_port("mock,fault=disconnect,packet=30");
+    ends(&measure(&served.target()), 3, "the link broke while waiting for the answer to");
+    let gone = halfrow(["link", "--seconds", "0", "--board", "mock"]);
+    assert_eq!(gone.code, Some(2), "{}", gone.stderr);
+}

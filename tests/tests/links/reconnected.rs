@@ -1,0 +1,140 @@
+//! Boards that are unplugged and plugged in again: the run goes on where it stood.
+
+use std::io::{BufRead as _, BufReader};
+use std::process::Stdio;
+use std::time::{Duration, Instant};
+
+use halfrow::report::Report;
+use halfrow::verdict::Exit;
+use halfrow_tests::dice::Dice;
+use halfrow_tests::parallel;
+use halfrow_tests::program::{Folder, command, halfrow};
+use halfrow_tests::served::{Replug, Served};
+use halfrow_tests::system::System;
+
+use crate::{SMALL, ends, verify};
+
+/// Much longer than a board is away.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Between an outage and its end lie a few deadlines at most.
+const SOON: Duration = Duration::from_secs(20);
+
+/// Every way to come back as the board that is given.
+const HOW: [fn(String) -> Replug; 3] = [|_| Replug::Powered, Replug::Switched, Replug::Reset];
+
+/// The bytes that a whole run takes from the board, and its rows.
+fn undisturbed() -> (u64, usize) {
+    let served = Served::on_a_serial_port("mock");
+    let report = System::TINY.judge_at(&served.target());
+    assert_eq!(report.exit_code, Exit::Pass, "{}", report.headline);
+    (report.link.bytes_in, rows(&report))
+}
+
+fn rows(report: &Report) -> usize {
+    report.frames.iter().map(|frame| frame.rows).sum()
+}
+
+/// Unplugs a board when it has sent `byte` bytes, and plugs it in again.
+fn interrupted(byte: u64, replug: Replug) -> Report {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    let served = Served::unplugged_once("mock", &path, byte, Some(replug));
+    let begun = Instant::now();
+    let report = System::TINY.judge_patiently(&served.target(), Some(PATIENCE));
+    assert!(begun.elapsed() < SOON, "byte {byte}: {:?}", begun.elapsed());
+    report
+}
+
+/// Interrupts runs after `count` numbers of bytes that are drawn from all of a run, in every way.
+fn goes_on_after(count: usize) {
+    let (bytes, all_rows) = undisturbed();
+    let mut dice = Dice::new(4);
+    // The last bytes are of the session's end, which comes behind the verdict. One cut in every part of the rest leaves no
+    // step of a run out.
+    let bytes = bytes as usize - 100;
+    let draw = |part: usize| (part * bytes + dice.below(bytes)) / count;
+    let cuts: Vec<_> = (0..count).map(draw).zip(HOW.into_iter().cycle()).collect();
+    let reports = parallel::map(&cuts, |&(byte, how)| interrupted(byte as u64, how("mock".to_owned())));
+    for (cut, report) in cuts.iter().zip(&reports) {
+        let away: Vec<_> = report.link.reconnections.iter().map(|away| away.reason.as_str()).collect();
+        assert_eq!(report.exit_code, Exit::Pass, "{cut:?}: {}; {away:?}", report.headline);
+        assert_eq!((rows(report), away.len()), (all_rows, 1), "{cut:?}: {away:?}");
+        assert!(report.headline.ends_with("the board went away and came back, 1 x"), "{}", report.headline);
+    }
+}
+
+#[test]
+fn a_run_goes_on_wherever_it_was_interrupted() {
+    goes_on_after(60);
+}
+
+#[test]
+#[ignore = "minutes long; scripts/soak runs it"]
+fn a_run_goes_on_after_each_of_hundreds_of_interruptions() {
+    goes_on_after(400);
+}
+
+#[test]
+fn a_broken_board_is_found_although_it_was_away() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    let board = "mock,fault=no-rounding";
+    let served = Served::unplugged_once(board, &path, 3000, Some(Replug::Switched(board.to_owned())));
+    let report = System::TINY.judge_patiently(&served.target(), Some(PATIENCE));
+    assert_eq!(report.exit_code, Exit::Fail, "{}", report.headline);
+    assert_eq!(report.link.reconnections.len(), 1);
+}
+
+#[test]
+fn another_board_is_not_taken_for_the_one_that_went_away() {
+    let report = interrupted(3000, Replug::Switched("mock,taps=five".to_owned()));
+    assert_eq!(report.exit_code, Exit::Refused, "{}", report.headline);
+    assert!(
+        report.headline.contains("another board, or another bitstream, came back"),
+        "{}",
+        report.headline
+    );
+}
+
+#[test]
+fn a_board_that_stays_away_is_an_error_with_the_place() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    let served = Served::unplugged_once("mock", &path, 3000, None);
+    let ended = verify(&served.target(), &["--reconnect=0.5"]);
+    ends(&ended, 3, "the link broke while waiting for");
+    ends(&ended, 3, "the board did not come back in 0.5 s");
+}
+
+#[test]
+fn the_report_says_that_the_board_was_away() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    let served = Served::unplugged_once("mock", &path, 3000, Some(Replug::Powered));
+    let ended = verify(&served.target(), &["--reconnect"]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    let away = &ended.json()["link"]["reconnections"];
+    assert_eq!(away.as_array().unwrap().len(), 1);
+    assert!(away[0]["reason"].as_str().unwrap().contains("went away at"), "{away}");
+    assert!(away[0]["seconds_away"].as_f64().unwrap() < 5.0, "{away}");
+    let text = halfrow(["verify", "--board", "mock"].into_iter().chain(SMALL)).stdout;
+    assert!(!text.contains("went away"), "{text}");
+}
+
+#[test]
+fn waiting_for_a_board_ends_at_once_when_it_is_told_to() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    for (signal, code) in [("INT", 130), ("TERM", 143)] {
+        let served = Served::unplugged_once("mock", &path, 3000, None);
+        let target = served.target();
+        let call = ["verify", "--quiet", "--reconnect=60", "--board", &target].into_iter().chain(SMALL);
+        let mut child = command(call).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let log = BufReader::new(child.stderr.take().unwrap()).lines();
+        assert!(log.map_while(Result::ok).any(|line| line.contains("waiting 60 s for the board")));
+        let begun = Instant::now();
+        crate::send(&child, signal);
+        assert_eq!(child.wait().unwrap().code(), Some(code));
+        assert!(begun.elapsed() < Duration::from_secs(3), "{:?}", begun.elapsed());
+    }
+}

@@ -1,0 +1,46 @@
+//! The mock's scenarios, by way of a serial port.
+
+use halfrow_tests::scenario::{Scenario, run_all_on_serial_ports, run_each};
+use halfrow_tests::scenarios::{
+    BROKEN_BOARDS, HOPELESS_LINKS, MISFITS, REPAIRED_LINKS, SLOW_LINKS, SOUND_BOARDS,
+};
+use halfrow_tests::served::Served;
+
+/// All but those at full size, which would move the same bytes for much longer.
+fn small(scenarios: &'static [Scenario]) -> Vec<&'static Scenario> {
+    scenarios.iter().filter(|scenario| scenario.arguments.contains(&"--width")).collect()
+}
+
+#[test]
+fn sound_boards_pass() {
+    for report in run_all_on_serial_ports(&small(SOUND_BOARDS)) {
+        assert_eq!(report["board"]["kind"], "mock");
+    }
+}
+
+#[test]
+fn broken_boards_fail() {
+    let _ = run_all_on_serial_ports(&small(BROKEN_BOARDS));
+}
+
+#[test]
+fn what_a_link_spoils_is_asked_for_again() {
+    for report in run_all_on_serial_ports(&small(REPAIRED_LINKS)) {
+        assert_ne!(report["link"]["retries"], 0);
+    }
+}
+
+#[test]
+fn links_that_are_slow_pass_and_hopeless_ones_end_with_an_error() {
+    let _ = run_all_on_serial_ports(&small(SLOW_LINKS));
+    let _ = run_all_on_serial_ports(&small(HOPELESS_LINKS));
+}
+
+/// As with boards that `HALFROW_TEST_BOARDS` names: one device, and one scenario after the other.
+#[test]
+fn a_board_behind_a_device_takes_every_scenario_that_is_for_any_board() {
+    for served in [Served::on_a_serial_port("mock"), Served::on_a_tcp_port("127.0.0.1", "mock")] {
+        let scenarios = [small(SOUND_BOARDS), small(MISFITS)].concat();
+        assert!(run_each(&scenarios, &served.target()).len() > 1);
+    }
+}

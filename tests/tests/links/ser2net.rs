@@ -1,0 +1,113 @@
+//! ser2net on this computer, with a board behind a pseudo-terminal.
+
+use std::fs;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+use halfrow_tests::program::Folder;
+use halfrow_tests::served::{Replug, Served};
+
+use crate::{ends, passes, verify};
+
+/// A running ser2net, which ends when this is dropped.
+struct Ser2net {
+    child: Child,
+    port: u16,
+}
+
+impl Ser2net {
+    /// Exports `device`.
+    fn start(folder: &Folder, device: &Path) -> Self {
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let device = device.display();
+        let configuration = format!(
+            "connection: &board\n  accepter: tcp,127.0.0.1,{port}\n  connector: serialdev,{device},3000000n81,local\n  \
+             options:\n    kickolduser: false\n    chardelay: false\n"
+        );
+        folder.write("ser2net.yaml", configuration);
+        let mut command = Command::new(program());
+        command.args(["-n", "-d", "-c"]).arg(folder.path().join("ser2net.yaml"));
+        let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let started = Self { child, port };
+        started.wait_for_port();
+        started
+    }
+
+    fn target(&self) -> String {
+        format!("tcp:127.0.0.1:{}", self.port)
+    }
+
+    /// A connection would open the device, so it is looked for among the ports that are listened on.
+    fn wait_for_port(&self) {
+        let begun = Instant::now();
+        let listening = format!("0100007F:{:04X} 00000000:0000 0A", self.port);
+        while !fs::read_to_string("/proc/net/tcp").unwrap().contains(&listening) {
+            assert!(begun.elapsed() < Duration::from_secs(10), "ser2net does not start");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+impl Drop for Ser2net {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Debian puts it where users do not look.
+fn program() -> PathBuf {
+    let folders =
+        ["/usr/sbin", "/usr/local/sbin", "/usr/bin"].map(|folder| Path::new(folder).join("ser2net"));
+    let found = folders.into_iter().find(|program| program.is_file());
+    assert!(found.is_some(), "ser2net is missing; run: apt-get install ser2net");
+    found.unwrap()
+}
+
+#[test]
+fn a_board_behind_ser2net_passes_again_and_again() {
+    let folder = Folder::new();
+    let served = Served::on_a_serial_port("mock");
+    let ser2net = Ser2net::start(&folder, Path::new(served.address()));
+    for _ in 0..2 {
+        let ended = verify(&ser2net.target(), &[]);
+        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+        assert_eq!(ended.json()["board"]["kind"], "mock");
+    }
+}
+
+#[test]
+fn a_second_host_is_busy_and_a_board_that_is_not_there_is_named() {
+    let folder = Folder::new();
+    let served = Served::on_a_serial_port("mock");
+    let ser2net = Ser2net::start(&folder, Path::new(served.address()));
+    let first = std::net::TcpStream::connect(("127.0.0.1", ser2net.port)).unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    ends(&verify(&ser2net.target(), &[]), 4, "another host is connected");
+    drop(first);
+    drop(ser2net);
+    let none = Ser2net::start(&folder, Path::new("/dev/halfrow-is-not-there"));
+    ends(&verify(&none.target(), &[]), 3, "`Device open failure: Value or file not found` and no board");
+    passes(&served);
+}
+
+#[test]
+fn a_board_unplugged_behind_ser2net_is_an_error() {
+    let folder = Folder::new();
+    let served = Served::on_a_serial_port("mock,fault=disconnect,packet=60");
+    let ser2net = Ser2net::start(&folder, Path::new(served.address()));
+    ends(&verify(&ser2net.target(), &[]), 3, "was closed at");
+}
+
+#[test]
+fn a_run_goes_on_when_the_board_behind_ser2net_comes_back() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    let served = Served::unplugged_once("mock", &path, 5000, Some(Replug::Powered));
+    let ser2net = Ser2net::start(&folder, Path::new(served.address()));
+    let ended = verify(&ser2net.target(), &["--reconnect=10"]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    assert_eq!(ended.json()["link"]["reconnections"].as_array().unwrap().len(), 1);
+}

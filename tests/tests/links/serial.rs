@@ -1,0 +1,131 @@
+//! Serial ports: set, locked, drained, and never waited for beyond a deadline.
+
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::os::fd::AsRawFd as _;
+use std::time::{Duration, Instant};
+
+use halfrow::link::{self, SerialError};
+use halfrow::serve::Pty;
+use halfrow_tests::program::halfrow;
+use halfrow_tests::served::Served;
+
+use crate::{ends, passes, verify};
+
+#[test]
+fn a_board_behind_a_serial_port_passes_again_and_again() {
+    let served = Served::on_a_serial_port("mock");
+    passes(&served);
+    passes(&served);
+    let info = halfrow(["info", "--json", "--board", &served.target()]);
+    assert_eq!(info.json()["board"]["kind"], "mock", "{}", info.stderr);
+}
+
+#[test]
+fn a_pseudo_terminal_takes_every_rate() {
+    for baud in [9600, 115_200, 7_000_000, 12_000_000] {
+        let served = Served::on_a_serial_port("mock");
+        let ended = verify(&format!("{},baud={baud},flow=none,dtr=off,rts=off", served.target()), &[]);
+        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+        assert!(ended.json()["link"]["name"].as_str().unwrap().contains(&format!("({baud} baud)")));
+    }
+}
+
+#[test]
+fn a_port_that_is_not_there_is_an_error_of_the_station() {
+    ends(
+        &verify("serial:/dev/ttyUSB99", &[]),
+        3,
+        "there is no serial port /dev/ttyUSB99; check that the board is plugged in",
+    );
+    ends(&verify("serial:/dev/null", &[]), 2, "/dev/null is no serial port");
+    ends(&verify("serial:/etc/passwd", &[]), 2, "/etc/passwd is no serial port");
+    ends(&verify("serial", &[]), 2, "write serial:PATH");
+    ends(&verify("serial:/dev/ttyUSB99,baud=much", &[]), 2, "`baud=much` is no option of `serial`");
+}
+
+#[test]
+fn a_port_in_use_is_busy_until_it_is_closed() {
+    let served = Served::on_a_serial_port("mock");
+    let held = link::open(&served.target().parse().unwrap()).unwrap();
+    let busy = verify(&served.target(), &[]);
+    ends(&busy, 4, "is in use by links");
+    assert_eq!(busy.json()["verdict"], "ERROR");
+    drop(held);
+    passes(&served);
+}
+
+#[test]
+fn stale_bytes_are_dropped() {
+    let served = Served::on_a_serial_port("mock");
+    // A host that asked for much and never read it: a greeting's end, then answers without a question.
+    let mut rude = OpenOptions::new().read(true).write(true).open(served.address()).unwrap();
+    rude.write_all(&[0; 100]).unwrap();
+    rude.write_all(b"\x05halfrow\x00\x11\x22").unwrap();
+    drop(rude);
+    passes(&served);
+    // A board that has been talking to nobody.
+    let pty = Pty::open().unwrap();
+    let say = |bytes: &[u8]| assert_eq!(nix::unistd::write(pty.as_raw_fd(), bytes), Ok(bytes.len()));
+    say(&[0x55; 3000]);
+    let mut link = link::open(&format!("serial:{}", pty.path().display()).parse().unwrap()).unwrap().link;
+    let mut incoming = Vec::new();
+    link.exchange(&[], &mut incoming, Duration::from_millis(10)).unwrap();
+    assert_eq!(incoming, b"");
+    say(b"new");
+    link.exchange(&[], &mut incoming, Duration::from_millis(500)).unwrap();
+    assert_eq!(incoming, b"new");
+    link.exchange(b"answer", &mut incoming, Duration::from_millis(500)).unwrap();
+    let mut answer = [0; 6];
+    assert_eq!(nix::unistd::read(pty.as_raw_fd(), &mut answer), Ok(6));
+    assert_eq!(&answer, b"answer");
+}
+
+#[test]
+fn a_peer_that_takes_nothing_holds_nobody_up() {
+    let pty = Pty::open().unwrap();
+    let mut link = link::open(&format!("serial:{}", pty.path().display()).parse().unwrap()).unwrap().link;
+    let (mut taken, mut incoming) = (0, Vec::new());
+    let begun = Instant::now();
+    for _ in 0..20 {
+        let before = Instant::now();
+        taken += link.exchange(&[0x55; 100_000], &mut incoming, Duration::from_millis(20)).unwrap();
+        assert!(before.elapsed() < Duration::from_millis(500), "{:?}", before.elapsed());
+    }
+    assert!((1000..1_000_000).contains(&taken), "{taken}");
+    // Nor does closing it wait for what was never taken.
+    drop(link);
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
+    let silent = verify(&format!("serial:{}", pty.path().display()), &[]);
+    ends(&silent, 3, "no answer to Hello in 6 tries");
+}
+
+#[test]
+fn a_port_that_hangs_up_says_so_at_once() {
+    let pty = Pty::open().unwrap();
+    let mut link = link::open(&format!("serial:{}", pty.path().display()).parse().unwrap()).unwrap().link;
+    let waiting = std::thread::spawn(move || {
+        std::thread::sleep(Duration::from_millis(50));
+        drop(pty);
+    });
+    let begun = Instant::now();
+    let gone = link.exchange(&[], &mut Vec::new(), Duration::from_secs(10)).unwrap_err();
+    assert!(begun.elapsed() < Duration::from_secs(2));
+    assert!(gone.to_string().contains("the board was unplugged or lost power"), "{gone}");
+    let again = link.exchange(b"x", &mut Vec::new(), Duration::from_secs(10)).unwrap_err();
+    assert!(again.to_string().contains("the board was unplugged"), "{again}");
+    waiting.join().unwrap();
+}
+
+#[test]
+fn what_the_errors_of_serial_ports_mean_to_scripts() {
+    let path = std::path::PathBuf::from("/dev/ttyUSB1");
+    let rate =
+        SerialError::Rate { path, chip: "an FT2232H", baud: 7_000_000, nearest: vec![6_000_000, 12_000_000] };
+    assert_eq!(
+        rate.to_string(),
+        "an FT2232H, which is behind /dev/ttyUSB1, cannot make 7000000 baud; the nearest that it makes: 6000000 and \
+         12000000"
+    );
+    assert_eq!(rate.exit().code(), 2);
+}

@@ -1,0 +1,103 @@
+//! `halfrow serve`, and what a host that vanishes leaves behind.
+
+use std::io::{BufRead as _, BufReader};
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+use halfrow_tests::program::{self, Folder};
+use halfrow_tests::served::Served;
+
+use crate::{ends, send, verify};
+
+/// A running `halfrow serve`.
+struct Server {
+    child: Child,
+    target: String,
+}
+
+impl Server {
+    fn start(arguments: &[&str]) -> Self {
+        let call = ["serve"].into_iter().chain(arguments.iter().copied());
+        let mut child = program::command(call).stdout(Stdio::piped()).spawn().unwrap();
+        let mut target = String::new();
+        BufReader::new(child.stdout.take().unwrap()).read_line(&mut target).unwrap();
+        Self { child, target: target.trim().to_owned() }
+    }
+
+    /// Sends it a signal, and returns the exit code of its end, which must come soon.
+    fn end(mut self, signal: &str) -> Option<i32> {
+        send(&self.child, signal);
+        let begun = Instant::now();
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status.code();
+            }
+            assert!(begun.elapsed() < Duration::from_secs(5), "{signal} does not end the server");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+    }
+}
+
+#[test]
+fn a_served_board_passes_and_its_server_ends_when_it_is_told_to() {
+    let folder = Folder::new();
+    let path = folder.path().join("board");
+    let name = path.to_str().unwrap();
+    for (arguments, signal) in [(vec!["--link", name], "INT"), (vec!["--tcp", "0"], "TERM"), (vec![], "TERM")]
+    {
+        let server = Server::start(&[&["--board", "mock,taps=five"], arguments.as_slice()].concat());
+        for _ in 0..2 {
+            let ended = verify(&server.target, &[]);
+            assert_eq!(ended.code, Some(0), "{}: {}{}", server.target, ended.stdout, ended.stderr);
+            assert_eq!(ended.json()["board"]["identity"]["taps"], 5);
+        }
+        assert_eq!(server.end(signal), Some(0));
+        assert!(path.symlink_metadata().is_err());
+    }
+}
+
+#[test]
+fn a_name_that_is_taken_stays_what_it_is() {
+    let folder = Folder::new();
+    folder.write("mine", "precious");
+    let ended = folder.halfrow(["serve", "--link", "mine"]);
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    assert!(ended.stderr.contains("mine is there already"), "{}", ended.stderr);
+    assert_eq!(folder.text("mine"), "precious");
+    // One that a killed server left behind leads nowhere.
+    std::os::unix::fs::symlink("/dev/pts/not-there", folder.path().join("old")).unwrap();
+    let server = Server::start(&["--link", folder.path().join("old").to_str().unwrap()]);
+    assert_eq!(server.end("TERM"), Some(0));
+}
+
+#[test]
+fn a_host_that_vanishes_leaves_a_board_that_the_next_can_use() {
+    let served = Served::on_a_serial_port("mock,speed=20000");
+    for signal in ["KILL", "INT", "TERM"] {
+        let slow = ["verify", "-vv", "--quiet", "--board", &served.target()];
+        let mut child = program::command(slow).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        // It streams once it has got its session.
+        let log = BufReader::new(child.stderr.take().unwrap()).lines();
+        let begun = log.map_while(Result::ok).any(|line| line.contains("session "));
+        assert!(begun);
+        std::thread::sleep(Duration::from_millis(300));
+        send(&child, signal);
+        child.wait().unwrap();
+        let info = program::halfrow(["info", "--board", &served.target()]);
+        assert_eq!(info.code, Some(0), "after {signal}: {}", info.stderr);
+    }
+}
+
+#[test]
+fn a_board_held_by_another_host_is_busy_over_the_network() {
+    let served = Served::on_a_tcp_port("127.0.0.1", "mock,speed=20000");
+    let slow = ["verify", "-vv", "--quiet", "--board", &served.target()];
+    let mut child = program::command(slow).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+    let log = BufReader::new(child.stderr.take().unwrap()).lines();
+    assert!(log.map_while(Result::ok).any(|line| line.contains("session ")));
+    child.kill().unwrap();
+    child.wait().unwrap();
+    ends(&verify(&served.target(), &[]), 4, "another host holds the board");
+    let taken = program::halfrow(["info", "--take-over", "--board", &served.target()]);
+    assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+}

@@ -1,0 +1,82 @@
+//! TCP, without anything between.
+
+use std::io::Write as _;
+use std::net::TcpListener;
+
+use halfrow_tests::served::Served;
+
+use crate::{ends, passes, verify};
+
+#[test]
+fn a_board_behind_a_tcp_port_passes_again_and_again() {
+    let served = Served::on_a_tcp_port("127.0.0.1", "mock");
+    passes(&served);
+    passes(&served);
+    let with_rate = verify(&format!("{},baud=12000000", served.target()), &[]);
+    assert_eq!(with_rate.code, Some(0), "{}", with_rate.stdout);
+}
+
+#[test]
+fn a_board_behind_an_ipv6_port_passes() {
+    if TcpListener::bind("[::1]:0").is_err() {
+        eprintln!("this computer has no IPv6");
+        return;
+    }
+    let served = Served::on_a_tcp_port("[::1]", "mock");
+    assert!(served.target().starts_with("tcp:[::1]:"), "{}", served.target());
+    passes(&served);
+}
+
+#[test]
+fn ports_that_lead_nowhere_are_told_apart() {
+    let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    ends(
+        &verify(&format!("tcp:{free}"), &[]),
+        3,
+        "refuses connections: the host is there, and nothing listens",
+    );
+    ends(
+        &verify("tcp:no-such-host.invalid:3001", &[]),
+        3,
+        "the host of `no-such-host.invalid:3001` is not known",
+    );
+    ends(&verify("tcp:localhost", &[]), 2, "`localhost` is no host and port");
+    ends(&verify("tcp", &[]), 2, "write tcp:HOST:PORT");
+    ends(&verify("tcp:localhost:1,rate=5", &[]), 2, "`rate=5` is no option of `tcp`");
+}
+
+#[test]
+fn a_server_that_hangs_up_is_an_error() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    let server = std::thread::spawn(move || drop(listener.accept().unwrap()));
+    ends(&verify(&target, &[]), 3, "was closed at");
+    server.join().unwrap();
+}
+
+#[test]
+fn a_server_that_speaks_in_words_is_quoted() {
+    for (words, code, sentence) in [
+        ("Device open failure: Value or file not found\r\n", 3, "plug the board in at the far end"),
+        ("Port already in use\r\n", 4, "another host is connected"),
+        ("SSH-2.0-OpenSSH_9.2\r\n", 3, "answered with the words `SSH-2.0-OpenSSH_9.2` and no board"),
+    ] {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let target = format!("tcp:{}", listener.local_addr().unwrap());
+        let server = std::thread::spawn(move || {
+            let mut host = listener.accept().unwrap().0;
+            host.write_all(words.as_bytes()).unwrap();
+        });
+        ends(&verify(&target, &[]), code, sentence);
+        server.join().unwrap();
+    }
+}
+
+#[test]
+fn a_second_host_is_turned_away_while_a_first_is_connected() {
+    let served = Served::on_a_tcp_port("127.0.0.1", "mock");
+    let first = std::net::TcpStream::connect(served.address()).unwrap();
+    ends(&verify(&served.target(), &[]), 4, "another host is connected");
+    drop(first);
+    passes(&served);
+}

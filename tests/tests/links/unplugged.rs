@@ -1,0 +1,92 @@
+//! Boards that are unplugged: at every packet, and in the middle of one.
+
+use std::time::{Duration, Instant};
+
+use halfrow::report::{self, Outcome::Error, Outcome::Skipped};
+use halfrow::verdict::Exit;
+use halfrow_tests::dice::Dice;
+use halfrow_tests::parallel;
+use halfrow_tests::served::Served;
+use halfrow_tests::system::System;
+
+/// A run that hangs would take all of its deadlines, many times over.
+const SOON: Duration = Duration::from_secs(20);
+
+/// Judges a board that is unplugged as `options` say, which must end in an error. Returns whether the run came that far.
+fn is_unplugged(options: &str) -> bool {
+    let served = Served::on_a_serial_port(&format!("mock,fault=disconnect,{options}"));
+    let begun = Instant::now();
+    let report = System::TINIEST.judge_at(&served.target());
+    assert!(begun.elapsed() < SOON, "{options}: {:?}", begun.elapsed());
+    if report.exit_code == Exit::Pass {
+        return false;
+    }
+    let said = &report.headline;
+    assert_eq!(report.exit_code, Exit::Error, "{options}: {said}");
+    assert!(said.contains("the link broke while waiting for"), "{options}: {said}");
+    assert!(said.contains("went away at"), "{options}: {said}");
+    true
+}
+
+#[test]
+fn at_every_packet_it_is_an_error_that_names_the_place() {
+    for toward in ["board", "host"] {
+        let packets: Vec<u32> = (0..100).collect();
+        let unplugged =
+            parallel::map(&packets, |packet| is_unplugged(&format!("packet={packet},toward={toward}")));
+        let run = unplugged.iter().take_while(|&&unplugged| unplugged).count();
+        assert!((40..100).contains(&run), "{run} packets toward the {toward}");
+        assert!(!unplugged[run..].contains(&true), "{unplugged:?}");
+    }
+}
+
+/// Unplugs boards after `count` numbers of bytes either way, drawn from all of a run.
+#[track_caller]
+fn is_unplugged_after(count: usize) {
+    let whole = System::TINIEST.judge_at(&Served::on_a_serial_port("mock").target());
+    assert_eq!(whole.exit_code, Exit::Pass, "{}", whole.headline);
+    let mut dice = Dice::new(7);
+    let ends = [("board", whole.link.bytes_out), ("host", whole.link.bytes_in)];
+    let cuts: Vec<_> = (0..count)
+        .map(|index| {
+            let (toward, bytes) = ends[index % 2];
+            // The last bytes either way are of the session's end, which comes behind the verdict.
+            format!("byte={},toward={toward}", dice.below(bytes as usize - 100))
+        })
+        .collect();
+    let unplugged = parallel::map(&cuts, |cut| is_unplugged(cut));
+    let passed: Vec<_> = cuts.iter().zip(&unplugged).filter(|(_, unplugged)| !**unplugged).collect();
+    assert!(passed.is_empty(), "{passed:?}");
+}
+
+#[test]
+fn in_the_middle_of_packets_it_is_an_error_too() {
+    is_unplugged_after(20);
+}
+
+#[test]
+#[ignore = "minutes long; scripts/soak runs it"]
+fn at_each_of_two_hundred_bytes_it_is_an_error() {
+    is_unplugged_after(200);
+}
+
+#[test]
+fn what_came_before_is_not_taken_for_a_whole_run() {
+    let packets: Vec<u32> = (60..70).collect();
+    let reports = parallel::map(&packets, |packet| {
+        let board = format!("mock,fault=disconnect,packet={packet},toward=host");
+        System::TINY.judge_at(&Served::on_a_serial_port(&board).target())
+    });
+    let mut partial = 0;
+    for report in reports {
+        assert_eq!(report.exit_code, Exit::Error, "{}", report.headline);
+        let of = |name| report.checks.iter().find(|check| check.name == name).unwrap().outcome;
+        assert_eq!((of("frames"), of("latency"), of("counters")), (Error, Skipped, Skipped));
+        let torn = report.frames.iter().filter(|frame| frame.rows < System::TINY.height).count();
+        let text = report::text(&report);
+        assert_eq!(text.matches("not whole").count(), torn, "{text}");
+        assert!(text.contains("ERROR") && !text.contains("PASS"), "{text}");
+        partial += torn;
+    }
+    assert!(partial > 0);
+}
