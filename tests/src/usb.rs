@@ -15,6 +15,22 @@ use crate::scenario::Scenario;
 
 pub use qemu::{QEMU_CHIP, QemuBoard, plug_qemu_chip, unplug_qemu_chip};
 
+/// What cannot be seen in fewer pixels than the paper's.
+const FULL_SIZE: &[&str] = &[
+    "the paper's system",
+    "the paper's system with seven taps",
+    "the highest address line",
+    "a pipeline that is too long",
+    "a false claim of latency",
+    "the last row lost",
+    "a table that drifts at the very end",
+    "a row factor in the only bank",
+    "a frame wider than the board",
+];
+
+/// What takes ten seconds and more.
+const SLOW: &[&str] = &["the highest frame", "a serial line", "a distant board"];
+
 /// A mock board at a chip's pins. Its wire's clock is kept at the real time.
 struct MockAtChip(Wire);
 
@@ -101,6 +117,18 @@ pub fn sentence(ended: &Ended) -> String {
     let said = ended.json();
     let sentence = if said["headline"].is_null() { &said["error"] } else { &said["headline"] };
     sentence.as_str().unwrap_or_default().to_owned()
+}
+
+/// Whether a scenario comes out the same in 128 x 72 pixels.
+#[must_use]
+pub fn is_small(scenario: &&Scenario) -> bool {
+    !FULL_SIZE.contains(&scenario.name)
+}
+
+/// Whether it also takes a few seconds only.
+#[must_use]
+pub fn is_quick(scenario: &&Scenario) -> bool {
+    is_small(scenario) && !SLOW.contains(&scenario.name)
 }
 
 /// Runs each of `scenarios` on a board of its own, which `plug` makes of its options and `target` names, with fewer pixels if

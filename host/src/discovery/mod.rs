@@ -2,6 +2,7 @@
 
 mod probe;
 mod serial_ports;
+mod usb_chips;
 
 use std::path::PathBuf;
 
@@ -12,6 +13,7 @@ use crate::target::{BoardKind, Target};
 
 pub use probe::{Answer, probe};
 pub use serial_ports::SerialPorts;
+pub use usb_chips::UsbChips;
 
 /// A place where boards are found: the serial ports, or another kind of device.
 pub trait Source {
@@ -22,7 +24,7 @@ pub trait Source {
 /// Every source there is, in the order in which they are listed.
 #[must_use]
 pub fn sources() -> Vec<Box<dyn Source>> {
-    vec![Box::new(SerialPorts)]
+    vec![Box::new(UsbChips), Box::new(SerialPorts)]
 }
 
 /// Something that could be a board.

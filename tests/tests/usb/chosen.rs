@@ -1,7 +1,11 @@
 //! Which of several chips is meant.
 
+use std::fs::File;
+
 use halfrow_ft2232h::{ChipOptions, Plugged};
-use halfrow_tests::usb::{QemuBoard, chip, plug, sentence, verify};
+use halfrow_tests::program::halfrow;
+use halfrow_tests::usb::{QemuBoard, chip, plug, sentence, serial_port, verify};
+use serde_json::Value;
 
 fn plug_second(serial: &str) -> Plugged {
     let options = ChipOptions { serial: serial.to_owned(), ..ChipOptions::default() };
@@ -58,4 +62,28 @@ fn a_chip_that_boards_do_not_have_is_never_taken_unasked() {
     assert_eq!(ended.code, Some(2), "{ended:?}");
     assert!(sentence(&ended).contains("no FT2232H or FT232H is plugged in"), "{ended:?}");
     assert!(sentence(&ended).contains("usb:QEMU0001"), "{ended:?}");
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn the_list_of_boards_says_what_is_there_and_what_answers() {
+    let board = plug("");
+    let listed = |arguments: &[&str]| {
+        let list = halfrow(["boards", "--json"].into_iter().chain(arguments.iter().copied())).json();
+        let is_it = |entry: &&Value| entry["target"] == "usb:HR000001";
+        list.as_array().unwrap().iter().find(is_it).cloned().unwrap()
+    };
+    let seen = listed(&[]);
+    assert_eq!((&seen["access"]["state"], &seen["answer"]), (&"free".into(), &Value::Null), "{seen}");
+    assert_eq!(
+        (&seen["usb"]["product"], &seen["usb"]["interface"]),
+        (&"miniSpartan6+".into(), &1.into()),
+        "{seen}"
+    );
+    let asked = listed(&["--ask"]);
+    assert_eq!(asked["answer"]["state"], "board", "{asked}");
+    let _port = File::open(serial_port(&board, 1)).unwrap();
+    let held = listed(&[]);
+    assert_eq!(held["access"]["state"], "busy", "{held}");
+    assert_eq!(held["access"]["holders"][0]["process"], std::process::id(), "{held}");
 }

@@ -1,28 +1,34 @@
-//! The kernel's own driver and the emulated FT2232H understand each other, so that the chip is not one that only this
-//! project's link believes in.
+//! The same chip behind the kernel's own driver: it is not one that only this project's link believes in.
 
-use std::fs::OpenOptions;
-use std::io::{Read as _, Write as _};
-use std::process::Command;
-use std::thread;
+use halfrow_ft2232h::Plugged;
+use halfrow_tests::scenarios::all;
+use halfrow_tests::usb::{chip, is_quick, sentence, serial_port, uart, verify};
 
-use halfrow_ft2232h::{Chip, Loopback, Plugged};
-use halfrow_tests::usb::{serial_port, uart};
+fn plug(options: &str) -> Plugged {
+    Plugged::new(chip(uart(), options), 0).unwrap()
+}
+
+fn target(board: &Plugged) -> String {
+    format!("serial:{},baud=3000000", serial_port(board, 1).display())
+}
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn bytes_go_through_the_driver_and_back() {
-    let board = Plugged::new(Chip::new(uart(), Box::new(Loopback::default())), 0).unwrap();
-    let port = serial_port(&board, 1);
-    let mut stty = Command::new("/bin/stty");
-    stty.arg("-F").arg(&port).args(["raw", "-echo", "3000000", "crtscts"]);
-    assert!(stty.status().unwrap().success());
-    let port = OpenOptions::new().read(true).write(true).open(port).unwrap();
-    let sent: Vec<u8> = (0..20_000_u32).map(|n| (n.wrapping_mul(2_654_435_761) >> 24) as u8).collect();
-    let mut came = vec![0; sent.len()];
-    thread::scope(|scope| {
-        scope.spawn(|| (&port).write_all(&sent).unwrap());
-        (&port).read_exact(&mut came).unwrap();
-    });
-    assert!(came == sent);
+fn every_twelfth_of_the_small_scenarios() {
+    let mut surprises = Vec::new();
+    for scenario in all().filter(is_quick).step_by(12) {
+        let board = plug(scenario.options);
+        surprises.extend(scenario.judge(&target(&board), "mock behind ftdi_sio: ", true).err());
+    }
+    let surprises: Vec<_> = surprises.iter().map(ToString::to_string).collect();
+    assert!(surprises.is_empty(), "{}", surprises.join("\n"));
+}
+
+#[test]
+#[ignore = "needs scripts/in-linux"]
+fn a_board_that_is_pulled_out() {
+    let board = plug(",fault=disconnect,byte=30000,toward=host");
+    let ended = verify(&target(&board));
+    assert_eq!(ended.code, Some(3), "{ended:?}");
+    assert!(sentence(&ended).contains("the link broke"), "{ended:?}");
 }

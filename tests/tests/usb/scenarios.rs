@@ -2,52 +2,32 @@
 
 use halfrow_tests::scenario::Scenario;
 use halfrow_tests::scenarios::{BROKEN_BOARDS, MISFITS, SOUND_BOARDS, all};
-use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, plug, run_all};
-
-/// What cannot be seen in fewer pixels than the paper's.
-const FULL_SIZE: &[&str] = &[
-    "the paper's system",
-    "the paper's system with seven taps",
-    "the highest address line",
-    "a pipeline that is too long",
-    "a false claim of latency",
-    "the last row lost",
-    "a table that drifts at the very end",
-    "a row factor in the only bank",
-    "a frame wider than the board",
-];
-
-/// What takes ten seconds and more.
-const SLOW: &[&str] = &["the highest frame", "a serial line", "a distant board"];
-
-fn small(scenario: &&Scenario) -> bool {
-    !FULL_SIZE.contains(&scenario.name)
-}
+use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_quick, is_small, plug, run_all};
 
 /// Those that say something about a board: QEMU's chip stays plugged in whatever becomes of the link behind it.
 fn of_boards() -> impl Iterator<Item = &'static Scenario> {
-    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(small)
+    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(is_small)
 }
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn every_fourth_of_the_small_ones_behind_an_ft2232h() {
-    let quick = all().filter(small).filter(|scenario| !SLOW.contains(&scenario.name));
+    let quick = all().filter(is_quick);
     run_all(quick.step_by(4), "usb", true, plug);
 }
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn every_twelfth_of_the_small_ones_behind_qemu_s_chip() {
-    let quick = of_boards().filter(|scenario| !SLOW.contains(&scenario.name));
+    let quick = of_boards().filter(is_quick);
     run_all(quick.step_by(12), QEMU_CHIP, true, QemuBoard::new);
 }
 
 #[test]
 #[ignore = "long"]
 fn every_one_behind_an_ft2232h() {
-    run_all(all().filter(small), "usb", true, plug);
-    run_all(all().filter(|scenario| !small(scenario)), "usb", false, plug);
+    run_all(all().filter(is_small), "usb", true, plug);
+    run_all(all().filter(|scenario| !is_small(scenario)), "usb", false, plug);
 }
 
 #[test]

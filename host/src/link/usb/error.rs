@@ -140,7 +140,9 @@ fn there_are(found: &[UsbBoard]) -> String {
 }
 
 fn targets(found: &[UsbBoard]) -> String {
-    let is_unique = |board: &UsbBoard| found.iter().filter(|other| other.serial == board.serial).count() == 1;
+    let is_unique = |board: &UsbBoard| {
+        found.iter().filter(|other| other.device.serial == board.device.serial).count() == 1
+    };
     let name =
         |board: &UsbBoard| if is_unique(board) { board.target() } else { format!("usb:{}", board.place) };
     let lines: Vec<String> = found.iter().map(|board| format!("{} ({board})", name(board))).collect();

@@ -7,18 +7,21 @@ use std::path::PathBuf;
 use rusb::{Context, Device, UsbContext as _};
 use serde::Serialize;
 
-use super::chip::{Chip, FTDI};
+use super::chip::{Channel, Chip, FTDI};
 use super::error::UsbError;
+use super::serial_ports;
+use crate::link::sysfs::UsbDevice;
+use crate::link::{Holder, holders};
 
 /// An FTDI chip that could be a board's.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct UsbBoard {
-    /// Its serial number, if it has one and it can be read.
-    pub serial: Option<String>,
-    /// Its product string.
-    pub product: Option<String>,
+    /// What it says of itself, as far as it can be read, and the interface that boards have their FPGA at.
+    pub device: UsbDevice,
     /// The chip, as `FT2232H`.
     pub chip: &'static str,
+    /// Its device file.
+    pub file: PathBuf,
     /// Where it is plugged in, as `1-2.3`: the name that Linux gives it, which a port keeps.
     pub place: String,
     /// Whether this user may open it.
@@ -29,17 +32,24 @@ impl UsbBoard {
     /// The target that names it.
     #[must_use]
     pub fn target(&self) -> String {
-        format!("usb:{}", self.serial.as_deref().unwrap_or(&self.place))
+        format!("usb:{}", self.device.serial.as_deref().unwrap_or(&self.place))
+    }
+
+    /// Other programs that have the serial port open that the system's driver made of the board's channel.
+    #[must_use]
+    pub fn holders(&self) -> Vec<Holder> {
+        let channel = Channel(self.device.interface.unwrap_or_default());
+        serial_ports(&self.place, channel).iter().flat_map(|port| holders(port)).collect()
     }
 
     fn is_called(&self, name: &str) -> bool {
-        self.serial.as_deref() == Some(name) || self.place == name
+        self.device.serial.as_deref() == Some(name) || self.place == name
     }
 }
 
 impl fmt::Display for UsbBoard {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let product = self.product.as_deref().unwrap_or("without a name");
+        let product = self.device.product.as_deref().unwrap_or("without a name");
         write!(f, "{product}, {} at {}", self.chip, self.place)
     }
 }
@@ -83,7 +93,21 @@ fn look_at(device: Device<Context>) -> Option<Found> {
     };
     let serial = string("serial", descriptor.serial_number_string_index());
     let product = string("product", descriptor.product_string_index());
-    let board = UsbBoard { serial, product, chip: chip.name(), is_permitted: handle.is_some(), place };
+    let manufacturer = string("manufacturer", descriptor.manufacturer_string_index());
+    let (vendor_id, product_id) = (descriptor.vendor_id(), descriptor.product_id());
+    let interface = Some(chip.usual_channel().0);
+    let described = UsbDevice {
+        vendor_id,
+        product_id,
+        device_version: version,
+        manufacturer,
+        product,
+        serial,
+        interface,
+    };
+    let file = PathBuf::from(format!("/dev/bus/usb/{:03}/{:03}", device.bus_number(), device.address()));
+    let (chip_name, is_permitted) = (chip.name(), handle.is_some());
+    let board = UsbBoard { device: described, chip: chip_name, place, file, is_permitted };
     Some(Found { board, chip, device })
 }
 

@@ -97,7 +97,7 @@ fn claim(found: &Found, channel: Channel) -> Result<Libusb, UsbError> {
         rusb::Error::Access => UsbError::NotPermitted { name: name.clone() },
         rusb::Error::Busy => UsbError::Busy {
             what: format!("channel {} of {name}", channel.letter()),
-            holders: holders(&device_file(found)),
+            holders: holders(&found.board.file),
         },
         other => {
             let source = transport::failure(other);
@@ -106,11 +106,6 @@ fn claim(found: &Found, channel: Channel) -> Result<Libusb, UsbError> {
     };
     let handle = found.device.open().map_err(failed)?;
     Libusb::claim(handle, channel.0, chip.endpoints(channel)).map_err(failed)
-}
-
-fn device_file(found: &Found) -> PathBuf {
-    let (bus, address) = (found.device.bus_number(), found.device.address());
-    PathBuf::from(format!("/dev/bus/usb/{bus:03}/{address:03}"))
 }
 
 /// The serial ports that the system's driver has made of the channel.
