@@ -11,9 +11,9 @@ fn of_boards() -> impl Iterator<Item = &'static Scenario> {
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn every_fourth_of_the_small_ones_behind_an_ft2232h() {
+fn every_sixth_of_the_small_ones_behind_an_ft2232h() {
     let quick = all().filter(is_quick);
-    run_all(quick.step_by(4), "usb", true, plug);
+    run_all(quick.step_by(6), "usb", true, plug);
 }
 
 #[test]

@@ -17,7 +17,7 @@ fn pull(byte: usize, toward: &str) {
         "byte {byte} {toward}: {ended:?}"
     );
     assert!(sentence(&ended).contains("went away at"), "byte {byte} {toward}: {ended:?}");
-    assert!(took < Duration::from_secs(10), "byte {byte} {toward}: {took:?}");
+    assert!(took < Duration::from_secs(60), "byte {byte} {toward}: {took:?}");
     drop(board);
 }
 
