@@ -5,6 +5,7 @@
 module credit #(
     parameter IN_BITS = 1,
     parameter SOON = 24,                     // clocks in which the window follows what has happened
+    parameter DROPS = 1,                     // 0: none, and rows move from the reset on, which leaves more clocks to them
     parameter APART = 8                      // clocks between two rows' last samples, at least; W is 64 or more
 ) (
     input wire        clk,
@@ -18,6 +19,7 @@ module credit #(
 );
     localparam BANKS = 1 << IN_BITS;
     localparam ENTRY_BITS = IN_BITS + 1;
+    localparam SETTLED = DROPS ? SOON : 0;
     localparam [31:0] MOST = 32'hffffffff;
 
     wire [31:0] drop_next_row = {{28{drop_number[4]}}, drop_number[3:0]};
@@ -35,7 +37,7 @@ module credit #(
     // The row numbers, whole, since the last drop. An out-bank is free again when its row is acknowledged.
     reg  [31:0] first, entered, left, sent;
     reg  [5:0]  since_entry, since_drop, since_change;
-    wire        enters = wants_entry && since_entry >= APART && since_drop >= SOON && rows_entered < BANKS && entered != MOST;
+    wire        enters = wants_entry && since_entry >= APART && since_drop >= SETTLED && rows_entered < BANKS && entered != MOST;
     wire        leaves = wants_exit && left != entered;
     wire        sends = wants_sending && sent != left;
 
@@ -54,6 +56,7 @@ module credit #(
         number_before <= drop_next_row;
     end
     always @(posedge clk) begin
+        assume (DROPS || !drop);
         assume (!running || !acknowledge || !settling_before); // every packet is longer
         assume (!running || drop || drop_next_row == number_before);
         since_entry <= clear || enters ? 6'd0 : since_entry + (since_entry != 6'd63);
@@ -75,8 +78,9 @@ module credit #(
     wire [31:0] window_right = banks_end[32] ? MOST : banks_end[31:0];
     always @(posedge clk)
         if (running) begin
-            if (since_drop >= SOON) begin
+            if (since_drop >= SOON)
                 promises_no_more: assert (credit_window <= window_right && credit_window >= first);
+            if (since_drop >= SETTLED) begin
                 entered_counted: assert (acknowledged + rows_entered == entered);
                 left_counted: assert (acknowledged + rows_left == left);
                 sent_counted: assert (acknowledged + rows_sent == sent);
