@@ -1,5 +1,6 @@
 //! The delay claim of Sect. 4.2: half a row, measured on a board.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use halfrow_model::{Equidistant, Geometry, Interpolant, Kernel, TableSet};
@@ -12,7 +13,7 @@ use crate::frames::{Builtin, Scene};
 use crate::progress::Progress;
 
 /// Pixel clocks beyond half a row that a board may take (DATAPATH.md, "Time").
-const MOST_OWN: usize = 32;
+const MOST_OWN: u16 = 32;
 
 /// Pixel clocks a second, and where they come from.
 const CLOCKS: [(f64, &str); 2] = [
@@ -27,7 +28,6 @@ pub(super) fn exhibit(board: &mut TestedBoard, progress: &dyn Progress) -> Resul
     let frame = Arc::new(Builtin::Noise.render(&Scene::default())?);
     let kernel = Kernel::from(Interpolant::Hermite);
     let latency = board.correct(&tables, &kernel, &[frame], progress)?.latency;
-    let most = f64::from(*latency.end());
     let mut exhibit = Exhibit::new(Item::Delay);
     exhibit.remark(format!(
         "The {} counted the pixel clocks from a row's first sample in to its first out, and from last to last, for each of {} \
@@ -38,34 +38,45 @@ pub(super) fn exhibit(board: &mut TestedBoard, progress: &dyn Progress) -> Resul
         latency.end(),
         geometry.width() / 2
     ));
-    exhibit.claims.push(Claim {
-        what: "longest delay of a sample, in pixel clocks".to_owned(),
-        unit: "",
-        paper: None,
-        found: most,
-        accepted: Accepted::UpTo((geometry.width() / 2 + MOST_OWN) as f64),
-        judges_board: true,
-    });
-    exhibit.claims.push(Claim {
-        what: "the same in time, at the slowest pixel clock of 1080p30".to_owned(),
-        unit: "ms",
-        paper: None,
-        found: 1000.0 * most / CLOCKS[0].0,
-        accepted: Accepted::Below(DELAY_MS),
-        judges_board: true,
-    });
-    let advertised = (geometry.width() / 2) as u16 + board.advertised_latency();
-    exhibit.claims.push(Claim {
-        what: "pixel clocks between a delay that was measured and the one that the board advertises"
-            .to_owned(),
-        unit: "",
-        paper: None,
-        found: latency.start().abs_diff(advertised).max(latency.end().abs_diff(advertised)).into(),
-        accepted: Accepted::UpTo(0.0),
-        judges_board: true,
-    });
-    exhibit.tables.push(table(most));
+    let half_row = geometry.width() as u16 / 2;
+    let advertised = half_row + board.advertised_latency();
+    exhibit.claims.extend(claims(&latency, half_row, advertised));
+    exhibit.tables.push(table(f64::from(*latency.end())));
     Ok(exhibit)
+}
+
+/// What the measured pixel clocks are held to.
+fn claims(latency: &RangeInclusive<u16>, half_row: u16, advertised: u16) -> [Claim; 3] {
+    let judged = |what: &str, unit, found, accepted| Claim {
+        what: what.to_owned(),
+        unit,
+        paper: None,
+        found,
+        accepted,
+        judges_board: true,
+    };
+    let most = f64::from(*latency.end());
+    let apart = latency.start().abs_diff(advertised).max(latency.end().abs_diff(advertised));
+    [
+        judged(
+            "longest delay of a sample, in pixel clocks",
+            "",
+            most,
+            Accepted::UpTo((half_row + MOST_OWN).into()),
+        ),
+        judged(
+            "the same in time, at the slowest pixel clock of 1080p30",
+            "ms",
+            1000.0 * most / CLOCKS[0].0,
+            Accepted::Below(DELAY_MS),
+        ),
+        judged(
+            "pixel clocks between a delay that was measured and the one that the board advertises",
+            "",
+            apart.into(),
+            Accepted::UpTo(0.0),
+        ),
+    ]
 }
 
 fn table(clocks: f64) -> Table {

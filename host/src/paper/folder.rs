@@ -68,7 +68,7 @@ impl Folder {
                 self.file(&file_name(picture), &encoded(picture)?)?;
             }
         }
-        self.file(NUMBERS, format!("{:#}\n", numbers(exhibits)).as_bytes())?;
+        self.file(NUMBERS, format!("{}\n", numbers(exhibits)).as_bytes())?;
         self.file(PAGE, page::render(exhibits)?.as_bytes())?;
         Ok(self.path.join(PAGE))
     }

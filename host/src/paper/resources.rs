@@ -59,8 +59,8 @@ pub(super) fn exhibit(path: &Path) -> Result<Exhibit, PaperError> {
     let report: Report = serde_json::from_str(&text)
         .map_err(|source| PaperError::Synthesis { path: path.to_owned(), source: source.into() })?;
     exhibit.remark(format!(
-        "Synthesised with {} for the {}, which counts no slices. The mean is that of the shares of LUTs, registers, block RAMs \
-         and DSP slices.",
+        "Synthesised with {} for the {}; it counts no slices. The mean is that of the shares of LUTs, registers, block RAMs \
+         and DSP slices. The claim is held to the build of five taps, which is all that Hermite takes; cubic takes seven.",
         report.tool, report.device
     ));
     exhibit.claims.extend(report.builds.iter().filter(|build| build.name == PAPER_BUILD).map(|build| {
