@@ -105,8 +105,8 @@ fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
         });
         serde_json::json!({ "tool": "Yosys", "device": "XC6SLX25", "builds": [build] }).to_string()
     };
-    folder.write("good.json", &report(8.2));
-    folder.write("large.json", &report(10.0));
+    folder.write("good.json", report(8.2));
+    folder.write("large.json", report(10.0));
     let (made_of, _) = made(&folder, 0, &["resources", "--overwrite", "--synthesis", "good.json"]);
     assert_eq!(made_of["items"][0]["claims"][0]["found"], 8.2);
     let (_, said) = made(&folder, 3, &["resources", "--overwrite", "--synthesis", "large.json"]);
