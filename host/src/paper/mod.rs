@@ -1,6 +1,6 @@
 //! The paper's figures and tables, reproduced: one module an item.
 //!
-//! An item becomes an [`Exhibit`] of claims, tables and pictures, and [`folder`] writes exhibits as one page, pictures, CSV and
+//! An item becomes an [`Exhibit`] of claims, tables and pictures, and a [`Folder`] takes exhibits as one page, pictures, CSV and
 //! JSON. Equations, sections, figures and tables are those of Lai et al., *Real-time distortion correction of fish-eye lens
 //! based on Bayer image signal*, Optical Review 2014.
 

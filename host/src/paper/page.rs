@@ -22,18 +22,21 @@ pub(super) fn render(exhibits: &[Exhibit]) -> Result<String, EncodingError> {
     Ok(report::document("The paper, reproduced by halfrow", &body).into_string())
 }
 
+/// The result, and what could not be tried.
 fn banner(exhibits: &[Exhibit]) -> Markup {
-    let claims = || exhibits.iter().flat_map(|exhibit| &exhibit.claims);
-    let missed = claims().filter(|claim| !claim.holds()).count();
-    let (class, word) = match claims().find(|claim| !claim.holds()) {
-        None => ("pass", "REPRODUCED"),
+    let claims: Vec<&Claim> = exhibits.iter().flat_map(|exhibit| &exhibit.claims).collect();
+    let missed = || claims.iter().filter(|claim| !claim.holds());
+    let (class, word) = match missed().find(|claim| claim.judges_board).or(missed().next()) {
         Some(claim) if claim.judges_board => ("fail", "BOARD DIFFERS"),
         Some(_) => ("error", "NOT REPRODUCED"),
+        None if claims.is_empty() => ("error", "NOTHING COMPARED"),
+        None => ("pass", "REPRODUCED"),
     };
     html! {
         header.(class) {
             p.verdict { (word) }
-            h1 { (claims().count() - missed) " of " (claims().count()) " numbers are accepted" }
+            h1 { (claims.len() - missed().count()) " of " (claims.len()) " numbers are accepted" }
+            @for open in exhibits.iter().flat_map(|exhibit| &exhibit.open) { p.facts { "Not tried: " (open) } }
             p.facts {
                 "Lai et al., Real-time distortion correction of fish-eye lens based on Bayer image signal, Optical Review "
                 "2014, reproduced by halfrow " (env!("CARGO_PKG_VERSION")) "."
@@ -103,12 +106,14 @@ fn figure(picture: &Picture) -> Result<Markup, EncodingError> {
 
 fn numbers(table: &Table) -> Markup {
     let class = |cell: &Cell| matches!(cell, Cell::Number(..)).then_some("number");
+    let classes = table.rows.first().into_iter().flatten().map(class);
+    let heads: Vec<_> = table.columns.iter().zip(classes).collect();
     html! {
         h3 { (table.caption) }
         p.legend { (table.name) ".csv" }
         @if table.on_page {
             div.scroll { table.frames {
-                thead { tr { @for name in &table.columns { th { (name) } } } }
+                thead { tr { @for (name, class) in &heads { th class=[class] { (name) } } } }
                 tbody { @for row in &table.rows {
                     tr { @for cell in row { td class=[class(cell)] { (cell.text()) } } }
                 } }

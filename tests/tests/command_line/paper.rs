@@ -95,7 +95,7 @@ fn the_delay_is_measured_and_a_board_that_takes_longer_fails() {
 #[test]
 fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
     let folder = Folder::new();
-    let (_, said) = made(&folder, 0, &["resources"]);
+    let (_, said) = made(&folder, 5, &["resources"]);
     assert!(said.contains("run `scripts/hardware resources`"), "{said}");
     let part = |used: f64, percent: f64| serde_json::json!({ "used": used, "percent": percent });
     let report = |mean: f64| {
