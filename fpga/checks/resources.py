@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25, prints what each takes in percent of it and how
-much logic stands between its registers, and fails where budget.ini is exceeded.
+much logic stands between its registers, and fails where budget.ini is exceeded. `halfrow paper` reads WORK/report.json.
     resources.py WORK [BUILD ...]     WORK: a directory for logs and netlists; BUILD: a section's name"""
 
 import concurrent.futures
@@ -55,6 +55,12 @@ def excesses(build, counts, shares):
             yield f"{name} {value:g}, allowed {limit}"
 
 
+def described(name, counts, shares):
+    """A build as report.json has it."""
+    parts = {part: {"used": counts[part], "percent": shares[part]} for part in LX25}
+    return {"name": name, **parts, "mean": counts["mean"]}
+
+
 def main():
     work = pathlib.Path(sys.argv[1])
     work.mkdir(parents=True, exist_ok=True)
@@ -66,15 +72,19 @@ def main():
     print("XC6SLX25: 15,032 LUTs, 30,064 registers, 52 block RAMs, 38 DSP48A1. yosys gives no slices.\n")
     print(f"{'':28} {'LUTs':>13} {'registers':>13} {'block RAM':>13} {'no 9K':>6} {'DSP48A1':>11} {'mean':>6}"
           f" {'carry bits':>10} {'LUT levels':>10}")
-    exceeded = []
+    exceeded, described_builds = [], []
     for name, module in zip(names, modules):
         counts, shares, depth = measure(module)
         cells = " ".join(f"{counts[key]:6g} {shares[key]:4.1f} %" for key in ("luts", "registers", "block_rams"))
         print(f"{name:28} {cells} {counts['whole_rams']:6} {counts['dsps']:4} {shares['dsps']:4.1f} %"
               f" {counts['mean']:4.1f} % {depth.carry_bits:9} {depth.lut_levels:10}")
+        described_builds.append(described(name, counts, shares))
         exceeded += [f"{name}: {excess}" for excess in excesses(budget[name], counts, shares)]
         exceeded += [f"{name}: {path}" for path in depth.offences(int(budget[name]["arithmetic"]),
                                                                  int(budget[name]["lut_levels"]))]
+    tool = subprocess.run(["yosys", "-V"], check=True, capture_output=True, text=True).stdout.split(" (")[0].strip()
+    report = {"tool": tool, "device": "XC6SLX25", "builds": described_builds}
+    (work / "report.json").write_text(json.dumps(report, indent=2) + "\n")
     if exceeded:
         sys.exit("\nover the budget:\n  " + "\n  ".join(exceeded))
 

@@ -7,17 +7,20 @@
 //! ```
 //!
 //! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`session`] is the one that knows the order of
-//! things. [`discovery`] finds what could be a board, [`link_test`] measures what a link can do, and [`serve`] puts a board of this program behind a device of its own.
+//! things. [`discovery`] finds what could be a board, [`link_test`] measures what a link can do, [`serve`] puts a board of
+//! this program behind a device of its own, and [`paper`] reproduces the figures of the paper.
 //! [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
 
 pub mod board;
 pub mod commands;
 pub mod compare;
+pub mod correction;
 pub mod diagnosis;
 pub mod discovery;
 pub mod frames;
 pub mod link;
 pub mod link_test;
+pub mod paper;
 pub mod progress;
 pub mod report;
 pub mod serve;

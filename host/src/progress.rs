@@ -17,7 +17,11 @@ pub trait Progress: Sync {
     /// A frame is being sent.
     fn frame(&self, _name: &str) {}
     /// A row came back.
-    fn row(&self) {}
+    fn row(&self) {
+        self.rows(1);
+    }
+    /// As many rows came back, or were computed, at once.
+    fn rows(&self, _count: u64) {}
     /// The run is over.
     fn done(&self) {}
 }
@@ -76,8 +80,8 @@ impl Progress for Bar {
         self.0.set_message(name.to_owned());
     }
 
-    fn row(&self) {
-        self.0.inc(1);
+    fn rows(&self, count: u64) {
+        self.0.inc(count);
     }
 
     fn done(&self) {
@@ -109,8 +113,8 @@ impl Progress for Lines {
         self.expected.store(rows, Ordering::Relaxed);
     }
 
-    fn row(&self) {
-        let rows = self.rows.fetch_add(1, Ordering::Relaxed) + 1;
+    fn rows(&self, count: u64) {
+        let rows = self.rows.fetch_add(count, Ordering::Relaxed) + count;
         let Ok(mut last) = self.last.try_lock() else { return };
         if last.elapsed() < Self::EVERY {
             return;

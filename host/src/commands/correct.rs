@@ -1,6 +1,5 @@
 //! `halfrow correct`
 
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -13,8 +12,10 @@ use super::board::BoardArguments;
 use super::inputs::{InputArguments, frame_sources};
 use super::lens::{self, Chosen, LensArguments};
 use super::{Context, Failure, print, print_json};
-use crate::board::{Board, BoardError, Configuration, NumberedFrame, ReturnedRow, RowTraffic};
+use crate::board::{Board, BoardError};
+use crate::correction::Correction;
 use crate::frames::{self, Scene, WriteError};
+use crate::progress::Silent;
 use crate::session::{self, FrameSource, JUDGED};
 use crate::target::BoardKind;
 use crate::verdict::Exit;
@@ -163,64 +164,22 @@ fn by_board(
     let options = arguments.board.open_options(&context.settings, None)?;
     let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
     let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
-    let rows = match session::misfit(&chosen.tables, &chosen.kernel, &board.capabilities) {
-        None => stream(&mut board, chosen, inputs).map_err(failed),
+    let correction =
+        Correction { tables: &chosen.tables, kernel: &chosen.kernel, generation: JUDGED, first_frame: 0 };
+    let corrected = match session::misfit(&chosen.tables, &chosen.kernel, &board.capabilities) {
+        None => correction.run(&mut board, inputs, &Silent).map_err(failed),
         Some(misfit) => Err(anyhow::anyhow!(misfit).into()),
     };
     // Whatever happened, the next run must find the board free.
     let closed = board.close();
-    let rows = rows?;
+    let corrected = corrected?;
     closed.map_err(failed)?;
-    let frames = rows
+    let frames = corrected
+        .samples
         .into_iter()
         .zip(inputs)
         .map(|(samples, input)| Frame::new(input.width(), input.depth(), input.phase(), samples))
         .collect::<Result<Vec<_>, _>>()
         .map_err(Failure::error)?;
     Ok((candidate.kind.confirmed_by(board.capabilities.nature), frames))
-}
-
-fn stream(board: &mut Board, chosen: &Chosen, inputs: &[Arc<Frame>]) -> Result<Vec<Vec<u16>>, BoardError> {
-    let geometry = chosen.tables.geometry();
-    board.configure(&Configuration {
-        width: geometry.width() as u16,
-        height: geometry.height() as u16,
-        centre2: geometry.centre2() as u16,
-        blanking: board.capabilities.least_blanking,
-        gap_seed: 0,
-        bits: geometry.depth().bits() as u8,
-    })?;
-    board.upload(&chosen.tables, &chosen.kernel)?;
-    board.commit(&chosen.tables, &chosen.kernel, 0, JUDGED)?;
-    let mut collect = Collect {
-        waiting: inputs.iter().enumerate(),
-        corrected: inputs.iter().map(|frame| vec![0; frame.samples().len()]).collect(),
-    };
-    board.stream(&mut collect)?;
-    Ok(collect.corrected)
-}
-
-/// Keeps what comes back.
-struct Collect<'a> {
-    waiting: std::iter::Enumerate<std::slice::Iter<'a, Arc<Frame>>>,
-    corrected: Vec<Vec<u16>>,
-}
-
-impl RowTraffic for Collect<'_> {
-    fn next_frame(&mut self) -> Option<NumberedFrame> {
-        let (number, frame) = self.waiting.next()?;
-        Some(NumberedFrame { number: number as u16, frame: Arc::clone(frame) })
-    }
-
-    fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
-        let start = row.row * row.samples.len();
-        if let Some(place) = self
-            .corrected
-            .get_mut(usize::from(row.frame))
-            .and_then(|frame| frame.get_mut(start..start + row.samples.len()))
-        {
-            place.copy_from_slice(row.samples);
-        }
-        ControlFlow::Continue(())
-    }
 }

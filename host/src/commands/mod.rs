@@ -10,6 +10,7 @@ mod info;
 mod inputs;
 mod lens;
 mod link;
+mod paper;
 mod serve;
 mod tables;
 mod verify;
@@ -53,6 +54,7 @@ enum Command {
     Verify(verify::Arguments),
     Correct(correct::Arguments),
     Tables(tables::Arguments),
+    Paper(paper::Arguments),
     Frames(frames::Arguments),
     Boards(boards::Arguments),
     Info(info::Arguments),
@@ -121,6 +123,7 @@ impl Cli {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
             Command::Tables(arguments) => tables::run(arguments),
+            Command::Paper(arguments) => paper::run(arguments, &context),
             Command::Frames(arguments) => frames::run(arguments),
             Command::Boards(arguments) => boards::run(arguments),
             Command::Info(arguments) => info::run(arguments, &context),

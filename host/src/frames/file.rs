@@ -6,6 +6,7 @@ use std::path::Path;
 
 use halfrow_model::Frame;
 
+use super::preview::RgbImage;
 use super::size::MAX_FILE_BYTES;
 use super::{EncodeError, RawLayout, ReadError, ReadOptions, WriteError, pgm, png, raw, tiff};
 use crate::written_aside::write_aside;
@@ -48,6 +49,19 @@ impl Format {
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no frame as `how` describes it.
 pub fn read(path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
+    super::decode(&bytes(path)?, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+}
+
+/// The picture in the PNG file `path`, in red, green and blue of 8 bits.
+///
+/// # Errors
+/// [`ReadError`] when the file cannot be read or holds no such picture.
+pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
+    png::decode_rgb(&bytes(path)?).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+}
+
+/// All bytes of a file that is no longer than any frame.
+fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     let failed = |source| ReadError::Io { path: path.to_owned(), source };
     let mut bytes = Vec::new();
     let most = MAX_FILE_BYTES as u64 + 1;
@@ -55,7 +69,7 @@ pub fn read(path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
     if bytes.len() > MAX_FILE_BYTES {
         return Err(ReadError::TooLong { path: path.to_owned() });
     }
-    super::decode(&bytes, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+    Ok(bytes)
 }
 
 /// Writes `frame` to the file `path`, in the format that its extension names: `.pgm`, `.png`, `.tif` or `.tiff`, or

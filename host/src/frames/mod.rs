@@ -22,7 +22,8 @@ use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{read, write};
+pub use file::{read, read_rgb, write};
+pub use mosaic::mosaic;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use scene::Scene;
 pub use size::{MAX_FILE_BYTES, MAX_SIDE};

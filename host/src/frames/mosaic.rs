@@ -1,7 +1,8 @@
 //! From the pixels of a picture to the samples of a Bayer frame.
 
-use halfrow_model::{BitDepth, Colour, Frame, Phase};
+use halfrow_model::{BitDepth, Colour, Frame, FrameError, Phase};
 
+use super::preview::RgbImage;
 use super::{DecodeError, ReadOptions};
 
 /// A decoded picture: `channels` interleaved samples a pixel, row after row.
@@ -34,6 +35,28 @@ impl Picture {
         };
         Ok(Frame::new(width, how.depth, how.phase, samples)?)
     }
+
+    /// Red, green and blue as they are; none when the picture is grey or has more than 8 bits.
+    pub(super) fn into_rgb(self) -> Option<RgbImage> {
+        let Self { width, channels, full, samples } = self;
+        if channels < 3 || full > u8::MAX.into() {
+            return None;
+        }
+        let height = samples.len() / (channels * width.max(1));
+        let colours = samples.chunks_exact(channels).flat_map(|pixel| &pixel[..3]);
+        let data = colours.map(|&sample| u8::try_from(sample).unwrap_or(u8::MAX)).collect();
+        Some(RgbImage { width, height, data })
+    }
+}
+
+/// The raw frame of 8 bits that is left of `image` under a filter array of `phase`.
+///
+/// # Errors
+/// [`FrameError`] when the width is odd or there are no pixels.
+pub fn mosaic(image: &RgbImage, phase: Phase) -> Result<Frame, FrameError> {
+    let samples: Vec<u16> = image.data.iter().copied().map(u16::from).collect();
+    let samples = mosaicked(&samples, 3, image.width.max(1), phase).collect();
+    Frame::new(image.width, BitDepth::Eight, phase, samples)
 }
 
 /// The sample of each place's own colour, from three or more channels a pixel.

@@ -6,6 +6,7 @@ use halfrow_model::{BitDepth, Frame};
 use png::{ColorType, Decoder, DecodingError, Encoder, EncodingError, Info, Transformations};
 
 use super::mosaic::Picture;
+use super::preview::RgbImage;
 use super::{DecodeError, ReadOptions, size};
 
 /// The first bytes of a PNG.
@@ -18,11 +19,18 @@ pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// [`DecodeError`] when the PNG is damaged, animated, followed by other bytes, or grey with fewer than 8 bits, or when a
 /// sample is above `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
-    let mut input = Cursor::new(bytes);
-    let picture = picture(&mut input)?;
-    let read = usize::try_from(input.position()).unwrap_or(usize::MAX);
-    size::exact(bytes.len(), read)?;
-    picture.into_frame(how)
+    whole(bytes)?.into_frame(how)
+}
+
+/// The picture in the bytes of a PNG in red, green and blue of 8 bits, as it is; alpha is ignored.
+///
+/// # Errors
+/// [`DecodeError`] when [`decode`] would refuse the PNG, or when it is grey or has 16 bits.
+pub fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
+    whole(bytes)?.into_rgb().ok_or(DecodeError::Unsupported {
+        what: "a PNG that is not in colour with 8 bits a sample".to_owned(),
+        remedy: "give the photograph itself, in red, green and blue",
+    })
 }
 
 /// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16.
@@ -65,6 +73,15 @@ pub(super) fn write(
     let mut writer = encoder.write_header()?;
     writer.write_image_data(bytes)?;
     writer.finish()
+}
+
+/// The picture that `bytes` hold, with nothing behind it.
+fn whole(bytes: &[u8]) -> Result<Picture, DecodeError> {
+    let mut input = Cursor::new(bytes);
+    let picture = picture(&mut input)?;
+    let read = usize::try_from(input.position()).unwrap_or(usize::MAX);
+    size::exact(bytes.len(), read)?;
+    Ok(picture)
 }
 
 fn picture(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {

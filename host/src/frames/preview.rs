@@ -23,7 +23,19 @@ pub fn demosaic(frame: &Frame) -> RgbImage {
     thumbnail(frame, frame.width())
 }
 
-/// The same, at most `max_width` pixels wide: squares of pixels become their mean, taken in linear light.
+/// [`demosaic`] of samples of 8 bits that are coded for the screen already, as those of a photograph are.
+#[must_use]
+pub fn demosaic_coded(frame: &Frame) -> RgbImage {
+    let (width, height) = (frame.width(), frame.height());
+    let places = (0..height).flat_map(|row| (0..width).map(move |column| (row, column)));
+    let data = places
+        .flat_map(|(row, column)| pixel(frame, row, column))
+        .map(|sample| u8::try_from(sample).unwrap_or(u8::MAX))
+        .collect();
+    RgbImage { width, height, data }
+}
+
+/// [`demosaic`], at most `max_width` pixels wide: squares of pixels become their mean, taken in linear light.
 #[must_use]
 pub fn thumbnail(frame: &Frame, max_width: usize) -> RgbImage {
     let side = frame.width().div_ceil(max_width.max(1));

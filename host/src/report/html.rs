@@ -24,7 +24,25 @@ const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inlin
 pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, EncodingError> {
     let pictures = evidence::sections(report, evidence)?;
     let title = format!("{}: halfrow verify {}", report.verdict, plain(&report.board.target));
-    let page = html! {
+    let body = html! {
+        (banner(report))
+        main {
+            (next(report))
+            section { h2 { "Checks" } (checks(&report.checks)) }
+            (facts::frames(report))
+            (pictures)
+            (facts::figures(report))
+            (facts::link(&report.link))
+            (facts::board(report))
+            (facts::run(report))
+        }
+    };
+    Ok(document(&title, &body).into_string())
+}
+
+/// A page around `body` that loads nothing: its style is inside.
+pub(crate) fn document(title: &str, body: &Markup) -> Markup {
+    html! {
         (DOCTYPE)
         html lang="en" {
             head {
@@ -35,22 +53,9 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
                 title { (title) }
                 style { (PreEscaped(STYLE)) }
             }
-            body {
-                (banner(report))
-                main {
-                    (next(report))
-                    section { h2 { "Checks" } (checks(&report.checks)) }
-                    (facts::frames(report))
-                    (pictures)
-                    (facts::figures(report))
-                    (facts::link(&report.link))
-                    (facts::board(report))
-                    (facts::run(report))
-                }
-            }
+            body { (body) }
         }
-    };
-    Ok(page.into_string())
+    }
 }
 
 /// The verdict and what it rests on: for PASS the figures say it all, for the others the headline comes first.

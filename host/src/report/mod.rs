@@ -19,6 +19,7 @@ use crate::verdict::{Exit, Verdict};
 
 pub use crate::target::BoardKind;
 pub use folder::{ReportError, ReportFolder};
+pub(crate) use html::document;
 pub use html::render as html;
 pub use identity::Identity;
 pub use json::render as json;

@@ -5,10 +5,11 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 11] = [
+const COMMANDS: [(&str, &str); 12] = [
     ("verify", "Judge a board"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
+    ("paper", "Reproduce the paper's figures"),
     ("frames", "Write the built-in frames"),
     ("boards", "List the boards"),
     ("info", "Say what a board is"),

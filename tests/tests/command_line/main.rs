@@ -10,6 +10,7 @@ mod bad_targets;
 mod corrected;
 mod help;
 mod made_files;
+mod paper;
 mod replay;
 mod report_folder;
 mod settings;

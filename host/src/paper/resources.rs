@@ -1,0 +1,104 @@
+//! The resource claim of Sect. 4.2: on average less than a tenth of a Spartan-6 LX25.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
+use super::expected::RESOURCES_PERCENT;
+use super::{Item, PaperError};
+
+/// What `scripts/hardware resources` writes.
+#[derive(Debug, Deserialize)]
+struct Report {
+    /// The program that synthesised.
+    tool: String,
+    device: String,
+    builds: Vec<Build>,
+}
+
+/// One build of the Verilog.
+#[derive(Debug, Deserialize)]
+struct Build {
+    name: String,
+    luts: Share,
+    registers: Share,
+    block_rams: Share,
+    dsps: Share,
+    /// The mean of the four shares, in percent.
+    mean: f64,
+}
+
+/// How many, and what share of the device's.
+#[derive(Debug, Deserialize)]
+struct Share {
+    used: f64,
+    percent: f64,
+}
+
+/// The build that holds what the paper's algorithm needs: Hermite takes five taps.
+const PAPER_BUILD: &str = "core, 5 taps, 1 bank";
+
+/// The claim, if there is a report at `path`; otherwise how to make one.
+pub(super) fn exhibit(path: &Path) -> Result<Exhibit, PaperError> {
+    let mut exhibit = Exhibit::new(Item::Resources);
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            exhibit.open.push(format!(
+                "there is no synthesis report at {}: run `scripts/hardware resources` in the project's folder, or name \
+                 one with --synthesis",
+                path.display()
+            ));
+            return Ok(exhibit);
+        }
+        Err(source) => return Err(PaperError::Synthesis { path: path.to_owned(), source }),
+    };
+    let report: Report = serde_json::from_str(&text)
+        .map_err(|source| PaperError::Synthesis { path: path.to_owned(), source: source.into() })?;
+    exhibit.remark(format!(
+        "Synthesised with {} for the {}; it counts no slices. The mean is that of the shares of LUTs, registers, block RAMs \
+         and DSP slices. The claim is held to the build of five taps, which is all that Hermite takes; cubic takes seven.",
+        report.tool, report.device
+    ));
+    exhibit.claims.extend(report.builds.iter().filter(|build| build.name == PAPER_BUILD).map(|build| {
+        Claim {
+            what: format!("mean share of the device, {}", build.name),
+            unit: "%",
+            paper: None,
+            found: build.mean,
+            accepted: Accepted::Below(RESOURCES_PERCENT),
+            judges_board: false,
+        }
+    }));
+    if exhibit.claims.is_empty() {
+        exhibit.open.push(format!("{} has no build `{PAPER_BUILD}`: make it anew", path.display()));
+    }
+    exhibit.tables.push(table(&report));
+    Ok(exhibit)
+}
+
+fn table(report: &Report) -> Table {
+    let kinds = ["LUTs", "registers", "block RAMs", "DSP48A1"];
+    let heads = kinds.into_iter().flat_map(|kind| [kind.to_owned(), format!("{kind}, %")]);
+    let row = |build: &Build| {
+        let shares = [&build.luts, &build.registers, &build.block_rams, &build.dsps];
+        let cells = shares.into_iter().flat_map(|share| {
+            let whole = if share.used.fract() == 0.0 { 0 } else { 1 };
+            [Cell::Number(share.used, whole), Cell::Number(share.percent, 1)]
+        });
+        std::iter::once(Cell::Text(build.name.clone()))
+            .chain(cells)
+            .chain([Cell::Number(build.mean, 1)])
+            .collect()
+    };
+    Table {
+        name: "resources",
+        caption: "What each build takes of the device.".to_owned(),
+        columns: ["build".to_owned()].into_iter().chain(heads).chain(["mean, %".to_owned()]).collect(),
+        rows: report.builds.iter().map(row).collect(),
+        on_page: true,
+    }
+}

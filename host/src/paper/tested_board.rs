@@ -1,0 +1,80 @@
+//! A board that the paper's claims are tried on.
+
+use std::sync::Arc;
+
+use halfrow_model::{Frame, Kernel, TableSet};
+
+use super::PaperError;
+use crate::board::Board;
+use crate::correction::{Corrected, Correction};
+use crate::progress::Progress;
+use crate::session::misfit;
+use crate::target::BoardKind;
+
+/// An open session, and what it has streamed so far.
+pub struct TestedBoard {
+    board: Board,
+    kind: BoardKind,
+    frames: u16,
+    generation: u8,
+}
+
+impl TestedBoard {
+    /// Takes a session over whose link leads to a board of this kind.
+    #[must_use]
+    pub fn new(board: Board, kind: BoardKind) -> Self {
+        let kind = kind.confirmed_by(board.capabilities.nature);
+        Self { board, kind, frames: 0, generation: 0 }
+    }
+
+    /// The board, for people.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self.kind {
+            BoardKind::Hardware => "board (hardware)".to_owned(),
+            kind => format!("{kind} board (no hardware was tested)"),
+        }
+    }
+
+    /// L: the pixel clocks beyond half a row that the board says it takes.
+    #[must_use]
+    pub fn advertised_latency(&self) -> u16 {
+        self.board.capabilities.latency.into()
+    }
+
+    /// Whether the board takes frames of this size and this kernel.
+    ///
+    /// # Errors
+    /// [`PaperError::Misfit`] when it does not.
+    pub fn fits(&self, tables: &TableSet, kernel: &Kernel) -> Result<(), PaperError> {
+        misfit(tables, kernel, &self.board.capabilities)
+            .map_or(Ok(()), |misfit| Err(PaperError::Misfit(misfit)))
+    }
+
+    /// Corrects `inputs` with tables and kernel of their own.
+    ///
+    /// # Errors
+    /// [`PaperError::Misfit`] when the board cannot take them, [`PaperError::Board`] when it refuses or does not answer.
+    pub fn correct(
+        &mut self,
+        tables: &TableSet,
+        kernel: &Kernel,
+        inputs: &[Arc<Frame>],
+        progress: &dyn Progress,
+    ) -> Result<Corrected, PaperError> {
+        self.fits(tables, kernel)?;
+        self.generation += 1;
+        let correction = Correction { tables, kernel, generation: self.generation, first_frame: self.frames };
+        let corrected = correction.run(&mut self.board, inputs, progress)?;
+        self.frames += inputs.len() as u16;
+        Ok(corrected)
+    }
+
+    /// Ends the session, so that the next host finds the board free.
+    ///
+    /// # Errors
+    /// [`PaperError::Board`] when the board does not answer.
+    pub fn close(&mut self) -> Result<(), PaperError> {
+        Ok(self.board.close()?)
+    }
+}

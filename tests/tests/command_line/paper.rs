@@ -1,0 +1,128 @@
+//! `paper`: what it writes, what it finds, and what it refuses.
+
+use halfrow_tests::program::Folder;
+use serde_json::Value;
+
+use crate::{refused, refused_with};
+
+/// The report of a run with these arguments, which must end with `code`.
+#[track_caller]
+fn made(folder: &Folder, code: i32, arguments: &[&str]) -> (Value, String) {
+    let call = ["paper", "--quiet", "-o", "out"].iter().chain(arguments).copied();
+    let ended = folder.halfrow(call);
+    assert_eq!(ended.code, Some(code), "{arguments:?}: {}{}", ended.stdout, ended.stderr);
+    (serde_json::from_slice(&folder.read("out/paper.json")).unwrap(), ended.stdout)
+}
+
+#[test]
+fn without_photographs_the_remedy_is_named() {
+    let folder = Folder::new();
+    let remedy = "fig12 and table1 need the 24 photographs; give --images FOLDER";
+    refused(&folder, &["paper", "-o", "out"], remedy);
+    refused(&folder, &["paper", "table1", "-o", "out"], remedy);
+    refused(&folder, &["paper", "-o", "out"], "fig3 fig4 fig5 fig6 fig8 delay resources");
+    folder.write("kodim01.png", "no picture");
+    refused(&folder, &["paper", "table1", "--images", ".", "-o", "out"], "photograph 1 of 24 cannot be used");
+    refused(&folder, &["paper", "fig7", "-o", "out"], "[possible values: fig3, fig4,");
+}
+
+/// Sect. 3.2 prints 2.38 and 0.80 pixels.
+#[test]
+fn figure_5_has_the_paper_s_means() {
+    let folder = Folder::new();
+    let (report, said) = made(&folder, 0, &["fig5"]);
+    let claims = &report["items"][0]["claims"];
+    for (claim, paper) in [(&claims[0], 2.38), (&claims[1], 0.80)] {
+        assert_eq!((&claim["paper"], &claim["holds"]), (&paper.into(), &true.into()));
+        assert!(claim["deviation"].as_f64().unwrap().abs() < 0.01);
+    }
+    assert!(
+        said.contains("mean error of the middle 16 : 9: 0.8021 px (paper 0.8, +0.0021, ± 0.01 px)"),
+        "{said}"
+    );
+    let map = folder.text("out/fig-5.csv");
+    assert_eq!((map.lines().count(), map.lines().nth(9).unwrap().split(',').count()), (202, 202));
+    assert_eq!(folder.names("out"), ["fig-5.csv", "fig-5b.png", "paper.html", "paper.json"]);
+}
+
+#[test]
+fn pictures_and_numbers_are_files_and_the_page_stands_alone() {
+    let folder = Folder::new();
+    made(&folder, 0, &["fig3", "fig4", "fig6", "fig8"]);
+    let expected = [
+        "fig-3.csv",
+        "fig-3a.svg",
+        "fig-3b.svg",
+        "fig-4.csv",
+        "fig-4a.png",
+        "fig-4b.png",
+        "fig-4c.png",
+        "fig-4e.png",
+        "fig-6a.csv",
+        "fig-6a.svg",
+        "fig-6b.csv",
+        "fig-6b.png",
+        "fig-8.csv",
+        "fig-8a.svg",
+        "fig-8b.svg",
+        "fig-8c.svg",
+        "paper.html",
+        "paper.json",
+    ];
+    assert_eq!(folder.names("out"), expected);
+    let page = folder.text("out/paper.html");
+    assert!(page.contains("Carroll et al., is left out"));
+    assert!(!page.contains("src=\"http") && !page.contains("<script"), "the page loads something");
+    assert_eq!(page.matches("src=\"data:image/").count(), 11);
+    // Exact columns stay straight; a row of the table is longitude, fisheye, perspective, Mercator, exact.
+    let straight = folder.text("out/fig-4.csv");
+    assert!(straight.lines().skip(1).all(|line| line.ends_with(",0.000,0.000,0.000")), "{straight}");
+}
+
+#[test]
+fn the_delay_is_measured_and_a_board_that_takes_longer_fails() {
+    let folder = Folder::new();
+    let (report, _) = made(&folder, 0, &["delay", "--board", "mock,latency=20"]);
+    assert_eq!(report["items"][0]["claims"][0]["found"], 960.0 + 20.0);
+    // 980 clocks at 1920 · 1080 · 30 Hz are 15.754 µs.
+    let time = report["items"][0]["claims"][1]["found"].as_f64().unwrap();
+    assert!((time - 0.015_754).abs() < 1e-6, "{time}");
+    let (report, said) = made(&folder, 1, &["delay", "--overwrite", "--board", "mock,fault=late"]);
+    assert_eq!(report["items"][0]["claims"][2]["holds"], false);
+    assert!(said.contains("FAIL    pixel clocks between"), "{said}");
+}
+
+#[test]
+fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
+    let folder = Folder::new();
+    let (_, said) = made(&folder, 5, &["resources"]);
+    assert!(said.contains("run `scripts/hardware resources`"), "{said}");
+    let part = |used: f64, percent: f64| serde_json::json!({ "used": used, "percent": percent });
+    let report = |mean: f64| {
+        let build = serde_json::json!({
+            "name": "core, 5 taps, 1 bank", "luts": part(478.0, 3.2), "registers": part(608.0, 2.0),
+            "block_rams": part(7.5, 14.4), "dsps": part(5.0, 13.2), "mean": mean,
+        });
+        serde_json::json!({ "tool": "Yosys", "device": "XC6SLX25", "builds": [build] }).to_string()
+    };
+    folder.write("good.json", report(8.2));
+    folder.write("large.json", report(10.0));
+    let (made_of, _) = made(&folder, 0, &["resources", "--overwrite", "--synthesis", "good.json"]);
+    assert_eq!(made_of["items"][0]["claims"][0]["found"], 8.2);
+    let (_, said) = made(&folder, 3, &["resources", "--overwrite", "--synthesis", "large.json"]);
+    assert!(said.contains("MISSED"), "{said}");
+    folder.write("bad.json", "{}");
+    refused_with(
+        3,
+        &folder,
+        &["paper", "resources", "--overwrite", "-o", "out", "--synthesis", "bad.json"],
+        "make it anew",
+    );
+}
+
+#[test]
+fn an_earlier_page_stays_as_it_is() {
+    let folder = Folder::new();
+    made(&folder, 0, &["fig8"]);
+    refused(&folder, &["paper", "fig8", "-o", "out"], "--overwrite");
+}

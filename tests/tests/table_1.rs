@@ -1,0 +1,65 @@
+//! Table 1 of the paper, with the 24 photographs, and through a board that works and one that does not.
+//!
+//! The photographs are taken from the folder `HALFROW_IMAGES`, or from `../shared/kodak` beside the project.
+
+use halfrow_tests::photographs;
+use halfrow_tests::program::Folder;
+use serde_json::Value;
+
+/// The claims of `halfrow paper table1` with these arguments, which must end with `code`; none without photographs.
+fn table_1(code: i32, arguments: &[&str]) -> Option<Vec<Value>> {
+    let Some(first) = photographs::paths().into_iter().next() else {
+        println!("no photographs: set HALFROW_IMAGES to the folder of kodim01.png to kodim24.png");
+        return None;
+    };
+    let images = first.parent().and_then(|folder| folder.to_str()).map(str::to_owned)?;
+    let folder = Folder::new();
+    let call = ["paper", "table1", "--quiet", "-o", "out", "--images", &images];
+    let ended = folder.halfrow(call.into_iter().chain(arguments.iter().copied()));
+    assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
+    println!("{}", ended.stdout);
+    let report: Value = serde_json::from_slice(&folder.read("out/paper.json")).ok()?;
+    report["items"][0]["claims"].as_array().cloned()
+}
+
+fn found(claim: &Value) -> f64 {
+    claim["found"].as_f64().unwrap_or(f64::NAN)
+}
+
+/// The averages of an independent calculation in NumPy, for linear, cubic and Hermite; the paper prints 32.1324, 32.5833 and
+/// 34.9660.
+const AVERAGES: [f64; 3] = [32.1225, 32.5641, 34.9625];
+
+#[test]
+fn table_1_is_the_paper_s_in_reals_in_integers_and_through_a_board() {
+    let Some(claims) = table_1(0, &["--board", "mock"]) else { return };
+    for (claim, average) in claims.iter().zip(AVERAGES) {
+        assert!((found(claim) - average).abs() < 5e-4, "{claim}");
+    }
+    // The photograph farthest off, integers beside reals, four kernels through the board, the board beside reals.
+    assert_eq!(claims.len(), 3 + 2 + 4 + 1);
+    assert!(found(&claims[3]) < 0.2 && found(&claims[4]) < 0.01 && found(&claims[9]) < 0.01);
+    assert!(claims[5..9].iter().all(|claim| found(claim) == 0.0), "{claims:?}");
+}
+
+#[test]
+fn a_board_whose_sums_are_not_rounded_is_found() {
+    let Some(claims) = table_1(1, &["--board", "mock,fault=no-rounding"]) else { return };
+    assert!(claims[5..9].iter().any(|claim| found(claim) > 0.0), "{claims:?}");
+}
+
+#[test]
+fn a_board_of_five_taps_is_refused_since_cubic_needs_seven() {
+    assert!(table_1_refusal().is_none_or(|said| said.contains("needs seven taps")));
+}
+
+/// What the call says to a board of five taps.
+fn table_1_refusal() -> Option<String> {
+    let first = photographs::paths().into_iter().next()?;
+    let images = first.parent()?.to_str()?.to_owned();
+    let folder = Folder::new();
+    let call = ["paper", "table1", "-q", "-o", "out", "--images", &images, "--board", "mock,taps=five"];
+    let ended = folder.halfrow(call);
+    assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
+    Some(ended.stderr)
+}
