@@ -29,13 +29,19 @@ fn banner(exhibits: &[Exhibit]) -> Markup {
     let (class, word) = match missed().find(|claim| claim.judges_board).or(missed().next()) {
         Some(claim) if claim.judges_board => ("fail", "BOARD DIFFERS"),
         Some(_) => ("error", "NOT REPRODUCED"),
-        None if claims.is_empty() => ("error", "NOTHING COMPARED"),
+        None if claims.is_empty() && exhibits.iter().any(|exhibit| !exhibit.open.is_empty()) => {
+            ("error", "NOTHING TRIED")
+        }
+        None if claims.is_empty() => ("pass", "DRAWN"),
         None => ("pass", "REPRODUCED"),
     };
     html! {
         header.(class) {
             p.verdict { (word) }
-            h1 { (claims.len() - missed().count()) " of " (claims.len()) " numbers are accepted" }
+            h1 {
+                @if claims.is_empty() { "No number was held to the paper" }
+                @else { (claims.len() - missed().count()) " of " (claims.len()) " numbers are accepted" }
+            }
             @for open in exhibits.iter().flat_map(|exhibit| &exhibit.open) { p.facts { "Not tried: " (open) } }
             p.facts {
                 "Lai et al., Real-time distortion correction of fish-eye lens based on Bayer image signal, Optical Review "
