@@ -43,6 +43,7 @@ impl Correction<'_> {
         progress: &dyn Progress,
     ) -> Result<Corrected, BoardError> {
         let geometry = self.tables.geometry();
+        board.start_afresh()?;
         board.configure(&Configuration {
             width: geometry.width() as u16,
             height: geometry.height() as u16,

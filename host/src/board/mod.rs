@@ -137,6 +137,18 @@ impl Board {
         })
     }
 
+    /// Sets the counters back, and drops tables that an earlier session left: a board takes a generation that is active
+    /// already for a repeated packet, and would go on using the old tables under it.
+    ///
+    /// # Errors
+    /// [`BoardError`] when no answer comes.
+    pub fn start_afresh(&mut self) -> Result<(), BoardError> {
+        if self.status(true)?.generation != 0 {
+            self.reset(ResetLevel::Tables)?;
+        }
+        Ok(())
+    }
+
     /// Sets geometry and timing.
     ///
     /// # Errors

@@ -35,7 +35,7 @@ pub enum LinkTestError {
 pub fn run(board: &mut Board, seconds: Duration, seed: u64) -> Result<Figures, LinkTestError> {
     let random = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
     let mut test = Test { board, seconds, random };
-    test.board.status(true)?;
+    test.board.start_afresh()?;
     let before = test.board.tally();
     let round_trips = test.round_trips()?;
     let wrong_echoes = test.echoes()?;

@@ -122,6 +122,7 @@ impl Run<'_> {
     /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
     /// behind a greeting.
     fn restore(&mut self, segment: &Segment, at: usize) -> Result<(), End> {
+        self.board.start_afresh().map_err(|error| End::board("link", &error))?;
         self.configure(segment)?;
         let next = segment.frames.get(at);
         let Some(frame) = next.or(segment.frames.last()) else { return Ok(()) };

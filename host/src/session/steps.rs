@@ -131,7 +131,7 @@ impl Run<'_> {
                 ));
             }
         }
-        self.board.status(true).map_err(board_error)?;
+        self.board.start_afresh().map_err(board_error)?;
         let detail = format!("{bytes} bytes in {} echoes came back as they went", patterns.len());
         self.findings.passed("link", detail);
         Ok(())
