@@ -18,6 +18,7 @@ pub mod correction;
 pub mod diagnosis;
 pub mod discovery;
 pub mod frames;
+pub mod kernels;
 pub mod link;
 pub mod link_test;
 pub mod paper;
