@@ -41,15 +41,15 @@ fn fitted_kernels_are_what_their_files_hold_and_tell_where_they_come_from() {
     }
 }
 
-/// Light has no preferred direction: seen from the other side, G0 is G6, G2 is G4 and R1 is R5. Rounding half up leaves one
-/// unit, and G2, which takes up what three weights leave, three.
+/// Light has no preferred direction: seen from the other side, G0 is G6, G2 is G4 and R1 is R5. Rounding leaves up to four units in
+/// G2, which takes up what three weights leave.
 #[test]
 fn fitted_kernels_are_the_same_from_both_sides() {
     for (named, ..) in SHIPPED {
         let nodes: Vec<_> = seven(&named.kernel()).collect();
         for (node, mirrored) in nodes.iter().zip(nodes.iter().rev()) {
             for (tap, weight) in node.iter().enumerate() {
-                assert!((weight - mirrored[6 - tap]).abs() <= 3, "{named}: {node:?} {mirrored:?}");
+                assert!((weight - mirrored[6 - tap]).abs() <= 4, "{named}: {node:?} {mirrored:?}");
             }
         }
     }

@@ -189,7 +189,10 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     print(&format!("{} on {} photographs, over Hermite in dB", arguments.kernel, images.len()))?;
     for gains in measured {
         let Spread { mean, least, most } = gains.gain;
-        print(&format!("  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {:.4}", gains.condition, gains.hermite))?;
+        print(&format!(
+            "  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {:.4}",
+            gains.condition, gains.hermite
+        ))?;
     }
     print(&format!("  noise gain {:.3} ({:.3} to {:.3})", noise.mean, noise.least, noise.most))?;
     Ok(Exit::Pass)

@@ -97,6 +97,8 @@ impl FromStr for NamedKernel {
 
     fn from_str(text: &str) -> Result<Self, UnknownKernel> {
         let mut names = Self::ALL.into_iter();
-        names.find(|kernel| kernel.name().eq_ignore_ascii_case(text)).ok_or_else(|| UnknownKernel(text.to_owned()))
+        names
+            .find(|kernel| kernel.name().eq_ignore_ascii_case(text))
+            .ok_or_else(|| UnknownKernel(text.to_owned()))
     }
 }

@@ -38,24 +38,22 @@ impl Equations {
         Self { matrix: vec![0.0; SIZE * SIZE], right: vec![0.0; SIZE], constant: 0.0, samples: 0.0 }
     }
 
-    /// Adds every sample of a frame.
-    ///
-    /// # Errors
-    /// None: the frame and its tables are of one size.
-    pub fn observe(&mut self, warped: &Warped) -> Result<(), TrainingError> {
+    /// Adds every sample of a frame, and the same seen from the other side: light has no preferred direction.
+    pub fn observe(&mut self, warped: &Warped) {
         let geometry = warped.tables.geometry();
-        for ((row, wanted), &step) in
-            warped.distorted.rows().zip(warped.reference.rows()).zip(warped.tables.steps())
-        {
+        let rows = warped.distorted.rows().zip(warped.reference.rows()).zip(warped.tables.steps());
+        for ((row, wanted), &step) in rows {
             for (column, &wanted) in wanted.iter().enumerate() {
                 let source = source(geometry, step, column);
-                let taps: [f64; 7] = std::array::from_fn(|tap| {
+                let mut taps: [f64; 7] = std::array::from_fn(|tap| {
                     row[geometry.sample_column(source.base - 2 + tap as i64)].into()
                 });
-                self.sample(source.node, f64::from(source.fraction) / 256.0, taps, wanted.into());
+                let toward = f64::from(source.fraction) / 256.0;
+                self.sample(source.node, toward, taps, wanted.into());
+                taps.reverse();
+                self.sample(NODES - 2 - source.node, 1.0 - toward, taps, wanted.into());
             }
         }
-        Ok(())
     }
 
     /// Adds a sample that ought to be `wanted`, the share `toward` of the way from `node` to the next.
@@ -104,11 +102,11 @@ impl Equations {
     #[must_use]
     pub fn error(&self, kernel: &Kernel) -> f64 {
         let stored = kernel.nodes().iter().flatten();
-        let weights: Vec<f64> =
-            stored.map(|&weight| f64::from(weight) / f64::from(WEIGHT_ONE)).collect();
+        let weights: Vec<f64> = stored.map(|&weight| f64::from(weight) / f64::from(WEIGHT_ONE)).collect();
         let product = |row: &[f64]| -> f64 { row.iter().zip(&weights).map(|(a, b)| a * b).sum() };
         let lines = self.matrix.chunks_exact(SIZE).zip(&self.right).zip(&weights);
-        self.constant + lines.map(|((line, right), weight)| weight * (product(line) - 2.0 * right)).sum::<f64>()
+        self.constant
+            + lines.map(|((line, right), weight)| weight * (product(line) - 2.0 * right)).sum::<f64>()
     }
 
     /// The kernel of the least error, with g0 = g6 = 0 for five taps.

@@ -106,8 +106,7 @@ pub fn measure(
     let mut scores = vec![Vec::new(); Condition::ALL.len()];
     for (index, photograph) in photographs.iter().enumerate() {
         progress.frame(&format!("photograph {}", index + 1));
-        let [linear, band_limited] =
-            Warp::ALL.map(|warp| Model { radius: RADIUS, warp }.warped(photograph));
+        let [linear, band_limited] = Warp::ALL.map(|warp| Model { radius: RADIUS, warp }.warped(photograph));
         let (linear, band_limited) = (linear?, band_limited?);
         for (condition, scores) in Condition::ALL.into_iter().zip(&mut scores) {
             let [hermite, own] = &kernels;
@@ -133,7 +132,9 @@ fn score(
 ) -> Result<f64, TrainingError> {
     let warped = if matches!(condition, Condition::Warped(Warp::Linear)) { linear } else { band_limited };
     let corrected = match condition {
-        Condition::Noisy(deviation) => correct(&warped.tables, kernel, &noisy(&warped.distorted, deviation)?)?,
+        Condition::Noisy(deviation) => {
+            correct(&warped.tables, kernel, &noisy(&warped.distorted, deviation)?)?
+        }
         _ => correct(&warped.tables, kernel, &warped.distorted)?,
     };
     if !matches!(condition, Condition::Demosaicked) {

@@ -89,13 +89,11 @@ pub fn train(
     Ok(Trained { gain: gain(&all, &kernel), kernel, held_out })
 }
 
-/// The equations of a photograph and of its mirror image under every model, per sample.
+/// The equations of a photograph under every model, per sample.
 fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
     let mut equations = Equations::new();
-    for image in [photograph, &mirrored(photograph)] {
-        for model in Model::ALL {
-            equations.observe(&model.warped(image)?)?;
-        }
+    for model in Model::ALL {
+        equations.observe(&model.warped(photograph)?);
     }
     Ok(equations.per_sample())
 }
@@ -104,10 +102,4 @@ fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
 fn gain(equations: &Equations, kernel: &Kernel) -> f64 {
     let hermite = Kernel::from(Interpolant::Hermite);
     10.0 * (equations.error(&hermite) / equations.error(kernel)).log10()
-}
-
-fn mirrored(image: &RgbImage) -> RgbImage {
-    let rows = image.data.chunks_exact(3 * image.width);
-    let data = rows.flat_map(|row| row.chunks_exact(3).rev().flatten()).copied().collect();
-    RgbImage { width: image.width, height: image.height, data }
 }
