@@ -8,7 +8,8 @@
 //!
 //! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`session`] is the one that knows the order of
 //! things. [`discovery`] finds what could be a board, [`link_test`] measures what a link can do, [`serve`] puts a board of
-//! this program behind a device of its own, and [`paper`] reproduces the figures of the paper.
+//! this program behind a device of its own, [`paper`] reproduces the figures of the paper, and [`training`] fits
+//! kernels to photographs.
 //! [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
 
 pub mod board;
@@ -18,6 +19,7 @@ pub mod correction;
 pub mod diagnosis;
 pub mod discovery;
 pub mod frames;
+pub mod kernels;
 pub mod link;
 pub mod link_test;
 pub mod paper;
@@ -28,5 +30,6 @@ pub mod session;
 pub mod settings;
 pub mod tables;
 pub mod target;
+pub mod training;
 pub mod verdict;
 pub mod written_aside;

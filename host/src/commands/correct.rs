@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     /// The table file; without it the lens options make the tables
     #[arg(long, value_name = "FILE", env = "HALFROW_TABLES")]
     tables: Option<PathBuf>,
-    /// The kernel: nearest, linear, keys, hermite, or a file, instead of the table file's
+    /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE")]
     kernel: Option<String>,
     /// Correct with the reference model, whatever board is set

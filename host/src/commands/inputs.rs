@@ -63,6 +63,10 @@ fn frame_source(name: &str, how: &ReadOptions, geometry: &Geometry) -> anyhow::R
 /// The file's SHA-256.
 pub(super) fn file_hash(path: &Path) -> anyhow::Result<FileHash> {
     let bytes = fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
-    let sha256 = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    Ok(FileHash { path: path.display().to_string(), sha256 })
+    Ok(FileHash { path: path.display().to_string(), sha256: hash(&bytes) })
+}
+
+/// SHA-256 in hexadecimal digits.
+pub(super) fn hash(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -6,6 +6,7 @@ use clap::Args;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, LensError, Phase, TableSet};
 
 use crate::frames::Scene;
+use crate::kernels::NamedKernel;
 use crate::tables::{KernelFile, TableFile, TableFileError};
 
 /// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
@@ -83,8 +84,8 @@ impl LensArguments {
 
 /// A kernel by name, or from a kernel file.
 pub(super) fn kernel(name: &str) -> Result<Kernel, TableFileError> {
-    match name.parse::<Interpolant>() {
-        Ok(interpolant) => Ok(Kernel::from(interpolant)),
+    match name.parse::<NamedKernel>() {
+        Ok(named) => Ok(named.kernel()),
         Err(_) => Ok(KernelFile::read(&PathBuf::from(name))?.kernel),
     }
 }

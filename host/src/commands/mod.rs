@@ -8,6 +8,7 @@ mod faults;
 mod frames;
 mod info;
 mod inputs;
+mod kernel;
 mod lens;
 mod link;
 mod paper;
@@ -54,6 +55,7 @@ enum Command {
     Verify(verify::Arguments),
     Correct(correct::Arguments),
     Tables(tables::Arguments),
+    Kernel(kernel::Arguments),
     Paper(paper::Arguments),
     Frames(frames::Arguments),
     Boards(boards::Arguments),
@@ -123,6 +125,7 @@ impl Cli {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
             Command::Tables(arguments) => tables::run(arguments),
+            Command::Kernel(arguments) => kernel::run(arguments, &context),
             Command::Paper(arguments) => paper::run(arguments, &context),
             Command::Frames(arguments) => frames::run(arguments),
             Command::Boards(arguments) => boards::run(arguments),

@@ -15,7 +15,7 @@ use crate::verdict::Exit;
 pub(super) struct Arguments {
     #[command(flatten)]
     lens: LensArguments,
-    /// The kernel: nearest, linear, keys, hermite, or a file
+    /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
     #[arg(long, default_value = "hermite", value_name = "NAME|FILE")]
     kernel: String,
     /// Where to: FILE.json, or FILE.mem for two files that Verilog's $readmemh reads

@@ -31,7 +31,7 @@ pub use error::PaperError;
 pub use exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
 pub use folder::{Folder, FolderError};
 pub use item::Item;
-pub use photographs::{PhotographError, read as read_photographs};
+pub use photographs::{PhotographError, lying, read as read_photographs};
 pub use psnr::psnr;
 pub use tested_board::TestedBoard;
 pub use views::{View, ray};

@@ -54,10 +54,15 @@ fn photograph(folder: &Path, number: usize) -> Result<RgbImage, PhotographError>
     let path = folder.join(format!("kodim{number:02}.png"));
     let image = frames::read_rgb(&path).map_err(|source| PhotographError::Read { number, source })?;
     match (image.width, image.height) {
-        (WIDTH, HEIGHT) => Ok(image),
-        (HEIGHT, WIDTH) => Ok(turned_clockwise(&image)),
+        (WIDTH, HEIGHT) | (HEIGHT, WIDTH) => Ok(lying(image)),
         (width, height) => Err(PhotographError::Size { path, width, height }),
     }
+}
+
+/// `image` turned a quarter clockwise if it stands.
+#[must_use]
+pub fn lying(image: RgbImage) -> RgbImage {
+    if image.height > image.width { turned_clockwise(&image) } else { image }
 }
 
 /// A quarter turn clockwise: the left column becomes the top row, read upwards.

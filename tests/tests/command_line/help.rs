@@ -5,10 +5,11 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 12] = [
+const COMMANDS: [(&str, &str); 13] = [
     ("verify", "Judge a board"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
+    ("kernel", "Fit a kernel to photographs"),
     ("paper", "Reproduce the paper's figures"),
     ("frames", "Write the built-in frames"),
     ("boards", "List the boards"),
@@ -89,7 +90,7 @@ fn there_is_a_manual_page_for_the_program_and_for_every_command() {
     let folder = Folder::new();
     assert_eq!(folder.halfrow(["manual", "."]).code, Some(0));
     let mut pages: Vec<_> = COMMANDS.iter().map(|(name, _)| format!("halfrow-{name}.1")).collect();
-    pages.push("halfrow.1".to_owned());
+    pages.extend(["halfrow.1", "halfrow-kernel-measure.1", "halfrow-kernel-train.1"].map(str::to_owned));
     pages.sort();
     assert_eq!(folder.names("."), pages);
     for page in pages {

@@ -1,0 +1,104 @@
+//! The kernels that have a name: the paper's interpolants, one that halves the chord's error, and two fitted to photographs.
+
+use std::fmt;
+use std::str::FromStr;
+
+use halfrow_model::{Interpolant, Kernel, KernelError};
+
+use crate::tables::KernelFile;
+
+/// The distance between two nodes, in pixels.
+const NODE_DISTANCE: f64 = 1.0 / 32.0;
+
+/// A kernel that has a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NamedKernel {
+    /// The nodes of an interpolant of the paper.
+    Interpolant(Interpolant),
+    /// Hermite, its nodes shifted so that the chords between them lie on both sides of the curve.
+    HermiteBalanced,
+    /// Fitted to photographs, five taps.
+    Sharp5,
+    /// Fitted to photographs, seven taps.
+    Sharp7,
+}
+
+/// A name of no kernel.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no named kernel; use nearest, linear, keys, hermite, hermite-balanced, sharp5 or sharp7")]
+pub struct UnknownKernel(String);
+
+impl NamedKernel {
+    /// All of them, the paper's first.
+    pub const ALL: [Self; 7] = [
+        Self::Interpolant(Interpolant::Nearest),
+        Self::Interpolant(Interpolant::Linear),
+        Self::Interpolant(Interpolant::Keys),
+        Self::Interpolant(Interpolant::Hermite),
+        Self::HermiteBalanced,
+        Self::Sharp5,
+        Self::Sharp7,
+    ];
+
+    /// The name in the spelling that [`FromStr`] reads.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Interpolant(interpolant) => interpolant.name(),
+            Self::HermiteBalanced => "hermite-balanced",
+            Self::Sharp5 => "sharp5",
+            Self::Sharp7 => "sharp7",
+        }
+    }
+
+    /// The weights.
+    #[must_use]
+    pub fn kernel(self) -> Kernel {
+        let made = match self {
+            Self::Interpolant(interpolant) => return Kernel::from(interpolant),
+            Self::HermiteBalanced => balanced(Interpolant::Hermite).ok(),
+            Self::Sharp5 => shipped(include_str!("sharp5.json")),
+            Self::Sharp7 => shipped(include_str!("sharp7.json")),
+        };
+        // Both files and the formula are legal, which a test shows for every name.
+        made.unwrap_or_else(|| Kernel::from(Interpolant::Hermite))
+    }
+}
+
+fn shipped(text: &str) -> Option<Kernel> {
+    KernelFile::parse(text).ok().map(|file| file.kernel)
+}
+
+/// The nodes of a smooth interpolant less a sixteenth of their second difference, which is f″/32² (DATAPATH.md, "Accuracy").
+fn balanced(interpolant: Interpolant) -> Result<Kernel, KernelError> {
+    let node = |node: i32| {
+        let x = f64::from(node) * NODE_DISTANCE;
+        let [before, here, after] =
+            [x - NODE_DISTANCE, x, x + NODE_DISTANCE].map(|x| stored(interpolant.weights(x)));
+        std::array::from_fn(|tap| here[tap] - (before[tap] - 2.0 * here[tap] + after[tap]) / 16.0)
+    };
+    let nodes: Vec<[f64; 5]> = (0..65).map(node).collect();
+    Kernel::from_weights(&nodes)
+}
+
+/// Those of seven weights that a kernel stores.
+pub(crate) fn stored([g0, r1, _, _, g4, r5, g6]: [f64; 7]) -> [f64; 5] {
+    [g0, r1, g4, r5, g6]
+}
+
+impl fmt::Display for NamedKernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for NamedKernel {
+    type Err = UnknownKernel;
+
+    fn from_str(text: &str) -> Result<Self, UnknownKernel> {
+        let mut names = Self::ALL.into_iter();
+        names
+            .find(|kernel| kernel.name().eq_ignore_ascii_case(text))
+            .ok_or_else(|| UnknownKernel(text.to_owned()))
+    }
+}
