@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use halfrow_model::{Frame, Kernel, TableSet};
 
-use crate::board::{Board, BoardError, Configuration, NumberedFrame, ReturnedRow, RowTraffic};
+use crate::board::{Board, BoardError, NumberedFrame, ReturnedRow, RowTiming, RowTraffic};
 use crate::progress::Progress;
 
 /// What a board is to correct with.
@@ -42,16 +42,8 @@ impl Correction<'_> {
         inputs: &[Arc<Frame>],
         progress: &dyn Progress,
     ) -> Result<Corrected, BoardError> {
-        let geometry = self.tables.geometry();
         board.start_afresh()?;
-        board.configure(&Configuration {
-            width: geometry.width() as u16,
-            height: geometry.height() as u16,
-            centre2: geometry.centre2() as u16,
-            blanking: board.capabilities.least_blanking,
-            gap_seed: 0,
-            bits: geometry.depth().bits() as u8,
-        })?;
+        board.configure(self.tables.geometry(), RowTiming::default())?;
         board.upload(self.tables, self.kernel)?;
         board.commit(self.tables, self.kernel, self.first_frame, self.generation)?;
         let mut collect = Collect {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-use halfrow::board::{Board, Configuration, NumberedFrame, OpenOptions, ReturnedRow, RowTraffic};
+use halfrow::board::{Board, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, RowTraffic};
 use halfrow::link::Link;
 use halfrow_model::{Frame, Kernel, TableSet};
 
@@ -48,15 +48,8 @@ impl WholeBoard {
             panic!("{} frames instead of two", case.frames.len())
         };
         let settings = &case.settings;
-        let configuration = Configuration {
-            width: settings.width,
-            height: settings.height,
-            centre2: settings.centre2,
-            blanking: settings.blanking,
-            gap_seed: settings.gap_seed,
-            bits: settings.depth.bits(),
-        };
-        self.board.configure(&configuration).unwrap();
+        let timing = RowTiming { blanking: settings.blanking, gap_seed: settings.gap_seed };
+        self.board.configure(tables.geometry(), timing).unwrap();
         let mut played = Played::default();
         self.commit(tables, kernel, 0);
         self.stream(&[first], &mut played);

@@ -5,8 +5,24 @@
 #include "UartBridge.h"
 #include "bridge.h"
 
-// The same structures stand in src/ffi.rs. `link_edge` and `core_edge` say which clocks rise; unlike
-// elsewhere the outputs are those behind the edge, which is when pins change.
+// One step of both clocks, of which those rise that `in` names. Unlike elsewhere the outputs are then those behind the
+// edge, which is when pins change.
+template <class Model, class Inputs>
+void clock_edges(Design<Model>& design, const Inputs& in) {
+    Model& model = *design.model;
+    tie_off(model);
+    model.clk = 0;
+    model.link_clk = 0;
+    model.rst = in.rst;
+    model.link_rst = in.rst;
+    model.millisecond = in.millisecond;
+    design.settle();
+    model.clk = in.core_edge;
+    model.link_clk = in.link_edge;
+    design.settle();
+}
+
+// The same structures stand in src/ffi.rs.
 struct UartInputs {
     bool link_edge, core_edge, rst, rxd, cts_n, millisecond;
 };
@@ -18,18 +34,9 @@ struct UartOutputs {
 template <class Model>
 void clock_uart(Design<Model>& design, const UartInputs& in, UartOutputs& out) {
     Model& model = *design.model;
-    tie_off(model);
-    model.clk = 0;
-    model.link_clk = 0;
-    model.rst = in.rst;
-    model.link_rst = in.rst;
     model.rxd = in.rxd;
     model.cts_n = in.cts_n;
-    model.millisecond = in.millisecond;
-    design.settle();
-    model.clk = in.core_edge;
-    model.link_clk = in.link_edge;
-    design.settle();
+    clock_edges(design, in);
     out.txd = model.txd;
     out.rts_n = model.rts_n;
     out.quiet = model.quiet;
@@ -50,19 +57,10 @@ struct FifoOutputs {
 template <class Model>
 void clock_fifo(Design<Model>& design, const FifoInputs& in, FifoOutputs& out) {
     Model& model = *design.model;
-    tie_off(model);
-    model.clk = 0;
-    model.link_clk = 0;
-    model.rst = in.rst;
-    model.link_rst = in.rst;
     model.ft_rxf_n = in.rxf_n;
     model.ft_txe_n = in.txe_n;
     model.ft_data_in = in.data;
-    model.millisecond = in.millisecond;
-    design.settle();
-    model.clk = in.core_edge;
-    model.link_clk = in.link_edge;
-    design.settle();
+    clock_edges(design, in);
     out.rd_n = model.ft_rd_n;
     out.wr_n = model.ft_wr_n;
     out.siwu_n = model.ft_siwu_n;

@@ -10,7 +10,8 @@ mod tables;
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{Hello, Reply, Request, Reset, ResetLevel};
+use halfrow_model::Geometry;
+use halfrow_protocol::message::{Configuration, Hello, Reply, Request, Reset, ResetLevel};
 use halfrow_protocol::{Kind, VERSION};
 
 use conversation::{Conversation, take_reply};
@@ -19,14 +20,12 @@ use deadlines::{RetryLimit, Step};
 use crate::link::Link;
 pub use conversation::Tally;
 pub use error::BoardError;
-pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
+pub use rows::{NumberedFrame, ReturnedRow, RowTraffic, Unjudged};
 pub use sent::Sent;
 pub use stop::Stop;
 pub use tables::{ReadBack, TablePort};
 
-pub use halfrow_protocol::message::{
-    Bank, BoardNature, Capabilities, Configuration, RefusalCode, Status, Table, Welcome,
-};
+pub use halfrow_protocol::message::{Bank, BoardNature, Capabilities, RefusalCode, Status, Table, Welcome};
 
 /// How a session is opened.
 #[derive(Clone, Debug, Default)]
@@ -43,6 +42,15 @@ pub struct OpenOptions {
     pub retry_limit: RetryLimit,
     /// What ends the run early.
     pub stop: Stop,
+}
+
+/// When the core is fed a sample. By default as soon as the board can take it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct RowTiming {
+    /// Pixel clocks between two rows; a board that needs more takes its least.
+    pub blanking: u16,
+    /// Seed of the gaps in and between rows; 0 for none.
+    pub gap_seed: u32,
 }
 
 /// An open session with a board.
@@ -153,10 +161,17 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
-    pub fn configure(&mut self, configuration: &Configuration) -> Result<(), BoardError> {
-        self.conversation.request(&Request::Configure(*configuration), Step::Request, |reply| {
-            matches!(reply, Reply::Configure).then_some(())
-        })
+    pub fn configure(&mut self, geometry: &Geometry, timing: RowTiming) -> Result<(), BoardError> {
+        let configure = Request::Configure(Configuration {
+            width: geometry.width() as u16,
+            height: geometry.height() as u16,
+            centre2: geometry.centre2() as u16,
+            blanking: timing.blanking.max(self.capabilities.least_blanking),
+            gap_seed: timing.gap_seed,
+            bits: geometry.depth().bits() as u8,
+        });
+        self.conversation
+            .request(&configure, Step::Request, |reply| matches!(reply, Reply::Configure).then_some(()))
     }
 
     /// Streams frames, and hands back every row.

@@ -52,6 +52,20 @@ pub trait RowTraffic {
     fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()>;
 }
 
+/// Frames of which only the return matters.
+#[derive(Clone, Debug)]
+pub struct Unjudged<I>(pub I);
+
+impl<I: Iterator<Item = NumberedFrame>> RowTraffic for Unjudged<I> {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        self.0.next()
+    }
+
+    fn returned(&mut self, _row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
+
 /// Streams all frames of `traffic` through the board. Rows are numbered from `conversation.acknowledged` on.
 pub(super) fn stream(
     conversation: &mut Conversation,

@@ -1,6 +1,5 @@
 //! Both ways together: rows, which nobody judges.
 
-use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -8,7 +7,7 @@ use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, STEP_
 use rand_core::Rng;
 
 use super::{LinkTestError, Test, Throughput};
-use crate::board::{Board, BoardError, Configuration, NumberedFrame, ReturnedRow, RowTraffic};
+use crate::board::{Board, BoardError, NumberedFrame, RowTiming, Unjudged};
 
 /// Rows of a frame. The core runs empty behind its last one, which costs half a row.
 const HEIGHT: u16 = 64;
@@ -40,15 +39,7 @@ impl Test<'_> {
     }
 
     fn set(&mut self, tables: &TableSet) -> Result<(), BoardError> {
-        let geometry = tables.geometry();
-        self.board.configure(&Configuration {
-            width: geometry.width() as u16,
-            height: geometry.height() as u16,
-            centre2: geometry.centre2() as u16,
-            blanking: self.board.capabilities.least_blanking,
-            gap_seed: 0,
-            bits: geometry.depth().bits() as u8,
-        })?;
+        self.board.configure(tables.geometry(), RowTiming::default())?;
         let kernel = Kernel::from(Interpolant::Hermite);
         self.board.upload(tables, &kernel)?;
         self.board.commit(tables, &kernel, 0, 1)
@@ -57,9 +48,10 @@ impl Test<'_> {
     /// Streams `frame` so many times, and returns the time by the slower of the two clocks.
     fn stream(&mut self, frame: &Arc<Frame>, number: &mut u16, times: u16) -> Result<Duration, BoardError> {
         let begun = self.begin();
-        let mut traffic = Same { frame: Arc::clone(frame), number: *number, left: times };
-        self.board.stream(&mut traffic)?;
-        *number = traffic.number;
+        let numbers = (0..times).map(|index| number.wrapping_add(index));
+        let frames = numbers.map(|number| NumberedFrame { number, frame: Arc::clone(frame) });
+        self.board.stream(&mut Unjudged(frames))?;
+        *number = number.wrapping_add(times);
         Ok(begun.on_wall.elapsed().max(self.board.now() - begun.on_link))
     }
 }
@@ -73,24 +65,4 @@ fn size(board: &Board) -> (usize, usize) {
 fn straight_tables(frame: &Frame) -> Result<TableSet, Box<dyn std::error::Error + Send + Sync>> {
     let geometry = Geometry::centred(frame.width(), frame.height(), frame.depth())?;
     Ok(TableSet::new(geometry, vec![STEP_ONE; frame.height()])?)
-}
-
-/// The same frame over and over.
-struct Same {
-    frame: Arc<Frame>,
-    number: u16,
-    left: u16,
-}
-
-impl RowTraffic for Same {
-    fn next_frame(&mut self) -> Option<NumberedFrame> {
-        self.left = self.left.checked_sub(1)?;
-        let number = self.number;
-        self.number = number.wrapping_add(1);
-        Some(NumberedFrame { number, frame: Arc::clone(&self.frame) })
-    }
-
-    fn returned(&mut self, _row: &ReturnedRow<'_>) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
 }

@@ -1,12 +1,12 @@
 //! A board that goes away during a run and comes back: waiting for it, and bringing it to where the run stood.
 
+use std::iter;
 use std::time::{Duration, Instant};
 
 use super::findings::{End, Findings};
 use super::plan::Segment;
 use super::steps::Run;
-use super::streaming::Unjudged;
-use crate::board::{Board, BoardError, NumberedFrame, OpenOptions};
+use crate::board::{Board, BoardError, NumberedFrame, OpenOptions, Unjudged};
 use crate::link::{self, Link};
 use crate::report::Reconnection;
 use crate::target::Target;
@@ -134,7 +134,7 @@ impl Run<'_> {
             let rendered = rendered.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
             self.findings.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
-            let played = self.board.stream(&mut Unjudged(Some(played)));
+            let played = self.board.stream(&mut Unjudged(iter::once(played)));
             played.map_err(|error| End::board("frames", &error))?;
         }
         later.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame))

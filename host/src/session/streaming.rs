@@ -1,6 +1,6 @@
 //! Frames through the board, one made ready while another is on its way.
 
-use std::ops::ControlFlow;
+use std::iter;
 use std::sync::mpsc::sync_channel;
 
 use halfrow_model::correct;
@@ -9,7 +9,7 @@ use super::findings::End;
 use super::judge::{Judge, Manner, PrepareError, Prepared};
 use super::plan::{Generation, Plan, SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
 use super::steps::{MAX_LATENCY, Run};
-use crate::board::{BoardError, NumberedFrame, ReturnedRow, RowTraffic};
+use crate::board::{BoardError, NumberedFrame, Unjudged};
 use crate::verdict::Exit;
 
 /// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
@@ -113,7 +113,7 @@ impl Run<'_> {
         else {
             return Ok(None);
         };
-        let place = match self.board.stream(&mut Unjudged(Some(frame))) {
+        let place = match self.board.stream(&mut Unjudged(iter::once(frame))) {
             Err(BoardError::RowMissing { place, .. }) => place,
             Err(error) => return Err(error),
             Ok(()) => return Ok(None),
@@ -123,19 +123,6 @@ impl Run<'_> {
             status.crc_errors + status.framing_errors == 0 && self.board.tally().damaged_in == damaged;
         let went_in = status.next_row_in > place.row_sequence;
         Ok((link_is_clean && went_in).then_some(LostTwice { row: place.row }))
-    }
-}
-
-/// A frame of which only the arrival matters.
-pub(super) struct Unjudged(pub(super) Option<NumberedFrame>);
-
-impl RowTraffic for Unjudged {
-    fn next_frame(&mut self) -> Option<NumberedFrame> {
-        self.0.take()
-    }
-
-    fn returned(&mut self, _row: &ReturnedRow<'_>) -> ControlFlow<()> {
-        ControlFlow::Continue(())
     }
 }
 

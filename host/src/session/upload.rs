@@ -3,7 +3,7 @@
 use super::findings::End;
 use super::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
 use super::steps::Run;
-use crate::board::{Bank, BoardError, Configuration, ReadBack, RefusalCode, Table};
+use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
 use crate::diagnosis;
 
 impl Run<'_> {
@@ -14,22 +14,13 @@ impl Run<'_> {
     }
 
     pub(super) fn configure(&mut self, segment: &Segment) -> Result<(), End> {
-        let geometry = self.plan.tables.geometry();
-        let least = self.board.capabilities.least_blanking;
-        let (blanking, gap_seed) = match segment.timing {
-            Timing::Least => (least, 0),
-            Timing::Sensor => (SENSOR_BLANKING.max(least), 0),
-            Timing::Gaps(seed) => (least, seed),
+        let timing = match segment.timing {
+            Timing::Least => RowTiming::default(),
+            Timing::Sensor => RowTiming { blanking: SENSOR_BLANKING, ..RowTiming::default() },
+            Timing::Gaps(gap_seed) => RowTiming { gap_seed, ..RowTiming::default() },
         };
-        let configuration = Configuration {
-            width: geometry.width() as u16,
-            height: geometry.height() as u16,
-            centre2: geometry.centre2() as u16,
-            blanking,
-            gap_seed,
-            bits: geometry.depth().bits() as u8,
-        };
-        self.board.configure(&configuration).map_err(|error| End::board("upload", &error))
+        let configured = self.board.configure(self.plan.tables.geometry(), timing);
+        configured.map_err(|error| End::board("upload", &error))
     }
 
     /// Uploads a generation, to be used from `first_frame` on.

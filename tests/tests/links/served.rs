@@ -38,6 +38,14 @@ impl Server {
     }
 }
 
+impl Drop for Server {
+    /// A server that outlives a test that failed would keep the tests' output open.
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
 #[test]
 fn a_served_board_passes_and_its_server_ends_when_it_is_told_to() {
     let folder = Folder::new();
@@ -100,4 +108,26 @@ fn a_board_held_by_another_host_is_busy_over_the_network() {
     ends(&verify(&served.target(), &[]), 4, "another host holds the board");
     let taken = program::halfrow(["info", "--take-over", "--board", &served.target()]);
     assert_eq!(taken.code, Some(0), "{}", taken.stderr);
+}
+
+/// A board keeps its tables from one session to the next, under a generation that the next may name, too.
+#[test]
+fn what_an_earlier_session_left_on_a_board_misleads_nobody() {
+    const LENS: [&str; 6] = ["--width", "128", "--height", "72", "--radius", "73.78"];
+    let (server, folder) = (Server::start(&["--board", "mock"]), Folder::new());
+    let on_board = ["--board", &server.target];
+    let done = |call: &[&str], more: &[&str]| {
+        let ended = folder.halfrow(call.iter().chain(more).copied());
+        assert_eq!(ended.code, Some(0), "{call:?}: {}{}", ended.stdout, ended.stderr);
+    };
+    done(&["link", "--seconds", "0.3"], &on_board);
+    done(&[&["verify", "--frame", "builtin:noise"], &LENS[..]].concat(), &on_board);
+    done(&["frames", "-o", "frames"], &LENS[..4]);
+    for kernel in ["nearest", "hermite"] {
+        let call = [&["correct", "frames/noise.pgm", "--kernel", kernel], &LENS[..]].concat();
+        done(&call, &[&["-o", "board.pgm", "--overwrite"], &on_board[..]].concat());
+        done(&call, &["-o", "model.pgm", "--overwrite", "--model"]);
+        assert!(folder.read("board.pgm") == folder.read("model.pgm"), "{kernel}");
+    }
+    assert_eq!(server.end("TERM"), Some(0));
 }
