@@ -16,7 +16,7 @@ pub(crate) fn stuff(bytes: &[u8], wire: &mut Vec<u8>) {
     let mut rest = bytes;
     loop {
         let reach = &rest[..rest.len().min(RUN)];
-        let run = reach.iter().position(|&byte| byte == 0).unwrap_or(reach.len());
+        let run = memchr::memchr(0, reach).unwrap_or(reach.len());
         let ends_in_zero = run < reach.len();
         #[expect(clippy::cast_possible_truncation, reason = "a run has at most 254 bytes")]
         wire.push(run as u8 + 1);

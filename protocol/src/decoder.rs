@@ -48,7 +48,7 @@ impl Decoder {
                 self.stuffed.clear();
                 self.too_long = false;
             }
-            let end = input.iter().position(|&byte| byte == 0);
+            let end = memchr::memchr(0, input);
             let (head, rest) = input.split_at(end.unwrap_or(input.len()));
             self.collect(head);
             if end.is_none() {

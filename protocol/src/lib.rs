@@ -5,12 +5,15 @@
 //!     (message)                      (packet)                            (cobs, decoder)
 //! ```
 //!
-//! Pure: no input or output, no clock, no files, and no standard library. What a packet means is said by the types here;
+//! Pure: no input or output, no clock, no files, and no standard library, which the feature `std` only asks what the
+//! processor has. What a packet means is said by the types here;
 //! what a board does with it, by the board; when to ask again, by the host.
 
 #![no_std]
 
 extern crate alloc;
+#[cfg(feature = "std")]
+extern crate std;
 
 mod bytes;
 mod cobs;
