@@ -7,10 +7,9 @@ use std::sync::Arc;
 use anyhow::{Context as _, ensure};
 use clap::Args;
 use halfrow_model::{Geometry, Phase};
-use sha2::{Digest, Sha256};
 
 use crate::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions};
-use crate::report::FileHash;
+use crate::report::{FileHash, sha256};
 use crate::session::FrameSource;
 
 /// How frame files are read.
@@ -63,10 +62,5 @@ fn frame_source(name: &str, how: &ReadOptions, geometry: &Geometry) -> anyhow::R
 /// The file's SHA-256.
 pub(super) fn file_hash(path: &Path) -> anyhow::Result<FileHash> {
     let bytes = fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
-    Ok(FileHash { path: path.display().to_string(), sha256: hash(&bytes) })
-}
-
-/// SHA-256 in hexadecimal digits.
-pub(super) fn hash(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    Ok(FileHash { path: path.display().to_string(), sha256: sha256([bytes]) })
 }

@@ -6,10 +6,10 @@ use clap::{Args, Subcommand, ValueEnum};
 use halfrow_model::{Kernel, Taps};
 use serde_json::{Map, Value, json};
 
-use super::inputs::hash;
 use super::{Context, Failure, lens, print};
 use crate::frames::preview::RgbImage;
 use crate::paper::lying;
+use crate::report::sha256;
 use crate::tables::KernelFile;
 use crate::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
 use crate::verdict::Exit;
@@ -141,7 +141,7 @@ fn about(photographs: &[Photograph], trained: &Trained) -> anyhow::Result<Map<St
     let image = |photograph: &Photograph| -> anyhow::Result<Value> {
         let name = photograph.path.file_name().map(|name| name.to_string_lossy().into_owned());
         let bytes = std::fs::read(&photograph.path)?;
-        Ok(json!({"name": name, "sha256": hash(&bytes)}))
+        Ok(json!({"name": name, "sha256": sha256([bytes])}))
     };
     let images: anyhow::Result<Vec<_>> = photographs.iter().map(image).collect();
     let model = |model: Model| json!({"warp": model.warp.name(), "radius_by_half_height": model.radius});

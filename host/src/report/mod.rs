@@ -6,6 +6,7 @@ mod identity;
 mod json;
 mod junit;
 mod pictures;
+mod sha256;
 mod text;
 mod wording;
 
@@ -24,6 +25,7 @@ pub use html::render as html;
 pub use identity::Identity;
 pub use json::render as json;
 pub use junit::render as junit;
+pub(crate) use sha256::sha256;
 pub use text::render as text;
 
 /// A finished run of `verify`.

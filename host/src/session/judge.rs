@@ -1,41 +1,17 @@
 //! Judges rows as they come back: place, generation, latency, every sample.
 
 use std::collections::VecDeque;
+use std::iter::Take;
 use std::ops::ControlFlow;
-use std::sync::Arc;
-use std::sync::mpsc::Receiver;
+use std::sync::mpsc;
 
-use halfrow_model::{CorrectError, Frame, FrameError};
-use sha2::{Digest, Sha256};
+use halfrow_model::Frame;
 
+use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
 use crate::progress::Progress;
 use crate::report::{Evidence, FrameReport, LatencyReport};
-
-/// A frame that is ready to be sent, with what must come back.
-pub(super) struct Prepared {
-    pub(super) name: String,
-    pub(super) number: u16,
-    pub(super) generation: u8,
-    pub(super) input: Arc<Frame>,
-    pub(super) expected: Arc<Frame>,
-}
-
-impl Prepared {
-    fn numbered(&self) -> NumberedFrame {
-        NumberedFrame { number: self.number, frame: Arc::clone(&self.input) }
-    }
-}
-
-/// A frame that could not be made ready.
-#[derive(Debug, thiserror::Error)]
-pub(super) enum PrepareError {
-    #[error("the frame {name} cannot be made; leave it out")]
-    Render { name: String, source: FrameError },
-    #[error("the reference cannot correct the frame {name}; use a frame of the tables' size and depth")]
-    Correct { name: String, source: CorrectError },
-}
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
@@ -83,9 +59,12 @@ struct InFlight {
     comparison: Comparison,
 }
 
+/// The frames of a segment.
+type Source<'a> = Take<mpsc::Iter<'a, Result<Prepared, PrepareError>>>;
+
 /// The judge of one segment.
 pub(super) struct Judge<'a> {
-    source: Receiver<Result<Prepared, PrepareError>>,
+    source: Source<'a>,
     seen: &'a mut Seen,
     manner: Manner,
     timing: String,
@@ -102,7 +81,7 @@ pub(super) struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     pub(super) fn new(
-        source: Receiver<Result<Prepared, PrepareError>>,
+        source: Source<'a>,
         seen: &'a mut Seen,
         manner: Manner,
         timing: String,
@@ -174,7 +153,7 @@ impl<'a> Judge<'a> {
 
     fn conclude(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
-        let Prepared { name, number, generation, input, expected } = prepared;
+        let Prepared { name, number, generation, sha256, input, expected } = prepared;
         let differs = comparison.differences > 0;
         let kept = self.seen.evidence.len();
         let differing =
@@ -191,7 +170,7 @@ impl<'a> Judge<'a> {
         self.seen.frames.push(FrameReport {
             name,
             number,
-            sha256: sha256(&input),
+            sha256,
             phase: input.phase().to_string(),
             generation,
             timing: self.timing.clone(),
@@ -206,7 +185,7 @@ impl RowTraffic for Judge<'_> {
         if let Some(frame) = self.again.pop_front() {
             return Some(frame);
         }
-        let prepared = match self.source.recv().ok()? {
+        let prepared = match self.source.next()? {
             Ok(prepared) => prepared,
             Err(error) => {
                 self.unprepared = Some(error);
@@ -262,19 +241,9 @@ impl RowTraffic for Judge<'_> {
     }
 }
 
-/// SHA-256 of a frame's samples, 16 bits little endian, in hexadecimal.
-fn sha256(frame: &Frame) -> String {
-    let bytes: Vec<u8> = frame.samples().iter().flat_map(|sample| sample.to_le_bytes()).collect();
-    hex(&Sha256::digest(bytes))
-}
-
-/// Bytes in hexadecimal.
-pub(super) fn hex(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
     use std::sync::mpsc::channel;
 
     use halfrow_model::{BitDepth, Phase};
@@ -287,8 +256,8 @@ mod tests {
     fn frame(number: u16) -> Prepared {
         let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![number; 64 * HEIGHT]).unwrap();
         let frame = Arc::new(frame);
-        let name = String::new();
-        Prepared { name, number, generation: 2, input: Arc::clone(&frame), expected: frame }
+        let (name, sha256) = (String::new(), String::new());
+        Prepared { name, number, generation: 2, sha256, input: Arc::clone(&frame), expected: frame }
     }
 
     fn give(judge: &mut Judge<'_>, frame: u16, row: usize, sample: u16) {
@@ -305,7 +274,7 @@ mod tests {
         let mut seen = Seen::default();
         let manner =
             Manner { claimed_latency: 44, latency_limit: 64, fail_fast: false, pictures: 0, differing: 0 };
-        let mut judge = Judge::new(source, &mut seen, manner, String::new(), &Silent);
+        let mut judge = Judge::new(source.iter().take(2), &mut seen, manner, String::new(), &Silent);
         let sent = |judge: &mut Judge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
         [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));

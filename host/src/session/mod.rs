@@ -9,6 +9,7 @@ mod golden;
 mod judge;
 mod patterns;
 mod plan;
+mod prepared;
 mod reconnect;
 mod steps;
 mod streaming;

@@ -1,11 +1,15 @@
 //! The steps of a run, in their order.
 
+use std::sync::mpsc::Receiver;
+use std::thread;
+
 use halfrow_model::{Kernel, TableSet, Taps};
 
 use super::findings::{End, Findings};
 use super::golden;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
+use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
 use crate::board::{Board, Capabilities};
 use crate::progress::Progress;
@@ -47,24 +51,36 @@ impl Run<'_> {
     pub(super) fn all_steps(&mut self) -> Result<(), End> {
         self.findings.note_identity(self.board);
         self.identity()?;
-        self.progress.step("testing the link");
-        self.persist(Self::link)?;
         let schedule = self.plan.schedule(self.board.capabilities.table_banks);
+        let (plan, generations) = (self.plan, self.generations.clone());
+        thread::scope(|scope| {
+            let frames = prepared::ahead(scope, plan, &schedule, generations);
+            self.progress.step("testing the link");
+            self.persist(Self::link)?;
+            let last = self.stream_all(&schedule, &frames)?;
+            self.conclude(last)
+        })
+    }
+
+    /// Streams the segments, up to the first that differs when that is asked for, and returns the last one streamed.
+    fn stream_all<'s>(
+        &mut self,
+        schedule: &'s [Segment],
+        source: &Receiver<Result<Prepared, PrepareError>>,
+    ) -> Result<Option<&'s Segment>, End> {
         let height = self.plan.tables.geometry().height() as u64;
         let frames: usize = schedule.iter().map(|segment| segment.frames.len()).sum();
         self.progress.rows_expected(frames as u64 * height);
-        let mut last = None;
-        for segment in &schedule {
-            last = Some(segment);
+        for segment in schedule {
             if let Err(end) = self.prepare(segment) {
                 self.return_to(segment, 0, end)?;
             }
-            self.stream(segment)?;
+            self.stream(segment, source)?;
             if self.plan.fail_fast && self.findings.seen.differences() > 0 {
-                break;
+                return Ok(Some(segment));
             }
         }
-        self.conclude(last)
+        Ok(schedule.last())
     }
 
     /// Judges what was seen, with the board back where it was after `last` if it goes away meanwhile.

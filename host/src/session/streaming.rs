@@ -1,13 +1,12 @@
-//! Frames through the board, one made ready while another is on its way.
+//! Frames through the board, segment by segment.
 
 use std::iter;
-use std::sync::mpsc::sync_channel;
-
-use halfrow_model::correct;
+use std::sync::mpsc::Receiver;
 
 use super::findings::End;
-use super::judge::{Judge, Manner, PrepareError, Prepared};
-use super::plan::{Generation, Plan, SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
+use super::judge::{Judge, Manner};
+use super::plan::{SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
+use super::prepared::{PrepareError, Prepared};
 use super::steps::{MAX_LATENCY, Run};
 use crate::board::{BoardError, NumberedFrame, Unjudged};
 use crate::verdict::Exit;
@@ -21,27 +20,23 @@ struct LostTwice {
 }
 
 impl Run<'_> {
-    /// Streams a segment and judges what comes back.
-    pub(super) fn stream(&mut self, segment: &Segment) -> Result<(), End> {
+    /// Streams a segment, whose frames are the next ones of `source`, and judges what comes back.
+    pub(super) fn stream(
+        &mut self,
+        segment: &Segment,
+        source: &Receiver<Result<Prepared, PrepareError>>,
+    ) -> Result<(), End> {
         let (manner, timing) = (self.manner(), self.timing(segment.timing));
-        let (plan, generations) = (self.plan, self.generations.clone());
-        let (sender, source) = sync_channel(1);
         // The judge has what is seen while the run has the board, and what it has to say of its link.
         let mut seen = std::mem::take(&mut self.findings.seen);
-        let (streamed, prepared) = std::thread::scope(|scope| {
-            scope.spawn(move || {
-                let frames = segment.frames.iter().map(|frame| make_ready(plan, frame, &generations));
-                // The judge hangs up when the stream has ended.
-                let _ = frames.into_iter().try_for_each(|prepared| sender.send(prepared));
-            });
-            let mut judge = Judge::new(source, &mut seen, manner, timing, self.progress);
-            let streamed = self.stream_to_the_end(segment, &mut judge);
-            (streamed, judge.finish())
-        });
+        let frames = source.iter().take(segment.frames.len());
+        let mut judge = Judge::new(frames, &mut seen, manner, timing, self.progress);
+        let streamed = self.stream_to_the_end(segment, &mut judge);
+        let prepared = judge.finish();
         self.findings.seen = seen;
         streamed?;
         prepared.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
-        if plan.fail_fast && self.findings.seen.differences() > 0 {
+        if self.plan.fail_fast && self.findings.seen.differences() > 0 {
             self.board.drop_rows().map_err(|error| End::board("frames", &error))?;
         }
         Ok(())
@@ -124,24 +119,4 @@ impl Run<'_> {
         let went_in = status.next_row_in > place.row_sequence;
         Ok((link_is_clean && went_in).then_some(LostTwice { row: place.row }))
     }
-}
-
-fn make_ready(
-    plan: &Plan,
-    frame: &ScheduledFrame,
-    generations: &[Generation],
-) -> Result<Prepared, PrepareError> {
-    let name = frame.source.name();
-    let decoy = generations.iter().find(|generation| generation.number == frame.generation);
-    let (tables, kernel) = decoy.map_or((&plan.tables, &plan.kernel), |found| (&found.tables, &found.kernel));
-    let input = plan.render(frame).map_err(|source| PrepareError::Render { name: name.clone(), source })?;
-    let expected = correct(tables, kernel, &input)
-        .map_err(|source| PrepareError::Correct { name: name.clone(), source })?;
-    Ok(Prepared {
-        name,
-        number: frame.number,
-        generation: frame.generation,
-        input,
-        expected: expected.into(),
-    })
 }

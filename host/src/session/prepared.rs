@@ -1,0 +1,76 @@
+//! Frames made ready ahead of the board, with what must come back.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread::Scope;
+
+use halfrow_model::{CorrectError, Frame, FrameError, correct};
+
+use super::plan::{Generation, Plan, ScheduledFrame, Segment};
+use crate::board::NumberedFrame;
+use crate::report::sha256;
+
+/// A frame that is ready to be sent, with what must come back.
+pub(super) struct Prepared {
+    pub(super) name: String,
+    pub(super) number: u16,
+    pub(super) generation: u8,
+    /// SHA-256 of the input's samples, 16 bits little endian, in hexadecimal.
+    pub(super) sha256: String,
+    pub(super) input: Arc<Frame>,
+    pub(super) expected: Arc<Frame>,
+}
+
+/// A frame that could not be made ready.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum PrepareError {
+    #[error("the frame {name} cannot be made; leave it out")]
+    Render { name: String, source: FrameError },
+    #[error("the reference cannot correct the frame {name}; use a frame of the tables' size and depth")]
+    Correct { name: String, source: CorrectError },
+}
+
+/// The frames of `schedule` in their order, each made ready on a thread of `scope` while earlier ones are on their way.
+/// That thread ends when the receiver is dropped.
+pub(super) fn ahead<'scope, 'run: 'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    plan: &'run Plan,
+    schedule: &'run [Segment],
+    generations: Vec<Generation>,
+) -> Receiver<Result<Prepared, PrepareError>> {
+    let (sender, receiver) = sync_channel(1);
+    scope.spawn(move || {
+        let mut frames = schedule.iter().flat_map(|segment| &segment.frames);
+        let _ = frames.try_for_each(|frame| sender.send(Prepared::new(plan, frame, &generations)));
+    });
+    receiver
+}
+
+impl Prepared {
+    fn new(plan: &Plan, frame: &ScheduledFrame, generations: &[Generation]) -> Result<Self, PrepareError> {
+        let name = frame.source.name();
+        let decoy = generations.iter().find(|generation| generation.number == frame.generation);
+        let (tables, kernel) =
+            decoy.map_or((&plan.tables, &plan.kernel), |found| (&found.tables, &found.kernel));
+        let input =
+            plan.render(frame).map_err(|source| PrepareError::Render { name: name.clone(), source })?;
+        let expected = correct(tables, kernel, &input)
+            .map_err(|source| PrepareError::Correct { name: name.clone(), source })?;
+        Ok(Self {
+            name,
+            number: frame.number,
+            generation: frame.generation,
+            sha256: sha256(input.rows().map(little_endian)),
+            input,
+            expected: expected.into(),
+        })
+    }
+
+    pub(super) fn numbered(&self) -> NumberedFrame {
+        NumberedFrame { number: self.number, frame: Arc::clone(&self.input) }
+    }
+}
+
+fn little_endian(row: &[u16]) -> Vec<u8> {
+    row.iter().flat_map(|sample| sample.to_le_bytes()).collect()
+}
