@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+/// Bytes that are written at once.
+const BUFFER: usize = 1 << 17;
+
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum WriteAsideError {
@@ -94,7 +97,7 @@ fn filled(folder: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     let file = builder.tempfile_in(folder)?;
-    let mut out = BufWriter::new(file.as_file());
+    let mut out = BufWriter::with_capacity(BUFFER, file.as_file());
     write(&mut out)?;
     out.flush()?;
     drop(out);

@@ -11,7 +11,9 @@ mod patterns;
 pub mod pgm;
 pub mod png;
 pub mod preview;
+mod raster;
 pub mod raw;
+mod rows;
 mod scene;
 mod size;
 pub mod street;
@@ -25,6 +27,7 @@ pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
 pub use file::{read, read_rgb, write};
 pub use mosaic::mosaic;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
+pub use rows::RowReader;
 pub use scene::Scene;
 pub use size::{MAX_FILE_BYTES, MAX_SIDE};
 

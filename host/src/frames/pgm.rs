@@ -6,6 +6,7 @@ use std::io::{self, Write};
 
 use halfrow_model::{BitDepth, Frame};
 
+use super::raster::{Lines, Raster};
 use super::{DecodeError, ReadOptions, size};
 
 /// The first bytes of a PGM.
@@ -17,6 +18,14 @@ pub(super) const MAGIC: &[u8] = b"P5";
 /// [`DecodeError`] when the header is malformed, the raster is not exactly as long as the header says, or a sample is
 /// above the header's maxval or above `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
+    raster(bytes)?.decode(bytes, how)
+}
+
+/// Where the samples are in the PGM that begins with `bytes`.
+///
+/// # Errors
+/// [`DecodeError`] when the header is malformed, or goes on behind `bytes`.
+pub(super) fn raster(bytes: &[u8]) -> Result<Raster, DecodeError> {
     let mut header = Header { bytes, offset: MAGIC.len() };
     if !bytes.starts_with(MAGIC) {
         return Err(DecodeError::PgmHeader { wanted: "`P5`", offset: 0 });
@@ -24,17 +33,7 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
     let (width, height) = (header.number("width")?, header.number("height")?);
     let (width, height) = size::checked(width.into(), height.into())?;
     let maxval = header.maxval()?;
-    let raster = header.raster()?;
-    let sample_bytes = if maxval <= u16::from(u8::MAX) { 1 } else { 2 };
-    size::exact(raster.len(), width * height * sample_bytes)?;
-    let samples: Vec<u16> = raster
-        .chunks_exact(sample_bytes)
-        .map(|bytes| bytes.iter().fold(0, |high, &low| high << 8 | u16::from(low)))
-        .collect();
-    if let Some((place, &value)) = samples.iter().enumerate().find(|&(_, &value)| value > maxval) {
-        return Err(DecodeError::AboveMaxval { row: place / width, column: place % width, value, maxval });
-    }
-    Ok(Frame::new(width, how.depth, how.phase, samples)?)
+    Ok(Raster { width, height, start: header.end()?, lines: Lines::Pgm { maxval } })
 }
 
 /// Writes `frame` as a PGM with the maxval 2^B − 1.
@@ -42,17 +41,34 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// # Errors
 /// Whatever `out` answers.
 pub fn encode(frame: &Frame, out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "P5\n{} {}\n{}", frame.width(), frame.height(), frame.depth().max())?;
+    write_header(out, (frame.width(), frame.height()), frame.depth())?;
     let mut line = Vec::with_capacity(frame.width() * 2);
     for row in frame.rows() {
         line.clear();
-        match frame.depth() {
-            BitDepth::Eight => line.extend(row.iter().map(|&sample| sample.to_be_bytes()[1])),
-            _ => line.extend(row.iter().flat_map(|sample| sample.to_be_bytes())),
-        }
+        pack(row, frame.depth(), &mut line);
         out.write_all(&line)?;
     }
     Ok(())
+}
+
+/// Writes all that comes before the rows of a PGM of `(width, height)`.
+///
+/// # Errors
+/// Whatever `out` answers.
+pub(super) fn write_header(
+    out: &mut (impl Write + ?Sized),
+    (width, height): (usize, usize),
+    depth: BitDepth,
+) -> io::Result<()> {
+    writeln!(out, "P5\n{width} {height}\n{}", depth.max())
+}
+
+/// Appends the bytes of a row.
+pub(super) fn pack(row: &[u16], depth: BitDepth, line: &mut Vec<u8>) {
+    match depth {
+        BitDepth::Eight => line.extend(row.iter().map(|&sample| sample.to_be_bytes()[1])),
+        _ => line.extend(row.iter().flat_map(|sample| sample.to_be_bytes())),
+    }
 }
 
 /// A reader of the header's numbers.
@@ -90,10 +106,10 @@ impl<'a> Header<'a> {
         }
     }
 
-    /// The bytes after the one white space that ends the header.
-    fn raster(&self) -> Result<&'a [u8], DecodeError> {
+    /// Where the samples begin: after the one white space that ends the header.
+    fn end(&self) -> Result<usize, DecodeError> {
         match self.rest() {
-            [blank, raster @ ..] if blank.is_ascii_whitespace() => Ok(raster),
+            [blank, ..] if blank.is_ascii_whitespace() => Ok(self.offset + 1),
             _ => Err(DecodeError::PgmHeader { wanted: "white space after the maxval", offset: self.offset }),
         }
     }

@@ -11,6 +11,7 @@ use std::str::FromStr;
 use halfrow_model::Frame;
 
 use super::error::PackingError;
+use super::raster::{Lines, Raster};
 use super::{DecodeError, EncodeError, ReadOptions, size};
 
 /// How headerless samples lie in bytes.
@@ -62,37 +63,56 @@ impl RawLayout {
         }
     }
 
-    /// Appends the samples of one group of bytes.
-    fn unpack(self, group: &[u8], samples: &mut Vec<u16>) {
-        match (self, group) {
-            (Self::U16Le, &[low, high]) => samples.push(u16::from_le_bytes([low, high])),
-            (Self::U8, &[sample]) => samples.push(sample.into()),
-            (_, [high @ .., low]) => {
-                let low_bits = self.bits() - 8;
-                samples.extend(high.iter().zip(0..).map(|(&byte, place)| {
-                    u16::from(byte) << low_bits | u16::from(low >> (place * low_bits)) & ((1 << low_bits) - 1)
-                }));
+    /// Bytes of a row of `width` samples.
+    pub(super) fn line_bytes(self, width: usize) -> usize {
+        let (group_samples, group_bytes) = self.group();
+        width / group_samples * group_bytes
+    }
+
+    /// Unpacks the bytes of a row.
+    pub(super) fn unpack(self, line: &[u8], row: &mut [u16]) {
+        let (group_samples, group_bytes) = self.group();
+        match self {
+            Self::U8 => row.iter_mut().zip(line).for_each(|(sample, &byte)| *sample = byte.into()),
+            Self::U16Le => {
+                let pairs = line.as_chunks().0;
+                row.iter_mut().zip(pairs).for_each(|(sample, &pair)| *sample = u16::from_le_bytes(pair));
             }
-            _ => {}
+            Self::Mipi10 | Self::Mipi12 => {
+                let groups = row.chunks_exact_mut(group_samples).zip(line.chunks_exact(group_bytes));
+                groups.for_each(|(group, bytes)| self.unpack_group(bytes, group));
+            }
         }
     }
 
-    /// Appends the bytes of one group of samples.
-    fn pack(self, group: &[u16], bytes: &mut Vec<u8>) {
+    fn unpack_group(self, bytes: &[u8], group: &mut [u16]) {
+        let low_bits = self.bits() - 8;
+        let Some((low, high)) = bytes.split_last() else { return };
+        for ((sample, &byte), place) in group.iter_mut().zip(high).zip(0..) {
+            *sample =
+                u16::from(byte) << low_bits | u16::from(low >> (place * low_bits)) & ((1 << low_bits) - 1);
+        }
+    }
+
+    /// Appends the bytes of a row.
+    pub(super) fn pack(self, row: &[u16], line: &mut Vec<u8>) {
         match self {
-            Self::U8 | Self::U16Le => {
-                let (_, width) = self.group();
-                bytes.extend(group.iter().flat_map(|sample| sample.to_le_bytes().into_iter().take(width)));
-            }
+            Self::U8 => line.extend(row.iter().map(|sample| sample.to_le_bytes()[0])),
+            Self::U16Le => line.extend(row.iter().flat_map(|sample| sample.to_le_bytes())),
             Self::Mipi10 | Self::Mipi12 => {
-                let low_bits = self.bits() - 8;
-                bytes.extend(group.iter().map(|sample| (sample >> low_bits).to_le_bytes()[0]));
-                let low = group.iter().zip(0..).fold(0, |low, (sample, place)| {
-                    low | (sample & ((1 << low_bits) - 1)) << (place * low_bits)
-                });
-                bytes.push(low.to_le_bytes()[0]);
+                row.chunks_exact(self.group().0).for_each(|group| self.pack_group(group, line));
             }
         }
+    }
+
+    fn pack_group(self, group: &[u16], bytes: &mut Vec<u8>) {
+        let low_bits = self.bits() - 8;
+        bytes.extend(group.iter().map(|sample| (sample >> low_bits).to_le_bytes()[0]));
+        let low = group
+            .iter()
+            .zip(0..)
+            .fold(0, |low, (sample, place)| low | (sample & ((1 << low_bits) - 1)) << (place * low_bits));
+        bytes.push(low.to_le_bytes()[0]);
     }
 
     fn check_width(self, width: usize) -> Result<(), PackingError> {
@@ -141,16 +161,18 @@ pub struct RawGeometry {
 /// [`DecodeError`] when the length is not exactly that of the geometry, when a row is no whole number of packing groups,
 /// or when a sample is above `how.depth`.
 pub fn decode(bytes: &[u8], geometry: RawGeometry, how: &ReadOptions) -> Result<Frame, DecodeError> {
+    raster(geometry)?.decode(bytes, how)
+}
+
+/// The rows of a headerless file.
+///
+/// # Errors
+/// [`DecodeError`] when a side is too long, or a row is no whole number of packing groups.
+pub(super) fn raster(geometry: RawGeometry) -> Result<Raster, DecodeError> {
     let RawGeometry { width, height, layout } = geometry;
     let (width, height) = size::checked(width as u64, height as u64)?;
     layout.check_width(width)?;
-    let (group_samples, group_bytes) = layout.group();
-    size::exact(bytes.len(), width / group_samples * group_bytes * height)?;
-    let mut samples = Vec::with_capacity(width * height);
-    for group in bytes.chunks_exact(group_bytes) {
-        layout.unpack(group, &mut samples);
-    }
-    Ok(Frame::new(width, how.depth, how.phase, samples)?)
+    Ok(Raster { width, height, start: 0, lines: Lines::Raw(layout) })
 }
 
 /// Writes the samples of `frame` without a header.
@@ -163,13 +185,10 @@ pub fn encode(frame: &Frame, layout: RawLayout, out: &mut impl Write) -> Result<
         return Err(EncodeError::LayoutTooNarrow { layout, depth: frame.depth() });
     }
     layout.check_width(frame.width())?;
-    let (group_samples, _) = layout.group();
     let mut line = Vec::with_capacity(frame.width() * 2);
     for row in frame.rows() {
         line.clear();
-        for group in row.chunks_exact(group_samples) {
-            layout.pack(group, &mut line);
-        }
+        layout.pack(row, &mut line);
         out.write_all(&line)?;
     }
     Ok(())
