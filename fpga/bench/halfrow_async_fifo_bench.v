@@ -39,14 +39,7 @@ module halfrow_async_fifo_bench;
         end
     endtask
 
-    function pause(input integer pattern, input integer clocks);
-        case (pattern)
-            0:       pause = 0;
-            1:       pause = $random(seed);
-            2:       pause = ($random(seed) & 7) != 0;
-            default: pause = clocks & 128 ? 1'b1 : 1'b0;
-        endcase
-    endfunction
+    `include "pause.vh"
 
     function [7:0] word(input integer place);
         word = place * 151 + (place >> 8);

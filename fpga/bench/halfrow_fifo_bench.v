@@ -37,14 +37,7 @@ module halfrow_fifo_bench;
                 end
             endtask
 
-            function pause(input integer pattern);
-                case (pattern)
-                    0:       pause = 0;
-                    1:       pause = $random(seed);
-                    2:       pause = ($random(seed) & 7) != 0;
-                    default: pause = clocks & 128 ? 1'b1 : 1'b0;
-                endcase
-            endfunction
+            `include "pause.vh"
 
             // The word is a function of its place, so that one lost or doubled shows at once.
             function [7:0] word(input integer place);
@@ -53,9 +46,9 @@ module halfrow_fifo_bench;
 
             task one_clock;
                 begin
-                    in_valid  = sent < 2000 && !pause(gaps);
+                    in_valid  = sent < 2000 && !pause(gaps, clocks);
                     in_data   = in_valid ? word(sent) : 8'hxx;
-                    out_ready = !pause(stalls);
+                    out_ready = !pause(stalls, clocks);
                     #1 if (was_stalled && (!out_valid || out_data !== was_data)) fault("output not stable");
                     was_stalled = out_valid && !out_ready;
                     was_data    = out_data;

@@ -87,14 +87,7 @@ module halfrow_sender_bench;
         end
     endtask
 
-    function pause(input integer pattern);
-        case (pattern)
-            0:       pause = 0;
-            1:       pause = $random(seed);
-            2:       pause = ($random(seed) & 3) != 0;
-            default: pause = clocks & 256 ? 1'b1 : 1'b0;
-        endcase
-    endfunction
+    `include "pause.vh"
 
     // Which client has packet n: all replies, all rows, in turns, or in turns with both offered at once.
     function owner(input integer n);
@@ -158,8 +151,8 @@ module halfrow_sender_bench;
 
     task drive;
         begin
-            tx_ready = !pause(stalls);
-            if (next_offer < total && !valid && left == 0 && !row_header && !pause(gaps)) begin
+            tx_ready = !pause(stalls, clocks);
+            if (next_offer < total && !valid && left == 0 && !row_header && !pause(gaps, clocks)) begin
                 offer(next_offer);
                 if (order == 3 && !owner(next_offer) && next_offer + 1 < total) offer(next_offer + 1);
             end
@@ -167,7 +160,7 @@ module halfrow_sender_bench;
             if (valid) window = fields[next_offer][87:56];
             byte_valid             = 0;
             {reply_byte, row_byte} = 16'hx;
-            if (left > 0 && !pause(gaps)) begin
+            if (left > 0 && !pause(gaps, clocks)) begin
                 byte_valid[sender_of] = 1;
                 if (sender_of) row_byte = bytes[next_byte];
                 else reply_byte = bytes[next_byte];

@@ -33,14 +33,7 @@ module halfrow_stuffer_bench;
         end
     endtask
 
-    function pause(input integer pattern);
-        case (pattern)
-            0:       pause = 0;
-            1:       pause = $random(seed);
-            2:       pause = ($random(seed) & 3) != 0;
-            default: pause = clocks & 512 ? 1'b1 : 1'b0;
-        endcase
-    endfunction
+    `include "pause.vh"
 
     task want(input [7:0] value);
         begin
@@ -97,10 +90,10 @@ module halfrow_stuffer_bench;
 
     task one_clock;
         begin
-            in_valid  = in < plain_total && !pause(gaps);
+            in_valid  = in < plain_total && !pause(gaps, clocks);
             in_data   = in_valid ? plain[in] : 8'hxx;
             in_last   = in_valid ? last[in] : 1'bx;
-            out_ready = !pause(stalls);
+            out_ready = !pause(stalls, clocks);
             #1 if (was_stalled && (!out_valid || out_data !== was_data)) fault("output not stable");
             was_stalled = out_valid && !out_ready;
             was_data    = out_data;
