@@ -1,5 +1,6 @@
 //! Frames corrected by a board, unjudged: upload, stream, collect.
 
+use std::collections::VecDeque;
 use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
 
@@ -21,66 +22,75 @@ pub struct Correction<'a> {
     pub first_frame: u16,
 }
 
-/// What came back.
-#[derive(Clone, Debug)]
-pub struct Corrected {
-    /// The samples of each frame, row after row, in the order of the inputs. A broken board can exceed the depth.
-    pub samples: Vec<Vec<u16>>,
-    /// The least and the most pixel clocks that a row's first and last sample took.
-    pub latency: RangeInclusive<u16>,
-}
-
 impl Correction<'_> {
-    /// Uploads tables and kernel, streams `inputs` with the least blanking that the board can do, and collects what comes
-    /// back.
+    /// Uploads tables and kernel, streams `inputs` with the least blanking that the board can do, and hands the samples of
+    /// each corrected frame, row after row, to `take`, in the order of the inputs, until that breaks. A broken board's
+    /// samples can exceed the depth. Returns the least and the most pixel clocks that a row's first and last sample took.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses, does not answer, or keeps a row.
     pub fn run(
         &self,
         board: &mut Board,
-        inputs: &[Arc<Frame>],
+        inputs: impl Iterator<Item = Arc<Frame>>,
+        take: impl FnMut(Vec<u16>) -> ControlFlow<()>,
         progress: &dyn Progress,
-    ) -> Result<Corrected, BoardError> {
+    ) -> Result<RangeInclusive<u16>, BoardError> {
         board.start_afresh()?;
         board.configure(self.tables.geometry(), RowTiming::default())?;
         board.upload(self.tables, self.kernel)?;
         board.commit(self.tables, self.kernel, self.first_frame, self.generation)?;
         let mut collect = Collect {
-            first: self.first_frame,
-            waiting: inputs.iter().enumerate(),
-            samples: inputs.iter().map(|frame| vec![0; frame.samples().len()]).collect(),
+            next: self.first_frame,
+            inputs,
+            under_way: VecDeque::new(),
+            take,
             latency: None,
             progress,
         };
         board.stream(&mut collect)?;
-        let Collect { samples, latency, .. } = collect;
-        Ok(Corrected { samples, latency: latency.unwrap_or(0..=0) })
+        Ok(collect.latency.unwrap_or(0..=0))
     }
 }
 
-/// Keeps what comes back.
-struct Collect<'a> {
-    first: u16,
-    waiting: std::iter::Enumerate<std::slice::Iter<'a, Arc<Frame>>>,
-    samples: Vec<Vec<u16>>,
+/// A frame that has not come back whole.
+struct UnderWay {
+    number: u16,
+    samples: Vec<u16>,
+    rows_left: usize,
+}
+
+/// Keeps what comes back until a frame is whole.
+struct Collect<'a, I, T> {
+    /// The number of the next frame.
+    next: u16,
+    inputs: I,
+    under_way: VecDeque<UnderWay>,
+    take: T,
     latency: Option<RangeInclusive<u16>>,
     progress: &'a dyn Progress,
 }
 
-impl RowTraffic for Collect<'_> {
+impl<I, T> RowTraffic for Collect<'_, I, T>
+where
+    I: Iterator<Item = Arc<Frame>>,
+    T: FnMut(Vec<u16>) -> ControlFlow<()>,
+{
     fn next_frame(&mut self) -> Option<NumberedFrame> {
-        let (index, frame) = self.waiting.next()?;
-        Some(NumberedFrame { number: self.first + index as u16, frame: Arc::clone(frame) })
+        let (number, frame) = (self.next, self.inputs.next()?);
+        self.next = number.wrapping_add(1);
+        let samples = vec![0; frame.samples().len()];
+        self.under_way.push_back(UnderWay { number, samples, rows_left: frame.height() });
+        Some(NumberedFrame { number, frame })
     }
 
     fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
         let start = row.row * row.samples.len();
-        let index = usize::from(row.frame.wrapping_sub(self.first));
-        if let Some(place) =
-            self.samples.get_mut(index).and_then(|samples| samples.get_mut(start..start + row.samples.len()))
+        if let Some(frame) = self.under_way.iter_mut().find(|frame| frame.number == row.frame)
+            && let Some(place) = frame.samples.get_mut(start..start + row.samples.len())
         {
             place.copy_from_slice(row.samples);
+            frame.rows_left -= 1;
         }
         let (least, most) =
             (row.first_latency.min(row.last_latency), row.first_latency.max(row.last_latency));
@@ -89,6 +99,9 @@ impl RowTraffic for Collect<'_> {
             None => least..=most,
         });
         self.progress.row();
+        while let Some(whole) = self.under_way.pop_front_if(|frame| frame.rows_left == 0) {
+            (self.take)(whole.samples)?;
+        }
         ControlFlow::Continue(())
     }
 }

@@ -1,23 +1,21 @@
 //! `halfrow correct`
 
+mod by_board;
+mod by_model;
 mod places;
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use clap::Args;
-use halfrow_model::{Frame, correct};
+use halfrow_model::Frame;
 use serde_json::json;
 
 use super::board::BoardArguments;
-use super::inputs::{InputArguments, frame_sources};
+use super::inputs::{FrameName, InputArguments};
 use super::lens::{self, Chosen, LensArguments};
 use super::{Context, Failure, print, print_json};
-use crate::board::{Board, BoardError};
-use crate::correction::Correction;
-use crate::frames::{self, Format, Scene, preview};
-use crate::progress::Silent;
-use crate::session::{self, FrameSource, JUDGED};
+use crate::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
+use crate::progress;
 use crate::target::BoardKind;
 use crate::verdict::Exit;
 use places::{Places, Wanted};
@@ -74,44 +72,55 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let file = arguments.tables.as_deref().or(settings.tables.as_deref());
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
     let chosen = lens::choose(file, &arguments.lens, kernel)?;
-    let geometry = chosen.tables.geometry();
-    let how = arguments.input.read_options(geometry, arguments.lens.phase);
-    let sources = frame_sources(&arguments.inputs, &how, geometry)?;
-    let places = Places::of(&sources, &arguments.wanted())?;
-    let scene = Scene { geometry: *geometry, ..arguments.lens.scene(1)? };
-    let inputs = sources
-        .iter()
-        .map(|source| match source {
-            FrameSource::File { frame, .. } => Ok(Arc::clone(frame)),
-            FrameSource::Builtin(builtin) => builtin.render(&scene).map(Arc::new),
-        })
-        .collect::<Result<Vec<_>, _>>()?;
-    let (board, corrected) = if arguments.model {
-        (None, by_model(&chosen, &inputs)?)
-    } else {
-        let (kind, corrected) = by_board(arguments, context, &chosen, &inputs)?;
-        (Some(kind), corrected)
+    let geometry = *chosen.tables.geometry();
+    let job = Job {
+        arguments,
+        inputs: FrameName::all(&arguments.inputs)?,
+        how: arguments.input.read_options(&geometry, arguments.lens.phase),
+        scene: Scene { geometry, ..arguments.lens.scene(1)? },
+        chosen,
     };
-    arguments.write(&places, &corrected).map_err(Failure::error)?;
-    report(arguments.json, board, &places)
+    job.check()?;
+    let places = Places::of(&job.inputs, &arguments.wanted())?;
+    let watched = progress::for_stderr(context.quiet || arguments.json);
+    watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
+    let board = if arguments.model {
+        job.by_model(&places, watched.as_ref()).map(|()| None)
+    } else {
+        job.by_board(&places, context, watched.as_ref()).map(Some)
+    };
+    watched.done();
+    report(arguments.json, board?, &places)
+}
+
+/// What is to be corrected, and how.
+struct Job<'a> {
+    arguments: &'a Arguments,
+    inputs: Vec<FrameName>,
+    how: ReadOptions,
+    scene: Scene,
+    chosen: Chosen,
+}
+
+impl Job<'_> {
+    /// Whether all files are there and of the right size, before anything is written.
+    fn check(&self) -> anyhow::Result<()> {
+        let mut files = self.inputs.iter().filter(|input| matches!(input, FrameName::File(_)));
+        files.try_for_each(|input| input.rows(&self.how, &self.scene).map(drop))
+    }
+
+    /// Writes the preview of the frame with this index, if one is asked for.
+    fn write_preview(&self, places: &Places, index: usize, corrected: &Frame) -> Result<(), WriteError> {
+        let Some(path) = places.previews.get(index) else { return Ok(()) };
+        let develop = if self.arguments.preview_coded { preview::demosaic_coded } else { preview::demosaic };
+        frames::write_rgb(path, &develop(corrected), self.arguments.overwrite)
+    }
 }
 
 impl Arguments {
     fn wanted(&self) -> Wanted<'_> {
         let (preview, format) = (self.preview.as_deref(), self.format);
         Wanted { output: &self.output, format, preview, overwrite: self.overwrite }
-    }
-
-    fn write(&self, places: &Places, corrected: &[Frame]) -> anyhow::Result<()> {
-        places.make_folders()?;
-        for (path, frame) in places.frames.iter().zip(corrected) {
-            frames::write(path, frame, self.overwrite)?;
-        }
-        let develop = if self.preview_coded { preview::demosaic_coded } else { preview::demosaic };
-        for (path, frame) in places.previews.iter().zip(corrected) {
-            frames::write_rgb(path, &develop(frame), self.overwrite)?;
-        }
-        Ok(())
     }
 }
 
@@ -134,43 +143,4 @@ fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Ex
         print(&format!("wrote {}, a preview", path.display()))?;
     }
     Ok(Exit::Pass)
-}
-
-fn by_model(chosen: &Chosen, inputs: &[Arc<Frame>]) -> anyhow::Result<Vec<Frame>> {
-    inputs.iter().map(|frame| Ok(correct(&chosen.tables, &chosen.kernel, frame)?)).collect()
-}
-
-fn by_board(
-    arguments: &Arguments,
-    context: &Context,
-    chosen: &Chosen,
-    inputs: &[Arc<Frame>],
-) -> Result<(BoardKind, Vec<Frame>), Failure> {
-    let candidate = arguments.board.candidate(&context.settings)?;
-    if candidate.kind == BoardKind::Replay {
-        return Err(
-            anyhow::anyhow!("a recording corrects no new frames; use it with `halfrow verify`").into()
-        );
-    }
-    let options = arguments.board.open_options(&context.settings, None)?;
-    let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
-    let correction =
-        Correction { tables: &chosen.tables, kernel: &chosen.kernel, generation: JUDGED, first_frame: 0 };
-    let corrected = match session::misfit(&chosen.tables, &chosen.kernel, &board.capabilities) {
-        None => correction.run(&mut board, inputs, &Silent).map_err(failed),
-        Some(misfit) => Err(anyhow::anyhow!(misfit).into()),
-    };
-    // Whatever happened, the next run must find the board free.
-    let closed = board.close();
-    let corrected = corrected?;
-    closed.map_err(failed)?;
-    let frames = corrected
-        .samples
-        .into_iter()
-        .zip(inputs)
-        .map(|(samples, input)| Frame::new(input.width(), input.depth(), input.phase(), samples))
-        .collect::<Result<Vec<_>, _>>()
-        .map_err(Failure::error)?;
-    Ok((candidate.kind.confirmed_by(board.capabilities.nature), frames))
 }

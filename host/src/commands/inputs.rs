@@ -6,9 +6,9 @@ use std::sync::Arc;
 
 use anyhow::{Context as _, ensure};
 use clap::Args;
-use halfrow_model::{Geometry, Phase};
+use halfrow_model::{Frame, Geometry, Phase};
 
-use crate::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions};
+use crate::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions, RowReader, Scene};
 use crate::report::{FileHash, sha256};
 use crate::session::FrameSource;
 
@@ -30,33 +30,87 @@ impl InputArguments {
     }
 }
 
-/// The frames with these names: `builtin:NAME`, or files that must fit `geometry`.
+/// A frame that a user names.
+#[derive(Clone, Debug)]
+pub(super) enum FrameName {
+    /// `builtin:NAME`
+    Builtin(Builtin),
+    /// Any other name.
+    File(PathBuf),
+}
+
+impl FrameName {
+    /// The frames with these names.
+    pub(super) fn all(names: &[String]) -> anyhow::Result<Vec<Self>> {
+        let read = |name: &String| match name.strip_prefix("builtin:") {
+            Some(builtin) => Ok(Self::Builtin(builtin.parse()?)),
+            None => Ok(Self::File(PathBuf::from(name))),
+        };
+        names.iter().map(read).collect()
+    }
+
+    /// The name without folder and extension.
+    pub(super) fn stem(&self) -> anyhow::Result<String> {
+        match self {
+            Self::Builtin(builtin) => Ok(builtin.name().to_owned()),
+            Self::File(path) => {
+                let stem = path.file_stem().context("an input has no file name; name a file")?;
+                Ok(stem.to_string_lossy().into_owned())
+            }
+        }
+    }
+
+    /// The rows of the frame: of a file that is read as `how` says, or rendered for `scene`, whose size both must have.
+    pub(super) fn rows(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<RowReader> {
+        match self {
+            Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
+            Self::File(path) => {
+                let rows = RowReader::open(path, how)?;
+                check_size(path, (rows.width(), rows.height()), &scene.geometry)?;
+                Ok(rows)
+            }
+        }
+    }
+
+    /// The frame with these rows.
+    pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Frame> {
+        let mut rows = self.rows(how, scene)?;
+        let width = rows.width();
+        let mut samples = vec![0; width * rows.height()];
+        for row in samples.chunks_exact_mut(width) {
+            rows.next_row(row)?;
+        }
+        Ok(Frame::new(width, how.depth, how.phase, samples)?)
+    }
+}
+
+/// The frames with these names, the files' read whole, which must fit `geometry`.
 pub(super) fn frame_sources(
     names: &[String],
     how: &ReadOptions,
     geometry: &Geometry,
 ) -> anyhow::Result<Vec<FrameSource>> {
-    names.iter().map(|name| frame_source(name, how, geometry)).collect()
+    let source = |name| match name {
+        FrameName::Builtin(builtin) => Ok(FrameSource::Builtin(builtin)),
+        FrameName::File(path) => {
+            let frame = frames::read(&path, how)?;
+            check_size(&path, (frame.width(), frame.height()), geometry)?;
+            Ok(FrameSource::File { path, frame: Arc::new(frame) })
+        }
+    };
+    FrameName::all(names)?.into_iter().map(source).collect()
 }
 
-fn frame_source(name: &str, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<FrameSource> {
-    if let Some(builtin) = name.strip_prefix("builtin:") {
-        return Ok(FrameSource::Builtin(builtin.parse::<Builtin>()?));
-    }
-    let path = PathBuf::from(name);
-    let frame = frames::read(&path, how)?;
+fn check_size(path: &Path, (width, height): (usize, usize), geometry: &Geometry) -> anyhow::Result<()> {
     ensure!(
-        (frame.width(), frame.height()) == (geometry.width(), geometry.height()),
-        "{name} is {} x {}, and the tables are for {} x {}; make tables of the frame's size with `halfrow tables \
-         --width {} --height {}`, or give these options here",
-        frame.width(),
-        frame.height(),
+        (width, height) == (geometry.width(), geometry.height()),
+        "{} is {width} x {height}, and the tables are for {} x {}; make tables of the frame's size with `halfrow \
+         tables --width {width} --height {height}`, or give these options here",
+        path.display(),
         geometry.width(),
         geometry.height(),
-        frame.width(),
-        frame.height()
     );
-    Ok(FrameSource::File { path, frame: Arc::new(frame) })
+    Ok(())
 }
 
 /// The file's SHA-256.

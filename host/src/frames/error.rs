@@ -212,4 +212,7 @@ pub enum EncodeError {
     /// The rows do not fill whole packing groups.
     #[error(transparent)]
     Packing(#[from] PackingError),
+    /// The samples are no frame.
+    #[error(transparent)]
+    Frame(#[from] FrameError),
 }

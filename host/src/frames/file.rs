@@ -1,7 +1,7 @@
 //! Frames on disk: reading a file whole, and replacing it whole or not at all.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
 
 use halfrow_model::Frame;
@@ -9,7 +9,7 @@ use halfrow_model::Frame;
 use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
-use super::{ReadError, ReadOptions, WriteError, png};
+use super::{FrameShape, ReadError, ReadOptions, WriteError, png};
 use crate::written_aside::write_aside;
 
 /// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
@@ -50,6 +50,57 @@ pub fn write(path: &Path, frame: &Frame, overwrite: bool) -> Result<(), WriteErr
         .encode(frame)
         .map_err(|source| WriteError::Encode { path: path.to_owned(), source })?;
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
+}
+
+/// Writes a frame of `shape` to the file `path`, as [`write`] does, with what `next_row` makes of each row. Only a row is held
+/// where the format has its rows one after the other.
+///
+/// # Errors
+/// [`WriteError`], as `E`, where [`write`] has it; and whatever `next_row` answers, with nothing written then.
+pub fn write_rows<E: From<WriteError>>(
+    path: &Path,
+    shape: &FrameShape,
+    overwrite: bool,
+    next_row: impl FnMut(&mut [u16]) -> Result<(), E>,
+) -> Result<(), E> {
+    let format = Format::of(path)?;
+    if format.has_plain_rows() {
+        return write_plain_rows(path, format, shape, overwrite, next_row);
+    }
+    let mut samples = vec![0; shape.width * shape.height];
+    samples.chunks_exact_mut(shape.width).try_for_each(next_row)?;
+    let frame = Frame::new(shape.width, shape.depth, shape.phase, samples);
+    let frame =
+        frame.map_err(|source| WriteError::Encode { path: path.to_owned(), source: source.into() })?;
+    Ok(write(path, &frame, overwrite)?)
+}
+
+fn write_plain_rows<E: From<WriteError>>(
+    path: &Path,
+    format: Format,
+    shape: &FrameShape,
+    overwrite: bool,
+    mut next_row: impl FnMut(&mut [u16]) -> Result<(), E>,
+) -> Result<(), E> {
+    let mut refused = None;
+    let written = write_aside(path, overwrite, |out| {
+        format.write_header(shape, out)?;
+        let (mut row, mut line) = (vec![0; shape.width], Vec::new());
+        for _ in 0..shape.height {
+            if let Err(error) = next_row(&mut row) {
+                refused = Some(error);
+                return Err(io::ErrorKind::Other.into());
+            }
+            line.clear();
+            format.pack(&row, shape.depth, &mut line);
+            out.write_all(&line)?;
+        }
+        Ok(())
+    });
+    match refused {
+        Some(error) => Err(error),
+        None => Ok(written.map_err(WriteError::from)?),
+    }
 }
 
 /// Writes `image` to the PNG file `path`, which is whole or as it was, whatever goes wrong.

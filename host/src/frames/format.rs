@@ -1,13 +1,13 @@
 //! The formats that frames are written in.
 
 use std::fmt;
-use std::io::Cursor;
+use std::io::{self, Cursor};
 use std::path::Path;
 use std::str::FromStr;
 
-use halfrow_model::Frame;
+use halfrow_model::{BitDepth, Frame};
 
-use super::{EncodeError, RawLayout, WriteError, dng, pgm, png, raw, tiff};
+use super::{EncodeError, FrameShape, RawLayout, WriteError, dng, pgm, png, raw, tiff};
 
 /// A format that frames are written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +53,27 @@ impl Format {
         let extension = path.extension().and_then(|extension| extension.to_str());
         let named = extension.and_then(|extension| extension.parse().ok());
         named.ok_or_else(|| WriteError::Extension { path: path.to_owned() })
+    }
+
+    /// Whether a file is a header and then one row after the other, so that it can be written row by row.
+    pub(super) fn has_plain_rows(self) -> bool {
+        matches!(self, Self::Pgm | Self::Raw)
+    }
+
+    /// Writes what comes before the rows, when [`Self::has_plain_rows`].
+    pub(super) fn write_header(self, shape: &FrameShape, out: &mut dyn io::Write) -> io::Result<()> {
+        match self {
+            Self::Pgm => pgm::write_header(out, (shape.width, shape.height), shape.depth),
+            _ => Ok(()),
+        }
+    }
+
+    /// Appends the bytes of a row to `line`, when [`Self::has_plain_rows`].
+    pub(super) fn pack(self, row: &[u16], depth: BitDepth, line: &mut Vec<u8>) {
+        match self {
+            Self::Pgm => pgm::pack(row, depth, line),
+            _ => RawLayout::U16Le.pack(row, line),
+        }
     }
 
     pub(super) fn encode(self, frame: &Frame) -> Result<Vec<u8>, EncodeError> {

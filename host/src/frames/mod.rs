@@ -26,11 +26,11 @@ use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{read, read_rgb, write, write_rgb};
+pub use file::{read, read_rgb, write, write_rgb, write_rows};
 pub use format::{Format, UnknownFormat};
 pub use mosaic::mosaic;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
-pub use rows::RowReader;
+pub use rows::{FrameShape, RowReader};
 pub use scene::Scene;
 pub use size::{MAX_FILE_BYTES, MAX_SIDE};
 

@@ -5,7 +5,7 @@ use std::io::{BufReader, Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use halfrow_model::{BitDepth, Frame};
+use halfrow_model::{BitDepth, Frame, Phase};
 
 use super::raster::Raster;
 use super::{ReadError, ReadOptions, file, pgm, raw};
@@ -14,6 +14,19 @@ use super::{ReadError, ReadOptions, file, pgm, raw};
 const HEAD: u64 = 4096;
 /// Bytes that are read at once.
 const BUFFER: usize = 1 << 17;
+
+/// What a frame is besides its samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrameShape {
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// The bits of a sample.
+    pub depth: BitDepth,
+    /// The arrangement of the colours.
+    pub phase: Phase,
+}
 
 /// The rows of a frame, from the top.
 #[derive(Debug)]

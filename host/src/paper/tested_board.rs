@@ -1,12 +1,13 @@
 //! A board that the paper's claims are tried on.
 
+use std::ops::{ControlFlow, RangeInclusive};
 use std::sync::Arc;
 
 use halfrow_model::{Frame, Kernel, TableSet};
 
 use super::PaperError;
 use crate::board::Board;
-use crate::correction::{Corrected, Correction};
+use crate::correction::Correction;
 use crate::progress::Progress;
 use crate::session::misfit;
 use crate::target::BoardKind;
@@ -17,6 +18,15 @@ pub struct TestedBoard {
     kind: BoardKind,
     frames: u16,
     generation: u8,
+}
+
+/// What came back.
+#[derive(Clone, Debug)]
+pub struct Corrected {
+    /// The samples of each frame, row after row, in the order of the inputs. A broken board can exceed the depth.
+    pub samples: Vec<Vec<u16>>,
+    /// The least and the most pixel clocks that a row's first and last sample took.
+    pub latency: RangeInclusive<u16>,
 }
 
 impl TestedBoard {
@@ -65,9 +75,14 @@ impl TestedBoard {
         self.fits(tables, kernel)?;
         self.generation += 1;
         let correction = Correction { tables, kernel, generation: self.generation, first_frame: self.frames };
-        let corrected = correction.run(&mut self.board, inputs, progress)?;
+        let mut samples = Vec::with_capacity(inputs.len());
+        let take = |frame| {
+            samples.push(frame);
+            ControlFlow::Continue(())
+        };
+        let latency = correction.run(&mut self.board, inputs.iter().cloned(), take, progress)?;
         self.frames += inputs.len() as u16;
-        Ok(corrected)
+        Ok(Corrected { samples, latency })
     }
 
     /// Ends the session, so that the next host finds the board free.

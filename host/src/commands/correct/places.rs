@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
 
+use super::super::inputs::FrameName;
 use crate::frames::{Format, WriteError};
-use crate::session::FrameSource;
 
 /// The files of a call, one for each input, in the order of the inputs.
 pub(super) struct Places {
@@ -30,12 +30,12 @@ pub(super) struct Wanted<'a> {
 
 impl Places {
     /// One file for one frame; for several, files of the inputs' names in a folder.
-    pub(super) fn of(sources: &[FrameSource], wanted: &Wanted<'_>) -> anyhow::Result<Self> {
+    pub(super) fn of(inputs: &[FrameName], wanted: &Wanted<'_>) -> anyhow::Result<Self> {
         let mut places = Self { frames: Vec::new(), previews: Vec::new(), folders: Vec::new() };
         let format = wanted.format.unwrap_or(Format::Pgm);
-        places.frames = places.paths(sources, wanted.output, format, "-o")?;
+        places.frames = places.paths(inputs, wanted.output, format, "-o")?;
         if let Some(preview) = wanted.preview {
-            places.previews = places.paths(sources, preview, Format::Png, "--preview")?;
+            places.previews = places.paths(inputs, preview, Format::Png, "--preview")?;
         }
         for path in &places.frames {
             let named = Format::of(path)?;
@@ -52,23 +52,23 @@ impl Places {
 
     fn paths(
         &mut self,
-        sources: &[FrameSource],
+        inputs: &[FrameName],
         place: &Path,
         format: Format,
         option: &str,
     ) -> anyhow::Result<Vec<PathBuf>> {
         let is_file = place.extension().is_some() && !place.is_dir();
         if is_file {
-            let (place, frames) = (place.display(), sources.len());
+            let (place, frames) = (place.display(), inputs.len());
             ensure!(frames == 1, "{place} is one file for {frames} frames; name a folder with {option}");
         } else {
             self.folders.push(place.to_owned());
         }
-        let path = |source| match is_file {
+        let path = |input: &FrameName| match is_file {
             true => Ok(place.to_owned()),
-            false => Ok(place.join(format!("{}.{format}", name(source)?))),
+            false => Ok(place.join(format!("{}.{format}", input.stem()?))),
         };
-        sources.iter().map(path).collect()
+        inputs.iter().map(path).collect()
     }
 
     /// No file twice, and none that is there unless it may be replaced.
@@ -93,16 +93,5 @@ impl Places {
                 .with_context(|| format!("{} cannot be made; name another folder", folder.display()))?;
         }
         Ok(())
-    }
-}
-
-/// What an input's files are called.
-fn name(source: &FrameSource) -> anyhow::Result<String> {
-    match source {
-        FrameSource::Builtin(builtin) => Ok(builtin.name().to_owned()),
-        FrameSource::File { path, .. } => {
-            let stem = path.file_stem().context("an input has no file name; name a file")?;
-            Ok(stem.to_string_lossy().into_owned())
-        }
     }
 }
