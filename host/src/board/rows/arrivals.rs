@@ -1,0 +1,81 @@
+//! Rows on their way back, in whatever order and number a link delivers them.
+
+use std::collections::BTreeSet;
+use std::ops::ControlFlow;
+
+use halfrow_protocol::message::{RefusalCode, Reply, RowOut};
+use halfrow_protocol::{Kind, Packet, samples};
+
+use super::in_flight::InFlight;
+use super::{ReturnedRow, RowTraffic};
+use crate::board::BoardError;
+
+pub(super) struct Arrivals<'a> {
+    pub(super) traffic: &'a mut dyn RowTraffic,
+    pub(super) in_flight: InFlight,
+    /// The oldest row that has not come back.
+    pub(super) missing: u32,
+    /// Rows that came back although an earlier one has not.
+    ahead: BTreeSet<u32>,
+    /// A row came behind the missing one.
+    pub(super) gap: bool,
+    unpacked: Vec<u16>,
+    pub(super) flow: ControlFlow<()>,
+}
+
+impl<'a> Arrivals<'a> {
+    pub(super) fn new(traffic: &'a mut dyn RowTraffic, first_row: u32) -> Self {
+        Self {
+            traffic,
+            in_flight: InFlight::new(first_row),
+            missing: first_row,
+            ahead: BTreeSet::new(),
+            gap: false,
+            unpacked: Vec::new(),
+            flow: ControlFlow::Continue(()),
+        }
+    }
+
+    /// Takes what is a row.
+    pub(super) fn take(&mut self, packet: &Packet<'_>) -> Result<(), BoardError> {
+        if ![Kind::RowOut.code(), Kind::Refusal.code()].contains(&packet.header.kind) {
+            return Ok(());
+        }
+        let malformed = |source| BoardError::Malformed { kind: Kind::RowIn, source };
+        match Reply::read(packet).map_err(malformed)? {
+            Reply::RowOut(row) => self.take_row(&row),
+            Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
+            Reply::Refusal(refusal) if refusal.kind == Kind::RowIn.code() => {
+                Err(BoardError::Refused { kind: Kind::RowIn, refusal })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn take_row(&mut self, found: &RowOut<'_>) -> Result<(), BoardError> {
+        let row_sequence = found.place.row_sequence;
+        let Some(row) = self.in_flight.row(row_sequence) else { return Ok(()) };
+        if row_sequence < self.missing || self.flow.is_break() || !self.ahead.insert(row_sequence) {
+            return Ok(());
+        }
+        if found.place != row.place {
+            return Err(BoardError::WrongPlace { place: found.place });
+        }
+        self.unpacked.resize(row.frame.width(), 0);
+        samples::unpack(found.packed, &mut self.unpacked);
+        self.flow = self.traffic.returned(&ReturnedRow {
+            frame: row.place.frame,
+            row: row.index,
+            generation: found.generation,
+            first_latency: found.first_latency,
+            last_latency: found.last_latency,
+            samples: &self.unpacked,
+        });
+        self.gap = row_sequence > self.missing;
+        while self.ahead.remove(&self.missing) {
+            self.missing += 1;
+        }
+        self.in_flight.forget_before(self.missing);
+        Ok(())
+    }
+}

@@ -1,0 +1,70 @@
+//! The frames of a stream of which some row has not come back, and where a row of the stream belongs.
+
+use std::collections::VecDeque;
+
+use halfrow_model::Frame;
+use halfrow_protocol::message::RowPlace;
+
+use super::NumberedFrame;
+
+pub(super) struct InFlight {
+    /// The row sequence number of the stream's first row.
+    first_row: u32,
+    /// Rows of a frame; 0 before there is one.
+    height: u32,
+    frames: VecDeque<NumberedFrame>,
+    /// Frames before those that are kept.
+    frames_done: u32,
+}
+
+/// A row of a frame.
+pub(super) struct Row<'a> {
+    pub(super) frame: &'a Frame,
+    pub(super) index: usize,
+    pub(super) place: RowPlace,
+}
+
+impl InFlight {
+    pub(super) fn new(first_row: u32) -> Self {
+        Self { first_row, height: 0, frames: VecDeque::new(), frames_done: 0 }
+    }
+
+    pub(super) fn add(&mut self, frame: NumberedFrame) {
+        self.height = frame.frame.height() as u32;
+        self.frames.push_back(frame);
+    }
+
+    /// The row sequence number behind the last row of the frames that were added.
+    pub(super) fn end(&self) -> u32 {
+        self.first_row + (self.frames_done + self.frames.len() as u32) * self.height
+    }
+
+    /// Samples of a row.
+    pub(super) fn width(&self) -> usize {
+        self.frames.front().map_or(0, |frame| frame.frame.width())
+    }
+
+    /// The row with this number, unless it came back long ago.
+    pub(super) fn row(&self, row_sequence: u32) -> Option<Row<'_>> {
+        let row = row_sequence.checked_sub(self.first_row)?;
+        let frame = row.checked_div(self.height)?.checked_sub(self.frames_done)?;
+        let NumberedFrame { number, frame } = self.frames.get(frame as usize)?;
+        let index = (row % self.height) as usize;
+        let place = RowPlace {
+            row_sequence,
+            frame: *number,
+            row: index as u16,
+            width: frame.width() as u16,
+            last: index + 1 == frame.height(),
+        };
+        Some(Row { frame, index, place })
+    }
+
+    /// Lets the frames go of which every row lies before `missing`. The last one stays, since the next rows are as wide.
+    pub(super) fn forget_before(&mut self, missing: u32) {
+        while self.frames.len() > 1 && missing - self.first_row >= (self.frames_done + 1) * self.height {
+            self.frames.pop_front();
+            self.frames_done += 1;
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Where rows come from and where they go to.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use halfrow_model::Frame;
+
+/// A frame on its way to the board.
+#[derive(Clone, Debug)]
+pub struct NumberedFrame {
+    /// Its number on the wire.
+    pub number: u16,
+    /// Its samples.
+    pub frame: Arc<Frame>,
+}
+
+/// A row that came back.
+#[derive(Clone, Copy, Debug)]
+pub struct ReturnedRow<'a> {
+    /// The number of its frame.
+    pub frame: u16,
+    /// The row of the frame.
+    pub row: usize,
+    /// The generation of the tables that made it.
+    pub generation: u8,
+    /// Pixel clocks from first in to first out.
+    pub first_latency: u16,
+    /// Pixel clocks from last in to last out.
+    pub last_latency: u16,
+    /// Its samples.
+    pub samples: &'a [u16],
+}
+
+/// Where rows come from and where they go to.
+pub trait RowTraffic {
+    /// The next frame to send, all of one size; none at the end.
+    fn next_frame(&mut self) -> Option<NumberedFrame>;
+
+    /// Takes a row that came back, each row once; rows of a frame come in order unless the link lost one. Breaking
+    /// ends the stream.
+    fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()>;
+}
+
+/// Frames of which only the return matters.
+#[derive(Clone, Debug)]
+pub struct Unjudged<I>(pub I);
+
+impl<I: Iterator<Item = NumberedFrame>> RowTraffic for Unjudged<I> {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        self.0.next()
+    }
+
+    fn returned(&mut self, _row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+}
