@@ -22,7 +22,7 @@ fn the_kernel_that_made_the_outputs_is_found_again() {
         (NamedKernel::Interpolant(halfrow_model::Interpolant::Keys), Taps::Seven),
         (NamedKernel::HermiteBalanced, Taps::Five),
     ] {
-        let kernel = named.kernel();
+        let kernel = named.kernel().unwrap();
         let mut equations = Equations::new();
         for place in 0..64 * 64_u32 {
             let (node, share) = ((place / 64) as usize, f64::from(place % 8) / 8.0);

@@ -174,7 +174,7 @@ fn rows(images: &[RgbImage]) -> u64 {
 }
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
-    let kernel = lens::kernel(&arguments.kernel).map_err(lens::table_failure)?;
+    let kernel = lens::kernel(&arguments.kernel)?;
     let images: Vec<_> =
         photographs(&arguments.images)?.into_iter().map(|photograph| photograph.image).collect();
     let watched = progress::for_stderr(context.quiet);

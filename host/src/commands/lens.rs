@@ -1,6 +1,6 @@
 //! The options of geometry, lens and kernel, which several commands share.
 
-use std::path::PathBuf;
+use std::path::Path;
 
 use clap::Args;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, LensError, Phase, TableSet};
@@ -83,10 +83,13 @@ impl LensArguments {
 }
 
 /// A kernel by name, or from a kernel file.
-pub(super) fn kernel(name: &str) -> Result<Kernel, TableFileError> {
+pub(super) fn kernel(name: &str) -> Result<Kernel, super::Failure> {
     match name.parse::<NamedKernel>() {
-        Ok(named) => Ok(named.kernel()),
-        Err(_) => Ok(KernelFile::read(&PathBuf::from(name))?.kernel),
+        Ok(named) => named.kernel().map_err(super::Failure::error),
+        Err(unknown) if !Path::new(name).exists() => {
+            Err(anyhow::anyhow!("there is no file {name}, and {unknown}, or a kernel file").into())
+        }
+        Err(_) => Ok(KernelFile::read(Path::new(name)).map_err(table_failure)?.kernel),
     }
 }
 
@@ -99,11 +102,11 @@ pub(super) struct Chosen {
 
 /// Takes the table file if there is one, and the lens otherwise; `kernel_name` replaces the file's kernel.
 pub(super) fn choose(
-    file: Option<&std::path::Path>,
+    file: Option<&Path>,
     lens: &LensArguments,
     kernel_name: Option<&str>,
 ) -> Result<Chosen, super::Failure> {
-    let named = kernel_name.map(kernel).transpose().map_err(table_failure)?;
+    let named = kernel_name.map(kernel).transpose()?;
     let Some(path) = file else {
         let (tables, from) = lens.tables()?;
         let name = kernel_name.unwrap_or(Interpolant::Hermite.name());

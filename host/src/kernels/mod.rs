@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use halfrow_model::{Interpolant, Kernel, KernelError};
 
-use crate::tables::KernelFile;
+use crate::tables::{ContentError, KernelFile};
 
 /// The distance between two nodes, in pixels.
 const NODE_DISTANCE: f64 = 1.0 / 32.0;
@@ -27,6 +27,16 @@ pub enum NamedKernel {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` is no named kernel; use nearest, linear, keys, hermite, hermite-balanced, sharp5 or sharp7")]
 pub struct UnknownKernel(String);
+
+/// A named kernel that this program was built with and cannot make.
+#[derive(Debug, thiserror::Error)]
+#[error("the kernel {name} is damaged in this program; build it again from a sound copy, or report it")]
+pub struct DamagedKernel {
+    /// Its name.
+    name: &'static str,
+    /// What is wrong with its numbers.
+    source: ContentError,
+}
 
 impl NamedKernel {
     /// All of them, the paper's first.
@@ -52,21 +62,22 @@ impl NamedKernel {
     }
 
     /// The weights.
-    #[must_use]
-    pub fn kernel(self) -> Kernel {
+    ///
+    /// # Errors
+    /// [`DamagedKernel`] when the numbers that the program was built with are no kernel, which no sound build's are.
+    pub fn kernel(self) -> Result<Kernel, DamagedKernel> {
         let made = match self {
-            Self::Interpolant(interpolant) => return Kernel::from(interpolant),
-            Self::HermiteBalanced => balanced(Interpolant::Hermite).ok(),
+            Self::Interpolant(interpolant) => Ok(Kernel::from(interpolant)),
+            Self::HermiteBalanced => balanced(Interpolant::Hermite).map_err(ContentError::from),
             Self::Sharp5 => shipped(include_str!("sharp5.json")),
             Self::Sharp7 => shipped(include_str!("sharp7.json")),
         };
-        // Both files and the formula are legal, which a test shows for every name.
-        made.unwrap_or_else(|| Kernel::from(Interpolant::Hermite))
+        made.map_err(|source| DamagedKernel { name: self.name(), source })
     }
 }
 
-fn shipped(text: &str) -> Option<Kernel> {
-    KernelFile::parse(text).ok().map(|file| file.kernel)
+fn shipped(text: &str) -> Result<Kernel, ContentError> {
+    KernelFile::parse(text).map(|file| file.kernel)
 }
 
 /// The nodes of a smooth interpolant less a sixteenth of their second difference, which is f″/32² (DATAPATH.md, "Accuracy").

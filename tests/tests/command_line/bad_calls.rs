@@ -2,7 +2,7 @@
 
 use halfrow_tests::program::Folder;
 
-use crate::refused;
+use crate::{refused, small};
 
 #[test]
 fn a_frame_that_no_datapath_takes_is_refused() {
@@ -41,7 +41,11 @@ fn names_of_nothing_are_refused_with_those_that_there_are() {
         "`moon` is no built-in frame; use one of black, white",
     );
     refused(&folder, &["frames", "--only", "moon", "-o", "."], "`moon` is no built-in frame");
-    refused(&folder, &["verify", "--kernel", "moon"], "moon");
+    let neither = "there is no file sharq5, and `sharq5` is no named kernel; use nearest, linear, keys, hermite, \
+                   hermite-balanced, sharp5 or sharp7, or a kernel file";
+    refused(&folder, &["verify", "--kernel", "sharq5"], neither);
+    refused(&folder, &["kernel", "measure", "--images", ".", "--kernel", "sharq5"], neither);
+    refused(&folder, &small("tables", &["--kernel", "sharq5", "-o", "lens.json"]), neither);
     refused(&folder, &["verify", "--phase", "moon"], "moon");
     refused(&folder, &["verify", "--raw", "u15"], "u15");
     refused(&folder, &["verify", "--moon"], "unexpected argument '--moon'");
