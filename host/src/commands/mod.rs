@@ -107,6 +107,7 @@ impl Cli {
         match &self.command {
             Command::Verify(arguments) => arguments.json,
             Command::Correct(arguments) => arguments.json,
+            Command::Paper(arguments) => arguments.json,
             Command::Boards(arguments) => arguments.json,
             Command::Info(arguments) => arguments.json,
             Command::Link(arguments) => arguments.json,

@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 
 use super::board::BoardArguments;
-use super::{Context, Failure, print};
+use super::{Context, Failure, print, print_json};
 use crate::board::{Board, BoardError};
 use crate::frames::preview::RgbImage;
 use crate::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperError, TestedBoard};
@@ -37,6 +37,9 @@ pub(super) struct Arguments {
     /// Replace an earlier page
     #[arg(long)]
     overwrite: bool,
+    /// Print every number as JSON, as paper.json in the folder holds them
+    #[arg(long)]
+    pub(super) json: bool,
     #[command(flatten)]
     board: BoardArguments,
 }
@@ -58,6 +61,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let exhibits = exhibits.map_err(failed)?;
     closed.map_err(failed)?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
+    if arguments.json {
+        print_json(&paper::numbers(&exhibits))?;
+        return Ok(exit(&exhibits));
+    }
     conclude(&exhibits)?;
     print(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()))?;
     Ok(exit(&exhibits))

@@ -78,8 +78,9 @@ impl Folder {
     }
 }
 
-/// Every number of every exhibit.
-fn numbers(exhibits: &[Exhibit]) -> Value {
+/// Every number of every exhibit, as the folder's JSON file holds them.
+#[must_use]
+pub fn numbers(exhibits: &[Exhibit]) -> Value {
     let exhibits = exhibits.iter().map(|exhibit| {
         let claims: Vec<Value> = exhibit.claims.iter().map(super::Claim::json).collect();
         let tables: Vec<Value> = exhibit.tables.iter().map(super::Table::json).collect();

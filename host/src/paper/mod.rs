@@ -29,7 +29,7 @@ mod views;
 pub use distortion::distorted;
 pub use error::PaperError;
 pub use exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
-pub use folder::{Folder, FolderError};
+pub use folder::{Folder, FolderError, numbers};
 pub use item::Item;
 pub use photographs::{PhotographError, lying, read as read_photographs};
 pub use psnr::psnr;
