@@ -18,7 +18,7 @@ fn frame() -> Frame {
 #[test]
 fn a_frame_survives_every_format() {
     let folder = tempfile::tempdir().unwrap();
-    for name in ["a.pgm", "a.png", "a.tif", "a.tiff", "a.PGM"] {
+    for name in ["a.pgm", "a.png", "a.tif", "a.tiff", "a.dng", "a.PGM"] {
         let path = folder.path().join(name);
         write(&path, &frame(), false).unwrap();
         assert_eq!(read(&path, &ReadOptions::default()).unwrap(), frame(), "{name}");
@@ -54,7 +54,7 @@ fn an_existing_file_is_replaced_only_when_told_to() {
 fn a_name_without_a_known_format_is_refused() {
     for name in ["a", "a.jpg", ".pgm"] {
         let error = write(name.as_ref(), &frame(), true).unwrap_err().to_string();
-        assert_eq!(error, format!("{name} names no format; end it in .pgm, .png, .tif, .tiff or .raw"));
+        assert_eq!(error, format!("{name} names no format; end it in .pgm, .png, .tif, .tiff, .dng or .raw"));
     }
 }
 

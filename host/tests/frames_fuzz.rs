@@ -5,7 +5,7 @@
 
 use std::io::Cursor;
 
-use halfrow::frames::{decode, fuzz_decode, pgm, png, tiff};
+use halfrow::frames::{decode, dng, fuzz_decode, pgm, png, tiff};
 use halfrow_model::{BitDepth, Frame, Phase};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -16,10 +16,12 @@ fn files() -> Vec<Vec<u8>> {
     let frame =
         Frame::new(4, BitDepth::Twelve, Phase::Grbg, (0..32).map(|place| place * 128).collect()).unwrap();
     let (mut as_pgm, mut as_png, mut as_tiff) = (Vec::new(), Vec::new(), Cursor::new(Vec::new()));
+    let mut as_dng = Cursor::new(Vec::new());
     pgm::encode(&frame, &mut as_pgm).unwrap();
     png::encode(&frame, &mut as_png).unwrap();
     tiff::encode(&frame, &mut as_tiff).unwrap();
-    vec![as_pgm, as_png, as_tiff.into_inner()]
+    dng::encode(&frame, &mut as_dng).unwrap();
+    vec![as_pgm, as_png, as_tiff.into_inner(), as_dng.into_inner()]
 }
 
 /// The PNG with the right checksum behind every chunk that is left, so that damage reaches what lies behind the check.

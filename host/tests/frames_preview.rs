@@ -3,7 +3,7 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
-use halfrow::frames::preview::{demosaic, encode_png_grey, encode_png_rgb, thumbnail};
+use halfrow::frames::preview::{demosaic, demosaic_coded, encode_png_grey, encode_png_rgb, thumbnail};
 use halfrow::frames::{Builtin, Scene};
 use halfrow_model::{BitDepth, Frame, Geometry, Phase};
 
@@ -19,6 +19,19 @@ fn linear_samples_are_coded_for_the_screen() {
         let image = demosaic(&frame(2, Phase::Grbg, &[sample; 4]));
         assert_eq!((image.width, image.height), (2, 2));
         assert_eq!(image.data, [byte; 12], "{sample}");
+    }
+}
+
+/// By hand: 2048 · 255/4095 is 127.5, and 2047 just below; 514 · 255/1023 is 128.1.
+#[test]
+fn coded_samples_are_brought_to_eight_bits() {
+    let levels =
+        [(BitDepth::Twelve, 2048, 128), (BitDepth::Twelve, 2047, 127), (BitDepth::Twelve, 4095, 255)];
+    for (depth, sample, byte) in
+        levels.into_iter().chain([(BitDepth::Ten, 514, 128), (BitDepth::Eight, 77, 77)])
+    {
+        let frame = Frame::new(2, depth, Phase::Grbg, vec![sample; 4]).unwrap();
+        assert_eq!(demosaic_coded(&frame).data, [byte; 12], "{sample}");
     }
 }
 

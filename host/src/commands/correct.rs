@@ -1,9 +1,10 @@
 //! `halfrow correct`
 
-use std::path::{Path, PathBuf};
+mod places;
+
+use std::path::PathBuf;
 use std::sync::Arc;
 
-use anyhow::{Context as _, bail};
 use clap::Args;
 use halfrow_model::{Frame, correct};
 use serde_json::json;
@@ -14,16 +15,17 @@ use super::lens::{self, Chosen, LensArguments};
 use super::{Context, Failure, print, print_json};
 use crate::board::{Board, BoardError};
 use crate::correction::Correction;
-use crate::frames::{self, Scene, WriteError};
+use crate::frames::{self, Format, Scene, preview};
 use crate::progress::Silent;
 use crate::session::{self, FrameSource, JUDGED};
 use crate::target::BoardKind;
 use crate::verdict::Exit;
+use places::{Places, Wanted};
 
 /// Correct frames with the reference model, or with a board, unjudged
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The frames: PGM, PNG, TIFF, headerless files with --raw, or builtin:NAME
+    /// The frames: PGM, PNG, TIFF, DNG, headerless files with --raw, or builtin:NAME
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<String>,
     /// The table file; without it the lens options make the tables
@@ -37,9 +39,21 @@ pub(super) struct Arguments {
     model: bool,
     #[command(flatten)]
     board: BoardArguments,
-    /// Where to: a .pgm, .png, .tif or .raw file, or a folder for several frames
+    /// Where to: a .pgm, .png, .tif, .dng or .raw file, or a folder for several frames
     #[arg(short, long, value_name = "OUT")]
     output: PathBuf,
+    /// Format of the files in a folder: pgm, png, tif, dng or raw [default: pgm]
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
+    /// Where to put a picture to look at: a .png file, or a folder for several frames
+    ///
+    /// Each missing colour is the mean of its neighbours; linear light is coded as sRGB, full scale is white, and colours are not
+    /// balanced. A raw developer does better with a DNG.
+    #[arg(long, value_name = "OUT")]
+    preview: Option<PathBuf>,
+    /// The samples of the preview are coded for the screen already, as those of a photograph are
+    #[arg(long, requires = "preview")]
+    preview_coded: bool,
     /// Replace files that are there
     #[arg(long)]
     overwrite: bool,
@@ -63,12 +77,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let geometry = chosen.tables.geometry();
     let how = arguments.input.read_options(geometry, arguments.lens.phase);
     let sources = frame_sources(&arguments.inputs, &how, geometry)?;
-    let outputs = outputs(&sources, &arguments.output)?;
-    if let Some(taken) = outputs.iter().find(|path| path.exists() && !arguments.overwrite) {
-        return Err(
-            anyhow::anyhow!("{} is there already; give --overwrite to replace it", taken.display()).into()
-        );
-    }
+    let places = Places::of(&sources, &arguments.wanted())?;
     let scene = Scene { geometry: *geometry, ..arguments.lens.scene(1)? };
     let inputs = sources
         .iter()
@@ -83,66 +92,48 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         let (kind, corrected) = by_board(arguments, context, &chosen, &inputs)?;
         (Some(kind), corrected)
     };
-    if arguments.output.extension().is_none() {
-        std::fs::create_dir_all(&arguments.output).map_err(Failure::error)?;
-    }
-    for (path, frame) in outputs.iter().zip(&corrected) {
-        frames::write(path, frame, arguments.overwrite).map_err(unwritten)?;
-    }
-    report(arguments.json, board, &outputs)
+    arguments.write(&places, &corrected).map_err(Failure::error)?;
+    report(arguments.json, board, &places)
 }
 
-/// A name without a format is the caller's fault, and nothing was written.
-fn unwritten(error: WriteError) -> Failure {
-    match error {
-        WriteError::Extension { .. } => error.into(),
-        error => Failure::error(error),
+impl Arguments {
+    fn wanted(&self) -> Wanted<'_> {
+        let (preview, format) = (self.preview.as_deref(), self.format);
+        Wanted { output: &self.output, format, preview, overwrite: self.overwrite }
+    }
+
+    fn write(&self, places: &Places, corrected: &[Frame]) -> anyhow::Result<()> {
+        places.make_folders()?;
+        for (path, frame) in places.frames.iter().zip(corrected) {
+            frames::write(path, frame, self.overwrite)?;
+        }
+        let develop = if self.preview_coded { preview::demosaic_coded } else { preview::demosaic };
+        for (path, frame) in places.previews.iter().zip(corrected) {
+            frames::write_rgb(path, &develop(frame), self.overwrite)?;
+        }
+        Ok(())
     }
 }
 
 /// Says what was written, and by whom it was corrected: a board, or else the model.
-fn report(as_json: bool, board: Option<BoardKind>, outputs: &[PathBuf]) -> Result<Exit, Failure> {
+fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Exit, Failure> {
     if as_json {
         let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
-        let outputs: Vec<_> = outputs.iter().map(|path| path.display().to_string()).collect();
-        print_json(
-            &json!({ "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs }),
-        )?;
-    } else {
-        let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
-        for path in outputs {
-            print(&format!("wrote {}, corrected by the {whom}, not judged", path.display()))?;
-        }
+        let [outputs, previews] = [&places.frames, &places.previews]
+            .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+        print_json(&json!({
+            "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs, "previews": previews,
+        }))?;
+        return Ok(Exit::Pass);
+    }
+    let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
+    for path in &places.frames {
+        print(&format!("wrote {}, corrected by the {whom}, not judged", path.display()))?;
+    }
+    for path in &places.previews {
+        print(&format!("wrote {}, a preview", path.display()))?;
     }
     Ok(Exit::Pass)
-}
-
-/// One file for one frame; for several, files of the inputs' names in a folder.
-fn outputs(sources: &[FrameSource], output: &Path) -> anyhow::Result<Vec<PathBuf>> {
-    let is_file = output.extension().is_some() && !output.is_dir();
-    if is_file && sources.len() > 1 {
-        bail!("{} is one file for {} frames; name a folder with -o", output.display(), sources.len());
-    }
-    if is_file {
-        return Ok(vec![output.to_owned()]);
-    }
-    let mut paths = Vec::new();
-    for source in sources {
-        let name = match source {
-            FrameSource::Builtin(builtin) => builtin.name().to_owned(),
-            FrameSource::File { path, .. } => path
-                .file_stem()
-                .context("an input has no file name; name a file")?
-                .to_string_lossy()
-                .into_owned(),
-        };
-        let path = output.join(format!("{name}.pgm"));
-        if paths.contains(&path) {
-            bail!("two inputs would both be written to {}; correct them one by one", path.display());
-        }
-        paths.push(path);
-    }
-    Ok(paths)
 }
 
 fn by_model(chosen: &Chosen, inputs: &[Arc<Frame>]) -> anyhow::Result<Vec<Frame>> {

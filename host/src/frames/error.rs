@@ -3,9 +3,10 @@
 use std::io;
 use std::path::PathBuf;
 
-use halfrow_model::{BitDepth, FrameError};
+use halfrow_model::{BitDepth, FrameError, Phase};
 
 use super::RawLayout;
+use super::format::Format;
 use super::size::{MAX_FILE_BYTES, MAX_SIDE};
 use crate::written_aside::WriteAsideError;
 
@@ -41,7 +42,7 @@ pub enum ReadError {
 pub enum DecodeError {
     /// No format known here begins like this.
     #[error(
-        "it begins like no format known here (PGM P5, PNG, TIFF); convert it, or for samples without a header \
+        "it begins like no format known here (PGM P5, PNG, TIFF, DNG); convert it, or for samples without a header \
          give width, height and layout"
     )]
     UnknownFormat,
@@ -119,6 +120,25 @@ pub enum DecodeError {
     /// The TIFF decoder gave up.
     #[error("the TIFF is damaged; copy or export it again")]
     Tiff(#[source] tiff::TiffError),
+    /// The file tells another arrangement of the colours than was asked for.
+    #[error("it says that its colours lie as {found}, not as {asked}; give --phase {found}")]
+    OtherPhase {
+        /// The file's.
+        found: Phase,
+        /// The one asked for.
+        asked: Phase,
+    },
+    /// The file tells another depth than was asked for.
+    #[error(
+        "it says that its samples have {found} bits, not {}; give that depth, or scale it to 8, 10 or 12 bits",
+        asked.bits()
+    )]
+    OtherDepth {
+        /// The bits of the file's white.
+        found: u32,
+        /// The depth asked for.
+        asked: BitDepth,
+    },
     /// The rows do not fill whole packing groups.
     #[error(transparent)]
     Packing(#[from] PackingError),
@@ -145,8 +165,14 @@ pub struct PackingError {
 #[derive(Debug, thiserror::Error)]
 pub enum WriteError {
     /// The name does not tell the format.
-    #[error("{} names no format; end it in .pgm, .png, .tif, .tiff or .raw", path.display())]
+    #[error("{} names no format; end it in .pgm, .png, .tif, .tiff, .dng or .raw", path.display())]
     Extension {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The name is no PNG's.
+    #[error("{} is to be a PNG; end its name in .{}", path.display(), Format::Png.extension())]
+    NotPng {
         /// The file.
         path: PathBuf,
     },

@@ -1,48 +1,16 @@
-//! Frames on disk: the format of a file, reading it whole, and replacing it whole or not at all.
+//! Frames on disk: reading a file whole, and replacing it whole or not at all.
 
 use std::fs::File;
-use std::io::{Cursor, Read};
+use std::io::Read;
 use std::path::Path;
 
 use halfrow_model::Frame;
 
-use super::preview::RgbImage;
+use super::format::Format;
+use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
-use super::{EncodeError, RawLayout, ReadError, ReadOptions, WriteError, pgm, png, raw, tiff};
+use super::{ReadError, ReadOptions, WriteError, png};
 use crate::written_aside::write_aside;
-
-/// A format that frames are written in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    Pgm,
-    Png,
-    Tiff,
-    Raw,
-}
-
-impl Format {
-    fn of(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        match extension.as_str() {
-            "pgm" => Some(Self::Pgm),
-            "png" => Some(Self::Png),
-            "tif" | "tiff" => Some(Self::Tiff),
-            "raw" => Some(Self::Raw),
-            _ => None,
-        }
-    }
-
-    fn encode(self, frame: &Frame) -> Result<Vec<u8>, EncodeError> {
-        let mut bytes = Vec::new();
-        match self {
-            Self::Pgm => pgm::encode(frame, &mut bytes)?,
-            Self::Png => png::encode(frame, &mut bytes)?,
-            Self::Tiff => tiff::encode(frame, &mut Cursor::new(&mut bytes))?,
-            Self::Raw => raw::encode(frame, RawLayout::U16Le, &mut bytes)?,
-        }
-        Ok(bytes)
-    }
-}
 
 /// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
 ///
@@ -72,14 +40,28 @@ fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
     Ok(bytes)
 }
 
-/// Writes `frame` to the file `path`, in the format that its extension names: `.pgm`, `.png`, `.tif` or `.tiff`, or
+/// Writes `frame` to the file `path`, in the format that its extension names: `.pgm`, `.png`, `.tif` or `.tiff`, `.dng`, or
 /// `.raw` (16 bits, low byte first). Whatever goes wrong, the file is whole or as it was.
 ///
 /// # Errors
 /// [`WriteError`] when the extension is another, the file exists and `overwrite` is false, or it cannot be written.
 pub fn write(path: &Path, frame: &Frame, overwrite: bool) -> Result<(), WriteError> {
-    let format = Format::of(path).ok_or_else(|| WriteError::Extension { path: path.to_owned() })?;
-    let bytes =
-        format.encode(frame).map_err(|source| WriteError::Encode { path: path.to_owned(), source })?;
+    let bytes = Format::of(path)?
+        .encode(frame)
+        .map_err(|source| WriteError::Encode { path: path.to_owned(), source })?;
+    Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
+}
+
+/// Writes `image` to the PNG file `path`, which is whole or as it was, whatever goes wrong.
+///
+/// # Errors
+/// [`WriteError`] when the extension is not `.png`, the file exists and `overwrite` is false, or it cannot be written.
+pub fn write_rgb(path: &Path, image: &RgbImage, overwrite: bool) -> Result<(), WriteError> {
+    if !matches!(Format::of(path), Ok(Format::Png)) {
+        return Err(WriteError::NotPng { path: path.to_owned() });
+    }
+    let mut bytes = Vec::new();
+    encode_png_rgb(image, &mut bytes)
+        .map_err(|source| WriteError::Encode { path: path.to_owned(), source: source.into() })?;
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
 }

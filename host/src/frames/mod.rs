@@ -1,11 +1,13 @@
 //! Frames: reading and writing them, making them, and looking at them.
 //!
 //! A file's samples are taken as they are, never rescaled; only a colour picture is brought to the depth asked for, as it
-//! is mosaicked. The files never say the Bayer phase, and mostly not the depth, so [`ReadOptions`] gives both.
+//! is mosaicked. The files mostly say neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
 
 mod builtin;
+pub mod dng;
 mod error;
 mod file;
+mod format;
 mod mosaic;
 mod patterns;
 pub mod pgm;
@@ -22,7 +24,8 @@ use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{read, read_rgb, write};
+pub use file::{read, read_rgb, write, write_rgb};
+pub use format::{Format, UnknownFormat};
 pub use mosaic::mosaic;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use scene::Scene;

@@ -23,14 +23,16 @@ pub fn demosaic(frame: &Frame) -> RgbImage {
     thumbnail(frame, frame.width())
 }
 
-/// [`demosaic`] of samples of 8 bits that are coded for the screen already, as those of a photograph are.
+/// [`demosaic`] of samples that are coded for the screen already, as those of a photograph are: brought to 8 bits, rounded half
+/// up, and no more.
 #[must_use]
 pub fn demosaic_coded(frame: &Frame) -> RgbImage {
     let (width, height) = (frame.width(), frame.height());
+    let full = u32::from(frame.depth().max());
     let places = (0..height).flat_map(|row| (0..width).map(move |column| (row, column)));
     let data = places
         .flat_map(|(row, column)| pixel(frame, row, column))
-        .map(|sample| u8::try_from(sample).unwrap_or(u8::MAX))
+        .map(|sample| u8::try_from((u32::from(sample) * 255 + full / 2) / full).unwrap_or(u8::MAX))
         .collect();
     RgbImage { width, height, data }
 }

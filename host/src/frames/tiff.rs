@@ -1,4 +1,4 @@
-//! TIFF, 8 and 16 bits a sample: one plain picture, in either byte order.
+//! TIFF, 8 and 16 bits a sample: one plain picture, in either byte order, or raw samples under a filter array (DNG).
 
 use std::io::{Cursor, Seek, Write};
 
@@ -14,14 +14,20 @@ use super::{DecodeError, ReadOptions, tiff_directory};
 /// The first bytes of a TIFF, of either byte order.
 pub(super) const MAGICS: [&[u8]; 2] = [b"II*\0", b"MM\0*"];
 
-/// The frame in the bytes of a TIFF: grey is a raw Bayer frame as it is; RGB is mosaicked; alpha is ignored.
+/// The frame in the bytes of a TIFF or DNG: grey is a raw Bayer frame as it is; RGB is mosaicked; alpha is ignored.
 ///
 /// # Errors
-/// [`DecodeError`] when the TIFF is damaged, of a kind that is not taken (several pictures, palettes, planes, lossy or
-/// unusual codings), or when a sample is above `how.depth`.
+/// [`DecodeError`] when the file is damaged, of a kind that is not taken (several pictures, palettes, planes, lossy or
+/// unusual codings), says that its phase or depth is another than `how` has, or when a sample is above `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
-    tiff_directory::check(bytes)?;
-    picture(bytes)?.into_frame(how)
+    match tiff_directory::check(bytes)? {
+        None => picture(bytes),
+        Some(array) => {
+            array.check(how)?;
+            picture(&array.as_grey(bytes))
+        }
+    }?
+    .into_frame(how)
 }
 
 /// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16; uncompressed.

@@ -3,7 +3,9 @@
 //! A header of a few bytes can promise more than memory holds, and in places the decoder computes with such numbers
 //! unchecked. So the tags that set sizes and codings are read here first, and anything but a plain picture is refused.
 
-use super::{DecodeError, size};
+use halfrow_model::Phase;
+
+use super::{DecodeError, ReadOptions, dng, size};
 
 const WIDTH: u16 = 256;
 const HEIGHT: u16 = 257;
@@ -15,18 +17,61 @@ const PLANAR: u16 = 284;
 const TILE_WIDTH: u16 = 322;
 const TILE_HEIGHT: u16 = 323;
 
-/// Refuses a TIFF that is not one plain picture: grey from black to white, or colour, with or without alpha, of 8 or 16
-/// bits, uncompressed or packed by LZW, deflate or PackBits.
+/// What a TIFF or DNG tells of the colour filter array that its samples lie under.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct FilterArray {
+    /// The arrangement of the colours.
+    phase: Phase,
+    /// The sample of full brightness, if it is told.
+    white: Option<u32>,
+    /// Where the entry stands that says so.
+    entry: usize,
+}
+
+impl FilterArray {
+    /// Refuses samples of another phase or depth than `how` has.
+    ///
+    /// # Errors
+    /// [`DecodeError::OtherPhase`] or [`DecodeError::OtherDepth`].
+    pub(super) fn check(&self, how: &ReadOptions) -> Result<(), DecodeError> {
+        let bits = self.white.map(|white| u32::BITS - white.leading_zeros());
+        match bits {
+            _ if self.phase != how.phase => {
+                Err(DecodeError::OtherPhase { found: self.phase, asked: how.phase })
+            }
+            Some(found) if found != how.depth.bits() => {
+                Err(DecodeError::OtherDepth { found, asked: how.depth })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The file `bytes` with its samples declared grey, since the decoder knows no filter array.
+    pub(super) fn as_grey(&self, bytes: &[u8]) -> Vec<u8> {
+        let little = bytes.starts_with(b"II");
+        let short = |value: u16| if little { value.to_le_bytes() } else { value.to_be_bytes() };
+        let mut grey = bytes.to_vec();
+        if let Some(value) = grey.get_mut(self.entry + 8..self.entry + 10) {
+            value.copy_from_slice(&short(1));
+        }
+        grey
+    }
+}
+
+/// Refuses a TIFF that is not one plain picture: grey from black to white, raw under a colour filter array (DNG), or colour,
+/// with or without alpha, of 8 or 16 bits, uncompressed or packed by LZW, deflate or PackBits. Of raw samples, returns what is
+/// told of the array.
 ///
 /// # Errors
 /// [`DecodeError`] that names what is not taken, or the byte where the directory breaks off.
-pub(super) fn check(bytes: &[u8]) -> Result<(), DecodeError> {
+pub(super) fn check(bytes: &[u8]) -> Result<Option<FilterArray>, DecodeError> {
     let tags = Tags::read(bytes)?;
     let one = |tag, otherwise| tags.value(tag).unwrap_or(otherwise);
     let (width, height) = size::checked(one(WIDTH, 0).into(), one(HEIGHT, 0).into())?;
     size::checked(one(TILE_WIDTH, 0).into(), one(TILE_HEIGHT, 0).into())?;
     let (colour, channels, bits) = (one(PHOTOMETRIC, 1), one(CHANNELS, 1), one(BITS, 1));
-    if !matches!((colour, channels), (1, 1) | (2, 3 | 4)) {
+    let array = tags.filter_array()?;
+    if !matches!((colour, channels), (1, 1) | (2, 3 | 4)) && (array.is_none() || channels != 1) {
         let what = format!("a TIFF with colour code {colour} and {channels} channels");
         return Err(DecodeError::Unsupported { what, remedy: "save it as grey (black is zero) or RGB" });
     }
@@ -47,11 +92,20 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), DecodeError> {
         });
     }
     let samples = width * height * if channels == 1 { 1 } else { 3 };
-    size::plausible(bytes.len(), samples * if bits == 8 { 1 } else { 2 })
+    size::plausible(bytes.len(), samples * if bits == 8 { 1 } else { 2 })?;
+    Ok(array)
 }
 
-/// The tags of the first directory that hold a number.
-struct Tags(Vec<(u16, u32)>);
+/// A tag of the first directory that holds a number, or four bytes as one, and where its entry stands.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+struct Entry {
+    tag: u16,
+    value: u32,
+    start: usize,
+}
+
+/// The tags of the first directory that matter.
+struct Tags(Vec<Entry>);
 
 impl Tags {
     fn read(bytes: &[u8]) -> Result<Self, DecodeError> {
@@ -67,24 +121,56 @@ impl Tags {
             let start = directory.saturating_add(2 + 12 * entry);
             file.check_count(start)?;
             let tag = file.short(start)?;
-            if Self::wanted(tag) {
-                tags.push((tag, file.value(start)?));
-            }
+            let value = match tag {
+                dng::PATTERN | dng::VERSION => file.four_bytes(start)?,
+                // Of a table only its presence matters.
+                dng::LINEARISATION => 0,
+                tag if Self::wanted(tag) => file.value(start)?,
+                _ => continue,
+            };
+            tags.push(Entry { tag, value, start });
         }
         tags.sort_unstable();
-        match tags.windows(2).any(|pair| matches!(pair, [first, second] if first.0 == second.0)) {
+        match tags.windows(2).any(|pair| matches!(pair, [first, second] if first.tag == second.tag)) {
             true => Err(DecodeError::TiffDirectory { offset: directory }),
             false => Ok(Self(tags)),
         }
     }
 
     fn wanted(tag: u16) -> bool {
-        [WIDTH, HEIGHT, BITS, COMPRESSION, PHOTOMETRIC, CHANNELS, PLANAR, TILE_WIDTH, TILE_HEIGHT]
-            .contains(&tag)
+        let sizes = [WIDTH, HEIGHT, TILE_WIDTH, TILE_HEIGHT];
+        let codings = [BITS, COMPRESSION, PHOTOMETRIC, CHANNELS, PLANAR, dng::WHITE];
+        sizes.contains(&tag) || codings.contains(&tag)
+    }
+
+    fn entry(&self, tag: u16) -> Option<Entry> {
+        self.0.iter().find(|entry| entry.tag == tag).copied()
     }
 
     fn value(&self, tag: u16) -> Option<u32> {
-        self.0.iter().find(|(found, _)| *found == tag).map(|&(_, value)| value)
+        self.entry(tag).map(|entry| entry.value)
+    }
+
+    /// The filter array that the samples lie under, if they lie under any.
+    fn filter_array(&self) -> Result<Option<FilterArray>, DecodeError> {
+        let refused = |what: &str, remedy| Err(DecodeError::Unsupported { what: what.to_owned(), remedy });
+        let entry = match self.entry(PHOTOMETRIC) {
+            Some(entry) if entry.value == u32::from(dng::FILTER_ARRAY) => entry,
+            _ if self.value(dng::VERSION).is_none() => return Ok(None),
+            _ => {
+                let what = "a DNG whose first picture is not its raw one";
+                return refused(what, "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T` does");
+            }
+        };
+        if self.value(dng::LINEARISATION).is_some() {
+            return refused("a DNG with a table for its samples", "convert it to samples that are linear");
+        }
+        match dng::phase_of(self.value(dng::PATTERN).unwrap_or(u32::MAX).to_be_bytes()) {
+            Some(phase) => Ok(Some(FilterArray { phase, white: self.value(dng::WHITE), entry: entry.start })),
+            None => {
+                refused("a colour filter array that is no Bayer pattern", "use a sensor of Bayer's pattern")
+            }
+        }
     }
 }
 
@@ -117,6 +203,15 @@ impl Bytes<'_> {
             }
             (LONG, 1) => self.long(place),
             _ => Err(DecodeError::TiffDirectory { offset: start }),
+        }
+    }
+
+    /// The four bytes of the directory entry at `start`, the first uppermost; of any other value, a number that is no pattern.
+    fn four_bytes(&self, start: usize) -> Result<u32, DecodeError> {
+        const BYTE: u16 = 1;
+        match (self.short(start.saturating_add(2))?, self.long(start.saturating_add(4))?) {
+            (BYTE, 4) => self.array(start.saturating_add(8)).map(u32::from_be_bytes),
+            _ => Ok(u32::MAX),
         }
     }
 

@@ -82,7 +82,7 @@ fn every_format_can_be_written_and_read_again() {
     let folder = Folder::new();
     let call = small("correct", &["builtin:street", "--model", "-o", "once.pgm"]);
     assert_eq!(folder.halfrow(call).code, Some(0));
-    for file in ["once.png", "once.tif", "once.raw"] {
+    for file in ["once.png", "once.tif", "once.dng", "once.raw"] {
         let call = small("correct", &["builtin:street", "--model", "-o", file]);
         assert_eq!(folder.halfrow(call).code, Some(0), "{file}");
     }
@@ -95,6 +95,7 @@ fn every_format_can_be_written_and_read_again() {
     let expected = again("once.pgm", "pgm.pgm", &[]);
     assert!(again("once.png", "png.pgm", &[]) == expected);
     assert!(again("once.tif", "tif.pgm", &[]) == expected);
+    assert!(again("once.dng", "dng.pgm", &[]) == expected);
     assert!(again("once.raw", "raw.pgm", &["--raw", "u16le"]) == expected);
 }
 

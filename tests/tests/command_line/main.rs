@@ -11,6 +11,7 @@ mod corrected;
 mod help;
 mod made_files;
 mod paper;
+mod previewed;
 mod replay;
 mod report_folder;
 mod settings;

@@ -1,0 +1,105 @@
+//! DNG (Digital Negative 1.4): the raw samples with what a raw developer needs to know about them.
+//!
+//! The samples are 16-bit words, uncompressed, black at 0 and white at 2^B − 1. The camera's colours are declared to be linear
+//! sRGB with a neutral of (1, 1, 1), so that a developer shows what [`super::preview::demosaic`] shows; nothing is known about
+//! the colours of the real sensor. Section names are those of Adobe's specification.
+
+use std::io::{Seek, Write};
+
+use halfrow_model::{Colour, Frame, Phase};
+use tiff::TiffError;
+use tiff::encoder::colortype::Gray16;
+use tiff::encoder::{DirectoryEncoder, Rational, SRational, TiffEncoder, TiffKind};
+use tiff::tags::Tag;
+
+/// PhotometricInterpretation of a colour filter array.
+pub(super) const FILTER_ARRAY: u16 = 32803;
+
+/// CFARepeatPatternDim, and what it must be here: two rows of two columns.
+const REPEAT: (u16, [u16; 2]) = (33421, [2, 2]);
+/// CFAPattern: one of red 0, green 1 and blue 2 for each place, row after row.
+pub(super) const PATTERN: u16 = 33422;
+/// DNGVersion.
+pub(super) const VERSION: u16 = 50706;
+/// DNGBackwardVersion: the oldest reader that understands the file.
+const BACKWARD_VERSION: u16 = 50707;
+/// UniqueCameraModel.
+const CAMERA: u16 = 50708;
+/// CFAPlaneColor: the order of the colours in [`COLOUR_MATRIX`].
+const PLANES: u16 = 50710;
+/// LinearizationTable.
+pub(super) const LINEARISATION: u16 = 50712;
+/// BlackLevel.
+const BLACK: u16 = 50714;
+/// WhiteLevel.
+pub(super) const WHITE: u16 = 50717;
+/// ColorMatrix1: from XYZ to the camera's colours.
+const COLOUR_MATRIX: u16 = 50721;
+/// AsShotNeutral: the camera's colours of what is to look white.
+const NEUTRAL: u16 = 50728;
+/// CalibrationIlluminant1: the light that [`COLOUR_MATRIX`] holds for.
+const ILLUMINANT: u16 = 50778;
+/// D65 among Exif's light sources.
+const D65: u16 = 21;
+
+/// From XYZ to linear sRGB by IEC 61966-2-1, in ten thousandths.
+const XYZ_TO_SRGB: [i32; 9] = [32406, -15372, -4986, -9689, 18758, 415, 557, -2040, 10570];
+
+/// Writes `frame` as a DNG, its samples as they are.
+///
+/// # Errors
+/// The encoder's, or whatever `out` answers.
+pub fn encode(frame: &Frame, out: &mut (impl Write + Seek)) -> Result<(), TiffError> {
+    let (width, height) = (u32::try_from(frame.width())?, u32::try_from(frame.height())?);
+    let mut encoder = TiffEncoder::new(out)?;
+    let mut image = encoder.new_image::<Gray16>(width, height)?;
+    // Some developers look for one strip alone.
+    image.rows_per_strip(height)?;
+    describe_file(image.encoder())?;
+    describe_samples(image.encoder(), frame)?;
+    image.write_data(frame.samples())
+}
+
+fn describe_file<W: Write + Seek, K: TiffKind>(
+    directory: &mut DirectoryEncoder<'_, W, K>,
+) -> Result<(), TiffError> {
+    // The full picture, not a smaller one of another; the first row is the upper one.
+    directory.write_tag(Tag::NewSubfileType, 0_u32)?;
+    directory.write_tag(Tag::Orientation, 1_u16)?;
+    directory.write_tag(Tag::Software, concat!("halfrow ", env!("CARGO_PKG_VERSION")))?;
+    directory.write_tag(Tag::Make, "halfrow")?;
+    directory.write_tag(Tag::Model, "frame")?;
+    directory.write_tag(Tag::Unknown(CAMERA), "halfrow frame")?;
+    directory.write_tag(Tag::Unknown(VERSION), [1_u8, 4, 0, 0])?;
+    directory.write_tag(Tag::Unknown(BACKWARD_VERSION), [1_u8, 1, 0, 0])
+}
+
+fn describe_samples<W: Write + Seek, K: TiffKind>(
+    directory: &mut DirectoryEncoder<'_, W, K>,
+    frame: &Frame,
+) -> Result<(), TiffError> {
+    let (repeat, sides) = REPEAT;
+    directory.write_tag(Tag::PhotometricInterpretation, FILTER_ARRAY)?;
+    directory.write_tag(Tag::Unknown(repeat), sides)?;
+    directory.write_tag(Tag::Unknown(PATTERN), pattern(frame.phase()))?;
+    directory.write_tag(Tag::Unknown(PLANES), [0_u8, 1, 2])?;
+    directory.write_tag(Tag::Unknown(BLACK), 0_u16)?;
+    directory.write_tag(Tag::Unknown(WHITE), frame.depth().max())?;
+    directory.write_tag(Tag::Unknown(COLOUR_MATRIX), XYZ_TO_SRGB.map(|n| SRational { n, d: 10_000 }))?;
+    directory.write_tag(Tag::Unknown(NEUTRAL), [1; 3].map(|n| Rational { n, d: 1 }))?;
+    directory.write_tag(Tag::Unknown(ILLUMINANT), D65)
+}
+
+/// The colours of the upper left four places as [`PATTERN`] has them.
+fn pattern(phase: Phase) -> [u8; 4] {
+    [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(row, column)| match phase.colour(row, column) {
+        Colour::Red => 0,
+        Colour::Green => 1,
+        Colour::Blue => 2,
+    })
+}
+
+/// The phase with this [`PATTERN`].
+pub(super) fn phase_of(found: [u8; 4]) -> Option<Phase> {
+    Phase::ALL.into_iter().find(|&phase| pattern(phase) == found)
+}

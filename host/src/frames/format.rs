@@ -1,0 +1,86 @@
+//! The formats that frames are written in.
+
+use std::fmt;
+use std::io::Cursor;
+use std::path::Path;
+use std::str::FromStr;
+
+use halfrow_model::Frame;
+
+use super::{EncodeError, RawLayout, WriteError, dng, pgm, png, raw, tiff};
+
+/// A format that frames are written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A portable greymap, binary.
+    Pgm,
+    /// Grey samples, compressed.
+    Png,
+    /// Grey samples.
+    Tiff,
+    /// Raw samples that a raw developer opens.
+    Dng,
+    /// Words of 16 bits, the low byte first, without a header.
+    Raw,
+}
+
+/// A name of no format.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` is no format for frames; use pgm, png, tif, dng or raw")]
+pub struct UnknownFormat(String);
+
+impl Format {
+    /// All formats.
+    pub const ALL: [Self; 5] = [Self::Pgm, Self::Png, Self::Tiff, Self::Dng, Self::Raw];
+
+    /// The extension of its files, which is also the name that [`FromStr`] reads.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::Pgm => "pgm",
+            Self::Png => "png",
+            Self::Tiff => "tif",
+            Self::Dng => "dng",
+            Self::Raw => "raw",
+        }
+    }
+
+    /// The format that the extension of `path` names.
+    ///
+    /// # Errors
+    /// [`WriteError::Extension`] when it names none.
+    pub fn of(path: &Path) -> Result<Self, WriteError> {
+        let extension = path.extension().and_then(|extension| extension.to_str());
+        let named = extension.and_then(|extension| extension.parse().ok());
+        named.ok_or_else(|| WriteError::Extension { path: path.to_owned() })
+    }
+
+    pub(super) fn encode(self, frame: &Frame) -> Result<Vec<u8>, EncodeError> {
+        let mut bytes = Vec::new();
+        match self {
+            Self::Pgm => pgm::encode(frame, &mut bytes)?,
+            Self::Png => png::encode(frame, &mut bytes)?,
+            Self::Tiff => tiff::encode(frame, &mut Cursor::new(&mut bytes))?,
+            Self::Dng => dng::encode(frame, &mut Cursor::new(&mut bytes))?,
+            Self::Raw => raw::encode(frame, RawLayout::U16Le, &mut bytes)?,
+        }
+        Ok(bytes)
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.extension())
+    }
+}
+
+impl FromStr for Format {
+    type Err = UnknownFormat;
+
+    fn from_str(text: &str) -> Result<Self, UnknownFormat> {
+        let mut formats = Self::ALL.into_iter();
+        let known = formats.find(|format| format.extension().eq_ignore_ascii_case(text));
+        let known = known.or_else(|| text.eq_ignore_ascii_case("tiff").then_some(Self::Tiff));
+        known.ok_or_else(|| UnknownFormat(text.to_owned()))
+    }
+}

@@ -1,0 +1,104 @@
+//! `correct --preview` and the formats of corrected frames.
+
+use halfrow::frames::preview::RgbImage;
+use halfrow_tests::program::Folder;
+
+use crate::{refused, refused_with, small};
+
+/// 128 x 16 samples of 8 bits under GRBG: red 200, green 100 and blue 40 in the upper eight rows, and black below. Every row is
+/// flat in each colour, so a correction leaves it as it is.
+fn edge() -> Vec<u8> {
+    let sample = |row: usize, column: usize| match (row % 2, column % 2) {
+        _ if row >= 8 => 0,
+        (0, 1) => 200,
+        (1, 0) => 40,
+        _ => 100,
+    };
+    let samples = (0..16).flat_map(|row| (0..128).map(move |column| sample(row, column)));
+    b"P5\n128 16\n255\n".iter().copied().chain(samples).collect()
+}
+
+fn preview(more: &[&str]) -> RgbImage {
+    let folder = Folder::new();
+    folder.write("edge.pgm", edge());
+    let call = ["edge.pgm", "--bits", "8", "--model", "-o", "out.pgm", "--preview", "look.png"];
+    let ended = folder.halfrow(small("correct", &call).into_iter().chain(more.iter().copied()));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(
+        ended.stdout,
+        "wrote out.pgm, corrected by the model, not judged\nwrote look.png, a preview\n"
+    );
+    assert_eq!(folder.read("out.pgm"), edge());
+    halfrow::frames::read_rgb(&folder.path().join("look.png")).unwrap()
+}
+
+fn pixel(image: &RgbImage, row: usize, column: usize) -> &[u8] {
+    &image.data[3 * (row * image.width + column)..][..3]
+}
+
+/// By hand, on either side of the edge. In row 7 a blue place has its own 40, greens 100, 100, 100 and 0, and reds 200, 200, 0
+/// and 0; a green place reds 200 and 0. In row 8 a green place has no red beside it, and blues 40 and 0.
+#[test]
+fn missing_colours_are_means_of_their_neighbours() {
+    let image = preview(&["--preview-coded"]);
+    assert_eq!((image.width, image.height), (128, 16));
+    for (row, column, colours) in [
+        (3, 60, [200, 100, 40]),
+        (4, 61, [200, 100, 40]),
+        (7, 60, [100, 75, 40]),
+        (7, 61, [100, 100, 40]),
+        (8, 60, [0, 0, 20]),
+        (12, 60, [0, 0, 0]),
+    ] {
+        assert_eq!(pixel(&image, row, column), colours, "row {row}, column {column}");
+    }
+}
+
+/// The same coded by IEC 61966-2-1, computed in Python: 200, 100, 75, 40 and 20 of 255 become 229, 168, 148, 110 and 79.
+#[test]
+fn light_is_coded_for_the_screen() {
+    let image = preview(&[]);
+    for (row, column, colours) in
+        [(3, 60, [229, 168, 110]), (7, 60, [168, 148, 110]), (8, 60, [0, 0, 79]), (12, 60, [0, 0, 0])]
+    {
+        assert_eq!(pixel(&image, row, column), colours, "row {row}, column {column}");
+    }
+}
+
+#[test]
+fn several_frames_go_into_folders_in_the_format_that_is_asked_for() {
+    let folder = Folder::new();
+    let frames = ["builtin:street", "builtin:bars", "--model", "--json"];
+    let places = ["-o", "frames", "--format", "dng", "--preview", "looks"];
+    let said = folder.halfrow(small("correct", &[frames, ["-o", "pgm", "--format", "pgm"]].concat()));
+    assert_eq!(said.json()["previews"], serde_json::json!([]));
+    assert_eq!(folder.names("pgm"), ["bars.pgm", "street.pgm"]);
+    let said = folder.halfrow(small("correct", &frames).into_iter().chain(places)).json();
+    assert_eq!(said["outputs"], serde_json::json!(["frames/street.dng", "frames/bars.dng"]));
+    assert_eq!(said["previews"], serde_json::json!(["looks/street.png", "looks/bars.png"]));
+    assert_eq!(folder.names("frames"), ["bars.dng", "street.dng"]);
+    assert_eq!(folder.names("looks"), ["bars.png", "street.png"]);
+}
+
+#[test]
+fn previews_that_have_no_place_are_refused() {
+    let folder = Folder::new();
+    folder.write("look.png", "precious");
+    let refuse = |more: &[&str], sentence: &str| {
+        let call = [&["builtin:black", "--model", "-o", "out.dng"], more].concat();
+        refused(&folder, &small("correct", &call), sentence);
+    };
+    refuse(&["--preview", "look.png"], "look.png is there already; give --overwrite");
+    refuse(&["--preview", "look.jpg"], "look.jpg is to be a PNG; end its name in .png");
+    refuse(&["builtin:white", "--preview", "new.png"], "one file for 2 frames");
+    refuse(&["--format", "pgm"], "out.dng is no pgm; leave --format out");
+    refuse(&["--format", "jpeg"], "use pgm, png, tif, dng or raw");
+    refuse(&["--preview-coded"], "--preview");
+    assert_eq!(folder.text("look.png"), "precious");
+    let both = ["builtin:black", "--model", "-o", "new.png", "--preview", "new.png"];
+    refused(&folder, &small("correct", &both), "or a frame and its preview");
+    let one_for_two = ["builtin:black", "builtin:white", "--model", "-o", "out", "--preview", "new.png"];
+    refused(&folder, &small("correct", &one_for_two), "name a folder with --preview");
+    let nowhere = ["builtin:black", "--model", "-o", "none/out.dng"];
+    refused_with(3, &folder, &small("correct", &nowhere), "check that its folder exists");
+}

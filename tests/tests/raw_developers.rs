@@ -1,0 +1,156 @@
+//! DNG files as raw developers see them: dcraw, LibRaw's tools, and ExifTool.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use std::process::Command;
+
+use halfrow::frames::{ReadOptions, decode};
+use halfrow_model::{BitDepth, Frame, Phase};
+use halfrow_tests::program::{Folder, halfrow};
+
+/// What `program` of Debian's `package` prints when it is run in `folder`.
+#[track_caller]
+fn printed(folder: &Folder, package: &str, program: &str, arguments: &[&str]) -> Vec<u8> {
+    let started = Command::new(program).args(arguments).current_dir(folder.path()).output();
+    let ended = started.unwrap_or_else(|error| panic!("{program}: {error}; run: apt-get install {package}"));
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(ended.status.success(), "{program} {arguments:?}: {said}");
+    ended.stdout
+}
+
+#[track_caller]
+fn text(folder: &Folder, package: &str, program: &str, arguments: &[&str]) -> String {
+    let text = String::from_utf8(printed(folder, package, program, arguments)).unwrap();
+    // Columns are filled with blanks.
+    text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
+}
+
+/// A folder with a corrected frame as `frame.dng` and `frame.pgm`, and the frame.
+fn corrected(phase: Phase, depth: BitDepth) -> (Folder, Frame) {
+    let folder = Folder::new();
+    let bits = depth.bits().to_string();
+    for output in ["frame.dng", "frame.pgm"] {
+        let frame = ["builtin:noise", "--model", "--phase", phase.name(), "--bits", &bits, "-o", output];
+        let size = ["correct", "--width", "96", "--height", "54", "--radius", "55"];
+        let ended = folder.halfrow(size.into_iter().chain(frame));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    }
+    let frame = decode(&folder.read("frame.pgm"), &ReadOptions { depth, phase, raw: None }).unwrap();
+    (folder, frame)
+}
+
+fn every_kind() -> impl Iterator<Item = (Phase, BitDepth)> {
+    Phase::ALL.into_iter().flat_map(|phase| BitDepth::ALL.map(|depth| (phase, depth)))
+}
+
+#[test]
+fn dcraw_and_libraw_find_every_sample_as_it_is() {
+    for (phase, depth) in every_kind() {
+        let (folder, frame) = corrected(phase, depth);
+        let how = ReadOptions { depth, phase, raw: None };
+        let by_dcraw = printed(&folder, "dcraw", "dcraw", &["-D", "-4", "-T", "-c", "frame.dng"]);
+        assert!(decode(&by_dcraw, &how).unwrap() == frame, "{phase} {depth:?}, dcraw");
+        printed(&folder, "libraw-bin", "unprocessed_raw", &["-q", "-T", "frame.dng"]);
+        let by_libraw = folder.read("frame.dng.tiff");
+        assert!(decode(&by_libraw, &how).unwrap() == frame, "{phase} {depth:?}, LibRaw");
+    }
+}
+
+#[test]
+fn dcraw_and_libraw_name_the_pattern_and_the_size() {
+    let patterns = [
+        (Phase::Grbg, "GR/BG", "GRBGGRBGGRBGGRBG"),
+        (Phase::Rggb, "RG/GB", "RGGBRGGBRGGBRGGB"),
+        (Phase::Bggr, "BG/GR", "BGGRBGGRBGGRBGGR"),
+        (Phase::Gbrg, "GB/RG", "GBRGGBRGGBRGGBRG"),
+    ];
+    for (phase, by_dcraw, by_libraw) in patterns {
+        let (folder, _) = corrected(phase, BitDepth::Twelve);
+        let told = text(&folder, "dcraw", "dcraw", &["-i", "-v", "frame.dng"]);
+        let lines = ["Camera: halfrow frame", "DNG Version: 1.4.0.0", "Full size: 96 x 54"];
+        for line in lines.into_iter().chain([format!("Filter pattern: {by_dcraw}").as_str()]) {
+            assert!(told.lines().any(|told| told == line), "{line} in {told}");
+        }
+        let told = text(&folder, "libraw-bin", "raw-identify", &["-v", "frame.dng"]);
+        let lines = ["Image size: 96 x 54", "DNG Illuminant 1: D65"];
+        for line in lines.into_iter().chain([format!("Filter pattern: {by_libraw}").as_str()]) {
+            assert!(told.lines().any(|told| told == line), "{line} in {told}");
+        }
+    }
+}
+
+#[test]
+fn exiftool_finds_nothing_missing_and_the_depth_as_white() {
+    for (phase, depth) in every_kind() {
+        let (folder, _) = corrected(phase, depth);
+        let told = text(
+            &folder,
+            "libimage-exiftool-perl",
+            "exiftool",
+            &["-s", "-validate", "-warning", "-a", "-WhiteLevel", "-BlackLevel", "frame.dng"],
+        );
+        let white = (1 << depth.bits()) - 1;
+        assert_eq!(told, format!("Validate : OK\nWhiteLevel : {white}\nBlackLevel : 0\n"));
+    }
+}
+
+/// dcraw with its own bilinear interpolation, the file's colours and white, sRGB's curve, and no brightening. Both round to 8 bits,
+/// dcraw on the way to 16 as well; and at the border they mean by different neighbours.
+#[test]
+fn dcraw_develops_the_picture_that_the_preview_shows() {
+    const SIZE: (usize, usize) = (320, 180);
+    for phase in Phase::ALL {
+        let folder = Folder::new();
+        let size = ["correct", "--width", "320", "--height", "180", "--radius", "184"];
+        let frame = ["builtin:street", "--model", "--phase", phase.name(), "-o", "street.dng"];
+        let call = size.into_iter().chain(frame).chain(["--preview", "street.png"]);
+        let ended = folder.halfrow(call);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let ours = halfrow::frames::read_rgb(&folder.path().join("street.png")).unwrap();
+        let how = ["-w", "-W", "-o", "1", "-g", "2.4", "12.92", "-q", "0", "-c", "street.dng"];
+        let ppm = printed(&folder, "dcraw", "dcraw", &how);
+        let theirs = ppm.strip_prefix(b"P6\n320 180\n255\n").unwrap();
+        assert_eq!(((ours.width, ours.height), theirs.len()), (SIZE, ours.data.len()));
+        let inside = |place: &usize| {
+            let (row, column) = (place / 3 / SIZE.0, place / 3 % SIZE.0);
+            (1..SIZE.1 - 1).contains(&row) && (1..SIZE.0 - 1).contains(&column)
+        };
+        let places = (0..ours.data.len()).filter(inside);
+        let farthest = places.map(|place| ours.data[place].abs_diff(theirs[place])).max();
+        assert!(farthest <= Some(1), "{phase}: {farthest:?}");
+        let (least, most) = (ours.data.iter().min(), ours.data.iter().max());
+        assert!(least < Some(&40) && most > Some(&200), "a picture that shows something: {least:?} {most:?}");
+    }
+}
+
+/// LibRaw's own developer makes a picture of it.
+#[test]
+fn libraw_develops_it() {
+    let (folder, _) = corrected(Phase::Rggb, BitDepth::Ten);
+    printed(&folder, "libraw-bin", "dcraw_emu", &["-w", "-W", "frame.dng"]);
+    assert!(folder.read("frame.dng.ppm").starts_with(b"P6\n96 54\n255\n"));
+}
+
+/// The file that was written is an input again, and a wrong phase or depth is noticed.
+#[test]
+fn it_can_be_corrected_again() {
+    let (folder, _) = corrected(Phase::Gbrg, BitDepth::Ten);
+    let again = |input: &str, output: &str, phase: &str, bits: &str| {
+        let size = ["correct", "--width", "96", "--height", "54", "--radius", "55", "--model"];
+        let [input, output] = [input, output].map(|name| folder.path().join(name).display().to_string());
+        let call = [&input, "-o", &output, "--phase", phase, "--bits", bits];
+        halfrow(size.into_iter().chain(call))
+    };
+    assert_eq!(again("frame.dng", "twice.pgm", "gbrg", "10").code, Some(0));
+    assert_eq!(again("frame.pgm", "expected.pgm", "gbrg", "10").code, Some(0));
+    assert!(folder.read("twice.pgm") == folder.read("expected.pgm"));
+    for (phase, bits, remedy) in [
+        ("grbg", "10", "its colours lie as gbrg, not as grbg; give --phase gbrg"),
+        ("gbrg", "12", "its samples have 10 bits, not 12"),
+    ] {
+        let refused = again("frame.dng", "none.pgm", phase, bits);
+        assert_eq!(refused.code, Some(2));
+        assert!(refused.stderr.contains(remedy), "{}", refused.stderr);
+    }
+}
