@@ -2,8 +2,15 @@
 //!
 //! The photographs are taken from the folder `HALFROW_IMAGES`, or from `../shared/kodak` beside the project.
 
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+use std::process::Command;
+
+use halfrow::frames::preview::RgbImage;
+use halfrow::frames::write_rgb;
 use halfrow_tests::photographs;
-use halfrow_tests::program::Folder;
+use halfrow_tests::program::{Ended, Folder};
 use serde_json::Value;
 
 /// Gains in dB under Table 1's warp and under a band-limited one, each mean, least and most, found with NumPy 2.
@@ -40,4 +47,76 @@ fn a_folder_without_photographs_is_refused() {
     let ended = folder.halfrow(call);
     assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
     assert!(ended.stderr.contains("no .png file"), "{}", ended.stderr);
+}
+
+/// Two pictures with detail of every size in the folder `photos`, and a file that is none.
+fn folder_of_pictures() -> Folder {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("photos")).unwrap();
+    for (name, seed) in [("photos/b.png", 5_u32), ("photos/a.png", 3)] {
+        let (width, height) = (96, 64);
+        let value = |place: u32| {
+            let (row, column, colour) = (place / 3 / 96, place / 3 % 96, place % 3);
+            let coarse = (row / seed + column / 7) % 2 * 100;
+            let fine = (row * row + seed * column * column / 16 + 30 * colour) % 100;
+            u8::try_from(coarse + fine).unwrap()
+        };
+        let data = (0..3 * 96 * 64).map(value).collect();
+        write_rgb(&folder.path().join(name), &RgbImage { width, height, data }, false).unwrap();
+    }
+    folder.write("photos/notes.txt", "no photograph");
+    folder
+}
+
+fn train(folder: &Folder, more: &[&str]) -> Ended {
+    let call = ["kernel", "train", "--quiet", "--images", "photos"];
+    folder.halfrow(call.into_iter().chain(more.iter().copied()))
+}
+
+#[test]
+fn a_trained_kernel_tells_where_it_comes_from_and_is_the_same_every_time() {
+    let folder = folder_of_pictures();
+    let ended = train(&folder, &["-o", "mine.json"]);
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+    assert!(ended.stdout.starts_with("2 photographs: "), "{}", ended.stdout);
+    let mine = folder.read("mine.json");
+    let file: Value = serde_json::from_slice(&mine).unwrap();
+    let about = &file["about"];
+    assert!(about["made_by"].as_str().unwrap().starts_with("halfrow "), "{about}");
+    for (image, name) in about["images"].as_array().unwrap().iter().zip(["a.png", "b.png"]) {
+        let hashed = Command::new("sha256sum").arg(folder.path().join("photos").join(name)).output().unwrap();
+        let hashed = String::from_utf8(hashed.stdout).unwrap();
+        assert_eq!(image["name"], name);
+        assert_eq!(image["sha256"], hashed.split_whitespace().next().unwrap());
+    }
+    let counts = [&about["images"], &about["models"], &about["figures"]["held_out_gains_db"]];
+    assert_eq!(counts.map(|list| list.as_array().unwrap().len()), [2, 4, 2]);
+
+    let refused = train(&folder, &["-o", "mine.json"]);
+    assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
+    assert!(refused.stderr.contains("give --overwrite"), "{}", refused.stderr);
+    assert_eq!(train(&folder, &["-o", "mine.json", "--overwrite"]).code, Some(0));
+    assert!(folder.read("mine.json") == mine, "the same photographs gave another kernel");
+    assert_eq!(train(&folder, &["-o", "wide.json", "--taps", "7"]).code, Some(0));
+    let nodes = |name| serde_json::from_slice::<Value>(&folder.read(name)).unwrap()["kernel"].clone();
+    let uses_seven = |kernel: &Value| {
+        kernel.as_array().unwrap().iter().any(|node| (&node[0], &node[4]) != (&0.into(), &0.into()))
+    };
+    assert!(!uses_seven(&nodes("mine.json")) && uses_seven(&nodes("wide.json")));
+}
+
+#[test]
+fn a_trained_kernel_corrects_frames_alike_in_the_model_and_on_a_board() {
+    let folder = folder_of_pictures();
+    assert_eq!(train(&folder, &["-o", "mine.json"]).code, Some(0));
+    let corrected = |kernel: &str, output: &str, how: &[&str]| {
+        let call = ["correct", "builtin:street", "--width", "128", "--height", "72", "--radius", "73.78"];
+        let ended =
+            folder.halfrow(call.into_iter().chain(["--kernel", kernel, "-o", output]).chain(how.to_vec()));
+        assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+        folder.read(output)
+    };
+    let model = corrected("mine.json", "model.pgm", &["--model"]);
+    assert!(corrected("mine.json", "board.pgm", &["--board", "mock,taps=five"]) == model);
+    assert!(corrected("hermite", "hermite.pgm", &["--model"]) != model);
 }

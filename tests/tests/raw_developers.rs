@@ -21,7 +21,9 @@ fn printed(folder: &Folder, package: &str, program: &str, arguments: &[&str]) ->
 
 #[track_caller]
 fn text(folder: &Folder, package: &str, program: &str, arguments: &[&str]) -> String {
-    String::from_utf8(printed(folder, package, program, arguments)).unwrap()
+    let text = String::from_utf8(printed(folder, package, program, arguments)).unwrap();
+    // Columns are filled with blanks.
+    text.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" ") + "\n").collect()
 }
 
 /// A folder with a corrected frame as `frame.dng` and `frame.pgm`, and the frame.
@@ -66,12 +68,12 @@ fn dcraw_and_libraw_name_the_pattern_and_the_size() {
     for (phase, by_dcraw, by_libraw) in patterns {
         let (folder, _) = corrected(phase, BitDepth::Twelve);
         let told = text(&folder, "dcraw", "dcraw", &["-i", "-v", "frame.dng"]);
-        let lines = ["Camera: halfrow frame", "DNG Version: 1.4.0.0", "Full size:      96 x 54"];
+        let lines = ["Camera: halfrow frame", "DNG Version: 1.4.0.0", "Full size: 96 x 54"];
         for line in lines.into_iter().chain([format!("Filter pattern: {by_dcraw}").as_str()]) {
             assert!(told.lines().any(|told| told == line), "{line} in {told}");
         }
         let told = text(&folder, "libraw-bin", "raw-identify", &["-v", "frame.dng"]);
-        let lines = ["Image size:     96 x 54", "DNG Illuminant 1: D65"];
+        let lines = ["Image size: 96 x 54", "DNG Illuminant 1: D65"];
         for line in lines.into_iter().chain([format!("Filter pattern: {by_libraw}").as_str()]) {
             assert!(told.lines().any(|told| told == line), "{line} in {told}");
         }
@@ -88,10 +90,8 @@ fn exiftool_finds_nothing_missing_and_the_depth_as_white() {
             "exiftool",
             &["-s", "-validate", "-warning", "-a", "-WhiteLevel", "-BlackLevel", "frame.dng"],
         );
-        let told: Vec<_> = told.lines().filter_map(|line| line.split_once(':')).collect();
-        let told: Vec<_> = told.into_iter().map(|(tag, value)| (tag.trim(), value.trim())).collect();
-        let white = ((1 << depth.bits()) - 1).to_string();
-        assert_eq!(told, [("Validate", "OK"), ("WhiteLevel", &white), ("BlackLevel", "0")]);
+        let white = (1 << depth.bits()) - 1;
+        assert_eq!(told, format!("Validate : OK\nWhiteLevel : {white}\nBlackLevel : 0\n"));
     }
 }
 
@@ -124,7 +124,7 @@ fn dcraw_develops_the_picture_that_the_preview_shows() {
     }
 }
 
-/// LibRaw's developer, which RawTherapee, darktable and digiKam share in part, makes a picture of it.
+/// LibRaw's own developer makes a picture of it.
 #[test]
 fn libraw_develops_it() {
     let (folder, _) = corrected(Phase::Rggb, BitDepth::Ten);

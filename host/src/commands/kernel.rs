@@ -13,6 +13,7 @@ use crate::report::sha256;
 use crate::tables::KernelFile;
 use crate::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
 use crate::verdict::Exit;
+use crate::written_aside::WriteAsideError;
 use crate::{frames, progress};
 
 /// Fit a kernel to photographs, or measure one on them
@@ -108,6 +109,10 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 }
 
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
+    // Training takes minutes, after which a refusal comes too late.
+    if arguments.output.exists() && !arguments.overwrite {
+        return Err(WriteAsideError::Exists { path: arguments.output.clone() }.into());
+    }
     let photographs = photographs(&arguments.images)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,

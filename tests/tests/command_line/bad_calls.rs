@@ -2,7 +2,7 @@
 
 use halfrow_tests::program::Folder;
 
-use crate::refused;
+use crate::{refused, small};
 
 #[test]
 fn a_frame_that_no_datapath_takes_is_refused() {

@@ -84,7 +84,7 @@ fn samples_above_the_depth_are_refused() {
 fn what_is_no_frame_at_all_is_refused() {
     let folder = Folder::new();
     folder.write("notes.txt", "not a frame");
-    bad_frame(&folder, "notes.txt", &[], "it begins like no format known here (PGM P5, PNG, TIFF)");
+    bad_frame(&folder, "notes.txt", &[], "it begins like no format known here (PGM P5, PNG, TIFF, DNG)");
     folder.write("photo.jpg", b"\xff\xd8\xff\xe0");
     bad_frame(&folder, "photo.jpg", &[], "a JPEG cannot be used");
     folder.write("plain.pgm", "P2\n2 2\n255\n0 0 0 0\n");
