@@ -116,10 +116,13 @@ impl From<Arc<Frame>> for RowReader {
 /// Where the rows are, if `input` is of a format that has them uncompressed. What is wrong with its header is left to be
 /// said by who reads all of it.
 fn raster(input: &mut File, how: &ReadOptions) -> std::io::Result<Option<Raster>> {
-    if let Some(geometry) = how.raw {
-        return Ok(raw::raster(geometry).ok());
-    }
-    let mut head = Vec::new();
-    input.take(HEAD).read_to_end(&mut head)?;
-    Ok(pgm::raster(&head).ok())
+    let found = match how.raw {
+        Some(geometry) => raw::raster(geometry),
+        None => {
+            let mut head = Vec::new();
+            input.take(HEAD).read_to_end(&mut head)?;
+            pgm::raster(&head)
+        }
+    };
+    Ok(found.ok().filter(|raster| raster.height > 0 && raster.width > 0 && raster.width.is_multiple_of(2)))
 }
