@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use anyhow::{Context as _, bail};
 use clap::Args;
-use halfrow_model::{Frame, correct};
+use halfrow_model::Frame;
 use serde_json::json;
 
 use super::board::BoardArguments;
@@ -16,6 +16,7 @@ use crate::board::{Board, BoardError};
 use crate::correction::Correction;
 use crate::frames::{self, Scene, WriteError};
 use crate::progress::Silent;
+use crate::reference;
 use crate::session::{self, FrameSource, JUDGED};
 use crate::target::BoardKind;
 use crate::verdict::Exit;
@@ -146,7 +147,8 @@ fn outputs(sources: &[FrameSource], output: &Path) -> anyhow::Result<Vec<PathBuf
 }
 
 fn by_model(chosen: &Chosen, inputs: &[Arc<Frame>]) -> anyhow::Result<Vec<Frame>> {
-    inputs.iter().map(|frame| Ok(correct(&chosen.tables, &chosen.kernel, frame)?)).collect()
+    let mut corrector = reference::corrector(&chosen.kernel);
+    inputs.iter().map(|frame| Ok(corrector.correct(&chosen.tables, frame)?)).collect()
 }
 
 fn by_board(

@@ -3,13 +3,12 @@
 use std::ops::ControlFlow;
 use std::sync::mpsc::sync_channel;
 
-use halfrow_model::correct;
-
 use super::findings::End;
 use super::judge::{Judge, Manner, PrepareError, Prepared};
 use super::plan::{Generation, Plan, SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
 use super::steps::{MAX_LATENCY, Run};
 use crate::board::{BoardError, NumberedFrame, ReturnedRow, RowTraffic};
+use crate::reference::correct;
 use crate::verdict::Exit;
 
 /// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
