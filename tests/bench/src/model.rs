@@ -2,8 +2,7 @@
 
 use std::error::Error;
 use std::hint::black_box;
-use std::num::NonZero;
-use std::rc::Rc;
+use std::sync::Arc;
 
 use halfrow_model::{Corrector, Frame, Interpolant, Kernel, ModelPath, TableSet, correct};
 
@@ -21,41 +20,36 @@ const COUNTED: usize = 32;
 
 /// Frames that one benchmark works on, and where their outputs go.
 struct Batch {
-    frames: Rc<Vec<Frame>>,
+    frames: Arc<Vec<Frame>>,
     outputs: Vec<Vec<u16>>,
 }
 
 impl Batch {
-    fn of(frames: &Rc<Vec<Frame>>) -> Self {
+    fn of(frames: &Arc<Vec<Frame>>) -> Self {
         let outputs = frames.iter().map(|frame| vec![0; frame.samples().len()]).collect();
-        Self { frames: Rc::clone(frames), outputs }
-    }
-
-    fn each(&mut self, mut work: impl FnMut(&Frame, &mut [u16])) {
-        for (frame, output) in self.frames.iter().zip(&mut self.outputs) {
-            work(black_box(frame), black_box(output));
-        }
+        Self { frames: Arc::clone(frames), outputs }
     }
 }
 
 /// One frame again and again, as it stays in the cache, and a batch whose frames do not.
 pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
-    let tables = Rc::new(tables(HEIGHT)?);
-    let one = Rc::new(vec![frame(HEIGHT, 0)?]);
+    let tables = Arc::new(tables(HEIGHT)?);
+    let one = Arc::new(vec![frame(HEIGHT, 0)?]);
     let batch = (0..BATCH).map(|index| frame(HEIGHT, index as u32)).collect::<Result<Vec<_>, _>>()?;
-    let batch = Rc::new(batch);
+    let batch = Arc::new(batch);
     let mut benchmarks = vec![copy("memcpy", &one), copy("batch memcpy", &batch)];
     for path in ModelPath::available() {
         for interpolant in [Interpolant::Hermite, Interpolant::Keys] {
             let kernel = Kernel::from(interpolant);
             check(&tables, &kernel, &one[0], path)?;
             let name = format!("{path} {interpolant}");
-            benchmarks.push(corrector(name, &one, &tables, Corrector::new(path, &kernel)?, 1));
+            benchmarks.push(corrector(name, &one, &tables, vec![Corrector::new(path, &kernel)?]));
         }
         let kernel = Kernel::from(Interpolant::Hermite);
         for threads in [1, 2] {
             let name = format!("batch {path} on {threads}");
-            benchmarks.push(corrector(name, &batch, &tables, Corrector::new(path, &kernel)?, threads));
+            let correctors = (0..threads).map(|_| Corrector::new(path, &kernel)).collect::<Result<_, _>>()?;
+            benchmarks.push(corrector(name, &batch, &tables, correctors));
         }
     }
     Ok(benchmarks)
@@ -67,28 +61,49 @@ fn check(tables: &TableSet, kernel: &Kernel, frame: &Frame, path: ModelPath) -> 
     if equal { Ok(()) } else { Err(format!("the path {path} differs from the oracle").into()) }
 }
 
-fn copy(name: &str, frames: &Rc<Vec<Frame>>) -> Benchmark {
+fn copy(name: &str, frames: &Arc<Vec<Frame>>) -> Benchmark {
     let mut batch = Batch::of(frames);
-    let run = move || batch.each(|frame, output| output.copy_from_slice(frame.samples()));
+    let run = move || {
+        for (frame, output) in batch.frames.iter().zip(&mut batch.outputs) {
+            black_box(output).copy_from_slice(black_box(frame.samples()));
+        }
+    };
     Benchmark { name: name.to_owned(), run: Box::new(run) }
 }
 
+/// The frames in equal shares to as many threads as there are correctors, this one among them.
 fn corrector(
     name: String,
-    frames: &Rc<Vec<Frame>>,
-    tables: &Rc<TableSet>,
-    mut corrector: Corrector,
-    threads: usize,
+    frames: &Arc<Vec<Frame>>,
+    tables: &Arc<TableSet>,
+    mut correctors: Vec<Corrector>,
 ) -> Benchmark {
-    let (mut batch, tables) = (Batch::of(frames), Rc::clone(tables));
-    let threads = NonZero::new(threads).unwrap_or(NonZero::<usize>::MIN);
+    let (mut batch, tables) = (Batch::of(frames), Arc::clone(tables));
+    let share = batch.frames.len().div_ceil(correctors.len());
     let run = move || {
-        batch.each(|frame, output| {
-            // The frames are of the tables' size and depth, which `check` has seen.
-            let _ = black_box(corrector.correct_into(&tables, frame, threads, output));
+        let shares = batch.frames.chunks(share).zip(batch.outputs.chunks_mut(share));
+        std::thread::scope(|scope| {
+            let mut own = None;
+            for (corrector, (frames, outputs)) in correctors.iter_mut().zip(shares) {
+                let tables = &tables;
+                if let Some(share) = own.replace((corrector, frames, outputs)) {
+                    scope.spawn(move || correct_share(share, tables));
+                }
+            }
+            if let Some(share) = own {
+                correct_share(share, &tables);
+            }
         });
     };
     Benchmark { name, run: Box::new(run) }
+}
+
+fn correct_share(share: (&mut Corrector, &[Frame], &mut [Vec<u16>]), tables: &TableSet) {
+    let (corrector, frames, outputs) = share;
+    for (frame, output) in frames.iter().zip(outputs) {
+        // The frames are of the tables' size and depth, which `check` has seen.
+        let _ = black_box(corrector.correct_into(tables, black_box(frame), black_box(output)));
+    }
 }
 
 /// Corrects `COUNTED` rows `frames` times.
@@ -97,7 +112,7 @@ pub(crate) fn count(path: ModelPath, interpolant: Interpolant, frames: usize) ->
     let mut corrector = Corrector::new(path, &Kernel::from(interpolant))?;
     let mut output = vec![0; frame.samples().len()];
     for _ in 0..frames {
-        corrector.correct_into(&tables, black_box(&frame), NonZero::<usize>::MIN, black_box(&mut output))?;
+        corrector.correct_into(&tables, black_box(&frame), black_box(&mut output))?;
     }
     Ok(())
 }

@@ -9,19 +9,15 @@ mod engine;
 mod nodes;
 mod path;
 mod scalar;
-mod strip;
 mod walk;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub use path::{ModelPath, UnavailablePath, UnknownPath};
 
-use std::num::NonZero;
-
 use crate::corrector::{check_frame, source};
 use crate::{CorrectError, Frame, Geometry, Kernel, Source, TableSet};
 use engine::{Engine, Rows};
-use strip::Strip;
 use walk::{Ends, Walk, blocks};
 
 /// Columns that are computed together. Every width holds at least two blocks.
@@ -30,12 +26,12 @@ const BLOCK: usize = 32;
 /// Corrects rows and frames with one kernel by one [`ModelPath`].
 ///
 /// It may be used for any number of rows, frames and geometries, and allocates nothing for them but when a row is wider
-/// or the threads are more than all before.
+/// than all before. Several threads take one each.
 pub struct Corrector {
     path: ModelPath,
     engine: Engine,
-    /// For each thread, where it keeps the ends of the two rows that it corrects.
-    ends: Vec<[Ends; 2]>,
+    /// Of the two rows that are corrected together.
+    ends: [Ends; 2],
 }
 
 impl Corrector {
@@ -45,14 +41,14 @@ impl Corrector {
     /// [`UnavailablePath`] when this processor cannot take `path`.
     pub fn new(path: ModelPath, kernel: &Kernel) -> Result<Self, UnavailablePath> {
         let engine = Engine::new(path, kernel).ok_or(UnavailablePath(path))?;
-        Ok(Self { path, engine, ends: vec![Default::default()] })
+        Ok(Self { path, engine, ends: Default::default() })
     }
 
     /// A corrector that is the oracle, which every processor can run.
     #[must_use]
     pub fn oracle(kernel: &Kernel) -> Self {
         let engine = Engine::Reference(Box::new(kernel.clone()));
-        Self { path: ModelPath::Reference, engine, ends: vec![Default::default()] }
+        Self { path: ModelPath::Reference, engine, ends: Default::default() }
     }
 
     /// The path that it takes.
@@ -68,10 +64,10 @@ impl Corrector {
     /// # Panics
     /// When `row` or `output` holds fewer samples than the geometry's width.
     pub fn correct_row(&mut self, geometry: &Geometry, step: u32, row: &[u16], output: &mut [u16]) {
-        self.engine.correct_rows(&mut self.ends[0], geometry, step, [row], [output]);
+        self.engine.correct_rows(&mut self.ends, geometry, step, [row], [output]);
     }
 
-    /// Corrects `frame` into `samples`, row after row, on `threads` threads, this one among them.
+    /// Corrects `frame` into `samples`, row after row. Rows of one step that mirror each other are corrected together.
     ///
     /// # Errors
     /// [`CorrectError`] when the frame has another size or depth than the tables are for.
@@ -82,23 +78,28 @@ impl Corrector {
         &mut self,
         tables: &TableSet,
         frame: &Frame,
-        threads: NonZero<usize>,
         samples: &mut [u16],
     ) -> Result<(), CorrectError> {
         check_frame(tables.geometry(), frame)?;
         assert_eq!(samples.len(), frame.samples().len(), "the output has another size than the frame");
-        self.ends.resize_with(threads.get().max(self.ends.len()), Default::default);
-        let mut rest = Strip::new(&self.engine, tables, frame, samples);
-        let share = frame.height().div_ceil(2).div_ceil(threads.get());
-        std::thread::scope(|scope| {
-            let (own, others) = self.ends.split_at_mut(1);
-            for ends in others.iter_mut().take(threads.get() - 1) {
-                let (strip, remaining) = rest.split(share);
-                rest = remaining;
-                scope.spawn(move || strip.correct(ends));
+        let geometry = tables.geometry();
+        let (upper, lower) = samples.split_at_mut(frame.height().div_ceil(2) * frame.width());
+        let mut lower = lower.rchunks_exact_mut(frame.width());
+        for (row, output) in upper.chunks_exact_mut(frame.width()).enumerate() {
+            let mirrored = frame.height() - 1 - row;
+            let [step, mirrored_step] = [row, mirrored].map(|row| tables.steps()[row]);
+            let inputs = [row, mirrored].map(|row| frame.row(row));
+            match lower.next() {
+                None => self.correct_row(geometry, step, inputs[0], output),
+                Some(below) if step == mirrored_step => {
+                    self.engine.correct_rows(&mut self.ends, geometry, step, inputs, [output, below]);
+                }
+                Some(below) => {
+                    self.correct_row(geometry, step, inputs[0], output);
+                    self.correct_row(geometry, mirrored_step, inputs[1], below);
+                }
             }
-            rest.correct(&mut own[0]);
-        });
+        }
         Ok(())
     }
 
@@ -108,7 +109,7 @@ impl Corrector {
     /// [`CorrectError`] when the frame has another size or depth than the tables are for.
     pub fn correct(&mut self, tables: &TableSet, frame: &Frame) -> Result<Frame, CorrectError> {
         let mut samples = vec![0; frame.samples().len()];
-        self.correct_into(tables, frame, NonZero::<usize>::MIN, &mut samples)?;
+        self.correct_into(tables, frame, &mut samples)?;
         Ok(frame.with_samples(samples))
     }
 

@@ -46,17 +46,39 @@ pub(super) fn correct<const ROWS: usize>(weights: &Weights, rows: Rows<'_, ROWS>
 
 fn correct_as<W: Copy + Into<i32>, const ROWS: usize>(weights: &[[W; TERMS]], rows: Rows<'_, ROWS>) {
     let Rows { walk, width, max, inputs, mut outputs } = rows;
+    let max = i32::from(max);
     let Some(weights) = weights.first_chunk::<DISTANCES>() else { return };
     for column in blocks(width, BLOCK) {
         let start = walk.start(column);
-        let windows = inputs.map(|row| row.window(start.first));
-        for index in 0..BLOCK {
+        let mut places = [(0, 0); BLOCK];
+        for (index, place) in places.iter_mut().enumerate() {
             let (first, x) = locate(walk, column + index);
-            for (window, output) in windows.iter().zip(&mut outputs) {
-                let taps = &window[first - start.first..][..TERMS];
-                output[column + index] = blend(&weights[x], taps, max);
-            }
+            *place = (first - start.first, x);
         }
+        for (row, output) in inputs.iter().zip(&mut outputs) {
+            let output = &mut output[column..column + BLOCK];
+            correct_block(weights, row.window(start.first), &places, max, output);
+        }
+    }
+}
+
+/// Corrects a block of one row whose taps begin at `places` of the window, at the distances beside them.
+fn correct_block<W: Copy + Into<i32>>(
+    weights: &[[W; TERMS]; DISTANCES],
+    window: &[u16],
+    places: &[(usize, usize); BLOCK],
+    max: i32,
+    output: &mut [u16],
+) {
+    // The sums first, and then what vectors do at once to all of them.
+    let mut sums = [0; BLOCK];
+    for (sum, &(offset, x)) in sums.iter_mut().zip(places) {
+        // Below 32 as it is; that the compiler sees it saves checking.
+        let offset = offset % BLOCK;
+        *sum = weighted(&weights[x], &window[offset..offset + TERMS]);
+    }
+    for (output, sum) in output.iter_mut().zip(sums) {
+        *output = ((sum + WEIGHT_ONE / 2) >> 14).clamp(0, max) as u16;
     }
 }
 
@@ -70,12 +92,10 @@ fn locate(walk: Walk, column: usize) -> (usize, usize) {
     (Walk::first_tap(n) - back, x)
 }
 
-/// The output from the samples of the taps, which are at most 12 bits.
+/// The sum of the taps' products; samples are at most 12 bits.
 #[inline]
-fn blend<W: Copy + Into<i32>>(weights: &[W; TERMS], taps: &[u16], max: u16) -> u16 {
-    let products = weights.iter().zip(taps).map(|(&weight, &tap)| weight.into() * i32::from(tap as i16));
-    let sum = products.sum::<i32>() + WEIGHT_ONE / 2;
-    (sum >> 14).clamp(0, i32::from(max)) as u16
+fn weighted<W: Copy + Into<i32>>(weights: &[W; TERMS], taps: &[u16]) -> i32 {
+    weights.iter().zip(taps).map(|(&weight, &tap)| weight.into() * i32::from(tap as i16)).sum()
 }
 
 /// The sources of one block, for those who check them.
