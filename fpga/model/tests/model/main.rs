@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod corrector;
+mod exhaustive;
 mod fast;
 mod geometry;
 mod golden;
