@@ -24,6 +24,7 @@ pub mod link;
 pub mod link_test;
 pub mod paper;
 pub mod progress;
+pub mod reference;
 pub mod report;
 pub mod serve;
 pub mod session;

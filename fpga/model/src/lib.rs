@@ -15,6 +15,7 @@
 
 mod bayer;
 mod corrector;
+mod fast;
 mod frame;
 mod geometry;
 mod interpolant;
@@ -26,6 +27,7 @@ mod table;
 
 pub use bayer::{Colour, Phase, UnknownPhase};
 pub use corrector::{CorrectError, Source, correct, correct_row, source};
+pub use fast::{Corrector, ModelPath, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};
 pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 pub use interpolant::{Interpolant, UnknownInterpolant};

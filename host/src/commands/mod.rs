@@ -19,7 +19,9 @@ mod verify;
 use std::path::PathBuf;
 
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
+use halfrow_model::ModelPath;
 
+use crate::reference;
 use crate::settings::Settings;
 use crate::verdict::Exit;
 
@@ -46,6 +48,9 @@ pub struct Cli {
     /// The settings file [default: halfrow/settings.toml in the user's configuration folder]
     #[arg(long, global = true, value_name = "FILE", env = "HALFROW_SETTINGS")]
     settings: Option<PathBuf>,
+    /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
+    #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
+    model_path: Option<ModelPath>,
     #[command(subcommand)]
     command: Command,
 }
@@ -121,6 +126,8 @@ impl Cli {
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
         let settings = Settings::load(self.settings.as_deref())?;
+        let path = reference::choose(self.model_path)?;
+        tracing::info!("the model takes the path {path}");
         let context = Context { settings, quiet: self.quiet };
         match &self.command {
             Command::Verify(arguments) => verify::run(arguments, &context),

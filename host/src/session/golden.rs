@@ -1,8 +1,9 @@
 //! The judge is judged first: values from a program outside this project, through the very path that judges boards.
 
-use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet, correct};
+use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet};
 
 use crate::compare::Comparison;
+use crate::reference::correct;
 
 /// A corrected row that another program computed: W = 64, H = 1, B = 12, C = 63.
 struct GoldenRow {
@@ -37,8 +38,9 @@ const ROWS: [GoldenRow; 2] = [
 /// Radius of the image circle of the golden frame, in pixels.
 const RADIUS: f64 = 1106.697;
 
-/// CRC-32 of the corrected 1920 x 1080 frame, 16 bits little endian, with the Hermite kernel.
-const FRAME_CRC: u32 = 0x3ecf_6d03;
+/// CRC-32 of the corrected 1920 x 1080 frame, 16 bits little endian, with a five-tap and a seven-tap kernel.
+const FRAME_CRCS: [(Interpolant, u32); 2] =
+    [(Interpolant::Hermite, 0x3ecf_6d03), (Interpolant::Keys, 0xd55e_261f)];
 
 /// The sample at `place`, counted row after row, of the frame that the other program corrected.
 fn sample(place: usize) -> u16 {
@@ -63,16 +65,26 @@ pub fn judge_the_judge() -> Result<usize, String> {
     let tables = Equidistant::from_radius(RADIUS)
         .ok()
         .and_then(|lens| TableSet::from_lens(Geometry::default(), &lens, None).ok());
-    let corrected = frame(1920, 1080)
-        .zip(tables)
-        .and_then(|(frame, tables)| correct(&tables, &Kernel::from(Interpolant::Hermite), &frame).ok())
-        .ok_or("the golden frame cannot be made")?;
+    let (frame, tables) = frame(1920, 1080).zip(tables).ok_or("the golden frame cannot be made")?;
+    for (interpolant, crc) in FRAME_CRCS {
+        samples += judge_frame(&tables, &frame, interpolant, crc)?;
+    }
+    Ok(samples)
+}
+
+fn judge_frame(
+    tables: &TableSet,
+    frame: &Frame,
+    interpolant: Interpolant,
+    expected: u32,
+) -> Result<usize, String> {
+    let corrected = correct(tables, &Kernel::from(interpolant), frame).map_err(|error| error.to_string())?;
     let bytes: Vec<u8> = corrected.samples().iter().flat_map(|sample| sample.to_le_bytes()).collect();
     match crc32fast::hash(&bytes) {
-        FRAME_CRC => Ok(samples + corrected.samples().len()),
-        crc => {
-            Err(format!("the golden frame's CRC-32 is {FRAME_CRC:08x}, and this computer finds {crc:08x}"))
-        }
+        crc if crc == expected => Ok(corrected.samples().len()),
+        crc => Err(format!(
+            "the golden frame's CRC-32 with {interpolant} is {expected:08x}, and this computer finds {crc:08x}"
+        )),
     }
 }
 
@@ -108,7 +120,7 @@ mod tests {
 
     #[test]
     fn this_computer_can_judge() {
-        assert_eq!(judge_the_judge(), Ok(2 * 64 + 1920 * 1080));
+        assert_eq!(judge_the_judge(), Ok(2 * 64 + 2 * 1920 * 1080));
     }
 
     #[test]

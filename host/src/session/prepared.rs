@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::Scope;
 
-use halfrow_model::{CorrectError, Frame, FrameError, correct};
+use halfrow_model::{CorrectError, Frame, FrameError};
 
 use super::plan::{Generation, Plan, ScheduledFrame, Segment};
 use crate::board::NumberedFrame;
+use crate::reference::correct;
 use crate::report::sha256;
 
 /// A frame that is ready to be sent, with what must come back.

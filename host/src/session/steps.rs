@@ -13,6 +13,7 @@ use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
 use crate::board::{Board, Capabilities};
 use crate::progress::Progress;
+use crate::reference;
 use crate::tables::DATAPATH;
 use crate::target::BoardKind;
 use crate::verdict::Exit;
@@ -33,7 +34,9 @@ pub(super) struct Run<'a> {
 pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
     match golden::judge_the_judge() {
         Ok(samples) => {
-            findings.passed("judge", format!("this computer finds all {samples} golden samples"));
+            let detail =
+                format!("this computer finds all {samples} golden samples by the path {}", reference::path());
+            findings.passed("judge", detail);
             Ok(())
         }
         Err(what) => {

@@ -4,6 +4,8 @@
 #![allow(clippy::unwrap_used)]
 
 mod corrector;
+mod exhaustive;
+mod fast;
 mod geometry;
 mod golden;
 mod kernel;

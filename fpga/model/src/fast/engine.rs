@@ -1,0 +1,93 @@
+//! The paths behind one face.
+
+use super::ModelPath;
+use super::nodes::Nodes;
+use super::scalar;
+use super::walk::{Ends, Located, Padded, Walk};
+#[cfg(target_arch = "x86_64")]
+use super::x86;
+use crate::corrector::correct_row;
+use crate::{Geometry, Kernel};
+
+/// Rows of one step, to be corrected together.
+pub(super) struct Rows<'a, const ROWS: usize> {
+    pub(super) walk: Walk,
+    pub(super) width: usize,
+    pub(super) max: u16,
+    pub(super) inputs: [Padded<'a>; ROWS],
+    pub(super) outputs: [&'a mut [u16]; ROWS],
+}
+
+/// What a path keeps of a kernel.
+pub(super) enum Engine {
+    Reference(Box<Kernel>),
+    Scalar(scalar::Weights),
+    #[cfg(target_arch = "x86_64")]
+    Avx2(x86::Avx2, Box<x86::Planes>),
+    #[cfg(target_arch = "x86_64")]
+    Avx512(x86::Avx512, Box<Nodes>),
+}
+
+impl Engine {
+    pub(super) fn new(path: ModelPath, kernel: &Kernel) -> Option<Self> {
+        match path {
+            ModelPath::Reference => Some(Self::Reference(Box::new(kernel.clone()))),
+            ModelPath::Scalar => Some(Self::Scalar(scalar::Weights::new(&Nodes::new(kernel)))),
+            #[cfg(target_arch = "x86_64")]
+            ModelPath::Avx2 => x86::Avx2::detect()
+                .map(|avx2| Self::Avx2(avx2, Box::new(x86::Planes::new(&Nodes::new(kernel))))),
+            #[cfg(target_arch = "x86_64")]
+            ModelPath::Avx512 => {
+                x86::Avx512::detect().map(|avx512| Self::Avx512(avx512, Box::new(Nodes::new(kernel))))
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            ModelPath::Avx2 | ModelPath::Avx512 => None,
+        }
+    }
+
+    /// Corrects rows of step `step`, with `ends` to keep their ends in.
+    pub(super) fn correct_rows<const ROWS: usize>(
+        &self,
+        ends: &mut [Ends; 2],
+        geometry: &Geometry,
+        step: u32,
+        rows: [&[u16]; ROWS],
+        outputs: [&mut [u16]; ROWS],
+    ) {
+        let width = geometry.width();
+        if let Self::Reference(kernel) = self {
+            for (row, output) in rows.into_iter().zip(outputs) {
+                correct_row(geometry, step, kernel, row, output);
+            }
+            return;
+        }
+        let rows = rows.map(|row| &row[..width]);
+        rows.iter().zip(&mut *ends).for_each(|(row, ends)| ends.take(row));
+        let inputs = std::array::from_fn(|row| Padded::new(rows[row], &ends[row]));
+        let walk = Walk::new(geometry, step);
+        self.correct(Rows { walk, width, max: geometry.depth().max(), inputs, outputs });
+    }
+
+    /// Corrects padded rows; the oracle takes none.
+    fn correct<const ROWS: usize>(&self, rows: Rows<'_, ROWS>) {
+        match self {
+            Self::Reference(_) => {}
+            Self::Scalar(weights) => scalar::correct(weights, rows),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2, planes) => avx2.correct(planes, rows),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512, nodes) => avx512.correct(nodes, rows),
+        }
+    }
+
+    /// The sources of a block of columns.
+    pub(super) fn locate(&self, walk: Walk, column: usize) -> Located {
+        match self {
+            Self::Reference(_) | Self::Scalar(_) => scalar::locate_block(walk, column),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2, _) => avx2.locate(walk, column),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512, _) => avx512.locate(walk, column),
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! The corrector for much data: the same bits as [`crate::correct_row`], many samples at a time.
+//!
+//! The oracle beside it stays as DATAPATH.md has it, and each path here is checked against it. What is done otherwise:
+//! the row is copied with its edges drawn out, so that no tap is a special case; coordinates are taken relative to the
+//! block of columns, so that 32 bits hold them; and rows of one step, above and below the lens's axis, share coordinates
+//! and weights.
+
+mod engine;
+mod nodes;
+mod path;
+mod scalar;
+mod walk;
+#[cfg(target_arch = "x86_64")]
+mod x86;
+
+pub use path::{ModelPath, UnavailablePath, UnknownPath};
+
+use crate::corrector::{check_frame, source};
+use crate::{CorrectError, Frame, Geometry, Kernel, Source, TableSet};
+use engine::{Engine, Rows};
+use walk::{Ends, Walk, blocks};
+
+/// Columns that are computed together. Every width holds at least two blocks.
+const BLOCK: usize = 32;
+
+/// Corrects rows and frames with one kernel by one [`ModelPath`].
+///
+/// It may be used for any number of rows, frames and geometries, and allocates nothing for them but when a row is wider
+/// than all before. Several threads take one each.
+pub struct Corrector {
+    path: ModelPath,
+    engine: Engine,
+    /// Of the two rows that are corrected together.
+    ends: [Ends; 2],
+}
+
+impl Corrector {
+    /// A corrector for `kernel`.
+    ///
+    /// # Errors
+    /// [`UnavailablePath`] when this processor cannot take `path`.
+    pub fn new(path: ModelPath, kernel: &Kernel) -> Result<Self, UnavailablePath> {
+        let engine = Engine::new(path, kernel).ok_or(UnavailablePath(path))?;
+        Ok(Self { path, engine, ends: Default::default() })
+    }
+
+    /// A corrector that is the oracle, which every processor can run.
+    #[must_use]
+    pub fn oracle(kernel: &Kernel) -> Self {
+        let engine = Engine::Reference(Box::new(kernel.clone()));
+        Self { path: ModelPath::Reference, engine, ends: Default::default() }
+    }
+
+    /// The path that it takes.
+    #[must_use]
+    pub fn path(&self) -> ModelPath {
+        self.path
+    }
+
+    /// Corrects one row of step `step` into `output`, as [`crate::correct_row`] does.
+    ///
+    /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are.
+    ///
+    /// # Panics
+    /// When `row` or `output` holds fewer samples than the geometry's width.
+    pub fn correct_row(&mut self, geometry: &Geometry, step: u32, row: &[u16], output: &mut [u16]) {
+        self.engine.correct_rows(&mut self.ends, geometry, step, [row], [output]);
+    }
+
+    /// Corrects `frame` into `samples`, row after row. Rows of one step that mirror each other are corrected together.
+    ///
+    /// # Errors
+    /// [`CorrectError`] when the frame has another size or depth than the tables are for.
+    ///
+    /// # Panics
+    /// When `samples` has another length than the frame's.
+    pub fn correct_into(
+        &mut self,
+        tables: &TableSet,
+        frame: &Frame,
+        samples: &mut [u16],
+    ) -> Result<(), CorrectError> {
+        check_frame(tables.geometry(), frame)?;
+        assert_eq!(samples.len(), frame.samples().len(), "the output has another size than the frame");
+        let geometry = tables.geometry();
+        let (upper, lower) = samples.split_at_mut(frame.height().div_ceil(2) * frame.width());
+        let mut lower = lower.rchunks_exact_mut(frame.width());
+        for (row, output) in upper.chunks_exact_mut(frame.width()).enumerate() {
+            let mirrored = frame.height() - 1 - row;
+            let [step, mirrored_step] = [row, mirrored].map(|row| tables.steps()[row]);
+            let inputs = [row, mirrored].map(|row| frame.row(row));
+            match lower.next() {
+                None => self.correct_row(geometry, step, inputs[0], output),
+                Some(below) if step == mirrored_step => {
+                    self.engine.correct_rows(&mut self.ends, geometry, step, inputs, [output, below]);
+                }
+                Some(below) => {
+                    self.correct_row(geometry, step, inputs[0], output);
+                    self.correct_row(geometry, mirrored_step, inputs[1], below);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The corrected frame, as [`crate::correct`] gives it.
+    ///
+    /// # Errors
+    /// [`CorrectError`] when the frame has another size or depth than the tables are for.
+    pub fn correct(&mut self, tables: &TableSet, frame: &Frame) -> Result<Frame, CorrectError> {
+        let mut samples = vec![0; frame.samples().len()];
+        self.correct_into(tables, frame, &mut samples)?;
+        Ok(frame.with_samples(samples))
+    }
+
+    /// Where this path takes the outputs of a row from, column after column: what [`source`] tells.
+    pub fn sources(&self, geometry: &Geometry, step: u32, mut each: impl FnMut(usize, Source)) {
+        if let Engine::Reference(_) = self.engine {
+            (0..geometry.width()).for_each(|column| each(column, source(geometry, step, column)));
+            return;
+        }
+        let walk = Walk::new(geometry, step);
+        for column in blocks(geometry.width(), BLOCK) {
+            let located = self.engine.locate(walk, column);
+            (0..BLOCK).for_each(|index| each(column + index, located.source(index)));
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! Where the outputs of a row come from, a block of columns at a time, and the row with its edges drawn out.
+
+use super::BLOCK;
+use crate::{Geometry, STEP_ONE, Source};
+
+/// Samples in front of a padded row. Its taps begin three columns left of the row.
+pub(super) const LEFT: usize = 4;
+
+/// Samples behind a padded row, of which those up to column W + 3 count.
+const RIGHT: usize = WINDOW;
+
+/// Samples that the taps of a block are among, with some to spare for reading eight at a time.
+pub(super) const WINDOW: usize = BLOCK + 16;
+
+/// The source coordinates of a row, S + 2^11, which is rounded to 2^-13 column by dropping twelve bits.
+#[derive(Clone, Copy)]
+pub(super) struct Walk {
+    origin: u64,
+    /// 2Q, from one output to the next: at most one column, 2^25.
+    pub(super) stride: u32,
+}
+
+/// Where a block of columns that starts at an even one finds its samples.
+///
+/// n moves by 0 or 1 a column. So does the last column with the output's colour at or left of it, but for a first step
+/// back: from the lesser of the first two outputs' bases on, a block of N columns has its bases within N samples.
+#[derive(Clone, Copy)]
+pub(super) struct Start {
+    /// The padded row's sample of tap G0 for base column `least`, the least base of the block.
+    pub(super) first: usize,
+    /// S + 2^11 of the first column less 2^26 · `even`, where `even` is the even column at or left of n: 26 bits.
+    pub(super) relative: u32,
+    /// `even` − `least`, 0 or 1.
+    pub(super) lead: bool,
+}
+
+/// What is added to ((n + column) & !1), with both counted from even columns, for a − `least`: [`Start::lead`] less the
+/// column's parity.
+pub(super) const LEADS: [[u16; BLOCK]; 2] = {
+    let mut leads = [[0; BLOCK]; 2];
+    let mut column = 0;
+    while column < BLOCK {
+        leads[0][column] = (column as u16 % 2).wrapping_neg();
+        leads[1][column] = 1 - column as u16 % 2;
+        column += 1;
+    }
+    leads
+};
+
+impl Walk {
+    pub(super) fn new(geometry: &Geometry, step: u32) -> Self {
+        debug_assert!((1..=STEP_ONE).contains(&step));
+        let origin = u64::from(geometry.centre2()) * u64::from(STEP_ONE - step) + (1 << 11);
+        Self { origin, stride: 2 * step }
+    }
+
+    /// S + 2^11 of `column`.
+    pub(super) fn coordinate(&self, column: usize) -> u64 {
+        self.origin + column as u64 * u64::from(self.stride)
+    }
+
+    /// The padded row's sample of tap G0 for base column `base`.
+    pub(super) fn first_tap(base: usize) -> usize {
+        LEFT + base - 2
+    }
+
+    /// The block that starts at `column`, which is even.
+    #[inline]
+    pub(super) fn start(&self, column: usize) -> Start {
+        let coordinate = self.coordinate(column);
+        let relative = (coordinate & ((1 << 26) - 1)) as u32;
+        let lead = relative + self.stride < 1 << 25;
+        let even = (coordinate >> 26) as usize * 2;
+        Start { first: Self::first_tap(even) - usize::from(lead), relative, lead }
+    }
+}
+
+/// The starts of the blocks of `block` columns that cover a row. The last one is moved left to end with the row.
+pub(super) fn blocks(width: usize, block: usize) -> impl Iterator<Item = usize> {
+    (0..width).step_by(block).map(move |column| column.min(width - block))
+}
+
+/// A row's two ends with the nearest samples of the same colour beyond them (DATAPATH.md, "Taps").
+#[derive(Default)]
+pub(super) struct Ends {
+    /// As long as the row with both its margins. What is further than a window from an end is not kept up.
+    padded: Vec<u16>,
+}
+
+impl Ends {
+    /// Takes the ends of `row`.
+    pub(super) fn take(&mut self, row: &[u16]) {
+        self.padded.resize(LEFT + row.len() + RIGHT, 0);
+        let (front, rest) = self.padded.split_at_mut(LEFT);
+        let (middle, back) = rest.split_at_mut(row.len());
+        let last = row.len() - WINDOW;
+        middle[..WINDOW].copy_from_slice(&row[..WINDOW]);
+        middle[last..].copy_from_slice(&row[last..]);
+        for (ends, pair) in [(front, &row[..2]), (back, &row[row.len() - 2..])] {
+            ends.chunks_exact_mut(2).for_each(|end| end.copy_from_slice(pair));
+        }
+    }
+}
+
+/// A row whose taps may lie beyond its ends.
+#[derive(Clone, Copy)]
+pub(super) struct Padded<'a> {
+    row: &'a [u16],
+    ends: &'a Ends,
+}
+
+impl<'a> Padded<'a> {
+    /// `row`, which `ends` has taken.
+    pub(super) fn new(row: &'a [u16], ends: &'a Ends) -> Self {
+        Self { row, ends }
+    }
+
+    /// [`WINDOW`] samples from the padded row's sample `first` on.
+    #[inline]
+    pub(super) fn window(&self, first: usize) -> &'a [u16] {
+        let inside = first.wrapping_sub(LEFT);
+        if inside <= self.row.len() - WINDOW {
+            &self.row[inside..inside + WINDOW]
+        } else {
+            &self.ends.padded[first..first + WINDOW]
+        }
+    }
+}
+
+/// The sources of a block as a path found them.
+pub(super) struct Located {
+    /// As in [`Start`].
+    pub(super) first: usize,
+    /// a of each column, from the block's least one.
+    pub(super) base: [u16; BLOCK],
+    /// x of each column, the lower 14 bits.
+    pub(super) x: [u16; BLOCK],
+}
+
+impl Located {
+    /// The source of the block's column `index`.
+    pub(super) fn source(&self, index: usize) -> Source {
+        let base = (self.first + usize::from(self.base[index])) as i64 + 2 - LEFT as i64;
+        let x = self.x[index] & 0x3fff;
+        Source {
+            base,
+            column: base + i64::from(x >> 13),
+            node: usize::from(x >> 8),
+            fraction: i32::from(x & 255),
+        }
+    }
+}

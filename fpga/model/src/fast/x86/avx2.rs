@@ -1,0 +1,256 @@
+//! The datapath in vectors of 256 bits: 32 columns at a time, 16 a vector, one 16-bit lane each.
+//!
+//! AVX2 looks up bytes, 16 entries at a time and in each half of a vector for itself. So the tables are kept as bytes, 64
+//! entries in four parts, and each half, eight columns, takes its samples from a window of its own.
+
+use std::arch::x86_64::*;
+
+use super::entry::{load_8_samples, load_16_bytes, store_16_samples};
+use crate::WEIGHT_ONE;
+use crate::fast::nodes::{G0, G4, G6, INTERVALS, Nodes, R1, R5};
+use crate::fast::walk::{LEADS, Located, Start, Walk, blocks};
+use crate::fast::{BLOCK, Rows};
+
+/// Columns of a vector, and of a half of it.
+const VECTOR: usize = 16;
+const HALF: usize = 8;
+
+/// One byte of a table's 64 words.
+type Plane = [[u8; 16]; INTERVALS / 16];
+
+/// One tap's tables, byte by byte: low, rise, and the sign of what rise wraps.
+struct TapPlanes {
+    low: [Plane; 2],
+    rise: [Plane; 2],
+    wrap: Plane,
+}
+
+/// A kernel as bytes.
+pub(in crate::fast) struct Planes {
+    taps: [TapPlanes; 5],
+    outer: bool,
+    wild: bool,
+}
+
+impl Planes {
+    pub(in crate::fast) fn new(nodes: &Nodes) -> Self {
+        let taps = std::array::from_fn(|tap| {
+            let tap = &nodes.taps[tap];
+            TapPlanes { low: bytes(&tap.low), rise: bytes(&tap.rise), wrap: bytes(&tap.wrap)[0] }
+        });
+        Self { taps, outer: nodes.outer, wild: nodes.wild }
+    }
+}
+
+fn bytes(words: &[i16; INTERVALS]) -> [Plane; 2] {
+    std::array::from_fn(|byte| {
+        std::array::from_fn(|part| std::array::from_fn(|entry| words[16 * part + entry].to_le_bytes()[byte]))
+    })
+}
+
+/// Where the outputs of 16 columns come from, in 16-bit lanes.
+#[derive(Clone, Copy)]
+struct Places {
+    /// The padded row's sample of tap G0 for base 0, for each half.
+    first: [usize; 2],
+    /// a − the half's least a, 0 to 7.
+    base: __m256i,
+    /// x, the lower 14 bits.
+    x: __m256i,
+}
+
+/// Corrects the rows with the kernel's own combination of taps and wildness.
+#[target_feature(enable = "avx2")]
+pub(super) fn correct<const ROWS: usize>(planes: &Planes, rows: Rows<'_, ROWS>) {
+    match (planes.outer, planes.wild) {
+        (false, false) => correct_as::<ROWS, 3, false>(planes, rows),
+        (true, false) => correct_as::<ROWS, 5, false>(planes, rows),
+        (false, true) => correct_as::<ROWS, 3, true>(planes, rows),
+        (true, true) => correct_as::<ROWS, 5, true>(planes, rows),
+    }
+}
+
+#[target_feature(enable = "avx2")]
+fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
+    planes: &Planes,
+    rows: Rows<'_, ROWS>,
+) {
+    let Rows { walk, width, max, inputs, mut outputs } = rows;
+    let lanes = lanes(walk);
+    let max = _mm256_set1_epi16(max as i16);
+    for column in blocks(width, BLOCK) {
+        let places = [locate(walk, lanes, column), locate(walk, lanes, column + VECTOR)];
+        let weights = weights::<WEIGHTS, WILD>(planes, [places[0].x, places[1].x]);
+        // None of the offsets exceeds 25; that the compiler sees that they are below 32 saves checking.
+        let offset = |part: usize, half: usize| (places[part].first[half] - places[0].first[0]) % BLOCK;
+        for (row, output) in inputs.iter().zip(&mut outputs) {
+            let window = row.window(places[0].first[0]);
+            let output = &mut output[column..column + BLOCK];
+            for part in 0..2 {
+                let halves = [&window[offset(part, 0)..], &window[offset(part, 1)..]];
+                let samples = blend::<WEIGHTS, WILD>(&weights[part], halves, places[part].base, max);
+                store_16_samples(output, VECTOR * part, samples);
+            }
+        }
+    }
+}
+
+/// The sources of one block, for those who check them.
+#[target_feature(enable = "avx2")]
+pub(super) fn locate_block(walk: Walk, column: usize) -> Located {
+    let first = walk.start(column).first;
+    let mut located = Located { first, base: [0; BLOCK], x: [0; BLOCK] };
+    for from in [0, VECTOR] {
+        let places = locate(walk, lanes(walk), column + from);
+        let [low, high] = places.first.map(|half| _mm_set1_epi16((half - first) as i16));
+        let base = _mm256_add_epi16(places.base, _mm256_set_m128i(high, low));
+        store_16_samples(&mut located.base, from, base);
+        store_16_samples(&mut located.x, from, places.x);
+    }
+    located
+}
+
+/// 2Q times the even columns of each half, 0 to 6, in 32-bit lanes; and 2Q.
+#[target_feature(enable = "avx2")]
+fn lanes(walk: Walk) -> [__m256i; 2] {
+    let stride = _mm256_set1_epi32(walk.stride as i32);
+    [_mm256_mullo_epi32(stride, _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6)), stride]
+}
+
+/// One value in each half's 32-bit lanes.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn halves(low: u32, high: u32) -> __m256i {
+    _mm256_set_m128i(_mm_set1_epi32(high as i32), _mm_set1_epi32(low as i32))
+}
+
+/// n, then a and x, from S: relative to the half, 31 bits hold it.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn locate(walk: Walk, lanes: [__m256i; 2], column: usize) -> Places {
+    let starts: [Start; 2] = [walk.start(column), walk.start(column + HALF)];
+    let even = _mm256_add_epi32(halves(starts[0].relative, starts[1].relative), lanes[0]);
+    let odd = _mm256_add_epi32(even, lanes[1]);
+    let n = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<25>(even), _mm256_srli_epi32::<9>(odd));
+    let q = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<12>(even), _mm256_slli_epi32::<4>(odd));
+    // n counts from an even column, so bit 13 of q tells its parity, and that of x whether it is the output's.
+    let x = _mm256_xor_si256(q, _mm256_set1_epi32(1 << 29));
+    let rounded = _mm256_and_si256(_mm256_add_epi16(n, _mm256_set1_epi32(1 << 16)), _mm256_set1_epi16(!1));
+    let lead = |start: Start| load_8_samples(&LEADS[usize::from(start.lead)], 0);
+    let base = _mm256_add_epi16(rounded, _mm256_set_m128i(lead(starts[1]), lead(starts[0])));
+    Places { first: [starts[0].first, starts[1].first], base, x }
+}
+
+/// The weights of 32 columns: w = low + ((rise · t + 2^7) >> 8), which is what a rounding multiplication by t · 2^7 gives.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn weights<const WEIGHTS: usize, const WILD: bool>(
+    planes: &Planes,
+    x: [__m256i; 2],
+) -> [[__m256i; WEIGHTS]; 2] {
+    let node = _mm256_packus_epi16(_mm256_srli_epi16::<8>(x[0]), _mm256_srli_epi16::<8>(x[1]));
+    let nodes = parts(_mm256_and_si256(node, _mm256_set1_epi8(63)));
+    let mut weights = [[node; WEIGHTS]; 2];
+    for (place, tap) in planes.taps[..WEIGHTS].iter().enumerate() {
+        let [low, rise] = [look_up_words(&tap.low, nodes), look_up_words(&tap.rise, nodes)];
+        for part in 0..2 {
+            let t7 = _mm256_and_si256(_mm256_slli_epi16::<7>(x[part]), _mm256_set1_epi16(0x7f80));
+            weights[part][place] = _mm256_add_epi16(low[part], _mm256_mulhrs_epi16(rise[part], t7));
+        }
+        if WILD {
+            let wrap = look_up(&tap.wrap, nodes);
+            for (part, wrap) in words(wrap, wrap).into_iter().enumerate() {
+                let wrapped = _mm256_sign_epi16(_mm256_slli_epi16::<8>(x[part]), wrap);
+                weights[part][place] = _mm256_add_epi16(weights[part][place], wrapped);
+            }
+        }
+    }
+    weights
+}
+
+/// The places in each of a plane's four parts; bit 7, which looks up 0, where the node is in another part.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn parts(node: __m256i) -> [__m256i; 4] {
+    let mut parts = [node; 4];
+    for (part, places) in parts.iter_mut().enumerate() {
+        let matching = _mm256_xor_si256(node, _mm256_set1_epi8(16 * part as i8));
+        *places = _mm256_add_epi8(matching, _mm256_set1_epi8(0x70));
+    }
+    parts
+}
+
+/// The plane's bytes at the nodes.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn look_up(plane: &Plane, nodes: [__m256i; 4]) -> __m256i {
+    let part = |part: usize| {
+        _mm256_shuffle_epi8(_mm256_broadcastsi128_si256(load_16_bytes(&plane[part])), nodes[part])
+    };
+    _mm256_or_si256(_mm256_or_si256(part(0), part(1)), _mm256_or_si256(part(2), part(3)))
+}
+
+/// The words of both planes' bytes at the nodes, the first 16 columns' and the second's.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn look_up_words(planes: &[Plane; 2], nodes: [__m256i; 4]) -> [__m256i; 2] {
+    words(look_up(&planes[0], nodes), look_up(&planes[1], nodes))
+}
+
+/// Words of low and high bytes.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn words(low: __m256i, high: __m256i) -> [__m256i; 2] {
+    [_mm256_unpacklo_epi8(low, high), _mm256_unpackhi_epi8(low, high)]
+}
+
+/// acc in 32-bit lanes, two products at a time, then the output.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn blend<const WEIGHTS: usize, const WILD: bool>(
+    weights: &[__m256i; WEIGHTS],
+    windows: [&[u16]; 2],
+    base: __m256i,
+    max: __m256i,
+) -> __m256i {
+    // A word's two bytes, 2i and 2i + 1.
+    let bytes =
+        _mm256_add_epi16(_mm256_mullo_epi16(base, _mm256_set1_epi16(0x202)), _mm256_set1_epi16(0x100));
+    let tap = |tap: usize| {
+        let [low, high] = windows;
+        let samples = _mm256_set_m128i(load_8_samples(high, tap), load_8_samples(low, tap));
+        _mm256_shuffle_epi8(samples, bytes)
+    };
+    let (own, other) = (tap(2), tap(3));
+    let from_own = |place: usize| _mm256_sub_epi16(tap(place), own);
+    let from_other = |place: usize| _mm256_sub_epi16(tap(place), other);
+    let mut sums = [_mm256_set1_epi32(WEIGHT_ONE / 2); 2];
+    add_products(&mut sums, [weights[R1], weights[R5]], [from_other(1), from_other(5)]);
+    let one = _mm256_set1_epi16(WEIGHT_ONE as i16);
+    if WILD {
+        add_products(&mut sums, [weights[G4], one], [from_own(4), own]);
+        if WEIGHTS > 3 {
+            add_products(&mut sums, [weights[G0], weights[G6]], [from_own(0), from_own(6)]);
+        }
+    } else {
+        let mut g2 = _mm256_sub_epi16(one, weights[G4]);
+        if WEIGHTS > 3 {
+            g2 = _mm256_sub_epi16(_mm256_sub_epi16(g2, weights[G0]), weights[G6]);
+            add_products(&mut sums, [weights[G0], weights[G6]], [tap(0), tap(6)]);
+        }
+        add_products(&mut sums, [weights[G4], g2], [tap(4), own]);
+    }
+    let [low, high] = sums;
+    let rounded = _mm256_packus_epi32(_mm256_srai_epi32::<14>(low), _mm256_srai_epi32::<14>(high));
+    _mm256_min_epu16(rounded, max)
+}
+
+/// Adds both products to the sums of each half's lower and upper four lanes.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn add_products(sums: &mut [__m256i; 2], weights: [__m256i; 2], values: [__m256i; 2]) {
+    let low = |pair: [__m256i; 2]| _mm256_unpacklo_epi16(pair[0], pair[1]);
+    let high = |pair: [__m256i; 2]| _mm256_unpackhi_epi16(pair[0], pair[1]);
+    sums[0] = _mm256_add_epi32(sums[0], _mm256_madd_epi16(low(weights), low(values)));
+    sums[1] = _mm256_add_epi32(sums[1], _mm256_madd_epi16(high(weights), high(values)));
+}

@@ -1,0 +1,177 @@
+//! The datapath in vectors of 512 bits: 32 columns at a time, one 16-bit lane each.
+
+use std::arch::x86_64::*;
+
+use super::entry::{load_32_samples, load_32_weights, store_32_samples};
+use crate::WEIGHT_ONE;
+use crate::fast::nodes::{G0, G4, G6, Nodes, R1, R5, Tap};
+use crate::fast::walk::{LEADS, Located, Start, Walk, blocks};
+use crate::fast::{BLOCK, Rows};
+
+/// Lanes of the odd columns.
+const ODD: u32 = 0xAAAA_AAAA;
+
+/// What the lanes of one row have in common.
+struct Lanes {
+    /// 2Q times the even columns, 0 to 30, in 32-bit lanes.
+    even: __m512i,
+    /// 2Q in 32-bit lanes.
+    stride: __m512i,
+}
+
+/// Where the outputs of a block come from, in 16-bit lanes.
+struct Places {
+    /// a − the block's least a, 0 to 31.
+    base: __m512i,
+    /// x, the lower 14 bits.
+    x: __m512i,
+}
+
+/// The table of one tap, 64 words in two vectors each.
+#[derive(Clone, Copy)]
+struct Table {
+    low: [__m512i; 2],
+    rise: [__m512i; 2],
+    wrap: [__m512i; 2],
+}
+
+/// Corrects the rows with the kernel's own combination of taps and wildness.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+pub(super) fn correct<const ROWS: usize>(nodes: &Nodes, rows: Rows<'_, ROWS>) {
+    match (nodes.outer, nodes.wild) {
+        (false, false) => correct_as::<ROWS, 3, false>(nodes, rows),
+        (true, false) => correct_as::<ROWS, 5, false>(nodes, rows),
+        (false, true) => correct_as::<ROWS, 3, true>(nodes, rows),
+        (true, true) => correct_as::<ROWS, 5, true>(nodes, rows),
+    }
+}
+
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
+    nodes: &Nodes,
+    rows: Rows<'_, ROWS>,
+) {
+    let Rows { walk, width, max, inputs, mut outputs } = rows;
+    let mut tables = [table(&nodes.taps[0]); WEIGHTS];
+    for (table_of, tap) in tables.iter_mut().zip(&nodes.taps) {
+        *table_of = table(tap);
+    }
+    let lanes = lanes(walk);
+    let max = _mm512_set1_epi16(max as i16);
+    for column in blocks(width, BLOCK) {
+        let start = walk.start(column);
+        let places = locate(&lanes, start);
+        let weights = weights::<WEIGHTS, WILD>(&tables, places.x);
+        for (row, output) in inputs.iter().zip(&mut outputs) {
+            let window = row.window(start.first);
+            store_32_samples(output, column, blend::<WEIGHTS, WILD>(&weights, window, places.base, max));
+        }
+    }
+}
+
+/// The sources of one block, for those who check them.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+pub(super) fn locate_block(walk: Walk, column: usize) -> Located {
+    let start = walk.start(column);
+    let places = locate(&lanes(walk), start);
+    let mut located = Located { first: start.first, base: [0; BLOCK], x: [0; BLOCK] };
+    store_32_samples(&mut located.base, 0, places.base);
+    store_32_samples(&mut located.x, 0, places.x);
+    located
+}
+
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+fn table(tap: &Tap) -> Table {
+    let halves = |words: &[i16; 64]| {
+        let [first, second] = words.as_chunks().0 else { return [_mm512_setzero_si512(); 2] };
+        [load_32_weights(first), load_32_weights(second)]
+    };
+    Table { low: halves(&tap.low), rise: halves(&tap.rise), wrap: halves(&tap.wrap) }
+}
+
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+fn lanes(walk: Walk) -> Lanes {
+    let stride = _mm512_set1_epi32(walk.stride as i32);
+    let columns = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
+    Lanes { even: _mm512_mullo_epi32(stride, columns), stride }
+}
+
+/// n, then a and x, from S: below 2^26 + 31 · 2^25 relative to the block, so 31 bits hold it.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+#[inline]
+fn locate(lanes: &Lanes, start: Start) -> Places {
+    let even = _mm512_add_epi32(_mm512_set1_epi32(start.relative as i32), lanes.even);
+    let odd = _mm512_add_epi32(even, lanes.stride);
+    let n = _mm512_mask_blend_epi16(ODD, _mm512_srli_epi32::<25>(even), _mm512_srli_epi32::<9>(odd));
+    let q = _mm512_mask_blend_epi16(ODD, _mm512_srli_epi32::<12>(even), _mm512_slli_epi32::<4>(odd));
+    // n counts from an even column, so bit 13 of q tells its parity, and that of x whether it is the output's.
+    let x = _mm512_xor_si512(q, _mm512_set1_epi32(1 << 29));
+    let rounded = _mm512_and_si512(_mm512_add_epi16(n, _mm512_set1_epi32(1 << 16)), _mm512_set1_epi16(!1));
+    let base = _mm512_add_epi16(rounded, load_32_samples(&LEADS[usize::from(start.lead)], 0));
+    Places { base, x }
+}
+
+/// w = low + ((rise · t + 2^7) >> 8), which is what a rounding multiplication by t · 2^7 gives.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+#[inline]
+fn weights<const WEIGHTS: usize, const WILD: bool>(
+    tables: &[Table; WEIGHTS],
+    x: __m512i,
+) -> [__m512i; WEIGHTS] {
+    let node = _mm512_srli_epi16::<8>(x);
+    let t7 = _mm512_and_si512(_mm512_slli_epi16::<7>(x), _mm512_set1_epi16(0x7f80));
+    let mut weights = [x; WEIGHTS];
+    for (weight, table) in weights.iter_mut().zip(tables) {
+        let look_up = |table: [__m512i; 2]| _mm512_permutex2var_epi16(table[0], node, table[1]);
+        *weight = _mm512_add_epi16(look_up(table.low), _mm512_mulhrs_epi16(look_up(table.rise), t7));
+        if WILD {
+            let t8 = _mm512_slli_epi16::<8>(x);
+            *weight = _mm512_add_epi16(*weight, _mm512_mullo_epi16(look_up(table.wrap), t8));
+        }
+    }
+    weights
+}
+
+/// acc in 32-bit lanes, two products at a time, then the output.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+#[inline]
+fn blend<const WEIGHTS: usize, const WILD: bool>(
+    weights: &[__m512i; WEIGHTS],
+    window: &[u16],
+    base: __m512i,
+    max: __m512i,
+) -> __m512i {
+    let tap = |tap: usize| _mm512_permutexvar_epi16(base, load_32_samples(window, tap));
+    let (own, other) = (tap(2), tap(3));
+    let from_own = |place: usize| _mm512_sub_epi16(tap(place), own);
+    let from_other = |place: usize| _mm512_sub_epi16(tap(place), other);
+    let mut sums = [_mm512_set1_epi32(WEIGHT_ONE / 2); 2];
+    add_products(&mut sums, [weights[R1], weights[R5]], [from_other(1), from_other(5)]);
+    let one = _mm512_set1_epi16(WEIGHT_ONE as i16);
+    if WILD {
+        add_products(&mut sums, [weights[G4], one], [from_own(4), own]);
+        if WEIGHTS > 3 {
+            add_products(&mut sums, [weights[G0], weights[G6]], [from_own(0), from_own(6)]);
+        }
+    } else {
+        let mut g2 = _mm512_sub_epi16(one, weights[G4]);
+        if WEIGHTS > 3 {
+            g2 = _mm512_sub_epi16(_mm512_sub_epi16(g2, weights[G0]), weights[G6]);
+            add_products(&mut sums, [weights[G0], weights[G6]], [tap(0), tap(6)]);
+        }
+        add_products(&mut sums, [weights[G4], g2], [tap(4), own]);
+    }
+    let [low, high] = sums;
+    let rounded = _mm512_packus_epi32(_mm512_srai_epi32::<14>(low), _mm512_srai_epi32::<14>(high));
+    _mm512_min_epu16(rounded, max)
+}
+
+/// Adds both products to the sums of each 128 bits' lower and upper four lanes.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+#[inline]
+fn add_products(sums: &mut [__m512i; 2], weights: [__m512i; 2], values: [__m512i; 2]) {
+    let low = |pair: [__m512i; 2]| _mm512_unpacklo_epi16(pair[0], pair[1]);
+    let high = |pair: [__m512i; 2]| _mm512_unpackhi_epi16(pair[0], pair[1]);
+    sums[0] = _mm512_add_epi32(sums[0], _mm512_madd_epi16(low(weights), low(values)));
+    sums[1] = _mm512_add_epi32(sums[1], _mm512_madd_epi16(high(weights), high(values)));
+}

@@ -1,0 +1,110 @@
+//! All that is `unsafe` in this crate: calling what needs a processor's features, and moving vectors to and from memory.
+//!
+//! Vector arithmetic is safe inside a function that is compiled for the feature. A call from outside of such a function is
+//! not, since a processor without the feature would do anything: it takes a token that only detection gives out. Loads and
+//! stores take pointers, so they are wrapped here to take arrays of the vector's size, which are valid at every address.
+#![allow(unsafe_code)]
+
+use std::arch::x86_64::{
+    __m128i, __m256i, __m512i, _mm_loadu_si128, _mm256_storeu_si256, _mm512_loadu_si512, _mm512_storeu_si512,
+};
+
+use super::{avx2, avx512};
+use crate::fast::Rows;
+use crate::fast::nodes::Nodes;
+use crate::fast::walk::{Located, Walk};
+
+/// The proof that this processor has AVX2.
+#[derive(Clone, Copy)]
+pub(in crate::fast) struct Avx2(());
+
+/// The proof that this processor has AVX-512 F, BW and VL.
+#[derive(Clone, Copy)]
+pub(in crate::fast) struct Avx512(());
+
+impl Avx2 {
+    pub(in crate::fast) fn detect() -> Option<Self> {
+        is_x86_feature_detected!("avx2").then_some(Self(()))
+    }
+
+    pub(in crate::fast) fn correct<const ROWS: usize>(self, nodes: &avx2::Planes, rows: Rows<'_, ROWS>) {
+        // SAFETY: the token says that the processor has AVX2.
+        unsafe { avx2::correct(nodes, rows) }
+    }
+
+    pub(in crate::fast) fn locate(self, walk: Walk, column: usize) -> Located {
+        // SAFETY: the token says that the processor has AVX2.
+        unsafe { avx2::locate_block(walk, column) }
+    }
+}
+
+impl Avx512 {
+    pub(in crate::fast) fn detect() -> Option<Self> {
+        let all = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512vl");
+        all.then_some(Self(()))
+    }
+
+    pub(in crate::fast) fn correct<const ROWS: usize>(self, nodes: &Nodes, rows: Rows<'_, ROWS>) {
+        // SAFETY: the token says that the processor has the three features.
+        unsafe { avx512::correct(nodes, rows) }
+    }
+
+    pub(in crate::fast) fn locate(self, walk: Walk, column: usize) -> Located {
+        // SAFETY: the token says that the processor has the three features.
+        unsafe { avx512::locate_block(walk, column) }
+    }
+}
+
+/// 16 bytes.
+#[target_feature(enable = "avx2")]
+#[inline]
+pub(super) fn load_16_bytes(bytes: &[u8; 16]) -> __m128i {
+    // SAFETY: 16 bytes may be read at the array's address, and the load asks for no alignment.
+    unsafe { _mm_loadu_si128(bytes.as_ptr().cast()) }
+}
+
+/// Eight samples from `from` on.
+#[target_feature(enable = "avx2")]
+#[inline]
+pub(super) fn load_8_samples(samples: &[u16], from: usize) -> __m128i {
+    let samples = &samples[from..from + 8];
+    // SAFETY: as above, 8 samples are 16 bytes.
+    unsafe { _mm_loadu_si128(samples.as_ptr().cast()) }
+}
+
+/// Sixteen samples from `from` on.
+#[target_feature(enable = "avx2")]
+#[inline]
+pub(super) fn store_16_samples(samples: &mut [u16], from: usize, vector: __m256i) {
+    let samples = &mut samples[from..from + 16];
+    // SAFETY: 32 bytes may be written at the slice's address, and the store asks for no alignment.
+    unsafe { _mm256_storeu_si256(samples.as_mut_ptr().cast(), vector) }
+}
+
+/// 32 samples from `from` on.
+#[target_feature(enable = "avx512f")]
+#[inline]
+pub(super) fn load_32_samples(samples: &[u16], from: usize) -> __m512i {
+    let samples = &samples[from..from + 32];
+    // SAFETY: 64 bytes may be read at the slice's address, and the load asks for no alignment.
+    unsafe { _mm512_loadu_si512(samples.as_ptr().cast()) }
+}
+
+/// 32 16-bit words, signed.
+#[target_feature(enable = "avx512f")]
+#[inline]
+pub(super) fn load_32_weights(words: &[i16; 32]) -> __m512i {
+    // SAFETY: as above.
+    unsafe { _mm512_loadu_si512(words.as_ptr().cast()) }
+}
+
+/// 32 samples from `from` on.
+#[target_feature(enable = "avx512f")]
+#[inline]
+pub(super) fn store_32_samples(samples: &mut [u16], from: usize, vector: __m512i) {
+    let samples = &mut samples[from..from + 32];
+    // SAFETY: 64 bytes may be written at the slice's address, and the store asks for no alignment.
+    unsafe { _mm512_storeu_si512(samples.as_mut_ptr().cast(), vector) }
+}

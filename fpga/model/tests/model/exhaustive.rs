@@ -1,0 +1,131 @@
+//! All factors: what random cases would hardly meet. Ignored, for scripts/soak.
+
+use std::iter::{StepBy, Take};
+use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Instant;
+
+use halfrow_model::{
+    BitDepth, Corrector, Geometry, Interpolant, Kernel, MAX_WIDTH, ModelPath, NODES, STEP_ONE, correct_row,
+    source,
+};
+
+use crate::fast::paths;
+
+/// Coprime to 2^24, so that the factors it goes through have every ending.
+const STRIDE: usize = 101;
+
+/// Every so many factors, one share of them.
+type Share = Take<StepBy<RangeInclusive<u32>>>;
+
+/// Widths of whole blocks and not.
+const WIDTHS: [usize; 4] = [MAX_WIDTH, 1920, 1086, 64];
+
+/// Runs `check` for all factors from 1 on, `stride` apart, a share at a time on all processors, and says how long it took.
+fn over_factors(what: &str, stride: usize, check: impl Fn(Share) + Sync) {
+    const SHARE: usize = 1 << 10;
+    let (started, next) = (Instant::now(), AtomicU32::new(1));
+    let threads = std::thread::available_parallelism().unwrap().get();
+    std::thread::scope(|scope| {
+        for _ in 0..threads {
+            scope.spawn(|| {
+                loop {
+                    let first = next.fetch_add((SHARE * stride) as u32, Ordering::Relaxed);
+                    if first > STEP_ONE {
+                        break;
+                    }
+                    check((first..=STEP_ONE).step_by(stride).take(SHARE));
+                }
+            });
+        }
+    });
+    println!("{what}: equal to the oracle by {}, {} s", named(), started.elapsed().as_secs());
+}
+
+fn named() -> String {
+    paths().map(ModelPath::name).collect::<Vec<_>>().join(", ")
+}
+
+/// Whether the path finds the oracle's source for every column.
+fn check_sources(corrector: &Corrector, geometry: &Geometry, step: u32) {
+    let mut columns = 0;
+    corrector.sources(geometry, step, |column, found| {
+        columns += usize::from(column >= columns);
+        assert!(
+            found == source(geometry, step, column),
+            "{}: Q = {step}, C = {}, column {column}: {found:?}",
+            corrector.path(),
+            geometry.centre2()
+        );
+    });
+    assert_eq!(columns, geometry.width());
+}
+
+/// S of every column of the widest row, with the centre in the middle, for each of the 2^24 factors.
+#[test]
+#[ignore = "minutes; scripts/soak factors"]
+fn every_path_finds_the_sources_of_all_factors_at_all_columns() {
+    let geometry = Geometry::centred(MAX_WIDTH, 1, BitDepth::Twelve).unwrap();
+    let kernel = Interpolant::Linear.into();
+    let correctors: Vec<_> = paths().map(|path| Corrector::new(path, &kernel).unwrap()).collect();
+    over_factors("sources of 2^24 factors at 2592 columns", 1, |steps| {
+        for step in steps {
+            correctors.iter().for_each(|corrector| check_sources(corrector, &geometry, step));
+        }
+    });
+}
+
+/// Centres at and off the edges, widths of whole blocks and not, on a stride of the factors.
+#[test]
+#[ignore = "minutes; scripts/soak factors"]
+fn every_path_finds_the_sources_about_any_centre() {
+    let kernel = Interpolant::Linear.into();
+    let correctors: Vec<_> = paths().map(|path| Corrector::new(path, &kernel).unwrap()).collect();
+    over_factors("sources about six centres on a stride of the factors", STRIDE, |steps| {
+        for step in steps {
+            for width in WIDTHS {
+                let last = 2 * width as u32 - 2;
+                for centre2 in [0, 1, last / 3, last - 1, last, step % (last + 1)] {
+                    let geometry = Geometry::new(width, 1, BitDepth::Twelve, centre2).unwrap();
+                    correctors.iter().for_each(|corrector| check_sources(corrector, &geometry, step));
+                }
+            }
+        }
+    });
+}
+
+/// Five and seven taps, tame and with every size and sign of weight.
+fn kernels() -> [Kernel; 4] {
+    let wild = |place: usize| ((place as u32).wrapping_mul(2_654_435_761) >> 16) as i16;
+    let seven = (0..NODES).map(|node| [0, 1, 2, 3, 4].map(|tap| wild(5 * node + tap)));
+    let five = seven.clone().map(|[_, r1, g4, r5, _]| [0, r1, g4, r5, 0]);
+    let [seven, five] = [seven.collect(), five.collect()].map(|nodes| Kernel::from_nodes(nodes).unwrap());
+    [Interpolant::Hermite.into(), Interpolant::Keys.into(), five, seven]
+}
+
+#[test]
+#[ignore = "minutes; scripts/soak factors"]
+fn every_path_corrects_whole_rows_on_a_stride_of_the_factors() {
+    let kernels = kernels();
+    over_factors("whole rows on a stride of the factors, four kernels", STRIDE, |steps| {
+        let mut correctors: Vec<Vec<_>> = kernels
+            .iter()
+            .map(|kernel| paths().map(|path| Corrector::new(path, kernel).unwrap()).collect())
+            .collect();
+        for (index, step) in steps.enumerate() {
+            let width = WIDTHS[(step as usize + index) % WIDTHS.len()];
+            let depth = BitDepth::ALL[step as usize % 3];
+            let geometry = Geometry::new(width, 1, depth, step % (2 * width as u32 - 1)).unwrap();
+            let sample = |column: u32| (column ^ step).wrapping_mul(2_654_435_761) >> (32 - depth.bits());
+            let row: Vec<u16> = (0..width as u32).map(|column| sample(column) as u16).collect();
+            let (mut expected, mut found) = (vec![0; width], vec![0; width]);
+            for (kernel, correctors) in kernels.iter().zip(&mut correctors) {
+                correct_row(&geometry, step, kernel, &row, &mut expected);
+                for corrector in correctors {
+                    corrector.correct_row(&geometry, step, &row, &mut found);
+                    assert!(found == expected, "{}: Q = {step}, {geometry:?}", corrector.path());
+                }
+            }
+        }
+    });
+}

@@ -1,0 +1,51 @@
+//! Runs benchmarks at the word of `scripts/bench`, so that those of several programs take turns.
+//!
+//! Without arguments it prints the names of its benchmarks, a line each and an empty one; then, for every line `TIMES NAME`
+//! that it reads, it runs that benchmark so often and prints the nanoseconds that all of it took. `halfrow-bench PATH
+//! KERNEL FRAMES` corrects some rows so many times by one path of the model and ends: `scripts/instructions` counts what
+//! that executes.
+
+mod model;
+mod scene;
+
+use std::error::Error;
+use std::io::{BufRead, Write};
+use std::time::Instant;
+
+/// Something that is run again and again.
+struct Benchmark {
+    name: String,
+    run: Box<dyn FnMut()>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.as_slice() {
+        [] => serve(model::benchmarks()?),
+        [path, kernel, frames] => model::count(path.parse()?, kernel.parse()?, frames.parse()?),
+        _ => Err("usage: halfrow-bench, or halfrow-bench PATH KERNEL FRAMES".into()),
+    }
+}
+
+fn serve(mut benchmarks: Vec<Benchmark>) -> Result<(), Box<dyn Error>> {
+    let mut output = std::io::stdout().lock();
+    for benchmark in &benchmarks {
+        writeln!(output, "{}", benchmark.name)?;
+    }
+    writeln!(output)?;
+    output.flush()?;
+    for line in std::io::stdin().lock().lines() {
+        let line = line?;
+        let (times, name) = line.split_once(' ').ok_or("a line is TIMES NAME")?;
+        let times: u32 = times.parse()?;
+        let benchmark = benchmarks.iter_mut().find(|benchmark| benchmark.name == name);
+        let benchmark = benchmark.ok_or_else(|| format!("there is no benchmark {name}"))?;
+        let started = Instant::now();
+        for _ in 0..times {
+            (benchmark.run)();
+        }
+        writeln!(output, "{}", started.elapsed().as_nanos())?;
+        output.flush()?;
+    }
+    Ok(())
+}

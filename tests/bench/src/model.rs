@@ -1,0 +1,118 @@
+//! The model's paths beside a copy of the frame.
+
+use std::error::Error;
+use std::hint::black_box;
+use std::sync::Arc;
+
+use halfrow_model::{Corrector, Frame, Interpolant, Kernel, ModelPath, TableSet, correct};
+
+use crate::Benchmark;
+use crate::scene::{frame, tables};
+
+/// Rows of a whole frame.
+const HEIGHT: usize = 1080;
+
+/// Frames that take turns where a batch is timed: with their outputs twice what a cache of 64 MiB holds.
+const BATCH: usize = 16;
+
+/// Rows of a frame whose instructions are counted.
+const COUNTED: usize = 32;
+
+/// Frames that one benchmark works on, and where their outputs go.
+struct Batch {
+    frames: Arc<Vec<Frame>>,
+    outputs: Vec<Vec<u16>>,
+}
+
+impl Batch {
+    fn of(frames: &Arc<Vec<Frame>>) -> Self {
+        let outputs = frames.iter().map(|frame| vec![0; frame.samples().len()]).collect();
+        Self { frames: Arc::clone(frames), outputs }
+    }
+}
+
+/// One frame again and again, as it stays in the cache, and a batch whose frames do not.
+pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
+    let tables = Arc::new(tables(HEIGHT)?);
+    let one = Arc::new(vec![frame(HEIGHT, 0)?]);
+    let batch = (0..BATCH).map(|index| frame(HEIGHT, index as u32)).collect::<Result<Vec<_>, _>>()?;
+    let batch = Arc::new(batch);
+    let mut benchmarks = vec![copy("memcpy", &one), copy("batch memcpy", &batch)];
+    for path in ModelPath::available() {
+        for interpolant in [Interpolant::Hermite, Interpolant::Keys] {
+            let kernel = Kernel::from(interpolant);
+            check(&tables, &kernel, &one[0], path)?;
+            let name = format!("{path} {interpolant}");
+            benchmarks.push(corrector(name, &one, &tables, vec![Corrector::new(path, &kernel)?]));
+        }
+        let kernel = Kernel::from(Interpolant::Hermite);
+        for threads in [1, 2] {
+            let name = format!("batch {path} on {threads}");
+            let correctors = (0..threads).map(|_| Corrector::new(path, &kernel)).collect::<Result<_, _>>()?;
+            benchmarks.push(corrector(name, &batch, &tables, correctors));
+        }
+    }
+    Ok(benchmarks)
+}
+
+/// A benchmark of a wrong result would mean nothing.
+fn check(tables: &TableSet, kernel: &Kernel, frame: &Frame, path: ModelPath) -> Result<(), Box<dyn Error>> {
+    let equal = Corrector::new(path, kernel)?.correct(tables, frame)? == correct(tables, kernel, frame)?;
+    if equal { Ok(()) } else { Err(format!("the path {path} differs from the oracle").into()) }
+}
+
+fn copy(name: &str, frames: &Arc<Vec<Frame>>) -> Benchmark {
+    let mut batch = Batch::of(frames);
+    let run = move || {
+        for (frame, output) in batch.frames.iter().zip(&mut batch.outputs) {
+            black_box(output).copy_from_slice(black_box(frame.samples()));
+        }
+    };
+    Benchmark { name: name.to_owned(), run: Box::new(run) }
+}
+
+/// The frames in equal shares to as many threads as there are correctors, this one among them.
+fn corrector(
+    name: String,
+    frames: &Arc<Vec<Frame>>,
+    tables: &Arc<TableSet>,
+    mut correctors: Vec<Corrector>,
+) -> Benchmark {
+    let (mut batch, tables) = (Batch::of(frames), Arc::clone(tables));
+    let share = batch.frames.len().div_ceil(correctors.len());
+    let run = move || {
+        let shares = batch.frames.chunks(share).zip(batch.outputs.chunks_mut(share));
+        std::thread::scope(|scope| {
+            let mut own = None;
+            for (corrector, (frames, outputs)) in correctors.iter_mut().zip(shares) {
+                let tables = &tables;
+                if let Some(share) = own.replace((corrector, frames, outputs)) {
+                    scope.spawn(move || correct_share(share, tables));
+                }
+            }
+            if let Some(share) = own {
+                correct_share(share, &tables);
+            }
+        });
+    };
+    Benchmark { name, run: Box::new(run) }
+}
+
+fn correct_share(share: (&mut Corrector, &[Frame], &mut [Vec<u16>]), tables: &TableSet) {
+    let (corrector, frames, outputs) = share;
+    for (frame, output) in frames.iter().zip(outputs) {
+        // The frames are of the tables' size and depth, which `check` has seen.
+        let _ = black_box(corrector.correct_into(tables, black_box(frame), black_box(output)));
+    }
+}
+
+/// Corrects `COUNTED` rows `frames` times.
+pub(crate) fn count(path: ModelPath, interpolant: Interpolant, frames: usize) -> Result<(), Box<dyn Error>> {
+    let (tables, frame) = (tables(COUNTED)?, frame(COUNTED, 0)?);
+    let mut corrector = Corrector::new(path, &Kernel::from(interpolant))?;
+    let mut output = vec![0; frame.samples().len()];
+    for _ in 0..frames {
+        corrector.correct_into(&tables, black_box(&frame), black_box(&mut output))?;
+    }
+    Ok(())
+}

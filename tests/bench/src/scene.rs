@@ -1,0 +1,21 @@
+//! What all benchmarks work on: the paper's lens at 1920 x 1080, 12 bits.
+
+use std::error::Error;
+
+use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Phase, TableSet};
+
+/// Radius of the image circle, in pixels (DATAPATH.md, "Golden values").
+const RADIUS: f64 = 1106.697;
+
+/// The tables of the paper's lens for frames of `height` rows.
+pub(crate) fn tables(height: usize) -> Result<TableSet, Box<dyn Error>> {
+    let geometry = Geometry::centred(1920, height, BitDepth::Twelve)?;
+    Ok(TableSet::from_lens(geometry, &Equidistant::from_radius(RADIUS)?, None)?)
+}
+
+/// The golden frame, or one that starts later in its sequence.
+pub(crate) fn frame(height: usize, first: u32) -> Result<Frame, Box<dyn Error>> {
+    let places = first..first + 1920 * height as u32;
+    let samples = places.map(|place| (place.wrapping_mul(2_654_435_761) >> 20) as u16).collect();
+    Ok(Frame::new(1920, BitDepth::Twelve, Phase::Grbg, samples)?)
+}
