@@ -1,6 +1,7 @@
 //! What a built-in frame is made for: its size and depth, its colours, and the lens it is seen through.
 
 use halfrow_model::{Equidistant, Frame, FrameError, Geometry, Phase};
+use rayon::prelude::*;
 
 /// The circumstances of a built-in frame. The default is the paper's: 1920 x 1080, 12 bits, GRBG, its lens.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,6 +30,17 @@ impl Scene {
             samples.extend((0..width).map(|column| sample(row, column)));
         }
         Frame::new(width, self.geometry.depth(), self.phase, samples)
+    }
+
+    /// The frame whose rows `fill` fills, several at a time.
+    ///
+    /// # Errors
+    /// [`FrameError::TooBright`] when a sample is above the depth.
+    pub(super) fn frame_of_rows(&self, fill: impl Fn(usize, &mut [u16]) + Sync) -> Result<Frame, FrameError> {
+        let mut samples = vec![0; self.geometry.width() * self.geometry.height()];
+        let rows = samples.par_chunks_exact_mut(self.geometry.width());
+        rows.enumerate().for_each(|(row, samples)| fill(row, samples));
+        Frame::new(self.geometry.width(), self.geometry.depth(), self.phase, samples)
     }
 
     /// The largest sample, 2^B − 1.

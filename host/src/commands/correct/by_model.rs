@@ -1,11 +1,7 @@
 //! Frames corrected by the reference model, row by row, as many at a time as there are processors.
 
-use std::iter;
-use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::thread::{self, available_parallelism};
-
 use halfrow_model::{Corrector, Frame};
+use rayon::prelude::*;
 
 use super::places::Places;
 use super::{Failure, Job};
@@ -17,27 +13,11 @@ impl Job<'_> {
     /// Corrects all frames. One that fails ends the rest; those that are written by then stay.
     pub(super) fn by_model(&self, places: &Places, progress: &dyn Progress) -> Result<(), Failure> {
         places.make_folders().map_err(Failure::error)?;
-        let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
-        let work = || {
-            let mut corrector = reference::corrector(&self.chosen.kernel);
-            while !failed.load(Ordering::Relaxed) {
-                let index = next.fetch_add(1, Ordering::Relaxed);
-                if index >= self.inputs.len() {
-                    break;
-                }
-                self.correct_one(places, index, &mut corrector)
-                    .inspect_err(|_| failed.store(true, Ordering::Relaxed))?;
-                progress.rows(self.scene.geometry.height() as u64);
-            }
+        let corrector = || reference::corrector(&self.chosen.kernel);
+        (0..self.inputs.len()).into_par_iter().try_for_each_init(corrector, |corrector, index| {
+            self.correct_one(places, index, corrector)?;
+            progress.rows(self.scene.geometry.height() as u64);
             Ok(())
-        };
-        let workers = available_parallelism().map_or(1, usize::from).min(self.inputs.len());
-        thread::scope(|scope| {
-            let others: Vec<_> = (1..workers).map(|_| scope.spawn(work)).collect();
-            let mine = work();
-            let joined =
-                others.into_iter().map(|other| other.join().unwrap_or_else(|panic| resume_unwind(panic)));
-            iter::once(mine).chain(joined).collect()
         })
     }
 

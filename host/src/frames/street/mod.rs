@@ -33,14 +33,16 @@ const RIM: f64 = -0.052;
 /// # Errors
 /// None for a legal geometry, as the sensor saturates at the largest sample.
 pub(super) fn render(scene: &Scene) -> Result<Frame, FrameError> {
-    let mut sensor = Sensor::new(scene.seed, scene.max());
-    scene.frame(|row, column| {
-        let light = pixel(scene, column as f64 - scene.centre_x(), scene.y(row));
-        sensor.sample(match scene.phase.colour(row, column) {
-            Colour::Red => light.red,
-            Colour::Green => light.green,
-            Colour::Blue => light.blue,
-        })
+    scene.frame_of_rows(|row, samples| {
+        let mut sensor = Sensor::new(scene.seed, scene.max(), row * samples.len());
+        for (column, sample) in samples.iter_mut().enumerate() {
+            let light = pixel(scene, column as f64 - scene.centre_x(), scene.y(row));
+            *sample = sensor.sample(match scene.phase.colour(row, column) {
+                Colour::Red => light.red,
+                Colour::Green => light.green,
+                Colour::Blue => light.blue,
+            });
+        }
     })
 }
 

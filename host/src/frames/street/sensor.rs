@@ -15,6 +15,9 @@ const READ_NOISE: f64 = 6.0;
 /// The generator's stream, so that the street shares no numbers with the patterns.
 const STREAM: u64 = 56;
 
+/// Steps of the generator that a sample takes.
+const STEPS: u64 = 2;
+
 /// A sensor, whose noise goes on from pixel to pixel.
 pub(super) struct Sensor {
     random: Pcg32,
@@ -22,9 +25,11 @@ pub(super) struct Sensor {
 }
 
 impl Sensor {
-    /// A sensor whose samples reach `max`.
-    pub(super) fn new(seed: u64, max: u16) -> Self {
-        Self { random: Pcg32::new(seed, STREAM), max: max.into() }
+    /// A sensor whose samples reach `max`, behind its first `samples`.
+    pub(super) fn new(seed: u64, max: u16, samples: usize) -> Self {
+        let mut random = Pcg32::new(seed, STREAM);
+        random.advance(STEPS * samples as u64);
+        Self { random, max: max.into() }
     }
 
     /// The sample of a pixel that gets `light`, 0 to 1; more saturates.
