@@ -29,24 +29,17 @@ pub(crate) fn stuff(bytes: &[u8], wire: &mut Vec<u8>) {
     }
 }
 
-/// Unstuffs `bytes` in place and returns how many are left, or nothing if they were not made by [`stuff`].
-pub(crate) fn unstuff(bytes: &mut [u8]) -> Option<usize> {
-    let (mut from, mut to) = (0, 0);
-    while from < bytes.len() {
-        let code = usize::from(bytes[from]);
-        let run = code.checked_sub(1)?;
-        if from + code > bytes.len() {
-            return None;
-        }
-        bytes.copy_within(from + 1..from + code, to);
-        from += code;
-        to += run;
-        if run < RUN && from < bytes.len() {
-            bytes[to] = 0;
-            to += 1;
+/// Appends what was stuffed as `bytes` to `plain`, or answers nothing if [`stuff`] does not make them.
+pub(crate) fn unstuff(mut bytes: &[u8], plain: &mut Vec<u8>) -> Option<()> {
+    while let Some((&code, rest)) = bytes.split_first() {
+        let run = usize::from(code).checked_sub(1)?;
+        plain.extend_from_slice(rest.get(..run)?);
+        bytes = &rest[run..];
+        if run < RUN && !bytes.is_empty() {
+            plain.push(0);
         }
     }
-    Some(to)
+    Some(())
 }
 
 #[cfg(test)]
@@ -58,8 +51,12 @@ mod tests {
         let mut wire = Vec::new();
         stuff(plain, &mut wire);
         assert_eq!(wire, stuffed);
-        let length = unstuff(&mut wire).unwrap();
-        assert_eq!(&wire[..length], plain);
+        assert_eq!(unstuffed(&wire).unwrap(), plain);
+    }
+
+    fn unstuffed(bytes: &[u8]) -> Option<Vec<u8>> {
+        let mut plain = Vec::new();
+        unstuff(bytes, &mut plain).map(|()| plain)
     }
 
     // The examples of Cheshire and Baker's paper as they are commonly tabulated.
@@ -80,8 +77,8 @@ mod tests {
 
     #[test]
     fn what_no_stuffing_makes_is_refused() {
-        assert_eq!(unstuff(&mut [3, 1]), None);
-        assert_eq!(unstuff(&mut [2, 1, 0, 1]), None);
+        assert_eq!(unstuffed(&[3, 1]), None);
+        assert_eq!(unstuffed(&[2, 1, 0, 1]), None);
     }
 
     proptest::proptest! {
@@ -90,8 +87,7 @@ mod tests {
             let mut wire = vec![];
             stuff(&plain, &mut wire);
             assert!(!wire.contains(&0) && wire.len() <= stuffed_length(plain.len()));
-            let length = unstuff(&mut wire).unwrap();
-            assert_eq!(&wire[..length], &plain[..]);
+            assert_eq!(unstuffed(&wire), Some(plain));
         }
     }
 }

@@ -25,13 +25,18 @@ pub enum Damage {
     Length,
 }
 
+/// The most bytes between two zeros that can be a packet.
+const MAX_STUFFED: usize = cobs::stuffed_length(MAX_PACKET);
+
 /// Finds packets in a byte stream. A zero ends a packet wherever the stream was entered, so at most the packet that was
 /// damaged is lost.
 #[derive(Debug, Default)]
 pub struct Decoder {
+    /// What has come of a packet that has not ended.
     stuffed: Vec<u8>,
     too_long: bool,
-    delivered: bool,
+    /// The packet that ended last.
+    packet: Vec<u8>,
 }
 
 impl Decoder {
@@ -44,27 +49,20 @@ impl Decoder {
     /// Takes bytes from the front of `input` until a packet has ended, well or badly, or `input` is used up.
     pub fn next<'d>(&'d mut self, input: &mut &[u8]) -> Option<Result<Packet<'d>, Damage>> {
         loop {
-            if core::mem::take(&mut self.delivered) {
-                self.stuffed.clear();
-                self.too_long = false;
-            }
-            let end = memchr::memchr(0, input);
-            let (head, rest) = input.split_at(end.unwrap_or(input.len()));
-            self.collect(head);
-            if end.is_none() {
-                *input = rest;
+            let Some(end) = memchr::memchr(0, input) else {
+                self.collect(core::mem::take(input));
                 return None;
-            }
-            *input = &rest[1..];
-            self.delivered = true;
-            if !self.stuffed.is_empty() || self.too_long {
-                return Some(self.open());
+            };
+            let head = &input[..end];
+            *input = &input[end + 1..];
+            if !self.stuffed.is_empty() || self.too_long || !head.is_empty() {
+                return Some(self.end(head));
             }
         }
     }
 
     fn collect(&mut self, bytes: &[u8]) {
-        if self.stuffed.len() + bytes.len() > cobs::stuffed_length(MAX_PACKET) {
+        if self.stuffed.len() + bytes.len() > MAX_STUFFED {
             self.stuffed.clear();
             self.too_long = true;
         } else if !self.too_long {
@@ -72,27 +70,41 @@ impl Decoder {
         }
     }
 
-    fn open(&mut self) -> Result<Packet<'_>, Damage> {
-        if self.too_long {
-            return Err(Damage::Size);
-        }
-        let length = cobs::unstuff(&mut self.stuffed).ok_or(Damage::Stuffing)?;
-        let packet = &self.stuffed[..length];
-        if length > MAX_PACKET {
-            return Err(Damage::Size);
-        }
-        let (body, crc) = packet.split_last_chunk::<CRC>().ok_or(Damage::Size)?;
-        let (header, payload) = body.split_first_chunk::<HEADER>().ok_or(Damage::Size)?;
-        if crc32fast::hash(body) != u32::from_le_bytes(*crc) {
-            return Err(Damage::Crc);
-        }
-        let (version, header, payload_length) = Header::read(header);
-        if version != VERSION {
-            return Err(Damage::Version(version));
-        }
-        if payload_length + OVERHEAD != length {
-            return Err(Damage::Length);
-        }
-        Ok(Packet { header, payload })
+    /// The packet whose last bytes are `tail`.
+    fn end(&mut self, tail: &[u8]) -> Result<Packet<'_>, Damage> {
+        self.packet.clear();
+        let too_long = self.too_long || self.stuffed.len() + tail.len() > MAX_STUFFED;
+        let unstuffed = if too_long {
+            Err(Damage::Size)
+        } else if self.stuffed.is_empty() {
+            cobs::unstuff(tail, &mut self.packet).ok_or(Damage::Stuffing)
+        } else {
+            self.stuffed.extend_from_slice(tail);
+            cobs::unstuff(&self.stuffed, &mut self.packet).ok_or(Damage::Stuffing)
+        };
+        self.stuffed.clear();
+        self.too_long = false;
+        unstuffed.and_then(|()| open(&self.packet))
     }
+}
+
+/// The packet in these bytes, if they are as they were sent.
+fn open(packet: &[u8]) -> Result<Packet<'_>, Damage> {
+    let length = packet.len();
+    if length > MAX_PACKET {
+        return Err(Damage::Size);
+    }
+    let (body, crc) = packet.split_last_chunk::<CRC>().ok_or(Damage::Size)?;
+    let (header, payload) = body.split_first_chunk::<HEADER>().ok_or(Damage::Size)?;
+    if crc32fast::hash(body) != u32::from_le_bytes(*crc) {
+        return Err(Damage::Crc);
+    }
+    let (version, header, payload_length) = Header::read(header);
+    if version != VERSION {
+        return Err(Damage::Version(version));
+    }
+    if payload_length + OVERHEAD != length {
+        return Err(Damage::Length);
+    }
+    Ok(Packet { header, payload })
 }

@@ -44,11 +44,12 @@ fn pack_groups(groups: &[[u16; GROUP]], places: &mut [[u8; PACKED]]) {
         let samples = unsafe { _mm256_loadu_si256(group.as_ptr().cast()) };
         let pairs = _mm256_madd_epi16(_mm256_and_si256(samples, twelve_bits), shift_second);
         let packed = _mm256_permutevar8x32_epi32(_mm256_shuffle_epi8(pairs, lower_three), close_up);
-        let mut bytes = [0; 32];
-        // SAFETY: the array is as long as the vector.
-        unsafe { _mm256_storeu_si256(bytes.as_mut_ptr().cast(), packed) };
-        let [wanted @ .., _, _, _, _, _, _, _, _] = bytes;
-        *place = wanted;
+        let (low, high) = (_mm256_castsi256_si128(packed), _mm256_extracti128_si256::<1>(packed));
+        // SAFETY: the place is 24 bytes long: 16, and 8 behind them.
+        unsafe {
+            _mm_storeu_si128(place.as_mut_ptr().cast(), low);
+            _mm_storel_epi64(place[16..].as_mut_ptr().cast(), high);
+        }
     }
 }
 

@@ -5,6 +5,8 @@
 //! KERNEL FRAMES` corrects some rows so many times by one path of the model and ends: `scripts/instructions` counts what
 //! that executes.
 
+mod chain;
+mod mock;
 mod model;
 mod scene;
 
@@ -21,7 +23,9 @@ struct Benchmark {
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.as_slice() {
-        [] => serve(model::benchmarks()?),
+        [] => serve(
+            [model::benchmarks()?, chain::benchmarks()?, mock::benchmarks()?].into_iter().flatten().collect(),
+        ),
         [path, kernel, frames] => model::count(path.parse()?, kernel.parse()?, frames.parse()?),
         _ => Err("usage: halfrow-bench, or halfrow-bench PATH KERNEL FRAMES".into()),
     }

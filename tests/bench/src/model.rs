@@ -7,13 +7,7 @@ use std::sync::Arc;
 use halfrow_model::{Corrector, Frame, Interpolant, Kernel, ModelPath, TableSet, correct};
 
 use crate::Benchmark;
-use crate::scene::{frame, tables};
-
-/// Rows of a whole frame.
-const HEIGHT: usize = 1080;
-
-/// Frames that take turns where a batch is timed: with their outputs twice what a cache of 64 MiB holds.
-const BATCH: usize = 16;
+use crate::scene::{HEIGHT, batch, frame, tables};
 
 /// Rows of a frame whose instructions are counted.
 const COUNTED: usize = 32;
@@ -35,8 +29,7 @@ impl Batch {
 pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     let tables = Arc::new(tables(HEIGHT)?);
     let one = Arc::new(vec![frame(HEIGHT, 0)?]);
-    let batch = (0..BATCH).map(|index| frame(HEIGHT, index as u32)).collect::<Result<Vec<_>, _>>()?;
-    let batch = Arc::new(batch);
+    let batch = Arc::new(batch()?);
     let mut benchmarks = vec![copy("memcpy", &one), copy("batch memcpy", &batch)];
     for path in ModelPath::available() {
         for interpolant in [Interpolant::Hermite, Interpolant::Keys] {

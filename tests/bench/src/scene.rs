@@ -7,10 +7,21 @@ use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Phase, TableSet};
 /// Radius of the image circle, in pixels (DATAPATH.md, "Golden values").
 const RADIUS: f64 = 1106.697;
 
+/// Rows of a whole frame.
+pub(crate) const HEIGHT: usize = 1080;
+
 /// The tables of the paper's lens for frames of `height` rows.
 pub(crate) fn tables(height: usize) -> Result<TableSet, Box<dyn Error>> {
     let geometry = Geometry::centred(1920, height, BitDepth::Twelve)?;
     Ok(TableSet::from_lens(geometry, &Equidistant::from_radius(RADIUS)?, None)?)
+}
+
+/// Frames that take turns where a batch is timed: with their outputs twice what a cache of 64 MiB holds.
+const BATCH: u32 = 16;
+
+/// The frames of a batch.
+pub(crate) fn batch() -> Result<Vec<Frame>, Box<dyn Error>> {
+    (0..BATCH).map(|first| frame(HEIGHT, first)).collect()
 }
 
 /// The golden frame, or one that starts later in its sequence.
