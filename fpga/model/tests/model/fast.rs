@@ -118,20 +118,26 @@ proptest! {
 
     #[test]
     fn every_path_finds_the_sources_that_the_oracle_finds(geometry in any_geometry(1..=1, MAX_WIDTH), step in any_step()) {
+        let expected = sources(&geometry, step);
         for path in ModelPath::available() {
-            let mut columns = vec![false; geometry.width()];
-            let mut wrong = None;
             let corrector = Corrector::new(path, &Interpolant::Linear.into()).unwrap();
-            corrector.sources(&geometry, step, |column, found| {
-                columns[column] = true;
-                if found != source(&geometry, step, column) {
-                    wrong = Some((column, found));
-                }
-            });
-            prop_assert_eq!(wrong, None, "{}", path);
-            prop_assert!(columns.into_iter().all(|seen| seen));
+            let (mut bases, mut distances) = (vec![i16::MIN; geometry.width()], vec![0xffff; geometry.width()]);
+            corrector.locate(&geometry, step, &mut bases, &mut distances);
+            prop_assert_eq!(&bases, &expected.0, "{}", path);
+            prop_assert_eq!(&distances, &expected.1, "{}", path);
         }
     }
+}
+
+/// The oracle's a and x of every column; x tells n, too.
+pub(crate) fn sources(geometry: &Geometry, step: u32) -> (Vec<i16>, Vec<u16>) {
+    let of = |column| {
+        let source = source(geometry, step, column);
+        let x = (source.node << 8) as u16 + source.fraction as u16;
+        assert_eq!(source.column - source.base, i64::from(x >> 13));
+        (source.base as i16, x)
+    };
+    (0..geometry.width()).map(of).unzip()
 }
 
 /// Neighbouring nodes from one limit to the other and back, whose differences take 17 bits, at every distance between them.
