@@ -8,7 +8,8 @@
 //! Frame ────────────────────┘
 //! ```
 //!
-//! [`correct`] is the oracle: it implements `fpga/DATAPATH.md` and a board must equal it. [`correct_real`] computes the
+//! [`correct`] is the oracle: it implements `fpga/DATAPATH.md` and a board must equal it. [`Corrector`] gives the same bits
+//! many times faster, by vectors where the processor has them. [`correct_real`] computes the
 //! same correction in double precision, to show what the integers cost. Equation and section numbers in this crate are
 //! those of Lai et al., *Real-time distortion correction of fish-eye lens based on Bayer image signal*, Optical Review
 //! 2014. The crate knows no board, no protocol and no file.

@@ -34,8 +34,7 @@ pub(super) struct Run<'a> {
 pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
     match golden::judge_the_judge() {
         Ok(samples) => {
-            let detail =
-                format!("this computer finds all {samples} golden samples by the path {}", reference::path());
+            let detail = format!("this computer finds all {samples} golden samples ({})", reference::path());
             findings.passed("judge", detail);
             Ok(())
         }

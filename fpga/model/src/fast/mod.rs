@@ -1,9 +1,9 @@
 //! The corrector for much data: the same bits as [`crate::correct_row`], many samples at a time.
 //!
 //! The oracle beside it stays as DATAPATH.md has it, and each path here is checked against it. What is done otherwise:
-//! the row is copied with its edges drawn out, so that no tap is a special case; coordinates are taken relative to the
-//! block of columns, so that 32 bits hold them; and rows of one step, above and below the lens's axis, share coordinates
-//! and weights.
+//! a row's ends are copied with its edges drawn out, so that no tap is a special case; coordinates are taken relative to
+//! the block of columns, so that 32 bits hold them; and rows of one step, above and below the lens's axis, share
+//! coordinates and weights.
 
 mod engine;
 mod nodes;
@@ -15,10 +15,10 @@ mod x86;
 
 pub use path::{ModelPath, UnavailablePath, UnknownPath};
 
-use crate::corrector::{check_frame, source};
-use crate::{CorrectError, Frame, Geometry, Kernel, Source, TableSet};
+use crate::corrector::check_frame;
+use crate::{CorrectError, Frame, Geometry, Kernel, TableSet};
 use engine::{Engine, Rows};
-use walk::{Ends, Walk, blocks};
+use walk::{Ends, Located, Walk, blocks};
 
 /// Columns that are computed together. Every width holds at least two blocks.
 const BLOCK: usize = 32;
@@ -113,16 +113,19 @@ impl Corrector {
         Ok(frame.with_samples(samples))
     }
 
-    /// Where this path takes the outputs of a row from, column after column: what [`source`] tells.
-    pub fn sources(&self, geometry: &Geometry, step: u32, mut each: impl FnMut(usize, Source)) {
-        if let Engine::Reference(_) = self.engine {
-            (0..geometry.width()).for_each(|column| each(column, source(geometry, step, column)));
-            return;
-        }
+    /// Where this path takes the outputs of a row from: a into `bases` and x, in units of 2^-13 column, into `distances`,
+    /// column after column. They are those that [`crate::source`] tells, with x = 256·i + t.
+    ///
+    /// # Panics
+    /// When `bases` or `distances` is shorter than the geometry's width.
+    pub fn locate(&self, geometry: &Geometry, step: u32, bases: &mut [i16], distances: &mut [u16]) {
         let walk = Walk::new(geometry, step);
         for column in blocks(geometry.width(), BLOCK) {
-            let located = self.engine.locate(walk, column);
-            (0..BLOCK).for_each(|index| each(column + index, located.source(index)));
+            let located = match self.engine {
+                Engine::Reference(_) => Located::by_oracle(geometry, step, column),
+                _ => self.engine.locate(walk, column),
+            };
+            located.write(&mut bases[column..column + BLOCK], &mut distances[column..column + BLOCK]);
         }
     }
 }

@@ -34,6 +34,7 @@ pub(super) struct Nodes {
     /// G4 R1 R5 G0 G6.
     pub(super) taps: [Tap; 5],
     /// Whether G0 and G6 have weights.
+    #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))]
     pub(super) outer: bool,
     /// Whether a difference of two nodes, or a weight of G2 or R3, takes more than 16 bits.
     pub(super) wild: bool,

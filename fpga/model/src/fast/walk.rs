@@ -1,7 +1,8 @@
 //! Where the outputs of a row come from, a block of columns at a time, and the row with its edges drawn out.
+#![cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "vectors need more than plain Rust does"))]
 
 use super::BLOCK;
-use crate::{Geometry, STEP_ONE, Source};
+use crate::{Geometry, STEP_ONE, Source, source};
 
 /// Samples in front of a padded row. Its taps begin three columns left of the row.
 pub(super) const LEFT: usize = 4;
@@ -138,15 +139,20 @@ pub(super) struct Located {
 }
 
 impl Located {
-    /// The source of the block's column `index`.
-    pub(super) fn source(&self, index: usize) -> Source {
-        let base = (self.first + usize::from(self.base[index])) as i64 + 2 - LEFT as i64;
-        let x = self.x[index] & 0x3fff;
-        Source {
-            base,
-            column: base + i64::from(x >> 13),
-            node: usize::from(x >> 8),
-            fraction: i32::from(x & 255),
+    /// The oracle's, with the least base two columns left of the row.
+    pub(super) fn by_oracle(geometry: &Geometry, step: u32, column: usize) -> Self {
+        let sources: [Source; BLOCK] = std::array::from_fn(|index| source(geometry, step, column + index));
+        Self {
+            first: LEFT - 4,
+            base: sources.map(|source| (source.base + 2) as u16),
+            x: sources.map(|source| (source.node << 8) as u16 | source.fraction as u16),
         }
+    }
+
+    /// a of each column, −1 to W − 1, and x.
+    pub(super) fn write(&self, bases: &mut [i16], distances: &mut [u16]) {
+        let least = self.first as i16 + 2 - LEFT as i16;
+        bases.iter_mut().zip(self.base).for_each(|(place, base)| *place = least + base as i16);
+        distances.iter_mut().zip(self.x).for_each(|(place, x)| *place = x & 0x3fff);
     }
 }

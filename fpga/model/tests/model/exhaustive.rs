@@ -7,10 +7,9 @@ use std::time::Instant;
 
 use halfrow_model::{
     BitDepth, Corrector, Geometry, Interpolant, Kernel, MAX_WIDTH, ModelPath, NODES, STEP_ONE, correct_row,
-    source,
 };
 
-use crate::fast::paths;
+use crate::fast::{paths, sources};
 
 /// Coprime to 2^24, so that the factors it goes through have every ending.
 const STRIDE: usize = 101;
@@ -46,19 +45,16 @@ fn named() -> String {
     paths().map(ModelPath::name).collect::<Vec<_>>().join(", ")
 }
 
-/// Whether the path finds the oracle's source for every column.
-fn check_sources(corrector: &Corrector, geometry: &Geometry, step: u32) {
-    let mut columns = 0;
-    corrector.sources(geometry, step, |column, found| {
-        columns += usize::from(column >= columns);
-        assert!(
-            found == source(geometry, step, column),
-            "{}: Q = {step}, C = {}, column {column}: {found:?}",
-            corrector.path(),
-            geometry.centre2()
-        );
-    });
-    assert_eq!(columns, geometry.width());
+/// Checks that all paths find the oracle's sources, every column's.
+fn check_sources(correctors: &[Corrector], geometry: &Geometry, step: u32) {
+    let expected = sources(geometry, step);
+    let mut found = (vec![0; geometry.width()], vec![0; geometry.width()]);
+    for corrector in correctors {
+        corrector.locate(geometry, step, &mut found.0, &mut found.1);
+        let centre2 = geometry.centre2();
+        assert!(found == expected, "{}, Q = {step}, C = {centre2}", corrector.path());
+        found.0.fill(-2);
+    }
 }
 
 /// S of every column of the widest row, with the centre in the middle, for each of the 2^24 factors.
@@ -69,9 +65,7 @@ fn every_path_finds_the_sources_of_all_factors_at_all_columns() {
     let kernel = Interpolant::Linear.into();
     let correctors: Vec<_> = paths().map(|path| Corrector::new(path, &kernel).unwrap()).collect();
     over_factors("sources of 2^24 factors at 2592 columns", 1, |steps| {
-        for step in steps {
-            correctors.iter().for_each(|corrector| check_sources(corrector, &geometry, step));
-        }
+        steps.for_each(|step| check_sources(&correctors, &geometry, step));
     });
 }
 
@@ -87,7 +81,7 @@ fn every_path_finds_the_sources_about_any_centre() {
                 let last = 2 * width as u32 - 2;
                 for centre2 in [0, 1, last / 3, last - 1, last, step % (last + 1)] {
                     let geometry = Geometry::new(width, 1, BitDepth::Twelve, centre2).unwrap();
-                    correctors.iter().for_each(|corrector| check_sources(corrector, &geometry, step));
+                    check_sources(&correctors, &geometry, step);
                 }
             }
         }
