@@ -20,6 +20,7 @@ pub mod diagnosis;
 pub mod discovery;
 pub mod frames;
 pub mod kernels;
+pub mod lenses;
 pub mod link;
 pub mod link_test;
 pub mod paper;

@@ -90,7 +90,7 @@ impl RisingProfile {
         Some(match &self.profile {
             Profile::Polynomial(coefficients) => {
                 let (sine, cosine) = angle.sin_cos();
-                let guess = self.farthest * angle / self.widest;
+                let guess = (self.focal_length() * angle).min(self.farthest);
                 rising_root(self.farthest, guess, |r| {
                     let (below, slope) = polynomial(coefficients, r);
                     (r * cosine + below * sine, cosine + slope * sine)

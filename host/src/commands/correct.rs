@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
             anyhow::anyhow!("{} is there already; give --overwrite to replace it", taken.display()).into()
         );
     }
-    let scene = Scene { geometry: *geometry, ..arguments.lens.scene(1)? };
+    let scene = Scene { geometry: *geometry, ..chosen.optics.scene(arguments.lens.phase, 1) };
     let inputs = sources
         .iter()
         .map(|source| match source {
