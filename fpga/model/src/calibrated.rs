@@ -30,11 +30,11 @@ impl CalibratedLens {
             return Err(LensError::Coefficient(wrong));
         }
         let area = xx * yy - xy * yx;
-        if !(xx > 0.0 && yy > 0.0 && area > 0.0 && area.is_finite()) {
+        if !(xx > 0.0 && yy > 0.0 && area > 0.0) {
             return Err(LensError::Mirrored { right: xx, down: yy });
         }
         let image = [[yy / area, -xy / area], [-yx / area, xx / area]];
-        if image.iter().flatten().any(|entry| !entry.is_finite()) {
+        if !area.is_finite() || image.iter().flatten().any(|entry| !entry.is_finite()) {
             return Err(LensError::Coefficient(area));
         }
         Ok(Self { profile: RisingProfile::new(profile)?, pixels, image })

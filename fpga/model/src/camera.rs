@@ -3,7 +3,7 @@
 use crate::lens::is_positive;
 use crate::projection::{is_outside, shrink_factor};
 use crate::table::nearest_step;
-use crate::{CalibratedLens, Geometry, GeometryError, LensError, STEP_ONE, TableSet};
+use crate::{CalibratedLens, Geometry, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, STEP_ONE, TableSet};
 
 /// A frame with the lens that it is seen through.
 #[derive(Clone, Debug, PartialEq)]
@@ -54,8 +54,8 @@ impl Camera {
     /// `field_of_view_deg` is what counts as image circle, in degrees across: 180 is the hemisphere of the paper.
     ///
     /// # Errors
-    /// [`CameraError`] when the centre is outside the frame, the field of view not above 0° and at most 360°, or r(θ) turns
-    /// back inside the circle and inside the frame.
+    /// [`CameraError`] when the centre is outside the frame, the field of view not above 0° and at most 360°, R outside
+    /// [`MIN_RADIUS`] to [`MAX_RADIUS`], or r(θ) turns back inside the circle and inside the frame.
     pub fn new(
         geometry: Geometry,
         lens: CalibratedLens,
@@ -70,6 +70,9 @@ impl Camera {
         }
         let geometry = geometry.with_centre(centre.0)?;
         let camera = Self { geometry, lens, centre, half_field: field_of_view_deg.to_radians() / 2.0 };
+        if !(MIN_RADIUS..=MAX_RADIUS).contains(&camera.radius()) {
+            return Err(LensError::Radius(camera.radius()).into());
+        }
         if camera.lens.widest() < camera.half_field && !camera.corners_are_reached() {
             return Err(LensError::TurnsBack { angle: camera.lens.widest().to_degrees() }.into());
         }

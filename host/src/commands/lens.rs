@@ -7,7 +7,7 @@ use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
-    Phase, TableSet,
+    LensError, Phase, TableSet,
 };
 
 use crate::frames::Scene;
@@ -149,7 +149,7 @@ impl LensArguments {
         let pictures = file.size.filter(|_| self.lens_pitch.is_none()).unwrap_or(DEFAULT_SIZE);
         let geometry = self.geometry(pictures)?;
         let (lens, centre) = match self.lens_pitch {
-            Some(pitch) => (file.lens.scaled(pitch / self.pixel_pitch)?, middle(&geometry)),
+            Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, middle(&geometry)),
             None => file
                 .for_frame(geometry.width(), geometry.height())
                 .with_context(|| format!("the lens file {} does not fit", path.display()))?,
@@ -164,6 +164,15 @@ impl LensArguments {
             rows,
             name,
         })
+    }
+
+    /// Pixels of the frame for each of a camera with pixels of `pitch`.
+    fn scale_from(&self, pitch: f64) -> Result<f64, LensError> {
+        let pitches = [pitch, self.pixel_pitch];
+        match pitches.into_iter().find(|pitch| !(pitch.is_finite() && *pitch > 0.0)) {
+            Some(wrong) => Err(LensError::PixelPitch(wrong)),
+            None => Ok(pitch / self.pixel_pitch),
+        }
     }
 
     fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, GeometryError> {

@@ -2,7 +2,7 @@
 
 use halfrow_model::{CalibratedLens, Profile};
 
-use super::tree::{Keys, documents, number, numbers};
+use super::tree::{Keys, documents, number, numbers, without_header};
 use super::{LensContentError, LensFile, LensModel, picture_size};
 use crate::tables::text::quoted;
 
@@ -21,7 +21,8 @@ const OUR_NAMES: [&str; 7] =
     ["equidistant", "equi", "fisheye", "kannala_brandt", "kannala_brandt4", "opencv_fisheye", "pinhole"];
 
 pub(super) fn parse(text: &str) -> Result<LensFile, LensContentError> {
-    let documents = documents(text)?;
+    let text = without_header(text);
+    let documents = documents(&text)?;
     let root = documents.first().and_then(Keys::of).ok_or(LensContentError::NoKeys)?;
     let cameras = root.cameras();
     match cameras.as_slice() {

@@ -1,5 +1,7 @@
 //! YAML, of which JSON is a part, as calibration programs write it: keys in every spelling, and numbers in every grouping.
 
+use std::borrow::Cow;
+
 use saphyr::{LoadableYamlNode, Yaml};
 
 use super::LensContentError;
@@ -7,6 +9,12 @@ use crate::tables::text::quoted;
 
 /// The keys of a file or of a part of it.
 pub(super) struct Keys<'a>(Vec<(&'a str, &'a Yaml<'a>)>);
+
+/// `text` with OpenCV's own header, `%YAML:1.0`, as a comment: it is no directive of YAML, and older files go on without the
+/// line `---` that has to follow one.
+pub(super) fn without_header(text: &str) -> Cow<'_, str> {
+    if text.starts_with("%YAML:") { Cow::Owned(text.replacen('%', "#", 1)) } else { Cow::Borrowed(text) }
+}
 
 /// The documents of `text`.
 pub(super) fn documents(text: &str) -> Result<Vec<Yaml<'_>>, LensContentError> {

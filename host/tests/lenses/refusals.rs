@@ -3,7 +3,6 @@
 use std::path::Path;
 
 use halfrow::lenses::{LensContentError, LensFile, LensFileError};
-use halfrow_model::LensError;
 
 use super::{CAMCHAIN, CAMERA_INFO, DSL215, OPENCV_JSON, OPENCV_YAML, with};
 
@@ -61,7 +60,6 @@ fn numbers_that_are_none_are_refused_with_their_key() {
         says(OPENCV_YAML, "549.125", word, &sentence);
     }
     says(OPENCV_JSON, "549.125", "\"many\"", "`camera_matrix` is many, not a finite number");
-    says(CAMCHAIN, "552.25", "1e300", "a coefficient of");
     says(CAMCHAIN, "-0.0125", "1e308", "no ray farther out than the axis");
     says(
         CAMCHAIN,
@@ -97,9 +95,12 @@ fn pictures_that_are_mirrored_or_upside_down_are_refused() {
 #[test]
 fn an_axis_outside_the_pictures_is_refused() {
     says(OPENCV_YAML, "641.5", "1641.5", "column 1641.5, row 358.25, outside its pictures of 1280 x 720");
-    let turned = with(DSL215, "480 752", "752 480");
-    assert!(LensFile::parse(&turned).is_ok(), "nothing shows that it is wrong");
-    says(DSL215, "229.581672 364.430465", "364.430465 529.581672", "column 529.58");
+    says(
+        DSL215,
+        "229.581672 364.430465",
+        "529.581672 364.430465",
+        "column 364.430465, row 529.581672, outside",
+    );
 }
 
 #[test]
@@ -138,7 +139,13 @@ fn what_breaks_off_is_refused_with_its_line() {
     says(DSL215, " 6.601777e-09", "", "line 3: 5 numbers instead of 6 for the direct polynomial");
     says(DSL215, "229.581672 ", "", "line 11: 1 numbers instead of 2 for the centre's row and column");
     says(DSL215, "-0.000158", "", "line 15: 2 numbers instead of 3 for the affine parameters");
-    says(OPENCV_JSON, "\"image_width\": 1280,", "\"image_width\": 1280 1281,", "line 2");
+    assert!(matches!(
+        refusal(
+            "{
+\"K\": 1]"
+        ),
+        LensContentError::Syntax { line: 2, .. }
+    ));
 }
 
 #[test]
@@ -150,7 +157,6 @@ fn ocamcalib_s_numbers_are_looked_at() {
     says(DSL215, "388.557547", "488.557547", "the inverse polynomial is");
     says(DSL215, "388.557547 220.910537", "220.910537 388.557547", "off the direct one at 30 degrees");
     assert_eq!(refusal("0\n229 364\n1 0 0\n480 752\n"), LensContentError::Sign(0.0));
-    assert_eq!(refusal("2 -1e-300 0\n229 364\n1 0 0\n480 752\n"), LensContentError::Lens(LensError::Axis));
     assert!(matches!(refusal("99999999999999999999 1\n1 1\n1 0 0\n4 4\n"), LensContentError::Numbers { .. }));
 }
 

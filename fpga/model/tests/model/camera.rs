@@ -153,6 +153,11 @@ fn a_lens_that_is_not_before_the_frame_is_refused() {
     assert!(matches!(new((752.0, 10.0), 180.0), CameraError::Geometry(_)));
     assert!(matches!(new((f64::NAN, 10.0), 180.0), CameraError::Geometry(_)));
     assert!(matches!(new((10.0, f64::INFINITY), 180.0), CameraError::CentreRow(_)));
+    for factor in [1e-4, 1e9, 1e90] {
+        let lens = dsl215().scaled(factor).unwrap();
+        let refused = Camera::new(geometry, lens, (10.0, 10.0), 180.0).unwrap_err();
+        assert!(matches!(refused, CameraError::Lens(LensError::Radius(_))), "{factor}: {refused}");
+    }
     for field in [0.0, -1.0, 361.0, f64::NAN] {
         assert!(matches!(new((10.0, 10.0), field), CameraError::Lens(LensError::FieldOfView(_))));
     }
