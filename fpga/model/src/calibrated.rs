@@ -96,7 +96,8 @@ impl CalibratedLens {
         Some(transformed(self.pixels, right, down))
     }
 
-    /// Where the exact projection puts what is seen in the direction `ray`, in pixels from the optical centre: Eqs. 5 to 7 with this lens's own r(θ) instead of f·θ.
+    /// Where the exact projection puts what is seen in the direction `ray`, in pixels from the optical centre: Eqs. 5 to 7
+    /// with this lens's own r(θ) instead of f·θ.
     ///
     /// Every vertical of the scene, which is a longitude, becomes the column at which the lens itself images that longitude
     /// on the horizon. So verticals are straight, the row of the axis stays as it is, and for an equidistant lens this is

@@ -112,8 +112,9 @@ impl Camera {
         2.0 * self.half_field
     }
 
-    /// R of Eq. 9 in columns: where the lens images the edge of the field of view, so that a row that reaches the edge of the
-    /// circle is stretched to the circle's full width. If the profile turns back before (outside the frame), it is f · fov/2.
+    /// R of Eq. 9 in columns: where the lens images the edge of the field of view, so that a row that reaches the edge of
+    /// the circle is stretched to the circle's full width. If the profile turns back before, which is outside the frame
+    /// then, it is f · fov/2.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.lens.column(self.half_field).unwrap_or(self.lens.focal_length() * self.half_field)
@@ -127,9 +128,10 @@ impl Camera {
 
     /// The row factors that make the largest horizontal error of every row as small as it can be.
     ///
-    /// With a = column − C/2 and b = the column it belongs at − C/2 the error of a sample is k·a − b, so the largest of a row
-    /// is the upper envelope of lines in k, least where its rising part meets its falling part. No k is below 1, which a board
-    /// cannot do, and a row without samples in the circle is not stretched.
+    /// With a = column − C/2 and b = the column it belongs at − C/2 the error of a sample is k·a − b, so the largest of a
+    /// row is the upper envelope of lines in k, least where its rising part meets its falling part. No k is below 1, which
+    /// a board cannot do, and a row without samples in the circle is not stretched. The samples are those of
+    /// [`Self::targets`], and the error is that of Fig. 5, against this lens's own [`CalibratedLens::straightened`].
     #[must_use]
     pub fn fitted(&self) -> TableSet {
         self.table(|row| self.fitted_step(row))
@@ -141,17 +143,17 @@ impl Camera {
 
     fn fitted_step(&self, row: usize) -> u32 {
         let lines: Vec<(f64, f64)> = self.targets(row).map(|target| self.line(target)).collect();
-        // With a above zero on every line, errors to the right rise with k and errors to the left fall.
-        let right = |k: f64| lines.iter().map(|(a, b)| k * a - b).fold(f64::NEG_INFINITY, f64::max);
-        let left = |k: f64| lines.iter().map(|(a, b)| b - k * a).fold(f64::NEG_INFINITY, f64::max);
+        // As no line's a is below zero, errors outwards rise with k and errors inwards fall.
+        let outwards = |k: f64| lines.iter().map(|(a, b)| k * a - b).fold(f64::NEG_INFINITY, f64::max);
+        let inwards = |k: f64| lines.iter().map(|(a, b)| b - k * a).fold(f64::NEG_INFINITY, f64::max);
         let (mut low, mut high) = (1.0, f64::from(STEP_ONE));
-        if lines.is_empty() || right(low) >= left(low) {
+        if lines.is_empty() || outwards(low) >= inwards(low) {
             return STEP_ONE;
         }
         // Far below half a step of Q: 1/k is known to 1e-13 of itself.
         while high - low > 1e-13 * low {
             let middle = f64::midpoint(low, high);
-            if right(middle) < left(middle) {
+            if outwards(middle) < inwards(middle) {
                 low = middle;
             } else {
                 high = middle;

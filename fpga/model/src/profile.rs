@@ -15,8 +15,8 @@ const REACH: f64 = 8.0;
 pub enum Profile {
     /// r = θ, of focal length 1 (Eq. 1).
     Equidistant,
-    /// r = θ(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸), of focal length 1: Kannala and Brandt's model as OpenCV's `fisheye`
-    /// functions have it, the coefficients in the order k1 to k4.
+    /// r = θ(1 + k1·θ² + k2·θ⁴ + k3·θ⁶ + k4·θ⁸), of focal length 1: Kannala and Brandt's model as OpenCV's
+    /// `fisheye` functions have it, the coefficients in the order k1 to k4.
     KannalaBrandt([f64; 4]),
     /// The ray of the image radius r goes r sideways for every −(a0 + a1·r + a2·r² + …) ahead: Scaramuzza's model, as
     /// OCamCalib has it. The coefficients are from a0 on, which is minus the focal length in pixels.

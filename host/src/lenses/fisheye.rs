@@ -1,4 +1,7 @@
 //! OpenCV's fisheye model as OpenCV, ROS and Kalibr write it.
+//!
+//! OpenCV's own files do not name the model. There four coefficients are taken as this one's, since OpenCV's plain model has
+//! five or more unless a program cuts them.
 
 use halfrow_model::{CalibratedLens, Profile};
 

@@ -1,7 +1,7 @@
 //! OCamCalib's text file: lines of numbers, comments between them.
 //!
-//! Its x counts rows and its y columns, and row comes before column and height before width; its z points away from the scene.
-//! The centre counts from 0, as the toolbox exports it, though MATLAB counts from 1.
+//! Its x counts rows and its y columns, and row comes before column and height before width; its z points away from the
+//! scene. The centre counts from 0, as the toolbox exports it, though MATLAB counts from 1.
 
 use halfrow_model::{CalibratedLens, Profile};
 

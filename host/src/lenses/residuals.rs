@@ -12,7 +12,8 @@ pub struct Spread {
     pub max: f64,
 }
 
-/// How far the samples of a frame are from where the exact projection of the lens puts them, in pixels of the corrected frame.
+/// How far the samples of a frame are from where the exact projection of the lens puts them, in pixels of the corrected
+/// frame.
 ///
 /// Like Fig. 5 it is taken at every sample of the fisheye frame that lies in the image circle; samples that the exact
 /// projection puts outside the corrected frame count for nothing.
@@ -22,8 +23,8 @@ pub struct Residuals {
     pub samples: usize,
     /// The amounts in columns: what the factors leave.
     pub horizontal: Spread,
-    /// The amounts in rows, which no factor changes: how far each sample is from the row at which the lens images its latitude
-    /// above or below the axis.
+    /// The amounts in rows, which no factor changes: how far each sample is from the row at which the lens images its
+    /// latitude above or below the axis.
     pub vertical: Spread,
     /// The amount in columns at every sample, row after row; 0 where none counts.
     pub map: Vec<Vec<f64>>,
