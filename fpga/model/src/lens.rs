@@ -26,6 +26,17 @@ pub struct Spherical {
     pub latitude: f64,
 }
 
+impl Spherical {
+    /// The longitude and latitude of the direction `ray`, of any length.
+    ///
+    /// The arctangents of two arguments hold beyond 90° too, where those of Eqs. 3 and 4 would fold over, and keep their
+    /// precision next to the poles.
+    #[must_use]
+    pub fn of([u, v, w]: [f64; 3]) -> Self {
+        Self { longitude: u.atan2(w), latitude: v.atan2(u.hypot(w)) }
+    }
+}
+
 /// Figures that describe no lens.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LensError {
@@ -49,6 +60,35 @@ pub enum LensError {
          180 for a hemisphere"
     )]
     FieldOfView(f64),
+    /// A coefficient that is no finite number, or that leads to one.
+    #[error("a coefficient of {0} gives no lens; calibrate the lens again")]
+    Coefficient(f64),
+    /// A profile that does not rise from the axis outwards.
+    #[error(
+        "the lens images no ray farther out than the axis itself; check the sign of the first coefficient"
+    )]
+    Axis,
+    /// A picture that is not upright.
+    #[error(
+        "the lens's picture is mirrored, upside down or flat: its axes are {right} pixels to the right and {down} pixels \
+         down; flip the frames, not the lens, and calibrate with upright ones"
+    )]
+    Mirrored {
+        /// Pixels to the right for a unit to the right.
+        right: f64,
+        /// Pixels down for a unit down.
+        down: f64,
+    },
+    /// A profile that turns back inside the frame.
+    #[error(
+        "the lens's r(θ) turns back at {angle:.1} degrees off the axis, inside the frame; calibrate with points out to \
+         the frame's corners, or give a field of view below {field:.1} degrees",
+        field = 2.0 * .angle
+    )]
+    TurnsBack {
+        /// Degrees from the axis.
+        angle: f64,
+    },
 }
 
 impl Equidistant {
@@ -122,13 +162,9 @@ impl Equidistant {
     }
 
     /// The direction seen at the image point (`x`, `y`) as longitude and latitude.
-    ///
-    /// The arctangents of two arguments hold beyond 90° too, where those of Eqs. 3 and 4 would fold over, and keep their
-    /// precision next to the poles.
     #[must_use]
     pub fn spherical(&self, x: f64, y: f64) -> Spherical {
-        let [u, v, w] = self.ray(x, y);
-        Spherical { longitude: u.atan2(w), latitude: v.atan2(u.hypot(w)) }
+        Spherical::of(self.ray(x, y))
     }
 
     /// Where the direction `ray` is imaged, (x, y) in pixels: the inverse of [`Self::ray`] for vectors of any length.
@@ -152,6 +188,6 @@ impl Default for Equidistant {
     }
 }
 
-fn is_positive(value: f64) -> bool {
+pub(crate) fn is_positive(value: f64) -> bool {
     value.is_finite() && value > 0.0
 }

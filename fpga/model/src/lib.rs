@@ -3,7 +3,7 @@
 //! From the lens to the corrected frame, in the order of the data:
 //!
 //! ```text
-//! Equidistant ──► TableSet ─┐
+//! Equidistant ──► TableSet ─┐                            Camera makes one for a calibrated lens
 //! Interpolant ──► Kernel ───┼─► correct ──► Frame     the integer datapath, bit for bit
 //! Frame ────────────────────┘
 //! ```
@@ -15,6 +15,8 @@
 //! 2014. The crate knows no board, no protocol and no file.
 
 mod bayer;
+mod calibrated;
+mod camera;
 mod corrector;
 mod fast;
 mod frame;
@@ -22,11 +24,14 @@ mod geometry;
 mod interpolant;
 mod kernel;
 mod lens;
+mod profile;
 mod projection;
 mod real;
 mod table;
 
 pub use bayer::{Colour, Phase, UnknownPhase};
+pub use calibrated::CalibratedLens;
+pub use camera::{Camera, CameraError, Residual, Target};
 pub use corrector::{CorrectError, Source, correct, correct_row, source};
 pub use fast::{Corrector, ModelPath, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};
@@ -34,6 +39,7 @@ pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 pub use interpolant::{Interpolant, UnknownInterpolant};
 pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_ONE};
 pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Spherical};
+pub use profile::Profile;
 pub use projection::{exact, exact_inverse, simplified, simplified_inverse, stretch_factor};
 pub use real::{correct_real, round_to_frame};
 pub use table::{STEP_ONE, TableError, TableSet};

@@ -96,11 +96,13 @@ impl TableSet {
         if let Some(centre_y) = centre_y.filter(|centre_y| !centre_y.is_finite()) {
             return Err(TableError::CentreRow(centre_y));
         }
-        let step = |row| {
-            let shrink = shrink_factor(lens.radius(), geometry.row_offset(row, centre_y));
-            ((f64::from(STEP_ONE) * shrink + 0.5).floor() as u32).max(1)
-        };
+        let step = |row| nearest_step(shrink_factor(lens.radius(), geometry.row_offset(row, centre_y)));
         Ok(Self { geometry, steps: (0..geometry.height()).map(step).collect() })
+    }
+
+    /// The table of steps that are legal and one a row by the way they were made.
+    pub(crate) fn of_legal_steps(geometry: Geometry, steps: Vec<u32>) -> Self {
+        Self { geometry, steps }
     }
 
     /// How many rows of `geometry` lie outside the image circle of `lens`, which [`Self::from_lens`] leaves unstretched.
@@ -157,6 +159,11 @@ impl TableSet {
     pub fn to_bytes(&self) -> Vec<u8> {
         self.steps.iter().flat_map(|step| step.to_le_bytes()).collect()
     }
+}
+
+/// The step nearest to `shrink` = 1/k, 1 to [`STEP_ONE`].
+pub(crate) fn nearest_step(shrink: f64) -> u32 {
+    ((f64::from(STEP_ONE) * shrink + 0.5).floor() as u32).clamp(1, STEP_ONE)
 }
 
 /// By how much `value` is above `limit`, if it is.

@@ -77,7 +77,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         arguments,
         inputs: FrameName::all(&arguments.inputs)?,
         how: arguments.input.read_options(&geometry, arguments.lens.phase),
-        scene: Scene { geometry, ..arguments.lens.scene(1)? },
+        scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,
     };
     job.check()?;

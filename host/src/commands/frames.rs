@@ -30,7 +30,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let scene = arguments.lens.scene(arguments.seed)?;
+    let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let chosen = if arguments.only.is_empty() { &Builtin::ALL[..] } else { &arguments.only };
     let folder = &arguments.output;
     std::fs::create_dir_all(folder)

@@ -12,6 +12,7 @@ mod kernel;
 mod lens;
 mod link;
 mod paper;
+mod residual;
 mod serve;
 mod tables;
 mod verify;
@@ -60,6 +61,7 @@ enum Command {
     Verify(verify::Arguments),
     Correct(correct::Arguments),
     Tables(tables::Arguments),
+    Lens(residual::Arguments),
     Kernel(kernel::Arguments),
     Paper(paper::Arguments),
     Frames(frames::Arguments),
@@ -113,6 +115,7 @@ impl Cli {
             Command::Verify(arguments) => arguments.json,
             Command::Correct(arguments) => arguments.json,
             Command::Paper(arguments) => arguments.json,
+            Command::Lens(arguments) => arguments.json,
             Command::Boards(arguments) => arguments.json,
             Command::Info(arguments) => arguments.json,
             Command::Link(arguments) => arguments.json,
@@ -133,6 +136,7 @@ impl Cli {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
             Command::Tables(arguments) => tables::run(arguments),
+            Command::Lens(arguments) => residual::run(arguments),
             Command::Kernel(arguments) => kernel::run(arguments, &context),
             Command::Paper(arguments) => paper::run(arguments, &context),
             Command::Frames(arguments) => frames::run(arguments),

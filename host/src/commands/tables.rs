@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfrow_model::TableSet;
 
 use super::lens::{self, LensArguments};
 use super::{Failure, print};
@@ -30,7 +29,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let chosen = lens::choose(None, &arguments.lens, Some(&arguments.kernel))?;
     let geometry = *chosen.tables.geometry();
     chosen.tables.check_ring(geometry.width().next_power_of_two())?;
-    let outside = TableSet::rows_outside_circle(&geometry, &arguments.lens.lens()?, arguments.lens.centre_y);
+    let outside = chosen.optics.camera.rows_outside_circle();
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     let written = write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
     for path in written {

@@ -167,8 +167,8 @@ impl Arguments {
             frame_sources(names, &how, geometry)?
         };
         Ok(Plan {
-            lens: self.lens.lens()?,
-            centre_y: self.lens.centre_y,
+            lens: chosen.optics.lens,
+            centre_y: chosen.optics.centre_y,
             phase: self.lens.phase,
             tables: chosen.tables,
             kernel: chosen.kernel,
@@ -205,7 +205,8 @@ impl Arguments {
         let tables = self.tables.as_ref().or(settings.tables.as_ref());
         let names = self.frame_names(settings).iter();
         let frames = names.filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
-        let files = tables.cloned().into_iter().chain(frames);
+        let lens = self.lens.file().map(PathBuf::from);
+        let files = tables.cloned().into_iter().chain(lens).chain(frames);
         Ok(Circumstances {
             arguments: std::env::args().collect(),
             files: files.map(|path| file_hash(&path)).collect::<Result<_, _>>()?,

@@ -4,23 +4,13 @@ use halfrow_model::{Equidistant, exact, simplified};
 
 use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
 use super::expected::{MEAN_ERROR_TOLERANCE, MEAN_ERRORS};
-use super::{Item, PaperError};
-use crate::frames::preview::RgbImage;
+use super::{HeatMap, Item, PaperError};
 
 /// R in pixels.
 const RADIUS: i32 = 100;
 
 /// The rows |y| up to this one are the middle part of 16 : 9, 113 of 201.
 const MIDDLE: i32 = 56;
-
-/// Dark to bright, evenly in lightness.
-const COLOURS: [[f64; 3]; 5] = [
-    [23.0, 23.0, 32.0],
-    [131.0, 38.0, 129.0],
-    [220.0, 70.0, 106.0],
-    [254.0, 154.0, 108.0],
-    [252.0, 253.0, 191.0],
-];
 
 /// The map and its two means.
 pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
@@ -68,24 +58,12 @@ fn mean(rows: &[Vec<f64>]) -> f64 {
 }
 
 fn picture(rows: &[Vec<f64>]) -> Picture {
-    let most = rows.iter().flatten().copied().fold(0.0, f64::max);
-    let data = rows.iter().flatten().flat_map(|&error| colour(error / most)).collect();
-    let image = RgbImage { width: rows.len(), height: rows.len(), data };
+    let HeatMap { image, most } = HeatMap::new(rows);
     Picture {
         name: "fig-5b".to_owned(),
         caption: format!("Fig. 5(b): the error, from 0 (dark) to {most:.2} px (bright)."),
         drawing: Drawing::Pixels(image, 3),
     }
-}
-
-/// The colour of a share of the largest error, 0 to 1.
-fn colour(share: f64) -> [u8; 3] {
-    let place = share.clamp(0.0, 1.0) * (COLOURS.len() - 1) as f64;
-    let below = (place as usize).min(COLOURS.len() - 2);
-    let (low, high) = (COLOURS[below], COLOURS[below + 1]);
-    std::array::from_fn(|channel| {
-        (low[channel] + (high[channel] - low[channel]) * (place - below as f64) + 0.5) as u8
-    })
 }
 
 fn table(rows: &[Vec<f64>]) -> Table {

@@ -140,7 +140,7 @@ fn tables(plan: &Plan) -> TablesReport {
         height: geometry.height(),
         bits: geometry.depth().bits(),
         centre2: geometry.centre2(),
-        rows_outside_circle: TableSet::rows_outside_circle(geometry, &plan.lens, None),
+        rows_outside_circle: TableSet::rows_outside_circle(geometry, &plan.lens, plan.centre_y),
         steps_crc32: crc(&plan.tables.to_bytes()),
         kernel_crc32: crc(&plan.kernel.to_bytes()),
     }

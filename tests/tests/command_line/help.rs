@@ -5,10 +5,11 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 13] = [
+const COMMANDS: [(&str, &str); 14] = [
     ("verify", "Judge a board"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
+    ("lens", "Tell a lens's figures"),
     ("kernel", "Fit a kernel to photographs"),
     ("paper", "Reproduce the paper's figures"),
     ("frames", "Write the built-in frames"),

@@ -9,6 +9,7 @@ mod bad_tables;
 mod bad_targets;
 mod corrected;
 mod help;
+mod lenses;
 mod made_files;
 mod paper;
 mod previewed;

@@ -3,6 +3,8 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
+mod calibrated;
+mod camera;
 mod corrector;
 mod exhaustive;
 mod fast;

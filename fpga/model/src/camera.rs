@@ -1,0 +1,209 @@
+//! A lens before the frame: the row factors for it, by Eq. 9 and fitted, and the error that they leave.
+
+use crate::lens::is_positive;
+use crate::projection::{is_outside, shrink_factor};
+use crate::table::nearest_step;
+use crate::{CalibratedLens, Geometry, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, STEP_ONE, TableSet};
+
+/// A frame with the lens that it is seen through.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Camera {
+    geometry: Geometry,
+    lens: CalibratedLens,
+    centre: (f64, f64),
+    half_field: f64,
+}
+
+/// Why a lens cannot stand before a frame.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum CameraError {
+    /// The lens is none, or not inside this frame.
+    #[error(transparent)]
+    Lens(#[from] LensError),
+    /// The optical centre is outside the frame.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// The row of the optical centre is no finite number.
+    #[error("the optical centre is at row {0}; give a finite number")]
+    CentreRow(f64),
+}
+
+/// A sample of the fisheye frame, and where the exact projection puts it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// The sample's column.
+    pub column: usize,
+    /// The column of the corrected frame that it belongs at, 0 to W − 1.
+    pub right_column: f64,
+    /// The row that it would belong at if samples could change their row.
+    pub right_row: f64,
+}
+
+/// How far a sample is from where it belongs, in pixels of the corrected frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Residual {
+    /// Columns to the right of where it belongs: what a row factor changes.
+    pub columns: f64,
+    /// Rows below where it belongs: what Eq. 7 leaves, whatever the row factor.
+    pub rows: f64,
+}
+
+impl Camera {
+    /// The lens `lens` with its axis at column and row `centre` of the frame; C of `geometry` becomes round(2 · column).
+    ///
+    /// `field_of_view_deg` is what counts as image circle, in degrees across: 180 is the hemisphere of the paper.
+    ///
+    /// # Errors
+    /// [`CameraError`] when the centre is outside the frame, the field of view not above 0° and at most 360°, R outside
+    /// [`MIN_RADIUS`] to [`MAX_RADIUS`], or r(θ) turns back inside the circle and inside the frame.
+    pub fn new(
+        geometry: Geometry,
+        lens: CalibratedLens,
+        centre: (f64, f64),
+        field_of_view_deg: f64,
+    ) -> Result<Self, CameraError> {
+        if !is_positive(field_of_view_deg) || field_of_view_deg > 360.0 {
+            return Err(LensError::FieldOfView(field_of_view_deg).into());
+        }
+        if !centre.1.is_finite() {
+            return Err(CameraError::CentreRow(centre.1));
+        }
+        let geometry = geometry.with_centre(centre.0)?;
+        let camera = Self { geometry, lens, centre, half_field: field_of_view_deg.to_radians() / 2.0 };
+        if !(MIN_RADIUS..=MAX_RADIUS).contains(&camera.radius()) {
+            return Err(LensError::Radius(camera.radius()).into());
+        }
+        if camera.lens.widest() < camera.half_field && !camera.corners_are_reached() {
+            return Err(LensError::TurnsBack { angle: camera.lens.widest().to_degrees() }.into());
+        }
+        Ok(camera)
+    }
+
+    fn corners_are_reached(&self) -> bool {
+        let (right, bottom) = (self.geometry.width() - 1, self.geometry.height() - 1);
+        let corners = [(0, 0), (right, 0), (0, bottom), (right, bottom)];
+        corners.into_iter().all(|(column, row)| {
+            let (x, y) = self.offset(column, row);
+            self.lens.reaches(x, y)
+        })
+    }
+
+    /// The frame, its centre that of the lens, to half a column.
+    #[must_use]
+    pub fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The lens.
+    #[must_use]
+    pub fn lens(&self) -> &CalibratedLens {
+        &self.lens
+    }
+
+    /// Column and row of the lens's axis.
+    #[must_use]
+    pub fn centre(&self) -> (f64, f64) {
+        self.centre
+    }
+
+    /// The angle across the image circle, in radians.
+    #[must_use]
+    pub fn field_of_view(&self) -> f64 {
+        2.0 * self.half_field
+    }
+
+    /// R of Eq. 9 in columns: where the lens images the edge of the field of view, so that a row that reaches the edge of
+    /// the circle is stretched to the circle's full width. If the profile turns back before, which is outside the frame
+    /// then, it is f · fov/2.
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.lens.column(self.half_field).unwrap_or(self.lens.focal_length() * self.half_field)
+    }
+
+    /// The row factors of Eq. 9 for [`Self::radius`]; y counts in widths of a pixel, as the circle is round in no other unit.
+    #[must_use]
+    pub fn equation_9(&self) -> TableSet {
+        self.table(|row| nearest_step(shrink_factor(self.radius(), self.height_of(row))))
+    }
+
+    /// The row factors that make the largest horizontal error of every row as small as it can be.
+    ///
+    /// With a = column − C/2 and b = the column it belongs at − C/2 the error of a sample is k·a − b, so the largest of a
+    /// row is the upper envelope of lines in k, least where its rising part meets its falling part. No k is below 1, which
+    /// a board cannot do, and a row without samples in the circle is not stretched. The samples are those of
+    /// [`Self::targets`], and the error is that of Fig. 5, against this lens's own [`CalibratedLens::straightened`].
+    #[must_use]
+    pub fn fitted(&self) -> TableSet {
+        self.table(|row| self.fitted_step(row))
+    }
+
+    fn table(&self, step: impl Fn(usize) -> u32) -> TableSet {
+        TableSet::of_legal_steps(self.geometry, (0..self.geometry.height()).map(step).collect())
+    }
+
+    fn fitted_step(&self, row: usize) -> u32 {
+        let lines: Vec<(f64, f64)> = self.targets(row).map(|target| self.line(target)).collect();
+        // As no line's a is below zero, errors outwards rise with k and errors inwards fall.
+        let outwards = |k: f64| lines.iter().map(|(a, b)| k * a - b).fold(f64::NEG_INFINITY, f64::max);
+        let inwards = |k: f64| lines.iter().map(|(a, b)| b - k * a).fold(f64::NEG_INFINITY, f64::max);
+        let (mut low, mut high) = (1.0, f64::from(STEP_ONE));
+        if lines.is_empty() || outwards(low) >= inwards(low) {
+            return STEP_ONE;
+        }
+        // Far below half a step of Q: 1/k is known to 1e-13 of itself.
+        while high - low > 1e-13 * low {
+            let middle = f64::midpoint(low, high);
+            if outwards(middle) < inwards(middle) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        nearest_step(1.0 / low)
+    }
+
+    /// a and b of a sample, turned so that a is not below zero.
+    fn line(&self, target: Target) -> (f64, f64) {
+        let middle = f64::from(self.geometry.centre2()) / 2.0;
+        let (a, b) = (target.column as f64 - middle, target.right_column - middle);
+        if a < 0.0 { (-a, -b) } else { (a, b) }
+    }
+
+    /// The samples of row `row` that lie in the image circle and belong inside the corrected frame, from the left.
+    pub fn targets(&self, row: usize) -> impl Iterator<Item = Target> + '_ {
+        let last = (self.geometry.width() - 1) as f64;
+        let nearest_to_axis = self.half_field.cos();
+        let target = move |column| {
+            let (x, y) = self.offset(column, row);
+            let ray = self.lens.ray(x, y).filter(|ray| ray[2] >= nearest_to_axis)?;
+            let (right, down) = self.lens.straightened(ray)?;
+            let right_column = self.centre.0 + right;
+            let inside = (0.0..=last).contains(&right_column);
+            inside.then_some(Target { column, right_column, right_row: self.centre.1 + down })
+        };
+        (0..self.geometry.width()).filter_map(target)
+    }
+
+    /// How far the sample `target` of row `row` is from where it belongs, in a row with the step `step`, 1 to 2^24.
+    #[must_use]
+    pub fn residual(&self, row: usize, step: u32, target: Target) -> Residual {
+        let middle = f64::from(self.geometry.centre2()) / 2.0;
+        let stretched = (target.column as f64 - middle) * f64::from(STEP_ONE) / f64::from(step.max(1));
+        Residual { columns: middle + stretched - target.right_column, rows: row as f64 - target.right_row }
+    }
+
+    /// How many rows lie outside the image circle of [`Self::radius`].
+    #[must_use]
+    pub fn rows_outside_circle(&self) -> usize {
+        (0..self.geometry.height()).filter(|&row| is_outside(self.radius(), self.height_of(row))).count()
+    }
+
+    fn offset(&self, column: usize, row: usize) -> (f64, f64) {
+        (column as f64 - self.centre.0, row as f64 - self.centre.1)
+    }
+
+    /// y of a row in widths of a pixel.
+    fn height_of(&self, row: usize) -> f64 {
+        (row as f64 - self.centre.1) * self.lens.pixel_height()
+    }
+}

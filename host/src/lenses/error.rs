@@ -1,0 +1,191 @@
+//! What can be wrong with a lens file.
+
+use std::io;
+use std::path::PathBuf;
+
+use halfrow_model::LensError;
+
+/// A file that holds no lens that can be used. The source says where and what to do.
+#[derive(Debug, thiserror::Error)]
+pub enum LensFileError {
+    /// The system did not hand the file over, or it is no text.
+    #[error(
+        "cannot read the lens file {}; check that it is there, that it is text and that you may read it, \
+         or name the lens as equidistant:RADIUS",
+        path.display()
+    )]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The file's content is wrong.
+    #[error("the lens file {} cannot be used", path.display())]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        source: LensContentError,
+    },
+}
+
+/// Text that describes no lens that can be used.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum LensContentError {
+    /// There is nothing in it.
+    #[error("it is empty; calibrate the lens, or copy the file again")]
+    Empty,
+    /// OpenCV's third format.
+    #[error("it is XML; write it with cv::FileStorage as .yml or .json")]
+    Xml,
+    /// It is neither YAML nor JSON.
+    #[error("line {line}, column {column}: {reason}; mend it there, or copy the file again")]
+    Syntax {
+        /// The line, from 1.
+        line: usize,
+        /// The column, from 1.
+        column: usize,
+        /// What the reader found.
+        reason: String,
+    },
+    /// It is YAML or JSON, but not one group of keys.
+    #[error(
+        "it holds no keys; give OpenCV's FileStorage, ROS's camera_info, Kalibr's camchain or OCamCalib's \
+         calib_results.txt"
+    )]
+    NoKeys,
+    /// A key that is not there.
+    #[error("it has no {what}: none of the keys {keys}; add one")]
+    Missing {
+        /// What is missing.
+        what: &'static str,
+        /// The keys that it goes by.
+        keys: String,
+    },
+    /// A value of the wrong kind.
+    #[error("`{key}` is {found}, not {wanted}; correct it, or calibrate again")]
+    Kind {
+        /// The key.
+        key: String,
+        /// The value, shortened.
+        found: String,
+        /// The kind that it should be.
+        wanted: &'static str,
+    },
+    /// Two cameras or more.
+    #[error("it holds several cameras, {0}; copy the keys of one into a file of its own")]
+    Cameras(String),
+    /// A camera model that is not OpenCV's fisheye.
+    #[error(
+        "its model is {name}, and a fisheye lens needs `equidistant`, OpenCV's fisheye model; calibrate with \
+         cv::fisheye::calibrate, with Kalibr's pinhole-equi or with OCamCalib"
+    )]
+    Model {
+        /// The model's name.
+        name: String,
+    },
+    /// Not four coefficients.
+    #[error(
+        "it has {found} distortion coefficients{name}, and OpenCV's fisheye model has four, k1 to k4; calibrate with \
+         cv::fisheye::calibrate"
+    )]
+    Coefficients {
+        /// How many.
+        found: usize,
+        /// The model that has so many, in parentheses.
+        name: &'static str,
+    },
+    /// A matrix that is none of a camera.
+    #[error(
+        "its camera matrix is not [fx, skew, cx; 0, fy, cy; 0, 0, 1]; take the matrix that the calibration returned"
+    )]
+    Matrix,
+    /// A size that is none of a picture.
+    #[error("its image size is not two whole numbers from 1 to {max}; give columns and rows", max = super::MAX_SIDE)]
+    Size,
+    /// An axis outside the pictures.
+    #[error(
+        "the axis is at column {column}, row {row}, outside its pictures of {columns} x {rows}; check the order, which \
+         is row before column in OCamCalib's file and column before row elsewhere"
+    )]
+    Centre {
+        /// The axis's column.
+        column: f64,
+        /// The axis's row.
+        row: f64,
+        /// Columns of the pictures.
+        columns: usize,
+        /// Rows of the pictures.
+        rows: usize,
+    },
+    /// Frames of another shape than the calibration's.
+    #[error(transparent)]
+    Shape(#[from] WrongShape),
+    /// Lines of OCamCalib's file that are not there.
+    #[error(
+        "it breaks off: {found} lines of numbers instead of 5 (direct polynomial, inverse polynomial, centre, affine \
+         parameters, image size); export it again"
+    )]
+    Lines {
+        /// Lines of numbers there.
+        found: usize,
+    },
+    /// A line of OCamCalib's file with other numbers.
+    #[error("line {line}: {found} numbers instead of {wanted} for {what}; export the file again")]
+    Numbers {
+        /// The line, from 1.
+        line: usize,
+        /// Numbers there.
+        found: usize,
+        /// Numbers that should be there.
+        wanted: usize,
+        /// What the line holds.
+        what: &'static str,
+    },
+    /// A word of OCamCalib's file that is no finite number.
+    #[error("line {line}: {found:?} is no finite number; export the file again")]
+    Number {
+        /// The line, from 1.
+        line: usize,
+        /// The word, shortened.
+        found: String,
+    },
+    /// A polynomial that begins with the wrong sign.
+    #[error(
+        "the direct polynomial begins with {0}, and OCamCalib's begin below zero; if z counts forwards in your program, \
+         turn the signs of all of its coefficients"
+    )]
+    Sign(f64),
+    /// Two polynomials that disagree.
+    #[error(
+        "the inverse polynomial is {distance:.1} pixels off the direct one at {degrees} degrees; they are of two \
+         calibrations or in another order, so export the file again"
+    )]
+    Inverse {
+        /// Pixels between them.
+        distance: f64,
+        /// Degrees from the axis.
+        degrees: f64,
+    },
+    /// The numbers make no lens.
+    #[error(transparent)]
+    Lens(#[from] LensError),
+}
+
+/// Frames of another shape than the pictures that the lens was calibrated with.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "it was calibrated with pictures of {columns} x {rows}, and frames of {width} x {height} have another shape; calibrate \
+     with such frames, or give --lens-pitch, and --centre-x and --centre-y, for the same lens on another or a cropped sensor"
+)]
+pub struct WrongShape {
+    /// Columns of the pictures.
+    pub columns: usize,
+    /// Rows of the pictures.
+    pub rows: usize,
+    /// Columns of the frames.
+    pub width: usize,
+    /// Rows of the frames.
+    pub height: usize,
+}

@@ -1,0 +1,117 @@
+//! OpenCV's fisheye model as OpenCV, ROS and Kalibr write it.
+//!
+//! OpenCV's own files do not name the model. There four coefficients are taken as this one's, since OpenCV's plain model has
+//! five or more unless a program cuts them.
+
+use halfrow_model::{CalibratedLens, Profile};
+
+use super::tree::{Keys, documents, number, numbers, without_header};
+use super::{LensContentError, LensFile, LensModel, picture_size};
+use crate::tables::text::quoted;
+
+/// The keys that each part goes by. Case and punctuation do not count.
+const MATRIX: [&str; 3] = ["camera_matrix", "K", "intrinsic_matrix"];
+const FOUR_INTRINSICS: [&str; 1] = ["intrinsics"];
+const DISTORTION: [&str; 5] =
+    ["distortion_coefficients", "distortion_coeffs", "dist_coeffs", "D", "distortion_parameters"];
+const MODELS: [&str; 2] = ["distortion_model", "camera_model"];
+const SIZE: [&str; 3] = ["image_size", "resolution", "img_size"];
+const WIDTH: [&str; 2] = ["image_width", "width"];
+const HEIGHT: [&str; 2] = ["image_height", "height"];
+
+/// Names that are this model, or leave it open.
+const OUR_NAMES: [&str; 7] =
+    ["equidistant", "equi", "fisheye", "kannala_brandt", "kannala_brandt4", "opencv_fisheye", "pinhole"];
+
+pub(super) fn parse(text: &str) -> Result<LensFile, LensContentError> {
+    let text = without_header(text);
+    let documents = documents(&text)?;
+    let root = documents.first().and_then(Keys::of).ok_or(LensContentError::NoKeys)?;
+    let cameras = root.cameras();
+    match cameras.as_slice() {
+        [] => camera(&root),
+        [(_, only)] => camera(&Keys::of(only).ok_or(LensContentError::NoKeys)?),
+        several => {
+            let names: Vec<_> = several.iter().map(|(name, _)| *name).collect();
+            Err(LensContentError::Cameras(quoted(&names.join(", "))))
+        }
+    }
+}
+
+fn camera(keys: &Keys<'_>) -> Result<LensFile, LensContentError> {
+    check_model(keys)?;
+    let [fx, skew, cx, fy, cy] = matrix(keys)?;
+    let coefficients = coefficients(keys)?;
+    let size = size(keys)?;
+    let lens = CalibratedLens::new(Profile::KannalaBrandt(coefficients), [[fx, skew], [0.0, fy]])?;
+    LensFile { model: LensModel::OpenCvFisheye, lens, centre: (cx, cy), size }.with_centre_inside()
+}
+
+/// Refuses what says that it is another model.
+fn check_model(keys: &Keys<'_>) -> Result<(), LensContentError> {
+    let named = |name: &str| LensContentError::Model { name: quoted(name) };
+    if keys.find(&["xi"]).is_some() {
+        return Err(named("omnidirectional (it has `xi`)"));
+    }
+    for key in MODELS {
+        let Some(name) = keys.find(&[key]).and_then(|(_, value)| value.as_str()) else { continue };
+        if !OUR_NAMES.iter().any(|ours| ours.eq_ignore_ascii_case(name)) {
+            return Err(named(name));
+        }
+    }
+    match keys.find(&["fisheye_model"]) {
+        Some((_, value)) if matches!(value.as_integer(), Some(0)) || value.as_bool() == Some(false) => {
+            Err(named("a plain one (`fisheye_model` is 0)"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// fx, skew, cx, fy and cy.
+fn matrix(keys: &Keys<'_>) -> Result<[f64; 5], LensContentError> {
+    if let Some((key, value)) = keys.find(&FOUR_INTRINSICS).filter(|_| keys.find(&MATRIX).is_none()) {
+        let found = numbers(key, value)?;
+        let [fx, fy, cx, cy] = found[..] else { return Err(LensContentError::Matrix) };
+        return Ok([fx, 0.0, cx, fy, cy]);
+    }
+    let (key, value) = keys.get("camera matrix", &MATRIX)?;
+    match numbers(key, value)?[..] {
+        [fx, skew, cx, zero, fy, cy, left, middle, one]
+            if [zero, left, middle, one] == [0.0, 0.0, 0.0, 1.0] =>
+        {
+            Ok([fx, skew, cx, fy, cy])
+        }
+        _ => Err(LensContentError::Matrix),
+    }
+}
+
+fn coefficients(keys: &Keys<'_>) -> Result<[f64; 4], LensContentError> {
+    let (key, value) = keys.get("distortion coefficients", &DISTORTION)?;
+    let found = numbers(key, value)?;
+    <[f64; 4]>::try_from(found).map_err(|found| LensContentError::Coefficients {
+        found: found.len(),
+        name: match found.len() {
+            5 => " (plumb_bob, k1 k2 p1 p2 k3)",
+            8 => " (rational_polynomial)",
+            12 => " (thin prism)",
+            14 => " (tilted)",
+            _ => "",
+        },
+    })
+}
+
+/// Columns and rows of the pictures. ROS's drivers write 0 x 0 for what they do not know.
+fn size(keys: &Keys<'_>) -> Result<Option<(usize, usize)>, LensContentError> {
+    let sides = if let Some((key, value)) = keys.find(&SIZE) {
+        numbers(key, value)?
+    } else if let (Some((width, columns)), Some((height, rows))) = (keys.find(&WIDTH), keys.find(&HEIGHT)) {
+        vec![number(width, columns)?, number(height, rows)?]
+    } else {
+        return Ok(None);
+    };
+    match sides[..] {
+        [0.0, 0.0] => Ok(None),
+        [width, height] => picture_size(width, height).map(Some),
+        _ => Err(LensContentError::Size),
+    }
+}

@@ -1,0 +1,185 @@
+//! What is no lens of these kinds is refused by its name, with what to do.
+
+use std::path::Path;
+
+use halfrow::lenses::{LensContentError, LensFile, LensFileError};
+
+use super::{CAMCHAIN, CAMERA_INFO, DSL215, OPENCV_JSON, OPENCV_YAML, with};
+
+fn refusal(text: &str) -> LensContentError {
+    LensFile::parse(text).unwrap_err()
+}
+
+/// The refusal of `text` with its one `old` replaced by `new` says `sentence`.
+#[track_caller]
+fn says(text: &str, old: &str, new: &str, sentence: &str) {
+    let refused = refusal(&with(text, old, new)).to_string();
+    assert!(refused.contains(sentence), "{new}: {refused}");
+}
+
+#[test]
+fn other_distortion_models_are_refused_by_name() {
+    for name in ["plumb_bob", "rational_polynomial", "radtan", "fov", "none"] {
+        let sentence = format!("its model is {name}, and a fisheye lens needs `equidistant`");
+        says(CAMERA_INFO, "distortion_model: equidistant", &format!("distortion_model: {name}"), &sentence);
+    }
+    for name in ["omni", "ds", "eucm"] {
+        says(
+            CAMCHAIN,
+            "camera_model: pinhole",
+            &format!("camera_model: {name}"),
+            &format!("its model is {name}"),
+        );
+    }
+    says(OPENCV_YAML, "image_width: 1280", "xi: 1.2", "omnidirectional (it has `xi`)");
+    says(OPENCV_YAML, "image_width: 1280", "fisheye_model: 0", "`fisheye_model` is 0");
+    assert!(LensFile::parse(&with(OPENCV_YAML, "image_width: 1280", "fisheye_model: 1")).is_ok());
+}
+
+#[test]
+fn coefficients_of_other_models_are_refused_by_their_number() {
+    let four = "[-0.0125, 0.0031, -0.0042, 0.0007]";
+    let of = |count: usize| format!("[{}]", vec!["0.01"; count].join(", "));
+    says(
+        CAMCHAIN,
+        four,
+        &of(5),
+        "it has 5 distortion coefficients (plumb_bob, k1 k2 p1 p2 k3), and OpenCV's fisheye",
+    );
+    says(CAMCHAIN, four, &of(8), "it has 8 distortion coefficients (rational_polynomial)");
+    says(CAMCHAIN, four, &of(3), "it has 3 distortion coefficients, and");
+    says(CAMCHAIN, four, &of(0), "it has 0 distortion coefficients, and");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused_with_their_key() {
+    for (word, found) in
+        [(".Nan", ".Nan"), (".nan", "NaN"), (".Inf", "inf"), ("1e999", "inf"), ("~", "empty or no number")]
+    {
+        let sentence = format!("`camera_matrix` is {found}, not a finite number");
+        says(OPENCV_YAML, "549.125", word, &sentence);
+    }
+    says(OPENCV_JSON, "549.125", "\"many\"", "`camera_matrix` is many, not a finite number");
+    says(CAMCHAIN, "-0.0125", "1e308", "no ray farther out than the axis");
+    says(
+        CAMCHAIN,
+        "[552.25, 549.125, 641.5, 358.25]",
+        "552.25",
+        "`intrinsics` is 552.25, not a matrix or a list",
+    );
+}
+
+#[test]
+fn matrices_of_no_camera_are_refused() {
+    says(OPENCV_YAML, "0., 0., 1. ]", "0., 0., 2. ]", "not [fx, skew, cx; 0, fy, cy; 0, 0, 1]");
+    says(OPENCV_YAML, "0., 549.125", "0.5, 549.125", "not [fx, skew, cx; 0, fy, cy; 0, 0, 1]");
+    says(OPENCV_YAML, ", 0., 0., 1. ]", " ]", "not [fx, skew, cx; 0, fy, cy; 0, 0, 1]");
+    says(CAMCHAIN, "552.25, ", "", "not [fx, skew, cx; 0, fy, cy; 0, 0, 1]");
+    says(
+        OPENCV_YAML,
+        "camera_matrix",
+        "projection",
+        "it has no camera matrix: none of the keys camera_matrix, K",
+    );
+    says(OPENCV_YAML, "distortion_coefficients", "other", "it has no distortion coefficients");
+}
+
+#[test]
+fn pictures_that_are_mirrored_or_upside_down_are_refused() {
+    says(OPENCV_YAML, "552.25", "-552.25", "mirrored, upside down or flat");
+    says(OPENCV_YAML, "549.125", "-549.125", "mirrored, upside down or flat");
+    says(DSL215, "1.000314", "-1.000314", "mirrored, upside down or flat");
+    says(OPENCV_YAML, "549.125", "0.", "mirrored, upside down or flat");
+}
+
+#[test]
+fn an_axis_outside_the_pictures_is_refused() {
+    says(OPENCV_YAML, "641.5", "1641.5", "column 1641.5, row 358.25, outside its pictures of 1280 x 720");
+    says(
+        DSL215,
+        "229.581672 364.430465",
+        "529.581672 364.430465",
+        "column 364.430465, row 529.581672, outside",
+    );
+}
+
+#[test]
+fn image_sizes_that_cannot_be_are_refused() {
+    for size in ["[1280]", "[1280.5, 720]", "[0, 720]", "[1e9, 720]", "[-1280, 720]"] {
+        says(CAMCHAIN, "[1280, 720]", size, "not two whole numbers from 1 to 65535");
+    }
+    says(DSL215, "480 752", "480 0", "not two whole numbers");
+}
+
+#[test]
+fn several_cameras_are_refused() {
+    let second = CAMCHAIN.replace("cam0", "cam1");
+    let refused = refusal(&format!("{CAMCHAIN}{second}"));
+    assert_eq!(refused, LensContentError::Cameras("cam0, cam1".to_owned()));
+}
+
+#[test]
+fn files_of_other_kinds_are_refused() {
+    assert_eq!(refusal("<?xml version=\"1.0\"?>\n<opencv_storage>\n"), LensContentError::Xml);
+    assert_eq!(refusal(""), LensContentError::Empty);
+    assert_eq!(refusal("\n \n# nothing\n"), LensContentError::Empty);
+    assert_eq!(refusal("[1, 2]"), LensContentError::NoKeys);
+    assert_eq!(refusal("lens"), LensContentError::NoKeys);
+    assert!(matches!(refusal("{}"), LensContentError::Missing { .. }));
+}
+
+#[test]
+fn what_breaks_off_is_refused_with_its_line() {
+    let half = |text: &str| refusal(&text[..text.len() / 2]);
+    assert!(matches!(half(OPENCV_JSON), LensContentError::Syntax { .. }), "{:?}", half(OPENCV_JSON));
+    assert!(matches!(half(OPENCV_YAML), LensContentError::Missing { .. } | LensContentError::Syntax { .. }));
+    let end = DSL215.find("\n#center").unwrap();
+    assert_eq!(refusal(&DSL215[..end]), LensContentError::Lines { found: 2 });
+    says(DSL215, "21.586002 3.593416", "", "line 7: 9 numbers instead of 11 for the inverse polynomial");
+    says(DSL215, " 6.601777e-09", "", "line 3: 5 numbers instead of 6 for the direct polynomial");
+    says(DSL215, "229.581672 ", "", "line 11: 1 numbers instead of 2 for the centre's row and column");
+    says(DSL215, "-0.000158", "", "line 15: 2 numbers instead of 3 for the affine parameters");
+    assert!(matches!(
+        refusal(
+            "{
+\"K\": 1]"
+        ),
+        LensContentError::Syntax { line: 2, .. }
+    ));
+}
+
+#[test]
+fn ocamcalib_s_numbers_are_looked_at() {
+    for word in ["nan", "inf", "1e999", "0x10", "row"] {
+        says(DSL215, "1.626945e-03", word, &format!("line 3: {word:?} is no finite number"));
+    }
+    says(DSL215, "-2.595395e+02", "2.595395e+02", "begins with 259.5395, and OCamCalib's begin below zero");
+    says(DSL215, "388.557547", "488.557547", "the inverse polynomial is");
+    says(DSL215, "388.557547 220.910537", "220.910537 388.557547", "off the direct one at 30 degrees");
+    assert_eq!(refusal("0\n229 364\n1 0 0\n480 752\n"), LensContentError::Sign(0.0));
+    assert!(matches!(refusal("99999999999999999999 1\n1 1\n1 0 0\n4 4\n"), LensContentError::Numbers { .. }));
+}
+
+#[test]
+fn hostile_yaml_is_refused_and_does_no_harm() {
+    assert!(matches!(refusal(&"[".repeat(100_000)), LensContentError::Syntax { .. }));
+    let doubled: String =
+        (1..40).map(|level| format!("a{level}: &a{level} [*a{0}, *a{0}]\n", level - 1)).collect();
+    assert!(matches!(refusal(&format!("a0: &a0 x\n{doubled}")), LensContentError::Syntax { .. }));
+    let twice = format!("{OPENCV_YAML}image_width: 640\n");
+    assert!(matches!(refusal(&twice), LensContentError::Syntax { .. }));
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_named() {
+    let missing = LensFile::read(Path::new("/nonexistent/lens.yml")).unwrap_err();
+    assert!(matches!(&missing, LensFileError::Io { .. }));
+    assert!(missing.to_string().contains("/nonexistent/lens.yml"), "{missing}");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("calib.mat");
+    std::fs::write(&path, b"MATLAB 5.0 \xff\xfe").unwrap();
+    assert!(matches!(LensFile::read(&path), Err(LensFileError::Io { .. })));
+    std::fs::write(&path, "<opencv_storage/>").unwrap();
+    let refused = LensFile::read(&path).unwrap_err();
+    assert!(matches!(refused, LensFileError::Content { source: LensContentError::Xml, .. }));
+}

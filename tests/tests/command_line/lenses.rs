@@ -1,0 +1,252 @@
+//! `--lens`: lens files from calibration programs, on every command that makes tables, and `lens` itself.
+//!
+//! Expected numbers are of NumPy 2.4.6 and SciPy 1.17.1 (`linprog`), from the definitions.
+
+use std::path::PathBuf;
+
+use halfrow_tests::program::Folder;
+use serde_json::Value;
+
+use crate::refused;
+
+/// The path of a lens file that the tests of the reader have.
+fn lens(name: &str) -> String {
+    let files = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../host/tests/lenses/files");
+    files.join(name).display().to_string()
+}
+
+/// A folder with the measured lens in it, 752 x 480.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("dsl215.txt", std::fs::read(lens("dsl215.txt")).unwrap());
+    folder
+}
+
+fn json(folder: &Folder, arguments: &[&str]) -> Value {
+    let ended = folder.halfrow(arguments.iter().copied());
+    assert_eq!(ended.code, Some(0), "{arguments:?}: {}", ended.stderr);
+    ended.json()
+}
+
+#[track_caller]
+fn assert_near(found: &Value, expected: f64, tolerance: f64) {
+    let found = found.as_f64().unwrap();
+    assert!((found - expected).abs() <= tolerance, "{found} is not {expected}");
+}
+
+#[test]
+fn a_board_passes_with_the_rows_of_every_lens_file() {
+    let folder = folder();
+    for (file, width, height) in [
+        ("dsl215.txt", "188", "120"),
+        ("opencv-4.10.yml", "128", "72"),
+        ("opencv-4.10.json", "256", "144"),
+        ("camera_info.yaml", "128", "72"),
+        ("camchain.yaml", "128", "72"),
+    ] {
+        let path = lens(file);
+        let call =
+            ["verify", "--json", "--board", "mock", "--lens", &path, "--width", width, "--height", height];
+        let said = json(&folder, &call);
+        assert_eq!(said["verdict"], "PASS", "{file}: {}", said["headline"]);
+        let source = said["tables"]["source"].as_str().unwrap();
+        assert!(source.contains(file) && source.contains("(fitted rows), hermite kernel"), "{source}");
+        assert_eq!(said["run"]["files"][0]["path"], path.as_str());
+    }
+}
+
+#[test]
+fn the_table_file_holds_the_fitted_rows_and_the_lens_s_centre() {
+    let folder = folder();
+    let made = folder.halfrow(["tables", "--lens", "dsl215.txt", "-o", "dsl215.json"]);
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    assert!(
+        made.stdout.contains("OCamCalib lens dsl215.txt, R = 388.558 pixels (fitted rows)"),
+        "{}",
+        made.stdout
+    );
+    let file: Value = serde_json::from_slice(&folder.read("dsl215.json")).unwrap();
+    assert_eq!((&file["width"], &file["height"], &file["centre2"]), (&752.into(), &480.into(), &729.into()));
+    for (row, step) in [(0, 13_125_603.7), (150, 16_374_261.0), (479, 12_368_952.0)] {
+        assert_near(&file["step"][row], step, 2.0);
+    }
+    let call = ["tables", "--lens", "dsl215.txt", "--rows", "equation-9", "-o", "eq9.json"];
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    let file: Value = serde_json::from_slice(&folder.read("eq9.json")).unwrap();
+    assert_near(&file["step"][0], 13_537_752.0, 1.0);
+}
+
+#[test]
+fn the_paper_s_lens_keeps_eq_9_unless_fitted_rows_are_asked_for() {
+    let folder = Folder::new();
+    let steps = |name: &str, lens: &[&str]| {
+        let call = ["tables", "-o", name].into_iter().chain(lens.iter().copied());
+        assert_eq!(folder.halfrow(call).code, Some(0));
+        serde_json::from_slice::<Value>(&folder.read(name)).unwrap()["step"].clone()
+    };
+    let plain = steps("plain.json", &["--radius", "1106.697"]);
+    assert_eq!(plain[0], 14_648_698);
+    assert_eq!(steps("named.json", &["--lens", "equidistant:1106.697"]), plain);
+    assert_near(&steps("fitted.json", &["--radius", "1106.697", "--rows", "fitted"])[0], 14_124_828.2, 2.0);
+}
+
+#[test]
+fn the_error_that_is_left_is_told_and_drawn() {
+    let folder = folder();
+    let said = json(&folder, &["lens", "--lens", "dsl215.txt", "--map", "left.png", "--json"]);
+    assert_near(&said["lens"]["radius_px"], 388.557_796_771, 1e-9);
+    assert_near(&said["centre"]["row"], 229.581_672, 0.0);
+    assert_eq!((&said["rows"], &said["samples"]), (&"fitted".into(), &335_074.into()));
+    let left = &said["residual_px"];
+    for (what, mean, max) in [
+        (&left["horizontal"]["equation-9"], 3.746_090_454, 22.524_353_4),
+        (&left["horizontal"]["fitted"], 2.264_924_774, 14.724_120_0),
+        (&left["vertical"], 11.635_555_722, 69.325_111_7),
+    ] {
+        assert_near(&what["mean"], mean, 1e-6);
+        assert_near(&what["max"], max, 2e-5);
+    }
+    assert_near(&said["map"]["brightest_px"], 14.724_12, 1e-4);
+    let picture = folder.read("left.png");
+    assert_eq!(picture[..8], *b"\x89PNG\r\n\x1a\n");
+    assert_eq!(picture[16..24], [0, 0, 2, 240, 0, 0, 1, 224]);
+    let text =
+        folder.halfrow(["lens", "--lens", "dsl215.txt", "--map", "other.png", "--rows", "equation-9"]).stdout;
+    assert!(text.contains("horizontal, fitted rows            2.2649   14.7241"), "{text}");
+    assert!(text.ends_with("wrote other.png, from 0 (dark) to 22.524 px (bright)\n"), "{text}");
+    refused_map(&folder);
+}
+
+fn refused_map(folder: &Folder) {
+    let before = folder.read("left.png");
+    let ended = folder.halfrow(["lens", "--lens", "dsl215.txt", "--map", "left.png"]);
+    assert!(ended.code == Some(3) && ended.stderr.contains("--overwrite"), "{}", ended.stderr);
+    assert!(folder.read("left.png") == before);
+}
+
+/// The same lens on the paper's sensor, whose pixels have 2.2 µm, not 6.
+#[test]
+fn a_lens_moves_to_another_sensor_by_its_pixel_pitch() {
+    let call = [
+        "lens",
+        "--json",
+        "--lens",
+        "dsl215.txt",
+        "--lens-pitch",
+        "6",
+        "--width",
+        "1920",
+        "--height",
+        "1080",
+    ];
+    let said = json(&folder(), &call);
+    assert_near(&said["lens"]["radius_px"], 1_059.703_082_1, 1e-6);
+    assert_eq!(said["centre"]["centre2"], 1919);
+    let horizontal = &said["residual_px"]["horizontal"];
+    assert_near(&horizontal["equation-9"]["max"], 33.377_213_8, 1e-4);
+    assert_near(&horizontal["fitted"]["max"], 16.350_686_5, 1e-4);
+    assert_near(&horizontal["fitted"]["mean"], 3.111_914_4, 1e-5);
+}
+
+#[test]
+fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
+    let folder = folder();
+    assert_eq!(folder.halfrow(["tables", "--radius", "1106.697", "-o", "made.json"]).code, Some(0));
+    let tables = |more: &[&str], sentence: &str| {
+        let call: Vec<_> = ["tables", "-o", "x.json"].into_iter().chain(more.iter().copied()).collect();
+        refused(&folder, &call, sentence);
+    };
+    let lens = ["--lens", "dsl215.txt"];
+    tables(&[&lens[..], &["--width", "1920", "--height", "1080"]].concat(), "pictures of 752 x 480");
+    tables(&[&lens[..], &["--radius", "400"]].concat(), "cannot be used with");
+    tables(&[&lens[..], &["--focal-length", "2"]].concat(), "cannot be used with");
+    tables(&["--lens-pitch", "6"], "--lens");
+    tables(&["--lens", "equidistant:400", "--lens-pitch", "6"], "--lens-pitch goes with a lens file");
+    tables(&["--lens", "equidistant:wide"], "takes the radius");
+    tables(&["--lens", "equidistant:0"], "radius");
+    tables(&["--lens", "nowhere.yml"], "cannot read the lens file nowhere.yml");
+    tables(&[&lens[..], &["--lens-pitch", "0"]].concat(), "a pixel pitch of 0 um is not above zero");
+    tables(&[&lens[..], &["--field-of-view", "0"]].concat(), "field of view");
+    tables(&[&lens[..], &["--centre-x", "-1"]].concat(), "optical centre");
+    refused(&folder, &["verify", "--lens", "dsl215.txt", "--tables", "made.json"], "give one of them");
+}
+
+/// The window of taps must be there: the model says which row cannot have it.
+#[test]
+fn a_centre_that_no_board_can_do_is_refused_by_the_tables() {
+    let (folder, path) = (Folder::new(), lens("opencv-4.10.yml"));
+    let size = ["--width", "128", "--height", "72", "--centre-x", "0", "--centre-y", "71"];
+    let call: Vec<_> = ["tables", "--lens", &path, "-o", "x.json"].into_iter().chain(size).collect();
+    refused(&folder, &call, "row 0 needs samples 7 columns older than a ring of 128 still holds");
+    let said =
+        json(&folder, &["lens", "--json", "--lens", &path].into_iter().chain(size).collect::<Vec<_>>());
+    assert!(said["illegal"].as_str().unwrap().contains("needs samples"), "{}", said["illegal"]);
+}
+
+/// Degrees of the verticals in the picture, and where the lens images each on the horizon, in pixels from its axis.
+const VERTICALS: [(f64, f64); 4] = [(10.0, 45.2), (30.0, 134.8), (50.0, 223.7), (70.0, 309.2)];
+
+/// How far from a vertical's place on the horizon it is looked for, in pixels: less than half of the way to the next.
+const REACH: f64 = 40.0;
+
+/// Vertical lines in the scene as the lens images them: OCamCalib's cam2world, written out.
+fn photograph() -> Vec<u8> {
+    let mut picture = b"P5\n752 480\n4095\n".to_vec();
+    for row in 0..480 {
+        for column in 0..752 {
+            let (down, right) = (f64::from(row) - 229.581_672, f64::from(column) - 364.430_465);
+            let area = 1.000_314 - 0.000_012 * 0.000_158;
+            let x = (down + 0.000_012 * right) / area;
+            let y = (1.000_314 * right + 0.000_158 * down) / area;
+            let r = x.hypot(y);
+            let ahead = 259.5395 - r * r * (1.626945e-3 + r * (-2.328091e-6 + r * 6.601777e-9));
+            let longitude = y.atan2(ahead).to_degrees();
+            let light = |(degrees, _): (f64, f64)| (-((longitude.abs() - degrees) / 0.8).powi(2)).exp();
+            let sample = 200.0 + 3500.0 * VERTICALS.into_iter().map(light).sum::<f64>();
+            picture.extend((sample as u16).to_be_bytes());
+        }
+    }
+    picture
+}
+
+/// The root mean square of how far the verticals of a picture are from straight, in pixels.
+fn bend(picture: &[u8]) -> f64 {
+    let samples = &picture[picture.len() - 2 * 752 * 480..];
+    let light = |row: usize, column: usize| {
+        let place = 2 * (752 * row + column);
+        f64::from(u16::from_be_bytes([samples[place], samples[place + 1]])) - 200.0
+    };
+    let rows = || (20..460).step_by(20);
+    let middle_of_line = |row, place: f64| {
+        let columns = (place - REACH).max(0.0) as usize..=((place + REACH) as usize).min(751);
+        let (sum, moment) = columns.fold((0.0, 0.0), |(sum, moment), column| {
+            let light = light(row, column).max(0.0);
+            (sum + light, moment + light * column as f64)
+        });
+        moment / sum
+    };
+    let variance = |place: f64| {
+        let columns: Vec<f64> = rows().map(|row| middle_of_line(row, place)).collect();
+        let mean = columns.iter().sum::<f64>() / columns.len() as f64;
+        columns.iter().map(|column| (column - mean).powi(2)).sum::<f64>() / columns.len() as f64
+    };
+    let places = VERTICALS.iter().flat_map(|(_, r)| [364.43 - r, 364.43 + r]);
+    (places.map(variance).sum::<f64>() / (2 * VERTICALS.len()) as f64).sqrt()
+}
+
+/// From the positions of the lines in NumPy and the factors of `linprog`: 3.447 px with Eq. 9 and 2.070 px with fitted rows.
+#[test]
+fn verticals_photographed_by_the_lens_come_out_straighter_with_fitted_rows() {
+    let folder = folder();
+    folder.write("lines.pgm", photograph());
+    let corrected = |rows: &str| {
+        let name = format!("{rows}.pgm");
+        let call = ["correct", "lines.pgm", "--model", "--lens", "dsl215.txt", "--rows", rows, "-o", &name];
+        let ended = folder.halfrow(call);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        bend(&folder.read(&name))
+    };
+    let (fitted, equation_9) = (corrected("fitted"), corrected("equation-9"));
+    assert!((equation_9 - 3.447).abs() < 0.05, "{equation_9} px by Eq. 9");
+    assert!((fitted - 2.070).abs() < 0.05, "{fitted} px by fitted rows");
+}
