@@ -20,10 +20,12 @@ fn interrupted(folder: &Folder, signal: &str, arguments: &[&str]) -> Ended {
     let mut command = folder
         .command(["verify", "-vv", "--json", "--board", SLOW].into_iter().chain(arguments.iter().copied()));
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    // What it logs first it logs when it talks to the board, and then it already listens for signals.
+    // When it has got its session it already listens for signals.
     let mut log = BufReader::new(child.stderr.take().unwrap());
     let mut stderr = String::new();
-    log.read_line(&mut stderr).unwrap();
+    while !stderr.contains("session ") {
+        assert!(log.read_line(&mut stderr).unwrap() > 0, "it ended by itself: {stderr}");
+    }
     let sent = Instant::now();
     let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
     assert!(kill.unwrap().success());
