@@ -52,11 +52,11 @@ pub fn write(path: &Path, frame: &Frame, overwrite: bool) -> Result<(), WriteErr
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
 }
 
-/// Writes a frame of `shape` to the file `path`, as [`write`] does, with what `next_row` makes of each row. Only a row is held
+/// Writes a frame of `shape` to the file `path`, as [`write()`] does, with what `next_row` makes of each row. Only a row is held
 /// where the format has its rows one after the other.
 ///
 /// # Errors
-/// [`WriteError`], as `E`, where [`write`] has it; and whatever `next_row` answers, with nothing written then.
+/// [`WriteError`], as `E`, where [`write()`] has it; and whatever `next_row` answers, with nothing written then.
 pub fn write_rows<E: From<WriteError>>(
     path: &Path,
     shape: &FrameShape,
