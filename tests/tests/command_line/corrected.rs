@@ -1,5 +1,6 @@
 //! `correct`: by the reference model and by a board.
 
+use halfrow_model::ModelPath;
 use halfrow_tests::program::Folder;
 
 use crate::{refused, small};
@@ -21,6 +22,9 @@ fn pgm(samples: &[u16]) -> Vec<u8> {
 
 #[test]
 fn both_model_and_mock_give_the_golden_row() {
+    let paths: Vec<_> = ModelPath::available().map(|path| format!("--model-path={path}")).collect();
+    let mut ways = vec![["--model", "--quiet"], ["--board", "mock"]];
+    ways.extend(paths.iter().map(|path| ["--model", path]));
     let folder = Folder::new();
     let samples: Vec<_> =
         (0..64_u32).map(|column| (column.wrapping_mul(2_654_435_761) >> 20) as u16).collect();
@@ -30,7 +34,7 @@ fn both_model_and_mock_give_the_golden_row() {
     assert_eq!(made.code, Some(0), "{}", made.stderr);
     // In the middle row nothing is stretched.
     folder.write("tables.json", folder.text("made.json").replace("16777216", "14648488"));
-    for how in [["--model", "--quiet"], ["--board", "mock"]] {
+    for how in ways {
         let call = ["correct", "in.pgm", "--tables", "tables.json", "-o", "out.pgm", "--overwrite"];
         let ended = folder.halfrow(call.into_iter().chain(how));
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
