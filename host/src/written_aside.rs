@@ -91,6 +91,18 @@ pub fn write_aside(
     Aside::written(path, overwrite, write)?.put_in_place()
 }
 
+/// Whether the file `path` could be written, as far as can be told beforehand.
+///
+/// # Errors
+/// As those of [`write_aside`].
+pub(crate) fn check(path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
+    let path = destination(path, overwrite)?;
+    match fs::metadata(folder(&path)) {
+        Ok(_) => Ok(()),
+        Err(source) => Err(WriteAsideError::Io { path, source }),
+    }
+}
+
 /// A temporary file in `folder` with what `write` puts into it.
 fn filled(folder: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();

@@ -49,6 +49,30 @@ fn a_folder_without_photographs_is_refused() {
     assert!(ended.stderr.contains("no .png file"), "{}", ended.stderr);
 }
 
+#[test]
+fn a_photograph_that_is_too_small_is_refused_by_its_name() {
+    let folder = Folder::new();
+    for (name, (width, height), remedy) in
+        [("narrow", (40, 30), "scale it to 64"), ("low", (96, 1), "give one of more rows")]
+    {
+        std::fs::create_dir(folder.path().join(name)).unwrap();
+        let image = RgbImage { width, height, data: vec![90; 3 * width * height] };
+        write_rgb(&folder.path().join(name).join("tiny.png"), &image, false).unwrap();
+        let ended = folder.halfrow(["kernel", "measure", "--json", "--kernel", "sharp5", "--images", name]);
+        assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
+        let said = ended.json()["error"].as_str().unwrap_or_default().to_owned();
+        assert!(said.contains("tiny.png cannot be used") && said.contains(remedy), "{said}");
+    }
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_refused_before_the_training() {
+    let folder = folder_of_pictures();
+    let refused = train(&folder, &["-o", "none/mine.json"]);
+    assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
+    assert!(refused.stderr.contains("check that its folder exists"), "{}", refused.stderr);
+}
+
 /// Two pictures with detail of every size in the folder `photos`, and a file that is none.
 fn folder_of_pictures() -> Folder {
     let folder = Folder::new();

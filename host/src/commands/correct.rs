@@ -105,7 +105,7 @@ struct Job<'a> {
 impl Job<'_> {
     /// Whether all files are there and of the right size, before anything is written.
     fn check(&self) -> anyhow::Result<()> {
-        let mut files = self.inputs.iter().filter(|input| matches!(input, FrameName::File(_)));
+        let mut files = self.inputs.iter().filter(|input| input.can_be_read_twice());
         files.try_for_each(|input| input.rows(&self.how, &self.scene).map(drop))
     }
 

@@ -60,6 +60,14 @@ impl FrameName {
         }
     }
 
+    /// Whether it is a file, there or not, that can be read twice, as a pipe cannot.
+    pub(super) fn can_be_read_twice(&self) -> bool {
+        match self {
+            Self::Builtin(_) => false,
+            Self::File(path) => fs::metadata(path).map_or(true, |about| about.is_file()),
+        }
+    }
+
     /// The rows of the frame: of a file that is read as `how` says, or rendered for `scene`, whose size both must have.
     pub(super) fn rows(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<RowReader> {
         match self {

@@ -2,19 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context as _;
 use clap::{Args, Subcommand, ValueEnum};
 use halfrow_model::{Kernel, Taps};
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use super::inputs::file_hash;
 use super::{Context, Failure, lens, print};
 use crate::frames::preview::RgbImage;
 use crate::paper::lying;
-use crate::report::sha256;
 use crate::tables::KernelFile;
 use crate::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
 use crate::verdict::Exit;
-use crate::written_aside::WriteAsideError;
-use crate::{frames, progress};
+use crate::{frames, progress, training, written_aside};
 
 /// Fit a kernel to photographs, or measure one on them
 #[derive(Debug, Args)]
@@ -73,6 +74,13 @@ enum TapCount {
     Seven,
 }
 
+impl Arguments {
+    /// Whether the result is wanted as JSON.
+    pub(super) fn wants_json(&self) -> bool {
+        matches!(&self.command, Command::Measure(Measure { json: true, .. }))
+    }
+}
+
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     match &arguments.command {
         Command::Train(train) => fit(train, context),
@@ -80,14 +88,15 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
 }
 
-/// A photograph and the file it came from.
-struct Photograph {
-    path: PathBuf,
-    image: RgbImage,
+/// Where a photograph comes from, as a kernel's file tells.
+#[derive(Serialize)]
+struct Origin {
+    name: Option<String>,
+    sha256: String,
 }
 
 /// The PNG files of the folders in the order of their names. Photographs that stand are turned to lie.
-fn photographs(folders: &[PathBuf]) -> anyhow::Result<Vec<Photograph>> {
+fn photographs(folders: &[PathBuf]) -> anyhow::Result<(Vec<Origin>, Vec<RgbImage>)> {
     let mut paths = Vec::new();
     for folder in folders {
         paths.extend(pictures(folder).map_err(|error| {
@@ -95,8 +104,15 @@ fn photographs(folders: &[PathBuf]) -> anyhow::Result<Vec<Photograph>> {
         })?);
     }
     anyhow::ensure!(!paths.is_empty(), "there is no .png file in the folders of --images");
-    let read = |path: PathBuf| Ok(Photograph { image: lying(frames::read_rgb(&path)?), path });
-    paths.into_iter().map(read).collect()
+    let photographs: anyhow::Result<Vec<_>> = paths.iter().map(|path| photograph(path)).collect();
+    Ok(photographs?.into_iter().unzip())
+}
+
+fn photograph(path: &Path) -> anyhow::Result<(Origin, RgbImage)> {
+    let image = lying(frames::read_rgb(path)?);
+    training::check(&image).with_context(|| format!("{} cannot be used", path.display()))?;
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    Ok((Origin { name, sha256: file_hash(path)?.sha256 }, image))
 }
 
 fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
@@ -110,21 +126,18 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     // Training takes minutes, after which a refusal comes too late.
-    if arguments.output.exists() && !arguments.overwrite {
-        return Err(WriteAsideError::Exists { path: arguments.output.clone() }.into());
-    }
-    let photographs = photographs(&arguments.images)?;
+    written_aside::check(&arguments.output, arguments.overwrite)?;
+    let (origins, images) = photographs(&arguments.images)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,
         TapCount::Seven => Taps::Seven,
     };
-    let images: Vec<_> = photographs.iter().map(|photograph| photograph.image.clone()).collect();
     let watched = progress::for_stderr(context.quiet);
     watched.rows_expected(rows(&images));
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
     let trained = trained?;
-    let file = KernelFile { about: Some(about(&photographs, &trained)?), kernel: trained.kernel.clone() };
+    let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
     print(&format!(
@@ -142,17 +155,11 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
 }
 
 /// Where a kernel comes from, as its file tells.
-fn about(photographs: &[Photograph], trained: &Trained) -> anyhow::Result<Map<String, Value>> {
-    let image = |photograph: &Photograph| -> anyhow::Result<Value> {
-        let name = photograph.path.file_name().map(|name| name.to_string_lossy().into_owned());
-        let bytes = std::fs::read(&photograph.path)?;
-        Ok(json!({"name": name, "sha256": sha256([bytes])}))
-    };
-    let images: anyhow::Result<Vec<_>> = photographs.iter().map(image).collect();
+fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Value>> {
     let model = |model: Model| json!({"warp": model.warp.name(), "radius_by_half_height": model.radius});
     let mut about = Map::new();
     about.insert("made_by".to_owned(), format!("halfrow {} kernel train", super::version()).into());
-    about.insert("images".to_owned(), images?.into());
+    about.insert("images".to_owned(), serde_json::to_value(origins)?);
     about.insert("models".to_owned(), Model::ALL.map(model).to_vec().into());
     about.insert("ridge".to_owned(), RIDGE.into());
     about.insert(
@@ -180,8 +187,7 @@ fn rows(images: &[RgbImage]) -> u64 {
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let kernel = lens::kernel(&arguments.kernel)?;
-    let images: Vec<_> =
-        photographs(&arguments.images)?.into_iter().map(|photograph| photograph.image).collect();
+    let (_, images) = photographs(&arguments.images)?;
     let watched = progress::for_stderr(context.quiet);
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());

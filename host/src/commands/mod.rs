@@ -115,6 +115,7 @@ impl Cli {
             Command::Verify(arguments) => arguments.json,
             Command::Correct(arguments) => arguments.json,
             Command::Paper(arguments) => arguments.json,
+            Command::Kernel(arguments) => arguments.wants_json(),
             Command::Lens(arguments) => arguments.json,
             Command::Boards(arguments) => arguments.json,
             Command::Info(arguments) => arguments.json,

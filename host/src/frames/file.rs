@@ -17,7 +17,19 @@ use crate::written_aside::write_aside;
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no frame as `how` describes it.
 pub fn read(path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
-    super::decode(&bytes(path)?, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+    decode(&bytes(path)?, path, how)
+}
+
+/// The frame in `input`, which is the file `path` from its beginning.
+///
+/// # Errors
+/// As those of [`read`].
+pub(super) fn read_open(input: File, path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
+    decode(&all_of(input, path)?, path, how)
+}
+
+fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
+    super::decode(bytes, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
 }
 
 /// The picture in the PNG file `path`, in red, green and blue of 8 bits.
@@ -30,10 +42,14 @@ pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
 
 /// All bytes of a file that is no longer than any frame.
 fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let failed = |source| ReadError::Io { path: path.to_owned(), source };
+    let opened = File::open(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+    all_of(opened, path)
+}
+
+fn all_of(input: File, path: &Path) -> Result<Vec<u8>, ReadError> {
     let mut bytes = Vec::new();
-    let most = MAX_FILE_BYTES as u64 + 1;
-    File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes)).map_err(failed)?;
+    let read = input.take(MAX_FILE_BYTES as u64 + 1).read_to_end(&mut bytes);
+    read.map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
     if bytes.len() > MAX_FILE_BYTES {
         return Err(ReadError::TooLong { path: path.to_owned() });
     }

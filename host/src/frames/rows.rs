@@ -53,8 +53,9 @@ impl RowReader {
         let failed = |source| ReadError::Io { path: path.to_owned(), source };
         let mut input = File::open(path).map_err(failed)?;
         let about = input.metadata().map_err(failed)?;
+        // A pipe cannot be read twice, so it is not looked into.
         let raster = if about.is_file() { raster(&mut input, how).map_err(failed)? } else { None };
-        let Some(raster) = raster else { return file::read(path, how).map(Self::from) };
+        let Some(raster) = raster else { return file::read_open(input, path, how).map(Self::from) };
         let length = usize::try_from(about.len()).unwrap_or(usize::MAX);
         let checked = raster.check_length(length);
         checked.map_err(|source| ReadError::Decode { path: path.to_owned(), source })?;
@@ -124,5 +125,6 @@ fn raster(input: &mut File, how: &ReadOptions) -> std::io::Result<Option<Raster>
             pgm::raster(&head)
         }
     };
+    input.rewind()?;
     Ok(found.ok().filter(|raster| raster.height > 0 && raster.width > 0 && raster.width.is_multiple_of(2)))
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use halfrow_model::{
-    BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet, correct, correct_real,
+    BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet, correct_real,
     round_to_frame,
 };
 
@@ -12,6 +12,7 @@ use super::photographs::{HEIGHT, WIDTH};
 use super::{PaperError, psnr};
 use crate::frames::mosaic;
 use crate::frames::preview::RgbImage;
+use crate::reference;
 
 /// What all photographs share: the lens whose image circle is as wide as the picture, R = W/2 = 384, its axis in the middle.
 #[derive(Clone, Debug)]
@@ -72,7 +73,7 @@ impl Experiment {
     /// # Errors
     /// [`PaperError::Correct`] when the trial has another size.
     pub fn by_integers(&self, interpolant: Interpolant, trial: &Trial) -> Result<Frame, PaperError> {
-        Ok(correct(&self.tables, &Kernel::from(interpolant), &trial.distorted)?)
+        Ok(reference::correct(&self.tables, &Kernel::from(interpolant), &trial.distorted)?)
     }
 }
 

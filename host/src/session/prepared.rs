@@ -42,7 +42,12 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
     let (sender, receiver) = sync_channel(1);
     scope.spawn(move || {
         let mut frames = schedule.iter().flat_map(|segment| &segment.frames);
-        let _ = frames.try_for_each(|frame| sender.send(Prepared::new(plan, frame, &generations)));
+        // Behind a frame that cannot be made no other is sent.
+        let _ = frames.try_for_each(|frame| {
+            let prepared = Prepared::new(plan, frame, &generations);
+            let is_last = prepared.is_err();
+            sender.send(prepared).ok().filter(|()| !is_last)
+        });
     });
     receiver
 }

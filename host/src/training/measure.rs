@@ -1,6 +1,6 @@
 //! How much nearer to the truth a kernel comes than Hermite.
 
-use halfrow_model::{Frame, Interpolant, Kernel, TableSet, correct};
+use halfrow_model::{Frame, Interpolant, Kernel, TableSet};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
 
@@ -8,6 +8,7 @@ use super::{Model, TrainingError, Warp};
 use crate::frames::preview::{RgbImage, demosaic_coded};
 use crate::paper::psnr;
 use crate::progress::Progress;
+use crate::reference;
 
 /// R as a multiple of half the picture's height: that of Table 1.
 const RADIUS: f64 = 1.5;
@@ -133,9 +134,9 @@ fn score(
     let warped = if matches!(condition, Condition::Warped(Warp::Linear)) { linear } else { band_limited };
     let corrected = match condition {
         Condition::Noisy(deviation) => {
-            correct(&warped.tables, kernel, &noisy(&warped.distorted, deviation)?)?
+            reference::correct(&warped.tables, kernel, &noisy(&warped.distorted, deviation)?)?
         }
-        _ => correct(&warped.tables, kernel, &warped.distorted)?,
+        _ => reference::correct(&warped.tables, kernel, &warped.distorted)?,
     };
     if !matches!(condition, Condition::Demosaicked) {
         return Ok(psnr(warped.reference.samples(), corrected.samples()));

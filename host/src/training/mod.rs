@@ -46,8 +46,8 @@ pub enum TrainingError {
     /// A weight is larger than 16 bits hold.
     #[error("the fitted kernel cannot be stored; give more photographs")]
     Kernel(#[from] KernelError),
-    /// A lens could not be made.
-    #[error("a lens of the experiment cannot be made; this is a fault of halfrow, so report it")]
+    /// A photograph of so few rows that the experiment has no lens for it.
+    #[error("the photograph is too low for a lens; give one of more rows")]
     Lens(#[from] LensError),
     /// Row factors could not be made.
     #[error("the tables of the experiment cannot be made; this is a fault of halfrow, so report it")]
@@ -89,6 +89,14 @@ pub fn train(
     Ok(Trained { gain: gain(&all, &kernel), kernel, held_out })
 }
 
+/// Whether `photograph` has a size that the experiments can use.
+///
+/// # Errors
+/// [`TrainingError`] when it has not.
+pub fn check(photograph: &RgbImage) -> Result<(), TrainingError> {
+    Model::ALL.iter().try_for_each(|model| model.tables(photograph.width & !1, photograph.height).map(drop))
+}
+
 /// The equations of a photograph under every model, per sample.
 fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
     let mut equations = Equations::new();
@@ -101,5 +109,6 @@ fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
 /// How much nearer to the photographs than Hermite, in dB.
 fn gain(equations: &Equations, kernel: &Kernel) -> f64 {
     let hermite = Kernel::from(Interpolant::Hermite);
-    10.0 * (equations.error(&hermite) / equations.error(kernel)).log10()
+    let [hermite, own] = [&hermite, kernel].map(|kernel| equations.error(kernel).max(f64::MIN_POSITIVE));
+    10.0 * (hermite / own).log10()
 }

@@ -59,16 +59,28 @@ impl Model {
         Self { radius: 2.0, warp: Warp::BandLimited },
     ];
 
+    fn lens(self, height: usize) -> Result<Equidistant, TrainingError> {
+        Ok(Equidistant::from_radius(self.radius * height as f64 / 2.0)?)
+    }
+
+    /// The row factors for photographs of this size.
+    ///
+    /// # Errors
+    /// [`TrainingError`] when it is the size of no frame.
+    pub fn tables(self, width: usize, height: usize) -> Result<TableSet, TrainingError> {
+        let geometry = Geometry::centred(width, height, BitDepth::Eight)?;
+        Ok(TableSet::from_lens(geometry, &self.lens(height)?, None)?)
+    }
+
     /// `image` under this model; an odd last column is left out.
     ///
     /// # Errors
     /// [`TrainingError`] when it has a size that no frame has.
     pub fn warped(self, image: &RgbImage) -> Result<Warped, TrainingError> {
         let image = &even(image);
-        let geometry = Geometry::centred(image.width, image.height, BitDepth::Eight)?;
-        let lens = Equidistant::from_radius(self.radius * image.height as f64 / 2.0)?;
+        let lens = self.lens(image.height)?;
         Ok(Warped {
-            tables: TableSet::from_lens(geometry, &lens, None)?,
+            tables: self.tables(image.width, image.height)?,
             reference: mosaic(image, Phase::Grbg)?,
             distorted: mosaic(&self.warp.distorted(image, &lens), Phase::Grbg)?,
         })

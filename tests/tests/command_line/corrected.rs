@@ -1,7 +1,9 @@
 //! `correct`: by the reference model and by a board.
 
+use std::process::{Command, Stdio};
+
 use halfrow_model::ModelPath;
-use halfrow_tests::program::Folder;
+use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
 
@@ -69,6 +71,24 @@ fn the_model_gives_what_the_mock_gives_byte_for_byte() {
             assert!(folder.read(&model) == folder.read(&mock), "{name} with {kind:?}");
         }
     }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_frame_may_come_through_a_pipe() {
+    let folder = Folder::new();
+    let frames = ["--only", "noise", "-o", "in", "--width", "128", "--height", "72"];
+    assert_eq!(folder.halfrow(["frames"].into_iter().chain(frames)).code, Some(0));
+    let size = ["--width", "128", "--height", "72", "--radius", "73.78", "--model"];
+    for (input, output) in [("in/noise.pgm", "file.pgm"), ("/dev/stdin", "pipe.pgm")] {
+        let call = ["correct", input, "-o", output].into_iter().chain(size);
+        let mut cat = Command::new("cat");
+        let mut cat = cat.arg(folder.path().join("in/noise.pgm")).stdout(Stdio::piped()).spawn().unwrap();
+        let ended = finish(folder.command(call).stdin(cat.stdout.take().unwrap()));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        cat.wait().unwrap();
+    }
+    assert!(folder.read("pipe.pgm") == folder.read("file.pgm"));
 }
 
 #[test]

@@ -97,6 +97,8 @@ fn previews_that_have_no_place_are_refused() {
     assert_eq!(folder.text("look.png"), "precious");
     let both = ["builtin:black", "--model", "-o", "new.png", "--preview", "new.png"];
     refused(&folder, &small("correct", &both), "or a frame and its preview");
+    let other_names = ["builtin:black", "--model", "-o", "new.png", "--preview", "./new.png"];
+    refused(&folder, &small("correct", &other_names), "or a frame and its preview");
     let one_for_two = ["builtin:black", "builtin:white", "--model", "-o", "out", "--preview", "new.png"];
     refused(&folder, &small("correct", &one_for_two), "name a folder with --preview");
     let nowhere = ["builtin:black", "--model", "-o", "none/out.dng"];

@@ -17,7 +17,7 @@ pub(super) struct Arrivals<'a> {
     pub(super) missing: u32,
     /// Rows that came back although an earlier one has not.
     ahead: BTreeSet<u32>,
-    /// A row came behind the missing one.
+    /// A row came, and the oldest that is missing is before one that is there.
     pub(super) gap: bool,
     unpacked: Vec<u16>,
     pub(super) flow: ControlFlow<()>,
@@ -71,10 +71,10 @@ impl<'a> Arrivals<'a> {
             last_latency: found.last_latency,
             samples: &self.unpacked,
         });
-        self.gap = row_sequence > self.missing;
         while self.ahead.remove(&self.missing) {
             self.missing += 1;
         }
+        self.gap = !self.ahead.is_empty();
         self.in_flight.forget_before(self.missing);
         Ok(())
     }

@@ -90,6 +90,8 @@ impl Stream<'_> {
             if self.sent == self.arrivals.in_flight.end() {
                 if !self.exhausted {
                     self.fetch();
+                    // What the host takes to make a frame is not the board's.
+                    self.progress_at = self.conversation.now();
                 }
                 if self.exhausted {
                     break;

@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use anyhow::Context as _;
 use halfrow_model::Frame;
 
 use super::places::Places;
@@ -76,7 +77,9 @@ impl Job<'_> {
 
     fn write(&self, places: &Places, index: usize, samples: Vec<u16>) -> Result<(), Failure> {
         let width = self.scene.geometry.width();
-        let frame = Frame::new(width, self.how.depth, self.how.phase, samples).map_err(Failure::error)?;
+        let frame = Frame::new(width, self.how.depth, self.how.phase, samples)
+            .context("the board's samples are no frame; judge it with `halfrow verify`")
+            .map_err(Failure::error)?;
         frames::write(&places.frames[index], &frame, self.arguments.overwrite).map_err(Failure::error)?;
         self.write_preview(places, index, &frame).map_err(Failure::error)
     }

@@ -1,5 +1,6 @@
 //! Where corrected frames and their previews are written to.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
@@ -73,14 +74,14 @@ impl Places {
 
     /// No file twice, and none that is there unless it may be replaced.
     fn check(&self, overwrite: bool) -> anyhow::Result<()> {
-        let all: Vec<_> = self.frames.iter().chain(&self.previews).collect();
-        for (place, path) in all.iter().enumerate() {
-            if all[..place].contains(path) {
+        let mut seen = HashSet::new();
+        for path in self.frames.iter().chain(&self.previews) {
+            if !seen.insert(resolved(path)) {
                 let shared = path.display();
                 bail!("two inputs would both be written to {shared}, or a frame and its preview; part them");
             }
         }
-        match all.into_iter().find(|path| path.exists() && !overwrite) {
+        match self.frames.iter().chain(&self.previews).find(|path| path.exists() && !overwrite) {
             Some(taken) => bail!("{} is there already; give --overwrite to replace it", taken.display()),
             None => Ok(()),
         }
@@ -94,4 +95,13 @@ impl Places {
         }
         Ok(())
     }
+}
+
+/// The path by which a file of many names is known again, if it or its folder is there.
+fn resolved(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    path.canonicalize().unwrap_or_else(|_| {
+        let name = path.file_name().unwrap_or_default();
+        folder.canonicalize().map_or_else(|_| path.to_owned(), |folder| folder.join(name))
+    })
 }
