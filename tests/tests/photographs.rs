@@ -11,7 +11,6 @@ use halfrow_tests::photographs::{self, filled};
 fn on_photographs_the_integers_are_within_one_of_double_precision() {
     let paths = photographs::paths();
     if paths.is_empty() {
-        println!("no photographs: set HALFROW_IMAGES to a folder with PNG files to measure on them");
         return;
     }
     let (geometry, lens) = (Geometry::default(), Equidistant::default());

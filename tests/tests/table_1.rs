@@ -8,10 +8,7 @@ use serde_json::Value;
 
 /// The claims of `halfrow paper table1` with these arguments, which must end with `code`; none without photographs.
 fn table_1(code: i32, arguments: &[&str]) -> Option<Vec<Value>> {
-    let Some(first) = photographs::paths().into_iter().next() else {
-        println!("no photographs: set HALFROW_IMAGES to the folder of kodim01.png to kodim24.png");
-        return None;
-    };
+    let first = photographs::paths().into_iter().next()?;
     let images = first.parent().and_then(|folder| folder.to_str()).map(str::to_owned)?;
     let folder = Folder::new();
     let call = ["paper", "table1", "--quiet", "-o", "out", "--images", &images];
