@@ -10,7 +10,7 @@ use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
 use super::{FrameShape, ReadError, ReadOptions, WriteError, png};
-use crate::written_aside::write_aside;
+use crate::written_aside::{BUFFER, write_aside};
 
 /// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
 ///
@@ -101,17 +101,19 @@ fn write_plain_rows<E: From<WriteError>>(
     let mut refused = None;
     let written = write_aside(path, overwrite, |out| {
         format.write_header(shape, out)?;
-        let (mut row, mut line) = (vec![0; shape.width], Vec::new());
+        let (mut row, mut lines) = (vec![0; shape.width], Vec::new());
         for _ in 0..shape.height {
             if let Err(error) = next_row(&mut row) {
                 refused = Some(error);
                 return Err(io::ErrorKind::Other.into());
             }
-            line.clear();
-            format.pack(&row, shape.depth, &mut line);
-            out.write_all(&line)?;
+            format.pack(&row, shape.depth, &mut lines);
+            if lines.len() > BUFFER {
+                out.write_all(&lines)?;
+                lines.clear();
+            }
         }
-        Ok(())
+        out.write_all(&lines)
     });
     match refused {
         Some(error) => Err(error),

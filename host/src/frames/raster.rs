@@ -53,20 +53,24 @@ impl Raster {
         depth: BitDepth,
         samples: &mut [u16],
     ) -> Result<(), DecodeError> {
-        let max = depth.max();
-        match self.lines {
+        let (row, max) = (index, depth.max());
+        let maxval = match self.lines {
             Lines::Pgm { maxval } => {
                 unpack_pgm(line, samples);
-                if let Some((column, value)) = above(samples, maxval) {
-                    return Err(DecodeError::AboveMaxval { row: index, column, value, maxval });
-                }
+                maxval
             }
-            Lines::Raw(layout) => layout.unpack(line, samples),
-        }
-        match above(samples, max) {
+            Lines::Raw(layout) => {
+                layout.unpack(line, samples);
+                u16::MAX
+            }
+        };
+        match above(samples, max.min(maxval)) {
             None => Ok(()),
+            Some((column, value)) if value > maxval => {
+                Err(DecodeError::AboveMaxval { row, column, value, maxval })
+            }
             Some((column, value)) => {
-                Err(FrameError::TooBright { row: index, column, value, max, bits: depth.bits() }.into())
+                Err(FrameError::TooBright { row, column, value, max, bits: depth.bits() }.into())
             }
         }
     }
@@ -100,8 +104,8 @@ fn unpack_pgm(line: &[u8], row: &mut [u16]) {
 
 /// The first sample above `max`, if one is, and its column.
 fn above(row: &[u16], max: u16) -> Option<(usize, u16)> {
-    // Without a look at the places this takes a tenth of the time, and almost always nothing is found.
-    if row.iter().fold(0, |most, &sample| most.max(sample)) <= max {
+    // No sample is above its bits joined, which are quickly found and almost always enough.
+    if row.iter().fold(0, |bits, &sample| bits | sample) <= max {
         return None;
     }
     row.iter().copied().enumerate().find(|&(_, sample)| sample > max)

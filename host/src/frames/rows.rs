@@ -1,7 +1,7 @@
 //! Frames row by row, so that a frame of any height takes the memory of a row wherever its format allows it.
 
 use std::fs::File;
-use std::io::{BufReader, Read as _, Seek as _, SeekFrom};
+use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -39,8 +39,21 @@ pub struct RowReader {
 
 #[derive(Debug)]
 enum Source {
-    File { path: PathBuf, input: BufReader<File>, raster: Raster, depth: BitDepth, line: Vec<u8> },
+    File(Lines),
     Frame(Arc<Frame>),
+}
+
+/// The rows of a file, some read ahead.
+#[derive(Debug)]
+struct Lines {
+    path: PathBuf,
+    input: File,
+    raster: Raster,
+    depth: BitDepth,
+    /// Whole rows.
+    bytes: Vec<u8>,
+    /// How many of these bytes have been unpacked.
+    taken: usize,
 }
 
 impl RowReader {
@@ -60,8 +73,9 @@ impl RowReader {
         let checked = raster.check_length(length);
         checked.map_err(|source| ReadError::Decode { path: path.to_owned(), source })?;
         input.seek(SeekFrom::Start(raster.start as u64)).map_err(failed)?;
-        let (input, line) = (BufReader::with_capacity(BUFFER, input), vec![0; raster.line_bytes()]);
-        let source = Source::File { path: path.to_owned(), input, raster, depth: how.depth, line };
+        let lines =
+            Lines { path: path.to_owned(), input, raster, depth: how.depth, bytes: Vec::new(), taken: 0 };
+        let source = Source::File(lines);
         Ok(Self { width: raster.width, height: raster.height, next: 0, source })
     }
 
@@ -92,13 +106,27 @@ impl RowReader {
         self.next += 1;
         match &mut self.source {
             Source::Frame(frame) => samples.copy_from_slice(frame.row(index)),
-            Source::File { path, input, raster, depth, line } => {
-                input.read_exact(line).map_err(|source| ReadError::Io { path: path.clone(), source })?;
-                let unpacked = raster.unpack(index, line, *depth, samples);
-                unpacked.map_err(|source| ReadError::Decode { path: path.clone(), source })?;
-            }
+            Source::File(lines) => lines.unpack(index, samples)?,
         }
         Ok(true)
+    }
+}
+
+impl Lines {
+    /// Unpacks row `index`, the next one.
+    fn unpack(&mut self, index: usize, samples: &mut [u16]) -> Result<(), ReadError> {
+        let length = self.raster.line_bytes();
+        if self.taken == self.bytes.len() {
+            let rows = (BUFFER / length).clamp(1, self.raster.height - index);
+            self.bytes.resize(rows * length, 0);
+            let read = self.input.read_exact(&mut self.bytes);
+            read.map_err(|source| ReadError::Io { path: self.path.clone(), source })?;
+            self.taken = 0;
+        }
+        let line = &self.bytes[self.taken..][..length];
+        self.taken += length;
+        let unpacked = self.raster.unpack(index, line, self.depth, samples);
+        unpacked.map_err(|source| ReadError::Decode { path: self.path.clone(), source })
     }
 }
 

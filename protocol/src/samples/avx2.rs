@@ -9,6 +9,9 @@ const GROUP: usize = 16;
 /// Their bytes on the wire.
 const PACKED: usize = packed_length(GROUP);
 
+/// Bytes between what is packed and what is fetched from memory meanwhile, about a row.
+const AHEAD: usize = 4096;
+
 /// Packs the first samples, and returns how many.
 pub(super) fn pack(samples: &[u16], packed: &mut [u8]) -> usize {
     if !std::is_x86_feature_detected!("avx2") {
@@ -40,6 +43,8 @@ fn pack_groups(groups: &[[u16; GROUP]], places: &mut [[u8; PACKED]]) {
         _mm256_broadcastsi128_si256(_mm_setr_epi8(0, 1, 2, 4, 5, 6, 8, 9, 10, 12, 13, 14, -1, -1, -1, -1));
     let close_up = _mm256_setr_epi32(0, 1, 2, 4, 5, 6, 3, 7);
     for (group, place) in groups.iter().zip(places) {
+        // The next row: frames come from memory, and a processor does not look ahead beyond a page.
+        _mm_prefetch::<_MM_HINT_T0>(group.as_ptr().cast::<i8>().wrapping_add(AHEAD));
         // SAFETY: the group is as long as the vector.
         let samples = unsafe { _mm256_loadu_si256(group.as_ptr().cast()) };
         let pairs = _mm256_madd_epi16(_mm256_and_si256(samples, twelve_bits), shift_second);
