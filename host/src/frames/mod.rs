@@ -20,6 +20,7 @@ mod scene;
 mod size;
 pub mod street;
 pub mod tiff;
+mod tiff_bytes;
 mod tiff_directory;
 
 use halfrow_model::{BitDepth, Frame, Phase};
