@@ -12,7 +12,7 @@ use serde_json::json;
 
 use super::board::BoardArguments;
 use super::inputs::{FrameName, InputArguments};
-use super::lens::{self, Chosen, LensArguments};
+use super::optics::{self, Chosen, LensArguments};
 use super::{Context, Failure, print, print_json};
 use crate::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
 use crate::progress;
@@ -71,7 +71,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
     let file = arguments.tables.as_deref().or(settings.tables.as_deref());
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
-    let chosen = lens::choose(file, &arguments.lens, kernel)?;
+    let chosen = optics::choose(file, &arguments.lens, kernel)?;
     let geometry = *chosen.tables.geometry();
     let job = Job {
         arguments,

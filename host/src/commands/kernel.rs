@@ -6,9 +6,9 @@ use clap::{Args, Subcommand, ValueEnum};
 use halfrow_model::{Kernel, Taps};
 use serde_json::{Map, Value, json};
 
-use super::{Context, Failure, lens, print};
+use super::{Context, Failure, optics, print};
+use crate::frames::lying;
 use crate::frames::preview::RgbImage;
-use crate::paper::lying;
 use crate::report::sha256;
 use crate::tables::KernelFile;
 use crate::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
@@ -179,7 +179,7 @@ fn rows(images: &[RgbImage]) -> u64 {
 }
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
-    let kernel = lens::kernel(&arguments.kernel)?;
+    let kernel = optics::kernel(&arguments.kernel)?;
     let images: Vec<_> =
         photographs(&arguments.images)?.into_iter().map(|photograph| photograph.image).collect();
     let watched = progress::for_stderr(context.quiet);

@@ -10,7 +10,7 @@ use clap::builder::FalseyValueParser;
 
 use super::board::BoardArguments;
 use super::inputs::{InputArguments, file_hash, frame_sources};
-use super::lens::{self, LensArguments};
+use super::optics::{self, LensArguments};
 use super::{Context, Failure, print};
 use crate::frames::Builtin;
 use crate::link::{Candidate, Recorder, Unfinished};
@@ -156,7 +156,7 @@ impl Arguments {
     fn plan(&self, settings: &Settings) -> Result<Plan, Failure> {
         let file = self.tables.as_deref().or(settings.tables.as_deref());
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref());
-        let chosen = lens::choose(file, &self.lens, kernel)?;
+        let chosen = optics::choose(file, &self.lens, kernel)?;
         let geometry = chosen.tables.geometry();
         chosen.tables.check_ring(geometry.width().next_power_of_two())?;
         let how = self.input.read_options(geometry, self.lens.phase);
