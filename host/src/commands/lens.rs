@@ -8,10 +8,9 @@ use serde_json::{Value, json};
 
 use super::optics::{LensArguments, Optics, Rows};
 use super::{Failure, print, print_json};
-use crate::frames::{HeatMap, preview};
+use crate::frames::{self, HeatMap, WriteError};
 use crate::lenses::{Residuals, Spread};
 use crate::verdict::Exit;
-use crate::written_aside::write_aside;
 
 /// Tell a lens's figures, and the error that row factors leave of it
 ///
@@ -38,7 +37,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let figures = Figures::of(&optics)?;
     let most = match &arguments.map {
         None => None,
-        Some(path) => Some(write_map(path, figures.used(), arguments.overwrite).map_err(Failure::error)?),
+        Some(path) => Some(write_map(path, figures.used(), arguments.overwrite)?),
     };
     if arguments.json {
         let map = most.map(|most| json!({ "file": arguments.map, "brightest_px": most }));
@@ -133,10 +132,10 @@ impl<'a> Figures<'a> {
 }
 
 /// Writes the picture and returns the error that is brightest in it, in pixels.
-fn write_map(path: &Path, residuals: &Residuals, overwrite: bool) -> anyhow::Result<f64> {
+fn write_map(path: &Path, residuals: &Residuals, overwrite: bool) -> Result<f64, Failure> {
     let HeatMap { image, most } = HeatMap::new(&residuals.map);
-    let mut bytes = Vec::new();
-    preview::encode_png_rgb(&image, &mut bytes)?;
-    write_aside(path, overwrite, |out| out.write_all(&bytes))?;
-    Ok(most)
+    match frames::write_rgb(path, &image, overwrite) {
+        Err(error @ WriteError::NotPng { .. }) => Err(error.into()),
+        written => written.map(|()| most).map_err(Failure::error),
+    }
 }

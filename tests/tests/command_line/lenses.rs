@@ -122,6 +122,7 @@ fn refused_map(folder: &Folder) {
     let ended = folder.halfrow(["lens", "--lens", "dsl215.txt", "--map", "left.png"]);
     assert!(ended.code == Some(3) && ended.stderr.contains("--overwrite"), "{}", ended.stderr);
     assert!(folder.read("left.png") == before);
+    refused(folder, &["lens", "--lens", "dsl215.txt", "--map", "left.txt"], "left.txt is to be a PNG");
 }
 
 /// The same lens on the paper's sensor, whose pixels have 2.2 µm, not 6.
