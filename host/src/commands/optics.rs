@@ -259,6 +259,8 @@ pub(super) struct Chosen {
     pub(super) tables: TableSet,
     pub(super) kernel: Kernel,
     pub(super) source: String,
+    /// Rows outside of the lens's image circle; none for a file, which does not say.
+    pub(super) rows_outside_circle: Option<usize>,
 }
 
 /// Takes the table file if there is one, and the lens otherwise; `kernel_name` replaces the file's kernel.
@@ -277,14 +279,22 @@ pub(super) fn choose(
         let (tables, from) = (optics.tables()?, optics.source());
         let name = kernel_name.unwrap_or(Interpolant::Hermite.name());
         let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
-        return Ok(Chosen { optics, tables, kernel, source: format!("{from}, {name} kernel") });
+        let rows_outside_circle = Some(optics.camera.rows_outside_circle());
+        return Ok(Chosen {
+            optics,
+            tables,
+            kernel,
+            source: format!("{from}, {name} kernel"),
+            rows_outside_circle,
+        });
     };
     let read = TableFile::read(path).map_err(table_failure)?;
     let mut source = path.display().to_string();
     if let Some(name) = kernel_name {
         source = format!("{source}, {name} kernel");
     }
-    Ok(Chosen { optics, tables: read.tables, kernel: named.unwrap_or(read.kernel), source })
+    let kernel = named.unwrap_or(read.kernel);
+    Ok(Chosen { optics, tables: read.tables, kernel, source, rows_outside_circle: None })
 }
 
 /// A table file of another datapath is refused like a board of another datapath.

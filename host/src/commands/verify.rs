@@ -173,6 +173,7 @@ impl Arguments {
             tables: chosen.tables,
             kernel: chosen.kernel,
             tables_source: chosen.source,
+            rows_outside_circle: chosen.rows_outside_circle,
             frames,
             repeat: self.repeat,
             fail_fast: self.fail_fast,

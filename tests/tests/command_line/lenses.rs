@@ -172,6 +172,27 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
     refused(&folder, &["verify", "--lens", "dsl215.txt", "--tables", "made.json"], "give one of them");
 }
 
+/// A lens on pixels twice as high as wide: y is 1, 3, … 99 widths of a pixel, and R = 80/π · π/2 = 40, so 30 rows on either side
+/// are outside. By R alone it were 10.
+#[test]
+fn rows_outside_the_image_circle_are_those_of_the_lens_file() {
+    let folder = Folder::new();
+    folder.write(
+        "high.yaml",
+        "cam0:\n  camera_model: pinhole\n  distortion_model: equidistant\n  distortion_coeffs: [0, 0, 0, 0]\n  \
+         intrinsics: [25.464790895, 12.732395447, 31.5, 49.5]\n  resolution: [64, 100]\n",
+    );
+    let made = folder.halfrow(["tables", "--lens", "high.yaml", "-o", "high.json"]);
+    assert!(made.stdout.contains("60 rows lie outside the image circle"), "{}{}", made.stdout, made.stderr);
+    let outside = |more: &[&str]| {
+        let call: Vec<_> = ["verify", "--json"].into_iter().chain(more.iter().copied()).collect();
+        json(&folder, &call)["tables"]["rows_outside_circle"].clone()
+    };
+    assert_eq!(outside(&["--lens", "high.yaml", "--record", "run.rec"]), 60);
+    assert_eq!(outside(&["--board", "replay:run.rec"]), 60);
+    assert_eq!(outside(&["--tables", "high.json"]), Value::Null);
+}
+
 /// The window of taps must be there: the model says which row cannot have it.
 #[test]
 fn a_centre_that_no_board_can_do_is_refused_by_the_tables() {
