@@ -17,6 +17,10 @@ use crate::tables::{KernelFile, TableFile, TableFileError};
 
 /// The paper's frame.
 const DEFAULT_SIZE: (usize, usize) = (1920, 1080);
+/// The pixels of the paper's sensor, in micrometres.
+const DEFAULT_PITCH: f64 = 2.2;
+/// The paper's image circle, in degrees.
+const DEFAULT_FIELD: f64 = 180.0;
 
 /// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
 #[derive(Clone, Debug, Args)]
@@ -50,12 +54,12 @@ pub(super) struct LensArguments {
     /// Focal length of the lens, in millimetres
     #[arg(long, default_value_t = 1.55, value_name = "MM")]
     focal_length: f64,
-    /// Distance between two pixels, in micrometres
-    #[arg(long, default_value_t = 2.2, value_name = "UM")]
-    pixel_pitch: f64,
-    /// Field of view of the whole image circle, in degrees
-    #[arg(long, default_value_t = 180.0, value_name = "DEGREES")]
-    field_of_view: f64,
+    /// Distance between two pixels, in micrometres [default: 2.2]
+    #[arg(long, value_name = "UM")]
+    pixel_pitch: Option<f64>,
+    /// Field of view of the whole image circle, in degrees [default: 180]
+    #[arg(long, value_name = "DEGREES")]
+    field_of_view: Option<f64>,
     /// Column of the optical centre [default: the lens file's, or the middle]
     #[arg(long, value_name = "COLUMN", allow_negative_numbers = true)]
     centre_x: Option<f64>,
@@ -119,13 +123,41 @@ impl LensArguments {
 
     /// The frame and the lens before it.
     pub(super) fn optics(&self) -> anyhow::Result<Optics> {
+        self.check()?;
         match self.file() {
             Some(path) => self.calibrated(path),
-            None if self.lens_pitch.is_some() => {
-                bail!("--lens-pitch goes with a lens file; give its name to --lens")
-            }
             None => self.equidistant(),
         }
+    }
+
+    /// Refuses options that say nothing beside the lens, or something else than it.
+    fn check(&self) -> anyhow::Result<()> {
+        let scales = self.lens_pitch.is_some();
+        match self.lens {
+            Some(LensName::File(_)) if self.pixel_pitch.is_some() && !scales => {
+                bail!(
+                    "--pixel-pitch does nothing with a lens file unless --lens-pitch is given; give both, or none"
+                )
+            }
+            Some(LensName::Equidistant(_)) if scales => {
+                bail!("--lens-pitch goes with a lens file; give its name to --lens")
+            }
+            Some(LensName::Equidistant(_)) if self.pixel_pitch.is_some() || self.field_of_view.is_some() => {
+                bail!(
+                    "--lens equidistant:RADIUS cannot be used with --pixel-pitch or --field-of-view; give the radius alone, or \
+                 these and --focal-length without it"
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn pixel_pitch(&self) -> f64 {
+        self.pixel_pitch.unwrap_or(DEFAULT_PITCH)
+    }
+
+    fn field_of_view(&self) -> f64 {
+        self.field_of_view.unwrap_or(DEFAULT_FIELD)
     }
 
     fn equidistant(&self) -> anyhow::Result<Optics> {
@@ -135,7 +167,9 @@ impl LensArguments {
         };
         let lens = match radius {
             Some(radius) => Equidistant::from_radius(radius)?,
-            None => Equidistant::from_focal_length(self.focal_length, self.pixel_pitch, self.field_of_view)?,
+            None => {
+                Equidistant::from_focal_length(self.focal_length, self.pixel_pitch(), self.field_of_view())?
+            }
         };
         let geometry = self.geometry(DEFAULT_SIZE)?;
         let camera = self.camera(geometry, lens.into(), middle(&geometry))?;
@@ -168,10 +202,10 @@ impl LensArguments {
 
     /// Pixels of the frame for each of a camera with pixels of `pitch`.
     fn scale_from(&self, pitch: f64) -> Result<f64, LensError> {
-        let pitches = [pitch, self.pixel_pitch];
+        let pitches = [pitch, self.pixel_pitch()];
         match pitches.into_iter().find(|pitch| !(pitch.is_finite() && *pitch > 0.0)) {
             Some(wrong) => Err(LensError::PixelPitch(wrong)),
-            None => Ok(pitch / self.pixel_pitch),
+            None => Ok(pitch / self.pixel_pitch()),
         }
     }
 
@@ -187,7 +221,7 @@ impl LensArguments {
         centre: (f64, f64),
     ) -> Result<Camera, CameraError> {
         let centre = (self.centre_x.unwrap_or(centre.0), self.centre_y.unwrap_or(centre.1));
-        Camera::new(geometry, lens, centre, self.field_of_view)
+        Camera::new(geometry, lens, centre, self.field_of_view())
     }
 }
 

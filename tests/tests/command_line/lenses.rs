@@ -169,6 +169,16 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
     tables(&[&lens[..], &["--lens-pitch", "0"]].concat(), "a pixel pitch of 0 um is not above zero");
     tables(&[&lens[..], &["--field-of-view", "0"]].concat(), "field of view");
     tables(&[&lens[..], &["--centre-x", "-1"]].concat(), "optical centre");
+    for more in ["--pixel-pitch", "--field-of-view"] {
+        tables(
+            &["--lens", "equidistant:400", more, "170"],
+            "cannot be used with --pixel-pitch or --field-of-view",
+        );
+    }
+    tables(
+        &[&lens[..], &["--pixel-pitch", "9"]].concat(),
+        "--pixel-pitch does nothing with a lens file unless --lens-pitch",
+    );
     refused(&folder, &["verify", "--lens", "dsl215.txt", "--tables", "made.json"], "give one of them");
 }
 
