@@ -14,6 +14,7 @@ mod link;
 mod optics;
 mod paper;
 mod serve;
+mod table_file;
 mod tables;
 mod verify;
 

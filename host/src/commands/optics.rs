@@ -121,6 +121,11 @@ impl LensArguments {
         }
     }
 
+    /// The option, if one is given, that means nothing but making tables.
+    pub(super) fn making_tables(&self) -> Option<&'static str> {
+        self.lens.as_ref().map(|_| "--lens").or(self.rows.map(|_| "--rows"))
+    }
+
     /// The frame and the lens before it.
     pub(super) fn optics(&self) -> anyhow::Result<Optics> {
         self.check()?;
@@ -304,10 +309,6 @@ pub(super) fn choose(
     kernel_name: Option<&str>,
 ) -> Result<Chosen, super::Failure> {
     let named = kernel_name.map(kernel).transpose()?;
-    if let (Some(path), Some(_)) = (file, &lens.lens) {
-        let both = format!("--lens makes tables, and {} holds some; give one of them", path.display());
-        return Err(anyhow::anyhow!(both).into());
-    }
     let optics = lens.optics()?;
     let Some(path) = file else {
         let (tables, from) = (optics.tables()?, optics.source());

@@ -179,7 +179,15 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
         &[&lens[..], &["--pixel-pitch", "9"]].concat(),
         "--pixel-pitch does nothing with a lens file unless --lens-pitch",
     );
-    refused(&folder, &["verify", "--lens", "dsl215.txt", "--tables", "made.json"], "give one of them");
+    let both = |option: [&str; 2]| {
+        let sentence = format!("{} is for making tables, and --tables made.json holds some", option[0]);
+        for call in [&["verify"][..], &["correct", "builtin:noise", "--model", "-o", "x.pgm"]] {
+            let call: Vec<_> = call.iter().copied().chain(option).chain(["--tables", "made.json"]).collect();
+            refused(&folder, &call, &sentence);
+        }
+    };
+    both(lens);
+    both(["--rows", "fitted"]);
 }
 
 /// A lens on pixels twice as high as wide: y is 1, 3, … 99 widths of a pixel, and R = 80/π · π/2 = 40, so 30 rows on either side
