@@ -24,6 +24,7 @@ const SAMPLES: [u16; 8] = [0, 1, 256, 4095, 4094, 2048, 17, 3];
 
 /// Where entries of 12 bytes begin, the tag being the first two.
 const PHOTOMETRIC: usize = 26 + 4 * 12;
+const REPEAT: usize = 26 + 9 * 12;
 const PATTERN: usize = 26 + 10 * 12;
 const VERSION: usize = 26 + 11 * 12;
 const WHITE: usize = 26 + 12 * 12;
@@ -90,6 +91,53 @@ fn what_is_no_plain_bayer_picture_is_refused_with_a_remedy() {
     for (place, bytes, remedy) in remedies {
         let error = decode(&altered(place, &bytes), &AS_WRITTEN).unwrap_err().to_string();
         assert!(error.contains(remedy), "{bytes:?} at {place}: {error}");
+    }
+}
+
+/// [`LITTLE`] with an ActiveArea (top, left, bottom, right) of 32 bits each behind its end, where its CFARepeatPatternDim was.
+fn with_active_area(area: [u32; 4]) -> Vec<u8> {
+    let end = u32::try_from(hex(LITTLE).len()).unwrap();
+    let entry = [50829 | 4 << 16, 4, end].map(u32::to_le_bytes).concat();
+    [altered(REPEAT, &entry), area.map(u32::to_le_bytes).concat()].concat()
+}
+
+#[test]
+fn an_active_area_that_leaves_samples_out_is_refused() {
+    assert_eq!(decode(&with_active_area([0, 0, 2, 4]), &AS_WRITTEN).unwrap().samples(), SAMPLES);
+    for area in [[0, 1, 2, 4], [1, 0, 2, 4], [0, 0, 1, 4], [0, 0, 2, 3], [0, 0, 4, 2]] {
+        let error = decode(&with_active_area(area), &AS_WRITTEN).unwrap_err().to_string();
+        assert!(error.contains("ActiveArea") && error.contains("crop it to"), "{area:?}: {error}");
+    }
+    let mut broken_off = with_active_area([0, 0, 2, 4]);
+    broken_off.pop();
+    assert!(matches!(decode(&broken_off, &AS_WRITTEN), Err(DecodeError::TiffDirectory { .. })));
+}
+
+/// BlackLevel where WhiteLevel was: a short, two of them, a long, and a fraction behind the end of the file.
+#[test]
+fn black_that_is_not_0_is_refused() {
+    let black = |kind: u32, count: u32, value: u32| {
+        let entry = [50714 | kind << 16, count, value].map(u32::to_le_bytes).concat();
+        [altered(WHITE, &entry), [64_u32, 1].map(u32::to_le_bytes).concat()].concat()
+    };
+    let end = u32::try_from(hex(LITTLE).len()).unwrap();
+    for file in [black(3, 1, 0), black(3, 2, 0), black(4, 1, 0)] {
+        assert_eq!(decode(&file, &AS_WRITTEN).unwrap().samples(), SAMPLES);
+    }
+    for file in [black(3, 1, 64), black(3, 2, 64 << 16), black(4, 1, 1 << 16), black(5, 1, end)] {
+        let error = decode(&file, &AS_WRITTEN).unwrap_err().to_string();
+        assert!(error.contains("BlackLevel") && error.contains("subtract it"), "{error}");
+    }
+}
+
+/// PhotometricInterpretation as 32 bits, which the specification has in 16.
+#[test]
+fn a_wide_colour_code_is_taken_in_either_byte_order() {
+    let little = altered(PHOTOMETRIC + 2, &[4, 0, 1, 0, 0, 0, 0x23, 0x80, 0, 0]);
+    let mut big = hex(BIG);
+    big[PHOTOMETRIC + 2..PHOTOMETRIC + 12].copy_from_slice(&[0, 4, 0, 0, 0, 1, 0, 0, 0x80, 0x23]);
+    for file in [little, big] {
+        assert_eq!(decode(&file, &AS_WRITTEN).unwrap().samples(), SAMPLES);
     }
 }
 

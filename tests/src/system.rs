@@ -84,6 +84,7 @@ impl System {
             tables: TableSet::from_lens(geometry, &lens, None).unwrap(),
             kernel: Kernel::from(Interpolant::Hermite),
             tables_source: String::new(),
+            rows_outside_circle: None,
             lens,
             centre_y: None,
             phase: Phase::Grbg,

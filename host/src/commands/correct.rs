@@ -12,7 +12,8 @@ use serde_json::json;
 
 use super::board::BoardArguments;
 use super::inputs::{FrameName, InputArguments};
-use super::lens::{self, Chosen, LensArguments};
+use super::optics::{self, Chosen, LensArguments};
+use super::table_file::TableArgument;
 use super::{Context, Failure, print, print_json};
 use crate::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
 use crate::progress;
@@ -26,9 +27,8 @@ pub(super) struct Arguments {
     /// The frames: PGM, PNG, TIFF, DNG, headerless files with --raw, or builtin:NAME
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<String>,
-    /// The table file; without it the lens options make the tables
-    #[arg(long, value_name = "FILE", env = "HALFROW_TABLES")]
-    tables: Option<PathBuf>,
+    #[command(flatten)]
+    tables: TableArgument,
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE")]
     kernel: Option<String>,
@@ -69,9 +69,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     if !arguments.model && !arguments.board.is_named(settings) {
         return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
     }
-    let file = arguments.tables.as_deref().or(settings.tables.as_deref());
+    let file = arguments.tables.file(&arguments.lens, settings)?;
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
-    let chosen = lens::choose(file, &arguments.lens, kernel)?;
+    let chosen = optics::choose(file, &arguments.lens, kernel)?;
     let geometry = *chosen.tables.geometry();
     let job = Job {
         arguments,

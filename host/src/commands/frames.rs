@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 
-use super::lens::LensArguments;
+use super::optics::LensArguments;
 use super::{Failure, print};
 use crate::frames::{self, Builtin};
 use crate::verdict::Exit;

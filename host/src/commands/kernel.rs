@@ -9,9 +9,9 @@ use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 use super::inputs::file_hash;
-use super::{Context, Failure, lens, print};
+use super::{Context, Failure, optics, print};
+use crate::frames::lying;
 use crate::frames::preview::RgbImage;
-use crate::paper::lying;
 use crate::tables::KernelFile;
 use crate::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
 use crate::verdict::Exit;
@@ -186,7 +186,7 @@ fn rows(images: &[RgbImage]) -> u64 {
 }
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
-    let kernel = lens::kernel(&arguments.kernel)?;
+    let kernel = optics::kernel(&arguments.kernel)?;
     let (_, images) = photographs(&arguments.images)?;
     let watched = progress::for_stderr(context.quiet);
     watched.rows_expected(rows(&images));

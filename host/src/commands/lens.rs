@@ -1,297 +1,141 @@
-//! The options of geometry, lens and kernel, which several commands share.
+//! `halfrow lens`
 
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
-use anyhow::{Context as _, bail};
-use clap::{Args, ValueEnum};
-use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
-    LensError, Phase, TableSet,
-};
+use clap::Args;
+use halfrow_model::TableError;
+use serde_json::{Value, json};
 
-use crate::frames::Scene;
-use crate::kernels::NamedKernel;
-use crate::lenses::LensFile;
-use crate::tables::{KernelFile, TableFile, TableFileError};
+use super::optics::{LensArguments, Optics, Rows};
+use super::{Failure, print, print_json};
+use crate::frames::{self, HeatMap, WriteError};
+use crate::lenses::{Residuals, Spread};
+use crate::verdict::Exit;
 
-/// The paper's frame.
-const DEFAULT_SIZE: (usize, usize) = (1920, 1080);
-
-/// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
-#[derive(Clone, Debug, Args)]
-#[command(next_help_heading = "Frame and lens")]
-pub(super) struct LensArguments {
-    /// Columns, even, 64 to 2592 [default: 1920, or those of the lens file's pictures]
-    #[arg(long, value_name = "SAMPLES")]
-    width: Option<usize>,
-    /// Rows, 1 to 2048 [default: 1080, or those of the lens file's pictures]
-    #[arg(long, value_name = "ROWS")]
-    height: Option<usize>,
-    /// Bits a sample: 8, 10 or 12
-    #[arg(long, default_value = "12", value_parser = depth)]
-    bits: BitDepth,
-    /// Bayer phase: grbg, rggb, bggr or gbrg
-    #[arg(long, default_value_t = Phase::Grbg)]
-    pub(super) phase: Phase,
-    /// The lens: a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or equidistant:RADIUS
-    #[arg(long, value_name = "FILE|equidistant:RADIUS", conflicts_with_all = ["radius", "focal_length"])]
-    lens: Option<LensName>,
-    /// Distance between two pixels of the camera that the lens file was made with, in micrometres: takes the lens alone from
-    /// it, scaled to --pixel-pitch, with its axis in the middle of the frame
-    #[arg(long, value_name = "UM", requires = "lens")]
-    lens_pitch: Option<f64>,
-    /// How the row factors are found [default: fitted for a lens file, equation-9 otherwise]
-    #[arg(long, value_enum)]
-    rows: Option<Rows>,
-    /// Radius of the image of 180 degrees, in pixels, instead of focal length and pixel pitch
-    #[arg(long, value_name = "PIXELS", conflicts_with_all = ["focal_length", "pixel_pitch", "field_of_view"])]
-    radius: Option<f64>,
-    /// Focal length of the lens, in millimetres
-    #[arg(long, default_value_t = 1.55, value_name = "MM")]
-    focal_length: f64,
-    /// Distance between two pixels, in micrometres
-    #[arg(long, default_value_t = 2.2, value_name = "UM")]
-    pixel_pitch: f64,
-    /// Field of view of the whole image circle, in degrees
-    #[arg(long, default_value_t = 180.0, value_name = "DEGREES")]
-    field_of_view: f64,
-    /// Column of the optical centre [default: the lens file's, or the middle]
-    #[arg(long, value_name = "COLUMN", allow_negative_numbers = true)]
-    centre_x: Option<f64>,
-    /// Row of the optical centre [default: the lens file's, or the middle]
-    #[arg(long, value_name = "ROW", allow_negative_numbers = true)]
-    centre_y: Option<f64>,
+/// Tell a lens's figures, and the error that row factors leave of it
+///
+/// The error is that of each sample against the exact projection, which puts every vertical of the scene at the column where
+/// the lens images it on the horizon. Its vertical part is how far the sample is from the row where the lens images its
+/// latitude above or below the axis; no row factor changes that.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    lens: LensArguments,
+    /// Write the horizontal error that is left at each sample as a picture, dark for none
+    #[arg(long, value_name = "FILE.png")]
+    map: Option<PathBuf>,
+    /// Replace a picture that is there
+    #[arg(long)]
+    overwrite: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
-/// A lens by the name that the command line gives it.
-#[derive(Clone, Debug)]
-enum LensName {
-    Equidistant(f64),
-    File(PathBuf),
-}
-
-impl FromStr for LensName {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.strip_prefix("equidistant:") {
-            None => Ok(Self::File(PathBuf::from(text))),
-            Some(radius) => radius.parse().map(Self::Equidistant).map_err(|_| {
-                "equidistant: takes the radius of the image of 180 degrees, in pixels".to_owned()
-            }),
-        }
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let optics = arguments.lens.optics()?;
+    let figures = Figures::of(&optics)?;
+    let most = match &arguments.map {
+        None => None,
+        Some(path) => Some(write_map(path, figures.used(), arguments.overwrite)?),
+    };
+    if arguments.json {
+        let map = most.map(|most| json!({ "file": arguments.map, "brightest_px": most }));
+        print_json(&figures.json(map.as_ref()))?;
+        return Ok(Exit::Pass);
     }
-}
-
-/// How row factors are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Rows {
-    /// For every row the factor with the smallest largest error
-    Fitted,
-    /// The paper's formula
-    #[value(name = "equation-9")]
-    Equation9,
-}
-
-impl Rows {
-    /// The name in the spelling of the command line.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Fitted => "fitted",
-            Self::Equation9 => "equation-9",
-        }
+    print(&figures.text())?;
+    if let (Some(path), Some(most)) = (&arguments.map, most) {
+        print(&format!("wrote {}, from 0 (dark) to {most:.3} px (bright)", path.display()))?;
     }
+    Ok(Exit::Pass)
 }
 
-fn depth(text: &str) -> Result<BitDepth, String> {
-    text.parse().ok().and_then(BitDepth::from_bits).ok_or_else(|| "a sample has 8, 10 or 12 bits".to_owned())
+/// What there is to say.
+struct Figures<'a> {
+    optics: &'a Optics,
+    equation_9: Residuals,
+    fitted: Residuals,
+    /// Why a board would not take the row factors that are asked for.
+    illegal: Option<TableError>,
 }
 
-impl LensArguments {
-    /// The file that describes the lens, if one does.
-    pub(super) fn file(&self) -> Option<&Path> {
-        match &self.lens {
-            Some(LensName::File(path)) => Some(path),
-            _ => None,
-        }
+impl<'a> Figures<'a> {
+    fn of(optics: &'a Optics) -> anyhow::Result<Self> {
+        let (equation_9, fitted) = (optics.tables_by(Rows::Equation9)?, optics.tables_by(Rows::Fitted)?);
+        let used = if optics.rows == Rows::Fitted { &fitted } else { &equation_9 };
+        let illegal = used.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
+        let residuals = |tables| Residuals::of(&optics.camera, tables);
+        Ok(Self { optics, equation_9: residuals(&equation_9), fitted: residuals(&fitted), illegal })
     }
 
-    /// The frame and the lens before it.
-    pub(super) fn optics(&self) -> anyhow::Result<Optics> {
-        match self.file() {
-            Some(path) => self.calibrated(path),
-            None if self.lens_pitch.is_some() => {
-                bail!("--lens-pitch goes with a lens file; give its name to --lens")
-            }
-            None => self.equidistant(),
-        }
+    /// What the row factors leave that are asked for.
+    fn used(&self) -> &Residuals {
+        if self.optics.rows == Rows::Fitted { &self.fitted } else { &self.equation_9 }
     }
 
-    fn equidistant(&self) -> anyhow::Result<Optics> {
-        let radius = match self.lens {
-            Some(LensName::Equidistant(radius)) => Some(radius),
-            _ => self.radius,
-        };
-        let lens = match radius {
-            Some(radius) => Equidistant::from_radius(radius)?,
-            None => Equidistant::from_focal_length(self.focal_length, self.pixel_pitch, self.field_of_view)?,
-        };
-        let geometry = self.geometry(DEFAULT_SIZE)?;
-        let camera = self.camera(geometry, lens.into(), middle(&geometry))?;
-        let rows = self.rows.unwrap_or(Rows::Equation9);
-        let name = "equidistant lens".to_owned();
-        Ok(Optics { camera, lens, is_calibrated: false, centre_y: self.centre_y, rows, name })
+    fn text(&self) -> String {
+        let (camera, lens) = (&self.optics.camera, self.optics.camera.lens());
+        let geometry = camera.geometry();
+        let amounts = |Spread { mean, max }: Spread| format!("{mean:9.4} {max:9.4}");
+        let mut lines = vec![
+            self.optics.source(),
+            format!(
+                "frame {} x {}, axis at column {:.3}, row {:.3} (C = {})",
+                geometry.width(),
+                geometry.height(),
+                camera.centre().0,
+                camera.centre().1,
+                geometry.centre2()
+            ),
+            format!(
+                "f = {:.3} pixels, r rises up to {:.1} degrees, image circle {:.1} degrees across, {} rows outside of it",
+                lens.focal_length(),
+                lens.widest().to_degrees(),
+                camera.field_of_view().to_degrees(),
+                camera.rows_outside_circle()
+            ),
+            format!("error left at {} samples, in pixels     mean       max", self.fitted.samples),
+            format!("  horizontal, Eq. 9               {}", amounts(self.equation_9.horizontal)),
+            format!("  horizontal, fitted rows         {}", amounts(self.fitted.horizontal)),
+            format!("  vertical, whatever the rows     {}", amounts(self.fitted.vertical)),
+        ];
+        lines.extend(self.illegal.as_ref().map(|error| format!("no board takes these rows: {error}")));
+        lines.join("\n")
     }
 
-    fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
-        let file = LensFile::read(path)?;
-        let pictures = file.size.filter(|_| self.lens_pitch.is_none()).unwrap_or(DEFAULT_SIZE);
-        let geometry = self.geometry(pictures)?;
-        let (lens, centre) = match self.lens_pitch {
-            Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, middle(&geometry)),
-            None => file
-                .for_frame(geometry.width(), geometry.height())
-                .with_context(|| format!("the lens file {} does not fit", path.display()))?,
-        };
-        let camera = self.camera(geometry, lens, centre)?;
-        let (name, rows) = (format!("{} {}", file.model, path.display()), self.rows.unwrap_or(Rows::Fitted));
-        Ok(Optics {
-            lens: Equidistant::from_radius(camera.radius())?,
-            is_calibrated: true,
-            centre_y: Some(camera.centre().1),
-            camera,
-            rows,
-            name,
+    fn json(&self, map: Option<&Value>) -> Value {
+        let (camera, lens) = (&self.optics.camera, self.optics.camera.lens());
+        let geometry = camera.geometry();
+        json!({
+            "lens": {
+                "name": self.optics.name,
+                "focal_length_px": lens.focal_length(),
+                "radius_px": camera.radius(),
+                "widest_degrees": lens.widest().to_degrees(),
+                "field_of_view_degrees": camera.field_of_view().to_degrees(),
+                "pixel_height_by_width": lens.pixel_height(),
+            },
+            "frame": { "width": geometry.width(), "height": geometry.height() },
+            "centre": { "column": camera.centre().0, "row": camera.centre().1, "centre2": geometry.centre2() },
+            "rows": self.optics.rows.name(),
+            "rows_outside_circle": camera.rows_outside_circle(),
+            "illegal": self.illegal.as_ref().map(ToString::to_string),
+            "samples": self.fitted.samples,
+            "residual_px": {
+                "horizontal": { "equation-9": self.equation_9.horizontal, "fitted": self.fitted.horizontal },
+                "vertical": self.fitted.vertical,
+            },
+            "map": map,
         })
     }
-
-    /// Pixels of the frame for each of a camera with pixels of `pitch`.
-    fn scale_from(&self, pitch: f64) -> Result<f64, LensError> {
-        let pitches = [pitch, self.pixel_pitch];
-        match pitches.into_iter().find(|pitch| !(pitch.is_finite() && *pitch > 0.0)) {
-            Some(wrong) => Err(LensError::PixelPitch(wrong)),
-            None => Ok(pitch / self.pixel_pitch),
-        }
-    }
-
-    fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, GeometryError> {
-        Geometry::centred(self.width.unwrap_or(width), self.height.unwrap_or(height), self.bits)
-    }
-
-    /// The lens with its axis at `centre` unless the command line says another place.
-    fn camera(
-        &self,
-        geometry: Geometry,
-        lens: CalibratedLens,
-        centre: (f64, f64),
-    ) -> Result<Camera, CameraError> {
-        let centre = (self.centre_x.unwrap_or(centre.0), self.centre_y.unwrap_or(centre.1));
-        Camera::new(geometry, lens, centre, self.field_of_view)
-    }
 }
 
-/// Column and row of the frame's middle.
-fn middle(geometry: &Geometry) -> (f64, f64) {
-    ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0)
-}
-
-/// A frame and the lens before it, as the command line describes them.
-pub(super) struct Optics {
-    pub(super) camera: Camera,
-    /// The equidistant lens of the same R, which built-in frames are rendered through.
-    pub(super) lens: Equidistant,
-    /// Whether the lens is not that one itself.
-    is_calibrated: bool,
-    /// The row of the axis; none for the middle.
-    pub(super) centre_y: Option<f64>,
-    pub(super) rows: Rows,
-    /// What the lens is, for people.
-    pub(super) name: String,
-}
-
-impl Optics {
-    /// What built-in frames are made for.
-    pub(super) fn scene(&self, phase: Phase, seed: u64) -> Scene {
-        let (geometry, centre_y, lens) = (*self.camera.geometry(), self.centre_y, self.lens);
-        Scene { geometry, centre_y, phase, lens, seed }
+/// Writes the picture and returns the error that is brightest in it, in pixels.
+fn write_map(path: &Path, residuals: &Residuals, overwrite: bool) -> Result<f64, Failure> {
+    let HeatMap { image, most } = HeatMap::new(&residuals.map);
+    match frames::write_rgb(path, &image, overwrite) {
+        Err(error @ WriteError::NotPng { .. }) => Err(error.into()),
+        written => written.map(|()| most).map_err(Failure::error),
     }
-
-    /// The row factors that are asked for.
-    pub(super) fn tables(&self) -> anyhow::Result<TableSet> {
-        self.tables_by(self.rows)
-    }
-
-    /// The row factors that are found so.
-    pub(super) fn tables_by(&self, rows: Rows) -> anyhow::Result<TableSet> {
-        Ok(match rows {
-            Rows::Fitted => self.camera.fitted(),
-            Rows::Equation9 if self.is_calibrated => self.camera.equation_9(),
-            // From R as it was given, which the camera has from f.
-            Rows::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
-        })
-    }
-
-    /// A sentence on where the row factors come from.
-    pub(super) fn source(&self) -> String {
-        let how = match self.rows {
-            Rows::Fitted => "fitted rows",
-            Rows::Equation9 => "Eq. 9",
-        };
-        format!("{}, R = {:.3} pixels ({how})", self.name, self.camera.radius())
-    }
-}
-
-/// A kernel by name, or from a kernel file.
-pub(super) fn kernel(name: &str) -> Result<Kernel, super::Failure> {
-    match name.parse::<NamedKernel>() {
-        Ok(named) => named.kernel().map_err(super::Failure::error),
-        Err(unknown) if !Path::new(name).exists() => {
-            Err(anyhow::anyhow!("there is no file {name}, and {unknown}, or a kernel file").into())
-        }
-        Err(_) => Ok(KernelFile::read(Path::new(name)).map_err(table_failure)?.kernel),
-    }
-}
-
-/// Tables, kernel, and where they come from: a table file, or the lens options and a kernel.
-pub(super) struct Chosen {
-    pub(super) optics: Optics,
-    pub(super) tables: TableSet,
-    pub(super) kernel: Kernel,
-    pub(super) source: String,
-}
-
-/// Takes the table file if there is one, and the lens otherwise; `kernel_name` replaces the file's kernel.
-pub(super) fn choose(
-    file: Option<&Path>,
-    lens: &LensArguments,
-    kernel_name: Option<&str>,
-) -> Result<Chosen, super::Failure> {
-    let named = kernel_name.map(kernel).transpose()?;
-    if let (Some(path), Some(_)) = (file, &lens.lens) {
-        let both = format!("--lens makes tables, and {} holds some; give one of them", path.display());
-        return Err(anyhow::anyhow!(both).into());
-    }
-    let optics = lens.optics()?;
-    let Some(path) = file else {
-        let (tables, from) = (optics.tables()?, optics.source());
-        let name = kernel_name.unwrap_or(Interpolant::Hermite.name());
-        let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
-        return Ok(Chosen { optics, tables, kernel, source: format!("{from}, {name} kernel") });
-    };
-    let read = TableFile::read(path).map_err(table_failure)?;
-    let mut source = path.display().to_string();
-    if let Some(name) = kernel_name {
-        source = format!("{source}, {name} kernel");
-    }
-    Ok(Chosen { optics, tables: read.tables, kernel: named.unwrap_or(read.kernel), source })
-}
-
-/// A table file of another datapath is refused like a board of another datapath.
-pub(super) fn table_failure(error: TableFileError) -> super::Failure {
-    let exit = match error {
-        TableFileError::Datapath { .. } => crate::verdict::Exit::Refused,
-        _ => crate::verdict::Exit::Usage,
-    };
-    super::Failure { exit, error: error.into() }
 }

@@ -11,9 +11,10 @@ mod inputs;
 mod kernel;
 mod lens;
 mod link;
+mod optics;
 mod paper;
-mod residual;
 mod serve;
+mod table_file;
 mod tables;
 mod verify;
 
@@ -61,7 +62,7 @@ enum Command {
     Verify(verify::Arguments),
     Correct(correct::Arguments),
     Tables(tables::Arguments),
-    Lens(residual::Arguments),
+    Lens(lens::Arguments),
     Kernel(kernel::Arguments),
     Paper(paper::Arguments),
     Frames(frames::Arguments),
@@ -137,7 +138,7 @@ impl Cli {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
             Command::Tables(arguments) => tables::run(arguments),
-            Command::Lens(arguments) => residual::run(arguments),
+            Command::Lens(arguments) => lens::run(arguments),
             Command::Kernel(arguments) => kernel::run(arguments, &context),
             Command::Paper(arguments) => paper::run(arguments, &context),
             Command::Frames(arguments) => frames::run(arguments),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::lens::{self, LensArguments};
+use super::optics::{self, LensArguments};
 use super::{Failure, print};
 use crate::tables::{TableFile, mem};
 use crate::verdict::Exit;
@@ -26,7 +26,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let chosen = lens::choose(None, &arguments.lens, Some(&arguments.kernel))?;
+    let chosen = optics::choose(None, &arguments.lens, Some(&arguments.kernel))?;
     let geometry = *chosen.tables.geometry();
     chosen.tables.check_ring(geometry.width().next_power_of_two())?;
     let outside = chosen.optics.camera.rows_outside_circle();

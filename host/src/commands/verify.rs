@@ -10,7 +10,8 @@ use clap::builder::FalseyValueParser;
 
 use super::board::BoardArguments;
 use super::inputs::{InputArguments, file_hash, frame_sources};
-use super::lens::{self, LensArguments};
+use super::optics::{self, LensArguments};
+use super::table_file::TableArgument;
 use super::{Context, Failure, print};
 use crate::frames::Builtin;
 use crate::link::{Candidate, Recorder, Unfinished};
@@ -31,9 +32,8 @@ pub(super) struct Arguments {
     /// A frame to stream instead of the built-in ones: a file, or builtin:NAME; may be given several times
     #[arg(long, value_name = "FILE", env = "HALFROW_FRAME")]
     frame: Vec<String>,
-    /// The table file to judge with; without it the lens options make the tables
-    #[arg(long, value_name = "FILE", env = "HALFROW_TABLES")]
-    tables: Option<PathBuf>,
+    #[command(flatten)]
+    tables: TableArgument,
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
     kernel: Option<String>,
@@ -154,9 +154,9 @@ fn listing(plan: &Plan) -> String {
 
 impl Arguments {
     fn plan(&self, settings: &Settings) -> Result<Plan, Failure> {
-        let file = self.tables.as_deref().or(settings.tables.as_deref());
+        let file = self.tables.file(&self.lens, settings)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref());
-        let chosen = lens::choose(file, &self.lens, kernel)?;
+        let chosen = optics::choose(file, &self.lens, kernel)?;
         let geometry = chosen.tables.geometry();
         chosen.tables.check_ring(geometry.width().next_power_of_two())?;
         let how = self.input.read_options(geometry, self.lens.phase);
@@ -173,6 +173,7 @@ impl Arguments {
             tables: chosen.tables,
             kernel: chosen.kernel,
             tables_source: chosen.source,
+            rows_outside_circle: chosen.rows_outside_circle,
             frames,
             repeat: self.repeat,
             fail_fast: self.fail_fast,
@@ -202,11 +203,11 @@ impl Arguments {
     }
 
     fn circumstances(&self, settings: &Settings) -> Result<Circumstances, Failure> {
-        let tables = self.tables.as_ref().or(settings.tables.as_ref());
+        let tables = self.tables.file(&self.lens, settings)?.map(PathBuf::from);
         let names = self.frame_names(settings).iter();
         let frames = names.filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
         let lens = self.lens.file().map(PathBuf::from);
-        let files = tables.cloned().into_iter().chain(lens).chain(frames);
+        let files = tables.into_iter().chain(lens).chain(frames);
         Ok(Circumstances {
             arguments: std::env::args().collect(),
             files: files.map(|path| file_hash(&path)).collect::<Result<_, _>>()?,

@@ -30,13 +30,15 @@ const PLANES: u16 = 50710;
 /// LinearizationTable.
 pub(super) const LINEARISATION: u16 = 50712;
 /// BlackLevel.
-const BLACK: u16 = 50714;
+pub(super) const BLACK: u16 = 50714;
 /// WhiteLevel.
 pub(super) const WHITE: u16 = 50717;
 /// ColorMatrix1: from XYZ to the camera's colours.
 const COLOUR_MATRIX: u16 = 50721;
 /// AsShotNeutral: the camera's colours of what is to look white.
 const NEUTRAL: u16 = 50728;
+/// ActiveArea: top, left, bottom and right of what the sensor saw.
+pub(super) const ACTIVE_AREA: u16 = 50829;
 /// CalibrationIlluminant1: the light that [`COLOUR_MATRIX`] holds for.
 const ILLUMINANT: u16 = 50778;
 /// D65 among Exif's light sources.

@@ -8,6 +8,7 @@ pub mod dng;
 mod error;
 mod file;
 mod format;
+mod heat_map;
 mod mosaic;
 mod patterns;
 pub mod pgm;
@@ -20,7 +21,9 @@ mod scene;
 mod size;
 pub mod street;
 pub mod tiff;
+mod tiff_bytes;
 mod tiff_directory;
+mod turned;
 
 use halfrow_model::{BitDepth, Frame, Phase};
 
@@ -28,11 +31,13 @@ pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
 pub use file::{read, read_rgb, write, write_rgb, write_rows};
 pub use format::{Format, UnknownFormat};
+pub use heat_map::HeatMap;
 pub use mosaic::mosaic;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use rows::{FrameShape, RowReader};
 pub use scene::Scene;
 pub use size::{MAX_FILE_BYTES, MAX_SIDE};
+pub use turned::lying;
 
 /// What a file does not say about its samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

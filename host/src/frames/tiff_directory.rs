@@ -5,6 +5,7 @@
 
 use halfrow_model::Phase;
 
+use super::tiff_bytes::{Bytes, SHORT};
 use super::{DecodeError, ReadOptions, dng, size};
 
 const WIDTH: u16 = 256;
@@ -50,9 +51,11 @@ impl FilterArray {
     pub(super) fn as_grey(&self, bytes: &[u8]) -> Vec<u8> {
         let little = bytes.starts_with(b"II");
         let short = |value: u16| if little { value.to_le_bytes() } else { value.to_be_bytes() };
+        let one = if little { 1_u32.to_le_bytes() } else { 1_u32.to_be_bytes() };
         let mut grey = bytes.to_vec();
-        if let Some(value) = grey.get_mut(self.entry + 8..self.entry + 10) {
-            value.copy_from_slice(&short(1));
+        if let Some(entry) = grey.get_mut(self.entry + 2..self.entry + 12) {
+            let [kind, value] = [SHORT, 1].map(short);
+            entry.copy_from_slice(&[&kind[..], &one, &value, &[0; 2]].concat());
         }
         grey
     }
@@ -71,6 +74,9 @@ pub(super) fn check(bytes: &[u8]) -> Result<Option<FilterArray>, DecodeError> {
     size::checked(one(TILE_WIDTH, 0).into(), one(TILE_HEIGHT, 0).into())?;
     let (colour, channels, bits) = (one(PHOTOMETRIC, 1), one(CHANNELS, 1), one(BITS, 1));
     let array = tags.filter_array()?;
+    if array.is_some() {
+        tags.check_raw(&Bytes::new(bytes), width, height)?;
+    }
     if !matches!((colour, channels), (1, 1) | (2, 3 | 4)) && (array.is_none() || channels != 1) {
         let what = format!("a TIFF with colour code {colour} and {channels} channels");
         return Err(DecodeError::Unsupported { what, remedy: "save it as grey (black is zero) or RGB" });
@@ -109,7 +115,7 @@ struct Tags(Vec<Entry>);
 
 impl Tags {
     fn read(bytes: &[u8]) -> Result<Self, DecodeError> {
-        let file = Bytes { bytes, little: bytes.starts_with(b"II") };
+        let file = Bytes::new(bytes);
         if file.short(2)? != 42 {
             let what = "a BigTIFF, or no TIFF at all,".to_owned();
             return Err(DecodeError::Unsupported { what, remedy: "save it as a classic TIFF" });
@@ -123,8 +129,8 @@ impl Tags {
             let tag = file.short(start)?;
             let value = match tag {
                 dng::PATTERN | dng::VERSION => file.four_bytes(start)?,
-                // Of a table only its presence matters.
-                dng::LINEARISATION => 0,
+                // Of a table only its presence matters; the others are not looked at unless the samples are raw.
+                dng::LINEARISATION | dng::BLACK | dng::ACTIVE_AREA => 0,
                 tag if Self::wanted(tag) => file.value(start)?,
                 _ => continue,
             };
@@ -151,6 +157,29 @@ impl Tags {
         self.entry(tag).map(|entry| entry.value)
     }
 
+    /// Refuses raw samples of `file`, `width` x `height`, that are not all of the picture, or not black at 0.
+    fn check_raw(&self, file: &Bytes<'_>, width: usize, height: usize) -> Result<(), DecodeError> {
+        let values = |tag| self.entry(tag).map(|entry| file.values(entry.start)).transpose();
+        let whole = [0, 0, height, width];
+        if let Some(area) = values(dng::ACTIVE_AREA)?
+            && !area.iter().map(|&side| usize::try_from(side).ok()).eq(whole.map(Some))
+        {
+            let what =
+                format!("a DNG whose ActiveArea (top, left, bottom, right) is {area:?}, not {whole:?},");
+            return Err(DecodeError::Unsupported {
+                what,
+                remedy: "crop it to that area, and give the phase there",
+            });
+        }
+        match values(dng::BLACK)?.is_some_and(|black| black.iter().any(|&level| level != 0)) {
+            false => Ok(()),
+            true => {
+                let what = "a DNG whose BlackLevel is not 0".to_owned();
+                Err(DecodeError::Unsupported { what, remedy: "subtract it from the samples first" })
+            }
+        }
+    }
+
     /// The filter array that the samples lie under, if they lie under any.
     fn filter_array(&self) -> Result<Option<FilterArray>, DecodeError> {
         let refused = |what: &str, remedy| Err(DecodeError::Unsupported { what: what.to_owned(), remedy });
@@ -171,62 +200,5 @@ impl Tags {
                 refused("a colour filter array that is no Bayer pattern", "use a sensor of Bayer's pattern")
             }
         }
-    }
-}
-
-/// Numbers of either byte order at any place of a file.
-struct Bytes<'a> {
-    bytes: &'a [u8],
-    little: bool,
-}
-
-impl Bytes<'_> {
-    /// Refuses the directory entry at `start` when it claims more values than the file has bytes.
-    fn check_count(&self, start: usize) -> Result<(), DecodeError> {
-        let count = self.long(start.saturating_add(4))?;
-        match usize::try_from(count) {
-            Ok(count) if count <= self.bytes.len() => Ok(()),
-            _ => Err(DecodeError::TiffDirectory { offset: start }),
-        }
-    }
-
-    /// The number of the directory entry at `start`, or the first of several: a short or a long.
-    fn value(&self, start: usize) -> Result<u32, DecodeError> {
-        const SHORT: u16 = 3;
-        const LONG: u16 = 4;
-        let place = start.saturating_add(8);
-        match (self.short(start.saturating_add(2))?, self.long(start.saturating_add(4))?) {
-            (SHORT, 1 | 2) => self.short(place).map(u32::from),
-            (SHORT, 3..) => {
-                let elsewhere = usize::try_from(self.long(place)?).unwrap_or(usize::MAX);
-                self.short(elsewhere).map(u32::from)
-            }
-            (LONG, 1) => self.long(place),
-            _ => Err(DecodeError::TiffDirectory { offset: start }),
-        }
-    }
-
-    /// The four bytes of the directory entry at `start`, the first uppermost; of any other value, a number that is no pattern.
-    fn four_bytes(&self, start: usize) -> Result<u32, DecodeError> {
-        const BYTE: u16 = 1;
-        match (self.short(start.saturating_add(2))?, self.long(start.saturating_add(4))?) {
-            (BYTE, 4) => self.array(start.saturating_add(8)).map(u32::from_be_bytes),
-            _ => Ok(u32::MAX),
-        }
-    }
-
-    fn short(&self, offset: usize) -> Result<u16, DecodeError> {
-        let bytes = self.array(offset)?;
-        Ok(if self.little { u16::from_le_bytes(bytes) } else { u16::from_be_bytes(bytes) })
-    }
-
-    fn long(&self, offset: usize) -> Result<u32, DecodeError> {
-        let bytes = self.array(offset)?;
-        Ok(if self.little { u32::from_le_bytes(bytes) } else { u32::from_be_bytes(bytes) })
-    }
-
-    fn array<const N: usize>(&self, offset: usize) -> Result<[u8; N], DecodeError> {
-        let rest = self.bytes.get(offset..).unwrap_or_default();
-        rest.first_chunk().copied().ok_or(DecodeError::TiffDirectory { offset })
     }
 }

@@ -2,7 +2,8 @@
 
 use std::borrow::Cow;
 
-use saphyr::{LoadableYamlNode, Yaml};
+use saphyr::{LoadableYamlNode, Marker, ScanError, Yaml};
+use saphyr_parser::{Event, Parser};
 
 use super::LensContentError;
 use crate::tables::text::quoted;
@@ -16,13 +17,39 @@ pub(super) fn without_header(text: &str) -> Cow<'_, str> {
     if text.starts_with("%YAML:") { Cow::Owned(text.replacen('%', "#", 1)) } else { Cow::Borrowed(text) }
 }
 
+/// The most lists and groups in each other that a file may have. Lens files have four at most, and what loads them calls
+/// itself for each.
+const DEEPEST: usize = 32;
+
 /// The documents of `text`.
 pub(super) fn documents(text: &str) -> Result<Vec<Yaml<'_>>, LensContentError> {
-    Yaml::load_from_str(text).map_err(|error| LensContentError::Syntax {
-        line: error.marker().line(),
-        column: error.marker().col() + 1,
-        reason: error.info().to_owned(),
-    })
+    check_depth(text)?;
+    Yaml::load_from_str(text).map_err(|error| unreadable(&error))
+}
+
+fn check_depth(text: &str) -> Result<(), LensContentError> {
+    let mut depth = 0;
+    for event in Parser::new_from_str(text) {
+        let (event, place) = event.map_err(|error| unreadable(&error))?;
+        match event {
+            Event::SequenceStart(..) | Event::MappingStart(..) => depth += 1,
+            Event::SequenceEnd | Event::MappingEnd => depth -= 1,
+            _ => {}
+        }
+        if depth > DEEPEST {
+            let reason = format!("lists and groups lie deeper than {DEEPEST} in each other");
+            return Err(syntax(place.start, reason));
+        }
+    }
+    Ok(())
+}
+
+fn unreadable(error: &ScanError) -> LensContentError {
+    syntax(*error.marker(), error.info().to_owned())
+}
+
+fn syntax(place: Marker, reason: String) -> LensContentError {
+    LensContentError::Syntax { line: place.line(), column: place.col() + 1, reason }
 }
 
 impl<'a> Keys<'a> {

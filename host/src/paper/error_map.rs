@@ -4,7 +4,8 @@ use halfrow_model::{Equidistant, exact, simplified};
 
 use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
 use super::expected::{MEAN_ERROR_TOLERANCE, MEAN_ERRORS};
-use super::{HeatMap, Item, PaperError};
+use super::{Item, PaperError};
+use crate::frames::HeatMap;
 
 /// R in pixels.
 const RADIUS: i32 = 100;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::expected::PHOTOGRAPHS;
 use crate::frames::preview::RgbImage;
-use crate::frames::{self, ReadError};
+use crate::frames::{self, ReadError, lying};
 
 /// Columns of a photograph that lies.
 pub(super) const WIDTH: usize = 768;
@@ -56,37 +56,5 @@ fn photograph(folder: &Path, number: usize) -> Result<RgbImage, PhotographError>
     match (image.width, image.height) {
         (WIDTH, HEIGHT) | (HEIGHT, WIDTH) => Ok(lying(image)),
         (width, height) => Err(PhotographError::Size { path, width, height }),
-    }
-}
-
-/// `image` turned a quarter clockwise if it stands.
-#[must_use]
-pub fn lying(image: RgbImage) -> RgbImage {
-    if image.height > image.width { turned_clockwise(&image) } else { image }
-}
-
-/// A quarter turn clockwise: the left column becomes the top row, read upwards.
-fn turned_clockwise(image: &RgbImage) -> RgbImage {
-    let (width, height) = (image.height, image.width);
-    let pixel = |row, column| {
-        let start = 3 * ((width - 1 - column) * image.width + row);
-        image.data.get(start..start + 3).unwrap_or_default()
-    };
-    let places = (0..height).flat_map(|row| (0..width).map(move |column| (row, column)));
-    let data = places.flat_map(|(row, column)| pixel(row, column)).copied().collect();
-    RgbImage { width, height, data }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// By hand: 1 2 / 3 4 / 5 6 becomes 5 3 1 / 6 4 2.
-    #[test]
-    fn a_standing_picture_is_turned_clockwise() {
-        let grey = |values: &[u8]| values.iter().flat_map(|&value| [value; 3]).collect();
-        let standing = RgbImage { width: 2, height: 3, data: grey(&[1, 2, 3, 4, 5, 6]) };
-        let lying = RgbImage { width: 3, height: 2, data: grey(&[5, 3, 1, 6, 4, 2]) };
-        assert_eq!(turned_clockwise(&standing), lying);
     }
 }

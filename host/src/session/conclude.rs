@@ -2,8 +2,6 @@
 
 use jiff::Timestamp;
 
-use halfrow_model::TableSet;
-
 use super::findings::{CHECKS, End, Findings};
 use super::judge::{STREET, Seen};
 use super::{Circumstances, Finished, Plan};
@@ -140,7 +138,7 @@ fn tables(plan: &Plan) -> TablesReport {
         height: geometry.height(),
         bits: geometry.depth().bits(),
         centre2: geometry.centre2(),
-        rows_outside_circle: TableSet::rows_outside_circle(geometry, &plan.lens, plan.centre_y),
+        rows_outside_circle: plan.rows_outside_circle,
         steps_crc32: crc(&plan.tables.to_bytes()),
         kernel_crc32: crc(&plan.kernel.to_bytes()),
     }

@@ -82,6 +82,8 @@ pub struct Plan {
     pub kernel: Kernel,
     /// Where they came from, for people.
     pub tables_source: String,
+    /// Rows outside the image circle of the lens that they were made for; none when only a file of tables is there.
+    pub rows_outside_circle: Option<usize>,
     /// The lens that built-in frames are rendered through.
     pub lens: Equidistant,
     /// The row of the optical centre of built-in frames; the middle when not given.

@@ -162,7 +162,20 @@ fn ocamcalib_s_numbers_are_looked_at() {
 
 #[test]
 fn hostile_yaml_is_refused_and_does_no_harm() {
-    assert!(matches!(refusal(&"[".repeat(100_000)), LensContentError::Syntax { .. }));
+    for nested in ["[", "{a: ", "- ", "? ", "- ? "] {
+        let refused = refusal(&nested.repeat(100_000));
+        assert!(matches!(refused, LensContentError::Syntax { line: 1, .. }), "{nested}: {refused}");
+    }
+    let flat = refusal(&format!("cam0:\n  a: {}1{}\n", "[".repeat(30), "]".repeat(30)));
+    assert!(matches!(flat, LensContentError::Missing { .. }), "{flat}");
+    let deep = refusal(&format!("cam0:\n  a: {}1{}\n", "[".repeat(31), "]".repeat(31))).to_string();
+    assert!(
+        deep.contains("line 2, column 36: lists and groups lie deeper than 32 in each other; mend it"),
+        "{deep}"
+    );
+    let longer: String =
+        (1..500).map(|level| format!("a{level}: &a{level} [[[*a{}]]]\n", level - 1)).collect();
+    assert!(matches!(refusal(&format!("a0: &a0 x\n{longer}")), LensContentError::Syntax { .. }));
     let doubled: String =
         (1..40).map(|level| format!("a{level}: &a{level} [*a{0}, *a{0}]\n", level - 1)).collect();
     assert!(matches!(refusal(&format!("a0: &a0 x\n{doubled}")), LensContentError::Syntax { .. }));

@@ -122,6 +122,7 @@ fn refused_map(folder: &Folder) {
     let ended = folder.halfrow(["lens", "--lens", "dsl215.txt", "--map", "left.png"]);
     assert!(ended.code == Some(3) && ended.stderr.contains("--overwrite"), "{}", ended.stderr);
     assert!(folder.read("left.png") == before);
+    refused(folder, &["lens", "--lens", "dsl215.txt", "--map", "left.txt"], "left.txt is to be a PNG");
 }
 
 /// The same lens on the paper's sensor, whose pixels have 2.2 µm, not 6.
@@ -168,7 +169,46 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
     tables(&[&lens[..], &["--lens-pitch", "0"]].concat(), "a pixel pitch of 0 um is not above zero");
     tables(&[&lens[..], &["--field-of-view", "0"]].concat(), "field of view");
     tables(&[&lens[..], &["--centre-x", "-1"]].concat(), "optical centre");
-    refused(&folder, &["verify", "--lens", "dsl215.txt", "--tables", "made.json"], "give one of them");
+    for more in ["--pixel-pitch", "--field-of-view"] {
+        tables(
+            &["--lens", "equidistant:400", more, "170"],
+            "cannot be used with --pixel-pitch or --field-of-view",
+        );
+    }
+    tables(
+        &[&lens[..], &["--pixel-pitch", "9"]].concat(),
+        "--pixel-pitch does nothing with a lens file unless --lens-pitch",
+    );
+    let both = |option: [&str; 2]| {
+        let sentence = format!("{} is for making tables, and --tables made.json holds some", option[0]);
+        for call in [&["verify"][..], &["correct", "builtin:noise", "--model", "-o", "x.pgm"]] {
+            let call: Vec<_> = call.iter().copied().chain(option).chain(["--tables", "made.json"]).collect();
+            refused(&folder, &call, &sentence);
+        }
+    };
+    both(lens);
+    both(["--rows", "fitted"]);
+}
+
+/// A lens on pixels twice as high as wide: y is 1, 3, … 99 widths of a pixel, and R = 80/π · π/2 = 40, so 30 rows on either side
+/// are outside. By R alone it were 10.
+#[test]
+fn rows_outside_the_image_circle_are_those_of_the_lens_file() {
+    let folder = Folder::new();
+    folder.write(
+        "high.yaml",
+        "cam0:\n  camera_model: pinhole\n  distortion_model: equidistant\n  distortion_coeffs: [0, 0, 0, 0]\n  \
+         intrinsics: [25.464790895, 12.732395447, 31.5, 49.5]\n  resolution: [64, 100]\n",
+    );
+    let made = folder.halfrow(["tables", "--lens", "high.yaml", "-o", "high.json"]);
+    assert!(made.stdout.contains("60 rows lie outside the image circle"), "{}{}", made.stdout, made.stderr);
+    let outside = |more: &[&str]| {
+        let call: Vec<_> = ["verify", "--json"].into_iter().chain(more.iter().copied()).collect();
+        json(&folder, &call)["tables"]["rows_outside_circle"].clone()
+    };
+    assert_eq!(outside(&["--lens", "high.yaml", "--record", "run.rec"]), 60);
+    assert_eq!(outside(&["--board", "replay:run.rec"]), 60);
+    assert_eq!(outside(&["--tables", "high.json"]), Value::Null);
 }
 
 /// The window of taps must be there: the model says which row cannot have it.

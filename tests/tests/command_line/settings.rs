@@ -80,6 +80,32 @@ fn frames_tables_and_report_come_from_the_file_too() {
     assert_eq!(run(&folder, &format!("{settings}overwrite = true\n"), None, &[]).code, Some(0));
 }
 
+/// Options that make tables are flags, so they come before a table file that the station always wants.
+#[test]
+fn a_lens_on_the_command_line_beats_tables_from_elsewhere() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(["tables", "--width", "64", "--height", "9", "-o", "lens.json"]).code, Some(0));
+    let (file, variable) = ("tables = 'lens.json'\n", Some(("HALFROW_TABLES", "lens.json")));
+    for (settings, variable) in [(file, None), ("", variable)] {
+        let source = |more: &[&str]| {
+            let said = run(&folder, settings, variable, more).json();
+            assert_eq!(said["run"]["files"].as_array().map(Vec::is_empty), Some(!more.is_empty()));
+            said["tables"]["source"].clone()
+        };
+        assert_eq!(source(&[]), "lens.json");
+        for more in [["--rows", "fitted"], ["--rows", "equation-9"]] {
+            assert!(source(&more).as_str().unwrap().starts_with("equidistant lens, R = "), "{more:?}");
+        }
+    }
+    let sizes = ["--width", "64", "--height", "9", "--lens", "equidistant:40"];
+    let call = ["verify", "--json"].into_iter().chain(sizes);
+    let ended = finish(folder.command(call).env("HALFROW_TABLES", "lens.json"));
+    assert!(ended.stdout.contains("equidistant lens, R = 40.000 pixels"), "{}{}", ended.stdout, ended.stderr);
+    let call = ["correct", "builtin:noise", "--model", "-o", "40.pgm"].into_iter().chain(sizes);
+    let ended = finish(folder.command(call).env("HALFROW_TABLES", "nowhere.json"));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+}
+
 #[test]
 fn limits_come_from_the_file_too() {
     let folder = Folder::new();

@@ -116,7 +116,9 @@ fn tables(tables: &TablesReport) -> Markup {
             (pair("Source", &tables.source))
             (pair("Geometry", format!("{} x {}, {} bits", tables.width, tables.height, tables.bits)))
             (pair("Optical centre", format!("column {:.1}", f64::from(tables.centre2) / 2.0)))
-            (pair("Outside the image circle", wording::count(tables.rows_outside_circle, "row")))
+            @if let Some(outside) = tables.rows_outside_circle {
+                (pair("Outside the image circle", wording::count(outside, "row")))
+            }
             (pair("CRC-32", format!("row factors {}, kernel {}", tables.steps_crc32, tables.kernel_crc32)))
         }
     }

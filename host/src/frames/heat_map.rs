@@ -1,6 +1,6 @@
 //! Amounts as a picture.
 
-use crate::frames::preview::RgbImage;
+use super::preview::RgbImage;
 
 /// Dark to bright, evenly in lightness.
 const COLOURS: [[f64; 3]; 5] = [
