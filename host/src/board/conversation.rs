@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{RefusalCode, Reply, Request};
+use halfrow_protocol::message::{RefusalCode, Reply, Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
 use super::deadlines::{RetryLimit, Step};
@@ -141,14 +141,24 @@ impl Conversation {
 
     /// Queues `request` under `sequence`.
     pub(super) fn queue(&mut self, request: &Request<'_>, sequence: u16) {
+        self.queue_packet(request.kind(), sequence, |payload| request.write(payload));
+    }
+
+    /// Queues a row under the next number, its samples packed where they go.
+    pub(super) fn queue_row(&mut self, place: &RowPlace, samples: &[u16]) {
+        let sequence = self.next_sequence();
+        self.queue_packet(Kind::RowIn, sequence, |payload| RowIn::write_samples(place, samples, payload));
+    }
+
+    fn queue_packet(&mut self, kind: Kind, sequence: u16, write_payload: impl FnOnce(&mut Vec<u8>)) {
         let header = Header {
-            kind: request.kind().code(),
+            kind: kind.code(),
             sequence,
             reply: false,
-            session: if request.kind() == Kind::Hello { 0 } else { self.session },
+            session: if kind == Kind::Hello { 0 } else { self.session },
             window: self.acknowledged,
         };
-        let queued = self.encoder.encode(&header, |payload| request.write(payload), &mut self.outgoing);
+        let queued = self.encoder.encode(&header, write_payload, &mut self.outgoing);
         debug_assert!(queued.is_ok(), "a request is built to fit a packet");
         self.tally.packets_out += 1;
     }

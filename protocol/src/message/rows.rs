@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 
 use crate::Malformed;
 use crate::bytes::Fields;
-use crate::samples::packed_length;
+use crate::samples::{pack, packed_length};
 
 /// Which row it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,6 +61,12 @@ impl<'a> RowIn<'a> {
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {
         self.place.write(0, payload);
         payload.extend_from_slice(self.packed);
+    }
+
+    /// Appends the payload of a row whose samples are not packed yet.
+    pub fn write_samples(place: &RowPlace, samples: &[u16], payload: &mut Vec<u8>) {
+        place.write(0, payload);
+        pack(samples, payload);
     }
 
     pub(crate) fn read(mut fields: Fields<'a>) -> Result<Self, Malformed> {

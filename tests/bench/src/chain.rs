@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use halfrow_model::{Corrector, Frame, Interpolant, Kernel, ModelPath, TableSet, correct};
 use halfrow_protocol::message::{RowIn, RowPlace};
-use halfrow_protocol::{Decoder, Encoder, Header, Request, samples};
+use halfrow_protocol::{Decoder, Encoder, Header, Kind, Request, samples};
 
 use crate::Benchmark;
 use crate::scene::{HEIGHT, batch, tables};
@@ -16,7 +16,6 @@ use crate::scene::{HEIGHT, batch, tables};
 struct Chain {
     encoder: Encoder,
     decoder: Decoder,
-    packed: Vec<u8>,
     wire: Vec<u8>,
     received: Vec<u16>,
     corrected: Vec<u16>,
@@ -81,13 +80,11 @@ impl Chain {
 
     /// Sends a row through the wire, and receives it.
     fn row(&mut self, index: usize, row: &[u16]) {
-        self.packed.clear();
-        samples::pack(row, &mut self.packed);
         let place = RowPlace { row: index as u16, width: row.len() as u16, ..RowPlace::default() };
-        let request = Request::RowIn(RowIn { place, packed: &self.packed });
-        let header = Header { kind: request.kind().code(), sequence: index as u16, ..Header::default() };
+        let header = Header { kind: Kind::RowIn.code(), sequence: index as u16, ..Header::default() };
         self.wire.clear();
-        let _ = self.encoder.encode(&header, |payload| request.write(payload), &mut self.wire);
+        let write = |payload: &mut Vec<u8>| RowIn::write_samples(&place, row, payload);
+        let _ = self.encoder.encode(&header, write, &mut self.wire);
         let mut bytes = self.wire.as_slice();
         self.received.clear();
         while let Some(Ok(packet)) = self.decoder.next(&mut bytes) {

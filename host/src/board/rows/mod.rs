@@ -6,7 +6,7 @@ mod traffic;
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{Request, RowIn};
+use halfrow_protocol::message::Request;
 use halfrow_protocol::samples;
 
 use super::BoardError;
@@ -33,7 +33,6 @@ pub(super) fn stream(
         sent: first_row,
         attempts: 1,
         acknowledgement_sent: first_row,
-        packed: Vec::new(),
     };
     stream.run()
 }
@@ -49,7 +48,6 @@ struct Stream<'a> {
     attempts: u32,
     progress_at: Duration,
     acknowledgement_sent: u32,
-    packed: Vec<u8>,
 }
 
 impl Stream<'_> {
@@ -113,11 +111,7 @@ impl Stream<'_> {
 
     fn send(&mut self, row_sequence: u32) {
         let Some(row) = self.arrivals.in_flight.row(row_sequence) else { return };
-        self.packed.clear();
-        samples::pack(row.frame.row(row.index), &mut self.packed);
-        let sequence = self.conversation.next_sequence();
-        let request = Request::RowIn(RowIn { place: row.place, packed: &self.packed });
-        self.conversation.queue(&request, sequence);
+        self.conversation.queue_row(&row.place, row.frame.row(row.index));
         self.acknowledgement_sent = self.missing();
     }
 
