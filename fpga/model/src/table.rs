@@ -1,6 +1,6 @@
 //! The table set: one step a row, which is all that the datapath keeps of the lens.
 
-use crate::projection::{is_outside, shrink_factor};
+use crate::projection::shrink_factor;
 use crate::{Equidistant, Geometry, source};
 
 /// The step of a row that is not stretched: 1/k = 1 in units of 2^-24.
@@ -103,14 +103,6 @@ impl TableSet {
     /// The table of steps that are legal and one a row by the way they were made.
     pub(crate) fn of_legal_steps(geometry: Geometry, steps: Vec<u32>) -> Self {
         Self { geometry, steps }
-    }
-
-    /// How many rows of `geometry` lie outside the image circle of `lens`, which [`Self::from_lens`] leaves unstretched.
-    #[must_use]
-    pub fn rows_outside_circle(geometry: &Geometry, lens: &Equidistant, centre_y: Option<f64>) -> usize {
-        (0..geometry.height())
-            .filter(|&row| is_outside(lens.radius(), geometry.row_offset(row, centre_y)))
-            .count()
     }
 
     /// The geometry that the steps are for.

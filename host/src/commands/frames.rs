@@ -30,6 +30,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if arguments.lens.has_rows() {
+        return Err(anyhow::anyhow!("a frame has no row factors; leave --rows out").into());
+    }
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let chosen = if arguments.only.is_empty() { &Builtin::ALL[..] } else { &arguments.only };
     let folder = &arguments.output;

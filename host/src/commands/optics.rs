@@ -126,6 +126,11 @@ impl LensArguments {
         self.lens.as_ref().map(|_| "--lens").or(self.rows.map(|_| "--rows"))
     }
 
+    /// Whether the call says how row factors are made.
+    pub(super) fn has_rows(&self) -> bool {
+        self.rows.is_some()
+    }
+
     /// The frame and the lens before it.
     pub(super) fn optics(&self) -> anyhow::Result<Optics> {
         self.check()?;

@@ -35,6 +35,11 @@ fn assert_near(found: &Value, expected: f64, tolerance: f64) {
 }
 
 #[test]
+fn frames_have_no_row_factors() {
+    refused(&Folder::new(), &["frames", "-o", "frames", "--rows", "fitted"], "leave --rows out");
+}
+
+#[test]
 fn a_board_passes_with_the_rows_of_every_lens_file() {
     let folder = folder();
     for (file, width, height) in [
