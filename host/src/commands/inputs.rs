@@ -82,13 +82,10 @@ impl FrameName {
 
     /// The frame with these rows.
     pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Frame> {
-        let mut rows = self.rows(how, scene)?;
-        let width = rows.width();
-        let mut samples = vec![0; width * rows.height()];
-        for row in samples.chunks_exact_mut(width) {
-            rows.next_row(row)?;
+        match self {
+            Self::Builtin(builtin) => Ok(builtin.render(scene)?),
+            Self::File(path) => read_frame(path, how, &scene.geometry),
         }
-        Ok(Frame::new(width, how.depth, how.phase, samples)?)
     }
 }
 
@@ -101,12 +98,17 @@ pub(super) fn frame_sources(
     let source = |name| match name {
         FrameName::Builtin(builtin) => Ok(FrameSource::Builtin(builtin)),
         FrameName::File(path) => {
-            let frame = frames::read(&path, how)?;
-            check_size(&path, (frame.width(), frame.height()), geometry)?;
-            Ok(FrameSource::File { path, frame: Arc::new(frame) })
+            let frame = Arc::new(read_frame(&path, how, geometry)?);
+            Ok(FrameSource::File { path, frame })
         }
     };
     FrameName::all(names)?.into_iter().map(source).collect()
+}
+
+fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<Frame> {
+    let frame = frames::read(path, how)?;
+    check_size(path, (frame.width(), frame.height()), geometry)?;
+    Ok(frame)
 }
 
 fn check_size(path: &Path, (width, height): (usize, usize), geometry: &Geometry) -> anyhow::Result<()> {

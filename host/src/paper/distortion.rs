@@ -11,6 +11,16 @@ use crate::frames::preview::RgbImage;
 /// truncated to 8 bits. The paper leaves all three open; these come nearest to its Table 1.
 #[must_use]
 pub fn distorted(image: &RgbImage, lens: &Equidistant) -> RgbImage {
+    distorted_by(image, lens, between)
+}
+
+/// As [`distorted`], with what `sample` finds in a row of bytes at a place, 0 to its last column.
+#[must_use]
+pub fn distorted_by(
+    image: &RgbImage,
+    lens: &Equidistant,
+    sample: impl Fn(&[u8], f64) -> [u8; 3],
+) -> RgbImage {
     let (width, height) = (image.width, image.height);
     let centre = (width as f64 - 1.0) / 2.0;
     let mut data = Vec::with_capacity(image.data.len());
@@ -19,7 +29,7 @@ pub fn distorted(image: &RgbImage, lens: &Equidistant) -> RgbImage {
         let factor = stretch_factor(lens.radius(), y);
         for column in 0..width {
             let source = centre + factor * (column as f64 - centre);
-            data.extend(between(row, source.clamp(0.0, width as f64 - 1.0)));
+            data.extend(sample(row, source.clamp(0.0, width as f64 - 1.0)));
         }
     }
     RgbImage { width, height, data }

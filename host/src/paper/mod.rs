@@ -26,7 +26,7 @@ mod table_1;
 mod tested_board;
 mod views;
 
-pub use distortion::distorted;
+pub use distortion::{distorted, distorted_by};
 pub use error::PaperError;
 pub use exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
 pub use folder::{Folder, FolderError, numbers};

@@ -1,6 +1,6 @@
 //! How a lens distorts the photographs that a kernel is fitted to or measured on.
 
-use halfrow_model::{BitDepth, Equidistant, Geometry, Phase, TableSet, stretch_factor};
+use halfrow_model::{BitDepth, Equidistant, Geometry, Phase, TableSet};
 
 use super::{TrainingError, Warped};
 use crate::frames::mosaic;
@@ -45,7 +45,7 @@ impl Warp {
     fn distorted(self, image: &RgbImage, lens: &Equidistant) -> RgbImage {
         match self {
             Self::Linear => paper::distorted(image, lens),
-            Self::BandLimited => band_limited(image, lens),
+            Self::BandLimited => paper::distorted_by(image, lens, lanczos),
         }
     }
 }
@@ -94,22 +94,7 @@ fn even(image: &RgbImage) -> RgbImage {
     RgbImage { width, height: image.height, data }
 }
 
-/// `image` distorted as [`paper::distorted`] does it, its brightness taken from a band-limited picture.
-fn band_limited(image: &RgbImage, lens: &Equidistant) -> RgbImage {
-    let (width, height) = (image.width, image.height);
-    let centre = (width as f64 - 1.0) / 2.0;
-    let mut data = Vec::with_capacity(image.data.len());
-    for (index, row) in image.data.chunks_exact(3 * width).enumerate() {
-        let factor = stretch_factor(lens.radius(), index as f64 - (height as f64 - 1.0) / 2.0);
-        for column in 0..width {
-            let source = centre + factor * (column as f64 - centre);
-            data.extend(lanczos(row, source.clamp(0.0, width as f64 - 1.0)));
-        }
-    }
-    RgbImage { width, height, data }
-}
-
-/// Red, green and blue at the place `x` of a row.
+/// Red, green and blue at the place `x` of a row whose brightness is band-limited.
 fn lanczos(row: &[u8], x: f64) -> [u8; 3] {
     let left = x.floor();
     let last = row.len() as i64 / 3 - 1;
