@@ -8,7 +8,7 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use halfrow::link;
-use halfrow::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
+use halfrow_cli::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 
 /// How long a board is away that is plugged in again.
 const AWAY: Duration = Duration::from_millis(50);

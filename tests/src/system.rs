@@ -8,7 +8,7 @@ use halfrow::frames::Builtin;
 use halfrow::link;
 use halfrow::progress::Silent;
 use halfrow::report::{Outcome, Report};
-use halfrow::session::{Circumstances, FrameSource, Plan, verify};
+use halfrow::run::{Circumstances, FrameSource, Plan, verify};
 use halfrow::target::Target;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
 

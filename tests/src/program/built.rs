@@ -33,7 +33,16 @@ fn build(folder: &Path) {
         Some(profile) => profile,
     };
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--package", "halfrow", "--bin", "halfrow", "--profile", profile, "--target-dir"]);
+    cargo.args([
+        "build",
+        "--package",
+        "halfrow-cli",
+        "--bin",
+        "halfrow",
+        "--profile",
+        profile,
+        "--target-dir",
+    ]);
     cargo
         .arg(folder.parent().unwrap())
         .args(cfg!(feature = "sim").then_some("--features=sim"))

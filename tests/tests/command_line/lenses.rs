@@ -11,7 +11,7 @@ use crate::refused;
 
 /// The path of a lens file that the tests of the reader have.
 fn lens(name: &str) -> String {
-    let files = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../host/tests/lenses/files");
+    let files = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../host/judge/tests/lenses/files");
     files.join(name).display().to_string()
 }
 

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use halfrow::link;
-use halfrow::serve::Pty;
+use halfrow_cli::serve::Pty;
 use halfrow_tests::program::{self, Ended, Folder};
 use halfrow_tests::served::Served;
 

@@ -2,7 +2,7 @@
 
 use halfrow::board::{Board, OpenOptions};
 use halfrow::link;
-use halfrow::serve::Pty;
+use halfrow_cli::serve::Pty;
 use halfrow_tests::program::halfrow;
 use halfrow_tests::served::Served;
 use serde_json::{Value, json};

@@ -5,8 +5,8 @@ use std::io::Write as _;
 use std::os::fd::AsRawFd as _;
 use std::time::{Duration, Instant};
 
-use halfrow::link::{self, SerialError};
-use halfrow::serve::Pty;
+use halfrow::link::{self, Class, SerialError};
+use halfrow_cli::serve::Pty;
 use halfrow_tests::program::halfrow;
 use halfrow_tests::served::Served;
 
@@ -127,5 +127,5 @@ fn what_the_errors_of_serial_ports_mean_to_scripts() {
         "an FT2232H, which is behind /dev/ttyUSB1, cannot make 7000000 baud; the nearest that it makes: 6000000 and \
          12000000"
     );
-    assert_eq!(rate.exit().code(), 2);
+    assert_eq!(rate.class(), Class::Call);
 }

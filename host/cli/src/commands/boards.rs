@@ -1,0 +1,126 @@
+//! `halfrow boards`
+
+use clap::Args;
+use serde::Serialize;
+
+use super::{Failure, print, print_json};
+use halfrow::target::{BoardKind, Target};
+use halfrow::verdict::Exit;
+use halfrow_link::discovery::{self, Access, Answer, Found};
+
+/// List the boards that can be named with --board, and the devices that could be one
+///
+/// Devices are looked at from outside: whether they are busy, and whether you may open them. With --ask each one that is
+/// free is also greeted, which tells whether a board answers.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Look at these targets instead of searching
+    #[arg(value_name = "TARGET")]
+    targets: Vec<Target>,
+    /// Greet what is free: some ten bytes are written to it, whatever it is
+    #[arg(long)]
+    ask: bool,
+    /// Print a JSON list
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+/// A board that is no device.
+#[derive(Serialize)]
+struct BuiltIn {
+    target: &'static str,
+    kind: BoardKind,
+    summary: &'static str,
+}
+
+const BUILT_IN: [BuiltIn; 5] = [
+    BuiltIn {
+        target: "mock",
+        kind: BoardKind::Mock,
+        summary: "a board in this program; mock,KEY=VALUE sets its build, its wire and its fault",
+    },
+    BuiltIn {
+        target: "sim",
+        kind: BoardKind::Sim,
+        summary: "the board's Verilog under simulation; sim,KEY=VALUE sets its wire and that wire's fault, trace=FILE \
+                  writes a waveform (in programs built with --features sim)",
+    },
+    BuiltIn { target: "sim:uart", kind: BoardKind::Sim, summary: "the same behind the pins of its UART" },
+    BuiltIn { target: "sim:fifo", kind: BoardKind::Sim, summary: "the same behind the pins of its FT2232H" },
+    BuiltIn {
+        target: "replay:FILE",
+        kind: BoardKind::Replay,
+        summary: "the board that answered when FILE was written with --record",
+    },
+];
+
+/// A line of the list.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Entry<'a> {
+    Device(&'a Found),
+    BuiltIn(&'static BuiltIn),
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut devices: Vec<Found> = if arguments.targets.is_empty() {
+        discovery::sources().iter().flat_map(|source| source.find()).collect()
+    } else {
+        arguments.targets.iter().map(Found::named).collect()
+    };
+    if arguments.ask {
+        for device in devices.iter_mut().filter(|device| device.is_open_to_us()) {
+            device.answer = Some(halfrow::probe(&device.target.parse()?));
+        }
+    }
+    let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();
+    if arguments.targets.is_empty() {
+        entries.extend(BUILT_IN.iter().map(Entry::BuiltIn));
+    }
+    if arguments.json {
+        print_json(&entries)?;
+    } else {
+        print(&entries.iter().map(text).collect::<Vec<_>>().join("\n"))?;
+    }
+    Ok(Exit::Pass)
+}
+
+fn text(entry: &Entry<'_>) -> String {
+    let device = match entry {
+        Entry::BuiltIn(BuiltIn { target, summary, .. }) => return format!("{target:<12} {summary}"),
+        Entry::Device(device) => device,
+    };
+    let mut lines = vec![device.target.clone(), format!("    {}", device.summary)];
+    let names = device.device.iter().chain(&device.names).map(|name| name.display().to_string());
+    let names: Vec<_> = names.collect();
+    if !names.is_empty() {
+        lines.push(format!("    {}", names.join(", ")));
+    }
+    lines.push(format!("    {}", state(device)));
+    lines.join("\n")
+}
+
+/// What came of asking, or else of looking.
+fn state(device: &Found) -> String {
+    match &device.answer {
+        Some(Answer::Board { name, datapath }) => {
+            return format!("a halfrow board answers: {name}, datapath {datapath}");
+        }
+        Some(Answer::Held) => return "a halfrow board answers, which another host holds".to_owned(),
+        Some(Answer::Foreign { reason }) => return format!("something else answers: {reason}"),
+        Some(Answer::Silent) => return "nothing answers".to_owned(),
+        Some(Answer::Busy) => return "busy: it is open elsewhere".to_owned(),
+        Some(Answer::Failed { reason }) => return format!("cannot be opened: {reason}"),
+        None => {}
+    }
+    match &device.access {
+        Access::Free => "free; --ask tells whether a board answers".to_owned(),
+        Access::Busy { holders } => {
+            let holders: Vec<_> = holders.iter().map(ToString::to_string).collect();
+            format!("busy: {} has it open", holders.join(" and "))
+        }
+        Access::Denied { remedy } => format!("you may not open it; {remedy}"),
+        Access::Missing => "is not there; check that the board is plugged in and powered".to_owned(),
+        Access::Unknown => "unknown; --ask tells whether a board answers".to_owned(),
+    }
+}

@@ -1,0 +1,146 @@
+//! `halfrow correct`
+
+mod by_board;
+mod by_model;
+mod places;
+
+use std::path::PathBuf;
+
+use clap::Args;
+use halfrow_model::Frame;
+use serde_json::json;
+
+use super::board::BoardArguments;
+use super::inputs::{FrameName, InputArguments};
+use super::optics::{self, Chosen, LensArguments};
+use super::table_file::TableArgument;
+use super::{Context, Failure, print, print_json};
+use crate::progress;
+use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
+use halfrow::target::BoardKind;
+use halfrow::verdict::Exit;
+use places::{Places, Wanted};
+
+/// Correct frames with the reference model, or with a board, unjudged
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The frames: PGM, PNG, TIFF, DNG, headerless files with --raw, or builtin:NAME
+    #[arg(required = true, value_name = "IN")]
+    inputs: Vec<String>,
+    #[command(flatten)]
+    tables: TableArgument,
+    /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
+    #[arg(long, value_name = "NAME|FILE")]
+    kernel: Option<String>,
+    /// Correct with the reference model, whatever board is set
+    #[arg(long)]
+    model: bool,
+    #[command(flatten)]
+    board: BoardArguments,
+    /// Where to: a .pgm, .png, .tif, .dng or .raw file, or a folder for several frames
+    #[arg(short, long, value_name = "OUT")]
+    output: PathBuf,
+    /// Format of the files in a folder: pgm, png, tif, dng or raw [default: pgm]
+    #[arg(long, value_name = "FORMAT")]
+    format: Option<Format>,
+    /// Where to put a picture to look at: a .png file, or a folder for several frames
+    ///
+    /// Each missing colour is the mean of its neighbours; linear light is coded as sRGB, full scale is white, and colours are not
+    /// balanced. A raw developer does better with a DNG.
+    #[arg(long, value_name = "OUT")]
+    preview: Option<PathBuf>,
+    /// The samples of the preview are coded for the screen already, as those of a photograph are
+    #[arg(long, requires = "preview")]
+    preview_coded: bool,
+    /// Replace files that are there
+    #[arg(long)]
+    overwrite: bool,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+    #[command(flatten)]
+    input: InputArguments,
+    #[command(flatten)]
+    lens: LensArguments,
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let settings = &context.settings;
+    if !arguments.model && !arguments.board.is_named(settings) {
+        return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
+    }
+    let file = arguments.tables.file(&arguments.lens, settings)?;
+    let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
+    let chosen = optics::choose(file, &arguments.lens, kernel)?;
+    let geometry = *chosen.tables.geometry();
+    let job = Job {
+        arguments,
+        inputs: FrameName::all(&arguments.inputs)?,
+        how: arguments.input.read_options(&geometry, arguments.lens.phase),
+        scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
+        chosen,
+    };
+    job.check()?;
+    let places = Places::of(&job.inputs, &arguments.wanted())?;
+    let watched = progress::for_stderr(context.quiet || arguments.json);
+    watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
+    let board = if arguments.model {
+        job.by_model(&places, watched.as_ref()).map(|()| None)
+    } else {
+        job.by_board(&places, context, watched.as_ref()).map(Some)
+    };
+    watched.done();
+    report(arguments.json, board?, &places)
+}
+
+/// What is to be corrected, and how.
+struct Job<'a> {
+    arguments: &'a Arguments,
+    inputs: Vec<FrameName>,
+    how: ReadOptions,
+    scene: Scene,
+    chosen: Chosen,
+}
+
+impl Job<'_> {
+    /// Whether all files are there and of the right size, before anything is written.
+    fn check(&self) -> anyhow::Result<()> {
+        let mut files = self.inputs.iter().filter(|input| input.can_be_read_twice());
+        files.try_for_each(|input| input.rows(&self.how, &self.scene).map(drop))
+    }
+
+    /// Writes the preview of the frame with this index, if one is asked for.
+    fn write_preview(&self, places: &Places, index: usize, corrected: &Frame) -> Result<(), WriteError> {
+        let Some(path) = places.previews.get(index) else { return Ok(()) };
+        let develop = if self.arguments.preview_coded { preview::demosaic_coded } else { preview::demosaic };
+        frames::write_rgb(path, &develop(corrected), self.arguments.overwrite)
+    }
+}
+
+impl Arguments {
+    fn wanted(&self) -> Wanted<'_> {
+        let (preview, format) = (self.preview.as_deref(), self.format);
+        Wanted { output: &self.output, format, preview, overwrite: self.overwrite }
+    }
+}
+
+/// Says what was written, and by whom it was corrected: a board, or else the model.
+fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Exit, Failure> {
+    if as_json {
+        let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
+        let [outputs, previews] = [&places.frames, &places.previews]
+            .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
+        print_json(&json!({
+            "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs, "previews": previews,
+        }))?;
+        return Ok(Exit::Pass);
+    }
+    let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
+    for path in &places.frames {
+        print(&format!("wrote {}, corrected by the {whom}, not judged", path.display()))?;
+    }
+    for path in &places.previews {
+        print(&format!("wrote {}, a preview", path.display()))?;
+    }
+    Ok(Exit::Pass)
+}

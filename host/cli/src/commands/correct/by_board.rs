@@ -1,0 +1,90 @@
+//! Frames corrected by a board, unjudged.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+use anyhow::Context as _;
+use halfrow_model::Frame;
+
+use super::places::Places;
+use super::{Context, Failure, Job};
+use halfrow::board::{Board, BoardError};
+use halfrow::correction::Correction;
+use halfrow::frames;
+use halfrow::progress::Progress;
+use halfrow::run::{self, JUDGED};
+use halfrow::target::BoardKind;
+
+impl Job<'_> {
+    /// Corrects all frames, and returns the kind of board that did. What fails ends the rest; frames that are written by
+    /// then stay.
+    pub(super) fn by_board(
+        &self,
+        places: &Places,
+        context: &Context,
+        progress: &dyn Progress,
+    ) -> Result<BoardKind, Failure> {
+        let candidate = self.arguments.board.candidate(&context.settings)?;
+        if candidate.kind == BoardKind::Replay {
+            return Err(
+                anyhow::anyhow!("a recording corrects no new frames; use it with `halfrow verify`").into()
+            );
+        }
+        let options = self.arguments.board.open_options(&context.settings, None)?;
+        let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+        let corrected = match run::misfit(&self.chosen.tables, &self.chosen.kernel, &board.capabilities) {
+            None => self.stream(&mut board, places, progress),
+            Some(misfit) => Err(anyhow::anyhow!(misfit).into()),
+        };
+        // Whatever happened, the next run must find the board free.
+        let closed = board.close();
+        corrected?;
+        closed.map_err(failed)?;
+        Ok(candidate.kind.confirmed_by(board.capabilities.nature))
+    }
+
+    fn stream(&self, board: &mut Board, places: &Places, progress: &dyn Progress) -> Result<(), Failure> {
+        places.make_folders().map_err(Failure::error)?;
+        let correction = Correction {
+            tables: &self.chosen.tables,
+            kernel: &self.chosen.kernel,
+            generation: JUDGED,
+            first_frame: 0,
+        };
+        let (mut unread, mut unwritten) = (None, None);
+        let inputs = self.inputs.iter().map_while(|input| match input.frame(&self.how, &self.scene) {
+            Ok(frame) => Some(Arc::new(frame)),
+            Err(error) => {
+                unread = Some(error);
+                None
+            }
+        });
+        let mut indices = 0..;
+        let take = |samples| match self.write(places, indices.next().unwrap_or_default(), samples) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                unwritten = Some(error);
+                ControlFlow::Break(())
+            }
+        };
+        let streamed = correction.run(board, inputs, take, progress);
+        match (unwritten, unread) {
+            (Some(error), _) => Err(error),
+            (None, Some(error)) => Err(error.into()),
+            (None, None) => streamed.map(drop).map_err(failed),
+        }
+    }
+
+    fn write(&self, places: &Places, index: usize, samples: Vec<u16>) -> Result<(), Failure> {
+        let width = self.scene.geometry.width();
+        let frame = Frame::new(width, self.how.depth, self.how.phase, samples)
+            .context("the board's samples are no frame; judge it with `halfrow verify`")
+            .map_err(Failure::error)?;
+        frames::write(&places.frames[index], &frame, self.arguments.overwrite).map_err(Failure::error)?;
+        self.write_preview(places, index, &frame).map_err(Failure::error)
+    }
+}
+
+fn failed(error: BoardError) -> Failure {
+    Failure { exit: error.exit(), error: error.into() }
+}

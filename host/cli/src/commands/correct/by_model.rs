@@ -1,0 +1,60 @@
+//! Frames corrected by the reference model, row by row, as many at a time as there are processors.
+
+use halfrow_model::{Corrector, Frame};
+use rayon::prelude::*;
+
+use super::places::Places;
+use super::{Failure, Job};
+use halfrow::frames::{self, FrameShape, WriteError};
+use halfrow::progress::Progress;
+use halfrow::reference;
+
+impl Job<'_> {
+    /// Corrects all frames. One that fails ends the rest; those that are written by then stay.
+    pub(super) fn by_model(&self, places: &Places, progress: &dyn Progress) -> Result<(), Failure> {
+        places.make_folders().map_err(Failure::error)?;
+        let corrector = || reference::corrector(&self.chosen.kernel);
+        (0..self.inputs.len()).into_par_iter().try_for_each_init(corrector, |corrector, index| {
+            self.correct_one(places, index, corrector)?;
+            progress.rows(self.scene.geometry.height() as u64);
+            Ok(())
+        })
+    }
+
+    fn correct_one(&self, places: &Places, index: usize, corrector: &mut Corrector) -> Result<(), Failure> {
+        let geometry = self.chosen.tables.geometry();
+        let mut rows = self.inputs[index].rows(&self.how, &self.scene)?;
+        let mut entering = vec![0; geometry.width()];
+        let mut steps = self.chosen.tables.steps().iter();
+        let mut kept = Vec::new();
+        let shape = FrameShape {
+            width: geometry.width(),
+            height: geometry.height(),
+            depth: geometry.depth(),
+            phase: self.how.phase,
+        };
+        let correct_next = |leaving: &mut [u16]| -> anyhow::Result<()> {
+            rows.next_row(&mut entering)?;
+            if let Some(&step) = steps.next() {
+                corrector.correct_row(geometry, step, &entering, leaving);
+            }
+            if !places.previews.is_empty() {
+                kept.extend_from_slice(leaving);
+            }
+            Ok(())
+        };
+        let written =
+            frames::write_rows(&places.frames[index], &shape, self.arguments.overwrite, correct_next);
+        written.map_err(unwritten)?;
+        if !kept.is_empty() {
+            let corrected = Frame::new(shape.width, shape.depth, shape.phase, kept)?;
+            self.write_preview(places, index, &corrected).map_err(Failure::error)?;
+        }
+        Ok(())
+    }
+}
+
+/// What is wrong with an input is the caller's to mend, unlike an output that cannot be written.
+fn unwritten(error: anyhow::Error) -> Failure {
+    if error.is::<WriteError>() { Failure::error(error) } else { error.into() }
+}

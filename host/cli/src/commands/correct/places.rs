@@ -1,0 +1,107 @@
+//! Where corrected frames and their previews are written to.
+
+use std::collections::HashSet;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context as _, bail, ensure};
+
+use super::super::inputs::FrameName;
+use halfrow::frames::{Format, WriteError};
+
+/// The files of a call, one for each input, in the order of the inputs.
+pub(super) struct Places {
+    /// The corrected frames.
+    pub(super) frames: Vec<PathBuf>,
+    /// Their previews; none when none is asked for.
+    pub(super) previews: Vec<PathBuf>,
+    folders: Vec<PathBuf>,
+}
+
+/// What the call says about them.
+pub(super) struct Wanted<'a> {
+    /// The file or folder of the frames.
+    pub(super) output: &'a Path,
+    /// The format of the frames, when the call names it.
+    pub(super) format: Option<Format>,
+    /// The file or folder of the previews.
+    pub(super) preview: Option<&'a Path>,
+    /// Whether what is there may be replaced.
+    pub(super) overwrite: bool,
+}
+
+impl Places {
+    /// One file for one frame; for several, files of the inputs' names in a folder.
+    pub(super) fn of(inputs: &[FrameName], wanted: &Wanted<'_>) -> anyhow::Result<Self> {
+        let mut places = Self { frames: Vec::new(), previews: Vec::new(), folders: Vec::new() };
+        let format = wanted.format.unwrap_or(Format::Pgm);
+        places.frames = places.paths(inputs, wanted.output, format, "-o")?;
+        if let Some(preview) = wanted.preview {
+            places.previews = places.paths(inputs, preview, Format::Png, "--preview")?;
+        }
+        for path in &places.frames {
+            let named = Format::of(path)?;
+            if let Some(format) = wanted.format.filter(|&format| format != named) {
+                bail!("{} is no {format}; leave --format out, or name a folder with -o", path.display());
+            }
+        }
+        if let Some(path) = places.previews.iter().find(|path| !matches!(Format::of(path), Ok(Format::Png))) {
+            return Err(WriteError::NotPng { path: path.clone() }.into());
+        }
+        places.check(wanted.overwrite)?;
+        Ok(places)
+    }
+
+    fn paths(
+        &mut self,
+        inputs: &[FrameName],
+        place: &Path,
+        format: Format,
+        option: &str,
+    ) -> anyhow::Result<Vec<PathBuf>> {
+        let is_file = place.extension().is_some() && !place.is_dir();
+        if is_file {
+            let (place, frames) = (place.display(), inputs.len());
+            ensure!(frames == 1, "{place} is one file for {frames} frames; name a folder with {option}");
+        } else {
+            self.folders.push(place.to_owned());
+        }
+        let path = |input: &FrameName| match is_file {
+            true => Ok(place.to_owned()),
+            false => Ok(place.join(format!("{}.{format}", input.stem()?))),
+        };
+        inputs.iter().map(path).collect()
+    }
+
+    /// No file twice, and none that is there unless it may be replaced.
+    fn check(&self, overwrite: bool) -> anyhow::Result<()> {
+        let mut seen = HashSet::new();
+        for path in self.frames.iter().chain(&self.previews) {
+            if !seen.insert(resolved(path)) {
+                let shared = path.display();
+                bail!("two inputs would both be written to {shared}, or a frame and its preview; part them");
+            }
+        }
+        match self.frames.iter().chain(&self.previews).find(|path| path.exists() && !overwrite) {
+            Some(taken) => bail!("{} is there already; give --overwrite to replace it", taken.display()),
+            None => Ok(()),
+        }
+    }
+
+    /// Makes the folders that are not there.
+    pub(super) fn make_folders(&self) -> anyhow::Result<()> {
+        for folder in &self.folders {
+            std::fs::create_dir_all(folder)
+                .with_context(|| format!("{} cannot be made; name another folder", folder.display()))?;
+        }
+        Ok(())
+    }
+}
+
+/// The path by which a file of many names is known again, if it or its folder is there.
+fn resolved(path: &Path) -> PathBuf {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    path.canonicalize().unwrap_or_else(|_| {
+        let name = path.file_name().unwrap_or_default();
+        folder.canonicalize().map_or_else(|_| path.to_owned(), |folder| folder.join(name))
+    })
+}

@@ -1,0 +1,50 @@
+//! `halfrow info`
+
+use clap::Args;
+use serde_json::json;
+
+use super::board::BoardArguments;
+use super::{Context, Failure, print, print_json};
+use halfrow::board::{Board, Status};
+use halfrow::report::{BoardReport, Identity};
+use halfrow::verdict::Exit;
+
+/// Say what a board is, what it can do, and what it has counted
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    board: BoardArguments,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let candidate = arguments.board.candidate(&context.settings)?;
+    let options = arguments.board.open_options(&context.settings, None)?;
+    let failed = |error: halfrow::board::BoardError| Failure { exit: error.exit(), error: error.into() };
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+    let status = board.status(false).map_err(failed)?;
+    board.close().map_err(failed)?;
+    let identity = Identity::of(&board.welcome, &board.capabilities);
+    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
+    let report = BoardReport { kind, target: candidate.target, identity: Some(identity) };
+    if arguments.json {
+        let counters: serde_json::Map<_, _> =
+            status.counters().into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect();
+        print_json(&json!({ "verdict": null, "exit_code": 0, "board": report, "counters": counters }))?;
+    } else {
+        print(&text(&report, &status))?;
+    }
+    Ok(Exit::Pass)
+}
+
+fn text(board: &BoardReport, status: &Status) -> String {
+    let mut lines = vec![format!("{:<18} {} ({})", "board", board.target, board.kind)];
+    if let Some(identity) = &board.identity {
+        lines.extend(identity.lines().into_iter().map(|(name, value)| format!("{name:<18} {value}")));
+    }
+    lines.push(String::new());
+    lines.extend(status.counters().into_iter().map(|(name, count)| format!("{name:<18} {count}")));
+    lines.join("\n")
+}

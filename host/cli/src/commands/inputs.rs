@@ -1,0 +1,130 @@
+//! Frames that a user names: built-in ones and files.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use anyhow::{Context as _, ensure};
+use clap::Args;
+use halfrow_model::{Frame, Geometry, Phase};
+
+use halfrow::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions, RowReader, Scene};
+use halfrow::report::{FileHash, sha256};
+use halfrow::run::FrameSource;
+
+/// How frame files are read.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Frame files")]
+pub(super) struct InputArguments {
+    /// Layout of headerless frame files: u8, u16le, mipi10 or mipi12; their size is the tables'
+    #[arg(long, value_name = "LAYOUT")]
+    raw: Option<RawLayout>,
+}
+
+impl InputArguments {
+    /// How to read a frame for `geometry`.
+    pub(super) fn read_options(&self, geometry: &Geometry, phase: Phase) -> ReadOptions {
+        let raw =
+            self.raw.map(|layout| RawGeometry { width: geometry.width(), height: geometry.height(), layout });
+        ReadOptions { depth: geometry.depth(), phase, raw }
+    }
+}
+
+/// A frame that a user names.
+#[derive(Clone, Debug)]
+pub(super) enum FrameName {
+    /// `builtin:NAME`
+    Builtin(Builtin),
+    /// Any other name.
+    File(PathBuf),
+}
+
+impl FrameName {
+    /// The frames with these names.
+    pub(super) fn all(names: &[String]) -> anyhow::Result<Vec<Self>> {
+        let read = |name: &String| match name.strip_prefix("builtin:") {
+            Some(builtin) => Ok(Self::Builtin(builtin.parse()?)),
+            None => Ok(Self::File(PathBuf::from(name))),
+        };
+        names.iter().map(read).collect()
+    }
+
+    /// The name without folder and extension.
+    pub(super) fn stem(&self) -> anyhow::Result<String> {
+        match self {
+            Self::Builtin(builtin) => Ok(builtin.name().to_owned()),
+            Self::File(path) => {
+                let stem = path.file_stem().context("an input has no file name; name a file")?;
+                Ok(stem.to_string_lossy().into_owned())
+            }
+        }
+    }
+
+    /// Whether it is a file, there or not, that can be read twice, as a pipe cannot.
+    pub(super) fn can_be_read_twice(&self) -> bool {
+        match self {
+            Self::Builtin(_) => false,
+            Self::File(path) => fs::metadata(path).map_or(true, |about| about.is_file()),
+        }
+    }
+
+    /// The rows of the frame: of a file that is read as `how` says, or rendered for `scene`, whose size both must have.
+    pub(super) fn rows(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<RowReader> {
+        match self {
+            Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
+            Self::File(path) => {
+                let rows = RowReader::open(path, how)?;
+                check_size(path, (rows.width(), rows.height()), &scene.geometry)?;
+                Ok(rows)
+            }
+        }
+    }
+
+    /// The frame with these rows.
+    pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Frame> {
+        match self {
+            Self::Builtin(builtin) => Ok(builtin.render(scene)?),
+            Self::File(path) => read_frame(path, how, &scene.geometry),
+        }
+    }
+}
+
+/// The frames with these names, the files' read whole, which must fit `geometry`.
+pub(super) fn frame_sources(
+    names: &[String],
+    how: &ReadOptions,
+    geometry: &Geometry,
+) -> anyhow::Result<Vec<FrameSource>> {
+    let source = |name| match name {
+        FrameName::Builtin(builtin) => Ok(FrameSource::Builtin(builtin)),
+        FrameName::File(path) => {
+            let frame = Arc::new(read_frame(&path, how, geometry)?);
+            Ok(FrameSource::File { path, frame })
+        }
+    };
+    FrameName::all(names)?.into_iter().map(source).collect()
+}
+
+fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<Frame> {
+    let frame = frames::read(path, how)?;
+    check_size(path, (frame.width(), frame.height()), geometry)?;
+    Ok(frame)
+}
+
+fn check_size(path: &Path, (width, height): (usize, usize), geometry: &Geometry) -> anyhow::Result<()> {
+    ensure!(
+        (width, height) == (geometry.width(), geometry.height()),
+        "{} is {width} x {height}, and the tables are for {} x {}; make tables of the frame's size with `halfrow \
+         tables --width {width} --height {height}`, or give these options here",
+        path.display(),
+        geometry.width(),
+        geometry.height(),
+    );
+    Ok(())
+}
+
+/// The file's SHA-256.
+pub(super) fn file_hash(path: &Path) -> anyhow::Result<FileHash> {
+    let bytes = fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
+    Ok(FileHash { path: path.display().to_string(), sha256: sha256([bytes]) })
+}

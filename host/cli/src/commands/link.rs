@@ -1,0 +1,111 @@
+//! `halfrow link`
+
+use std::time::Duration;
+
+use clap::Args;
+use serde_json::json;
+
+use super::board::BoardArguments;
+use super::{Context, Failure, print, print_json};
+use halfrow::board::{Board, BoardError};
+use halfrow::link_test::{self, Figures, LinkTestError, Rate};
+use halfrow::report::{BoardReport, Identity};
+use halfrow::verdict::Exit;
+
+/// Test the link to a board: error rate, round trips, throughput each way and together
+///
+/// Random bytes go to the board and come back; nothing that the board computes is judged. Its tables are lost. Exit codes: 0 the
+/// link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    board: BoardArguments,
+    /// How long each of the five parts takes
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
+    seconds: Duration,
+    /// Seed of what is sent
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.001..=86_400.0).contains(seconds));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "give a number of seconds, 0.001 to 86400".to_owned())
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let candidate = arguments.board.candidate(&context.settings)?;
+    let options = arguments.board.open_options(&context.settings, None)?;
+    let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+    let tested = link_test::run(&mut board, arguments.seconds, arguments.seed);
+    let identity = Identity::of(&board.welcome, &board.capabilities);
+    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
+    if let Err(error) = board.close() {
+        tracing::debug!("the session was not closed: {error}");
+    }
+    let figures = tested.map_err(|error| match error {
+        LinkTestError::Board(error) => failed(error),
+        error @ LinkTestError::NoFrame(_) => Failure::error(error),
+    })?;
+    let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
+    if arguments.json {
+        let board = BoardReport { kind, target: candidate.target, identity: Some(identity) };
+        print_json(&json!({ "verdict": null, "exit_code": exit, "board": board, "link": figures }))?;
+    } else {
+        print(&format!("{:<12} {} ({kind})\n{}", "board", candidate.target, text(&figures)))?;
+    }
+    Ok(exit)
+}
+
+fn text(figures: &Figures) -> String {
+    let Figures { link, errors, round_trips, .. } = figures;
+    let damaged = errors.damaged_out + errors.damaged_in;
+    let mut lines = vec![
+        format!("{:<12} {link}", "link"),
+        format!(
+            "{:<12} {damaged} of {} packets ({} out, {} in): {:.1e}, below {:.1e} at 95 % confidence; {} sent again",
+            "damaged",
+            errors.packets,
+            errors.damaged_out,
+            errors.damaged_in,
+            errors.rate,
+            errors.bound,
+            errors.retries
+        ),
+        format!(
+            "{:<12} median {:.0} µs, 90 % {:.0} µs, 99 % {:.0} µs, {:.0} to {:.0} µs in {}",
+            "round trip",
+            round_trips.median_us,
+            round_trips.p90_us,
+            round_trips.p99_us,
+            round_trips.least_us,
+            round_trips.most_us,
+            round_trips.count
+        ),
+    ];
+    let parts =
+        [("to board", &figures.to_board), ("to host", &figures.to_host), ("together", &figures.together)];
+    lines.extend(
+        parts.map(|(name, both)| format!("{name:<12} {} out, {} in", rate(&both.out), rate(&both.back))),
+    );
+    if errors.wrong > 0 {
+        let wrong = errors.wrong;
+        lines.push(format!(
+            "{:<12} {wrong} answers hold other bytes than were sent, under a right CRC",
+            "BOARD"
+        ));
+    }
+    lines.join("\n")
+}
+
+fn rate(rate: &Rate) -> String {
+    match (rate.bytes_per_second, rate.share) {
+        (Some(rate), Some(share)) => format!("{:.3} MB/s ({:.1} %)", rate / 1e6, 100.0 * share),
+        (Some(rate), None) => format!("{:.3} MB/s", rate / 1e6),
+        (None, _) => "in no time".to_owned(),
+    }
+}

@@ -1,0 +1,347 @@
+//! The options of geometry, lens and kernel, which several commands share.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use anyhow::{Context as _, bail};
+use clap::{Args, ValueEnum};
+use halfrow_model::{
+    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
+    LensError, Phase, TableSet,
+};
+
+use halfrow::frames::Scene;
+use halfrow::kernels::NamedKernel;
+use halfrow::lenses::LensFile;
+use halfrow::tables::{KernelFile, TableFile, TableFileError};
+
+/// The paper's frame.
+const DEFAULT_SIZE: (usize, usize) = (1920, 1080);
+/// The pixels of the paper's sensor, in micrometres.
+const DEFAULT_PITCH: f64 = 2.2;
+/// The paper's image circle, in degrees.
+const DEFAULT_FIELD: f64 = 180.0;
+
+/// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
+#[derive(Clone, Debug, Args)]
+#[command(next_help_heading = "Frame and lens")]
+pub(super) struct LensArguments {
+    /// Columns, even, 64 to 2592 [default: 1920, or those of the lens file's pictures]
+    #[arg(long, value_name = "SAMPLES")]
+    width: Option<usize>,
+    /// Rows, 1 to 2048 [default: 1080, or those of the lens file's pictures]
+    #[arg(long, value_name = "ROWS")]
+    height: Option<usize>,
+    /// Bits a sample: 8, 10 or 12
+    #[arg(long, default_value = "12", value_parser = depth)]
+    bits: BitDepth,
+    /// Bayer phase: grbg, rggb, bggr or gbrg
+    #[arg(long, default_value_t = Phase::Grbg)]
+    pub(super) phase: Phase,
+    /// The lens: a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or equidistant:RADIUS
+    #[arg(long, value_name = "FILE|equidistant:RADIUS", conflicts_with_all = ["radius", "focal_length"])]
+    lens: Option<LensName>,
+    /// Distance between two pixels of the camera that the lens file was made with, in micrometres: takes the lens alone from
+    /// it, scaled to --pixel-pitch, with its axis in the middle of the frame
+    #[arg(long, value_name = "UM", requires = "lens")]
+    lens_pitch: Option<f64>,
+    /// How the row factors are found [default: fitted for a lens file, equation-9 otherwise]
+    #[arg(long, value_enum)]
+    rows: Option<Rows>,
+    /// Radius of the image of 180 degrees, in pixels, instead of focal length and pixel pitch
+    #[arg(long, value_name = "PIXELS", conflicts_with_all = ["focal_length", "pixel_pitch", "field_of_view"])]
+    radius: Option<f64>,
+    /// Focal length of the lens, in millimetres
+    #[arg(long, default_value_t = 1.55, value_name = "MM")]
+    focal_length: f64,
+    /// Distance between two pixels, in micrometres [default: 2.2]
+    #[arg(long, value_name = "UM")]
+    pixel_pitch: Option<f64>,
+    /// Field of view of the whole image circle, in degrees [default: 180]
+    #[arg(long, value_name = "DEGREES")]
+    field_of_view: Option<f64>,
+    /// Column of the optical centre [default: the lens file's, or the middle]
+    #[arg(long, value_name = "COLUMN", allow_negative_numbers = true)]
+    centre_x: Option<f64>,
+    /// Row of the optical centre [default: the lens file's, or the middle]
+    #[arg(long, value_name = "ROW", allow_negative_numbers = true)]
+    centre_y: Option<f64>,
+}
+
+/// A lens by the name that the command line gives it.
+#[derive(Clone, Debug)]
+enum LensName {
+    Equidistant(f64),
+    File(PathBuf),
+}
+
+impl FromStr for LensName {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.strip_prefix("equidistant:") {
+            None => Ok(Self::File(PathBuf::from(text))),
+            Some(radius) => radius.parse().map(Self::Equidistant).map_err(|_| {
+                "equidistant: takes the radius of the image of 180 degrees, in pixels".to_owned()
+            }),
+        }
+    }
+}
+
+/// How row factors are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(super) enum Rows {
+    /// For every row the factor with the smallest largest error
+    Fitted,
+    /// The paper's formula
+    #[value(name = "equation-9")]
+    Equation9,
+}
+
+impl Rows {
+    /// The name in the spelling of the command line.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Fitted => "fitted",
+            Self::Equation9 => "equation-9",
+        }
+    }
+}
+
+fn depth(text: &str) -> Result<BitDepth, String> {
+    text.parse().ok().and_then(BitDepth::from_bits).ok_or_else(|| "a sample has 8, 10 or 12 bits".to_owned())
+}
+
+impl LensArguments {
+    /// The file that describes the lens, if one does.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match &self.lens {
+            Some(LensName::File(path)) => Some(path),
+            _ => None,
+        }
+    }
+
+    /// The option, if one is given, that means nothing but making tables.
+    pub(super) fn making_tables(&self) -> Option<&'static str> {
+        self.lens.as_ref().map(|_| "--lens").or(self.rows.map(|_| "--rows"))
+    }
+
+    /// Whether the call says how row factors are made.
+    pub(super) fn has_rows(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    /// The frame and the lens before it.
+    pub(super) fn optics(&self) -> anyhow::Result<Optics> {
+        self.check()?;
+        match self.file() {
+            Some(path) => self.calibrated(path),
+            None => self.equidistant(),
+        }
+    }
+
+    /// Refuses options that say nothing beside the lens, or something else than it.
+    fn check(&self) -> anyhow::Result<()> {
+        let scales = self.lens_pitch.is_some();
+        match self.lens {
+            Some(LensName::File(_)) if self.pixel_pitch.is_some() && !scales => {
+                bail!(
+                    "--pixel-pitch does nothing with a lens file unless --lens-pitch is given; give both, or none"
+                )
+            }
+            Some(LensName::Equidistant(_)) if scales => {
+                bail!("--lens-pitch goes with a lens file; give its name to --lens")
+            }
+            Some(LensName::Equidistant(_)) if self.pixel_pitch.is_some() || self.field_of_view.is_some() => {
+                bail!(
+                    "--lens equidistant:RADIUS cannot be used with --pixel-pitch or --field-of-view; give the radius alone, or \
+                 these and --focal-length without it"
+                )
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn pixel_pitch(&self) -> f64 {
+        self.pixel_pitch.unwrap_or(DEFAULT_PITCH)
+    }
+
+    fn field_of_view(&self) -> f64 {
+        self.field_of_view.unwrap_or(DEFAULT_FIELD)
+    }
+
+    fn equidistant(&self) -> anyhow::Result<Optics> {
+        let radius = match self.lens {
+            Some(LensName::Equidistant(radius)) => Some(radius),
+            _ => self.radius,
+        };
+        let lens = match radius {
+            Some(radius) => Equidistant::from_radius(radius)?,
+            None => {
+                Equidistant::from_focal_length(self.focal_length, self.pixel_pitch(), self.field_of_view())?
+            }
+        };
+        let geometry = self.geometry(DEFAULT_SIZE)?;
+        let camera = self.camera(geometry, lens.into(), middle(&geometry))?;
+        let rows = self.rows.unwrap_or(Rows::Equation9);
+        let name = "equidistant lens".to_owned();
+        Ok(Optics { camera, lens, is_calibrated: false, centre_y: self.centre_y, rows, name })
+    }
+
+    fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
+        let file = LensFile::read(path)?;
+        let pictures = file.size.filter(|_| self.lens_pitch.is_none()).unwrap_or(DEFAULT_SIZE);
+        let geometry = self.geometry(pictures)?;
+        let (lens, centre) = match self.lens_pitch {
+            Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, middle(&geometry)),
+            None => file
+                .for_frame(geometry.width(), geometry.height())
+                .with_context(|| format!("the lens file {} does not fit", path.display()))?,
+        };
+        let camera = self.camera(geometry, lens, centre)?;
+        let (name, rows) = (format!("{} {}", file.model, path.display()), self.rows.unwrap_or(Rows::Fitted));
+        Ok(Optics {
+            lens: Equidistant::from_radius(camera.radius())?,
+            is_calibrated: true,
+            centre_y: Some(camera.centre().1),
+            camera,
+            rows,
+            name,
+        })
+    }
+
+    /// Pixels of the frame for each of a camera with pixels of `pitch`.
+    fn scale_from(&self, pitch: f64) -> Result<f64, LensError> {
+        let pitches = [pitch, self.pixel_pitch()];
+        match pitches.into_iter().find(|pitch| !(pitch.is_finite() && *pitch > 0.0)) {
+            Some(wrong) => Err(LensError::PixelPitch(wrong)),
+            None => Ok(pitch / self.pixel_pitch()),
+        }
+    }
+
+    fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, GeometryError> {
+        Geometry::centred(self.width.unwrap_or(width), self.height.unwrap_or(height), self.bits)
+    }
+
+    /// The lens with its axis at `centre` unless the command line says another place.
+    fn camera(
+        &self,
+        geometry: Geometry,
+        lens: CalibratedLens,
+        centre: (f64, f64),
+    ) -> Result<Camera, CameraError> {
+        let centre = (self.centre_x.unwrap_or(centre.0), self.centre_y.unwrap_or(centre.1));
+        Camera::new(geometry, lens, centre, self.field_of_view())
+    }
+}
+
+/// Column and row of the frame's middle.
+fn middle(geometry: &Geometry) -> (f64, f64) {
+    ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0)
+}
+
+/// A frame and the lens before it, as the command line describes them.
+pub(super) struct Optics {
+    pub(super) camera: Camera,
+    /// The equidistant lens of the same R, which built-in frames are rendered through.
+    pub(super) lens: Equidistant,
+    /// Whether the lens is not that one itself.
+    is_calibrated: bool,
+    /// The row of the axis; none for the middle.
+    pub(super) centre_y: Option<f64>,
+    pub(super) rows: Rows,
+    /// What the lens is, for people.
+    pub(super) name: String,
+}
+
+impl Optics {
+    /// What built-in frames are made for.
+    pub(super) fn scene(&self, phase: Phase, seed: u64) -> Scene {
+        let (geometry, centre_y, lens) = (*self.camera.geometry(), self.centre_y, self.lens);
+        Scene { geometry, centre_y, phase, lens, seed }
+    }
+
+    /// The row factors that are asked for.
+    pub(super) fn tables(&self) -> anyhow::Result<TableSet> {
+        self.tables_by(self.rows)
+    }
+
+    /// The row factors that are found so.
+    pub(super) fn tables_by(&self, rows: Rows) -> anyhow::Result<TableSet> {
+        Ok(match rows {
+            Rows::Fitted => self.camera.fitted(),
+            Rows::Equation9 if self.is_calibrated => self.camera.equation_9(),
+            // From R as it was given, which the camera has from f.
+            Rows::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
+        })
+    }
+
+    /// A sentence on where the row factors come from.
+    pub(super) fn source(&self) -> String {
+        let how = match self.rows {
+            Rows::Fitted => "fitted rows",
+            Rows::Equation9 => "Eq. 9",
+        };
+        format!("{}, R = {:.3} pixels ({how})", self.name, self.camera.radius())
+    }
+}
+
+/// A kernel by name, or from a kernel file.
+pub(super) fn kernel(name: &str) -> Result<Kernel, super::Failure> {
+    match name.parse::<NamedKernel>() {
+        Ok(named) => named.kernel().map_err(super::Failure::error),
+        Err(unknown) if !Path::new(name).exists() => {
+            Err(anyhow::anyhow!("there is no file {name}, and {unknown}, or a kernel file").into())
+        }
+        Err(_) => Ok(KernelFile::read(Path::new(name)).map_err(table_failure)?.kernel),
+    }
+}
+
+/// Tables, kernel, and where they come from: a table file, or the lens options and a kernel.
+pub(super) struct Chosen {
+    pub(super) optics: Optics,
+    pub(super) tables: TableSet,
+    pub(super) kernel: Kernel,
+    pub(super) source: String,
+    /// Rows outside of the lens's image circle; none for a file, which does not say.
+    pub(super) rows_outside_circle: Option<usize>,
+}
+
+/// Takes the table file if there is one, and the lens otherwise; `kernel_name` replaces the file's kernel.
+pub(super) fn choose(
+    file: Option<&Path>,
+    lens: &LensArguments,
+    kernel_name: Option<&str>,
+) -> Result<Chosen, super::Failure> {
+    let named = kernel_name.map(kernel).transpose()?;
+    let optics = lens.optics()?;
+    let Some(path) = file else {
+        let (tables, from) = (optics.tables()?, optics.source());
+        let name = kernel_name.unwrap_or(Interpolant::Hermite.name());
+        let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
+        let rows_outside_circle = Some(optics.camera.rows_outside_circle());
+        return Ok(Chosen {
+            optics,
+            tables,
+            kernel,
+            source: format!("{from}, {name} kernel"),
+            rows_outside_circle,
+        });
+    };
+    let read = TableFile::read(path).map_err(table_failure)?;
+    let mut source = path.display().to_string();
+    if let Some(name) = kernel_name {
+        source = format!("{source}, {name} kernel");
+    }
+    let kernel = named.unwrap_or(read.kernel);
+    Ok(Chosen { optics, tables: read.tables, kernel, source, rows_outside_circle: None })
+}
+
+/// A table file of another datapath is refused like a board of another datapath.
+pub(super) fn table_failure(error: TableFileError) -> super::Failure {
+    let exit = match error {
+        TableFileError::Datapath { .. } => halfrow::verdict::Exit::Refused,
+        _ => halfrow::verdict::Exit::Usage,
+    };
+    super::Failure { exit, error: error.into() }
+}

@@ -1,0 +1,178 @@
+//! `halfrow paper`
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+
+use super::board::BoardArguments;
+use super::{Context, Failure, print, print_json};
+use crate::progress;
+use crate::settings::Settings;
+use halfrow::board::{Board, BoardError};
+use halfrow::frames::preview::RgbImage;
+use halfrow::target::BoardKind;
+use halfrow::verdict::Exit;
+use halfrow_lab::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperError, TestedBoard};
+
+/// Reproduce the paper's figures and tables
+///
+/// Writes one page with pictures and numbers, and each picture and table as a file. Exit codes: 0 every number is accepted, 1
+/// the board differs from the reference, 2 usage, 3 a number is missed or an item could not be made, 5 what was asked for could
+/// not be tried.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// What to reproduce [default: all]
+    #[arg(value_name = "ITEM", value_parser = item_parser())]
+    items: Vec<Item>,
+    /// The folder of the 24 photographs, kodim01.png to kodim24.png
+    #[arg(long, value_name = "FOLDER", env = "HALFROW_IMAGES")]
+    images: Option<PathBuf>,
+    /// The report of `scripts/hardware resources`
+    #[arg(long, value_name = "FILE", default_value = "target/hardware/resources/report.json")]
+    synthesis: PathBuf,
+    /// The folder to write to, made if it is not there
+    #[arg(short, long, value_name = "FOLDER")]
+    output: PathBuf,
+    /// Replace an earlier page
+    #[arg(long)]
+    overwrite: bool,
+    /// Print every number as JSON, as paper.json in the folder holds them
+    #[arg(long)]
+    pub(super) json: bool,
+    #[command(flatten)]
+    board: BoardArguments,
+}
+
+fn item_parser() -> impl TypedValueParser<Value = Item> {
+    let names = Item::ALL.map(|item| PossibleValue::new(item.name()).help(item.summary()));
+    PossibleValuesParser::new(names).try_map(|name| name.parse::<Item>())
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let begun = Instant::now();
+    let items = arguments.items();
+    let photographs = arguments.photographs(&items)?;
+    let folder = Folder::prepare(&arguments.output, arguments.overwrite)?;
+    let through_board = arguments.board.is_named(&context.settings);
+    let mut material =
+        Material { photographs: &photographs, board: None, through_board, synthesis: &arguments.synthesis };
+    if items.iter().any(|&item| material.uses_board(item)) {
+        material.board = Some(arguments.open(&context.settings)?);
+    }
+    let exhibits = make(&items, &mut material, context.quiet);
+    // Whatever happened, the next run must find the board free.
+    let closed = material.board.as_mut().map_or(Ok(()), TestedBoard::close);
+    let exhibits = exhibits.map_err(failed)?;
+    closed.map_err(failed)?;
+    let page = folder.write(&exhibits).map_err(Failure::error)?;
+    if arguments.json {
+        print_json(&paper::numbers(&exhibits))?;
+        return Ok(exit(&exhibits));
+    }
+    conclude(&exhibits)?;
+    print(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()))?;
+    Ok(exit(&exhibits))
+}
+
+fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<Exhibit>, PaperError> {
+    let watched = progress::for_stderr(quiet);
+    watched.rows_expected(items.iter().map(|&item| material.rows(item)).sum());
+    let made = items.iter().map(|&item| {
+        watched.frame(item.title());
+        material.exhibit(item, watched.as_ref())
+    });
+    let made = made.collect();
+    watched.done();
+    made
+}
+
+fn failed(error: PaperError) -> Failure {
+    let exit = match &error {
+        PaperError::Board(error) => error.exit(),
+        PaperError::Misfit(_) => Exit::Usage,
+        _ => Exit::Error,
+    };
+    Failure { exit, error: error.into() }
+}
+
+/// Every claim in a line.
+fn conclude(exhibits: &[Exhibit]) -> Result<(), Failure> {
+    for exhibit in exhibits {
+        print(exhibit.item.title())?;
+        for claim in &exhibit.claims {
+            print(&line(claim))?;
+        }
+        for open in &exhibit.open {
+            print(&format!("  open    {open}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn line(claim: &Claim) -> String {
+    let mark = match (claim.holds(), claim.judges_board) {
+        (true, _) => "ok",
+        (false, true) => "FAIL",
+        (false, false) => "MISSED",
+    };
+    let paper = match (claim.paper, claim.deviation()) {
+        (Some(paper), Some(deviation)) => format!("paper {paper}, {deviation:+.4}, "),
+        _ => String::new(),
+    };
+    let found = format!("{} {}", claim.printed(), claim.unit);
+    format!("  {mark:<7} {}: {} ({paper}{})", claim.what, found.trim_end(), claim.condition())
+}
+
+/// What the board does wrong weighs more than what could not be reproduced.
+fn exit(exhibits: &[Exhibit]) -> Exit {
+    let missed = || exhibits.iter().flat_map(|exhibit| &exhibit.claims).filter(|claim| !claim.holds());
+    if missed().any(|claim| claim.judges_board) {
+        Exit::Fail
+    } else if missed().next().is_some() {
+        Exit::Error
+    } else if exhibits.iter().all(|exhibit| !exhibit.open.is_empty()) {
+        Exit::NothingJudged
+    } else {
+        Exit::Pass
+    }
+}
+
+impl Arguments {
+    /// The items in the paper's order, each once.
+    fn items(&self) -> Vec<Item> {
+        let wanted = |item: &Item| self.items.is_empty() || self.items.contains(item);
+        Item::ALL.into_iter().filter(wanted).collect()
+    }
+
+    fn photographs(&self, items: &[Item]) -> anyhow::Result<Vec<RgbImage>> {
+        if !items.iter().any(|item| item.needs_photographs()) {
+            return Ok(Vec::new());
+        }
+        let Some(folder) = &self.images else {
+            let names = |wanted: bool| {
+                let chosen = Item::ALL.into_iter().filter(|item| item.needs_photographs() == wanted);
+                chosen.map(Item::name).collect::<Vec<_>>().join(" ")
+            };
+            anyhow::bail!(
+                "{} need the 24 photographs; give --images FOLDER with kodim01.png to kodim24.png \
+                 (https://r0k.us/graphics/kodak), or name items that need none: {}",
+                names(true).replace(' ', " and "),
+                names(false)
+            );
+        };
+        Ok(paper::read_photographs(folder)?)
+    }
+
+    fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {
+        let candidate = self.board.candidate(settings)?;
+        if candidate.kind == BoardKind::Replay {
+            return Err(anyhow::anyhow!("a recording corrects no new frames; name another board").into());
+        }
+        let options = self.board.open_options(settings, None)?;
+        let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
+        let board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+        Ok(TestedBoard::new(board, candidate.kind))
+    }
+}

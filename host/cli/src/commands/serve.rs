@@ -1,0 +1,62 @@
+//! `halfrow serve`
+
+use std::path::PathBuf;
+use std::sync::atomic::Ordering;
+
+use clap::Args;
+
+use super::board::signals;
+use super::{Failure, print};
+use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
+use halfrow::link;
+use halfrow::target::Target;
+use halfrow::verdict::Exit;
+
+/// Serve a mock or simulated board to other programs
+///
+/// It is put behind a pseudo-terminal or a TCP port. Prints the target that leads to it, and goes on until Ctrl-C or
+/// SIGTERM. One host at a time is served; one that vanishes leaves a board that the next can use. A board whose wire breaks
+/// (fault=disconnect) hangs up, as a board does that is unplugged.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The board to serve
+    #[arg(long, value_name = "TARGET", default_value = "mock")]
+    board: Target,
+    /// A TCP port instead of a pseudo-terminal: PORT of this computer alone, or ADDRESS:PORT; 0 for any that is free
+    #[arg(long, value_name = "PORT")]
+    tcp: Option<String>,
+    /// A symbolic link to the pseudo-terminal, which has another name every time
+    #[arg(long, value_name = "PATH", conflicts_with = "tcp")]
+    link: Option<PathBuf>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let opened = link::open(&arguments.board);
+    let candidate = opened.map_err(|error| Failure { exit: error.class().into(), error: error.into() })?;
+    let mut board = Hosted::new(candidate.link);
+    let signal = signals()?;
+    let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
+    let served = match &arguments.tcp {
+        Some(address) => {
+            let port = Port::listen(address).map_err(Failure::error)?;
+            let address = port.address().map_err(Failure::error)?;
+            print(&format!("tcp:{address}"))?;
+            port.serve(&mut board, &mut ended)
+        }
+        None => serve_pty(arguments, &mut board, &mut ended)?,
+    };
+    served.map_err(Failure::error)?;
+    Ok(Exit::Pass)
+}
+
+fn serve_pty(
+    arguments: &Arguments,
+    board: &mut Hosted,
+    ended: &mut dyn FnMut(Traffic) -> bool,
+) -> Result<Result<(), ServeError>, Failure> {
+    let pty = Pty::open().map_err(Failure::error)?;
+    let name = arguments.link.as_ref().map(|path| Name::link(path, pty.path())).transpose()?;
+    let path = arguments.link.as_deref().filter(|_| name.is_some()).unwrap_or(pty.path());
+    print(&format!("serial:{}", path.display()))?;
+    Ok(pty.serve(board, ended))
+}

@@ -1,0 +1,168 @@
+//! A board of this program for other programs: behind a pseudo-terminal or a TCP port.
+//!
+//! ```text
+//! other program ── pseudo-terminal or connection ──► Hosted ──► Link ──► mock or simulated board
+//! ```
+//!
+//! The board's clock, which is virtual, is kept at the wall's, so that its speed and its silences are real.
+
+mod pty;
+mod tcp;
+
+use std::os::fd::AsRawFd;
+use std::time::{Duration, Instant};
+
+use halfrow::link::descriptor::{Gone, Pump, is_ready, send};
+use halfrow::link::{Link, LinkError};
+
+pub use pty::{Name, Pty};
+pub use tcp::Port;
+
+/// Bytes that may wait on either side before the other one has to.
+const QUEUE: usize = 64 * 1024;
+/// How often a board is looked after that has moved bytes of late, since they may be under way on its wire.
+const BUSY_TICK: Duration = Duration::from_millis(1);
+/// The same on a wire with a speed, where that would be too coarse.
+const PACED_TICK: Duration = Duration::from_micros(100);
+/// How often at other times.
+const IDLE_TICK: Duration = Duration::from_millis(20);
+/// How long after its last byte a board counts as busy.
+const BUSY: Duration = Duration::from_secs(1);
+
+/// A board that cannot be served any more.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The door cannot be made.
+    #[error("{what} cannot be made; choose another one")]
+    Door {
+        /// Which door.
+        what: String,
+        /// Why.
+        #[source]
+        source: std::io::Error,
+    },
+    /// Its name is taken.
+    #[error("{0} is there already; remove it, or choose another name with --link")]
+    Exists(std::path::PathBuf),
+    /// The board is gone.
+    #[error("the board that was served is gone")]
+    Board(#[source] LinkError),
+}
+
+/// Bytes that a served board has moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Traffic {
+    /// From the host.
+    pub to_board: u64,
+    /// To the host.
+    pub to_host: u64,
+}
+
+/// Why a host is attended to no longer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Left {
+    /// It hung up.
+    Host,
+    /// It was time to end.
+    Ended,
+}
+
+/// A board with what is on its way to it and from it.
+pub struct Hosted {
+    link: Box<dyn Link>,
+    /// When the board's clock was 0.
+    switched_on: Instant,
+    pump: Pump,
+    to_board: Vec<u8>,
+    to_host: Vec<u8>,
+    traffic: Traffic,
+    moved_at: Instant,
+}
+
+impl Hosted {
+    /// The board behind `link`, switched on now.
+    #[must_use]
+    pub fn new(link: Box<dyn Link>) -> Self {
+        let now = Instant::now();
+        Self {
+            switched_on: now.checked_sub(link.now()).unwrap_or(now),
+            link,
+            pump: Pump::default(),
+            to_board: Vec::new(),
+            to_host: Vec::new(),
+            traffic: Traffic::default(),
+            moved_at: now,
+        }
+    }
+
+    /// Passes bytes between the host behind `door` and the board, until the host hangs up or `ended` says so. The
+    /// next host finds the board as this one left it.
+    ///
+    /// # Errors
+    /// [`ServeError::Board`] when the board is gone.
+    pub fn attend(
+        &mut self,
+        door: &impl AsRawFd,
+        ended: &mut dyn FnMut(Traffic) -> bool,
+    ) -> Result<Left, ServeError> {
+        loop {
+            if ended(self.traffic) {
+                return Ok(Left::Ended);
+            }
+            let before = self.traffic;
+            if self.listen(door).and_then(|()| self.speak(door)).is_err() {
+                // What the host said last still counts; what it did not wait for is nobody's.
+                self.run_board()?;
+                self.to_board.clear();
+                self.to_host.clear();
+                return Ok(Left::Host);
+            }
+            self.run_board()?;
+            if self.traffic != before {
+                self.moved_at = Instant::now();
+            } else if self.to_host.is_empty() || self.speak(door).is_ok_and(|()| self.traffic == before) {
+                self.wait(door);
+            }
+        }
+    }
+
+    fn wait(&self, door: &impl AsRawFd) {
+        let is_busy = self.moved_at.elapsed() < BUSY;
+        if is_busy && self.link.bytes_per_second().is_some() {
+            std::thread::sleep(PACED_TICK);
+            return;
+        }
+        let tick = if is_busy { BUSY_TICK } else { IDLE_TICK };
+        // A door that is gone is found out by the next attempt to use it.
+        let _ = is_ready(door.as_raw_fd(), !self.to_host.is_empty(), tick);
+    }
+
+    fn listen(&mut self, door: &impl AsRawFd) -> Result<(), Gone> {
+        if self.to_board.len() < QUEUE {
+            self.traffic.to_board += self.pump.receive(door.as_raw_fd(), &mut self.to_board)? as u64;
+        }
+        Ok(())
+    }
+
+    fn speak(&mut self, door: &impl AsRawFd) -> Result<(), Gone> {
+        let sent = send(door.as_raw_fd(), &self.to_host)?;
+        self.to_host.drain(..sent);
+        self.traffic.to_host += sent as u64;
+        Ok(())
+    }
+
+    /// Lets the board do all that it can have done by now.
+    fn run_board(&mut self) -> Result<(), ServeError> {
+        while self.to_host.len() < QUEUE {
+            let behind = self.switched_on.elapsed().saturating_sub(self.link.now());
+            let before = self.to_host.len();
+            let exchanged = self.link.exchange(&self.to_board, &mut self.to_host, behind);
+            let taken = exchanged.map_err(ServeError::Board)?;
+            self.to_board.drain(..taken);
+            if taken == 0 && self.to_host.len() == before {
+                break;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,100 @@
+//! A pseudo-terminal, with a name of one's own if wanted.
+
+use std::os::fd::{AsRawFd, RawFd};
+use std::os::unix::fs::symlink;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use std::{fs, io};
+
+use nix::fcntl::OFlag;
+use nix::pty::{PtyMaster, grantpt, posix_openpt, ptsname_r, unlockpt};
+use nix::sys::termios::{SetArg, cfmakeraw, tcgetattr, tcsetattr};
+
+use super::{Hosted, Left, ServeError, Traffic};
+use halfrow::link::descriptor::never_block;
+
+/// How often it is looked whether a host has come.
+const TICK: Duration = Duration::from_millis(5);
+
+/// A pseudo-terminal. Dropping it is what pulling the cable is to a serial port.
+#[derive(Debug)]
+pub struct Pty {
+    master: PtyMaster,
+    path: PathBuf,
+}
+
+impl Pty {
+    /// A new one, which passes on every byte as it is.
+    ///
+    /// # Errors
+    /// [`ServeError::Door`] when the system has none left.
+    pub fn open() -> Result<Self, ServeError> {
+        Self::try_open().map_err(|source| ServeError::Door { what: "a pseudo-terminal".to_owned(), source })
+    }
+
+    fn try_open() -> io::Result<Self> {
+        let master = posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY | OFlag::O_CLOEXEC)?;
+        grantpt(&master)?;
+        unlockpt(&master)?;
+        let path = PathBuf::from(ptsname_r(&master)?);
+        let mut settings = tcgetattr(master.as_raw_fd())?;
+        cfmakeraw(&mut settings);
+        tcsetattr(master.as_raw_fd(), SetArg::TCSANOW, &settings)?;
+        never_block(master.as_raw_fd())?;
+        Ok(Self { master, path })
+    }
+
+    /// The file to open.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Serves `board` to one host after the other, until `ended` says so.
+    ///
+    /// # Errors
+    /// [`ServeError::Board`] when the board is gone.
+    pub fn serve(
+        &self,
+        board: &mut Hosted,
+        ended: &mut dyn FnMut(Traffic) -> bool,
+    ) -> Result<(), ServeError> {
+        while board.attend(self, ended)? == Left::Host {
+            std::thread::sleep(TICK);
+        }
+        Ok(())
+    }
+}
+
+impl AsRawFd for Pty {
+    fn as_raw_fd(&self) -> RawFd {
+        self.master.as_raw_fd()
+    }
+}
+
+/// A symbolic link, which goes when it is dropped.
+#[derive(Debug)]
+pub struct Name(PathBuf);
+
+impl Name {
+    /// Links `path` to `target`. One that a killed server left behind, and that leads nowhere, is replaced.
+    ///
+    /// # Errors
+    /// [`ServeError`] when there is something of that name, or the link cannot be made.
+    pub fn link(path: &Path, target: &Path) -> Result<Self, ServeError> {
+        let door = |source| ServeError::Door { what: format!("the link {}", path.display()), source };
+        match fs::symlink_metadata(path) {
+            Ok(found) if found.is_symlink() && !path.exists() => fs::remove_file(path).map_err(door)?,
+            Ok(_) => return Err(ServeError::Exists(path.to_owned())),
+            Err(_) => {}
+        }
+        symlink(target, path).map_err(door)?;
+        Ok(Self(path.to_owned()))
+    }
+}
+
+impl Drop for Name {
+    fn drop(&mut self) {
+        let _ = fs::remove_file(&self.0);
+    }
+}

@@ -1,0 +1,85 @@
+//! A TCP port that takes one host at a time.
+
+use std::io::Write;
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::os::fd::AsRawFd;
+use std::time::{Duration, Instant};
+
+use super::{Hosted, ServeError, Traffic};
+use halfrow::link::descriptor::{is_ready, never_block};
+
+/// How often it is looked whether to end while nobody is connected.
+const TICK: Duration = Duration::from_millis(50);
+
+/// How long a second host waits for the first to leave. One that was killed leaves only when all that it sent is read.
+const GRACE: Duration = Duration::from_millis(100);
+
+/// What ser2net says to a second host, so that it reads the same from here.
+const IN_USE: &[u8] = b"Port already in use\r\n";
+
+/// A port that is listened on.
+#[derive(Debug)]
+pub struct Port(TcpListener);
+
+impl Port {
+    /// Listens on `address`, HOST:PORT, or a port of this computer alone. Port 0 is any that is free.
+    ///
+    /// # Errors
+    /// [`ServeError::Door`] when it is taken or not this computer's.
+    pub fn listen(address: &str) -> Result<Self, ServeError> {
+        let local = address.parse::<u16>().map(|port| format!("127.0.0.1:{port}"));
+        let address = local.unwrap_or_else(|_| address.to_owned());
+        let listen = || {
+            let listener = TcpListener::bind(&address)?;
+            listener.set_nonblocking(true)?;
+            Ok(Self(listener))
+        };
+        listen().map_err(|source| ServeError::Door { what: format!("the TCP port {address}"), source })
+    }
+
+    /// Where it listens.
+    ///
+    /// # Errors
+    /// [`ServeError::Door`] when the system does not say.
+    pub fn address(&self) -> Result<SocketAddr, ServeError> {
+        let unknown = |source| ServeError::Door { what: "the TCP port".to_owned(), source };
+        self.0.local_addr().map_err(unknown)
+    }
+
+    /// Serves `board` to one host after the other, until `ended` says so. Others are turned away meanwhile.
+    ///
+    /// # Errors
+    /// [`ServeError::Board`] when the board is gone.
+    pub fn serve(
+        &self,
+        board: &mut Hosted,
+        ended: &mut dyn FnMut(Traffic) -> bool,
+    ) -> Result<(), ServeError> {
+        let mut next: Option<(TcpStream, Instant)> = None;
+        while !ended(Traffic::default()) {
+            let Some(host) = next.take().map(|(host, _)| host).or_else(|| self.accept()) else {
+                let _ = is_ready(self.0.as_raw_fd(), false, TICK);
+                continue;
+            };
+            board.attend(&host, &mut |traffic| {
+                if next.is_none() {
+                    next = self.accept().map(|host| (host, Instant::now()));
+                }
+                if let Some((mut host, _)) = next.take_if(|(_, since)| since.elapsed() > GRACE) {
+                    // One that does not wait for the answer needs none.
+                    let _ = host.write_all(IN_USE);
+                }
+                ended(traffic)
+            })?;
+        }
+        Ok(())
+    }
+
+    fn accept(&self) -> Option<TcpStream> {
+        let (host, from) = self.0.accept().ok()?;
+        host.set_nodelay(true).ok()?;
+        never_block(host.as_raw_fd()).ok()?;
+        tracing::info!("{from} has connected");
+        Some(host)
+    }
+}

@@ -1,0 +1,241 @@
+//! The settings file: what a station always wants, in TOML.
+//!
+//! A value is taken from the first of these that gives it:
+//!
+//! 1. the flag on the command line,
+//! 2. the environment variable `HALFROW_KEY`, the key in capitals,
+//! 3. the settings file,
+//! 4. the built-in default.
+//!
+//! This module reads the file. `settings.example.toml` lists every key.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use serde::de::{Error, IgnoredAny};
+use serde::{Deserialize, Deserializer};
+use toml::Spanned;
+
+use halfrow::tables::text::{self, quoted};
+
+/// The keys of a settings file.
+const KEYS: [&str; 11] = [
+    "board",
+    "tables",
+    "kernel",
+    "frame",
+    "report",
+    "overwrite",
+    "timeout",
+    "retry_limit",
+    "reconnect",
+    "require_hardware",
+    "seed",
+];
+
+/// A settings file's values. Text is as it would be on the command line, and none of it is looked at here: a relative path
+/// starts where the program was started.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// The board's target.
+    pub board: Option<String>,
+    /// The table file.
+    pub tables: Option<PathBuf>,
+    /// The kernel: an interpolant's name or a kernel file.
+    pub kernel: Option<String>,
+    /// The frames to stream: files, or `builtin:NAME`.
+    pub frame: Option<Vec<String>>,
+    /// The folder that reports are written to.
+    pub report: Option<PathBuf>,
+    /// Whether files that are there may be replaced.
+    pub overwrite: Option<bool>,
+    /// The longest that a run may take, in seconds: 0 or more, and finite.
+    #[serde(deserialize_with = "seconds")]
+    pub timeout: Option<f64>,
+    /// The share of packets that may be sent again before a link is too poor to judge over, 0 to 100 percent.
+    #[serde(deserialize_with = "percent")]
+    pub retry_limit: Option<f64>,
+    /// How long a board that goes away may stay away, in seconds: 0 or more, and finite.
+    #[serde(deserialize_with = "seconds")]
+    pub reconnect: Option<f64>,
+    /// Whether to refuse anything but hardware.
+    pub require_hardware: Option<bool>,
+    /// The seed of all that is random in a run.
+    pub seed: Option<u64>,
+}
+
+/// A settings file that cannot be used. All of these are usage errors.
+#[derive(Debug, thiserror::Error)]
+pub enum SettingsError {
+    /// The system did not hand the file over, or it is no text.
+    #[error(
+        "cannot read the settings file {}; check that it exists and that you may read it, or name another with --settings",
+        path.display()
+    )]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A key that settings do not have.
+    #[error("{}, line {line}: there is no setting {key:?}; use one of {known}", path.display(), known = KEYS.join(", "))]
+    UnknownKey {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// The key.
+        key: String,
+    },
+    /// Text that is no TOML, or a value that the key does not take.
+    #[error("{}, line {line}: {reason}; correct or remove that line", path.display())]
+    Value {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl Settings {
+    /// The settings of the file `explicit`, which must be there; without one, of `halfrow/settings.toml` in
+    /// `$XDG_CONFIG_HOME` or else `~/.config`, if that is there; without either, none.
+    ///
+    /// # Errors
+    /// [`SettingsError`] when the file cannot be read, is no TOML, or has a key or a value that settings do not have.
+    pub fn load(explicit: Option<&Path>) -> Result<Self, SettingsError> {
+        match explicit {
+            Some(path) => Self::read(path),
+            None => Self::read_standard(standard_path(|name| std::env::var_os(name))),
+        }
+    }
+
+    fn read(path: &Path) -> Result<Self, SettingsError> {
+        let text = text::read(path).map_err(|source| SettingsError::Io { path: path.to_owned(), source })?;
+        Self::parse(path, &text)
+    }
+
+    fn read_standard(path: Option<PathBuf>) -> Result<Self, SettingsError> {
+        use io::ErrorKind::{NotADirectory, NotFound};
+        match path.map(|path| Self::read(&path)) {
+            None => Ok(Self::default()),
+            Some(Err(SettingsError::Io { source, .. }))
+                if matches!(source.kind(), NotFound | NotADirectory) =>
+            {
+                Ok(Self::default())
+            }
+            Some(read) => read,
+        }
+    }
+
+    fn parse(path: &Path, text: &str) -> Result<Self, SettingsError> {
+        let refused = |error: toml::de::Error| SettingsError::Value {
+            path: path.to_owned(),
+            line: line(text, &error.span().unwrap_or_default()),
+            reason: error.message().to_owned(),
+        };
+        let keys: BTreeMap<Spanned<String>, IgnoredAny> = toml::from_str(text).map_err(refused)?;
+        let unknown = keys.into_keys().filter(|key| !KEYS.contains(&key.get_ref().as_str()));
+        match unknown.min_by_key(|key| key.span().start) {
+            None => toml::from_str(text).map_err(refused),
+            Some(key) => Err(SettingsError::UnknownKey {
+                path: path.to_owned(),
+                line: line(text, &key.span()),
+                key: quoted(key.get_ref()),
+            }),
+        }
+    }
+}
+
+/// The user's own settings file, as the XDG base directory specification has it: a relative `$XDG_CONFIG_HOME` counts for
+/// nothing.
+fn standard_path(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
+    let folder = variable("XDG_CONFIG_HOME").map(PathBuf::from).filter(|folder| folder.is_absolute());
+    let home =
+        || variable("HOME").filter(|home| !home.is_empty()).map(|home| Path::new(&home).join(".config"));
+    Some(folder.or_else(home)?.join("halfrow").join("settings.toml"))
+}
+
+/// The line that `span` begins on, from 1.
+fn line(text: &str, span: &Range<usize>) -> usize {
+    text.bytes().take(span.start).filter(|&byte| byte == b'\n').count() + 1
+}
+
+fn seconds<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let seconds = f64::deserialize(deserializer)?;
+    match Duration::try_from_secs_f64(seconds) {
+        Ok(_) => Ok(Some(seconds)),
+        Err(_) => Err(D::Error::custom(format!("{seconds} is no time in seconds, which is 0 or more"))),
+    }
+}
+
+fn percent<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+    let percent = f64::deserialize(deserializer)?;
+    if (0.0..=100.0).contains(&percent) {
+        Ok(Some(percent))
+    } else {
+        Err(D::Error::custom(format!("{percent} is no share in percent, which is 0 to 100")))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn standard(variables: &[(&str, &str)]) -> Option<PathBuf> {
+        standard_path(|wanted| {
+            variables.iter().find(|(name, _)| *name == wanted).map(|(_, value)| OsString::from(value))
+        })
+    }
+
+    #[test]
+    fn the_standard_file_is_in_the_users_configuration_folder() {
+        let at = |path| Some(PathBuf::from(path));
+        assert_eq!(standard(&[("XDG_CONFIG_HOME", "/x"), ("HOME", "/h")]), at("/x/halfrow/settings.toml"));
+        assert_eq!(standard(&[("HOME", "/h")]), at("/h/.config/halfrow/settings.toml"));
+    }
+
+    #[test]
+    fn an_empty_or_relative_configuration_folder_counts_for_nothing() {
+        let at_home = Some(PathBuf::from("/h/.config/halfrow/settings.toml"));
+        assert_eq!(standard(&[("XDG_CONFIG_HOME", ""), ("HOME", "/h")]), at_home);
+        assert_eq!(standard(&[("XDG_CONFIG_HOME", "x"), ("HOME", "/h")]), at_home);
+        assert_eq!(standard(&[("HOME", "")]), None);
+        assert_eq!(standard(&[]), None);
+    }
+
+    #[test]
+    fn a_standard_file_that_is_not_there_sets_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("halfrow/settings.toml");
+        assert_eq!(Settings::read_standard(Some(missing)).unwrap(), Settings::default());
+        let file = tempfile::NamedTempFile::new().unwrap();
+        let below_a_file = file.path().join("settings.toml");
+        assert_eq!(Settings::read_standard(Some(below_a_file)).unwrap(), Settings::default());
+        assert_eq!(Settings::read_standard(None).unwrap(), Settings::default());
+    }
+
+    #[test]
+    fn a_standard_file_that_is_wrong_is_not_passed_over() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("settings.toml");
+        std::fs::write(&path, "bord = 'mock'\n").unwrap();
+        let refused = Settings::read_standard(Some(path));
+        assert!(matches!(refused, Err(SettingsError::UnknownKey { line: 1, .. })));
+    }
+
+    #[test]
+    fn the_list_of_keys_is_that_of_the_fields() {
+        let refused = toml::from_str::<Settings>("none = 0").unwrap_err();
+        let listed: Vec<_> = refused.message().split('`').skip(3).step_by(2).collect();
+        assert_eq!(listed, KEYS);
+    }
+}

@@ -1,0 +1,95 @@
+//! Frames: reading and writing them, making them, and looking at them.
+//!
+//! A file's samples are taken as they are, never rescaled; only a colour picture is brought to the depth asked for, as it
+//! is mosaicked. The files mostly say neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
+
+mod builtin;
+pub mod dng;
+mod error;
+mod file;
+mod format;
+mod heat_map;
+mod mosaic;
+mod patterns;
+pub mod pgm;
+pub mod png;
+pub mod preview;
+mod raster;
+pub mod raw;
+mod rows;
+mod scene;
+mod size;
+pub mod street;
+pub mod tiff;
+mod tiff_bytes;
+mod tiff_directory;
+mod turned;
+pub mod written_aside;
+
+use halfrow_model::{BitDepth, Frame, Phase};
+
+pub use builtin::{Builtin, UnknownBuiltin};
+pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
+pub use file::{read, read_rgb, write, write_rgb, write_rows};
+pub use format::{Format, UnknownFormat};
+pub use heat_map::HeatMap;
+pub use mosaic::mosaic;
+pub use raw::{RawGeometry, RawLayout, UnknownLayout};
+pub use rows::{FrameShape, RowReader};
+pub use scene::Scene;
+pub use size::{MAX_FILE_BYTES, MAX_SIDE};
+pub use turned::lying;
+
+/// What a file does not say about its samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// The bits of a sample.
+    pub depth: BitDepth,
+    /// The arrangement of the colours.
+    pub phase: Phase,
+    /// The geometry of a file without a header. When it is given, no header is looked for.
+    pub raw: Option<RawGeometry>,
+}
+
+/// The frame in `bytes`: of the format that they begin with, or headerless when `how.raw` is given.
+///
+/// # Errors
+/// [`DecodeError`] when the bytes are no frame as `how` describes it.
+pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
+    if let Some(geometry) = how.raw {
+        raw::decode(bytes, geometry, how)
+    } else if bytes.starts_with(png::MAGIC) {
+        png::decode(bytes, how)
+    } else if tiff::MAGICS.iter().any(|magic| bytes.starts_with(magic)) {
+        tiff::decode(bytes, how)
+    } else if bytes.starts_with(pgm::MAGIC) {
+        pgm::decode(bytes, how)
+    } else {
+        Err(unknown(bytes))
+    }
+}
+
+/// The refusal of `bytes` of no known format; their relatives get a remedy of their own.
+fn unknown(bytes: &[u8]) -> DecodeError {
+    let (what, remedy) = match bytes {
+        [b'P', b'2', ..] => ("a PGM in plain text (P2)", "convert it to the binary kind (P5)"),
+        [b'P', b'3' | b'6', ..] => ("a PPM", "convert it to PNG or TIFF"),
+        [0xff, 0xd8, 0xff, ..] => ("a JPEG", "give the samples before compression, as PGM, PNG or TIFF"),
+        _ => return DecodeError::UnknownFormat,
+    };
+    DecodeError::Unsupported { what: what.to_owned(), remedy }
+}
+
+/// Drives every decoder with `bytes`, whatever they begin with: the body of a fuzzer. It must return.
+pub fn fuzz_decode(bytes: &[u8]) {
+    let how = ReadOptions::default();
+    let mut results = vec![decode(bytes, &how), pgm::decode(bytes, &how), png::decode(bytes, &how)];
+    results.push(tiff::decode(bytes, &how));
+    let (width, samples) = bytes.split_first().map_or((0, bytes), |(&width, rest)| (width.into(), rest));
+    for layout in RawLayout::ALL {
+        for height in [0, 1, samples.len() / 8, usize::MAX] {
+            results.push(raw::decode(samples, RawGeometry { width, height, layout }, &how));
+        }
+    }
+    std::hint::black_box(&results);
+}

@@ -1,0 +1,161 @@
+//! DNG files that Python's struct wrote byte by byte, and what must be read from them.
+
+use halfrow_frames::{DecodeError, ReadOptions, decode, dng};
+use halfrow_model::{BitDepth, Frame, Phase};
+
+/// 4 x 2 of [`SAMPLES`], BGGR, white at 4095, low byte first.
+const LITTLE: &str = "\
+    49492a0018000000000001000001ff0ffe0f0008110003000d000001040001000000040000000101030001000000020000000201\
+    03000100000010000000030103000100000001000000060103000100000023800000110104000100000008000000150103000100\
+    0000010000001601030001000000020000001701040001000000100000008d82030002000000020002008e820100040000000201\
+    010012c6010004000000010400001dc6040001000000ff0f000000000000";
+
+/// The same, high byte first.
+const BIG: &str = "\
+    4d4d002a000000180000000101000fff0ffe080000110003000d0100000400000001000000040101000300000001000200000102\
+    00030000000100100000010300030000000100010000010600030000000180230000011100040000000100000008011500030000\
+    000100010000011600030000000100020000011700040000000100000010828d00030000000200020002828e0001000000040201\
+    0100c61200010000000401040000c61d00040000000100000fff00000000";
+
+const SAMPLES: [u16; 8] = [0, 1, 256, 4095, 4094, 2048, 17, 3];
+
+/// Where entries of 12 bytes begin, the tag being the first two.
+const PHOTOMETRIC: usize = 26 + 4 * 12;
+const REPEAT: usize = 26 + 9 * 12;
+const PATTERN: usize = 26 + 10 * 12;
+const VERSION: usize = 26 + 11 * 12;
+const WHITE: usize = 26 + 12 * 12;
+
+const AS_WRITTEN: ReadOptions = ReadOptions { depth: BitDepth::Twelve, phase: Phase::Bggr, raw: None };
+
+fn hex(text: &str) -> Vec<u8> {
+    let digits: Vec<u32> = text.chars().filter_map(|digit| digit.to_digit(16)).collect();
+    digits.chunks(2).map(|pair| u8::try_from(pair[0] * 16 + pair[1]).unwrap()).collect()
+}
+
+/// [`LITTLE`] with other bytes at a place.
+fn altered(place: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut file = hex(LITTLE);
+    file[place..place + bytes.len()].copy_from_slice(bytes);
+    file
+}
+
+#[test]
+fn samples_are_taken_as_they_are_in_either_byte_order() {
+    for file in [LITTLE, BIG] {
+        let frame = decode(&hex(file), &AS_WRITTEN).unwrap();
+        assert_eq!((frame.width(), frame.phase(), frame.samples()), (4, Phase::Bggr, &SAMPLES[..]));
+    }
+}
+
+/// By the DNG specification: red is 0, green 1, blue 2, row after row.
+#[test]
+fn the_pattern_is_the_phase() {
+    let patterns = [
+        ([1, 0, 2, 1], Phase::Grbg),
+        ([0, 1, 1, 2], Phase::Rggb),
+        ([2, 1, 1, 0], Phase::Bggr),
+        ([1, 2, 0, 1], Phase::Gbrg),
+    ];
+    for (pattern, phase) in patterns {
+        let file = altered(PATTERN + 8, &pattern);
+        assert_eq!(decode(&file, &ReadOptions { phase, ..AS_WRITTEN }).unwrap().samples(), SAMPLES);
+        let asked = Phase::ALL.into_iter().find(|&other| other != phase).unwrap();
+        let error = decode(&file, &ReadOptions { phase: asked, ..AS_WRITTEN }).unwrap_err();
+        assert!(matches!(error, DecodeError::OtherPhase { found, .. } if found == phase), "{error}");
+    }
+}
+
+/// White need not be a power of two less one; a camera of 14 bits has its white at 16383 at most.
+#[test]
+fn white_tells_the_depth() {
+    assert_eq!(decode(&altered(WHITE + 8, &4000_u32.to_le_bytes()), &AS_WRITTEN).unwrap().samples(), SAMPLES);
+    for (white, bits) in [(16383_u32, 14), (1023, 10), (255, 8), (4096, 13), (0, 0)] {
+        let error = decode(&altered(WHITE + 8, &white.to_le_bytes()), &AS_WRITTEN).unwrap_err();
+        assert!(matches!(error, DecodeError::OtherDepth { found, .. } if found == bits), "{error}");
+    }
+}
+
+#[test]
+fn what_is_no_plain_bayer_picture_is_refused_with_a_remedy() {
+    let remedies = [
+        (PATTERN + 8, vec![0, 0, 0, 0], "is no Bayer pattern"),
+        (PATTERN + 4, 36_u32.to_le_bytes().to_vec(), "is no Bayer pattern"),
+        // A first picture in grey, as a preview is, whose raw samples lie elsewhere.
+        (PHOTOMETRIC + 8, 1_u16.to_le_bytes().to_vec(), "as `dcraw -D -4 -T` does"),
+        (VERSION, 50712_u16.to_le_bytes().to_vec(), "convert it to samples that are linear"),
+    ];
+    for (place, bytes, remedy) in remedies {
+        let error = decode(&altered(place, &bytes), &AS_WRITTEN).unwrap_err().to_string();
+        assert!(error.contains(remedy), "{bytes:?} at {place}: {error}");
+    }
+}
+
+/// [`LITTLE`] with an ActiveArea (top, left, bottom, right) of 32 bits each behind its end, where its CFARepeatPatternDim was.
+fn with_active_area(area: [u32; 4]) -> Vec<u8> {
+    let end = u32::try_from(hex(LITTLE).len()).unwrap();
+    let entry = [50829 | 4 << 16, 4, end].map(u32::to_le_bytes).concat();
+    [altered(REPEAT, &entry), area.map(u32::to_le_bytes).concat()].concat()
+}
+
+#[test]
+fn an_active_area_that_leaves_samples_out_is_refused() {
+    assert_eq!(decode(&with_active_area([0, 0, 2, 4]), &AS_WRITTEN).unwrap().samples(), SAMPLES);
+    for area in [[0, 1, 2, 4], [1, 0, 2, 4], [0, 0, 1, 4], [0, 0, 2, 3], [0, 0, 4, 2]] {
+        let error = decode(&with_active_area(area), &AS_WRITTEN).unwrap_err().to_string();
+        assert!(error.contains("ActiveArea") && error.contains("crop it to"), "{area:?}: {error}");
+    }
+    let mut broken_off = with_active_area([0, 0, 2, 4]);
+    broken_off.pop();
+    assert!(matches!(decode(&broken_off, &AS_WRITTEN), Err(DecodeError::TiffDirectory { .. })));
+}
+
+/// BlackLevel where WhiteLevel was: a short, two of them, a long, and a fraction behind the end of the file.
+#[test]
+fn black_that_is_not_0_is_refused() {
+    let black = |kind: u32, count: u32, value: u32| {
+        let entry = [50714 | kind << 16, count, value].map(u32::to_le_bytes).concat();
+        [altered(WHITE, &entry), [64_u32, 1].map(u32::to_le_bytes).concat()].concat()
+    };
+    let end = u32::try_from(hex(LITTLE).len()).unwrap();
+    for file in [black(3, 1, 0), black(3, 2, 0), black(4, 1, 0)] {
+        assert_eq!(decode(&file, &AS_WRITTEN).unwrap().samples(), SAMPLES);
+    }
+    for file in [black(3, 1, 64), black(3, 2, 64 << 16), black(4, 1, 1 << 16), black(5, 1, end)] {
+        let error = decode(&file, &AS_WRITTEN).unwrap_err().to_string();
+        assert!(error.contains("BlackLevel") && error.contains("subtract it"), "{error}");
+    }
+}
+
+/// PhotometricInterpretation as 32 bits, which the specification has in 16.
+#[test]
+fn a_wide_colour_code_is_taken_in_either_byte_order() {
+    let little = altered(PHOTOMETRIC + 2, &[4, 0, 1, 0, 0, 0, 0x23, 0x80, 0, 0]);
+    let mut big = hex(BIG);
+    big[PHOTOMETRIC + 2..PHOTOMETRIC + 12].copy_from_slice(&[0, 4, 0, 0, 0, 1, 0, 0, 0x80, 0x23]);
+    for file in [little, big] {
+        assert_eq!(decode(&file, &AS_WRITTEN).unwrap().samples(), SAMPLES);
+    }
+}
+
+#[test]
+fn every_truncation_is_an_error() {
+    for text in [LITTLE, BIG] {
+        let file = hex(text);
+        // The last four bytes only say that no further picture follows.
+        for length in 0..file.len() - 4 {
+            assert!(decode(&file[..length], &AS_WRITTEN).is_err(), "{length} bytes");
+        }
+    }
+}
+
+#[test]
+fn what_is_written_is_read_back_exactly() {
+    for (phase, depth) in Phase::ALL.into_iter().flat_map(|phase| BitDepth::ALL.map(|depth| (phase, depth))) {
+        let samples = (0..64 * 6).map(|place: u16| place.wrapping_mul(40_503) & depth.max()).collect();
+        let frame = Frame::new(64, depth, phase, samples).unwrap();
+        let mut file = std::io::Cursor::new(Vec::new());
+        dng::encode(&frame, &mut file).unwrap();
+        assert_eq!(decode(file.get_ref(), &ReadOptions { depth, phase, raw: None }).unwrap(), frame);
+    }
+}

@@ -1,0 +1,13 @@
+//! Frames: files of every format, the built-in ones, previews.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+mod builtin;
+mod dng;
+mod files;
+mod fuzz;
+mod pictures;
+mod preview;
+mod samples;
+mod street;

@@ -1,0 +1,110 @@
+//! Previews: development into pictures for the screen.
+
+use halfrow_frames::preview::{demosaic, demosaic_coded, encode_png_grey, encode_png_rgb, thumbnail};
+use halfrow_frames::{Builtin, Scene};
+use halfrow_model::{BitDepth, Frame, Geometry, Phase};
+
+fn frame(width: usize, phase: Phase, samples: &[u16]) -> Frame {
+    Frame::new(width, BitDepth::Eight, phase, samples.to_vec()).unwrap()
+}
+
+/// sRGB by IEC 61966-2-1, computed in Python: 0.5 is coded as 188, 0.2 as 124, 1/255 as 13.
+#[test]
+fn linear_samples_are_coded_for_the_screen() {
+    let levels = [(0, 0), (1, 13), (51, 124), (128, 188), (255, 255)];
+    for (sample, byte) in levels {
+        let image = demosaic(&frame(2, Phase::Grbg, &[sample; 4]));
+        assert_eq!((image.width, image.height), (2, 2));
+        assert_eq!(image.data, [byte; 12], "{sample}");
+    }
+}
+
+/// By hand: 2048 · 255/4095 is 127.5, and 2047 just below; 514 · 255/1023 is 128.1.
+#[test]
+fn coded_samples_are_brought_to_eight_bits() {
+    let levels =
+        [(BitDepth::Twelve, 2048, 128), (BitDepth::Twelve, 2047, 127), (BitDepth::Twelve, 4095, 255)];
+    for (depth, sample, byte) in
+        levels.into_iter().chain([(BitDepth::Ten, 514, 128), (BitDepth::Eight, 77, 77)])
+    {
+        let frame = Frame::new(2, depth, Phase::Grbg, vec![sample; 4]).unwrap();
+        assert_eq!(demosaic_coded(&frame).data, [byte; 12], "{sample}");
+    }
+}
+
+/// Worked by hand, in samples: at the red place the green is the mean of the four greens beside it and the blue that of
+/// the four at its corners.
+#[test]
+fn a_missing_colour_is_the_mean_of_its_neighbours() {
+    let samples = [
+        10, 20, 30, 40, //
+        50, 255, 51, 60, //
+        90, 0, 250, 70, //
+        80, 2, 81, 1,
+    ];
+    // BGGR: row 0 is b g b g, row 1 is g r g r.
+    let image = demosaic(&frame(4, Phase::Bggr, &samples));
+    let coded = |sample: u16| demosaic(&frame(2, Phase::Grbg, &[sample; 4])).data[0];
+    let pixel = |row: usize, column: usize| image.data[(row * 4 + column) * 3..][..3].to_vec();
+    // Greens 20, 50, 51, 0: 30.25; blues 10, 30, 90, 250: 95.
+    assert_eq!(pixel(1, 1), [coded(255), coded(30), coded(95)]);
+    // At the blue corner: one red, two greens: 35.
+    assert_eq!(pixel(0, 0), [coded(255), coded(35), coded(10)]);
+    // At the green place of a red row: reds 255 and 60, 157.5 rounds up; blues 30 and 250.
+    assert_eq!(pixel(1, 2), [coded(158), coded(51), coded(140)]);
+}
+
+#[test]
+fn a_colour_that_a_single_row_lacks_is_black() {
+    assert_eq!(demosaic(&frame(2, Phase::Grbg, &[255, 51])).data, [124, 255, 0, 124, 255, 0]);
+}
+
+#[test]
+fn bars_come_out_in_their_colours_in_every_phase() {
+    for phase in Phase::ALL {
+        let geometry = Geometry::centred(64, 4, BitDepth::Twelve).unwrap();
+        let image = demosaic(&Builtin::Bars.render(&Scene { geometry, phase, ..Scene::default() }).unwrap());
+        let middle = |bar: usize| image.data[(64 + bar * 8 + 4) * 3..][..3].to_vec();
+        assert_eq!(middle(1), [255, 255, 0], "{phase}");
+        assert_eq!(middle(2), [0, 255, 255], "{phase}");
+        assert_eq!(middle(5), [255, 0, 0], "{phase}");
+        assert_eq!(middle(6), [0, 0, 255], "{phase}");
+    }
+}
+
+#[test]
+fn a_thumbnail_averages_light_and_keeps_within_its_width() {
+    let geometry = Geometry::centred(64, 6, BitDepth::Eight).unwrap();
+    let scene = Scene { geometry, ..Scene::default() };
+    let board = Builtin::Checkerboard.render(&scene).unwrap();
+    let image = thumbnail(&board, 16);
+    assert_eq!((image.width, image.height, image.data.len()), (16, 2, 96));
+    let ramp = thumbnail(&Builtin::RampAcross.render(&scene).unwrap(), 20);
+    assert_eq!((ramp.width, ramp.height), (16, 2));
+    assert!(ramp.data.chunks(3).take(16).is_sorted_by_key(|pixel| pixel[1]));
+    // Half of the samples are at full light: 0.5 is coded as 188 (127.5 of 255 rounds to 128).
+    assert!(image.data[3..15].iter().all(|byte| (180..=196).contains(byte)), "{:?}", image.data);
+    assert_eq!(thumbnail(&board, 0).width, 1);
+    assert_eq!(thumbnail(&board, 1000), demosaic(&board));
+}
+
+#[test]
+fn pictures_survive_as_png() {
+    let geometry = Geometry::centred(64, 6, BitDepth::Eight).unwrap();
+    let image = demosaic(&Builtin::Bars.render(&Scene { geometry, ..Scene::default() }).unwrap());
+    let mut file = Vec::new();
+    encode_png_rgb(&image, &mut file).unwrap();
+    assert_eq!(pixels(&file), (64, 6, image.data));
+    let grey: Vec<u8> = (0..12).collect();
+    let mut file = Vec::new();
+    encode_png_grey(4, 3, &grey, &mut file).unwrap();
+    assert_eq!(pixels(&file), (4, 3, grey));
+    assert!(encode_png_grey(4, 3, &[0; 11], &mut Vec::new()).is_err());
+}
+
+fn pixels(file: &[u8]) -> (u32, u32, Vec<u8>) {
+    let mut reader = png::Decoder::new(std::io::Cursor::new(file)).read_info().unwrap();
+    let mut data = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut data).unwrap();
+    (info.width, info.height, data)
+}

@@ -1,0 +1,130 @@
+//! Lens files: what calibration programs write, read into the model's lens.
+//!
+//! OpenCV's fisheye model comes as OpenCV's own FileStorage (YAML or JSON), as ROS's `camera_info` or as Kalibr's camchain;
+//! OCamCalib has a text file of its own. What is in them but is no fisheye lens of these kinds is refused by its name.
+
+mod error;
+mod fisheye;
+mod ocamcalib;
+mod tree;
+
+use std::fmt;
+use std::path::Path;
+
+use halfrow_model::CalibratedLens;
+
+pub use error::{LensContentError, LensFileError, WrongShape};
+
+use crate::tables::text;
+
+/// The most columns and rows that pictures of a calibration may have.
+const MAX_SIDE: usize = 65_535;
+
+/// Which model a lens file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LensModel {
+    /// Kannala and Brandt's, as OpenCV's `fisheye` functions have it.
+    OpenCvFisheye,
+    /// Scaramuzza's, as OCamCalib has it.
+    OCamCalib,
+}
+
+impl fmt::Display for LensModel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::OpenCvFisheye => "OpenCV fisheye lens",
+            Self::OCamCalib => "OCamCalib lens",
+        })
+    }
+}
+
+/// A lens as a file describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LensFile {
+    /// The file's model.
+    pub model: LensModel,
+    /// The lens, in pixels of the pictures that it was calibrated with.
+    pub lens: CalibratedLens,
+    /// Column and row of the axis in those pictures, 0 being the middle of the first pixel.
+    pub centre: (f64, f64),
+    /// Columns and rows of those pictures, if the file says them.
+    pub size: Option<(usize, usize)>,
+}
+
+impl LensFile {
+    /// The lens in the file `path`.
+    ///
+    /// # Errors
+    /// [`LensFileError`] when the file cannot be read or holds no lens that can be used.
+    pub fn read(path: &Path) -> Result<Self, LensFileError> {
+        let text = text::read(path).map_err(|source| LensFileError::Io { path: path.to_owned(), source })?;
+        Self::parse(&text).map_err(|source| LensFileError::Content { path: path.to_owned(), source })
+    }
+
+    /// The lens that `text` describes, in whichever of the formats it is.
+    ///
+    /// # Errors
+    /// [`LensContentError`] when it describes none that can be used.
+    pub fn parse(text: &str) -> Result<Self, LensContentError> {
+        let text = text.trim_start_matches('\u{feff}');
+        let mut lines = text.lines().map(str::trim);
+        match lines.find(|line| !line.is_empty() && !line.starts_with('#')) {
+            None => Err(LensContentError::Empty),
+            Some(line) if line.starts_with('<') => Err(LensContentError::Xml),
+            Some(line) if line.starts_with(|first: char| first.is_ascii_digit() || first == '+') => {
+                ocamcalib::parse(text)
+            }
+            Some(_) => fisheye::parse(text),
+        }
+    }
+
+    /// The file itself, if its axis is inside its pictures.
+    fn with_centre_inside(self) -> Result<Self, LensContentError> {
+        let (column, row) = self.centre;
+        let inside = |place: f64, side: usize| (0.0..=(side - 1) as f64).contains(&place);
+        match self.size {
+            Some((columns, rows)) if !(inside(column, columns) && inside(row, rows)) => {
+                Err(LensContentError::Centre { column, row, columns, rows })
+            }
+            _ => Ok(self),
+        }
+    }
+
+    /// The lens and its centre in frames of `width` x `height`: as calibrated if they have the size of the pictures or the
+    /// file does not say it, and scaled if they have the same shape.
+    ///
+    /// # Errors
+    /// [`WrongShape`] when they have another.
+    pub fn for_frame(
+        &self,
+        width: usize,
+        height: usize,
+    ) -> Result<(CalibratedLens, (f64, f64)), LensContentError> {
+        let Some((columns, rows)) = self.size.filter(|&size| size != (width, height)) else {
+            return Ok((self.lens.clone(), self.centre));
+        };
+        if columns * height != rows * width {
+            return Err(WrongShape { columns, rows, width, height }.into());
+        }
+        let factor = width as f64 / columns as f64;
+        // The middle of the first pixel is half a pixel from the picture's edge, whatever the size of a pixel.
+        let scaled = |place: f64| (place + 0.5) * factor - 0.5;
+        Ok((self.lens.scaled(factor)?, (scaled(self.centre.0), scaled(self.centre.1))))
+    }
+}
+
+/// Columns and rows of a picture, if they can be.
+fn picture_size(width: f64, height: f64) -> Result<(usize, usize), LensContentError> {
+    let side = |side: f64| {
+        let whole = side.fract() == 0.0 && (1.0..=MAX_SIDE as f64).contains(&side);
+        if whole { Ok(side as usize) } else { Err(LensContentError::Size) }
+    };
+    Ok((side(width)?, side(height)?))
+}
+
+/// Reads `bytes` as a lens file: the body of a fuzzer. It must return.
+pub fn fuzz_parse(bytes: &[u8]) {
+    if let Ok(file) = LensFile::parse(&String::from_utf8_lossy(bytes)) {
+        std::hint::black_box(file.for_frame(1920, 1080).is_ok());
+    }
+}

@@ -1,0 +1,121 @@
+//! The report as one page that stands alone: pictures and style inside, no script, nothing loaded.
+
+mod charts;
+mod evidence;
+mod facts;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use png::EncodingError;
+
+use super::wording::{self, plain};
+use super::{Check, Evidence, Report, Suspect};
+use crate::verdict::Verdict;
+
+const STYLE: &str = include_str!("style.css");
+
+/// Forbids the page to load or run anything, whatever gets into it.
+const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
+
+/// The report as a page of under 10 MB. Each frame of `evidence` has a section with pictures, which shrink, or give way
+/// from the last on, when they are too many.
+///
+/// # Errors
+/// The PNG encoder's.
+pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, EncodingError> {
+    let pictures = evidence::sections(report, evidence)?;
+    let title = format!("{}: halfrow verify {}", report.verdict, plain(&report.board.target));
+    let body = html! {
+        (banner(report))
+        main {
+            (next(report))
+            section { h2 { "Checks" } (checks(&report.checks)) }
+            (facts::frames(report))
+            (pictures)
+            (facts::figures(report))
+            (facts::link(&report.link))
+            (facts::board(report))
+            (facts::run(report))
+        }
+    };
+    Ok(document(&title, &body).into_string())
+}
+
+/// A page around `body` that loads nothing: its style is inside.
+pub fn document(title: &str, body: &Markup) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                title { (title) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body { (body) }
+        }
+    }
+}
+
+/// The verdict and what it rests on: for PASS the figures say it all, for the others the headline comes first.
+fn banner(report: &Report) -> Markup {
+    let (facts, started) = (wording::facts(report), plain(&report.run.started));
+    html! {
+        header.(report.verdict.to_string().to_lowercase()) {
+            div {
+                p.verdict { (report.verdict) }
+                p.kind { (wording::remark(&report.board)) }
+            }
+            @if report.verdict == Verdict::Pass {
+                h1 { (facts) }
+                p.facts { (started) }
+            } @else {
+                h1 { (plain(&report.headline)) }
+                p.facts { (facts) " · " (started) }
+            }
+        }
+    }
+}
+
+/// What is suspected and what to do about it.
+fn next(report: &Report) -> Markup {
+    let remedy = wording::remedy(report);
+    if report.suspects.is_empty() && remedy.is_none() {
+        return Markup::default();
+    }
+    html! {
+        section {
+            h2 { "What to do" }
+            @if let Some(remedy) = remedy { p.remedy { (plain(remedy)) } }
+            @if !report.suspects.is_empty() { ol.suspects { @for it in &report.suspects { (suspect(it)) } } }
+        }
+    }
+}
+
+fn suspect(suspect: &Suspect) -> Markup {
+    html! {
+        li {
+            h3 {
+                (plain(suspect.part)) ", " (plain(&suspect.place))
+                span.share { " explains " (wording::percent(suspect.explained)) " of the differences" }
+            }
+            p { (plain(&suspect.evidence)) }
+            p { strong { "Next: " } (plain(&suspect.next_step)) }
+        }
+    }
+}
+
+fn checks(checks: &[Check]) -> Markup {
+    html! {
+        table.checks {
+            @for check in checks {
+                tr {
+                    td { (facts::mark(check.outcome)) }
+                    th scope="row" { (check.name) }
+                    td { (plain(&check.detail)) }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! What files and frames are known again by.
+
+use sha2::{Digest, Sha256};
+
+/// SHA-256 of all `parts`, one behind the other, in hexadecimal.
+pub fn sha256<P: AsRef<[u8]>>(parts: impl IntoIterator<Item = P>) -> String {
+    let mut hash = Sha256::new();
+    parts.into_iter().for_each(|part| hash.update(part));
+    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+}

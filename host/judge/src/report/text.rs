@@ -1,0 +1,188 @@
+//! The report for a terminal: what a technician sees at one glance, the verdict last.
+
+use std::fmt::Write as _;
+
+use anstyle::{AnsiColor, Style};
+use comfy_table::{CellAlignment, Table, presets};
+
+use super::wording::{self, grouped, mark, plain};
+use super::{Outcome, Report, Suspect};
+use crate::verdict::Verdict;
+
+/// Columns that every line but the verdict's keeps to.
+const WIDTH: usize = 80;
+/// Rows of the table of frames.
+const MOST_FRAMES: usize = 20;
+/// Characters of a frame's name.
+const MOST_NAME: usize = 28;
+/// Columns of the labels on the left.
+const LABEL: usize = 9;
+
+const BOLD: Style = Style::new().bold();
+const GREEN: Style = AnsiColor::Green.on_default().bold();
+const RED: Style = AnsiColor::Red.on_default().bold();
+const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
+const DIM: Style = Style::new().dimmed();
+
+/// The report with ANSI colours, which the printing stream takes out where they do not belong.
+#[must_use]
+pub fn render(report: &Report) -> String {
+    let mut sections = vec![head(report), checks(report)];
+    if !report.frames.is_empty() {
+        sections.push(frames(report));
+    }
+    sections.push(figures(report));
+    sections.push(verdict(report));
+    sections.join("\n")
+}
+
+fn head(report: &Report) -> String {
+    let mut text = format!("{BOLD}halfrow {}{BOLD:#} ({})\n", report.run.version, report.run.commit);
+    let board = match &report.board.identity {
+        None => "it never said what it is".to_owned(),
+        Some(it) => format!(
+            "{}, serial {}, build {}, datapath {}, protocol {}",
+            it.name, it.serial, it.build, it.datapath, it.protocol
+        ),
+    };
+    let board = format!("{} at {}: {board}", wording::kind(report.board.kind), report.board.target);
+    push(&mut text, "board", Style::new(), &board);
+    let tables = &report.tables;
+    let size = format!("{}, {} x {}, {} bits", tables.source, tables.width, tables.height, tables.bits);
+    push(&mut text, "tables", Style::new(), &size);
+    text
+}
+
+/// A line for each check. The verdict's own is the last of the text, so it is not said twice.
+fn checks(report: &Report) -> String {
+    let widest = report.checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
+    let mut text = String::new();
+    for check in &report.checks {
+        let detail = if check.detail == report.headline { "see below" } else { &check.detail };
+        let name = format!("{}{:widest$}  ", label(colour(check.outcome), mark(check.outcome)), check.name);
+        push_after(&mut text, &name, LABEL + widest + 2, detail);
+    }
+    text
+}
+
+/// The table of frames; what is equal gives way when there are too many.
+fn frames(report: &Report) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table.set_header(["frame", "name", "rows", "differences", "first at", "largest"]);
+    let (listed, left_out) = wording::worth_listing(report, MOST_FRAMES);
+    for frame in listed {
+        let comparison = &frame.comparison;
+        table.add_row([
+            frame.number.to_string(),
+            shortened(&plain(&frame.name)),
+            grouped(frame.rows),
+            wording::differences(report, frame),
+            comparison.first.map_or_else(String::new, |first| format!("{}, {}", first.row, first.column)),
+            comparison.first.map_or_else(String::new, |_| comparison.largest.to_string()),
+        ]);
+    }
+    for column in table.column_iter_mut().filter(|column| column.index != 1) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    let mut text = table.lines().fold(String::new(), |text, line| text + line.trim_end() + "\n");
+    if left_out > 0 {
+        let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", wording::count(left_out, "more frame"));
+    }
+    text
+}
+
+fn figures(report: &Report) -> String {
+    let mut text = String::new();
+    let no_style = Style::new();
+    if let Some(latency) = &report.latency {
+        push(&mut text, "latency", no_style, &wording::latency(latency));
+    }
+    if let Some(street) = &report.street {
+        push(&mut text, "street", no_style, &wording::street(street));
+    }
+    push(&mut text, "link", no_style, &wording::link(&report.link));
+    text
+}
+
+/// The verdict, and what to do about it.
+fn verdict(report: &Report) -> String {
+    let style = match report.verdict {
+        Verdict::Pass => GREEN,
+        Verdict::Fail => RED,
+        Verdict::Error => YELLOW,
+    };
+    let line = wording::verdict_line(report);
+    let word = report.verdict.to_string();
+    let rest = line.strip_prefix(&word).unwrap_or(&line);
+    let mut text = format!("{style}{word}{style:#}{rest}\n");
+    for suspect in &report.suspects {
+        push_suspect(&mut text, suspect);
+    }
+    if let Some(remedy) = wording::remedy(report) {
+        push(&mut text, "do", BOLD, remedy);
+    }
+    text
+}
+
+fn push_suspect(text: &mut String, suspect: &Suspect) {
+    let share = wording::percent(suspect.explained);
+    let who = format!("{}, {} (explains {share} of the differences)", suspect.part, suspect.place);
+    push(text, "suspect", BOLD, &who);
+    push(text, "", BOLD, &suspect.evidence);
+    push(text, "", BOLD, &format!("Next: {}", suspect.next_step));
+}
+
+/// Appends `words` with a label to their left.
+fn push(text: &mut String, word: &str, style: Style, words: &str) {
+    push_after(text, &label(style, word), LABEL, words);
+}
+
+/// A word at the left, [`LABEL`] columns wide.
+fn label(style: Style, word: &str) -> String {
+    format!("{style}{word}{style:#}{:1$}", "", LABEL.saturating_sub(word.len()))
+}
+
+/// Appends `words`, wrapped at [`WIDTH`], to the right of `head`, which takes `indent` columns.
+fn push_after(text: &mut String, head: &str, indent: usize, words: &str) {
+    for (place, line) in wrapped(&plain(words), WIDTH.saturating_sub(indent)).iter().enumerate() {
+        let _ = match place {
+            0 => writeln!(text, "{head}{line}"),
+            _ => writeln!(text, "{:indent$}{line}", ""),
+        };
+    }
+}
+
+/// The words of `text` on lines of at most `width` characters; a longer word has a line of its own.
+fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// The end of a name that is too long, since that is where file names differ.
+fn shortened(name: &str) -> String {
+    let letters = name.chars().count();
+    if letters <= MOST_NAME {
+        return name.to_owned();
+    }
+    std::iter::once('…').chain(name.chars().skip(letters - MOST_NAME + 1)).collect()
+}
+
+const fn colour(outcome: Outcome) -> Style {
+    match outcome {
+        Outcome::Passed => GREEN,
+        Outcome::Failed => RED,
+        Outcome::Error => YELLOW,
+        Outcome::Skipped => DIM,
+    }
+}

@@ -1,0 +1,164 @@
+//! The table file and the kernel file.
+
+use std::io;
+use std::path::Path;
+
+use halfrow_model::{
+    BitDepth, Geometry, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, STEP_ONE, TAP_NAMES, TableSet,
+};
+use serde_json::{Map, Value};
+
+use super::members::{Members, list, number};
+use super::{ContentError, Place, TableFileError, layout, text};
+use halfrow_frames::written_aside::{WriteAsideError, write_aside};
+
+/// A table file: everything that a board is given before frames.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TableFile {
+    /// The rows' steps and the geometry they are for.
+    pub tables: TableSet,
+    /// The interpolation weights.
+    pub kernel: Kernel,
+    /// The user's notes: kept, never interpreted.
+    pub about: Option<Map<String, Value>>,
+}
+
+/// A kernel file: interpolation weights for any geometry.
+#[derive(Clone, Debug, PartialEq)]
+pub struct KernelFile {
+    /// The interpolation weights.
+    pub kernel: Kernel,
+    /// The user's notes: kept, never interpreted.
+    pub about: Option<Map<String, Value>>,
+}
+
+impl TableFile {
+    /// The keys, in the order of the file.
+    pub(super) const KEYS: [Place; 8] = [
+        Place::Datapath,
+        Place::About,
+        Place::Width,
+        Place::Height,
+        Place::Bits,
+        Place::Centre2,
+        Place::Steps,
+        Place::Kernel,
+    ];
+
+    /// The table file `path`.
+    ///
+    /// # Errors
+    /// [`TableFileError`] when it cannot be read or [`Self::parse`] refuses its text.
+    pub fn read(path: &Path) -> Result<Self, TableFileError> {
+        read(path, Self::parse)
+    }
+
+    /// The table file with the content `text`.
+    ///
+    /// # Errors
+    /// [`ContentError`] for the first thing that is wrong: the JSON, then the datapath, the keys, the geometry, the steps
+    /// from the top, the nodes from x = 0.
+    pub fn parse(text: &str) -> Result<Self, ContentError> {
+        let mut members = Members::parse(text)?;
+        members.check_datapath()?;
+        members.check_keys(&Self::KEYS)?;
+        members.take(Place::Datapath)?;
+        let geometry = geometry(&mut members)?;
+        let steps = steps(&members.take(Place::Steps)?, geometry.height())?;
+        Ok(Self {
+            tables: TableSet::new(geometry, steps)?,
+            kernel: kernel(&members.take(Place::Kernel)?)?,
+            about: members.take_about()?,
+        })
+    }
+
+    /// The file's text. [`Self::parse`] gives the same tables back.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        layout::table_file(self)
+    }
+
+    /// Writes the file `path`, which is whole or as it was.
+    ///
+    /// # Errors
+    /// [`WriteAsideError`] when the file is there and `overwrite` is false, or it cannot be written.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
+        write_text(path, overwrite, &self.to_json())
+    }
+}
+
+impl KernelFile {
+    /// The keys, in the order of the file.
+    pub(super) const KEYS: [Place; 3] = [Place::Datapath, Place::About, Place::Kernel];
+
+    /// The kernel file `path`.
+    ///
+    /// # Errors
+    /// [`TableFileError`] when it cannot be read or [`Self::parse`] refuses its text.
+    pub fn read(path: &Path) -> Result<Self, TableFileError> {
+        read(path, Self::parse)
+    }
+
+    /// The kernel file with the content `text`.
+    ///
+    /// # Errors
+    /// [`ContentError`] for the first thing that is wrong, as [`TableFile::parse`]; `datapath` may be missing.
+    pub fn parse(text: &str) -> Result<Self, ContentError> {
+        let mut members = Members::parse(text)?;
+        members.check_datapath()?;
+        members.check_keys(&Self::KEYS)?;
+        Ok(Self { kernel: kernel(&members.take(Place::Kernel)?)?, about: members.take_about()? })
+    }
+
+    /// The file's text. [`Self::parse`] gives the same kernel back.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        layout::kernel_file(self)
+    }
+
+    /// Writes the file `path`, which is whole or as it was.
+    ///
+    /// # Errors
+    /// [`WriteAsideError`] when the file is there and `overwrite` is false, or it cannot be written.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
+        write_text(path, overwrite, &self.to_json())
+    }
+}
+
+fn read<T>(path: &Path, parse: fn(&str) -> Result<T, ContentError>) -> Result<T, TableFileError> {
+    let text = text::read(path).map_err(|source| TableFileError::Io { path: path.to_owned(), source })?;
+    parse(&text).map_err(|source| TableFileError::content(path.to_owned(), source))
+}
+
+fn write_text(path: &Path, overwrite: bool, text: &str) -> Result<(), WriteAsideError> {
+    write_aside(path, overwrite, |out| io::Write::write_all(out, text.as_bytes()))
+}
+
+fn geometry(members: &mut Members) -> Result<Geometry, ContentError> {
+    let width = members.take_number(Place::Width, &(MIN_WIDTH..=MAX_WIDTH))?;
+    let height = members.take_number(Place::Height, &(1..=MAX_HEIGHT))?;
+    let bits = members.take_number(Place::Bits, &(0..=u32::MAX))?;
+    let depth = BitDepth::from_bits(bits).ok_or(ContentError::Bits { found: bits })?;
+    let centre2 = members.take_number(Place::Centre2, &(0..=2 * width as u32 - 2))?;
+    Ok(Geometry::new(width, height, depth, centre2)?)
+}
+
+fn steps(value: &Value, height: usize) -> Result<Vec<u32>, ContentError> {
+    let steps = list(Place::Steps, value, height)?.iter().enumerate();
+    steps.map(|(row, value)| number(Place::Step { row }, value, &(1..=STEP_ONE))).collect()
+}
+
+fn kernel(value: &Value) -> Result<Kernel, ContentError> {
+    let nodes = list(Place::Kernel, value, NODES)?.iter().enumerate();
+    let nodes: Result<_, _> = nodes.map(|(node, value)| weights(node, value)).collect();
+    Ok(Kernel::from_nodes(nodes?)?)
+}
+
+fn weights(node: usize, value: &Value) -> Result<[i16; 5], ContentError> {
+    let values = list(Place::Node { node }, value, TAP_NAMES.len())?;
+    let mut weights = [0; TAP_NAMES.len()];
+    for ((weight, value), tap) in weights.iter_mut().zip(values).zip(TAP_NAMES) {
+        *weight = number(Place::Weight { node, tap }, value, &(i16::MIN..=i16::MAX))?;
+    }
+    Ok(weights)
+}

@@ -1,0 +1,162 @@
+//! Memory images for Verilog's `$readmemh`: NAME.steps.mem and NAME.kernel.mem.
+//!
+//! A step is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20 digits: g0 r1 g4 r5 g6,
+//! 16 bits each in two's complement, g0 the most significant. Comments at the top say so, and give the geometry that
+//! reading needs.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use halfrow_model::{BitDepth, Geometry, Kernel, TAP_NAMES, TableSet};
+
+use super::text::{self, quoted};
+use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath};
+use halfrow_frames::written_aside::{Aside, WriteAsideError};
+
+/// Hexadecimal digits of a step.
+const STEP_DIGITS: usize = 7;
+
+/// Hexadecimal digits of a weight.
+const WEIGHT_DIGITS: usize = 4;
+
+/// Hexadecimal digits of a node.
+const NODE_DIGITS: usize = WEIGHT_DIGITS * TAP_NAMES.len();
+
+/// The files that stand for `path`: NAME.steps.mem and NAME.kernel.mem for NAME.mem or NAME.
+#[must_use]
+pub fn paths(path: &Path) -> [PathBuf; 2] {
+    let is_mem = path.extension().is_some_and(|extension| extension == "mem");
+    let name = if is_mem { path.with_extension("") } else { path.to_owned() };
+    ["steps", "kernel"].map(|part| {
+        let mut file = name.clone().into_os_string();
+        file.push(format!(".{part}.mem"));
+        file.into()
+    })
+}
+
+/// Writes both files for `path`, as [`paths`] names them, and returns their names. Neither is put in place before both
+/// are written.
+///
+/// # Errors
+/// [`WriteAsideError`] when one of them is there and `overwrite` is false, or cannot be written.
+pub fn write(
+    path: &Path,
+    tables: &TableSet,
+    kernel: &Kernel,
+    overwrite: bool,
+) -> Result<Vec<PathBuf>, WriteAsideError> {
+    let [steps, nodes] = paths(path);
+    let written = [
+        Aside::written(&steps, overwrite, |out| out.write_all(steps_text(tables).as_bytes()))?,
+        Aside::written(&nodes, overwrite, |out| out.write_all(kernel_text(kernel).as_bytes()))?,
+    ];
+    written.into_iter().try_for_each(Aside::put_in_place)?;
+    Ok(vec![steps, nodes])
+}
+
+/// Reads both files for `path`, as [`paths`] names them.
+///
+/// # Errors
+/// [`TableFileError`] when one of them cannot be read or is no memory image of tables.
+pub fn read(path: &Path) -> Result<(TableSet, Kernel), TableFileError> {
+    let [steps, kernel] = paths(path);
+    Ok((read_one(steps, parse_steps)?, read_one(kernel, parse_kernel)?))
+}
+
+fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<T, TableFileError> {
+    match text::read(&path) {
+        Ok(text) => parse(&text).map_err(|source| TableFileError::mem(path, source)),
+        Err(source) => Err(TableFileError::Io { path, source }),
+    }
+}
+
+/// The memory image of the rows' steps.
+#[must_use]
+pub fn steps_text(tables: &TableSet) -> String {
+    let geometry = tables.geometry();
+    let header = [
+        "// halfrow steps Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first".to_owned(),
+        format!(
+            "// datapath={DATAPATH} width={} height={} bits={} centre2={}",
+            geometry.width(),
+            geometry.height(),
+            geometry.depth().bits(),
+            geometry.centre2()
+        ),
+    ];
+    let words = tables.steps().iter().map(|step| format!("{step:0STEP_DIGITS$x}"));
+    lines(header.into_iter().chain(words))
+}
+
+/// The memory image of the kernel's nodes.
+#[must_use]
+pub fn kernel_text(kernel: &Kernel) -> String {
+    let header = [
+        "// halfrow kernel for $readmemh: 80 bits a word, nodes x = 0, 1/32, ..., 2".to_owned(),
+        "// g0 r1 g4 r5 g6, g0 most significant; each 16 bits, two's complement, 14 of them fractional"
+            .to_owned(),
+        format!("// datapath={DATAPATH}"),
+    ];
+    let words =
+        kernel.nodes().iter().map(|node| node.map(|weight| format!("{weight:0WEIGHT_DIGITS$x}")).concat());
+    lines(header.into_iter().chain(words))
+}
+
+fn lines(lines: impl Iterator<Item = String>) -> String {
+    lines.flat_map(|line| [line, "\n".to_owned()]).collect()
+}
+
+/// The table set with the memory image `text`. The comments must give its geometry, as those of [`steps_text`] do.
+///
+/// # Errors
+/// [`MemError`] for the first thing that is wrong: the datapath, the geometry, the words from the top.
+pub fn parse_steps(text: &str) -> Result<TableSet, MemError> {
+    check_datapath(text)?;
+    let bits = noted(text, Place::Bits)?;
+    let depth = BitDepth::from_bits(bits).ok_or(MemError::Bits { found: bits })?;
+    let (width, height) = (noted(text, Place::Width)?, noted(text, Place::Height)?);
+    let geometry = Geometry::new(width, height, depth, noted(text, Place::Centre2)?)?;
+    let steps: Result<_, _> = words::<STEP_DIGITS>(text).map(|word| word.map(|step| step as u32)).collect();
+    Ok(TableSet::new(geometry, steps?)?)
+}
+
+/// The kernel with the memory image `text`.
+///
+/// # Errors
+/// [`MemError`] for the first thing that is wrong: the datapath, the words from x = 0.
+pub fn parse_kernel(text: &str) -> Result<Kernel, MemError> {
+    check_datapath(text)?;
+    let nodes: Result<_, _> = words::<NODE_DIGITS>(text).map(|word| word.map(weights)).collect();
+    Ok(Kernel::from_nodes(nodes?)?)
+}
+
+/// g0 r1 g4 r5 g6 of a node's word.
+fn weights(word: u128) -> [i16; 5] {
+    [64, 48, 32, 16, 0].map(|shift| (word >> shift) as i16)
+}
+
+/// The words of `text`, one a line, each `DIGITS` hexadecimal digits.
+fn words<const DIGITS: usize>(text: &str) -> impl Iterator<Item = Result<u128, MemError>> {
+    let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line.trim()));
+    lines.filter(|(_, line)| !line.is_empty() && comment(line).is_none()).map(|(line, word)| {
+        let is_word = word.len() == DIGITS && word.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let value = is_word.then(|| u128::from_str_radix(word, 16).ok()).flatten();
+        value.ok_or_else(|| MemError::Word { line, found: quoted(word), digits: DIGITS })
+    })
+}
+
+fn comment(line: &str) -> Option<&str> {
+    line.trim().strip_prefix("//")
+}
+
+fn check_datapath(text: &str) -> Result<(), MemError> {
+    let found = noted(text, Place::Datapath)?;
+    if found == i128::from(DATAPATH) { Ok(()) } else { Err(WrongDatapath { found }.into()) }
+}
+
+/// The number that the comments note as `key=number`.
+fn noted<T: FromStr>(text: &str, place: Place) -> Result<T, MemError> {
+    let notes = text.lines().filter_map(comment).flat_map(str::split_whitespace);
+    let mut values = notes.filter_map(|note| note.strip_prefix(place.key())?.strip_prefix('='));
+    values.next().and_then(|value| value.parse().ok()).ok_or(MemError::Header(place))
+}

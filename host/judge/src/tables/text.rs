@@ -1,0 +1,37 @@
+//! Reading small text files, and quoting them.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+/// The longest text file that is read: many times the largest tables there can be.
+pub const MAX_BYTES: u64 = 16 << 20;
+
+/// Characters of a foreign value that an error quotes.
+const QUOTED: usize = 40;
+
+/// The whole text of the file `path`.
+///
+/// # Errors
+/// The system's, [`io::ErrorKind::InvalidData`] when it is not UTF-8, [`io::ErrorKind::FileTooLarge`] when it is longer than
+/// [`MAX_BYTES`].
+pub fn read(path: &Path) -> io::Result<String> {
+    let mut bytes = Vec::new();
+    File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        let reason = format!("it is longer than {MAX_BYTES} bytes");
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let reason = format!("it is no text from byte {} on", error.utf8_error().valid_up_to());
+        io::Error::new(io::ErrorKind::InvalidData, reason)
+    })
+}
+
+/// The beginning of `text`, short enough to stand in a sentence.
+pub fn quoted(text: &str) -> String {
+    match text.char_indices().nth(QUOTED) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}...", text.get(..end).unwrap_or_default()),
+    }
+}

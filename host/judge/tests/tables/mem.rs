@@ -1,0 +1,157 @@
+//! Memory images for `$readmemh`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use halfrow::tables::mem::{self, kernel_text, parse_kernel, parse_steps, steps_text};
+use halfrow::tables::{MemError, Place, TableFileError};
+use halfrow_frames::written_aside::WriteAsideError;
+use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, KernelError, TableError, TableSet};
+
+fn tables() -> TableSet {
+    let geometry = Geometry::new(64, 3, BitDepth::Twelve, 63).unwrap();
+    TableSet::new(geometry, vec![1, 14_648_488, 16_777_216]).unwrap()
+}
+
+#[test]
+fn steps_are_seven_digits_under_a_comment_with_the_geometry() {
+    let expected = "// halfrow steps Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first\n\
+                    // datapath=1 width=64 height=3 bits=12 centre2=63\n\
+                    0000001\n\
+                    0df84a8\n\
+                    1000000\n";
+    assert_eq!(steps_text(&tables()), expected);
+}
+
+#[test]
+fn a_node_is_twenty_digits_with_g0_first() {
+    let kernel = Kernel::from_nodes(vec![[1, -1, 16384, -32768, 32767]; 65]).unwrap();
+    let text = kernel_text(&kernel);
+    let words: Vec<_> = text.lines().filter(|line| !line.starts_with("//")).collect();
+    assert_eq!(words, ["0001ffff400080007fff"; 65]);
+    assert!(text.contains("g0 most significant"), "{text}");
+}
+
+/// At x = 1/2, Eq. 18 gives f_R1 = -9/64, f_G4 = 5/32, f_R5 = -3/64: -2304, 2560 and -768 in 2^-14.
+#[test]
+fn node_16_of_the_hermite_kernel_is_that_of_eq_18() {
+    let text = kernel_text(&Interpolant::Hermite.into());
+    let words: Vec<_> = text.lines().filter(|line| !line.starts_with("//")).collect();
+    assert_eq!(words[16], "0000f7000a00fd000000");
+}
+
+#[test]
+fn nothing_but_ascii_goes_to_verilog() {
+    assert!(steps_text(&tables()).is_ascii());
+    assert!(kernel_text(&Interpolant::Keys.into()).is_ascii());
+}
+
+#[test]
+fn every_built_in_kernel_is_read_back_as_it_was() {
+    for interpolant in Interpolant::ALL {
+        let kernel = Kernel::from(interpolant);
+        assert_eq!(parse_kernel(&kernel_text(&kernel)), Ok(kernel));
+    }
+}
+
+#[test]
+fn steps_are_read_back_with_their_geometry() {
+    assert_eq!(parse_steps(&steps_text(&tables())), Ok(tables()));
+}
+
+#[test]
+fn upper_case_blank_lines_and_other_comments_are_read_over() {
+    let text = steps_text(&tables()).replace("0df84a8", "\r\n  // by hand\n\n  0DF84A8  ");
+    assert_eq!(parse_steps(&text), Ok(tables()));
+}
+
+#[test]
+fn the_files_are_named_after_the_one_that_was_given() {
+    let named = ["a/line.steps.mem", "a/line.kernel.mem"].map(PathBuf::from);
+    assert_eq!(mem::paths(Path::new("a/line.mem")), named);
+    assert_eq!(mem::paths(Path::new("a/line")), named);
+    assert_eq!(mem::paths(Path::new("v1.2")), ["v1.2.steps.mem", "v1.2.kernel.mem"].map(PathBuf::from));
+}
+
+#[test]
+fn both_files_are_written_and_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("line.mem");
+    let kernel = Kernel::from(Interpolant::Keys);
+    assert_eq!(mem::write(&path, &tables(), &kernel, false).unwrap(), mem::paths(&path));
+    assert_eq!(mem::read(&path).unwrap(), (tables(), kernel));
+}
+
+#[test]
+fn when_one_file_may_not_be_replaced_neither_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let [steps, kernel] = mem::paths(&folder.path().join("line"));
+    fs::write(&kernel, "mine").unwrap();
+    let write = |overwrite| {
+        mem::write(&folder.path().join("line"), &tables(), &Interpolant::Linear.into(), overwrite)
+    };
+    assert!(matches!(write(false), Err(WriteAsideError::Exists { path }) if path == kernel));
+    assert!(!steps.exists());
+    assert_eq!(write(true).unwrap(), [steps, kernel]);
+}
+
+#[test]
+fn a_missing_or_foreign_file_is_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("line.mem");
+    let [steps, _] = mem::paths(&path);
+    assert!(matches!(mem::read(&path), Err(TableFileError::Io { path, .. }) if path == steps));
+    fs::write(&steps, "// datapath=1\n").unwrap();
+    assert!(matches!(mem::read(&path), Err(TableFileError::Mem { path, .. }) if path == steps));
+    fs::write(&steps, "// datapath=2\n").unwrap();
+    assert!(matches!(mem::read(&path), Err(TableFileError::Datapath { path, .. }) if path == steps));
+}
+
+#[test]
+fn a_header_without_a_number_names_the_number() {
+    let places = [Place::Datapath, Place::Bits, Place::Width, Place::Height, Place::Centre2];
+    for place in places {
+        let text = steps_text(&tables()).replace(&format!("{}=", place.key()), "x=");
+        assert_eq!(parse_steps(&text), Err(MemError::Header(place)));
+    }
+    let refused = parse_steps(&steps_text(&tables()).replace("width=64", "width=-64")).unwrap_err();
+    let sentence =
+        "its comments give no whole number as `width=`; write the file again with `halfrow tables`";
+    assert_eq!(refused.to_string(), sentence);
+}
+
+#[test]
+fn a_geometry_that_the_datapath_does_not_have_is_refused() {
+    let refuse = |old, new| parse_steps(&steps_text(&tables()).replace(old, new)).unwrap_err();
+    assert_eq!(refuse("bits=12", "bits=9"), MemError::Bits { found: 9 });
+    assert!(matches!(refuse("width=64", "width=65"), MemError::Geometry(_)));
+    let count = TableError::Count { steps: 3, height: 4 };
+    assert_eq!(refuse("height=3", "height=4"), MemError::Tables(count));
+}
+
+#[test]
+fn a_line_that_is_no_word_is_named() {
+    for word in ["0df84a", "0df84a88", "0df84ag", "+df84a8", "xxxxxxx", "@000001", "0df84a8 // Q"] {
+        let refused = parse_steps(&steps_text(&tables()).replace("0df84a8", word)).unwrap_err();
+        assert_eq!(refused, MemError::Word { line: 4, found: word.to_owned(), digits: 7 });
+    }
+    let refused = parse_kernel("// datapath=1\n0001\n").unwrap_err();
+    let sentence =
+        "line 2 is \"0001\", not 20 hexadecimal digits; write the file again with `halfrow tables`";
+    assert_eq!(refused.to_string(), sentence);
+}
+
+#[test]
+fn a_step_that_no_board_could_use_is_refused() {
+    for (word, step) in [("0000000", 0), ("1000001", 0x100_0001), ("fffffff", 0xfff_ffff)] {
+        let refused = parse_steps(&steps_text(&tables()).replace("0df84a8", word));
+        assert_eq!(refused, Err(MemError::Tables(TableError::Step { row: 1, step })));
+    }
+}
+
+#[test]
+fn a_kernel_with_a_node_too_few_is_refused() {
+    let text = kernel_text(&Interpolant::Linear.into());
+    let shorter = text.trim_end().rsplit_once('\n').unwrap().0;
+    assert_eq!(parse_kernel(shorter), Err(MemError::Kernel(KernelError::Count(64))));
+}

@@ -1,0 +1,47 @@
+//! Adding the distortion that the correction takes away: the reciprocal of Eqs. 8 and 9 (Sect. 4.1, Fig. 11).
+
+use halfrow_model::{Equidistant, stretch_factor};
+
+use halfrow::frames::preview::RgbImage;
+
+/// `image` as a lens with the image circle of `lens` would distort its rows: distorted(x_d, y) = image(k · x_d, y), in
+/// pixels from the middle of the picture, k of Eq. 9.
+///
+/// Between two pixels each colour runs in a straight line, beyond the ends of a row the last pixel goes on, and the result is
+/// truncated to 8 bits. The paper leaves all three open; these come nearest to its Table 1.
+#[must_use]
+pub fn distorted(image: &RgbImage, lens: &Equidistant) -> RgbImage {
+    distorted_by(image, lens, between)
+}
+
+/// As [`distorted`], with what `sample` finds in a row of bytes at a place, 0 to its last column.
+#[must_use]
+pub fn distorted_by(
+    image: &RgbImage,
+    lens: &Equidistant,
+    sample: impl Fn(&[u8], f64) -> [u8; 3],
+) -> RgbImage {
+    let (width, height) = (image.width, image.height);
+    let centre = (width as f64 - 1.0) / 2.0;
+    let mut data = Vec::with_capacity(image.data.len());
+    for (index, row) in image.data.chunks_exact(3 * width).enumerate() {
+        let y = index as f64 - (height as f64 - 1.0) / 2.0;
+        let factor = stretch_factor(lens.radius(), y);
+        for column in 0..width {
+            let source = centre + factor * (column as f64 - centre);
+            data.extend(sample(row, source.clamp(0.0, width as f64 - 1.0)));
+        }
+    }
+    RgbImage { width, height, data }
+}
+
+/// Red, green and blue at the place `x` of a row, 0 to its last column, truncated.
+fn between(row: &[u8], x: f64) -> [u8; 3] {
+    let left = x as usize;
+    let right = (left + 1).min(row.len() / 3 - 1);
+    let share = x - left as f64;
+    std::array::from_fn(|colour| {
+        let (left, right) = (f64::from(row[3 * left + colour]), f64::from(row[3 * right + colour]));
+        (left + (right - left) * share) as u8
+    })
+}

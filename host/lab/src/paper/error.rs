@@ -1,0 +1,48 @@
+//! What can keep an item from being made.
+
+use std::io;
+use std::path::PathBuf;
+
+use halfrow_model::{CorrectError, FrameError, GeometryError, LensError, TableError};
+
+use halfrow::board::BoardError;
+
+/// An item that could not be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PaperError {
+    /// The board let it down.
+    #[error("the board could not be tried")]
+    Board(#[from] BoardError),
+    /// The board cannot take the item's frames or kernels; the sentence says why and what to do.
+    #[error("{0}")]
+    Misfit(String),
+    /// An item that is tried on a board was given none.
+    #[error("no board was opened for this item; this is a fault of halfrow, so report it")]
+    NoBoard,
+    /// The synthesis report cannot be read.
+    #[error(
+        "{} is no synthesis report that can be used; make it anew with `scripts/hardware resources`",
+        path.display()
+    )]
+    Synthesis {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// A frame could not be made.
+    #[error("a frame of the experiment cannot be made; this is a fault of halfrow, so report it")]
+    Frame(#[from] FrameError),
+    /// A frame could not be corrected.
+    #[error("a frame of the experiment cannot be corrected; this is a fault of halfrow, so report it")]
+    Correct(#[from] CorrectError),
+    /// The paper's size is none.
+    #[error("the paper's frame is refused; this is a fault of halfrow, so report it")]
+    Geometry(#[from] GeometryError),
+    /// The paper's lens is none.
+    #[error("the paper's lens is refused; this is a fault of halfrow, so report it")]
+    Lens(#[from] LensError),
+    /// The paper's row factors are none.
+    #[error("the paper's row factors are refused; this is a fault of halfrow, so report it")]
+    Tables(#[from] TableError),
+}

@@ -1,0 +1,115 @@
+//! The folder of the exhibits: the page, each picture and each table as a file, and all numbers as JSON.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::exhibit::{Drawing, Exhibit, Picture};
+use super::page;
+use halfrow::frames::preview;
+use halfrow_frames::written_aside::{WriteAsideError, write_aside};
+
+/// The page's name.
+const PAGE: &str = "paper.html";
+/// The name of the file that holds every number.
+const NUMBERS: &str = "paper.json";
+
+/// Exhibits that could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum FolderError {
+    /// The folder cannot be made.
+    #[error("the folder {} cannot be made; choose another with --output", path.display())]
+    Make {
+        /// The folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteAsideError),
+    /// A picture cannot be encoded.
+    #[error("a picture cannot be encoded; this is a fault of halfrow, so report it")]
+    Picture(#[from] png::EncodingError),
+}
+
+/// A place for exhibits. Files in it that they do not name stay as they are.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    path: PathBuf,
+    overwrite: bool,
+}
+
+impl Folder {
+    /// Makes the folder unless it is there, and makes sure that it holds no earlier page unless that may be replaced.
+    ///
+    /// # Errors
+    /// [`FolderError`] when it cannot be made or holds one.
+    pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, FolderError> {
+        fs::create_dir_all(path).map_err(|source| FolderError::Make { path: path.to_owned(), source })?;
+        match path.join(PAGE) {
+            page if page.exists() && !overwrite => Err(WriteAsideError::Exists { path: page }.into()),
+            _ => Ok(Self { path: path.to_owned(), overwrite }),
+        }
+    }
+
+    /// Writes everything, the page last, and returns where that is.
+    ///
+    /// # Errors
+    /// [`FolderError`] for the first file that cannot be written.
+    pub fn write(&self, exhibits: &[Exhibit]) -> Result<PathBuf, FolderError> {
+        for exhibit in exhibits {
+            for table in &exhibit.tables {
+                self.file(&format!("{}.csv", table.name), table.csv().as_bytes())?;
+            }
+            for picture in &exhibit.pictures {
+                self.file(&file_name(picture), &encoded(picture)?)?;
+            }
+        }
+        self.file(NUMBERS, format!("{}\n", numbers(exhibits)).as_bytes())?;
+        self.file(PAGE, page::render(exhibits)?.as_bytes())?;
+        Ok(self.path.join(PAGE))
+    }
+
+    fn file(&self, name: &str, bytes: &[u8]) -> Result<(), FolderError> {
+        Ok(write_aside(&self.path.join(name), self.overwrite, |out| out.write_all(bytes))?)
+    }
+}
+
+/// Every number of every exhibit, as the folder's JSON file holds them.
+#[must_use]
+pub fn numbers(exhibits: &[Exhibit]) -> Value {
+    let exhibits = exhibits.iter().map(|exhibit| {
+        let claims: Vec<Value> = exhibit.claims.iter().map(super::Claim::json).collect();
+        let tables: Vec<Value> = exhibit.tables.iter().map(super::Table::json).collect();
+        json!({
+            "item": exhibit.item.name(), "title": exhibit.item.title(), "remarks": exhibit.remarks,
+            "open": exhibit.open,
+            "claims": claims, "tables": tables,
+        })
+    });
+    json!({ "halfrow": env!("CARGO_PKG_VERSION"), "items": exhibits.collect::<Vec<Value>>() })
+}
+
+/// The name of a picture's file.
+pub(super) fn file_name(picture: &Picture) -> String {
+    let extension = match picture.drawing {
+        Drawing::Pixels(..) => "png",
+        Drawing::Lines(_) => "svg",
+    };
+    format!("{}.{extension}", picture.name)
+}
+
+/// A picture as the bytes of its file.
+pub(super) fn encoded(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> {
+    match &picture.drawing {
+        Drawing::Lines(svg) => Ok(svg.clone().into_bytes()),
+        Drawing::Pixels(image, _) => {
+            let mut bytes = Vec::new();
+            preview::encode_png_rgb(image, &mut bytes)?;
+            Ok(bytes)
+        }
+    }
+}

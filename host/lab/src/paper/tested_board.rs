@@ -1,0 +1,95 @@
+//! A board that the paper's claims are tried on.
+
+use std::ops::{ControlFlow, RangeInclusive};
+use std::sync::Arc;
+
+use halfrow_model::{Frame, Kernel, TableSet};
+
+use super::PaperError;
+use halfrow::board::Board;
+use halfrow::correction::Correction;
+use halfrow::progress::Progress;
+use halfrow::run::misfit;
+use halfrow::target::BoardKind;
+
+/// An open session, and what it has streamed so far.
+pub struct TestedBoard {
+    board: Board,
+    kind: BoardKind,
+    frames: u16,
+    generation: u8,
+}
+
+/// What came back.
+#[derive(Clone, Debug)]
+pub struct Corrected {
+    /// The samples of each frame, row after row, in the order of the inputs. A broken board can exceed the depth.
+    pub samples: Vec<Vec<u16>>,
+    /// The least and the most pixel clocks that a row's first and last sample took.
+    pub latency: RangeInclusive<u16>,
+}
+
+impl TestedBoard {
+    /// Takes a session over whose link leads to a board of this kind.
+    #[must_use]
+    pub fn new(board: Board, kind: BoardKind) -> Self {
+        let kind = kind.confirmed_by(board.capabilities.nature);
+        Self { board, kind, frames: 0, generation: 0 }
+    }
+
+    /// The board, for people.
+    #[must_use]
+    pub fn name(&self) -> String {
+        match self.kind {
+            BoardKind::Hardware => "board (hardware)".to_owned(),
+            kind => format!("{kind} board (no hardware was tested)"),
+        }
+    }
+
+    /// L: the pixel clocks beyond half a row that the board says it takes.
+    #[must_use]
+    pub fn advertised_latency(&self) -> u16 {
+        self.board.capabilities.latency.into()
+    }
+
+    /// Whether the board takes frames of this size and this kernel.
+    ///
+    /// # Errors
+    /// [`PaperError::Misfit`] when it does not.
+    pub fn fits(&self, tables: &TableSet, kernel: &Kernel) -> Result<(), PaperError> {
+        misfit(tables, kernel, &self.board.capabilities)
+            .map_or(Ok(()), |misfit| Err(PaperError::Misfit(misfit)))
+    }
+
+    /// Corrects `inputs` with tables and kernel of their own.
+    ///
+    /// # Errors
+    /// [`PaperError::Misfit`] when the board cannot take them, [`PaperError::Board`] when it refuses or does not answer.
+    pub fn correct(
+        &mut self,
+        tables: &TableSet,
+        kernel: &Kernel,
+        inputs: &[Arc<Frame>],
+        progress: &dyn Progress,
+    ) -> Result<Corrected, PaperError> {
+        self.fits(tables, kernel)?;
+        self.generation += 1;
+        let correction = Correction { tables, kernel, generation: self.generation, first_frame: self.frames };
+        let mut samples = Vec::with_capacity(inputs.len());
+        let take = |frame| {
+            samples.push(frame);
+            ControlFlow::Continue(())
+        };
+        let latency = correction.run(&mut self.board, inputs.iter().cloned(), take, progress)?;
+        self.frames += inputs.len() as u16;
+        Ok(Corrected { samples, latency })
+    }
+
+    /// Ends the session, so that the next host finds the board free.
+    ///
+    /// # Errors
+    /// [`PaperError::Board`] when the board does not answer.
+    pub fn close(&mut self) -> Result<(), PaperError> {
+        Ok(self.board.close()?)
+    }
+}

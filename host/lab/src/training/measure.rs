@@ -1,0 +1,164 @@
+//! How much nearer to the truth a kernel comes than Hermite.
+
+use halfrow_model::{Frame, Interpolant, Kernel, TableSet};
+use rand_core::Rng;
+use rand_pcg::Pcg32;
+
+use super::{Model, TrainingError, Warp};
+use crate::paper::psnr;
+use halfrow::frames::preview::{RgbImage, demosaic_coded};
+use halfrow::progress::Progress;
+use halfrow::reference;
+
+/// R as a multiple of half the picture's height: that of Table 1.
+const RADIUS: f64 = 1.5;
+
+/// Standard deviations of the noise that is added, in levels of 255.
+const NOISES: [u8; 3] = [2, 5, 10];
+
+/// Of the noise's random numbers: any number will do.
+const SEED: u64 = 5;
+
+/// A photograph distorted, with what ought to come of it.
+#[derive(Clone, Debug)]
+pub struct Warped {
+    /// The row factors that take the distortion away.
+    pub tables: TableSet,
+    /// What a sensor would see without distortion.
+    pub reference: Frame,
+    /// What it sees with distortion.
+    pub distorted: Frame,
+}
+
+/// Gains over Hermite in dB.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Spread {
+    /// The mean of all photographs.
+    pub mean: f64,
+    /// That of the photograph that gains least.
+    pub least: f64,
+    /// That of the photograph that gains most.
+    pub most: f64,
+}
+
+/// The gains under one condition.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Gains {
+    /// The condition, in words.
+    pub condition: String,
+    /// PSNR by Hermite in dB, the mean of all photographs.
+    pub hermite: f64,
+    /// By how much the kernel is better.
+    pub gain: Spread,
+}
+
+impl Spread {
+    /// Of `gains`; zeros of none.
+    #[must_use]
+    pub fn of(gains: &[f64]) -> Self {
+        if gains.is_empty() {
+            return Self { mean: 0.0, least: 0.0, most: 0.0 };
+        }
+        Self {
+            mean: gains.iter().sum::<f64>() / gains.len() as f64,
+            least: gains.iter().copied().fold(f64::INFINITY, f64::min),
+            most: gains.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Condition {
+    Warped(Warp),
+    Noisy(u8),
+    Demosaicked,
+}
+
+impl Condition {
+    const ALL: [Self; 6] = [
+        Self::Warped(Warp::Linear),
+        Self::Warped(Warp::BandLimited),
+        Self::Noisy(NOISES[0]),
+        Self::Noisy(NOISES[1]),
+        Self::Noisy(NOISES[2]),
+        Self::Demosaicked,
+    ];
+
+    fn name(self) -> String {
+        match self {
+            Self::Warped(Warp::Linear) => "linear warp, as in Table 1".to_owned(),
+            Self::Warped(Warp::BandLimited) => "band-limited warp".to_owned(),
+            Self::Noisy(deviation) => format!("band-limited warp, noise of {deviation} levels"),
+            Self::Demosaicked => "band-limited warp, demosaicked (CPSNR)".to_owned(),
+        }
+    }
+}
+
+/// The gains of `kernel` by the integer datapath, R as in Table 1, the whole frame compared.
+///
+/// # Errors
+/// [`TrainingError`] when a photograph has a size that no frame has.
+pub fn measure(
+    photographs: &[RgbImage],
+    kernel: &Kernel,
+    progress: &dyn Progress,
+) -> Result<Vec<Gains>, TrainingError> {
+    let kernels = [Kernel::from(Interpolant::Hermite), kernel.clone()];
+    let mut scores = vec![Vec::new(); Condition::ALL.len()];
+    for (index, photograph) in photographs.iter().enumerate() {
+        progress.frame(&format!("photograph {}", index + 1));
+        let [linear, band_limited] = Warp::ALL.map(|warp| Model { radius: RADIUS, warp }.warped(photograph));
+        let (linear, band_limited) = (linear?, band_limited?);
+        for (condition, scores) in Condition::ALL.into_iter().zip(&mut scores) {
+            let [hermite, own] = &kernels;
+            let score = |kernel| score(condition, photograph, (&linear, &band_limited), kernel);
+            scores.push([score(hermite)?, score(own)?]);
+        }
+        progress.rows(photograph.height as u64);
+    }
+    let gains = Condition::ALL.into_iter().zip(&scores).map(|(condition, scores)| {
+        let hermite: Vec<f64> = scores.iter().map(|score| score[0]).collect();
+        let gains: Vec<f64> = scores.iter().map(|score| score[1] - score[0]).collect();
+        Gains { condition: condition.name(), hermite: Spread::of(&hermite).mean, gain: Spread::of(&gains) }
+    });
+    Ok(gains.collect())
+}
+
+/// PSNR in dB.
+fn score(
+    condition: Condition,
+    photograph: &RgbImage,
+    (linear, band_limited): (&Warped, &Warped),
+    kernel: &Kernel,
+) -> Result<f64, TrainingError> {
+    let warped = if matches!(condition, Condition::Warped(Warp::Linear)) { linear } else { band_limited };
+    let corrected = match condition {
+        Condition::Noisy(deviation) => {
+            reference::correct(&warped.tables, kernel, &noisy(&warped.distorted, deviation)?)?
+        }
+        _ => reference::correct(&warped.tables, kernel, &warped.distorted)?,
+    };
+    if !matches!(condition, Condition::Demosaicked) {
+        return Ok(psnr(warped.reference.samples(), corrected.samples()));
+    }
+    let [wanted, found] = [photograph, &demosaic_coded(&corrected)].map(colours);
+    Ok(psnr(&wanted, &found))
+}
+
+/// Red, green and blue of every pixel but those of an odd last column.
+fn colours(image: &RgbImage) -> Vec<u16> {
+    let rows = image.data.chunks_exact(3 * image.width);
+    rows.flat_map(|row| &row[..3 * (image.width & !1)]).copied().map(u16::from).collect()
+}
+
+/// `frame` with noise of the standard deviation `deviation`, the same each time.
+fn noisy(frame: &Frame, deviation: u8) -> Result<Frame, TrainingError> {
+    let mut random = Pcg32::new(SEED, SEED);
+    let max = f64::from(frame.depth().max());
+    let samples = frame.samples().iter().map(|&sample| {
+        // Twelve even numbers have the variance 1, and their sum is as good as normal.
+        let normal = (0..12).map(|_| f64::from(random.next_u32()) / 4_294_967_296.0).sum::<f64>() - 6.0;
+        (f64::from(sample) + normal * f64::from(deviation) + 0.5).floor().clamp(0.0, max) as u16
+    });
+    Ok(Frame::new(frame.width(), frame.depth(), frame.phase(), samples.collect())?)
+}

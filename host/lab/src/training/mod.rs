@@ -1,0 +1,114 @@
+//! Fitting a kernel to photographs by least squares under the constraints of the datapath (DATAPATH.md, "Kernel").
+//!
+//! An output is linear in the weights of the two nodes around it, so the nodes that bring corrected photographs nearest to the
+//! photographs themselves solve one system of linear equations. G2 and R3 are never unknowns: what they take up of the others
+//! is built into the equations as it is into the datapath, so a fitted kernel keeps a flat field whatever the photographs are.
+
+mod cholesky;
+mod equations;
+mod figures;
+mod measure;
+mod model;
+
+pub use cholesky::solve;
+pub use equations::{Equations, RIDGE};
+pub use figures::noise_gain;
+pub use measure::{Gains, Spread, Warped, measure};
+pub use model::{Model, Warp};
+
+use halfrow_model::{
+    CorrectError, FrameError, GeometryError, Interpolant, Kernel, KernelError, LensError, TableError, Taps,
+};
+
+use halfrow::frames::preview::RgbImage;
+use halfrow::progress::Progress;
+
+/// A kernel and how good it is.
+#[derive(Clone, Debug)]
+pub struct Trained {
+    /// The weights.
+    pub kernel: Kernel,
+    /// The gain over Hermite on each photograph by the kernel of all the others, in dB; none for a photograph alone.
+    pub held_out: Vec<f64>,
+    /// The gain over Hermite on the photographs it was fitted to, in dB.
+    pub gain: f64,
+}
+
+/// What keeps a kernel from being fitted or measured.
+#[derive(Debug, thiserror::Error)]
+pub enum TrainingError {
+    /// A photograph has a size that no frame has.
+    #[error("a photograph cannot be a frame; scale it to 64 to 2592 columns and at most 2048 rows")]
+    Geometry(#[from] GeometryError),
+    /// The equations have no solution.
+    #[error("the photographs determine no kernel; give some with detail in them")]
+    Singular,
+    /// A weight is larger than 16 bits hold.
+    #[error("the fitted kernel cannot be stored; give more photographs")]
+    Kernel(#[from] KernelError),
+    /// A photograph of so few rows that the experiment has no lens for it.
+    #[error("the photograph is too low for a lens; give one of more rows")]
+    Lens(#[from] LensError),
+    /// Row factors could not be made.
+    #[error("the tables of the experiment cannot be made; this is a fault of halfrow, so report it")]
+    Table(#[from] TableError),
+    /// A frame could not be made.
+    #[error("a frame of the experiment cannot be made; this is a fault of halfrow, so report it")]
+    Frame(#[from] FrameError),
+    /// A frame could not be corrected.
+    #[error("a frame of the experiment cannot be corrected; this is a fault of halfrow, so report it")]
+    Correct(#[from] CorrectError),
+}
+
+/// The kernel that fits `photographs` best under all of [`Model::ALL`], each photograph weighing the same whatever its size.
+///
+/// # Errors
+/// [`TrainingError`] when a photograph has no frame's size or they determine no kernel.
+pub fn train(
+    photographs: &[RgbImage],
+    taps: Taps,
+    progress: &dyn Progress,
+) -> Result<Trained, TrainingError> {
+    let mut each = Vec::with_capacity(photographs.len());
+    for (index, photograph) in photographs.iter().enumerate() {
+        progress.frame(&format!("photograph {}", index + 1));
+        each.push(equations_of(photograph)?);
+        progress.rows(photograph.height as u64);
+    }
+    let mut all = Equations::new();
+    for equations in &each {
+        all.add(equations, 1.0);
+    }
+    let kernel = all.kernel(taps)?;
+    let mut held_out = Vec::new();
+    for equations in each.iter().filter(|_| each.len() > 1) {
+        let mut others = all.clone();
+        others.add(equations, -1.0);
+        held_out.push(gain(equations, &others.kernel(taps)?));
+    }
+    Ok(Trained { gain: gain(&all, &kernel), kernel, held_out })
+}
+
+/// Whether `photograph` has a size that the experiments can use.
+///
+/// # Errors
+/// [`TrainingError`] when it has not.
+pub fn check(photograph: &RgbImage) -> Result<(), TrainingError> {
+    Model::ALL.iter().try_for_each(|model| model.tables(photograph.width & !1, photograph.height).map(drop))
+}
+
+/// The equations of a photograph under every model, per sample.
+fn equations_of(photograph: &RgbImage) -> Result<Equations, TrainingError> {
+    let mut equations = Equations::new();
+    for model in Model::ALL {
+        equations.observe(&model.warped(photograph)?);
+    }
+    Ok(equations.per_sample())
+}
+
+/// How much nearer to the photographs than Hermite, in dB.
+fn gain(equations: &Equations, kernel: &Kernel) -> f64 {
+    let hermite = Kernel::from(Interpolant::Hermite);
+    let [hermite, own] = [&hermite, kernel].map(|kernel| equations.error(kernel).max(f64::MIN_POSITIVE));
+    10.0 * (hermite / own).log10()
+}

@@ -1,0 +1,118 @@
+//! How a lens distorts the photographs that a kernel is fitted to or measured on.
+
+use halfrow_model::{BitDepth, Equidistant, Geometry, Phase, TableSet};
+
+use super::{TrainingError, Warped};
+use crate::paper;
+use halfrow::frames::mosaic;
+use halfrow::frames::preview::RgbImage;
+
+/// Pixels on each side that the band-limited warp sees.
+const REACH: i32 = 8;
+
+/// How the brightness between two pixels of a photograph is found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Warp {
+    /// Straight lines, truncated: the experiment of the paper. It blurs what it distorts.
+    Linear,
+    /// A sine cardinal under Lanczos' window, eight pixels to each side, rounded half up: the photograph as the band-limited
+    /// picture that its pixels are samples of.
+    BandLimited,
+}
+
+/// A lens and a warp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model {
+    /// The lens's R as a multiple of half the picture's height.
+    pub radius: f64,
+    /// The warp.
+    pub warp: Warp,
+}
+
+impl Warp {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Linear, Self::BandLimited];
+
+    /// What it is called in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Linear => "linear",
+            Self::BandLimited => "band-limited",
+        }
+    }
+
+    fn distorted(self, image: &RgbImage, lens: &Equidistant) -> RgbImage {
+        match self {
+            Self::Linear => paper::distorted(image, lens),
+            Self::BandLimited => paper::distorted_by(image, lens, lanczos),
+        }
+    }
+}
+
+impl Model {
+    /// What kernels are fitted to. In the paper's experiment R is 1.5 times half the height.
+    pub const ALL: [Self; 4] = [
+        Self { radius: 1.5, warp: Warp::Linear },
+        Self { radius: 2.0, warp: Warp::Linear },
+        Self { radius: 1.5, warp: Warp::BandLimited },
+        Self { radius: 2.0, warp: Warp::BandLimited },
+    ];
+
+    fn lens(self, height: usize) -> Result<Equidistant, TrainingError> {
+        Ok(Equidistant::from_radius(self.radius * height as f64 / 2.0)?)
+    }
+
+    /// The row factors for photographs of this size.
+    ///
+    /// # Errors
+    /// [`TrainingError`] when it is the size of no frame.
+    pub fn tables(self, width: usize, height: usize) -> Result<TableSet, TrainingError> {
+        let geometry = Geometry::centred(width, height, BitDepth::Eight)?;
+        Ok(TableSet::from_lens(geometry, &self.lens(height)?, None)?)
+    }
+
+    /// `image` under this model; an odd last column is left out.
+    ///
+    /// # Errors
+    /// [`TrainingError`] when it has a size that no frame has.
+    pub fn warped(self, image: &RgbImage) -> Result<Warped, TrainingError> {
+        let image = &even(image);
+        let lens = self.lens(image.height)?;
+        Ok(Warped {
+            tables: self.tables(image.width, image.height)?,
+            reference: mosaic(image, Phase::Grbg)?,
+            distorted: mosaic(&self.warp.distorted(image, &lens), Phase::Grbg)?,
+        })
+    }
+}
+
+fn even(image: &RgbImage) -> RgbImage {
+    let width = image.width & !1;
+    let rows = image.data.chunks_exact(3 * image.width);
+    let data = rows.flat_map(|row| &row[..3 * width]).copied().collect();
+    RgbImage { width, height: image.height, data }
+}
+
+/// Red, green and blue at the place `x` of a row whose brightness is band-limited.
+fn lanczos(row: &[u8], x: f64) -> [u8; 3] {
+    let left = x.floor();
+    let last = row.len() as i64 / 3 - 1;
+    let (mut sums, mut total) = ([0.0; 3], 0.0);
+    for offset in 1 - REACH..=REACH {
+        let distance = x - left - f64::from(offset);
+        let weight = sinc(distance) * sinc(distance / f64::from(REACH));
+        let pixel = (left as i64 + i64::from(offset)).clamp(0, last) as usize;
+        for (sum, &value) in sums.iter_mut().zip(&row[3 * pixel..]) {
+            *sum += weight * f64::from(value);
+        }
+        total += weight;
+    }
+    sums.map(|sum| (sum / total + 0.5).clamp(0.0, 255.0) as u8)
+}
+
+/// The sine cardinal: 1 at 0, and 0 at every other whole number.
+fn sinc(x: f64) -> f64 {
+    let angle = std::f64::consts::PI * x;
+    if angle == 0.0 { 1.0 } else { angle.sin() / angle }
+}

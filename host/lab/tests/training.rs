@@ -1,0 +1,110 @@
+//! Fitting kernels: the equations, held to systems whose solution is known from outside.
+
+use halfrow::frames::preview::RgbImage;
+use halfrow::kernels::NamedKernel;
+use halfrow::progress::Silent;
+use halfrow_lab::training::{Equations, TrainingError, solve, train};
+use halfrow_model::{Interpolant, Kernel, Taps};
+
+/// By hand: 4 2 / 2 5 times (1, −2) is (0, −8); 1 2 / 2 1 is not positive definite.
+#[test]
+fn a_system_is_solved_as_by_hand() {
+    let solution = solve(&[4.0, 0.0, 2.0, 5.0], &[0.0, -8.0]).unwrap();
+    assert!((solution[0] - 1.0).abs() < 1e-12 && (solution[1] + 2.0).abs() < 1e-12, "{solution:?}");
+    assert_eq!(solve(&[1.0, 0.0, 2.0, 1.0], &[1.0, 1.0]), None);
+    assert_eq!(solve(&[f64::NAN], &[1.0]), None);
+}
+
+/// Outputs that a known kernel makes of made-up taps: the equations give that kernel back, but for the ridge.
+#[test]
+fn the_kernel_that_made_the_outputs_is_found_again() {
+    for (named, taps) in [
+        (NamedKernel::Interpolant(Interpolant::Keys), Taps::Seven),
+        (NamedKernel::HermiteBalanced, Taps::Five),
+    ] {
+        let kernel = named.kernel().unwrap();
+        let mut equations = Equations::new();
+        for place in 0..64 * 64_u32 {
+            let (node, share) = ((place / 64) as usize, f64::from(place % 8) / 8.0);
+            let taps: [f64; 7] = std::array::from_fn(|tap| {
+                f64::from((7 * place + tap as u32).wrapping_mul(2_654_435_761) >> 20)
+            });
+            let [s0, s1, s2, s3, s4, s5, s6] = taps;
+            let [g0, r1, g4, r5, g6] = std::array::from_fn(|tap| {
+                let [low, high] = [node, node + 1].map(|node| f64::from(kernel.nodes()[node][tap]) / 16384.0);
+                low + (high - low) * share
+            });
+            let wanted =
+                s2 + g0 * (s0 - s2) + g4 * (s4 - s2) + g6 * (s6 - s2) + r1 * (s1 - s3) + r5 * (s5 - s3);
+            equations.sample(node, share, taps, wanted);
+        }
+        let found = equations.kernel(taps).unwrap();
+        let pairs = found.nodes().iter().flatten().zip(kernel.nodes().iter().flatten());
+        let farthest = pairs.map(|(found, made)| (i32::from(*found) - i32::from(*made)).abs()).max();
+        assert!(farthest <= Some(2), "{named}: {farthest:?}");
+        assert!(equations.error(&kernel).abs() < 1e-3, "{}", equations.error(&kernel));
+    }
+}
+
+#[test]
+fn a_photograph_without_detail_determines_no_kernel() {
+    let flat = RgbImage { width: 64, height: 64, data: vec![90; 3 * 64 * 64] };
+    let refused = train(&[flat], Taps::Five, &Silent).unwrap_err();
+    assert!(matches!(refused, TrainingError::Singular), "{refused}");
+    let small = RgbImage { width: 32, height: 32, data: vec![90; 3 * 32 * 32] };
+    assert!(matches!(train(&[small], Taps::Five, &Silent), Err(TrainingError::Geometry(_))));
+}
+
+/// Samples between nodes 20 and 23 that no kernel makes exactly.
+fn noisy_equations() -> Equations {
+    let drawn = |place: u32, bits: u32| f64::from(place.wrapping_mul(2_654_435_761) >> (32 - bits));
+    let mut equations = Equations::new();
+    for place in 0..96_u32 {
+        let taps: [f64; 7] = std::array::from_fn(|tap| drawn(7 * place + tap as u32, 12));
+        let [_, s1, s2, _, s4, s5, _] = taps;
+        let noise = drawn(1000 + place, 8) - 128.0;
+        let wanted = 0.55 * s2 + 0.45 * s4 + 0.125 * (s1 - s5) + noise;
+        equations.sample(20 + (place % 3) as usize, f64::from(place / 3 % 8) / 8.0, taps, wanted);
+    }
+    equations
+}
+
+/// Nodes 20 to 23, and the sum of squares that they leave, by NumPy 2.4 (`numpy.linalg.lstsq` over the samples and a row for each
+/// weight that holds it to Hermite's by the ridge).
+#[test]
+fn the_fit_is_numpy_s() {
+    let equations = noisy_equations();
+    let found = [
+        (
+            Taps::Five,
+            [
+                [0, 2026, 7643, -2030, 0],
+                [0, 2176, 6885, -2039, 0],
+                [0, 2168, 7722, -2047, 0],
+                [0, 1886, 6613, -2131, 0],
+            ],
+            453_895.121_507,
+        ),
+        (
+            Taps::Seven,
+            [
+                [850, 2716, 7388, -2221, -478],
+                [-191, 1886, 7313, -2026, -328],
+                [-9, 2216, 7775, -2089, -93],
+                [226, 1846, 6616, -1940, 161],
+            ],
+            384_755.078_525,
+        ),
+    ];
+    let hermite = Kernel::from(Interpolant::Hermite);
+    for (taps, nodes, left) in found {
+        let kernel = equations.kernel(taps).unwrap();
+        assert_eq!(kernel.nodes()[20..24], nodes);
+        // No sample comes near the others, which stay Hermite's but for how a half is rounded.
+        let others =
+            |kernel: &Kernel| [&kernel.nodes()[..20], &kernel.nodes()[24..]].concat().into_flattened();
+        let pairs = others(&kernel).into_iter().zip(others(&hermite));
+        assert!(pairs.map(|(found, held)| (found - held).abs()).max() <= Some(1));
+        assert!((equations.error(&kernel) - left).abs() < 1e-3, "{}", equations.error(&kernel));
+    }
+}

@@ -1,0 +1,123 @@
+//! A file descriptor that never blocks, both ways in one call: what a serial port and a socket have in common.
+
+use std::io;
+use std::os::fd::RawFd;
+use std::time::{Duration, Instant};
+
+use nix::errno::Errno;
+use nix::fcntl::{FcntlArg, OFlag, fcntl};
+use nix::poll::{PollFd, PollFlags, poll};
+use nix::unistd::{read, write};
+
+/// Bytes taken in one read. A serial port hands out 4 KiB at most, a socket as much as fits.
+const CHUNK: usize = 64 * 1024;
+
+/// Why nothing can be exchanged any more.
+#[derive(Debug)]
+pub enum Gone {
+    /// The other end has hung up.
+    HungUp,
+    /// The system says no.
+    Failed(io::Error),
+}
+
+/// Lets reads and writes return at once.
+///
+/// # Errors
+/// The system's reason.
+pub fn never_block(fd: RawFd) -> io::Result<()> {
+    let flags = OFlag::from_bits_truncate(fcntl(fd, FcntlArg::F_GETFL)?);
+    fcntl(fd, FcntlArg::F_SETFL(flags | OFlag::O_NONBLOCK))?;
+    Ok(())
+}
+
+/// Moves bytes through a descriptor that does not block.
+#[derive(Debug)]
+pub struct Pump {
+    chunk: Vec<u8>,
+}
+
+impl Default for Pump {
+    fn default() -> Self {
+        Self { chunk: vec![0; CHUNK] }
+    }
+}
+
+impl Pump {
+    /// As [`Link::exchange`](super::Link::exchange). A signal ends the wait early, so that whoever asked for it is heard.
+    ///
+    /// # Errors
+    /// [`Gone`] when the other end is, or the system refuses.
+    pub fn exchange(
+        &mut self,
+        fd: RawFd,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, Gone> {
+        let deadline = Instant::now() + wait;
+        loop {
+            let received = self.receive(fd, incoming)?;
+            let taken = match send(fd, outgoing) {
+                // What was received counts; the next call meets the failure again.
+                Err(_) if received > 0 => 0,
+                taken => taken?,
+            };
+            if received + taken > 0 {
+                return Ok(taken);
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() || !is_ready(fd, !outgoing.is_empty(), left)? {
+                return Ok(0);
+            }
+        }
+    }
+
+    /// Appends what is there, and returns its length.
+    ///
+    /// # Errors
+    /// [`Gone`] when the other end is, or the system refuses.
+    pub fn receive(&mut self, fd: RawFd, incoming: &mut Vec<u8>) -> Result<usize, Gone> {
+        match read(fd, &mut self.chunk) {
+            Ok(0) => Err(Gone::HungUp),
+            Ok(received) => {
+                incoming.extend_from_slice(&self.chunk[..received]);
+                Ok(received)
+            }
+            Err(error) => nothing_yet(error),
+        }
+    }
+}
+
+/// Writes what the descriptor takes, and returns its length.
+///
+/// # Errors
+/// [`Gone`] when the other end is, or the system refuses.
+pub fn send(fd: RawFd, outgoing: &[u8]) -> Result<usize, Gone> {
+    if outgoing.is_empty() { Ok(0) } else { write(fd, outgoing).or_else(nothing_yet) }
+}
+
+fn nothing_yet(error: Errno) -> Result<usize, Gone> {
+    match error {
+        Errno::EAGAIN | Errno::EINTR => Ok(0),
+        // A terminal that hung up answers EIO, one whose device was pulled out ENXIO or ENODEV.
+        Errno::EIO | Errno::EPIPE | Errno::ENXIO | Errno::ENODEV | Errno::ECONNRESET => Err(Gone::HungUp),
+        error => Err(Gone::Failed(error.into())),
+    }
+}
+
+/// Waits until there is something to read, or to write if that is wanted. Returns false when the time is over or a
+/// signal came.
+///
+/// # Errors
+/// [`Gone`] when the other end is, or the system refuses.
+pub fn is_ready(fd: RawFd, to_write: bool, wait: Duration) -> Result<bool, Gone> {
+    let mut events = PollFlags::POLLIN;
+    events.set(PollFlags::POLLOUT, to_write);
+    let milliseconds = i32::try_from(wait.as_micros().div_ceil(1000)).unwrap_or(i32::MAX);
+    match poll(&mut [PollFd::new(fd, events)], milliseconds) {
+        Ok(ready) => Ok(ready > 0),
+        Err(Errno::EINTR) => Ok(false),
+        Err(error) => Err(Gone::Failed(error.into())),
+    }
+}

@@ -1,0 +1,32 @@
+//! What a device answered when it was asked whether it is a board.
+
+use serde::Serialize;
+
+/// What came of asking.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "state", rename_all = "lowercase")]
+pub enum Answer {
+    /// A halfrow board answered, and was left free.
+    Board {
+        /// Its name.
+        name: String,
+        /// The datapath that it computes.
+        datapath: u16,
+    },
+    /// A halfrow board answered that another host holds it.
+    Held,
+    /// Something answered, and not as this program's boards do.
+    Foreign {
+        /// Why it is none.
+        reason: String,
+    },
+    /// Nothing answered.
+    Silent,
+    /// It is open elsewhere.
+    Busy,
+    /// It could not be opened.
+    Failed {
+        /// Why.
+        reason: String,
+    },
+}

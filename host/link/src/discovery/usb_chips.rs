@@ -1,0 +1,40 @@
+//! FTDI's chips on USB, whether or not the system has made serial ports of them.
+
+use super::{Access, Found, Source};
+use crate::target::BoardKind;
+use crate::{UsbBoard, how_to_get_access, usb_boards};
+
+/// The USB of this computer.
+#[derive(Clone, Copy, Debug)]
+pub struct UsbChips;
+
+impl Source for UsbChips {
+    fn find(&self) -> Vec<Found> {
+        let boards = usb_boards().unwrap_or_else(|error| {
+            tracing::info!("{error}");
+            Vec::new()
+        });
+        boards.into_iter().map(look_at).collect()
+    }
+}
+
+fn look_at(board: UsbBoard) -> Found {
+    Found {
+        target: board.target(),
+        kind: BoardKind::Hardware,
+        summary: board.to_string(),
+        access: access_to(&board),
+        device: Some(board.file),
+        names: Vec::new(),
+        usb: Some(board.device),
+        answer: None,
+    }
+}
+
+fn access_to(board: &UsbBoard) -> Access {
+    if !board.is_permitted {
+        return Access::Denied { remedy: how_to_get_access(&board.file) };
+    }
+    let holders = board.holders();
+    if holders.is_empty() { Access::Free } else { Access::Busy { holders } }
+}

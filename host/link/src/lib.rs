@@ -1,0 +1,147 @@
+//! A link: a pipe that carries bytes to a board and back, with deadlines. [`open`] opens the one that a [`Target`] names, and
+//! [`discovery`] finds what could be a board.
+
+mod class;
+pub mod descriptor;
+pub mod discovery;
+mod open;
+mod recording;
+mod replay;
+mod serial;
+mod severed;
+#[cfg(feature = "sim")]
+mod simulated;
+mod sysfs;
+pub mod target;
+mod tcp;
+mod usb;
+mod wire;
+
+use std::time::Duration;
+
+pub use class::Class;
+pub use open::{Candidate, OpenError, open, replayed_file};
+pub use recording::{Recorder, Recording, RecordingError, Unfinished};
+pub use replay::ReplayLink;
+pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
+pub use severed::Severed;
+pub use sysfs::{UsbDevice, usb_device};
+pub use target::{BoardKind, Target, TargetError};
+pub use tcp::{TcpError, TcpLink};
+pub use usb::{LineErrors, Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
+pub use wire::WireLink;
+
+/// A byte pipe to a board.
+///
+/// Both directions move in one call, so a host that uses it cannot deadlock with a board that waits to be read: whatever
+/// the board sends is taken while the host sends.
+pub trait Link {
+    /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes
+    /// taken. Returns as soon as a byte has moved either way, and without one when `wait` has passed.
+    ///
+    /// # Errors
+    /// [`LinkError`] when the pipe is broken; bytes that had moved before are accounted for in earlier calls.
+    fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, LinkError>;
+
+    /// The link's own clock, from its opening. Deadlines are kept by it, so that a link on a virtual clock times out in
+    /// virtual time.
+    fn now(&self) -> Duration;
+
+    /// The bytes a second that the slower direction carries, when that is known.
+    fn bytes_per_second(&self) -> Option<f64>;
+
+    /// Whether nobody else can reach the board while the link is open. Then a session of another host is one that was killed.
+    fn is_exclusive(&self) -> bool {
+        false
+    }
+
+    /// What it is, for people.
+    fn name(&self) -> String;
+
+    /// What the chip at its near end has seen go wrong on the line; none for a link that cannot tell.
+    fn line_errors(&self) -> LineErrors {
+        LineErrors::default()
+    }
+}
+
+/// A pipe that broke.
+#[derive(Debug, thiserror::Error)]
+pub enum LinkError {
+    /// The other end is gone.
+    #[error("{link} was closed at {:.3} s; check the cable and the board's power, then run again", at.as_secs_f64())]
+    Closed {
+        /// The link's name.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+    },
+    /// A board in this process has failed.
+    #[error("{board} stopped at {:.3} s", at.as_secs_f64())]
+    Stopped {
+        /// Which board.
+        board: &'static str,
+        /// When, on the link's clock.
+        at: Duration,
+        /// Why.
+        #[source]
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// A device that is gone.
+    #[error(
+        "{link} went away at {:.3} s: the board was unplugged or lost power; plug it in, then run again",
+        at.as_secs_f64()
+    )]
+    Unplugged {
+        /// The link's name.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+    },
+    /// A server says that somebody else has the board.
+    #[error("{link} was turned away with `{text}`: another host is connected; wait until it is done")]
+    InUse {
+        /// The link's name.
+        link: String,
+        /// What the server said.
+        text: String,
+    },
+    /// A server has no board to connect to, and says so in words.
+    #[error(
+        "{link} answered with the words `{text}` and no board: plug the board in at the far end, and check the device \
+         that its ser2net names"
+    )]
+    NoBoardThere {
+        /// The link's name.
+        link: String,
+        /// What the server said.
+        text: String,
+    },
+    /// The system refuses to go on.
+    #[error("{link} failed at {:.3} s; check the cable, then run again", at.as_secs_f64())]
+    Failed {
+        /// The link's name.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+        /// Why.
+        #[source]
+        source: std::io::Error,
+    },
+    /// What the host sends is not what it sent when the recording was made.
+    #[error(
+        "the recording holds another conversation from byte {byte} of what was sent on; replay it with the program, \
+         tables and frames of the run that made it"
+    )]
+    OtherConversation {
+        /// The first byte that differs, counted from the beginning.
+        byte: u64,
+    },
+    /// The recording could not be written.
+    #[error("the recording could not be written; free some space or choose another place with --record")]
+    Record(#[source] std::io::Error),
+}

@@ -1,0 +1,97 @@
+//! Serial ports that cannot be opened, each with what to do.
+
+use std::path::PathBuf;
+
+use super::Holder;
+use crate::Class;
+
+/// A serial port that cannot be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum SerialError {
+    /// There is no such file.
+    #[error(
+        "there is no serial port {0}; check that the board is plugged in and powered, and see `halfrow boards` for \
+         those that are there"
+    )]
+    Missing(PathBuf),
+    /// The file is something else.
+    #[error("{0} is no serial port; see `halfrow boards` for those that are there")]
+    NotAPort(PathBuf),
+    /// Its owner and mode keep this user out.
+    #[error("you may not open {path}; {remedy}")]
+    NotAllowed {
+        /// The port.
+        path: PathBuf,
+        /// How to get access.
+        remedy: String,
+    },
+    /// Somebody has it open.
+    #[error("{path} is in use{}; close that program, then run again", by(.holders))]
+    InUse {
+        /// The port.
+        path: PathBuf,
+        /// By whom, as far as it can be told.
+        holders: Vec<Holder>,
+    },
+    /// The chip divides its clock to other rates only.
+    #[error(
+        "{chip}, which is behind {path}, cannot make {baud} baud; the nearest that it makes: {}",
+        list(.nearest)
+    )]
+    Rate {
+        /// The port.
+        path: PathBuf,
+        /// Which chip.
+        chip: &'static str,
+        /// What was asked for.
+        baud: u32,
+        /// What it can do.
+        nearest: Vec<u32>,
+    },
+    /// The driver took another rate.
+    #[error(
+        "{path} was asked for {baud} baud and its driver took {taken}; give a rate that it can make with baud=RATE"
+    )]
+    OtherRate {
+        /// The port.
+        path: PathBuf,
+        /// What was asked for.
+        baud: u32,
+        /// What it took.
+        taken: u32,
+    },
+    /// Anything else.
+    #[error("{path} cannot be opened; unplug the board, plug it in and run again")]
+    Other {
+        /// The port.
+        path: PathBuf,
+        /// Why.
+        #[source]
+        source: std::io::Error,
+    },
+}
+
+impl SerialError {
+    /// Whose error it is.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        match self {
+            Self::InUse { .. } => Class::Busy,
+            Self::NotAPort(_) | Self::Rate { .. } | Self::OtherRate { .. } => Class::Call,
+            _ => Class::Station,
+        }
+    }
+}
+
+fn by(holders: &[Holder]) -> String {
+    if holders.is_empty() {
+        return String::new();
+    }
+    let names: Vec<_> = holders.iter().map(ToString::to_string).collect();
+    format!(" by {}", names.join(" and "))
+}
+
+fn list(rates: &[u32]) -> String {
+    let rates: Vec<_> = rates.iter().map(u32::to_string).collect();
+    rates.join(" and ")
+}

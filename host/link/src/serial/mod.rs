@@ -1,0 +1,192 @@
+//! A serial port as a link: locked for this program alone, and never waited for beyond a deadline.
+
+mod error;
+mod holder;
+mod options;
+mod rates;
+
+use std::os::fd::AsRawFd;
+use std::os::unix::fs::{FileTypeExt, MetadataExt};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use std::{fs, io};
+
+use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
+
+use super::descriptor::{Gone, Pump, never_block};
+use super::sysfs::usb_device;
+use super::{Link, LinkError, OpenError};
+use crate::target::Target;
+use options::SerialOptions;
+use rates::Chip;
+
+pub use error::SerialError;
+pub use holder::{Holder, holders};
+
+/// Silence after which nothing stale is on its way any more: a USB chip holds bytes back for 16 ms.
+const QUIET: Duration = Duration::from_millis(20);
+/// A board that goes on talking all the same will be told apart by the protocol.
+const LONGEST_DRAIN: Duration = Duration::from_millis(200);
+
+/// A pipe to a board behind a serial port.
+#[derive(Debug)]
+pub struct SerialLink {
+    port: TTYPort,
+    pump: Pump,
+    path: PathBuf,
+    baud: u32,
+    opened: Instant,
+}
+
+impl SerialLink {
+    /// Opens the port of a `serial:PATH` target for this program alone, sets it and drops what lies in its buffers.
+    ///
+    /// # Errors
+    /// [`OpenError`] when there is no such port, or it is another's, or cannot be set as the target says.
+    pub fn open(target: &Target) -> Result<Self, OpenError> {
+        let options = SerialOptions::parse(target)?;
+        let missing = || OpenError::AddressMissing { kind: target.kind.clone(), form: "serial:PATH" };
+        let path =
+            PathBuf::from(target.address.as_ref().filter(|path| !path.is_empty()).ok_or_else(missing)?);
+        Ok(Self::open_port(path, options)?)
+    }
+
+    fn open_port(path: PathBuf, options: SerialOptions) -> Result<Self, SerialError> {
+        let metadata = fs::metadata(&path).map_err(|error| failed(&path, error))?;
+        if !metadata.file_type().is_char_device() {
+            return Err(SerialError::NotAPort(path));
+        }
+        check_rate(&path, options.baud)?;
+        let mut port = lock(&path, options)?;
+        set_lines(&mut port, options);
+        check_taken_rate(&port, &path, options.baud)?;
+        never_block(port.as_raw_fd()).map_err(|error| failed(&path, error))?;
+        let mut link = Self { port, pump: Pump::default(), path, baud: options.baud, opened: Instant::now() };
+        link.drain();
+        Ok(link)
+    }
+
+    /// Drops what is in the buffers and what still comes out of the chip behind them.
+    fn drain(&mut self) {
+        let _ = self.port.clear(ClearBuffer::All);
+        let begun = Instant::now();
+        let mut stale = Vec::new();
+        loop {
+            let before = stale.len();
+            // A port that is gone says so to whoever uses it next.
+            let moved = self.pump.exchange(self.port.as_raw_fd(), &[], &mut stale, QUIET);
+            if moved.is_err() || stale.len() == before || begun.elapsed() > LONGEST_DRAIN {
+                break;
+            }
+        }
+        if !stale.is_empty() {
+            tracing::info!("{} stale bytes were dropped from {}", stale.len(), self.path.display());
+        }
+    }
+}
+
+impl Drop for SerialLink {
+    /// Closing waits for half a minute until what was written has left, unless there is nothing.
+    fn drop(&mut self) {
+        let _ = self.port.clear(ClearBuffer::Output);
+    }
+}
+
+impl Link for SerialLink {
+    fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, LinkError> {
+        let moved = self.pump.exchange(self.port.as_raw_fd(), outgoing, incoming, wait);
+        moved.map_err(|gone| match gone {
+            Gone::HungUp => LinkError::Unplugged { link: self.name(), at: self.now() },
+            Gone::Failed(source) => LinkError::Failed { link: self.name(), at: self.now(), source },
+        })
+    }
+
+    fn now(&self) -> Duration {
+        self.opened.elapsed()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        // A start bit, eight data bits, a stop bit.
+        Some(f64::from(self.baud) / 10.0)
+    }
+
+    fn is_exclusive(&self) -> bool {
+        true
+    }
+
+    fn name(&self) -> String {
+        format!("the serial port {} ({} baud)", self.path.display(), self.baud)
+    }
+}
+
+fn lock(path: &Path, options: SerialOptions) -> Result<TTYPort, SerialError> {
+    let flow = if options.rts_cts { FlowControl::Hardware } else { FlowControl::None };
+    let builder = serialport::new(path.to_string_lossy(), options.baud).flow_control(flow).exclusive(true);
+    builder.open_native().map_err(|error| match error.kind {
+        ErrorKind::NoDevice => SerialError::InUse { path: path.to_owned(), holders: holders(path) },
+        ErrorKind::Io(kind) => failed(path, io::Error::new(kind, error.description)),
+        // What a system answers to a question for terminals when it is asked of something else.
+        _ if error.description.contains("typewriter") || error.description.contains("ioctl") => {
+            SerialError::NotAPort(path.to_owned())
+        }
+        _ => failed(path, io::Error::other(error.description)),
+    })
+}
+
+/// Sets DTR, and RTS where it is not flow control's. A port without such lines has none to set.
+fn set_lines(port: &mut TTYPort, options: SerialOptions) {
+    let set = port.write_data_terminal_ready(options.dtr);
+    let set =
+        set.and_then(|()| if options.rts_cts { Ok(()) } else { port.write_request_to_send(options.rts) });
+    if let Err(error) = set {
+        tracing::debug!("the port has no modem lines: {error}");
+    }
+}
+
+fn check_rate(path: &Path, baud: u32) -> Result<(), SerialError> {
+    let Some(chip) = usb_device(path).as_ref().and_then(Chip::of) else { return Ok(()) };
+    chip.check(baud).map_err(|nearest| SerialError::Rate {
+        path: path.to_owned(),
+        chip: chip.name(),
+        baud,
+        nearest,
+    })
+}
+
+/// Other drivers take the nearest rate as well, and some say so.
+fn check_taken_rate(port: &TTYPort, path: &Path, baud: u32) -> Result<(), SerialError> {
+    match port.baud_rate() {
+        Ok(taken) if taken > 0 && f64::from(taken.abs_diff(baud)) > 0.02 * f64::from(baud) => {
+            Err(SerialError::OtherRate { path: path.to_owned(), baud, taken })
+        }
+        _ => Ok(()),
+    }
+}
+
+fn failed(path: &Path, error: io::Error) -> SerialError {
+    let path = path.to_owned();
+    match error.kind() {
+        io::ErrorKind::NotFound => SerialError::Missing(path),
+        io::ErrorKind::PermissionDenied => SerialError::NotAllowed { remedy: how_to_get_access(&path), path },
+        _ => SerialError::Other { path, source: error },
+    }
+}
+
+/// What to do about a port that this user may not open.
+#[must_use]
+pub fn how_to_get_access(port: &Path) -> String {
+    const RULES: &str = "install scripts/70-halfrow.rules as the README says";
+    let group = fs::metadata(port).ok().filter(|port| port.mode() & 0o060 == 0o060).map(|port| port.gid());
+    match group.and_then(|id| nix::unistd::Group::from_gid(id.into()).ok().flatten()) {
+        Some(group) if group.gid.as_raw() != 0 => format!(
+            "join its group with `sudo usermod -aG {} $USER` and log in again, or {RULES}",
+            group.name
+        ),
+        _ => RULES.to_owned(),
+    }
+}

@@ -1,0 +1,72 @@
+//! The options of a `serial:PATH` target.
+
+use crate::OpenError;
+use crate::target::Target;
+
+/// The rate of the FT2232H's UART on the boards of `fpga/boards`.
+const DEFAULT_BAUD: u32 = 12_000_000;
+
+/// How a serial port is set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct SerialOptions {
+    /// Bits a second, of which ten make a byte.
+    pub(super) baud: u32,
+    /// RTS and CTS hold either side.
+    pub(super) rts_cts: bool,
+    /// The level of DTR while the port is open.
+    pub(super) dtr: bool,
+    /// The level of RTS where it holds nobody.
+    pub(super) rts: bool,
+}
+
+impl SerialOptions {
+    pub(super) fn parse(target: &Target) -> Result<Self, OpenError> {
+        let mut options = Self { baud: DEFAULT_BAUD, rts_cts: true, dtr: true, rts: true };
+        for (key, value) in &target.options {
+            let known = match (key.as_str(), value.as_str()) {
+                ("baud", rate) => rate.parse().ok().filter(|&baud| baud > 0).map(|baud| options.baud = baud),
+                ("flow", flow) => choice(flow, "rtscts", "none").map(|rts_cts| options.rts_cts = rts_cts),
+                ("dtr", level) => choice(level, "on", "off").map(|dtr| options.dtr = dtr),
+                ("rts", level) => choice(level, "on", "off").map(|rts| options.rts = rts),
+                _ => None,
+            };
+            known.ok_or_else(|| OpenError::Option {
+                kind: target.kind.clone(),
+                option: format!("{key}={value}"),
+                known: "baud=RATE, flow=rtscts or flow=none, dtr=on or dtr=off, rts=on or rts=off",
+            })?;
+        }
+        Ok(options)
+    }
+}
+
+fn choice(value: &str, yes: &str, no: &str) -> Option<bool> {
+    if value == yes { Some(true) } else { (value == no).then_some(false) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<SerialOptions, OpenError> {
+        SerialOptions::parse(&text.parse().unwrap())
+    }
+
+    #[test]
+    fn options_are_read() {
+        let default = SerialOptions { baud: 12_000_000, rts_cts: true, dtr: true, rts: true };
+        assert_eq!(parse("serial:/dev/x").unwrap(), default);
+        let other = SerialOptions { baud: 115_200, rts_cts: false, dtr: false, rts: false };
+        assert_eq!(parse("serial:/dev/x,baud=115200,flow=none,dtr=off,rts=off").unwrap(), other);
+    }
+
+    #[test]
+    fn what_is_no_option_is_refused() {
+        for wrong in ["baud=0", "baud=fast", "flow=maybe", "dtr=1", "parity=even"] {
+            assert!(
+                matches!(parse(&format!("serial:/dev/x,{wrong}")), Err(OpenError::Option { .. })),
+                "{wrong}"
+            );
+        }
+    }
+}

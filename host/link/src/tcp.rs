@@ -1,0 +1,209 @@
+//! A TCP connection as a link, to a board that another computer exports as raw bytes, as ser2net does.
+
+use std::io;
+use std::net::{SocketAddr, TcpStream, ToSocketAddrs};
+use std::os::fd::AsRawFd;
+use std::time::{Duration, Instant};
+
+use super::descriptor::{Gone, Pump, never_block};
+use super::{Link, LinkError, OpenError};
+use crate::Class;
+use crate::target::Target;
+
+/// For each address of the host. Within a laboratory a connection takes a millisecond, around the world a third of a second.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// The longest text that a server says instead of passing on bytes.
+const LONGEST_TEXT: usize = 200;
+
+/// A connection that did not come about.
+#[derive(Debug, thiserror::Error)]
+pub enum TcpError {
+    /// The address names no host and port.
+    #[error("`{0}` is no host and port; write tcp:HOST:PORT, and tcp:[ADDRESS]:PORT for an IPv6 address")]
+    Address(String),
+    /// Nobody knows the host.
+    #[error("the host of `{address}` is not known; check its name, or give its number")]
+    UnknownHost {
+        /// Host and port.
+        address: String,
+        /// Why.
+        #[source]
+        source: io::Error,
+    },
+    /// The host is there, and nobody listens.
+    #[error(
+        "`{0}` refuses connections: the host is there, and nothing listens on that port; start ser2net or `halfrow \
+         serve` there, and check the port"
+    )]
+    Refused(String),
+    /// Nothing comes back.
+    #[error(
+        "`{address}` does not answer within {} s: the host is off, or a firewall drops what is sent to that port",
+        seconds.as_secs()
+    )]
+    Silent {
+        /// Host and port.
+        address: String,
+        /// How long each of its addresses was tried.
+        seconds: Duration,
+    },
+    /// There is no way there.
+    #[error("there is no way to `{address}`; check this computer's network")]
+    Unreachable {
+        /// Host and port.
+        address: String,
+        /// Why.
+        #[source]
+        source: io::Error,
+    },
+}
+
+impl TcpError {
+    /// Whose error it is.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        if matches!(self, Self::Address(_)) { Class::Call } else { Class::Station }
+    }
+}
+
+/// A pipe to a board behind a TCP connection.
+#[derive(Debug)]
+pub struct TcpLink {
+    stream: TcpStream,
+    pump: Pump,
+    address: String,
+    baud: Option<u32>,
+    opened: Instant,
+    /// What came before the first zero byte, with which every packet of a board begins.
+    text: Vec<u8>,
+    zero_seen: bool,
+}
+
+impl TcpLink {
+    /// Connects to the host and port of a `tcp:HOST:PORT` target.
+    ///
+    /// # Errors
+    /// [`OpenError`] when the target is none, or no connection comes about.
+    pub fn open(target: &Target) -> Result<Self, OpenError> {
+        let missing = || OpenError::AddressMissing { kind: target.kind.clone(), form: "tcp:HOST:PORT" };
+        let address = target.address.clone().ok_or_else(missing)?;
+        let mut baud = None;
+        for (key, value) in &target.options {
+            baud = value.parse().ok().filter(|&baud: &u32| key == "baud" && baud > 0);
+            baud.ok_or_else(|| OpenError::Option {
+                kind: target.kind.clone(),
+                option: format!("{key}={value}"),
+                known: "baud=RATE, that of the serial line at the far end",
+            })?;
+        }
+        let stream = connect(&address)?;
+        let unreachable = |source| TcpError::Unreachable { address: address.clone(), source };
+        stream.set_nodelay(true).map_err(unreachable)?;
+        never_block(stream.as_raw_fd()).map_err(unreachable)?;
+        let (pump, opened) = (Pump::default(), Instant::now());
+        Ok(Self { stream, pump, address, baud, opened, text: Vec::new(), zero_seen: false })
+    }
+
+    /// Keeps text that comes where a packet should.
+    fn listen(&mut self, received: &[u8]) {
+        if self.zero_seen || self.text.len() >= LONGEST_TEXT {
+            return;
+        }
+        let text = received.split(|&byte| byte == 0).next().unwrap_or_default();
+        self.zero_seen = text.len() < received.len();
+        self.text.extend_from_slice(text);
+        self.text.truncate(LONGEST_TEXT);
+    }
+
+    fn closed(&self) -> LinkError {
+        let (link, at) = (self.name(), self.now());
+        match String::from_utf8(self.text.clone()) {
+            Ok(text) if !self.zero_seen && !text.trim().is_empty() => {
+                let text = text.trim().to_owned();
+                if text.contains("in use") {
+                    LinkError::InUse { link, text }
+                } else {
+                    LinkError::NoBoardThere { link, text }
+                }
+            }
+            _ => LinkError::Closed { link, at },
+        }
+    }
+}
+
+impl Link for TcpLink {
+    fn exchange(
+        &mut self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, LinkError> {
+        let before = incoming.len();
+        let moved = self.pump.exchange(self.stream.as_raw_fd(), outgoing, incoming, wait);
+        self.listen(&incoming[before..]);
+        moved.map_err(|gone| match gone {
+            Gone::HungUp => self.closed(),
+            Gone::Failed(source) => LinkError::Failed { link: self.name(), at: self.now(), source },
+        })
+    }
+
+    fn now(&self) -> Duration {
+        self.opened.elapsed()
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        self.baud.map(|baud| f64::from(baud) / 10.0)
+    }
+
+    fn name(&self) -> String {
+        format!("the connection to {}", self.address)
+    }
+}
+
+/// Connects to the first of the host's addresses that answers.
+fn connect(address: &str) -> Result<TcpStream, TcpError> {
+    let mut last = None;
+    for number in resolve(address)? {
+        match TcpStream::connect_timeout(&number, PATIENCE) {
+            Ok(stream) => return Ok(stream),
+            Err(error) => last = Some(error),
+        }
+    }
+    let address = address.to_owned();
+    let source = last.unwrap_or_else(|| io::ErrorKind::AddrNotAvailable.into());
+    Err(match source.kind() {
+        io::ErrorKind::ConnectionRefused => TcpError::Refused(address),
+        io::ErrorKind::TimedOut => TcpError::Silent { address, seconds: PATIENCE },
+        _ => TcpError::Unreachable { address, source },
+    })
+}
+
+fn resolve(address: &str) -> Result<Vec<SocketAddr>, TcpError> {
+    let well_formed = address.rsplit_once(':').is_some_and(|(host, port)| {
+        let bare = host.strip_prefix('[').and_then(|host| host.strip_suffix(']'));
+        let unambiguous = bare.is_some() || !host.contains(':');
+        unambiguous && !bare.unwrap_or(host).is_empty() && port.parse::<u16>().is_ok_and(|port| port > 0)
+    });
+    if !well_formed {
+        return Err(TcpError::Address(address.to_owned()));
+    }
+    let unknown = |source| TcpError::UnknownHost { address: address.to_owned(), source };
+    Ok(address.to_socket_addrs().map_err(unknown)?.collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_is_a_host_and_a_port() {
+        assert_eq!(resolve("127.0.0.1:3001").unwrap(), ["127.0.0.1:3001".parse().unwrap()]);
+        assert_eq!(resolve("[::1]:3001").unwrap(), ["[::1]:3001".parse().unwrap()]);
+        for wrong in
+            ["", "host", "host:", ":3001", "host:0", "host:http", "::1:3001", "[::1]", "[]:1", "host:70000"]
+        {
+            assert!(matches!(resolve(wrong), Err(TcpError::Address(_))), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Why a board cannot be opened over USB.
+
+use super::find::UsbBoard;
+use super::transport::Failure;
+use crate::Class;
+use crate::Holder;
+
+/// Why a board cannot be opened over USB.
+#[derive(Debug, thiserror::Error)]
+pub enum UsbError {
+    /// An option that there is not.
+    #[error(
+        "`{0}` is no option of `usb`; it takes channel=a…d, mode=fifo or mode=uart, baud=RATE, flow=rtscts or flow=none, and \
+         latency=1…255 (milliseconds)"
+    )]
+    Option(String),
+    /// No USB at all.
+    #[error(
+        "this machine has no USB that a program can use; run on one that has, or see `halfrow boards` for other links"
+    )]
+    NoUsb,
+    /// Nothing is there.
+    #[error(
+        "no board with an FTDI chip is plugged in; check cable and power, and that a virtual machine or container is given \
+         the device"
+    )]
+    NoneFound,
+    /// None of the chips that boards have.
+    #[error("no FT2232H or FT232H is plugged in; if the board is behind another chip, choose that: {}", targets(.0))]
+    OthersOnly(Vec<UsbBoard>),
+    /// Nothing with that name is there.
+    #[error("no FTDI chip is called `{wanted}`; {}", there_are(.found))]
+    NotFound {
+        /// What the target says.
+        wanted: String,
+        /// What is there.
+        found: Vec<UsbBoard>,
+    },
+    /// Several could be meant.
+    #[error("several boards could be meant; choose one: {}", targets(.0))]
+    Several(Vec<UsbBoard>),
+    /// The channel is not one of the chip's.
+    #[error(
+        "the {chip} {name} has no channel {channel}; leave `channel=` out, or choose one of its {channels}"
+    )]
+    NoChannel {
+        /// The chip.
+        chip: &'static str,
+        /// Its name.
+        name: String,
+        /// The letter.
+        channel: char,
+        /// How many it has.
+        channels: u8,
+    },
+    /// Not permitted.
+    #[error(
+        "this user may not open the USB device {name}; install scripts/70-halfrow.rules as the README says, and plug the \
+         board in again, or run as a user who may"
+    )]
+    NotPermitted {
+        /// The chip's name.
+        name: String,
+    },
+    /// Somebody else uses it.
+    #[error("{} is in use{}; end that program, then run again", .what, by(.holders))]
+    Busy {
+        /// The channel, or its serial port.
+        what: String,
+        /// By whom, as far as this user may know.
+        holders: Vec<Holder>,
+    },
+    /// The channel is wired for something else.
+    #[error(
+        "channel {channel} of {name} is {found}, and the target asks for mode={wanted}. {}", advice(.wanted)
+    )]
+    OtherMode {
+        /// The chip's name.
+        name: String,
+        /// The channel.
+        channel: char,
+        /// What its EEPROM says.
+        found: String,
+        /// `fifo` or `uart`.
+        wanted: &'static str,
+    },
+    /// The channel is of no use to this program, or it cannot be told.
+    #[error(
+        "channel {channel} of {name} is {found}; choose another channel, or say mode=fifo or mode=uart if you know it"
+    )]
+    NoMode {
+        /// The chip's name.
+        name: String,
+        /// The channel.
+        channel: char,
+        /// What is known.
+        found: String,
+    },
+    /// A FIFO has no rate.
+    #[error("a FIFO has no baud rate; leave out `baud=`, or say mode=uart")]
+    BaudOfFifo,
+    /// The chip divides its clock to other rates only.
+    #[error("an {chip} cannot make {baud} baud; the nearest rates that it makes: {}", list(.nearest))]
+    Rate {
+        /// The chip.
+        chip: &'static str,
+        /// What was asked for.
+        baud: u32,
+        /// What it can make.
+        nearest: Vec<u32>,
+    },
+    /// A transfer failed.
+    #[error("{name} failed while {doing}; unplug the board, plug it in, and run again")]
+    Transfer {
+        /// The chip's name.
+        name: String,
+        /// What was under way.
+        doing: &'static str,
+        /// How.
+        #[source]
+        source: Failure,
+    },
+}
+
+impl UsbError {
+    /// Whose error it is.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        match self {
+            Self::Option(_) | Self::NoChannel { .. } | Self::BaudOfFifo | Self::Rate { .. } => Class::Call,
+            Self::Several(_) | Self::OthersOnly(_) => Class::Call,
+            Self::Busy { .. } => Class::Busy,
+            _ => Class::Station,
+        }
+    }
+}
+
+fn there_are(found: &[UsbBoard]) -> String {
+    if found.is_empty() { "none is plugged in".to_owned() } else { format!("there are {}", targets(found)) }
+}
+
+fn targets(found: &[UsbBoard]) -> String {
+    let is_unique = |board: &UsbBoard| {
+        found.iter().filter(|other| other.device.serial == board.device.serial).count() == 1
+    };
+    let name =
+        |board: &UsbBoard| if is_unique(board) { board.target() } else { format!("usb:{}", board.place) };
+    let lines: Vec<String> = found.iter().map(|board| format!("{} ({board})", name(board))).collect();
+    lines.join(", ")
+}
+
+fn by(holders: &[Holder]) -> String {
+    if holders.is_empty() {
+        return " by another program".to_owned();
+    }
+    let names: Vec<String> = holders.iter().map(ToString::to_string).collect();
+    format!(" by {}", names.join(" and "))
+}
+
+fn advice(wanted: &str) -> &'static str {
+    match wanted {
+        "fifo" => {
+            "A bitstream with a FIFO would read noise from these pins. Load one with a UART and say mode=uart, or set the channel \
+             to `245 FIFO` with FT_PROG or ftdi_eeprom (save the old contents first), then unplug the board and plug it in"
+        }
+        _ => {
+            "A bitstream with a UART would hear nothing. Load one with a FIFO and say mode=fifo, or set the channel to \
+             `RS232 UART` with FT_PROG or ftdi_eeprom (save the old contents first), then unplug the board and plug it in"
+        }
+    }
+}
+
+fn list(rates: &[u32]) -> String {
+    let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
+    rates.join(" and ")
+}

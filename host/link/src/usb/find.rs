@@ -1,0 +1,145 @@
+//! The FTDI chips that are plugged in.
+
+use std::fmt;
+use std::fs;
+use std::path::PathBuf;
+
+use rusb::{Context, Device, UsbContext as _};
+use serde::Serialize;
+
+use super::chip::{Channel, Chip, FTDI};
+use super::error::UsbError;
+use super::serial_ports;
+use crate::sysfs::UsbDevice;
+use crate::{Holder, holders};
+
+/// An FTDI chip that could be a board's.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct UsbBoard {
+    /// What it says of itself, as far as it can be read, and the interface that boards have their FPGA at.
+    pub device: UsbDevice,
+    /// The chip, as `FT2232H`.
+    pub chip: &'static str,
+    /// Its device file.
+    pub file: PathBuf,
+    /// Where it is plugged in, as `1-2.3`: the name that Linux gives it, which a port keeps.
+    pub place: String,
+    /// Whether this user may open it.
+    pub is_permitted: bool,
+}
+
+impl UsbBoard {
+    /// The target that names it.
+    #[must_use]
+    pub fn target(&self) -> String {
+        format!("usb:{}", self.device.serial.as_deref().unwrap_or(&self.place))
+    }
+
+    /// Other programs that have the serial port open that the system's driver made of the board's channel.
+    #[must_use]
+    pub fn holders(&self) -> Vec<Holder> {
+        let channel = Channel(self.device.interface.unwrap_or_default());
+        serial_ports(&self.place, channel).iter().flat_map(|port| holders(port)).collect()
+    }
+
+    fn is_called(&self, name: &str) -> bool {
+        self.device.serial.as_deref() == Some(name) || self.place == name
+    }
+}
+
+impl fmt::Display for UsbBoard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let product = self.device.product.as_deref().unwrap_or("without a name");
+        write!(f, "{product}, {} at {}", self.chip, self.place)
+    }
+}
+
+/// A chip with what libusb knows it by.
+pub(super) struct Found {
+    pub(super) board: UsbBoard,
+    pub(super) chip: Chip,
+    pub(super) device: Device<Context>,
+}
+
+/// All of FTDI's chips that are plugged in, in the order of their places.
+///
+/// # Errors
+/// [`UsbError::NoUsb`]
+pub fn usb_boards() -> Result<Vec<UsbBoard>, UsbError> {
+    Ok(all()?.into_iter().map(|found| found.board).collect())
+}
+
+fn all() -> Result<Vec<Found>, UsbError> {
+    // The crate's global context would panic on a machine without USB.
+    let context = Context::new().map_err(|_| UsbError::NoUsb)?;
+    let devices = context.devices().map_err(|_| UsbError::NoUsb)?;
+    let mut found: Vec<Found> = devices.iter().filter_map(look_at).collect();
+    found.sort_by(|one, other| one.board.place.cmp(&other.board.place));
+    Ok(found)
+}
+
+fn look_at(device: Device<Context>) -> Option<Found> {
+    let descriptor = device.device_descriptor().ok()?;
+    let version = descriptor.device_version();
+    let version = u16::from(version.0) << 8 | u16::from(version.1) << 4 | u16::from(version.2);
+    let chip = (descriptor.vendor_id() == FTDI).then(|| Chip::of(descriptor.product_id(), version))??;
+    let place = place(&device);
+    let handle = device.open().ok();
+    // Linux tells the strings to those as well who may not open the device.
+    let string = |file: &str, index: Option<u8>| {
+        let told = fs::read_to_string(sysfs(&place).join(file)).ok().map(|text| text.trim().to_owned());
+        let asked = || handle.as_ref()?.read_string_descriptor_ascii(index?).ok();
+        told.or_else(asked).filter(|text| !text.is_empty())
+    };
+    let serial = string("serial", descriptor.serial_number_string_index());
+    let product = string("product", descriptor.product_string_index());
+    let manufacturer = string("manufacturer", descriptor.manufacturer_string_index());
+    let (vendor_id, product_id) = (descriptor.vendor_id(), descriptor.product_id());
+    let interface = Some(chip.usual_channel().0);
+    let described = UsbDevice {
+        vendor_id,
+        product_id,
+        device_version: version,
+        manufacturer,
+        product,
+        serial,
+        interface,
+    };
+    let file = PathBuf::from(format!("/dev/bus/usb/{:03}/{:03}", device.bus_number(), device.address()));
+    let (chip_name, is_permitted) = (chip.name(), handle.is_some());
+    let board = UsbBoard { device: described, chip: chip_name, place, file, is_permitted };
+    Some(Found { board, chip, device })
+}
+
+/// The folder in which Linux tells of the device at `place`.
+pub(super) fn sysfs(place: &str) -> PathBuf {
+    PathBuf::from("/sys/bus/usb/devices").join(place)
+}
+
+fn place(device: &Device<Context>) -> String {
+    let ports: Vec<String> =
+        device.port_numbers().unwrap_or_default().iter().map(ToString::to_string).collect();
+    format!("{}-{}", device.bus_number(), ports.join("."))
+}
+
+/// The one chip that `name` stands for: a serial number, a place, or nothing when there is one high-speed chip only.
+pub(super) fn choose(name: Option<&str>) -> Result<Found, UsbError> {
+    let all = all()?;
+    let boards = |found: &[Found]| found.iter().map(|found| found.board.clone()).collect();
+    let everything: Vec<UsbBoard> = boards(&all);
+    let is_meant = |found: &Found| match name {
+        Some(name) => found.board.is_called(name),
+        None => found.chip.is_high_speed(),
+    };
+    let mut meant: Vec<Found> = all.into_iter().filter(is_meant).collect();
+    match (meant.pop(), meant.is_empty(), name) {
+        (Some(found), true, _) => Ok(found),
+        (Some(found), false, _) => {
+            meant.push(found);
+            Err(UsbError::Several(boards(&meant)))
+        }
+        (None, _, Some(name)) => Err(UsbError::NotFound { wanted: name.to_owned(), found: everything }),
+        (None, _, None) if everything.is_empty() => Err(UsbError::NoneFound),
+        (None, _, None) => Err(UsbError::OthersOnly(everything)),
+    }
+}

@@ -1,0 +1,300 @@
+//! Two threads that keep a device's endpoints busy, and the queues between them and the link.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use super::packets::LineErrors;
+use super::transport::{Failure, Transport};
+
+/// Bytes of a read: a multiple of every packet's size, since a packet that does not fit is lost.
+const READ: usize = 64 * 1024;
+
+/// Bytes of a write. FPGAs were seen to lose bytes of larger ones.
+const WRITE: usize = 16 * 1024;
+
+/// Bytes that may wait to be written. Whoever sends counts them as sent.
+const OUTGOING: usize = 2 * WRITE;
+
+/// Bytes that may wait to be fetched; beyond, the device waits. A board sends what it has credit for, noise has no end.
+const INCOMING: usize = 1 << 20;
+
+/// How often the threads look whether they are still wanted.
+const BREATH: Duration = Duration::from_millis(100);
+
+/// Takes a transfer apart and appends the data in it.
+pub(super) type Unpack = dyn Fn(&[u8], &mut Vec<u8>, &mut LineErrors) + Send + Sync;
+
+#[derive(Default)]
+struct Queues {
+    incoming: Vec<u8>,
+    outgoing: VecDeque<u8>,
+    /// Bytes that have left that queue and are not written yet.
+    in_flight: usize,
+    errors: LineErrors,
+    failure: Option<Failure>,
+    is_over: bool,
+}
+
+struct Shared {
+    transport: Box<dyn Transport>,
+    unpack: Box<Unpack>,
+    queues: Mutex<Queues>,
+    /// Something has arrived, left, or failed.
+    changed: Condvar,
+}
+
+impl Shared {
+    fn queues(&self) -> MutexGuard<'_, Queues> {
+        self.queues.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn wait<'a>(&self, queues: MutexGuard<'a, Queues>, time: Duration) -> MutexGuard<'a, Queues> {
+        match self.changed.wait_timeout(queues, time) {
+            Ok((queues, _)) => queues,
+            Err(poisoned) => poisoned.into_inner().0,
+        }
+    }
+
+    fn fail(&self, failure: Failure) {
+        let mut queues = self.queues();
+        queues.failure.get_or_insert(failure);
+        queues.is_over = true;
+        self.changed.notify_all();
+    }
+
+    /// Always has a read under way, and does nothing between two of them that could wait.
+    fn keep_reading(&self) {
+        let mut buffer = vec![0; READ];
+        let mut data = Vec::new();
+        loop {
+            let read = match self.transport.read(&mut buffer, BREATH) {
+                Ok(read) => read,
+                Err(failure) => return self.fail(failure),
+            };
+            let mut errors = LineErrors::default();
+            (self.unpack)(&buffer[..read], &mut data, &mut errors);
+            let mut queues = self.queues();
+            queues.errors += errors;
+            if !data.is_empty() {
+                queues.incoming.append(&mut data);
+                self.changed.notify_all();
+            }
+            while queues.incoming.len() > INCOMING && !queues.is_over {
+                queues = self.wait(queues, BREATH);
+            }
+            if queues.is_over {
+                return;
+            }
+        }
+    }
+
+    fn keep_writing(&self) {
+        let mut bytes = Vec::with_capacity(WRITE);
+        loop {
+            let mut queues = self.queues();
+            while bytes.is_empty() && queues.outgoing.is_empty() && !queues.is_over {
+                queues = self.wait(queues, BREATH);
+            }
+            if queues.is_over {
+                return;
+            }
+            let more = queues.outgoing.len().min(WRITE - bytes.len());
+            bytes.extend(queues.outgoing.drain(..more));
+            queues.in_flight = bytes.len();
+            drop(queues);
+            self.changed.notify_all();
+            match self.transport.write(&bytes, BREATH) {
+                Ok(written) => drop(bytes.drain(..written)),
+                Err(failure) => return self.fail(failure),
+            }
+            self.queues().in_flight = bytes.len();
+            self.changed.notify_all();
+        }
+    }
+}
+
+/// The two threads at work.
+pub(super) struct Pump {
+    shared: Arc<Shared>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Pump {
+    pub(super) fn start(transport: Box<dyn Transport>, unpack: Box<Unpack>) -> Self {
+        let queues = Mutex::new(Queues::default());
+        let shared = Arc::new(Shared { transport, unpack, queues, changed: Condvar::new() });
+        let (reading, writing) = (Arc::clone(&shared), Arc::clone(&shared));
+        let threads = vec![
+            thread::spawn(move || reading.keep_reading()),
+            thread::spawn(move || writing.keep_writing()),
+        ];
+        Self { shared, threads }
+    }
+
+    /// As [`Link::exchange`](crate::Link::exchange). What has arrived before a failure is handed over first.
+    pub(super) fn exchange(
+        &self,
+        outgoing: &[u8],
+        incoming: &mut Vec<u8>,
+        wait: Duration,
+    ) -> Result<usize, Failure> {
+        let deadline = Instant::now() + wait;
+        let mut queues = self.shared.queues();
+        loop {
+            let room =
+                if queues.failure.is_none() { OUTGOING - queues.outgoing.len().min(OUTGOING) } else { 0 };
+            let taken = outgoing.len().min(room);
+            queues.outgoing.extend(&outgoing[..taken]);
+            let received = queues.incoming.len();
+            incoming.append(&mut queues.incoming);
+            if taken + received > 0 {
+                self.shared.changed.notify_all();
+                return Ok(taken);
+            }
+            if let Some(failure) = &queues.failure {
+                return Err(failure.clone());
+            }
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Ok(0);
+            }
+            queues = self.shared.wait(queues, left);
+        }
+    }
+
+    pub(super) fn errors(&self) -> LineErrors {
+        self.shared.queues().errors
+    }
+}
+
+impl Drop for Pump {
+    /// Waits for what is still to be written, since the last words of a session free the board, but not for ever.
+    fn drop(&mut self) {
+        let deadline = Instant::now() + 2 * BREATH;
+        let mut queues = self.shared.queues();
+        while queues.outgoing.len() + queues.in_flight > 0 && !queues.is_over && Instant::now() < deadline {
+            queues = self.shared.wait(queues, BREATH / 10);
+        }
+        queues.is_over = true;
+        drop(queues);
+        self.shared.changed.notify_all();
+        for thread in self.threads.drain(..) {
+            // A thread that panicked has said so.
+            let _ = thread.join();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LONG: Duration = Duration::from_secs(5);
+
+    /// A device that says what is put in it, in pieces, and then fails or is silent. It takes bytes until it is `stuck`.
+    #[derive(Default)]
+    struct Device {
+        says: Mutex<VecDeque<Result<Vec<u8>, Failure>>>,
+        heard: Arc<Mutex<Vec<u8>>>,
+        stuck: bool,
+    }
+
+    impl Transport for Device {
+        fn request(&self, _: u8, _: u16, _: u16) -> Result<(), Failure> {
+            Ok(())
+        }
+
+        fn request_word(&self, _: u8, _: u16, _: u16) -> Result<u16, Failure> {
+            Ok(0)
+        }
+
+        fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, Failure> {
+            let next = self.says.lock().unwrap().pop_front();
+            match next {
+                Some(said) => said.map(|bytes| {
+                    buffer[..bytes.len()].copy_from_slice(&bytes);
+                    bytes.len()
+                }),
+                None => {
+                    thread::sleep(wait);
+                    Ok(0)
+                }
+            }
+        }
+
+        fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, Failure> {
+            if self.stuck {
+                thread::sleep(wait);
+                return Ok(0);
+            }
+            // A device takes what it has room for.
+            let taken = bytes.len().min(1000);
+            self.heard.lock().unwrap().extend_from_slice(&bytes[..taken]);
+            Ok(taken)
+        }
+    }
+
+    fn pump(device: Device) -> Pump {
+        Pump::start(Box::new(device), Box::new(|transfer, data, _| data.extend_from_slice(transfer)))
+    }
+
+    #[test]
+    fn what_came_before_a_failure_is_handed_over_before_it() {
+        let says = [Ok(vec![1, 2]), Ok(vec![3]), Err(Failure::Gone)].into();
+        let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
+        let mut incoming = Vec::new();
+        let failure = loop {
+            match pump.exchange(&[], &mut incoming, LONG) {
+                Ok(_) => {}
+                Err(failure) => break failure,
+            }
+        };
+        assert!(matches!(failure, Failure::Gone));
+        assert_eq!(incoming, [1, 2, 3]);
+        // It stays so, and takes nothing more.
+        assert!(pump.exchange(&[7], &mut incoming, LONG).is_err());
+    }
+
+    #[test]
+    fn all_that_was_taken_is_written_in_order_before_the_end() {
+        let heard = Arc::new(Mutex::new(Vec::new()));
+        let pump = pump(Device { heard: Arc::clone(&heard), ..Device::default() });
+        let sent: Vec<u8> = (0..100_000_u32).map(|n| (n % 251) as u8).collect();
+        let mut left = sent.as_slice();
+        while !left.is_empty() {
+            let taken = pump.exchange(left, &mut Vec::new(), LONG).unwrap();
+            left = &left[taken..];
+        }
+        drop(pump);
+        assert!(*heard.lock().unwrap() == sent);
+    }
+
+    #[test]
+    fn a_device_that_takes_nothing_holds_up_neither_deadline_nor_end() {
+        let pump = pump(Device { stuck: true, ..Device::default() });
+        let begun = Instant::now();
+        let mut taken = 0;
+        while begun.elapsed() < Duration::from_millis(300) {
+            taken += pump.exchange(&[0; 10_000], &mut Vec::new(), Duration::from_millis(50)).unwrap();
+        }
+        // What waits to be written, and what the writing thread holds.
+        assert!(taken <= OUTGOING + WRITE, "{taken}");
+        drop(pump);
+        assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
+    }
+
+    #[test]
+    fn noise_without_end_does_not_fill_the_memory() {
+        let says = (0..200).map(|_| Ok(vec![0x55; READ])).collect();
+        let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
+        thread::sleep(Duration::from_millis(300));
+        let mut incoming = Vec::new();
+        pump.exchange(&[], &mut incoming, LONG).unwrap();
+        assert!(incoming.len() <= INCOMING + READ, "{}", incoming.len());
+        while incoming.len() < 200 * READ {
+            pump.exchange(&[], &mut incoming, LONG).unwrap();
+        }
+    }
+}
