@@ -4,7 +4,12 @@
 mod class;
 pub mod descriptor;
 pub mod discovery;
+mod error;
+mod ftdi;
+pub mod kinds;
+mod line_errors;
 mod open;
+mod options;
 mod recording;
 mod replay;
 mod serial;
@@ -20,7 +25,9 @@ mod wire;
 use std::time::Duration;
 
 pub use class::Class;
-pub use open::{Candidate, OpenError, open, replayed_file};
+pub use error::OpenError;
+pub use line_errors::LineErrors;
+pub use open::{Candidate, open, replayed_file};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
 pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
@@ -28,7 +35,7 @@ pub use severed::Severed;
 pub use sysfs::{UsbDevice, usb_device};
 pub use target::{BoardKind, Target, TargetError};
 pub use tcp::{TcpError, TcpLink};
-pub use usb::{LineErrors, Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
+pub use usb::{Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
 pub use wire::WireLink;
 
 /// A byte pipe to a board.

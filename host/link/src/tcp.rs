@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use super::descriptor::{Gone, Pump, never_block};
 use super::{Link, LinkError, OpenError};
 use crate::Class;
+use crate::options::{positive, read, set};
 use crate::target::Target;
 
 /// For each address of the host. Within a laboratory a connection takes a millisecond, around the world a third of a second.
@@ -86,17 +87,11 @@ impl TcpLink {
     /// # Errors
     /// [`OpenError`] when the target is none, or no connection comes about.
     pub fn open(target: &Target) -> Result<Self, OpenError> {
-        let missing = || OpenError::AddressMissing { kind: target.kind.clone(), form: "tcp:HOST:PORT" };
-        let address = target.address.clone().ok_or_else(missing)?;
+        let address = target.address.clone().ok_or_else(|| OpenError::address_missing(target))?;
         let mut baud = None;
-        for (key, value) in &target.options {
-            baud = value.parse().ok().filter(|&baud: &u32| key == "baud" && baud > 0);
-            baud.ok_or_else(|| OpenError::Option {
-                kind: target.kind.clone(),
-                option: format!("{key}={value}"),
-                known: "baud=RATE, that of the serial line at the far end",
-            })?;
-        }
+        read(target, "baud=RATE, that of the serial line at the far end", |key, value| {
+            key == "baud" && set(&mut baud, positive(value).map(Some))
+        })?;
         let stream = connect(&address)?;
         let unreachable = |source| TcpError::Unreachable { address: address.clone(), source };
         stream.set_nodelay(true).map_err(unreachable)?;

@@ -10,7 +10,7 @@ use super::Failure;
 use crate::settings::Settings;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
-use halfrow::link::{self, Candidate, Recording};
+use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::Draws;
 use halfrow::target::Target;
 use halfrow::verdict::Exit;
@@ -19,8 +19,7 @@ use halfrow::verdict::Exit;
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Board")]
 pub(super) struct BoardArguments {
-    /// The board: mock, mock,fault=NAME, sim, serial:PATH, tcp:HOST:PORT, replay:FILE; see `halfrow boards` [default: mock]
-    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD")]
+    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = board_help())]
     board: Option<Target>,
     /// The longest that the run may take, in seconds of the link's clock
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
@@ -31,6 +30,10 @@ pub(super) struct BoardArguments {
     /// Take the board over from another host that holds it
     #[arg(long)]
     pub(super) take_over: bool,
+}
+
+fn board_help() -> String {
+    format!("The board: {}; see `halfrow boards` [default: mock]", kinds::forms().join(", "))
 }
 
 fn percent(text: &str) -> Result<f64, String> {

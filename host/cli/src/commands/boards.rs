@@ -7,6 +7,7 @@ use super::{Failure, print, print_json};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::Exit;
 use halfrow_link::discovery::{self, Access, Answer, Found};
+use halfrow_link::kinds::{Form, KINDS};
 
 /// List the boards that can be named with --board, and the devices that could be one
 ///
@@ -25,46 +26,30 @@ pub(super) struct Arguments {
     pub(super) json: bool,
 }
 
-/// A board that is no device.
+/// A kind of board that is no device, by one of the ways to name it.
 #[derive(Serialize)]
 struct BuiltIn {
-    target: &'static str,
+    #[serde(flatten)]
+    form: Form,
     kind: BoardKind,
-    summary: &'static str,
 }
 
-const BUILT_IN: [BuiltIn; 5] = [
-    BuiltIn {
-        target: "mock",
-        kind: BoardKind::Mock,
-        summary: "a board in this program; mock,KEY=VALUE sets its build, its wire and its fault",
-    },
-    BuiltIn {
-        target: "sim",
-        kind: BoardKind::Sim,
-        summary: "the board's Verilog under simulation; sim,KEY=VALUE sets its wire and that wire's fault, trace=FILE \
-                  writes a waveform (in programs built with --features sim)",
-    },
-    BuiltIn { target: "sim:uart", kind: BoardKind::Sim, summary: "the same behind the pins of its UART" },
-    BuiltIn { target: "sim:fifo", kind: BoardKind::Sim, summary: "the same behind the pins of its FT2232H" },
-    BuiltIn {
-        target: "replay:FILE",
-        kind: BoardKind::Replay,
-        summary: "the board that answered when FILE was written with --record",
-    },
-];
+fn built_in() -> Vec<BuiltIn> {
+    let kinds = KINDS.iter().filter(|kind| kind.board != BoardKind::Hardware);
+    kinds.flat_map(|kind| kind.forms.iter().map(|&form| BuiltIn { form, kind: kind.board })).collect()
+}
 
 /// A line of the list.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Entry<'a> {
     Device(&'a Found),
-    BuiltIn(&'static BuiltIn),
+    BuiltIn(BuiltIn),
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut devices: Vec<Found> = if arguments.targets.is_empty() {
-        discovery::sources().iter().flat_map(|source| source.find()).collect()
+        discovery::find()
     } else {
         arguments.targets.iter().map(Found::named).collect()
     };
@@ -75,7 +60,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();
     if arguments.targets.is_empty() {
-        entries.extend(BUILT_IN.iter().map(Entry::BuiltIn));
+        entries.extend(built_in().into_iter().map(Entry::BuiltIn));
     }
     if arguments.json {
         print_json(&entries)?;
@@ -87,7 +72,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 
 fn text(entry: &Entry<'_>) -> String {
     let device = match entry {
-        Entry::BuiltIn(BuiltIn { target, summary, .. }) => return format!("{target:<12} {summary}"),
+        Entry::BuiltIn(BuiltIn { form: Form { target, summary }, .. }) => {
+            return format!("{target:<12} {summary}");
+        }
         Entry::Device(device) => device,
     };
     let mut lines = vec![device.target.clone(), format!("    {}", device.summary)];

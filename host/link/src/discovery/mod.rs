@@ -1,30 +1,22 @@
 //! Everything on this computer that could be a board, without touching any of it unless asked.
 
 mod answer;
-mod serial_ports;
-mod usb_chips;
+pub(crate) mod serial_ports;
+pub(crate) mod usb_chips;
 
 use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::target::{BoardKind, Target};
-use crate::{Holder, UsbDevice};
+use crate::kinds::{self, KINDS};
+use crate::{BoardKind, Holder, Target, UsbDevice};
 
 pub use answer::Answer;
-pub use serial_ports::SerialPorts;
-pub use usb_chips::UsbChips;
 
-/// A place where boards are found: the serial ports, or another kind of device.
-pub trait Source {
-    /// What is there. What cannot be listed at all is not there.
-    fn find(&self) -> Vec<Found>;
-}
-
-/// Every source there is, in the order in which they are listed.
+/// Everything on this computer that could be a board, in the order of [`KINDS`].
 #[must_use]
-pub fn sources() -> Vec<Box<dyn Source>> {
-    vec![Box::new(UsbChips), Box::new(SerialPorts)]
+pub fn find() -> Vec<Found> {
+    KINDS.iter().flat_map(|kind| (kind.find)()).collect()
 }
 
 /// Something that could be a board.
@@ -78,14 +70,9 @@ impl Found {
             (Some(path), "serial") => {
                 Self { target: target.to_string(), ..serial_ports::look_at(&PathBuf::from(path)) }
             }
-            (_, kind) => Self {
+            _ => Self {
                 target: target.to_string(),
-                kind: match kind {
-                    "mock" => BoardKind::Mock,
-                    "sim" => BoardKind::Sim,
-                    "replay" => BoardKind::Replay,
-                    _ => BoardKind::Hardware,
-                },
+                kind: kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board),
                 summary: "named in the call".to_owned(),
                 device: None,
                 names: Vec::new(),

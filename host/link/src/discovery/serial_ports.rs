@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use nix::unistd::{AccessFlags, access};
 
-use super::{Access, Found, Source};
+use super::{Access, Found};
 use crate::target::BoardKind;
 use crate::{UsbDevice, holders, how_to_get_access, usb_device};
 
@@ -13,23 +13,18 @@ use crate::{UsbDevice, holders, how_to_get_access, usb_device};
 const NAMES: [&str; 2] = ["/dev/serial/by-id", "/dev/serial/by-path"];
 
 /// The serial ports of this computer.
-#[derive(Clone, Copy, Debug)]
-pub struct SerialPorts;
-
-impl Source for SerialPorts {
-    fn find(&self) -> Vec<Found> {
-        // Without this folder serialport's list panics.
-        if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
-            return Vec::new();
-        }
-        let ports = serialport::available_ports().unwrap_or_else(|error| {
-            tracing::warn!("the serial ports cannot be listed: {error}");
-            Vec::new()
-        });
-        let mut found: Vec<_> = ports.iter().map(|port| look_at(Path::new(&port.port_name))).collect();
-        found.sort_by_key(|port| (port.usb.is_none(), port.device.clone()));
-        found
+pub(crate) fn find() -> Vec<Found> {
+    // Without this folder serialport's list panics.
+    if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
+        return Vec::new();
     }
+    let ports = serialport::available_ports().unwrap_or_else(|error| {
+        tracing::warn!("the serial ports cannot be listed: {error}");
+        Vec::new()
+    });
+    let mut found: Vec<_> = ports.iter().map(|port| look_at(Path::new(&port.port_name))).collect();
+    found.sort_by_key(|port| (port.usb.is_none(), port.device.clone()));
+    found
 }
 
 /// The port `path`, looked at from outside: opening it would raise its modem lines, which resets some boards.

@@ -1,21 +1,16 @@
 //! FTDI's chips on USB, whether or not the system has made serial ports of them.
 
-use super::{Access, Found, Source};
+use super::{Access, Found};
 use crate::target::BoardKind;
 use crate::{UsbBoard, how_to_get_access, usb_boards};
 
 /// The USB of this computer.
-#[derive(Clone, Copy, Debug)]
-pub struct UsbChips;
-
-impl Source for UsbChips {
-    fn find(&self) -> Vec<Found> {
-        let boards = usb_boards().unwrap_or_else(|error| {
-            tracing::info!("{error}");
-            Vec::new()
-        });
-        boards.into_iter().map(look_at).collect()
-    }
+pub(crate) fn find() -> Vec<Found> {
+    let boards = usb_boards().unwrap_or_else(|error| {
+        tracing::info!("{error}");
+        Vec::new()
+    });
+    boards.into_iter().map(look_at).collect()
 }
 
 fn look_at(board: UsbBoard) -> Found {

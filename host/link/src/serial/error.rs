@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use super::Holder;
+use super::holder::by;
 use crate::Class;
+use crate::ftdi::list;
 
 /// A serial port that cannot be opened.
 #[derive(Debug, thiserror::Error)]
@@ -26,7 +28,7 @@ pub enum SerialError {
         remedy: String,
     },
     /// Somebody has it open.
-    #[error("{path} is in use{}; close that program, then run again", by(.holders))]
+    #[error("{path} is in use by {}; close that program, then run again", by(.holders))]
     InUse {
         /// The port.
         path: PathBuf,
@@ -81,17 +83,4 @@ impl SerialError {
             _ => Class::Station,
         }
     }
-}
-
-fn by(holders: &[Holder]) -> String {
-    if holders.is_empty() {
-        return String::new();
-    }
-    let names: Vec<_> = holders.iter().map(ToString::to_string).collect();
-    format!(" by {}", names.join(" and "))
-}
-
-fn list(rates: &[u32]) -> String {
-    let rates: Vec<_> = rates.iter().map(u32::to_string).collect();
-    rates.join(" and ")
 }

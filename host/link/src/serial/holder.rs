@@ -19,6 +19,15 @@ impl fmt::Display for Holder {
     }
 }
 
+/// By whom a device is held, as an error says it.
+pub(crate) fn by(holders: &[Holder]) -> String {
+    if holders.is_empty() {
+        return "another program".to_owned();
+    }
+    let names: Vec<_> = holders.iter().map(ToString::to_string).collect();
+    names.join(" and ")
+}
+
 /// Other processes that have `device` open, as far as this user may know: root sees all, others their own.
 #[must_use]
 pub fn holders(device: &Path) -> Vec<Holder> {

@@ -3,7 +3,6 @@
 mod error;
 mod holder;
 mod options;
-mod rates;
 
 use std::os::fd::AsRawFd;
 use std::os::unix::fs::{FileTypeExt, MetadataExt};
@@ -16,11 +15,12 @@ use serialport::{ClearBuffer, ErrorKind, FlowControl, SerialPort, TTYPort};
 use super::descriptor::{Gone, Pump, never_block};
 use super::sysfs::usb_device;
 use super::{Link, LinkError, OpenError};
+use crate::ftdi::{self, Speed};
 use crate::target::Target;
 use options::SerialOptions;
-use rates::Chip;
 
 pub use error::SerialError;
+pub(crate) use holder::by;
 pub use holder::{Holder, holders};
 
 /// Silence after which nothing stale is on its way any more: a USB chip holds bytes back for 16 ms.
@@ -45,9 +45,13 @@ impl SerialLink {
     /// [`OpenError`] when there is no such port, or it is another's, or cannot be set as the target says.
     pub fn open(target: &Target) -> Result<Self, OpenError> {
         let options = SerialOptions::parse(target)?;
-        let missing = || OpenError::AddressMissing { kind: target.kind.clone(), form: "serial:PATH" };
-        let path =
-            PathBuf::from(target.address.as_ref().filter(|path| !path.is_empty()).ok_or_else(missing)?);
+        let path = PathBuf::from(
+            target
+                .address
+                .as_ref()
+                .filter(|path| !path.is_empty())
+                .ok_or_else(|| OpenError::address_missing(target))?,
+        );
         Ok(Self::open_port(path, options)?)
     }
 
@@ -149,19 +153,22 @@ fn set_lines(port: &mut TTYPort, options: SerialOptions) {
 }
 
 fn check_rate(path: &Path, baud: u32) -> Result<(), SerialError> {
-    let Some(chip) = usb_device(path).as_ref().and_then(Chip::of) else { return Ok(()) };
-    chip.check(baud).map_err(|nearest| SerialError::Rate {
-        path: path.to_owned(),
-        chip: chip.name(),
-        baud,
-        nearest,
-    })
+    let Some(device) = usb_device(path).filter(|device| device.vendor_id == ftdi::VENDOR) else {
+        return Ok(());
+    };
+    let speed = Speed::of(device.device_version);
+    let chip = match speed {
+        Speed::High => "an FT2232H",
+        Speed::Full => "a full-speed FTDI chip",
+    };
+    let refused = |nearest| SerialError::Rate { path: path.to_owned(), chip, baud, nearest };
+    speed.divisor(baud).map(|_| ()).map_err(refused)
 }
 
 /// Other drivers take the nearest rate as well, and some say so.
 fn check_taken_rate(port: &TTYPort, path: &Path, baud: u32) -> Result<(), SerialError> {
     match port.baud_rate() {
-        Ok(taken) if taken > 0 && f64::from(taken.abs_diff(baud)) > 0.02 * f64::from(baud) => {
+        Ok(taken) if taken > 0 && f64::from(taken.abs_diff(baud)) > ftdi::TOLERANCE * f64::from(baud) => {
             Err(SerialError::OtherRate { path: path.to_owned(), baud, taken })
         }
         _ => Ok(()),

@@ -1,7 +1,10 @@
 //! The options of a `serial:PATH` target.
 
 use crate::OpenError;
+use crate::options::{choice, positive, read, set};
 use crate::target::Target;
+
+const KNOWN: &str = "baud=RATE, flow=rtscts or flow=none, dtr=on or dtr=off, rts=on or rts=off";
 
 /// The rate of the FT2232H's UART on the boards of `fpga/boards`.
 const DEFAULT_BAUD: u32 = 12_000_000;
@@ -22,26 +25,15 @@ pub(super) struct SerialOptions {
 impl SerialOptions {
     pub(super) fn parse(target: &Target) -> Result<Self, OpenError> {
         let mut options = Self { baud: DEFAULT_BAUD, rts_cts: true, dtr: true, rts: true };
-        for (key, value) in &target.options {
-            let known = match (key.as_str(), value.as_str()) {
-                ("baud", rate) => rate.parse().ok().filter(|&baud| baud > 0).map(|baud| options.baud = baud),
-                ("flow", flow) => choice(flow, "rtscts", "none").map(|rts_cts| options.rts_cts = rts_cts),
-                ("dtr", level) => choice(level, "on", "off").map(|dtr| options.dtr = dtr),
-                ("rts", level) => choice(level, "on", "off").map(|rts| options.rts = rts),
-                _ => None,
-            };
-            known.ok_or_else(|| OpenError::Option {
-                kind: target.kind.clone(),
-                option: format!("{key}={value}"),
-                known: "baud=RATE, flow=rtscts or flow=none, dtr=on or dtr=off, rts=on or rts=off",
-            })?;
-        }
+        read(target, KNOWN, |key, value| match key {
+            "baud" => set(&mut options.baud, positive(value)),
+            "flow" => set(&mut options.rts_cts, choice(value, "rtscts", "none")),
+            "dtr" => set(&mut options.dtr, choice(value, "on", "off")),
+            "rts" => set(&mut options.rts, choice(value, "on", "off")),
+            _ => false,
+        })?;
         Ok(options)
     }
-}
-
-fn choice(value: &str, yes: &str, no: &str) -> Option<bool> {
-    if value == yes { Some(true) } else { (value == no).then_some(false) }
 }
 
 #[cfg(test)]

@@ -1,11 +1,6 @@
-//! FTDI's chips: what they are called, how many channels they have, and what their baud generators can do.
+//! FTDI's chips as USB devices: what they are called, and how many channels they have.
 
-/// FTDI's vendor id.
-pub(super) const FTDI: u16 = 0x0403;
-
-/// How far a rate may be from the one that is asked for. A receiver samples the last of ten bits half a bit from its edge,
-/// so 5 % lose it; either side may spend a share of that.
-const TOLERANCE: f64 = 0.02;
+use crate::ftdi::Speed;
 
 /// A kind of chip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,89 +76,18 @@ impl Chip {
     }
 
     pub(super) fn is_high_speed(self) -> bool {
-        self != Self::FullSpeed
+        self.speed() == Speed::High
     }
 
-    /// The fastest serial rate.
-    pub(super) fn fastest(self) -> u32 {
-        if self.is_high_speed() { 12_000_000 } else { 3_000_000 }
-    }
-
-    /// The divisor for `baud`, as the request wants it: eighths in bits 14 to 16, bit 17 for the 12 MHz clock.
-    ///
-    /// Next to the fastest rate there are two more without eighths, 2/3 and 1/2 of it. What a high-speed chip makes
-    /// between the fastest and a half jitters and collapses to 2/3, so those rates are refused, 2/3 included.
-    ///
-    /// # Errors
-    /// The nearest rates that the chip makes, the lower first, when none is close enough.
-    pub(super) fn divisor(self, baud: u32) -> Result<u32, Vec<u32>> {
-        const EIGHTHS: [u32; 8] = [0, 3, 2, 4, 1, 5, 6, 7];
-        let fastest = f64::from(self.fastest());
-        let wanted = f64::from(baud).max(1.0);
-        // The slowest divisor is 2^14 - 1 and seven eighths.
-        let near = (8.0 * fastest / wanted).clamp(8.0, 131_071.0);
-        let mut rates: Vec<(f64, u32)> = [near.floor(), near.ceil(), 8.0, 12.0, 16.0]
-            .into_iter()
-            .filter(|&eighths| eighths == 8.0 || eighths >= 16.0 || !self.is_high_speed() && eighths == 12.0)
-            .map(|eighths| (8.0 * fastest / eighths, eighths as u32))
-            .collect();
-        rates.sort_by(|one, other| (one.0 - wanted).abs().total_cmp(&(other.0 - wanted).abs()));
-        rates.dedup();
-        let (rate, eighths) = rates[0];
-        if (rate - wanted).abs() > TOLERANCE * wanted {
-            let mut nearest: Vec<u32> = rates.iter().take(2).map(|(rate, _)| rate.round() as u32).collect();
-            nearest.sort_unstable();
-            return Err(nearest);
-        }
-        let divisor = match eighths {
-            8 => 0,
-            12 => 1,
-            _ => eighths >> 3 | EIGHTHS[(eighths & 7) as usize] << 14,
-        };
-        Ok(if self.is_high_speed() { divisor | 0x20000 } else { divisor })
+    /// The family that its baud generator is of.
+    pub(super) fn speed(self) -> Speed {
+        if self == Self::FullSpeed { Speed::Full } else { Speed::High }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_divisors_of_a_high_speed_chip_are_those_of_its_data_sheet() {
-        for (baud, divisor) in [
-            (12_000_000, 0x20000),
-            (6_000_000, 0x20002),
-            (3_000_000, 0x20004),
-            (2_000_000, 0x20006),
-            (1_000_000, 0x2000c),
-            (921_600, 0x2000d),
-            (115_200, 0x2c068),
-        ] {
-            assert_eq!(Chip::Ft2232h.divisor(baud), Ok(divisor), "{baud}");
-        }
-    }
-
-    #[test]
-    fn the_divisors_of_a_full_speed_chip_are_those_of_its_data_sheet() {
-        // AN232B-05: 3 M, 2 M, 921,600 (3.25), 115,200 (26), 9600 (312.5).
-        for (baud, divisor) in
-            [(3_000_000, 0), (2_000_000, 1), (921_600, 0x8003), (115_200, 0x1a), (9600, 0x4138)]
-        {
-            assert_eq!(Chip::FullSpeed.divisor(baud), Ok(divisor), "{baud}");
-        }
-    }
-
-    #[test]
-    fn a_rate_that_a_chip_cannot_make_is_refused_with_those_beside_it() {
-        for baud in [7_000_000, 8_000_000, 9_000_000, 10_000_000, 11_000_000] {
-            assert_eq!(Chip::Ft2232h.divisor(baud), Err(vec![6_000_000, 12_000_000]), "{baud}");
-        }
-        assert_eq!(Chip::Ft2232h.divisor(20_000_000), Err(vec![6_000_000, 12_000_000]));
-        // 96 MHz / 5.82 MHz is 16.5: 2.9 % away on either side.
-        assert_eq!(Chip::Ft2232h.divisor(5_820_000), Err(vec![5_647_059, 6_000_000]));
-        assert_eq!(Chip::FullSpeed.divisor(12_000_000), Err(vec![2_000_000, 3_000_000]));
-        assert!(Chip::Ft2232h.divisor(0).is_err());
-    }
 
     #[test]
     fn chips_are_told_by_product_and_version() {

@@ -3,17 +3,12 @@
 use super::find::UsbBoard;
 use super::transport::Failure;
 use crate::Class;
-use crate::Holder;
+use crate::ftdi::list;
+use crate::serial::{Holder, by};
 
 /// Why a board cannot be opened over USB.
 #[derive(Debug, thiserror::Error)]
 pub enum UsbError {
-    /// An option that there is not.
-    #[error(
-        "`{0}` is no option of `usb`; it takes channel=a…d, mode=fifo or mode=uart, baud=RATE, flow=rtscts or flow=none, and \
-         latency=1…255 (milliseconds)"
-    )]
-    Option(String),
     /// No USB at all.
     #[error(
         "this machine has no USB that a program can use; run on one that has, or see `halfrow boards` for other links"
@@ -63,7 +58,7 @@ pub enum UsbError {
         name: String,
     },
     /// Somebody else uses it.
-    #[error("{} is in use{}; end that program, then run again", .what, by(.holders))]
+    #[error("{} is in use by {}; end that program, then run again", .what, by(.holders))]
     Busy {
         /// The channel, or its serial port.
         what: String,
@@ -127,7 +122,7 @@ impl UsbError {
     #[must_use]
     pub fn class(&self) -> Class {
         match self {
-            Self::Option(_) | Self::NoChannel { .. } | Self::BaudOfFifo | Self::Rate { .. } => Class::Call,
+            Self::NoChannel { .. } | Self::BaudOfFifo | Self::Rate { .. } => Class::Call,
             Self::Several(_) | Self::OthersOnly(_) => Class::Call,
             Self::Busy { .. } => Class::Busy,
             _ => Class::Station,
@@ -149,14 +144,6 @@ fn targets(found: &[UsbBoard]) -> String {
     lines.join(", ")
 }
 
-fn by(holders: &[Holder]) -> String {
-    if holders.is_empty() {
-        return " by another program".to_owned();
-    }
-    let names: Vec<String> = holders.iter().map(ToString::to_string).collect();
-    format!(" by {}", names.join(" and "))
-}
-
 fn advice(wanted: &str) -> &'static str {
     match wanted {
         "fifo" => {
@@ -168,9 +155,4 @@ fn advice(wanted: &str) -> &'static str {
              `RS232 UART` with FT_PROG or ftdi_eeprom (save the old contents first), then unplug the board and plug it in"
         }
     }
-}
-
-fn list(rates: &[u32]) -> String {
-    let rates: Vec<String> = rates.iter().map(ToString::to_string).collect();
-    rates.join(" and ")
 }

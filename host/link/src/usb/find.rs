@@ -7,9 +7,10 @@ use std::path::PathBuf;
 use rusb::{Context, Device, UsbContext as _};
 use serde::Serialize;
 
-use super::chip::{Channel, Chip, FTDI};
+use super::chip::{Channel, Chip};
 use super::error::UsbError;
 use super::serial_ports;
+use crate::ftdi::VENDOR;
 use crate::sysfs::UsbDevice;
 use crate::{Holder, holders};
 
@@ -82,7 +83,7 @@ fn look_at(device: Device<Context>) -> Option<Found> {
     let descriptor = device.device_descriptor().ok()?;
     let version = descriptor.device_version();
     let version = u16::from(version.0) << 8 | u16::from(version.1) << 4 | u16::from(version.2);
-    let chip = (descriptor.vendor_id() == FTDI).then(|| Chip::of(descriptor.product_id(), version))??;
+    let chip = (descriptor.vendor_id() == VENDOR).then(|| Chip::of(descriptor.product_id(), version))??;
     let place = place(&device);
     let handle = device.open().ok();
     // Linux tells the strings to those as well who may not open the device.

@@ -79,7 +79,7 @@ impl Ftdi<'_> {
             (Mode::Fifo, Some(_)) => Err(UsbError::BaudOfFifo),
             (Mode::Fifo, None) => Ok(Ready::Fifo),
             (Mode::Uart, baud) => {
-                let baud = baud.unwrap_or_else(|| self.chip.fastest());
+                let baud = baud.unwrap_or_else(|| self.chip.speed().fastest());
                 self.divisor(baud).map(|_| Ready::Uart { baud })
             }
         }
@@ -116,7 +116,7 @@ impl Ftdi<'_> {
 
     fn divisor(&self, baud: u32) -> Result<u32, UsbError> {
         let chip = self.chip.name();
-        self.chip.divisor(baud).map_err(|nearest| UsbError::Rate { chip, baud, nearest })
+        self.chip.speed().divisor(baud).map_err(|nearest| UsbError::Rate { chip, baud, nearest })
     }
 
     fn request(&self, doing: &'static str, request: u8, value: u16, index: u16) -> Result<(), UsbError> {
@@ -162,7 +162,7 @@ mod tests {
     }
 
     fn make_ready(transport: &Noting, chip: Chip, target: &str) -> Result<Ready, UsbError> {
-        let options = UsbOptions::of(&target.parse().unwrap())?;
+        let options = UsbOptions::of(&target.parse().unwrap()).unwrap();
         Ftdi { transport, chip, channel: chip.usual_channel(), name: "usb:X" }.make_ready(&options)
     }
 

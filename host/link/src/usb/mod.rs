@@ -32,10 +32,10 @@ use transport::Libusb;
 use super::serial::{Holder, holders};
 use super::{Link, LinkError};
 use crate::target::Target;
+use crate::{LineErrors, OpenError};
 
 pub use error::UsbError;
 pub use find::{UsbBoard, usb_boards};
-pub use packets::LineErrors;
 pub use transport::{Failure as UsbFailure, Transport};
 
 /// What an FPGA with two synchronisers gets through a FIFO that is not synchronous: some 5 MB/s; its data sheet says 8.
@@ -56,15 +56,15 @@ impl UsbLink {
     /// Opens the channel that `target` names, and makes it ready; nothing is said over it yet.
     ///
     /// # Errors
-    /// [`UsbError`]
-    pub fn open(target: &Target) -> Result<Self, UsbError> {
+    /// [`OpenError`] when the target is none, or no such chip can be had.
+    pub fn open(target: &Target) -> Result<Self, OpenError> {
         let options = UsbOptions::of(target)?;
         let found = choose(target.address.as_deref())?;
         let (chip, name) = (found.chip, found.board.target());
         let channel = options.channel.map_or(chip.usual_channel(), Channel);
         if channel.0 >= chip.channels() {
             let (channel, channels) = (channel.letter(), chip.channels());
-            return Err(UsbError::NoChannel { chip: chip.name(), name, channel, channels });
+            return Err(UsbError::NoChannel { chip: chip.name(), name, channel, channels }.into());
         }
         let transport = claim(&found, channel)?;
         let ready = Ftdi { transport: &transport, chip, channel, name: &name }.make_ready(&options)?;

@@ -1,7 +1,10 @@
 //! The options of a `usb` target.
 
-use super::error::UsbError;
-use crate::target::Target;
+use crate::options::{choice, positive, read, set};
+use crate::{OpenError, Target};
+
+const KNOWN: &str = "channel=a to channel=d, mode=fifo or mode=uart, baud=RATE, flow=rtscts or flow=none, and latency=1 to \
+                     latency=255 (milliseconds)";
 
 /// What the pins of a channel are used for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,40 +37,18 @@ pub(super) struct UsbOptions {
 }
 
 impl UsbOptions {
-    pub(super) fn of(target: &Target) -> Result<Self, UsbError> {
+    pub(super) fn of(target: &Target) -> Result<Self, OpenError> {
         let mut options = Self { channel: None, mode: None, baud: None, handshake: true, latency: 2 };
-        for (key, value) in &target.options {
-            let is_known = match (key.as_str(), value.as_str()) {
-                ("channel", letter) => {
-                    options.channel =
-                        ["a", "b", "c", "d"].iter().position(|&known| known == letter).map(|at| at as u8);
-                    options.channel.is_some()
-                }
-                ("mode", name) => {
-                    options.mode = [Mode::Fifo, Mode::Uart].into_iter().find(|mode| mode.name() == name);
-                    options.mode.is_some()
-                }
-                ("baud", rate) => {
-                    options.baud = rate.parse().ok().filter(|&rate| rate > 0);
-                    options.baud.is_some()
-                }
-                ("flow", choice @ ("rtscts" | "none")) => {
-                    options.handshake = choice == "rtscts";
-                    true
-                }
-                ("latency", milliseconds) => match milliseconds.parse() {
-                    Ok(milliseconds @ 1..) => {
-                        options.latency = milliseconds;
-                        true
-                    }
-                    _ => false,
-                },
-                _ => false,
-            };
-            if !is_known {
-                return Err(UsbError::Option(format!("{key}={value}")));
-            }
-        }
+        let channel = |letter: &str| ["a", "b", "c", "d"].iter().position(|&known| known == letter);
+        let mode = |name: &str| [Mode::Fifo, Mode::Uart].into_iter().find(|mode| mode.name() == name);
+        read(target, KNOWN, |key, value| match key {
+            "channel" => set(&mut options.channel, channel(value).map(|at| Some(at as u8))),
+            "mode" => set(&mut options.mode, mode(value).map(Some)),
+            "baud" => set(&mut options.baud, positive(value).map(Some)),
+            "flow" => set(&mut options.handshake, choice(value, "rtscts", "none")),
+            "latency" => set(&mut options.latency, positive(value)),
+            _ => false,
+        })?;
         Ok(options)
     }
 }
@@ -76,7 +57,7 @@ impl UsbOptions {
 mod tests {
     use super::*;
 
-    fn parse(target: &str) -> Result<UsbOptions, UsbError> {
+    fn parse(target: &str) -> Result<UsbOptions, OpenError> {
         UsbOptions::of(&target.parse().unwrap())
     }
 
@@ -101,7 +82,7 @@ mod tests {
             ["channel=e", "mode=spi", "baud=0", "baud=x", "flow=xon", "latency=0", "latency=256", "speed=1"]
         {
             assert!(
-                matches!(parse(&format!("usb,{wrong}")), Err(UsbError::Option(text)) if text == wrong),
+                matches!(parse(&format!("usb,{wrong}")), Err(OpenError::Option { option, .. }) if option == wrong),
                 "{wrong}"
             );
         }

@@ -1,79 +1,8 @@
 //! Packets to the host: two status bytes in front of every one, whatever the transfer's length.
 
-use std::fmt;
-
-use serde::Serialize;
+use crate::LineErrors;
 
 const STATUS: usize = 2;
-
-/// What the chip says went wrong on its pins, counted in packets.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct LineErrors {
-    /// Bytes got lost, since the host did not fetch them in time.
-    pub overrun: u64,
-    /// A parity bit was wrong.
-    pub parity: u64,
-    /// A stop bit was missing: the rates differ, or the line is poor.
-    pub framing: u64,
-    /// The line was low for longer than a byte: the board is off or resets.
-    pub breaks: u64,
-}
-
-impl std::ops::AddAssign for LineErrors {
-    fn add_assign(&mut self, more: Self) {
-        self.overrun += more.overrun;
-        self.parity += more.parity;
-        self.framing += more.framing;
-        self.breaks += more.breaks;
-    }
-}
-
-impl LineErrors {
-    /// How many there are in all.
-    #[must_use]
-    pub fn sum(self) -> u64 {
-        self.overrun + self.parity + self.framing + self.breaks
-    }
-
-    /// What to do about them when nothing could be judged.
-    #[must_use]
-    pub fn advice(self) -> Option<&'static str> {
-        match self {
-            Self { framing: 1.., .. } => Some(
-                "The chip sees bytes without a stop bit: check that `baud=` is the board's rate, and the line.",
-            ),
-            Self { breaks: 1.., .. } => {
-                Some("The chip sees the board hold its line low: check power and bitstream.")
-            }
-            Self { overrun: 1.., .. } => Some(
-                "The chip lost bytes that nobody fetched: use flow=rtscts, or a lower rate if the board has no RTS.",
-            ),
-            Self { parity: 1.., .. } => {
-                Some("The chip sees wrong parity: the board must send eight bits without.")
-            }
-            _ => None,
-        }
-    }
-
-    fn count(&mut self, line_status: u8) {
-        let bit = |mask: u8| u64::from(line_status & mask != 0);
-        // Bit 7 is set while any error lies in the receive FIFO, and names none.
-        self.overrun += bit(0x02);
-        self.parity += bit(0x04);
-        self.framing += bit(0x08);
-        self.breaks += bit(0x10);
-    }
-}
-
-impl fmt::Display for LineErrors {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { overrun, parity, framing, breaks } = self;
-        let named = [(overrun, "overrun"), (parity, "parity"), (framing, "framing"), (breaks, "break")];
-        let some = named.into_iter().filter(|(count, _)| **count > 0);
-        let words: Vec<String> = some.map(|(count, name)| format!("{count} {name}")).collect();
-        f.write_str(&if words.is_empty() { "none".to_owned() } else { words.join(", ") })
-    }
-}
 
 /// Appends the data of `transfer`, which is made of packets of `packet` bytes and at most one shorter at its end, and counts
 /// the line errors of each packet if it `is_line`.

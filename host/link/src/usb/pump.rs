@@ -5,8 +5,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::packets::LineErrors;
 use super::transport::{Failure, Transport};
+use crate::LineErrors;
 
 /// Bytes of a read: a multiple of every packet's size, since a packet that does not fit is lost.
 const READ: usize = 64 * 1024;

@@ -1,0 +1,112 @@
+//! Why a target leads to no board.
+
+use halfrow_mock::WireError;
+
+use crate::kinds::{self, Kind};
+use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
+
+/// A target that leads nowhere.
+#[derive(Debug, thiserror::Error)]
+pub enum OpenError {
+    /// The kind is not known.
+    #[error("`{0}` is no kind of board that this program knows; it knows {known}", known = kinds::forms().join(", "))]
+    UnknownKind(String),
+    /// A kind that has no address.
+    #[error("`{kind}` takes no address, and got `{address}`; write `{kind}` alone, options behind a comma")]
+    NoAddress {
+        /// The kind.
+        kind: String,
+        /// The address.
+        address: String,
+    },
+    /// A kind that needs an address.
+    #[error("`{kind}` needs to be told which; write {form}")]
+    AddressMissing {
+        /// The kind.
+        kind: String,
+        /// How such a target is written.
+        form: String,
+    },
+    /// An option that the kind does not have, or not with this value.
+    #[error("`{option}` is no option of `{kind}`; it takes {known}")]
+    Option {
+        /// The kind.
+        kind: String,
+        /// The option.
+        option: String,
+        /// The options that there are.
+        known: &'static str,
+    },
+    /// A kind that has no options.
+    #[error("`{kind}` takes no option, and got `{option}`; leave it out")]
+    NoOption {
+        /// The kind.
+        kind: String,
+        /// The option.
+        option: String,
+    },
+    /// The board does not take these options.
+    #[error("the target `{target}` is not one that {board} takes")]
+    Options {
+        /// Which board.
+        board: &'static str,
+        /// The target.
+        target: String,
+        /// Why.
+        #[source]
+        source: Box<WireError>,
+    },
+    /// An option whose value is none.
+    #[error("`{key}={value}` is not an option of this board; write {key}=virtual or {key}=real")]
+    Pace {
+        /// The key.
+        key: String,
+        /// Its value.
+        value: String,
+    },
+    /// A simulation behind another front end than there is.
+    #[error("`sim:{0}` is no simulated board; write sim, sim:uart or sim:fifo")]
+    UnknownFront(String),
+    /// This program was built without the simulation.
+    #[error(
+        "this program was built without the simulated board, which needs Verilator; with it, from the project's folder: \
+         `apt-get install verilator g++`, then `cargo run --release --features sim -- verify --board {0}`"
+    )]
+    NoSimulation(String),
+    /// The waveform cannot be written.
+    #[cfg(feature = "sim")]
+    #[error(transparent)]
+    Trace(#[from] halfrow_sim::TraceError),
+    /// The serial port cannot be opened.
+    #[error(transparent)]
+    Serial(#[from] SerialError),
+    /// There is no connection.
+    #[error(transparent)]
+    Tcp(#[from] TcpError),
+    /// The USB device cannot be opened.
+    #[error(transparent)]
+    Usb(#[from] UsbError),
+    /// The recording cannot be played.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+}
+
+impl OpenError {
+    /// The target's kind needs an address, and got none.
+    pub(crate) fn address_missing(target: &Target) -> Self {
+        let kind = target.kind.clone();
+        let forms = kinds::of(target).map(Kind::targets).unwrap_or_default();
+        Self::AddressMissing { form: forms.join(" or "), kind }
+    }
+
+    /// Whose error it is.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        match self {
+            Self::Serial(error) => error.class(),
+            Self::Tcp(error) => error.class(),
+            Self::Usb(error) => error.class(),
+            _ => Class::Call,
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Every kind of board that a target can name, once: how it is written, what it is, how it is opened, where such boards
+//! are found. A new kind is a line here and a module beside.
+
+use crate::discovery::{Found, serial_ports, usb_chips};
+use crate::open::{open_mock, open_replay, open_simulated};
+use crate::{BoardKind, Link, OpenError, SerialLink, Target, TcpLink, UsbLink};
+
+/// A way to write a target of a kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Form {
+    /// The target; capitals stand for what is to be filled in.
+    pub target: &'static str,
+    /// What it leads to, for people.
+    pub summary: &'static str,
+}
+
+/// A kind of board.
+pub struct Kind {
+    /// What a target begins with.
+    pub name: &'static str,
+    /// Every way to write one, the usual one first.
+    pub forms: &'static [Form],
+    /// What stands behind it, as far as the kind tells.
+    pub board: BoardKind,
+    /// Opens the link; nothing is said over it yet.
+    pub(crate) open: fn(&Target) -> Result<Box<dyn Link>, OpenError>,
+    /// Lists what could be such a board on this computer; what cannot be listed at all is not there.
+    pub find: fn() -> Vec<Found>,
+}
+
+/// All of them, the built-in ones first.
+pub static KINDS: [Kind; 6] = [
+    Kind {
+        name: "mock",
+        forms: &[Form {
+            target: "mock",
+            summary: "a board in this program; mock,KEY=VALUE sets its build, its wire and its fault",
+        }],
+        board: BoardKind::Mock,
+        open: open_mock,
+        find: Vec::new,
+    },
+    Kind {
+        name: "sim",
+        forms: &[
+            Form {
+                target: "sim",
+                summary: "the board's Verilog under simulation; sim,KEY=VALUE sets its wire and that wire's fault, \
+                          trace=FILE writes a waveform (in programs built with --features sim)",
+            },
+            Form { target: "sim:uart", summary: "the same behind the pins of its UART" },
+            Form { target: "sim:fifo", summary: "the same behind the pins of its FT2232H" },
+        ],
+        board: BoardKind::Sim,
+        open: open_simulated,
+        find: Vec::new,
+    },
+    Kind {
+        name: "usb",
+        forms: &[
+            Form {
+                target: "usb",
+                summary: "the one board behind an FT2232H or FT232H, without the serial driver",
+            },
+            Form { target: "usb:SERIAL", summary: "the one with this serial number, when there are several" },
+        ],
+        board: BoardKind::Hardware,
+        open: |target| Ok(Box::new(UsbLink::open(target)?)),
+        find: usb_chips::find,
+    },
+    Kind {
+        name: "serial",
+        forms: &[Form { target: "serial:PATH", summary: "the board behind a serial port" }],
+        board: BoardKind::Hardware,
+        open: |target| Ok(Box::new(SerialLink::open(target)?)),
+        find: serial_ports::find,
+    },
+    Kind {
+        name: "tcp",
+        forms: &[Form {
+            target: "tcp:HOST:PORT",
+            summary: "the board that another computer exports as raw bytes",
+        }],
+        board: BoardKind::Hardware,
+        open: |target| Ok(Box::new(TcpLink::open(target)?)),
+        find: Vec::new,
+    },
+    Kind {
+        name: "replay",
+        forms: &[Form {
+            target: "replay:FILE",
+            summary: "the board that answered when FILE was written with --record",
+        }],
+        board: BoardKind::Replay,
+        open: open_replay,
+        find: Vec::new,
+    },
+];
+
+impl Kind {
+    /// Every way to write one.
+    #[must_use]
+    pub fn targets(&self) -> Vec<&'static str> {
+        self.forms.iter().map(|form| form.target).collect()
+    }
+}
+
+/// The kind that a target names, if it is one.
+#[must_use]
+pub fn of(target: &Target) -> Option<&'static Kind> {
+    KINDS.iter().find(|kind| kind.name == target.kind)
+}
+
+/// Every way to write a target of any kind.
+#[must_use]
+pub fn forms() -> Vec<&'static str> {
+    KINDS.iter().flat_map(Kind::targets).collect()
+}
