@@ -1,0 +1,54 @@
+//! Links that only stand still: a sound board passes.
+
+use std::time::Duration;
+
+use halfrow::report::Report;
+use halfrow::verdict::Verdict;
+use halfrow_tests::program::halfrow;
+use halfrow_tests::proxy::{Proxy, Suffers};
+use halfrow_tests::served::Served;
+use halfrow_tests::system::System;
+
+/// The system of the command with which a false FAIL was seen.
+const SEEN: System = System { width: 128, height: 72, radius: 73.78, board: "mock", ring: 2048 };
+
+const STALL: Duration = Duration::from_secs(3);
+
+#[track_caller]
+fn passes(report: &Report, what: &str) {
+    assert_eq!(report.verdict, Verdict::Pass, "{what}: {}", report.headline);
+}
+
+/// Judges a served board behind a proxy whose both directions stand still behind every 12,000 bytes from the host.
+#[track_caller]
+fn passes_behind_a_proxy(height: &str) {
+    let served = Served::on_a_tcp_port("127.0.0.1", "mock");
+    let stalls = Suffers::Stalls { every: 12_000, time: STALL, both: true };
+    let proxy = Proxy::before(served.address(), stalls, Suffers::Nothing, 0);
+    let size = ["--width", "128", "--height", height, "--radius", "73.78"];
+    let ended = halfrow(["verify", "--json", "--board", proxy.target()].into_iter().chain(size));
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+}
+
+#[test]
+fn a_proxy_that_stands_still_now_and_then_costs_no_verdict() {
+    passes_behind_a_proxy("16");
+}
+
+#[test]
+#[ignore = "a minute long; scripts/soak runs it"]
+fn the_command_that_gave_a_false_fail_passes() {
+    passes_behind_a_proxy("72");
+}
+
+#[test]
+fn on_the_virtual_clock_every_stall_within_the_patience_passes() {
+    for every in [3000, 8000, 12_000, 24_000] {
+        for toward in ["board", "host", "both"] {
+            for seconds in [0.5, 3.0, 9.0] {
+                let options = format!(",fault=stall,every={every},seconds={seconds},toward={toward}");
+                passes(&SEEN.judge(&options), &options);
+            }
+        }
+    }
+}
