@@ -17,7 +17,7 @@ use crate::proxy::{Proxy, Suffers};
 use crate::served::Served;
 use crate::system::System;
 
-pub use draw::{draw, real, virtual_};
+pub use draw::{draw, real, real_and_short, virtual_};
 pub use kept::Kept;
 
 /// Runs in real time at once: they mostly wait.

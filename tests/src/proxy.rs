@@ -164,7 +164,9 @@ impl Direction {
             let read = match from.read(&mut bytes) {
                 Ok(0) => return Ok(()),
                 Ok(read) => read,
-                Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => 0,
+                Err(error) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+                    0
+                }
                 Err(error) => return Err(error),
             };
             if ended.load(Ordering::Relaxed) {

@@ -46,7 +46,10 @@ impl fmt::Display for Misconduct {
         let RowPlace { row_sequence, frame, row, .. } = place;
         match self {
             Self::CopyDiffers { .. } => {
-                write!(f, "row {row} of frame {frame} came twice, and not the same both times, each under a CRC that is right")
+                write!(
+                    f,
+                    "row {row} of frame {frame} came twice, and not the same both times, each under a CRC that is right"
+                )
             }
             Self::NeverSent { .. } => write!(
                 f,
@@ -182,7 +185,8 @@ mod tests {
 
     #[test]
     fn what_no_link_does_is() {
-        let is = |rows: &[_], expected: fn(&Misconduct) -> bool| found(rows).is_some_and(|found| expected(&found));
+        let is =
+            |rows: &[_], expected: fn(&Misconduct) -> bool| found(rows).is_some_and(|found| expected(&found));
         assert!(is(&[(0, 0, 0, 1), (1, 0, 1, 2)], |found| matches!(found, Misconduct::CopyDiffers { .. })));
         assert!(is(&[(0, 0, 0, 1), (0, 1, 0, 1)], |found| matches!(found, Misconduct::NumberedTwice { .. })));
         assert!(is(&[(0, 9, 0, 1)], |found| matches!(found, Misconduct::NeverSent { .. })));

@@ -28,7 +28,7 @@ pub struct Tally {
     pub retries: u64,
     /// Of those, the ones to which an answer came as well: nothing had been lost, and the first answer was late.
     pub late: u64,
-    /// Packets that nobody waited for: second answers, and rows that were there already.
+    /// Packets that nobody waited for: second answers, rows that were there already, and what is of another session.
     pub strays: u64,
     /// What the link's chip has seen go wrong on the line.
     pub line_errors: LineErrors,
@@ -255,7 +255,10 @@ impl Conversation {
                     }
                     take(&packet);
                 }
-                Ok(stale) => tracing::debug!("a stale packet of session {}", stale.header.session),
+                Ok(stale) => {
+                    tracing::debug!("a stale packet of session {}", stale.header.session);
+                    self.tally.strays += 1;
+                }
                 Err(damage) => {
                     tracing::debug!("a damaged packet: {damage}");
                     self.tally.damaged_in += u64::from(self.session != 0);
@@ -273,12 +276,11 @@ impl Conversation {
         step: Step,
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<Kept, BoardError> {
-        let kind = request.kind();
-        let sequence = self.next_sequence();
-        let begun = self.now();
+        let (kind, sequence, begun) = (request.kind(), self.next_sequence(), self.now());
         let attempts = step.deadline().attempts;
         self.asked.asked(request, sequence, begun);
-        for attempt in 0..attempts {
+        let mut attempt = 0;
+        while attempt < attempts {
             if attempt > 0 {
                 tracing::info!("{kind:?} was not answered; asking again");
                 self.repeated_changes += u64::from(self.asked.asked_again());
@@ -289,33 +291,52 @@ impl Conversation {
             }
             // The reply may be as long as the longest packet.
             let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
-            let deadline = self.now() + self.wait_for(step, attempt, bytes);
-            loop {
-                let wait = deadline.saturating_sub(self.now());
-                if wait.is_zero() {
-                    break;
-                }
-                let (mut answer, mut rows) = (None, 0);
-                self.exchange(
-                    wait,
-                    || format!("waiting for the answer to {kind:?}"),
-                    |packet| {
-                        let header = packet.header;
-                        // Rows are numbered by the board.
-                        let is_row = header.kind == Kind::RowOut.code();
-                        rows += u64::from(is_row);
-                        if !is_row && header.sequence == sequence && accept(packet) {
-                            answer = Some(Kept { header, payload: packet.payload.to_vec() });
-                        }
-                    },
-                )?;
-                self.tally.strays += rows;
-                if let Some(answer) = answer {
+            let mut deadline = self.now() + self.wait_for(step, attempt, bytes);
+            while let Some(wait) = deadline.checked_sub(self.now()).filter(|wait| !wait.is_zero()) {
+                let late = self.tally.late;
+                if let Some(answer) = self.answer_within(wait, kind, sequence, &accept)? {
+                    self.took(attempt, self.since(begun));
                     return Ok(answer);
                 }
+                if self.tally.late > late {
+                    // What was asked before still arrives, and this stands in the queue behind it.
+                    (attempt, deadline) = (0, self.now() + self.wait_for(step, 0, bytes));
+                }
             }
+            attempt += 1;
         }
         Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun) })
+    }
+
+    /// Moves bytes once, and returns the answer if it is among them.
+    fn answer_within(
+        &mut self,
+        wait: Duration,
+        kind: Kind,
+        sequence: u16,
+        accept: impl Fn(&Packet<'_>) -> bool,
+    ) -> Result<Option<Kept>, BoardError> {
+        let (mut answer, mut rows) = (None, 0);
+        let doing = || format!("waiting for the answer to {kind:?}");
+        self.exchange(wait, doing, |packet| {
+            let header = packet.header;
+            // Rows are numbered by the board.
+            let is_row = header.kind == Kind::RowOut.code();
+            rows += u64::from(is_row);
+            if !is_row && header.sequence == sequence && accept(packet) {
+                answer = Some(Kept { header, payload: packet.payload.to_vec() });
+            }
+        })?;
+        self.tally.strays += rows;
+        Ok(answer)
+    }
+
+    /// Takes note of how long it took until something came that was asked for `again` times more.
+    pub(super) fn took(&mut self, again: u32, time: Duration) {
+        // Three in a row are seldom lost, and often late.
+        if again >= 3 {
+            self.slowest = self.slowest.max(time);
+        }
     }
 
     /// Asks, and takes the expected part of the reply.

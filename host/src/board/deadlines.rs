@@ -39,11 +39,7 @@ impl Step {
             Self::Row => (250, 2000, 8),
             Self::Close => (200, 200, 8),
         };
-        Deadline {
-            fixed: Duration::from_millis(fixed),
-            longest: Duration::from_millis(longest),
-            attempts,
-        }
+        Deadline { fixed: Duration::from_millis(fixed), longest: Duration::from_millis(longest), attempts }
     }
 
     /// How long to wait at the try `attempt`, from 0, when `bytes` have to travel, both ways together, over a link of

@@ -266,8 +266,7 @@ impl Board {
         // Beyond every row that can be under way: credit is never further ahead than a board has banks.
         let next_row = self.conversation.credit;
         let reset = Request::Reset(Reset { level, next_row });
-        self.conversation
-            .request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
+        self.conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.acknowledged = next_row;
         Ok(())
     }

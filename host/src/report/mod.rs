@@ -178,7 +178,7 @@ pub struct LinkReport {
     pub retries: u64,
     /// Of those, the ones after which nothing turned out to be lost: the first answer was late.
     pub late: u64,
-    /// Packets that nobody waited for: second answers, and rows that were there already.
+    /// Packets that nobody waited for: second answers, rows that were there already, and what is of another session.
     pub strays: u64,
     /// What the chip at the link's near end has seen go wrong on the line.
     pub line_errors: LineErrors,

@@ -51,7 +51,9 @@ impl Run<'_> {
                     );
                 }
                 Ok(Replay::Complete) => {
-                    return unclear("played again, the frame came back whole; check cable and connectors, and run again");
+                    return unclear(
+                        "played again, the frame came back whole; check cable and connectors, and run again",
+                    );
                 }
                 Ok(Replay::Troubled) => {}
             }
@@ -99,9 +101,7 @@ impl Run<'_> {
 
 /// Whether nothing was lost, damaged, late or doubled between two counts, as far as the host can see.
 fn is_calm(before: Tally, after: Tally) -> bool {
-    let troubles = |tally: Tally| {
-        (tally.retries, tally.strays, tally.damaged_in, tally.line_errors.sum())
-    };
+    let troubles = |tally: Tally| (tally.retries, tally.strays, tally.damaged_in, tally.line_errors.sum());
     troubles(before) == troubles(after)
 }
 

@@ -29,9 +29,14 @@ impl Run<'_> {
             match self.all_but_identity() {
                 Err(again @ End::Failed { .. }) => failed = again,
                 Err(error) => return Err(error),
-                Ok(()) => return Err(unclear(&failed, &format!(
-                    "that may have come from the link, since {doubt}: done again in a session of its own, everything was right"
-                ))),
+                Ok(()) => {
+                    return Err(unclear(
+                        &failed,
+                        &format!(
+                            "that may have come from the link, since {doubt}: done again in a session of its own, everything was right"
+                        ),
+                    ));
+                }
             }
         }
         match self.doubt(&failed) {

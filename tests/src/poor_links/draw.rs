@@ -7,7 +7,10 @@ use crate::dice::Dice;
 use crate::proxy::Suffers;
 use crate::system::System;
 
-/// Stalls that a host must outlast: the longest is well below its patience for one answer, both ways together.
+/// The longest packet on the wire, so that it stands still twice at most.
+const LONGEST_PACKET: usize = 4200;
+
+/// Stalls that a host must outlast: four of the longest are within its patience for one answer, twice each way.
 pub(super) const SHORT_STALLS: &str = "short stalls";
 const LONG_STALLS: &str = "long stalls";
 const LOSSES: &str = "whole packets";
@@ -56,8 +59,11 @@ pub fn virtual_(dice: &mut Dice) -> (&'static str, Way, System) {
     let row = system.width * 3 / 2 + 40;
     let every = row + dice.below(12 * row);
     let (kind, fault) = match dice.below(4) {
-        0 => (SHORT_STALLS, format!("stall,every={every},seconds={}", dice.magnitude(-2.0, 0.6))),
-        1 => (LONG_STALLS, format!("stall,every={every},seconds={}", dice.magnitude(0.6, 1.5))),
+        0 => {
+            let (every, seconds) = (LONGEST_PACKET + every, dice.magnitude(-2.0, 0.4));
+            (SHORT_STALLS, format!("stall,every={every},seconds={seconds}"))
+        }
+        1 => (LONG_STALLS, format!("stall,every={every},seconds={}", dice.magnitude(-1.0, 1.5))),
         2 => {
             let (size, rate) = (30 + dice.below(row), dice.magnitude(-3.0, 0.0));
             (LOSSES, format!("lose,size={size},rate={rate:e}"))
@@ -76,10 +82,20 @@ pub fn virtual_(dice: &mut Dice) -> (&'static str, Way, System) {
 
 /// A run in real time: over a pseudo-terminal or through a proxy.
 pub fn real(dice: &mut Dice) -> (&'static str, Way, System) {
+    real_up_to(dice, 0.4, -0.3)
+}
+
+/// The same, of links on which nothing takes long.
+pub fn real_and_short(dice: &mut Dice) -> (&'static str, Way, System) {
+    real_up_to(dice, -0.7, -1.5)
+}
+
+/// With stalls up to 10^`longest` seconds and losses at a rate up to 10^`most`.
+fn real_up_to(dice: &mut Dice, longest: f64, most: f64) -> (&'static str, Way, System) {
     let system = System::TINY;
-    let every = 1500 + dice.below(20_000);
-    let seconds = dice.magnitude(-1.3, 0.48);
-    let (least, rate) = (30 + dice.below(200), dice.magnitude(-2.5, -0.3));
+    let every = LONGEST_PACKET + dice.below(20_000);
+    let seconds = dice.magnitude(-1.3, longest);
+    let (least, rate) = (30 + dice.below(200), dice.magnitude(-2.5, most));
     let toward = dice.below(3);
     let kind = dice.one_of(&[SHORT_STALLS, LOSSES]);
     if dice.below(2) == 0 {

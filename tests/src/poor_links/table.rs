@@ -1,6 +1,6 @@
 //! A campaign for people.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use halfrow::verdict::Verdict;
@@ -12,6 +12,21 @@ impl PoorLinks {
         self.0.iter().filter(|run| of(run) && run.came == came).count()
     }
 
+    /// How often a kind of link and a board ended in an error that says so, numbers left out.
+    fn reasons(&self) -> BTreeMap<(&str, &str, String), usize> {
+        let mut reasons = BTreeMap::new();
+        for run in self.0.iter().filter(|run| run.came == Came::To(Verdict::Error)) {
+            let board = if run.is_broken() { "broken" } else { "sound" };
+            let sentence = run.headline.split(';').next().unwrap_or_default();
+            let sentence = sentence
+                .replace(|letter: char| letter.is_ascii_digit(), "#")
+                .replace("##", "#")
+                .replace("##", "#");
+            *reasons.entry((run.case.kind, board, sentence)).or_default() += 1;
+        }
+        reasons
+    }
+
     fn line(&self, f: &mut fmt::Formatter<'_>, name: &str, of: impl Fn(&Run) -> bool + Copy) -> fmt::Result {
         let [pass, fail, error] =
             [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| self.count(of, Came::To(verdict)));
@@ -20,7 +35,13 @@ impl PoorLinks {
         writeln!(f, "{name:<28}{pass:>8}{fail:>8}{error:>8} ({share:5.1} %){hangs:>8}")
     }
 
-    fn bound(&self, f: &mut fmt::Formatter<'_>, what: &str, of: impl Fn(&Run) -> bool, is: impl Fn(&Run) -> bool) -> fmt::Result {
+    fn bound(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        what: &str,
+        of: impl Fn(&Run) -> bool,
+        is: impl Fn(&Run) -> bool,
+    ) -> fmt::Result {
         let (mut all, mut found) = (0, 0);
         for run in self.0.iter().filter(|run| of(run)) {
             all += 1;
@@ -34,7 +55,11 @@ impl PoorLinks {
 
 impl fmt::Display for PoorLinks {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{:<28}{:>8}{:>8}{:>8}{:>10}{:>8}", "link and board", "PASS", "FAIL", "ERROR", "", "hang")?;
+        writeln!(
+            f,
+            "{:<28}{:>8}{:>8}{:>8}{:>10}{:>8}",
+            "link and board", "PASS", "FAIL", "ERROR", "", "hang"
+        )?;
         let kinds: BTreeSet<_> = self.0.iter().map(|run| run.case.kind).collect();
         for kind in kinds {
             for (broken, board) in [(false, "sound"), (true, "broken")] {
@@ -48,6 +73,10 @@ impl fmt::Display for PoorLinks {
         self.bound(f, "false PASS", Run::is_broken, Run::is_false)?;
         self.bound(f, "false FAIL", |run| !run.is_broken(), Run::is_false)?;
         self.bound(f, "hang", |_| true, |run| run.came == Came::Nowhere)?;
+        writeln!(f, "errors, by what they say:")?;
+        for ((kind, board, sentence), count) in self.reasons() {
+            writeln!(f, "{count:>6}  {kind}, {board}: {sentence}")?;
+        }
         for run in self.false_verdicts().chain(self.hangs()).chain(self.needless_errors()) {
             writeln!(f, "{:?}: {:?}: {}", run.case, run.came, run.headline)?;
         }

@@ -4,4 +4,9 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
+mod capabilities;
+mod conduct;
+mod lost_rows;
+mod recordings;
+mod stale_packets;
 mod stalls;

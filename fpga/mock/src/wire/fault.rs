@@ -178,7 +178,11 @@ impl Choice {
         if let Some(harm) = self.at_byte
             && let Some(number) = take(from, EVERY.key(), |text| EVERY.parse(text))?
         {
-            places.push((EVERY.key(), harm, NonZeroU64::new(number).map_or(Occurrence::At(0), Occurrence::Every)));
+            places.push((
+                EVERY.key(),
+                harm,
+                NonZeroU64::new(number).map_or(Occurrence::At(0), Occurrence::Every),
+            ));
         }
         if let Some(number) = take(from, PACKET.key(), |text| PACKET.parse(text))? {
             places.push((PACKET.key(), self.at_packet, Occurrence::At(number)));

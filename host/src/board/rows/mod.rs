@@ -189,7 +189,9 @@ impl<'a> Stream<'a> {
         self.conversation.acknowledged = self.missing();
         taken?;
         if self.missing() > missing {
-            self.late.came(missing, self.attempts - 1, self.conversation.since(self.missing_since));
+            let took = self.conversation.since(self.missing_since);
+            self.conversation.took(self.attempts - 1, took);
+            self.late.came(missing, self.attempts - 1, took);
             self.attempts = 1;
             self.go_on();
         }
@@ -197,6 +199,9 @@ impl<'a> Stream<'a> {
             self.conversation.tally.strays += 1;
             if let Some(took) = self.late.came_again(row) {
                 self.conversation.was_late(took);
+                // What was asked for before still arrives, and the missing row stands in the queue behind it.
+                self.progress_at = self.conversation.now();
+                self.attempts = self.attempts.min(2);
             }
         }
         if self.arrivals.gap && self.attempts == 1 && self.most > 1 {
