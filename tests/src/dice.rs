@@ -19,6 +19,11 @@ impl Dice {
         ((u128::from(self.0.next_u64()) * end as u128) >> 64) as usize
     }
 
+    /// Whether something happens that has this probability.
+    pub fn comes_up(&mut self, probability: f64) -> bool {
+        (self.below(1 << 30) as f64) < probability * f64::from(1 << 30)
+    }
+
     /// One of `choices`.
     pub fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
         choices[self.below(choices.len())]

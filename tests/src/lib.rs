@@ -1,13 +1,15 @@
 //! The same scenarios on every kind of board, the command line from outside, and campaigns of drawn faults.
 //!
 //! [`scenarios`] says what `halfrow verify` must find on which board; [`program`] starts the program as a user does.
-//! [`served`] puts boards behind serial ports and TCP ports that the tests make.
+//! [`served`] puts boards behind serial ports and TCP ports that the tests make, [`proxy`] spoils a connection, and
+//! [`altered`] rewrites the packets of a board.
 //! [`campaign`] draws single faults of the board by the hundred, and [`poor_links`] links by the thousand; both call the
 //! library, so that a run costs no more than its samples.
 
 // A crate of tests alone: a panic is how it says that something is wrong.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
+pub mod altered;
 pub mod campaign;
 pub mod cases;
 pub mod dice;
@@ -15,6 +17,7 @@ pub mod parallel;
 pub mod photographs;
 pub mod poor_links;
 pub mod program;
+pub mod proxy;
 pub mod scenario;
 pub mod scenarios;
 pub mod served;

@@ -1,4 +1,4 @@
-//! Work shared out to all processors.
+//! Work shared out to all processors, or to more workers than those.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -7,6 +7,14 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// # Panics
 /// When `work` panics.
 pub fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
+    map_by(std::thread::available_parallelism().map_or(1, usize::from), items, work)
+}
+
+/// The same by so many `workers`, for work that mostly waits.
+///
+/// # Panics
+/// When `work` panics.
+pub fn map_by<T: Sync, R: Send>(workers: usize, items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<R> {
     let next = AtomicUsize::new(0);
     let share = || {
         let mine = std::iter::from_fn(|| {
@@ -15,7 +23,6 @@ pub fn map<T: Sync, R: Send>(items: &[T], work: impl Fn(&T) -> R + Sync) -> Vec<
         });
         mine.collect::<Vec<_>>()
     };
-    let workers = std::thread::available_parallelism().map_or(1, usize::from);
     let mut results = std::thread::scope(|scope| {
         let workers: Vec<_> = (0..workers).map(|_| scope.spawn(share)).collect();
         workers.into_iter().flat_map(|worker| worker.join().unwrap()).collect::<Vec<_>>()

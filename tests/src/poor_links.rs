@@ -1,25 +1,77 @@
-//! Poor links by the thousand: none makes a sound board fail, and none lets a broken one pass.
+//! Poor links by the thousand: none makes a sound board fail, none lets a broken one pass, and none hangs a run.
+//!
+//! Most runs are on the mock's virtual clock, where a second of silence costs nothing. The others are in real time, many at
+//! once: over a pseudo-terminal, and over TCP with a proxy between.
 
-use std::fmt;
+mod draw;
+mod kept;
+mod table;
+
+use std::sync::mpsc::channel;
+use std::time::Duration;
 
 use halfrow::verdict::Verdict;
 
-use crate::dice::Dice;
 use crate::parallel;
+use crate::proxy::{Proxy, Suffers};
+use crate::served::Served;
 use crate::system::System;
 
-/// A board that computes every frame wrongly.
-const BROKEN: &str = ",fault=no-rounding";
+pub use draw::{draw, real, real_and_short, virtual_};
+pub use kept::Kept;
 
-/// A run over a link that was drawn.
+/// Runs in real time at once: they mostly wait.
+const AT_ONCE: usize = 48;
+
+/// How a run gets at its board.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Way {
+    /// On the mock's virtual clock, its wire's fault as options of a target.
+    Virtual(String),
+    /// In real time over a pseudo-terminal, with such a fault.
+    SerialPort(String),
+    /// In real time over TCP, through a proxy.
+    Tcp {
+        /// What bytes to the board suffer.
+        to_board: Suffers,
+        /// What bytes to the host suffer.
+        to_host: Suffers,
+    },
+}
+
+/// A run that was drawn.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Its number in the campaign.
+    pub index: usize,
+    /// What the link does, in a word.
+    pub kind: &'static str,
+    /// The link.
+    pub way: Way,
+    /// Lens and frames.
+    pub system: System,
+    /// The board's fault as options of a target; empty for a sound one.
+    pub broken: String,
+    /// What the proxy draws by.
+    pub seed: u64,
+}
+
+/// What a run came to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Came {
+    /// An end.
+    To(Verdict),
+    /// None within its bound.
+    Nowhere,
+}
+
+/// A run that is over.
 #[derive(Clone, Debug)]
 pub struct Run {
-    /// The link's fault, as options of a target.
-    pub link: String,
-    /// Whether the board behind it is broken.
-    pub broken: bool,
-    /// What the run came to.
-    pub verdict: Verdict,
+    /// What it was.
+    pub case: Case,
+    /// What it came to.
+    pub came: Came,
     /// The result in one sentence.
     pub headline: String,
 }
@@ -28,35 +80,63 @@ pub struct Run {
 #[derive(Clone, Debug)]
 pub struct PoorLinks(pub Vec<Run>);
 
-/// Judges `count` boards over links that are drawn by `seed`; every second board is broken.
+/// Judges the boards of all `cases`, each within `bound` of the wall's clock. Those that `kept` knows are not judged again.
 #[must_use]
-pub fn run(count: usize, seed: u64) -> PoorLinks {
-    let mut dice = Dice::new(seed);
-    let links: Vec<_> = (0..count).map(|index| (draw(&mut dice), index % 2 == 1)).collect();
-    PoorLinks(parallel::map(&links, |(link, broken)| {
-        let options = if *broken { format!("{link}{BROKEN}") } else { link.clone() };
-        let report = System::TINY.judge(&options);
-        Run { link: link.clone(), broken: *broken, verdict: report.verdict, headline: report.headline }
-    }))
+pub fn run(cases: &[Case], bound: Duration, kept: &Kept) -> PoorLinks {
+    let judge = |case: &Case| {
+        let (came, headline) = kept.of(case.index).unwrap_or_else(|| {
+            let ended = case.judge_within(bound);
+            kept.keep(case.index, &ended);
+            ended
+        });
+        Run { case: case.clone(), came, headline }
+    };
+    let (waiting, computing): (Vec<_>, Vec<_>) =
+        cases.iter().cloned().partition(|case| !matches!(case.way, Way::Virtual(_)));
+    let mut runs = parallel::map(&computing, judge);
+    runs.extend(parallel::map_by(AT_ONCE, &waiting, judge));
+    PoorLinks(runs)
 }
 
-/// A fault of the wire at a rate of 10^-6 to 10^-2.
-fn draw(dice: &mut Dice) -> String {
-    let name = dice.one_of(&["flip", "drop", "duplicate", "reorder", "truncate", "stall", "disconnect"]);
-    let toward = dice.one_of(&["board", "host", "both"]);
-    let (rate, seed) = (dice.magnitude(-6.0, -2.0), dice.below(1 << 31));
-    let seconds = match name {
-        "stall" => format!(",seconds={}", dice.magnitude(-3.0, 1.0)),
-        _ => String::new(),
-    };
-    format!(",fault={name},rate={rate:e},toward={toward},seed={seed}{seconds}")
+impl Case {
+    /// Judges the board on a thread of its own, which is left behind if it does not end.
+    fn judge_within(&self, bound: Duration) -> (Came, String) {
+        let (sender, receiver) = channel();
+        let case = self.clone();
+        std::thread::spawn(move || sender.send(case.judge()));
+        match receiver.recv_timeout(bound) {
+            Ok((verdict, headline)) => (Came::To(verdict), headline),
+            Err(_) => (Came::Nowhere, format!("no end within {} s", bound.as_secs_f64())),
+        }
+    }
+
+    fn judge(&self) -> (Verdict, String) {
+        let (system, broken) = (&self.system, &self.broken);
+        let report = match &self.way {
+            Way::Virtual(link) => system.judge(&format!("{link}{broken}")),
+            Way::SerialPort(link) => {
+                let served = Served::on_a_serial_port(&format!("{}{link}{broken}", system.board));
+                system.judge_at(&served.target())
+            }
+            Way::Tcp { to_board, to_host } => {
+                let served = Served::on_a_tcp_port("127.0.0.1", &format!("{}{broken}", system.board));
+                let proxy = Proxy::before(served.address(), *to_board, *to_host, self.seed);
+                system.judge_at(proxy.target())
+            }
+        };
+        (report.verdict, report.headline)
+    }
 }
 
 impl Run {
+    fn is_broken(&self) -> bool {
+        !self.case.broken.is_empty()
+    }
+
     /// Whether the verdict is not the board's: PASS of a broken one, or FAIL of a sound one.
     #[must_use]
     pub fn is_false(&self) -> bool {
-        self.verdict == if self.broken { Verdict::Pass } else { Verdict::Fail }
+        self.came == Came::To(if self.is_broken() { Verdict::Pass } else { Verdict::Fail })
     }
 }
 
@@ -66,41 +146,15 @@ impl PoorLinks {
         self.0.iter().filter(|run| run.is_false())
     }
 
-    fn count(&self, broken: bool, verdict: Verdict) -> usize {
-        self.0.iter().filter(|run| (run.broken, run.verdict) == (broken, verdict)).count()
+    /// The runs without an end.
+    pub fn hangs(&self) -> impl Iterator<Item = &Run> {
+        self.0.iter().filter(|run| run.came == Came::Nowhere)
     }
-}
 
-impl fmt::Display for PoorLinks {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{:<14}{:>8}{:>8}{:>8}", "board", "PASS", "FAIL", "ERROR")?;
-        for (broken, name) in [(false, "sound"), (true, "broken")] {
-            let [pass, fail, error] =
-                [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| self.count(broken, verdict));
-            writeln!(f, "{name:<14}{pass:>8}{fail:>8}{error:>8}")?;
-        }
-        for (broken, verdict, name) in
-            [(true, Verdict::Pass, "false PASS"), (false, Verdict::Fail, "false FAIL")]
-        {
-            let wrong = self.count(broken, verdict);
-            let judged = self.0.iter().filter(|run| run.broken == broken).count();
-            // With none in N, the rate is below 3/N at 95 % confidence.
-            let bound = 3.0 / judged.max(1) as f64;
-            writeln!(
-                f,
-                "{name}: {wrong} of {judged}; with none, the rate is below {bound:.1e} at 95 % confidence"
-            )?;
-        }
-        for run in self.false_verdicts() {
-            writeln!(
-                f,
-                "{} of a {} board over {}: {}",
-                run.verdict,
-                if run.broken { "broken" } else { "sound" },
-                run.link,
-                run.headline
-            )?;
-        }
-        Ok(())
+    /// The runs that a sound board over a link that only stands still within the patience should have passed.
+    pub fn needless_errors(&self) -> impl Iterator<Item = &Run> {
+        self.0.iter().filter(|run| {
+            run.case.kind == draw::SHORT_STALLS && !run.is_broken() && run.came != Came::To(Verdict::Pass)
+        })
     }
 }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::frames::Builtin;
-use halfrow::link;
+use halfrow::link::{self, Candidate};
 use halfrow::progress::Silent;
 use halfrow::report::{Outcome, Report};
 use halfrow::run::{Circumstances, FrameSource, Plan, verify};
@@ -73,11 +73,21 @@ impl System {
     pub fn judge_patiently(&self, target: &str, patience: Option<Duration>) -> Report {
         let target: Target = target.parse().unwrap();
         let candidate = link::open(&target).unwrap();
-        let plan = Plan { reconnect: patience, ..self.plan() };
-        verify(&plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
+        judge_by(&Plan { reconnect: patience, ..self.plan() }, candidate)
     }
 
-    fn plan(&self) -> Plan {
+    /// The report on a board whose link is there.
+    #[must_use]
+    pub fn judge_candidate(&self, candidate: Candidate) -> Report {
+        judge_by(&self.plan(), candidate)
+    }
+
+    /// What a run of this system does.
+    ///
+    /// # Panics
+    /// Never.
+    #[must_use]
+    pub fn plan(&self) -> Plan {
         let lens = Equidistant::from_radius(self.radius).unwrap();
         let geometry = Geometry::centred(self.width, self.height, BitDepth::Twelve).unwrap();
         Plan {
@@ -100,6 +110,12 @@ impl System {
             keep_pictures: false,
         }
     }
+}
+
+/// The report on a board by a plan of the test's own.
+#[must_use]
+pub fn judge_by(plan: &Plan, candidate: Candidate) -> Report {
+    verify(plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
 }
 
 /// The check that found the board wrong, if one did.

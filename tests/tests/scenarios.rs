@@ -66,7 +66,7 @@ fn every_fault_that_the_program_lists_has_a_scenario() {
     let listed = halfrow(["faults", "--json"]).json();
     let names: Vec<_> =
         listed.as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
-    assert_eq!(names.len(), 21, "{names:?}");
+    assert_eq!(names.len(), 22, "{names:?}");
     let has_scenario = |name: &&&str| {
         let fault = format!("fault={name}");
         scenarios::all().any(|scenario| scenario.options.split(',').any(|option| option == fault))

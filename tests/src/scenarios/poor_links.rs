@@ -18,6 +18,7 @@ pub const REPAIRED_LINKS: &[Scenario] = &[
     passes("bytes that get lost", ",fault=drop,rate=5e-5,seed=4", SMALL),
     passes("a byte that comes twice", ",fault=duplicate,byte=50000,toward=host", SMALL),
     passes("bytes that come twice", ",fault=duplicate,rate=5e-5,seed=5", SMALL),
+    passes("rows that get lost whole", ",fault=lose,rate=0.01,seed=8", SMALL),
     passes("a packet that ends early", ",fault=truncate,packet=50,toward=host", SMALL),
     passes("packets that end early", ",fault=truncate,rate=0.01,seed=6", SMALL),
 ];
@@ -30,6 +31,7 @@ pub const SLOW_LINKS: &[Scenario] = &[
     passes("packets that overtake each other", ",fault=reorder,rate=0.02,seed=7", SMALL),
     passes("a tenth of a second of silence", ",fault=stall,seconds=0.1", SMALL),
     passes("a second of silence", ",fault=stall,packet=90,seconds=1,toward=host", SMALL),
+    passes("three seconds of silence again and again", ",fault=stall,every=12000,seconds=3", SMALL),
 ];
 
 /// Links over which nothing can be judged.
@@ -56,6 +58,7 @@ pub const HOPELESS_LINKS: &[Scenario] = &[
     ),
     stops("a cable that was pulled", ",fault=disconnect,packet=90", "the link broke while waiting for row"),
     stops("a cable pulled at the end", ",fault=disconnect,packet=280,toward=host", "the link broke"),
+    stops("no row gets through", ",fault=lose,size=150,rate=1", "no answer to"),
     stops("a minute of silence", ",fault=stall,packet=20,seconds=60", "no answer to"),
     stops("a minute of silence in a frame", ",fault=stall,packet=90,seconds=60", "no answer to"),
 ];

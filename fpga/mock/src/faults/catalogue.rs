@@ -51,7 +51,12 @@ const FAULTS: &[FaultInfo] = &[
     wire(
         "stall",
         "the stream stands still \
-         (packet=40, or byte=N, or rate=P a packet; seconds=5, toward=both, seed=0)",
+         (packet=40, or byte=N, or every=N bytes, or rate=P a packet; seconds=5, toward=both, seed=0)",
+    ),
+    wire(
+        "lose",
+        "a packet that is not short gets lost \
+         (rate=1e-3 of those, or packet=N of them; size=100, toward=both, seed=0)",
     ),
     wire(
         "truncate",

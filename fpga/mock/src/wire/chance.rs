@@ -1,5 +1,7 @@
 //! When a fault strikes, and the dice that it throws.
 
+use std::num::NonZeroU64;
+
 use rand_core::{Rng, SeedableRng};
 use rand_pcg::Pcg32;
 
@@ -8,6 +10,8 @@ use rand_pcg::Pcg32;
 pub(super) enum Occurrence {
     /// Once, at the byte or packet of this number, from 0.
     At(u64),
+    /// Behind each so many bytes or packets.
+    Every(NonZeroU64),
     /// At each byte or packet with this probability, 0 to 1.
     Rate(f64),
 }
@@ -17,14 +21,16 @@ pub(super) enum Occurrence {
 pub(super) struct Chance {
     random: Pcg32,
     rate: f64,
+    every: Option<NonZeroU64>,
     next: Option<u64>,
 }
 
 impl Chance {
     pub(super) fn new(occurrence: Occurrence, seed: u64) -> Self {
-        let mut chance = Self { random: Pcg32::seed_from_u64(seed), rate: 0.0, next: None };
+        let mut chance = Self { random: Pcg32::seed_from_u64(seed), rate: 0.0, every: None, next: None };
         match occurrence {
             Occurrence::At(number) => chance.next = Some(number),
+            Occurrence::Every(every) => (chance.every, chance.next) = (Some(every), Some(every.get())),
             Occurrence::Rate(rate) => {
                 chance.rate = rate;
                 chance.next = chance.first_from(0);
@@ -42,7 +48,10 @@ impl Chance {
     pub(super) fn strikes(&mut self, number: u64) -> bool {
         let strikes = self.next == Some(number);
         if strikes {
-            self.next = number.checked_add(1).and_then(|number| self.first_from(number));
+            self.next = match self.every {
+                Some(every) => number.checked_add(every.get()),
+                None => number.checked_add(1).and_then(|number| self.first_from(number)),
+            };
         }
         strikes
     }
@@ -77,6 +86,12 @@ mod tests {
     #[test]
     fn a_number_is_struck_once() {
         assert_eq!(struck(Occurrence::At(7), 0, 100), [7]);
+    }
+
+    #[test]
+    fn every_so_many_are_struck_behind_the_first_so_many() {
+        let every = Occurrence::Every(NonZeroU64::new(30).unwrap());
+        assert_eq!(struck(every, 0, 100), [30, 60, 90]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Faults of the wire by name: bytes and packets that suffer on their way.
 
+use std::num::NonZeroU64;
 use std::time::Duration;
 
 use super::chance::Occurrence;
@@ -17,6 +18,12 @@ const ONE_PACKET: Occurrence = Occurrence::At(40);
 
 const BYTE: Limits = Limits::new("byte", 0, 1_000_000_000_000);
 const PACKET: Limits = Limits::new("packet", 0, 1_000_000_000_000);
+/// Fewer would leave no packet whole.
+const EVERY: Limits = Limits::new("every", 1, 1_000_000_000_000);
+/// Bytes of a packet as it is on the wire, between its zeros; the longest has 4,113.
+const SIZE: Limits = Limits::new("size", 1, 4113);
+/// The first packets that are longer than those of the session and its requests: rows, tables and echoes.
+const LONG: usize = 100;
 const RATE: Decimal = Decimal::new("rate", 0.0, 1.0);
 const SEED: Limits = Limits::new("seed", 0, u32::MAX as i64);
 const SECONDS: Decimal = Decimal::new("seconds", 0.0, 3600.0);
@@ -74,9 +81,10 @@ impl WireFault {
     /// The wire fault called `name`. Takes its own parameters out of `parameters` and leaves the others there.
     ///
     /// Where it strikes is said by one of `byte` (number of the byte in its direction, from 0), `packet` (number of the
-    /// packet, a non-empty run between zero bytes) and `rate` (probability, 0 to 1); `reorder` has no `byte`. `rate`
-    /// means each byte for `flip`, `drop` and `duplicate`, and each packet for the others. `toward` is `board`, `host`
-    /// or `both`; `seed` picks the random numbers. `stall` lasts for `seconds`.
+    /// packet, a non-empty run between zero bytes), `every` (behind each so many bytes) and `rate` (probability, 0 to 1);
+    /// `reorder` and `lose` have no `byte` and no `every`. `rate` means each byte for `flip`, `drop` and `duplicate`, and
+    /// each packet for the others. `toward` is `board`, `host` or `both`; `seed` picks the random numbers. `stall` lasts
+    /// for `seconds`; `lose` counts packets of at least `size` bytes only.
     ///
     /// # Errors
     /// If no wire fault has this name, one of its parameters is out of range, or two of them say where it strikes.
@@ -128,6 +136,10 @@ impl Choice {
             "drop" => Self::of_bytes(ByteHarm::Drop, PacketHarm::Drop),
             "duplicate" => Self::of_bytes(ByteHarm::Duplicate, PacketHarm::Duplicate),
             "reorder" => Self::of_packets(None, PacketHarm::Reorder),
+            "lose" => {
+                let least = take(from, SIZE.key(), |text| SIZE.parse(text))?.unwrap_or(LONG);
+                Self::of_packets(None, PacketHarm::Lose { least })
+            }
             "truncate" => Self::of_packets(Some(ByteHarm::Truncate), PacketHarm::Truncate),
             "stall" => {
                 let seconds = take(from, SECONDS.key(), |text| SECONDS.parse(text))?.unwrap_or(5.0);
@@ -162,6 +174,15 @@ impl Choice {
             && let Some(number) = take(from, BYTE.key(), |text| BYTE.parse(text))?
         {
             places.push((BYTE.key(), harm, Occurrence::At(number)));
+        }
+        if let Some(harm) = self.at_byte
+            && let Some(number) = take(from, EVERY.key(), |text| EVERY.parse(text))?
+        {
+            places.push((
+                EVERY.key(),
+                harm,
+                NonZeroU64::new(number).map_or(Occurrence::At(0), Occurrence::Every),
+            ));
         }
         if let Some(number) = take(from, PACKET.key(), |text| PACKET.parse(text))? {
             places.push((PACKET.key(), self.at_packet, Occurrence::At(number)));

@@ -5,6 +5,8 @@ use std::time::Duration;
 use halfrow_protocol::message::{RefusalCode, Reply, Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
+use super::asked::LastAsked;
+use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
 use crate::link::{LineErrors, Link, Severed};
@@ -24,6 +26,10 @@ pub struct Tally {
     pub damaged_in: u64,
     /// Packets sent again.
     pub retries: u64,
+    /// Of those, the ones to which an answer came as well: nothing had been lost, and the first answer was late.
+    pub late: u64,
+    /// Packets that nobody waited for: second answers, rows that were there already, and what is of another session.
+    pub strays: u64,
     /// What the link's chip has seen go wrong on the line.
     pub line_errors: LineErrors,
 }
@@ -36,6 +42,8 @@ impl std::ops::AddAssign for Tally {
         self.packets_in += other.packets_in;
         self.damaged_in += other.damaged_in;
         self.retries += other.retries;
+        self.late += other.late;
+        self.strays += other.strays;
         self.line_errors += other.line_errors;
     }
 }
@@ -67,6 +75,15 @@ pub(super) struct Conversation {
     pub(super) acknowledged: u32,
     pub(super) tally: Tally,
     pub(super) limit: RetryLimit,
+    /// What the session's rows have shown of the board.
+    pub(super) conduct: Conduct,
+    /// Requests that change the board and came to it more than once in this session, as far as can be seen.
+    pub(super) repeated_changes: u64,
+    /// The row sequence number behind all rows that were sent in this session.
+    rows_sent: u32,
+    asked: LastAsked,
+    /// The longest that an answer was held back that had been asked for again.
+    slowest: Duration,
     stop: Stop,
 }
 
@@ -84,8 +101,21 @@ impl Conversation {
             acknowledged: 0,
             tally: Tally::default(),
             limit,
+            conduct: Conduct::default(),
+            repeated_changes: 0,
+            rows_sent: 0,
+            asked: LastAsked::default(),
+            slowest: Duration::ZERO,
             stop,
         }
+    }
+
+    /// Forgets the session, and what belongs to it.
+    pub(super) fn leave_session(&mut self) {
+        (self.session, self.credit, self.acknowledged, self.rows_sent) = (0, 0, 0, 0);
+        self.conduct = Conduct::default();
+        self.asked = LastAsked::default();
+        self.repeated_changes = 0;
     }
 
     /// Closes the link and forgets what it did.
@@ -115,8 +145,14 @@ impl Conversation {
         self.stop = Stop::default();
     }
 
-    pub(super) fn wait_for(&self, step: Step, bytes: usize) -> Duration {
-        step.wait(bytes, self.link.bytes_per_second())
+    /// The time since `then`; none if the link's clock went back, as that of a spoilt recording does.
+    pub(super) fn since(&self, then: Duration) -> Duration {
+        self.now().saturating_sub(then)
+    }
+
+    /// How long to wait at the try `attempt`, from 0, for what takes `bytes` both ways together.
+    pub(super) fn wait_for(&self, step: Step, attempt: u32, bytes: usize) -> Duration {
+        step.wait(attempt, bytes, self.link.bytes_per_second(), self.slowest)
     }
 
     /// Whether all that was queued has left.
@@ -147,6 +183,7 @@ impl Conversation {
     /// Queues a row under the next number, its samples packed where they go.
     pub(super) fn queue_row(&mut self, place: &RowPlace, samples: &[u16]) {
         let sequence = self.next_sequence();
+        self.rows_sent = self.rows_sent.max(place.row_sequence.saturating_add(1));
         self.queue_packet(Kind::RowIn, sequence, |payload| RowIn::write_samples(place, samples, payload));
     }
 
@@ -163,15 +200,22 @@ impl Conversation {
         self.tally.packets_out += 1;
     }
 
-    /// Counts a retry.
+    /// Counts a retry. Those after which nothing turned out to be lost are no sign of a poor link.
     pub(super) fn count_retry(&mut self) -> Result<(), BoardError> {
         self.tally.retries += 1;
         let limit = self.limit.of(self.tally.packets_out);
-        if self.tally.retries > limit {
-            let (retries, packets) = (self.tally.retries, self.tally.packets_out);
+        let retries = self.tally.retries.saturating_sub(self.tally.late);
+        if retries > limit {
+            let packets = self.tally.packets_out;
             return Err(BoardError::TooPoor { retries, packets, limit });
         }
         Ok(())
+    }
+
+    /// Takes note of a retry that was needless, since the first answer came `took` after its request.
+    pub(super) fn was_late(&mut self, took: Duration) {
+        self.tally.late += 1;
+        self.slowest = self.slowest.max(took);
     }
 
     /// Moves bytes both ways, for `wait` at most, and hands every whole packet of this session to `take`.
@@ -189,6 +233,8 @@ impl Conversation {
         self.outgoing.drain(..taken);
         self.tally.bytes_out += taken as u64;
         self.tally.bytes_in += self.incoming.len() as u64;
+        let now = self.link.now();
+        let mut late = Vec::new();
         let mut bytes = self.incoming.as_slice();
         while let Some(packet) = self.decoder.next(&mut bytes) {
             match packet {
@@ -196,16 +242,30 @@ impl Conversation {
                     self.tally.packets_in += 1;
                     if self.session != 0 {
                         self.credit = self.credit.max(packet.header.window);
+                        if packet.header.kind == Kind::RowOut.code() {
+                            if let Ok(Reply::RowOut(row)) = Reply::read(&packet) {
+                                self.conduct.row(packet.header.sequence, &row, self.rows_sent);
+                            }
+                        } else if let Some(stray) = self.asked.answered(&packet, now) {
+                            tracing::debug!("a second answer of kind {}", packet.header.kind);
+                            self.tally.strays += 1;
+                            self.repeated_changes += u64::from(stray.changed);
+                            late.extend(stray.needless);
+                        }
                     }
                     take(&packet);
                 }
-                Ok(stale) => tracing::debug!("a stale packet of session {}", stale.header.session),
+                Ok(stale) => {
+                    tracing::debug!("a stale packet of session {}", stale.header.session);
+                    self.tally.strays += 1;
+                }
                 Err(damage) => {
                     tracing::debug!("a damaged packet: {damage}");
                     self.tally.damaged_in += u64::from(self.session != 0);
                 }
             }
         }
+        late.into_iter().for_each(|took| self.was_late(took));
         Ok(())
     }
 
@@ -216,13 +276,14 @@ impl Conversation {
         step: Step,
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<Kept, BoardError> {
-        let kind = request.kind();
-        let sequence = self.next_sequence();
-        let begun = self.now();
+        let (kind, sequence, begun) = (request.kind(), self.next_sequence(), self.now());
         let attempts = step.deadline().attempts;
-        for attempt in 0..attempts {
+        self.asked.asked(request, sequence, begun);
+        let mut attempt = 0;
+        while attempt < attempts {
             if attempt > 0 {
                 tracing::info!("{kind:?} was not answered; asking again");
+                self.repeated_changes += u64::from(self.asked.asked_again());
                 self.count_retry()?;
             }
             if attempt == 0 || self.is_drained() {
@@ -230,26 +291,52 @@ impl Conversation {
             }
             // The reply may be as long as the longest packet.
             let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
-            let deadline = self.now() + self.wait_for(step, bytes);
-            while self.now() < deadline {
-                let mut answer = None;
-                let wait = deadline - self.now();
-                self.exchange(
-                    wait,
-                    || format!("waiting for the answer to {kind:?}"),
-                    |packet| {
-                        let header = packet.header;
-                        if header.reply && header.sequence == sequence && accept(packet) {
-                            answer = Some(Kept { header, payload: packet.payload.to_vec() });
-                        }
-                    },
-                )?;
-                if let Some(answer) = answer {
+            let mut deadline = self.now() + self.wait_for(step, attempt, bytes);
+            while let Some(wait) = deadline.checked_sub(self.now()).filter(|wait| !wait.is_zero()) {
+                let late = self.tally.late;
+                if let Some(answer) = self.answer_within(wait, kind, sequence, &accept)? {
+                    self.took(attempt, self.since(begun));
                     return Ok(answer);
                 }
+                if self.tally.late > late {
+                    // What was asked before still arrives, and this stands in the queue behind it.
+                    (attempt, deadline) = (0, self.now() + self.wait_for(step, 0, bytes));
+                }
             }
+            attempt += 1;
         }
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.now() - begun })
+        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun) })
+    }
+
+    /// Moves bytes once, and returns the answer if it is among them.
+    fn answer_within(
+        &mut self,
+        wait: Duration,
+        kind: Kind,
+        sequence: u16,
+        accept: impl Fn(&Packet<'_>) -> bool,
+    ) -> Result<Option<Kept>, BoardError> {
+        let (mut answer, mut rows) = (None, 0);
+        let doing = || format!("waiting for the answer to {kind:?}");
+        self.exchange(wait, doing, |packet| {
+            let header = packet.header;
+            // Rows are numbered by the board.
+            let is_row = header.kind == Kind::RowOut.code();
+            rows += u64::from(is_row);
+            if !is_row && header.sequence == sequence && accept(packet) {
+                answer = Some(Kept { header, payload: packet.payload.to_vec() });
+            }
+        })?;
+        self.tally.strays += rows;
+        Ok(answer)
+    }
+
+    /// Takes note of how long it took until something came that was asked for `again` times more.
+    pub(super) fn took(&mut self, again: u32, time: Duration) {
+        // Three in a row are seldom lost, and often late.
+        if again >= 3 {
+            self.slowest = self.slowest.max(time);
+        }
     }
 
     /// Asks, and takes the expected part of the reply.

@@ -1,5 +1,7 @@
 //! A board: whatever answers the protocol behind a link. The only module that speaks the protocol.
 
+mod asked;
+mod conduct;
 mod conversation;
 pub mod deadlines;
 mod error;
@@ -18,9 +20,10 @@ use conversation::{Conversation, take_reply};
 use deadlines::{RetryLimit, Step};
 
 use crate::link::Link;
+pub use conduct::Misconduct;
 pub use conversation::Tally;
 pub use error::BoardError;
-pub use rows::{NumberedFrame, ReturnedRow, RowTraffic, Unjudged};
+pub use rows::{NumberedFrame, ReturnedRow, RowTraffic, Unjudged, Unreturned};
 pub use sent::Sent;
 pub use stop::Stop;
 pub use tables::{ReadBack, TablePort};
@@ -56,6 +59,8 @@ pub struct RowTiming {
 /// An open session with a board.
 pub struct Board {
     conversation: Conversation,
+    /// Packets that had been sent when the board's counters were set back.
+    counted_from: u64,
     /// Its answer to the greeting.
     pub welcome: Welcome,
     /// What it can do.
@@ -72,18 +77,50 @@ impl Board {
         let mut conversation = Conversation::new(link, options.retry_limit, options.stop.clone());
         let mut open = || {
             let welcome = greet_or_take_over(&mut conversation, options)?;
-            conversation.session = welcome.session;
+            let counted_from = conversation.tally.packets_out;
             let capabilities =
                 conversation.request(&Request::Capabilities, Step::Request, |reply| match reply {
                     Reply::Capabilities(capabilities) => Some(capabilities),
                     _ => None,
                 })?;
-            Ok((welcome, capabilities))
+            Ok((welcome, capabilities, counted_from))
         };
         match open() {
-            Ok((welcome, capabilities)) => Ok(Self { conversation, welcome, capabilities }),
+            Ok((welcome, capabilities, counted_from)) => {
+                Ok(Self { conversation, counted_from, welcome, capabilities })
+            }
             Err(error) => Err((error, conversation.tally)),
         }
+    }
+
+    /// Opens another session over the same link. Whatever is still under way of the one before means nothing in it.
+    ///
+    /// # Errors
+    /// [`BoardError`] as of [`Self::open`].
+    pub fn greet_again(&mut self, options: &OpenOptions) -> Result<(), BoardError> {
+        self.conversation.leave_session();
+        self.welcome = greet_or_take_over(&mut self.conversation, options)?;
+        self.counted_from = self.conversation.tally.packets_out;
+        Ok(())
+    }
+
+    /// What the board did with rows in this session that no link can do.
+    #[must_use]
+    pub fn misconduct(&self) -> Option<Misconduct> {
+        self.conversation.conduct.misconduct()
+    }
+
+    /// How many requests that change the board came to it more than once in this session, as far as can be seen. The second
+    /// copy of one may have come late, behind others, and then the board is not as the host thinks that it is.
+    #[must_use]
+    pub fn repeated_changes(&self) -> u64 {
+        self.conversation.repeated_changes
+    }
+
+    /// The row sequence number before which every row has come back.
+    #[must_use]
+    pub fn acknowledged(&self) -> u32 {
+        self.conversation.acknowledged
     }
 
     /// What the link did so far.
@@ -131,7 +168,7 @@ impl Board {
             Reply::Echo(back) => Some(back == bytes),
             _ => None,
         })?;
-        Ok((same, self.now() - begun))
+        Ok((same, self.conversation.since(begun)))
     }
 
     /// The board's counters, which `clear` sets back.
@@ -139,10 +176,21 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when no answer comes.
     pub fn status(&mut self, clear: bool) -> Result<Status, BoardError> {
-        self.conversation.request(&Request::Status { clear }, Step::Request, |reply| match reply {
-            Reply::Status(status) => Some(status),
-            _ => None,
-        })
+        let status =
+            self.conversation.request(&Request::Status { clear }, Step::Request, |reply| match reply {
+                Reply::Status(status) => Some(status),
+                _ => None,
+            })?;
+        if clear {
+            self.counted_from = self.conversation.tally.packets_out;
+        }
+        Ok(status)
+    }
+
+    /// The packets that were sent since the board's counters were set back, all tries counted.
+    #[must_use]
+    pub fn packets_since_clear(&self) -> u64 {
+        self.conversation.tally.packets_out.saturating_sub(self.counted_from)
     }
 
     /// Sets the counters back, and drops tables that an earlier session left: a board takes a generation that is active
@@ -152,7 +200,7 @@ impl Board {
     /// [`BoardError`] when no answer comes.
     pub fn start_afresh(&mut self) -> Result<(), BoardError> {
         if self.status(true)?.generation != 0 {
-            self.reset(ResetLevel::Tables)?;
+            self.reset(ResetLevel::Tables, Step::Request)?;
         }
         Ok(())
     }
@@ -182,12 +230,26 @@ impl Board {
         rows::stream(&mut self.conversation, traffic)
     }
 
+    /// Streams frames without ever asking for a row again, and returns the first row that does not come back within its
+    /// deadline.
+    ///
+    /// # Errors
+    /// [`BoardError`] of any other kind.
+    pub fn stream_once(&mut self, traffic: &mut dyn RowTraffic) -> Result<Option<Unreturned>, BoardError> {
+        rows::stream_once(&mut self.conversation, traffic)
+    }
+
+    /// Sends a row once more, and waits for nothing.
+    pub fn send_again(&mut self, row: &Unreturned) {
+        self.conversation.queue_row(&row.place, &row.samples);
+    }
+
     /// Drops the rows inside the board, so that another stream can begin.
     ///
     /// # Errors
     /// [`BoardError`] when the board does not answer.
     pub fn drop_rows(&mut self) -> Result<(), BoardError> {
-        self.reset(ResetLevel::Rows)
+        self.reset(ResetLevel::Rows, Step::Request)
     }
 
     /// Closes the session, so that another host finds the board free, also when the run was stopped. Waits for the board's
@@ -197,29 +259,29 @@ impl Board {
     /// [`BoardError`] when the board does not answer; it is then free after 10 s of silence.
     pub fn close(&mut self) -> Result<(), BoardError> {
         self.conversation.disregard_stop();
-        self.reset(ResetLevel::Session)
+        self.reset(ResetLevel::Session, Step::Close)
     }
 
-    fn reset(&mut self, level: ResetLevel) -> Result<(), BoardError> {
+    fn reset(&mut self, level: ResetLevel, step: Step) -> Result<(), BoardError> {
         // Beyond every row that can be under way: credit is never further ahead than a board has banks.
         let next_row = self.conversation.credit;
         let reset = Request::Reset(Reset { level, next_row });
-        self.conversation
-            .request(&reset, Step::Request, |reply| matches!(reply, Reply::Reset).then_some(()))?;
+        self.conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.acknowledged = next_row;
         Ok(())
     }
 }
 
-/// Over a link that is this program's alone nobody can be cut off: whoever holds the board was killed.
+/// Opens a session. Over a link that is this program's alone nobody can be cut off: whoever holds the board was killed.
 fn greet_or_take_over(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {
-    match greet(conversation, options) {
+    let greeted = match greet(conversation, options) {
         Err(BoardError::Held { .. }) if conversation.is_exclusive() && !options.polite => {
             tracing::warn!("the board is held by a run that was killed, and is taken over");
             greet(conversation, &OpenOptions { take_over: true, ..options.clone() })
         }
         greeted => greeted,
-    }
+    };
+    greeted.inspect(|welcome| conversation.session = welcome.session)
 }
 
 fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welcome, BoardError> {

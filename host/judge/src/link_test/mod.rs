@@ -67,14 +67,18 @@ impl Test<'_> {
         Begun { on_link: self.board.now(), on_wall: Instant::now(), tally: self.board.tally() }
     }
 
+    /// The time on the link's clock; none if that went back.
+    fn since(&self, begun: &Begun) -> Duration {
+        self.board.now().saturating_sub(begun.on_link)
+    }
+
     /// A virtual clock may stand still, and then the wall's counts.
     fn is_over(&self, begun: &Begun) -> bool {
-        self.board.now() - begun.on_link >= self.seconds || begun.on_wall.elapsed() >= self.seconds
+        self.since(begun) >= self.seconds || begun.on_wall.elapsed() >= self.seconds
     }
 
     fn throughput(&self, begun: &Begun) -> Throughput {
-        let seconds = self.board.now() - begun.on_link;
-        Throughput::between(begun.tally, self.board.tally(), seconds, self.board.bytes_per_second())
+        Throughput::between(begun.tally, self.board.tally(), self.since(begun), self.board.bytes_per_second())
     }
 
     fn round_trips(&mut self) -> Result<RoundTrips, BoardError> {

@@ -52,7 +52,7 @@ impl Test<'_> {
         let frames = numbers.map(|number| NumberedFrame { number, frame: Arc::clone(frame) });
         self.board.stream(&mut Unjudged(frames))?;
         *number = number.wrapping_add(times);
-        Ok(begun.on_wall.elapsed().max(self.board.now() - begun.on_link))
+        Ok(begun.on_wall.elapsed().max(self.since(&begun)))
     }
 }
 

@@ -176,6 +176,10 @@ pub struct LinkReport {
     pub damaged_out: u64,
     /// Packets sent again.
     pub retries: u64,
+    /// Of those, the ones after which nothing turned out to be lost: the first answer was late.
+    pub late: u64,
+    /// Packets that nobody waited for: second answers, rows that were there already, and what is of another session.
+    pub strays: u64,
     /// What the chip at the link's near end has seen go wrong on the line.
     pub line_errors: LineErrors,
     /// Retries from which on the link is too poor to judge over.

@@ -48,6 +48,8 @@ pub(super) fn conclude(
             packets_in: findings.tally.packets_in,
             damaged_in: findings.tally.damaged_in,
             retries: findings.tally.retries,
+            late: findings.tally.late,
+            strays: findings.tally.strays,
             line_errors: findings.tally.line_errors,
             ..findings.link
         },

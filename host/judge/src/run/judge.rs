@@ -23,6 +23,8 @@ pub(super) struct Seen {
     pub(super) wrong_generation: Option<String>,
     /// Sentence about the first row with a wrong latency.
     pub(super) wrong_latency: Option<String>,
+    /// Sentence about the first row whose gaps are not those of the seed.
+    pub(super) wrong_pauses: Option<String>,
 }
 
 impl Seen {
@@ -39,7 +41,6 @@ impl Seen {
 pub(super) const STREET: &str = "builtin:street";
 
 /// How strict, and what to keep.
-#[derive(Clone, Copy)]
 pub(super) struct Manner {
     pub(super) claimed_latency: u32,
     pub(super) latency_limit: u32,
@@ -48,6 +49,8 @@ pub(super) struct Manner {
     pub(super) pictures: usize,
     /// Frames that differ kept for diagnosis.
     pub(super) differing: usize,
+    /// Board clocks that gaps keep each row of a frame waiting.
+    pub(super) pauses: Vec<u16>,
 }
 
 struct InFlight {
@@ -151,6 +154,19 @@ impl<'a> Judge<'a> {
         }
     }
 
+    fn check_pauses(&mut self, row: &ReturnedRow<'_>) {
+        let expected = self.manner.pauses.get(row.row).copied().unwrap_or_default();
+        if row.pauses != expected {
+            self.seen.wrong_pauses.get_or_insert_with(|| {
+                let (row, frame, pauses) = (row.row, row.frame, row.pauses);
+                format!(
+                    "row {row} of frame {frame} was kept waiting by gaps for {pauses} board clocks by the board's count, \
+                     and the gaps of its seed are {expected}"
+                )
+            });
+        }
+    }
+
     fn conclude(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
@@ -212,6 +228,7 @@ impl RowTraffic for Judge<'_> {
             return ControlFlow::Continue(());
         };
         self.check_latency(row);
+        self.check_pauses(row);
         self.progress.row();
         let frame = &mut self.in_flight[place];
         frame.returned[row.row] = true;
@@ -262,7 +279,8 @@ mod tests {
 
     fn give(judge: &mut Judge<'_>, frame: u16, row: usize, sample: u16) {
         let samples = &[sample; 64];
-        let row = ReturnedRow { frame, row, generation: 2, first_latency: 44, last_latency: 44, samples };
+        let (first_latency, last_latency, pauses, generation) = (44, 44, 0, 2);
+        let row = ReturnedRow { frame, row, generation, first_latency, last_latency, pauses, samples };
         assert!(judge.returned(&row).is_continue());
     }
 
@@ -272,8 +290,14 @@ mod tests {
         [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
         drop(sender);
         let mut seen = Seen::default();
-        let manner =
-            Manner { claimed_latency: 44, latency_limit: 64, fail_fast: false, pictures: 0, differing: 0 };
+        let manner = Manner {
+            claimed_latency: 44,
+            latency_limit: 64,
+            fail_fast: false,
+            pictures: 0,
+            differing: 0,
+            pauses: vec![0; HEIGHT],
+        };
         let mut judge = Judge::new(source.iter().take(2), &mut seen, manner, String::new(), &Silent);
         let sent = |judge: &mut Judge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));

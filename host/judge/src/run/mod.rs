@@ -7,10 +7,14 @@ mod conclude;
 mod findings;
 mod golden;
 mod judge;
+mod legal;
+mod lost_row;
 mod patterns;
+mod pauses;
 mod plan;
 mod prepared;
 mod reconnect;
+mod second_look;
 mod steps;
 mod streaming;
 mod upload;
@@ -23,7 +27,7 @@ use crate::report::{Evidence, FileHash, Report};
 pub(crate) use findings::chain;
 use findings::{End, Findings};
 use reconnect::WayBack;
-use steps::Run;
+use steps::{MAX_LATENCY, Run};
 
 pub use golden::judge_the_judge;
 pub use plan::{

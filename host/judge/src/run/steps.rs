@@ -7,6 +7,7 @@ use halfrow_model::{Kernel, TableSet, Taps};
 
 use super::findings::{End, Findings};
 use super::golden;
+use super::legal::impossible;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
@@ -53,6 +54,14 @@ impl Run<'_> {
     pub(super) fn all_steps(&mut self) -> Result<(), End> {
         self.findings.note_identity(self.board);
         self.identity()?;
+        match self.all_but_identity() {
+            Err(failed @ End::Failed { .. }) => self.look_again(failed),
+            ended => ended,
+        }
+    }
+
+    /// From the link to the counters. Whatever the board held before is nothing to it.
+    pub(super) fn all_but_identity(&mut self) -> Result<(), End> {
         let schedule = self.plan.schedule(self.board.capabilities.table_banks);
         let (plan, generations) = (self.plan, self.generations.clone());
         thread::scope(|scope| {
@@ -107,6 +116,9 @@ impl Run<'_> {
                 ),
             );
         }
+        if let Some(impossible) = impossible(&self.board.capabilities) {
+            return error(Exit::Refused, impossible);
+        }
         if self.plan.require_hardware && self.findings.board.kind != BoardKind::Hardware {
             return error(
                 Exit::NothingJudged,
@@ -116,13 +128,6 @@ impl Run<'_> {
         }
         if let Some(misfit) = misfit(&self.plan.tables, &self.plan.kernel, &self.board.capabilities) {
             return error(Exit::Usage, misfit);
-        }
-        let latency = self.board.capabilities.latency;
-        if latency > MAX_LATENCY {
-            let headline =
-                format!("the board claims L = {latency}, and no datapath may take over {MAX_LATENCY}");
-            let remedy = "Check the pipeline's depth in the design that was loaded.";
-            return Err(End::failed("identity", headline, remedy));
         }
         let detail = format!(
             "{}, wire {}, datapath {DATAPATH}",

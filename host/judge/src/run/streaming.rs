@@ -1,23 +1,18 @@
 //! Frames through the board, segment by segment.
 
-use std::iter;
 use std::sync::mpsc::Receiver;
 
 use super::findings::End;
 use super::judge::{Judge, Manner};
-use super::plan::{SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
+use super::pauses::pauses;
+use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
 use super::steps::{MAX_LATENCY, Run};
-use crate::board::{BoardError, NumberedFrame, Unjudged};
+use crate::board::{BoardError, Misconduct};
 use crate::verdict::Exit;
 
 /// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
 const KEPT: usize = 16;
-
-/// A frame and the row in which it happened twice that a row did not come back.
-struct LostTwice {
-    row: u16,
-}
 
 impl Run<'_> {
     /// Streams a segment, whose frames are the next ones of `source`, and judges what comes back.
@@ -26,7 +21,7 @@ impl Run<'_> {
         segment: &Segment,
         source: &Receiver<Result<Prepared, PrepareError>>,
     ) -> Result<(), End> {
-        let (manner, timing) = (self.manner(), self.timing(segment.timing));
+        let (manner, timing) = (self.manner(segment.timing), self.timing(segment.timing));
         // The judge has what is seen while the run has the board, and what it has to say of its link.
         let mut seen = std::mem::take(&mut self.findings.seen);
         let frames = source.iter().take(segment.frames.len());
@@ -48,18 +43,24 @@ impl Run<'_> {
             self.return_to(segment, judge.frames_done(), end)?;
             judge.begin_again();
         }
+        if let Some(misconduct) = self.misconduct() {
+            return Err(misconduct);
+        }
         self.findings.rows_counted += judge.rows;
         Ok(())
     }
 
-    fn manner(&self) -> Manner {
-        let half = self.plan.tables.geometry().width() as u32 / 2;
+    fn manner(&self, timing: Timing) -> Manner {
+        let geometry = self.plan.tables.geometry();
+        let half = geometry.width() as u32 / 2;
+        let gap_seed = if let Timing::Gaps(seed) = timing { seed } else { 0 };
         Manner {
             claimed_latency: half + u32::from(self.board.capabilities.latency),
             latency_limit: half + u32::from(MAX_LATENCY),
             fail_fast: self.plan.fail_fast,
             pictures: if self.plan.keep_pictures { KEPT } else { 0 },
             differing: KEPT,
+            pauses: pauses(gap_seed, geometry.width(), geometry.height()),
         }
     }
 
@@ -71,52 +72,39 @@ impl Run<'_> {
         }
     }
 
-    /// A row did not come back, or the link broke. A row that a board swallows is the board's fault only when the link is
-    /// proven clean and it happens again.
+    /// A row did not come back, or the link broke.
     fn interrupted(&mut self, segment: &Segment, error: BoardError) -> End {
-        let place = match error {
-            BoardError::RowMissing { place, .. } => place,
+        if let Some(misconduct) = self.misconduct() {
+            return misconduct;
+        }
+        match error {
+            BoardError::RowMissing { place, .. } => {
+                let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
+                frame.map_or_else(|| End::board("frames", &error), |frame| self.row_lost(frame, place))
+            }
             BoardError::WrongPlace { .. } => {
                 let remedy = "Check how the board keeps a row's place with its samples.";
-                return End::failed("frames", error.to_string(), remedy);
+                End::failed("frames", error.to_string(), remedy)
             }
-            other => return End::board("frames", &other),
-        };
-        let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
-        match frame.map(|frame| self.lost_again(frame)) {
-            Some(Ok(Some(LostTwice { row }))) => End::failed(
-                "frames",
-                format!(
-                    "row {} of frame {} went into the board and never came out; played again, row {row} was lost, \
-                     and the link is clean",
-                    place.row, place.frame
-                ),
-                "Check the row banks and the row player: the board took the row and lost it inside.",
-            ),
-            Some(Err(other)) => End::board("frames", &other),
-            Some(Ok(None)) | None => End::board("frames", &error),
+            other => End::board("frames", &other),
         }
     }
 
-    /// Plays a frame again. Returns nothing if the link may have lost the row, or if all rows come back this time.
-    fn lost_again(&mut self, frame: &ScheduledFrame) -> Result<Option<LostTwice>, BoardError> {
-        self.board.drop_rows()?;
-        self.board.status(true)?;
-        let damaged = self.board.tally().damaged_in;
-        let Ok(frame) =
-            self.plan.render(frame).map(|input| NumberedFrame { number: frame.number, frame: input })
-        else {
-            return Ok(None);
+    /// What the board did with rows that no link can do, if it did.
+    pub(super) fn misconduct(&self) -> Option<End> {
+        let misconduct = self.board.misconduct()?;
+        let remedy = match misconduct {
+            Misconduct::CopyDiffers { .. } => {
+                "Check what else writes to the output banks while the board waits for the acknowledgement of a row."
+            }
+            Misconduct::NeverSent { .. } => "Check how the board keeps a row's place with its samples.",
+            Misconduct::NumberedTwice { .. } => {
+                "Check the board's count of ROW_OUT packets, the sequence in their headers."
+            }
+            Misconduct::OutOfOrder { .. } => {
+                "Check in which order the board plays its input banks and sends its output banks."
+            }
         };
-        let place = match self.board.stream(&mut Unjudged(iter::once(frame))) {
-            Err(BoardError::RowMissing { place, .. }) => place,
-            Err(error) => return Err(error),
-            Ok(()) => return Ok(None),
-        };
-        let status = self.board.status(false)?;
-        let link_is_clean =
-            status.crc_errors + status.framing_errors == 0 && self.board.tally().damaged_in == damaged;
-        let went_in = status.next_row_in > place.row_sequence;
-        Ok((link_is_clean && went_in).then_some(LostTwice { row: place.row }))
+        Some(End::failed("frames", misconduct.to_string(), remedy))
     }
 }

@@ -15,6 +15,11 @@ pub(in crate::wire) enum PacketHarm {
     Reorder,
     /// Its bytes from a random one on get lost; the zero behind it stays.
     Truncate,
+    /// It gets lost if it has so many bytes; the zeros around it stay. Shorter ones are not counted.
+    Lose {
+        /// Bytes between the zeros.
+        least: usize,
+    },
 }
 
 /// A stream of which some packets suffer.
@@ -54,11 +59,20 @@ impl SpoiltPackets {
         }
         if !self.inside {
             self.inside = true;
-            self.struck = self.chance.strikes(self.count) && self.late.is_empty();
-            self.count += 1;
+            self.struck = match self.harm {
+                // How long it is shows at its end.
+                PacketHarm::Lose { .. } => true,
+                _ => self.begins_struck() && self.late.is_empty(),
+            };
         }
         let to = if self.struck { &mut self.held } else { out };
         to.extend_from_slice(bytes);
+    }
+
+    /// Counts a packet, and says whether it is struck.
+    fn begins_struck(&mut self) -> bool {
+        self.count += 1;
+        self.chance.strikes(self.count - 1)
     }
 
     /// Takes a zero.
@@ -86,6 +100,11 @@ impl SpoiltPackets {
                 out.extend(packet);
             }
             PacketHarm::Drop => {}
+            PacketHarm::Lose { least } => {
+                if packet.len() < least || !self.begins_struck() {
+                    out.extend(packet);
+                }
+            }
             PacketHarm::Duplicate => {
                 out.extend_from_slice(&packet);
                 out.push(0);

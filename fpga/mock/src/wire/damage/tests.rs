@@ -45,6 +45,29 @@ fn one_packet_gets_lost_or_comes_twice() {
 }
 
 #[test]
+fn packets_that_are_not_short_get_lost_whole() {
+    assert_eq!(spoilt("lose", &[("size", "3"), ("rate", "1")], STREAM), b"\0\0\0\0hi\0");
+    assert_eq!(spoilt("lose", &[("size", "3"), ("packet", "1")], STREAM), b"\0abc\0\0\0hi\0");
+    assert_eq!(spoilt("lose", &[("size", "5"), ("rate", "1")], STREAM), STREAM);
+    assert_eq!(spoilt("lose", &[("size", "3"), ("rate", "0")], STREAM), STREAM);
+}
+
+#[test]
+fn a_stream_stands_still_behind_every_so_many_bytes() {
+    let mut damage = damage("stall", &[("every", "5"), ("seconds", "2")]);
+    let (mut out, mut rest) = (Vec::new(), STREAM);
+    let mut passed = Vec::new();
+    while !rest.is_empty() {
+        let passage = damage.pass(rest, &mut out);
+        let stall = Interruption::Stall(Duration::from_secs(2));
+        assert_eq!(passage.interruption, (passage.bytes < rest.len()).then_some(stall));
+        passed.push(passage.bytes);
+        rest = &rest[passage.bytes..];
+    }
+    assert_eq!((out.as_slice(), passed), (STREAM, vec![5, 5, 4]));
+}
+
+#[test]
 fn one_bit_flips_of_a_byte() {
     let mut bits: Vec<_> = (0..100)
         .map(|seed| {

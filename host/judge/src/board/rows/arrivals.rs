@@ -19,6 +19,8 @@ pub(super) struct Arrivals<'a> {
     ahead: BTreeSet<u32>,
     /// A row came, and the oldest that is missing is before one that is there.
     pub(super) gap: bool,
+    /// Rows that came although they were there already.
+    pub(super) copies: Vec<u32>,
     unpacked: Vec<u16>,
     pub(super) flow: ControlFlow<()>,
 }
@@ -31,9 +33,15 @@ impl<'a> Arrivals<'a> {
             missing: first_row,
             ahead: BTreeSet::new(),
             gap: false,
+            copies: Vec::new(),
             unpacked: Vec::new(),
             flow: ControlFlow::Continue(()),
         }
+    }
+
+    /// How many rows came although an earlier one has not.
+    pub(super) fn ahead(&self) -> u32 {
+        self.ahead.len() as u32
     }
 
     /// Takes what is a row.
@@ -54,13 +62,18 @@ impl<'a> Arrivals<'a> {
 
     fn take_row(&mut self, found: &RowOut<'_>) -> Result<(), BoardError> {
         let row_sequence = found.place.row_sequence;
+        if row_sequence < self.missing || self.ahead.contains(&row_sequence) {
+            self.copies.push(row_sequence);
+            return Ok(());
+        }
         let Some(row) = self.in_flight.row(row_sequence) else { return Ok(()) };
-        if row_sequence < self.missing || self.flow.is_break() || !self.ahead.insert(row_sequence) {
+        if self.flow.is_break() {
             return Ok(());
         }
         if found.place != row.place {
             return Err(BoardError::WrongPlace { place: found.place });
         }
+        self.ahead.insert(row_sequence);
         self.unpacked.resize(row.frame.width(), 0);
         samples::unpack(found.packed, &mut self.unpacked);
         self.flow = self.traffic.returned(&ReturnedRow {
@@ -69,6 +82,7 @@ impl<'a> Arrivals<'a> {
             generation: found.generation,
             first_latency: found.first_latency,
             last_latency: found.last_latency,
+            pauses: found.pauses,
             samples: &self.unpacked,
         });
         while self.ahead.remove(&self.missing) {

@@ -2,39 +2,69 @@
 
 mod arrivals;
 mod in_flight;
+mod late;
 mod traffic;
 
 use std::time::Duration;
 
-use halfrow_protocol::message::Request;
+use halfrow_protocol::message::{Request, RowPlace};
 use halfrow_protocol::samples;
 
 use super::BoardError;
 use super::conversation::Conversation;
 use super::deadlines::Step;
 use arrivals::Arrivals;
+use late::LateRows;
 
 pub use traffic::{NumberedFrame, ReturnedRow, RowTraffic, Unjudged};
 
 /// Bytes that may wait to be written before another row is packed. Two rows keep a link busy.
 const QUEUE: usize = 8 * 1024;
 
+/// The try whose deadline a row has that is asked for once: by then most of what is late has come.
+const PATIENT: u32 = 3;
+
+/// A row that did not come back although it was asked for only once.
+#[derive(Clone, Debug)]
+pub struct Unreturned {
+    /// Its place.
+    pub place: RowPlace,
+    /// Its samples.
+    pub samples: Vec<u16>,
+    /// Rows that were sent in this stream, this one and those behind it included.
+    pub sent: u32,
+    /// Rows that came back, those behind this one included.
+    pub returned: u32,
+}
+
 /// Streams all frames of `traffic` through the board. Rows are numbered from `conversation.acknowledged` on.
 pub(super) fn stream(
     conversation: &mut Conversation,
     traffic: &mut dyn RowTraffic,
 ) -> Result<(), BoardError> {
+    Stream::new(conversation, traffic, Step::Row.deadline().attempts).run()
+}
+
+/// The same, up to the first row that does not come back at once.
+pub(super) fn stream_once(
+    conversation: &mut Conversation,
+    traffic: &mut dyn RowTraffic,
+) -> Result<Option<Unreturned>, BoardError> {
     let first_row = conversation.acknowledged;
-    let mut stream = Stream {
-        progress_at: conversation.now(),
-        conversation,
-        arrivals: Arrivals::new(traffic, first_row),
-        exhausted: false,
-        sent: first_row,
-        attempts: 1,
-        acknowledgement_sent: first_row,
-    };
-    stream.run()
+    let mut stream = Stream::new(conversation, traffic, 1);
+    match stream.run() {
+        Ok(()) => Ok(None),
+        Err(BoardError::RowMissing { place, .. }) => {
+            let row = stream.arrivals.in_flight.row(stream.missing());
+            Ok(Some(Unreturned {
+                place,
+                samples: row.map(|row| row.frame.row(row.index).to_vec()).unwrap_or_default(),
+                sent: stream.sent - first_row,
+                returned: stream.missing() - first_row + stream.arrivals.ahead(),
+            }))
+        }
+        Err(error) => Err(error),
+    }
 }
 
 struct Stream<'a> {
@@ -46,14 +76,35 @@ struct Stream<'a> {
     sent: u32,
     /// How often the oldest missing row was asked for.
     attempts: u32,
+    /// How often it may be.
+    most: u32,
+    /// When the oldest missing row was first, and last, waited for.
+    missing_since: Duration,
     progress_at: Duration,
+    late: LateRows,
     acknowledgement_sent: u32,
 }
 
-impl Stream<'_> {
+impl<'a> Stream<'a> {
+    fn new(conversation: &'a mut Conversation, traffic: &'a mut dyn RowTraffic, most: u32) -> Self {
+        let (first_row, now) = (conversation.acknowledged, conversation.now());
+        Self {
+            conversation,
+            arrivals: Arrivals::new(traffic, first_row),
+            exhausted: false,
+            sent: first_row,
+            attempts: 1,
+            most,
+            missing_since: now,
+            progress_at: now,
+            late: LateRows::default(),
+            acknowledgement_sent: first_row,
+        }
+    }
+
     fn run(&mut self) -> Result<(), BoardError> {
         self.fetch();
-        self.progress_at = self.conversation.now();
+        self.go_on();
         while self.arrivals.flow.is_continue() && !self.is_complete() {
             self.fill();
             self.receive()?;
@@ -64,6 +115,12 @@ impl Stream<'_> {
         // The last acknowledgement frees the board's banks; nobody waits for it.
         self.acknowledge();
         Ok(())
+    }
+
+    /// From now on the oldest missing row is waited for.
+    fn go_on(&mut self) {
+        self.progress_at = self.conversation.now();
+        self.missing_since = self.progress_at;
     }
 
     fn is_complete(&self) -> bool {
@@ -89,7 +146,7 @@ impl Stream<'_> {
                 if !self.exhausted {
                     self.fetch();
                     // What the host takes to make a frame is not the board's.
-                    self.progress_at = self.conversation.now();
+                    self.go_on();
                 }
                 if self.exhausted {
                     break;
@@ -116,7 +173,7 @@ impl Stream<'_> {
     }
 
     fn receive(&mut self) -> Result<(), BoardError> {
-        let wait = self.patience().saturating_sub(self.conversation.now() - self.progress_at);
+        let wait = self.patience().saturating_sub(self.conversation.since(self.progress_at));
         let missing = self.missing();
         self.arrivals.gap = false;
         let (arrivals, mut taken) = (&mut self.arrivals, Ok(()));
@@ -132,10 +189,22 @@ impl Stream<'_> {
         self.conversation.acknowledged = self.missing();
         taken?;
         if self.missing() > missing {
+            let took = self.conversation.since(self.missing_since);
+            self.conversation.took(self.attempts - 1, took);
+            self.late.came(missing, self.attempts - 1, took);
             self.attempts = 1;
-            self.progress_at = self.conversation.now();
+            self.go_on();
         }
-        if self.arrivals.gap && self.attempts == 1 {
+        for row in std::mem::take(&mut self.arrivals.copies) {
+            self.conversation.tally.strays += 1;
+            if let Some(took) = self.late.came_again(row) {
+                self.conversation.was_late(took);
+                // What was asked for before still arrives, and the missing row stands in the queue behind it.
+                self.progress_at = self.conversation.now();
+                self.attempts = self.attempts.min(2);
+            }
+        }
+        if self.arrivals.gap && self.attempts == 1 && self.most > 1 {
             // Rows come in order, so the missing one was made and got lost on the way.
             return self.ask_again();
         }
@@ -146,17 +215,18 @@ impl Stream<'_> {
     fn patience(&self) -> Duration {
         let in_flight = (self.sent - self.missing()) as usize;
         let row = samples::packed_length(self.arrivals.in_flight.width()) + 64;
-        self.conversation.wait_for(Step::Row, self.conversation.queued() + 2 * in_flight * row)
+        let attempt = if self.most == 1 { PATIENT } else { self.attempts - 1 };
+        self.conversation.wait_for(Step::Row, attempt, self.conversation.queued() + 2 * in_flight * row)
     }
 
     fn overdue(&self) -> bool {
-        self.conversation.now() - self.progress_at >= self.patience()
+        self.conversation.since(self.progress_at) >= self.patience()
     }
 
     fn ask_again(&mut self) -> Result<(), BoardError> {
         let missing = self.missing();
         let Some(place) = self.arrivals.in_flight.row(missing).map(|row| row.place) else { return Ok(()) };
-        if self.attempts == Step::Row.deadline().attempts {
+        if self.attempts == self.most {
             return Err(BoardError::RowMissing { place, attempts: self.attempts });
         }
         tracing::info!("row {} of frame {} is missing; sending it again", place.row, place.frame);

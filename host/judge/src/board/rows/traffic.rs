@@ -27,6 +27,8 @@ pub struct ReturnedRow<'a> {
     pub first_latency: u16,
     /// Pixel clocks from last in to last out.
     pub last_latency: u16,
+    /// Board clocks for which gaps kept the enable off while it entered.
+    pub pauses: u16,
     /// Its samples.
     pub samples: &'a [u16],
 }

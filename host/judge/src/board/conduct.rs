@@ -1,0 +1,195 @@
+//! What a board did over rows that no link can do to it: every packet has a CRC, a session and a number of its own.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::fmt;
+
+use halfrow_protocol::message::{RowOut, RowPlace};
+
+/// ROW_OUT packets that are remembered. One that a link held back for longer is not compared with the others.
+const PACKETS: usize = 256;
+/// Rows of which the first copy is remembered.
+const ROWS: usize = 4096;
+
+/// The board broke the wire's rules, beyond what any link does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Misconduct {
+    /// A row came twice, and not the same both times.
+    CopyDiffers {
+        /// The row.
+        place: RowPlace,
+    },
+    /// A row came that the board was never given.
+    NeverSent {
+        /// The row.
+        place: RowPlace,
+    },
+    /// Two different ROW_OUT packets have the same number.
+    NumberedTwice {
+        /// The row of the second one.
+        place: RowPlace,
+        /// The number in both headers.
+        number: u16,
+    },
+    /// A row left the board behind a later one, by the board's own numbering of its packets.
+    OutOfOrder {
+        /// The row that came too late.
+        place: RowPlace,
+    },
+}
+
+impl fmt::Display for Misconduct {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Self::CopyDiffers { place }
+        | Self::NeverSent { place }
+        | Self::NumberedTwice { place, .. }
+        | Self::OutOfOrder { place }) = self;
+        let RowPlace { row_sequence, frame, row, .. } = place;
+        match self {
+            Self::CopyDiffers { .. } => {
+                write!(
+                    f,
+                    "row {row} of frame {frame} came twice, and not the same both times, each under a CRC that is right"
+                )
+            }
+            Self::NeverSent { .. } => write!(
+                f,
+                "the board returned row {row} of frame {frame}, number {row_sequence} of the session, which it was never \
+                 given"
+            ),
+            Self::NumberedTwice { number, .. } => write!(
+                f,
+                "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and so \
+                 has another one shortly before it"
+            ),
+            Self::OutOfOrder { .. } => write!(
+                f,
+                "the board reorders rows: row {row} of frame {frame} left it behind a later row, by the board's own numbers \
+                 of its packets"
+            ),
+        }
+    }
+}
+
+/// A ROW_OUT packet that came.
+struct Came {
+    number: u16,
+    row_sequence: u32,
+    repeats: u16,
+    digest: u32,
+}
+
+/// What a session's rows have shown.
+#[derive(Default)]
+pub(super) struct Conduct {
+    packets: VecDeque<Came>,
+    /// The digest of each of the last rows, by the row's number, what may differ from copy to copy left out.
+    rows: BTreeMap<u32, u32>,
+    misconduct: Option<Misconduct>,
+}
+
+impl Conduct {
+    /// The first rule that was broken.
+    pub(super) fn misconduct(&self) -> Option<Misconduct> {
+        self.misconduct
+    }
+
+    fn note(&mut self, misconduct: Misconduct) {
+        self.misconduct.get_or_insert(misconduct);
+    }
+
+    /// Takes a row in the packet `number` of the board's count, when rows before `sent` were sent.
+    pub(super) fn row(&mut self, number: u16, row: &RowOut<'_>, sent: u32) {
+        let (place, row_sequence) = (row.place, row.place.row_sequence);
+        if row_sequence >= sent {
+            self.note(Misconduct::NeverSent { place });
+        }
+        let digest = digest(row);
+        let came = Came { number, row_sequence, repeats: row.repeats, digest };
+        if self.packets.iter().any(|earlier| earlier.is_another(&came)) {
+            self.note(Misconduct::NumberedTwice { place, number });
+        }
+        if let Some(late) = self.packets.iter().find_map(|earlier| earlier.misordered(&came)) {
+            let place = if late == row_sequence { place } else { RowPlace { row_sequence: late, ..place } };
+            self.note(Misconduct::OutOfOrder { place });
+        }
+        if *self.rows.entry(row_sequence).or_insert(digest) != digest {
+            self.note(Misconduct::CopyDiffers { place });
+        }
+        if self.rows.len() > ROWS {
+            self.rows.pop_first();
+        }
+        if self.packets.len() == PACKETS {
+            self.packets.pop_front();
+        }
+        self.packets.push_back(came);
+    }
+}
+
+impl Came {
+    /// Whether two packets have one number and are not the same packet, delivered twice.
+    fn is_another(&self, other: &Self) -> bool {
+        let same = (self.row_sequence, self.repeats, self.digest)
+            == (other.row_sequence, other.repeats, other.digest);
+        self.number == other.number && !same
+    }
+
+    /// Of two rows that left for the first time, the one whose packet was numbered behind that of a later row.
+    fn misordered(&self, other: &Self) -> Option<u32> {
+        if self.repeats + other.repeats > 0 || self.row_sequence == other.row_sequence {
+            return None;
+        }
+        // Numbers wrap, and all that is compared lies close together.
+        let numbered_before = other.number.wrapping_sub(self.number) < 1 << 15;
+        let is_before = self.row_sequence < other.row_sequence;
+        (self.number != other.number && numbered_before != is_before)
+            .then(|| self.row_sequence.min(other.row_sequence))
+    }
+}
+
+/// Of all that must be the same in every copy of a row.
+fn digest(row: &RowOut<'_>) -> u32 {
+    let mut hasher = crc32fast::Hasher::new();
+    let RowPlace { frame, row: index, width, last, .. } = row.place;
+    for word in [frame, index, width, u16::from(last), u16::from(row.generation)] {
+        hasher.update(&word.to_le_bytes());
+    }
+    for word in [row.first_latency, row.last_latency, row.pauses] {
+        hasher.update(&word.to_le_bytes());
+    }
+    hasher.update(row.packed);
+    hasher.finalize()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(rows: &[(u16, u32, u16, u8)]) -> Option<Misconduct> {
+        let mut conduct = Conduct::default();
+        for &(number, row_sequence, repeats, sample) in rows {
+            let place = RowPlace { row_sequence, frame: 0, row: row_sequence as u16, width: 2, last: false };
+            let packed = &[sample, 0, 0];
+            let (first_latency, last_latency, pauses, generation) = (44, 44, 0, 1);
+            let row = RowOut { place, generation, first_latency, last_latency, pauses, repeats, packed };
+            conduct.row(number, &row, 9);
+        }
+        conduct.misconduct()
+    }
+
+    #[test]
+    fn what_links_do_is_no_misconduct() {
+        // Lost, twice, overtaken, asked for again, and past the end of the numbers.
+        assert_eq!(found(&[(0, 0, 0, 1), (2, 2, 0, 3), (2, 2, 0, 3), (1, 1, 0, 2), (3, 0, 1, 1)]), None);
+        assert_eq!(found(&[(65_535, 7, 0, 1), (0, 8, 0, 1), (1, 7, 1, 1), (65_535, 7, 0, 1)]), None);
+    }
+
+    #[test]
+    fn what_no_link_does_is() {
+        let is =
+            |rows: &[_], expected: fn(&Misconduct) -> bool| found(rows).is_some_and(|found| expected(&found));
+        assert!(is(&[(0, 0, 0, 1), (1, 0, 1, 2)], |found| matches!(found, Misconduct::CopyDiffers { .. })));
+        assert!(is(&[(0, 0, 0, 1), (0, 1, 0, 1)], |found| matches!(found, Misconduct::NumberedTwice { .. })));
+        assert!(is(&[(0, 9, 0, 1)], |found| matches!(found, Misconduct::NeverSent { .. })));
+        assert!(is(&[(0, 1, 0, 1), (1, 0, 0, 1)], |found| matches!(found, Misconduct::OutOfOrder { .. })));
+    }
+}

@@ -1,0 +1,100 @@
+//! What a board may say of itself: `protocol/WIRE.md` section 3 and `fpga/DATAPATH.md`.
+
+use crate::board::Capabilities;
+
+/// What a capability may be.
+struct Rule {
+    /// Its name in WIRE.md.
+    name: &'static str,
+    /// What is legal, as the end of a sentence.
+    legal: &'static str,
+    value: fn(&Capabilities) -> u16,
+    holds: fn(&Capabilities) -> bool,
+}
+
+/// The widest row and the highest frame that the datapath is defined for.
+const WIDEST: u16 = 2592;
+const HIGHEST: u16 = 2048;
+/// The narrowest row.
+const NARROWEST: u16 = 64;
+/// L = 3 + p: what an output may need beside its column, and the pipeline.
+const LATENCY: std::ops::RangeInclusive<u8> = 3..=super::MAX_LATENCY;
+
+const RULES: [Rule; 11] = [
+    Rule {
+        name: "max_width",
+        legal: "rows have 64 to 2592 samples",
+        value: |board| board.max_width,
+        holds: |board| (NARROWEST..=WIDEST).contains(&board.max_width),
+    },
+    Rule {
+        name: "max_height",
+        legal: "frames have 1 to 2048 rows",
+        value: |board| board.max_height,
+        holds: |board| (1..=HIGHEST).contains(&board.max_height),
+    },
+    Rule {
+        name: "depths",
+        legal: "a board has at least one of 8, 10 and 12 bits",
+        value: |board| board.depths.into(),
+        holds: |board| [8, 10, 12].into_iter().any(|bits| board.sample_depths().has(bits)),
+    },
+    Rule {
+        name: "taps",
+        legal: "a datapath has 5 or 7",
+        value: |board| board.taps.into(),
+        holds: |board| matches!(board.taps, 5 | 7),
+    },
+    Rule {
+        name: "latency",
+        legal: "L is 3 to 32",
+        value: |board| board.latency.into(),
+        holds: |board| LATENCY.contains(&board.latency),
+    },
+    Rule {
+        name: "ring",
+        legal: "M is a power of two that holds the widest row",
+        value: |board| board.ring,
+        holds: |board| board.ring.is_power_of_two() && board.ring >= board.max_width,
+    },
+    Rule {
+        name: "table_banks",
+        legal: "a board has 1 or 2",
+        value: |board| board.table_banks.into(),
+        holds: |board| matches!(board.table_banks, 1 | 2),
+    },
+    Rule {
+        name: "row_banks_in",
+        legal: "a board has at least 2",
+        value: |board| board.row_banks_in.into(),
+        holds: |board| board.row_banks_in >= 2,
+    },
+    Rule {
+        name: "row_banks_out",
+        legal: "a board has at least 2",
+        value: |board| board.row_banks_out.into(),
+        holds: |board| board.row_banks_out >= 2,
+    },
+    Rule {
+        name: "step_ports",
+        legal: "a datapath that reads row factors has at least one port for them",
+        value: |board| board.step_ports.into(),
+        holds: |board| board.step_ports >= 1,
+    },
+    Rule {
+        name: "kernel_ports",
+        legal: "a datapath that reads nodes has at least one port for them",
+        value: |board| board.kernel_ports.into(),
+        holds: |board| board.kernel_ports >= 1,
+    },
+];
+
+/// Why no board can have these capabilities, if none can.
+pub(super) fn impossible(capabilities: &Capabilities) -> Option<String> {
+    let broken = RULES.iter().find(|rule| !(rule.holds)(capabilities))?;
+    let (Rule { name, legal, .. }, value) = (broken, (broken.value)(capabilities));
+    Some(format!(
+        "the board says {name} = {value}, and {legal}; correct what it says of itself (CAPABILITIES in \
+         protocol/WIRE.md), or load another bitstream"
+    ))
+}

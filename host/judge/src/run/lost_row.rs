@@ -1,0 +1,121 @@
+//! A row that did not come back: whether the board swallowed it.
+//!
+//! A row can be lost on either way and late on both, so what did not come back proves nothing. It is the board's only if
+//! the frame is played again with nothing else amiss, a row goes missing again, and the board itself says that it took that row,
+//! and does not give it out when it is asked.
+
+use std::iter;
+
+use halfrow_protocol::MAX_PAYLOAD;
+use halfrow_protocol::message::RowPlace;
+
+use super::findings::End;
+use super::plan::ScheduledFrame;
+use super::steps::Run;
+use crate::board::{BoardError, NumberedFrame, Status, Tally, Unjudged, Unreturned};
+
+/// How often a frame is played again until nothing else is amiss.
+const REPLAYS: usize = 4;
+/// How often a row that went missing is asked for, one time after the other.
+const ASKED: u32 = 3;
+/// Echoes as long as the longest packet, before and behind that.
+const ECHOES: usize = 4;
+
+/// What playing a frame again has shown.
+enum Replay {
+    /// All rows came back.
+    Complete,
+    /// A row went missing, and so may other packets have.
+    Troubled,
+    /// The board swallowed a row.
+    Swallowed { row: u16 },
+}
+
+impl Run<'_> {
+    /// Why the run ends when the row at `place` of `frame` did not come back however often it was asked for.
+    pub(super) fn row_lost(&mut self, frame: &ScheduledFrame, place: RowPlace) -> End {
+        let RowPlace { frame: number, row: lost, .. } = place;
+        let once = format!("row {lost} of frame {number} did not come back however often it was asked for");
+        let unclear = |why: &str| End::error("frames", crate::verdict::Exit::Error, format!("{once}; {why}"));
+        for _ in 0..REPLAYS {
+            match self.replay(frame) {
+                Err(error) => return End::board("frames", &error),
+                Ok(Replay::Swallowed { row }) => {
+                    return End::failed(
+                        "frames",
+                        format!(
+                            "row {lost} of frame {number} went into the board and never came out; played again, with \
+                             nothing else lost or late, row {row} was lost, and the board counts it as taken"
+                        ),
+                        "Check the row banks and the row player: the board took the row and lost it inside.",
+                    );
+                }
+                Ok(Replay::Complete) => {
+                    return unclear(
+                        "played again, the frame came back whole; check cable and connectors, and run again",
+                    );
+                }
+                Ok(Replay::Troubled) => {}
+            }
+        }
+        unclear(
+            "played again, other packets were lost or late as well, so it may be the link; check cable, connectors and rate",
+        )
+    }
+
+    fn replay(&mut self, frame: &ScheduledFrame) -> Result<Replay, BoardError> {
+        let before = self.board.tally();
+        self.board.drop_rows()?;
+        self.board.status(true)?;
+        let first_row = self.board.acknowledged();
+        let Ok(input) = self.plan.render(frame) else { return Ok(Replay::Troubled) };
+        let frame = NumberedFrame { number: frame.number, frame: input };
+        let Some(row) = self.board.stream_once(&mut Unjudged(iter::once(frame)))? else {
+            return Ok(Replay::Complete);
+        };
+        let mut echoed = self.echoes_pass()?;
+        for _ in 0..ASKED {
+            self.board.send_again(&row);
+            self.board.status(false)?;
+        }
+        echoed &= self.echoes_pass()?;
+        let status = self.board.status(false)?;
+        let whole = echoed
+            && is_calm(before, self.board.tally())
+            && u64::from(status.packets) == self.board.packets_since_clear()
+            && status.crc_errors + status.framing_errors + status.foreign_packets == 0;
+        let row_number = row.place.row;
+        let swallowed = whole && was_taken(&status, first_row, &row) && is_withheld(&status, &row);
+        Ok(if swallowed { Replay::Swallowed { row: row_number } } else { Replay::Troubled })
+    }
+
+    fn echoes_pass(&mut self) -> Result<bool, BoardError> {
+        let bytes: Vec<u8> = (0..MAX_PAYLOAD).map(|place| (place % 251) as u8).collect();
+        let mut pass = true;
+        for _ in 0..ECHOES {
+            pass &= self.board.echo(&bytes)?.0;
+        }
+        Ok(pass)
+    }
+}
+
+/// Whether nothing was lost, damaged, late or doubled between two counts, as far as the host can see.
+fn is_calm(before: Tally, after: Tally) -> bool {
+    let troubles = |tally: Tally| (tally.retries, tally.strays, tally.damaged_in, tally.line_errors.sum());
+    troubles(before) == troubles(after)
+}
+
+/// Whether the board says that it took the row, and has all that it needs to bring it out: a row's second half leaves
+/// while the next one enters, or behind the last of a frame.
+fn was_taken(status: &Status, first_row: u32, row: &Unreturned) -> bool {
+    let is_pushed_out = row.place.last || first_row + row.sent > row.place.row_sequence + 1;
+    status.rows_in == row.sent && status.next_row_in == first_row + row.sent && is_pushed_out
+}
+
+/// Whether the board says that nobody acknowledged the row, and gives it out all the same neither by itself nor when it is
+/// sent again: it counts no row out beside those that came, or calls it unneeded.
+fn is_withheld(status: &Status, row: &Unreturned) -> bool {
+    status.next_row_out == row.place.row_sequence
+        && status.rows_repeated == 0
+        && (status.rows_out == row.returned || status.rows_unneeded == ASKED)
+}

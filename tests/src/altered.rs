@@ -1,0 +1,153 @@
+//! A mock board whose packets are rewritten on their way, CRC and all: boards that are wrong in what they say, and links that
+//! do to whole packets what no fault of the mock's wire does.
+
+use std::convert::Infallible;
+use std::fmt;
+use std::time::Duration;
+
+use halfrow::link::{Candidate, WireLink};
+use halfrow::report::Report;
+use halfrow::target::BoardKind;
+use halfrow_mock::{Board, Endpoint, Options, Wire, WireOptions};
+use halfrow_protocol::message::Capabilities;
+use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply};
+
+use crate::system::System;
+
+/// Where a packet goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Toward {
+    /// From the host.
+    Board,
+    /// From the board.
+    Host,
+}
+
+/// A packet that may be changed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Passing {
+    /// Its header.
+    pub header: Header,
+    /// Its payload.
+    pub payload: Vec<u8>,
+}
+
+impl Passing {
+    /// Whether it is of this kind.
+    #[must_use]
+    pub fn is(&self, kind: Kind) -> bool {
+        self.header.kind == kind.code()
+    }
+
+    /// What the board says, if it does.
+    #[must_use]
+    pub fn reply(&self) -> Option<Reply<'_>> {
+        Reply::read(&Packet { header: self.header, payload: &self.payload }).ok()
+    }
+
+    /// Puts another payload into it.
+    #[must_use]
+    pub fn saying(&self, reply: &Reply<'_>) -> Self {
+        let mut payload = Vec::new();
+        reply.write(&mut payload);
+        Self { header: self.header, payload }
+    }
+}
+
+/// The mock board behind packets that `alter` rewrites: each becomes those that it returns.
+pub struct Altered<F> {
+    board: Board,
+    alter: F,
+    from_host: Decoder,
+    from_board: Decoder,
+    encoder: Encoder,
+    outgoing: Vec<u8>,
+}
+
+impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Altered<F> {
+    /// The mock board of the build `options`, whose packets `alter` rewrites.
+    ///
+    /// # Panics
+    /// If there can be no such board.
+    pub fn new(options: &Options, alter: F) -> Self {
+        Self {
+            board: Board::new(options, None).unwrap(),
+            alter,
+            from_host: Decoder::new(),
+            from_board: Decoder::new(),
+            encoder: Encoder::new(),
+            outgoing: Vec::new(),
+        }
+    }
+
+    /// The board as one that is about to be opened.
+    pub fn candidate(self) -> Candidate
+    where
+        F: 'static,
+    {
+        let wire = Wire::new(self, WireOptions::default(), None);
+        let link = Box::new(WireLink::new(wire, "an altered board", false));
+        Candidate { target: "altered".to_owned(), kind: BoardKind::Mock, link }
+    }
+
+    fn passed(&mut self, toward: Toward, bytes: &[u8]) -> Vec<u8> {
+        let decoder = if toward == Toward::Board { &mut self.from_host } else { &mut self.from_board };
+        let (mut rest, mut wire) = (bytes, Vec::new());
+        while let Some(packet) = decoder.next(&mut rest) {
+            // What is damaged is nobody's.
+            let Ok(Packet { header, payload }) = packet else { continue };
+            for packet in (self.alter)(toward, Passing { header, payload: payload.to_vec() }) {
+                let write = |payload: &mut Vec<u8>| payload.extend(&packet.payload);
+                self.encoder.encode(&packet.header, write, &mut wire).unwrap();
+            }
+        }
+        wire
+    }
+}
+
+impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Endpoint for Altered<F> {
+    type Failure = Infallible;
+
+    fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), Infallible> {
+        let passed = self.passed(Toward::Board, bytes);
+        self.board.receive(&passed, now);
+        let said = std::mem::take(self.board.outgoing());
+        let said = self.passed(Toward::Host, &said);
+        self.outgoing.extend(said);
+        Ok(())
+    }
+
+    fn outgoing(&mut self) -> &mut Vec<u8> {
+        &mut self.outgoing
+    }
+}
+
+impl<F> fmt::Debug for Altered<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Altered").field("board", &self.board).finish_non_exhaustive()
+    }
+}
+
+/// The report on the mock board of `system` whose packets `alter` rewrites.
+#[must_use]
+pub fn judge(system: &System, alter: impl FnMut(Toward, Passing) -> Vec<Passing> + 'static) -> Report {
+    system.judge_candidate(Altered::new(&Options::default(), alter).candidate())
+}
+
+/// The same where every packet becomes one.
+#[must_use]
+pub fn judge_each(system: &System, mut alter: impl FnMut(Toward, Passing) -> Passing + 'static) -> Report {
+    judge(system, move |toward, packet| vec![alter(toward, packet)])
+}
+
+/// The report on a board that is sound but for what it says of itself.
+#[must_use]
+pub fn judge_claims(system: &System, change: impl Fn(&mut Capabilities) + 'static) -> Report {
+    judge_each(system, move |_, packet| match packet.reply() {
+        Some(Reply::Capabilities(mut capabilities)) => {
+            change(&mut capabilities);
+            packet.saying(&Reply::Capabilities(capabilities))
+        }
+        _ => packet,
+    })
+}

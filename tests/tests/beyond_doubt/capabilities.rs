@@ -1,0 +1,63 @@
+//! Boards that say of themselves what no board can be: refused, by name, and never judged.
+
+use halfrow::verdict::Exit;
+use halfrow_protocol::message::Capabilities;
+use halfrow_tests::altered::judge_claims;
+use halfrow_tests::system::System;
+
+/// A capability by its name in WIRE.md, and what it is set to.
+type Claim = (&'static str, fn(&mut Capabilities));
+
+/// What no board can say. The values are those of WIRE.md section 3 and DATAPATH.md, just outside.
+const IMPOSSIBLE: &[Claim] = &[
+    ("max_width = 63", |board| board.max_width = 63),
+    ("max_width = 2593", |board| board.max_width = 2593),
+    ("max_height = 0", |board| board.max_height = 0),
+    ("max_height = 2049", |board| board.max_height = 2049),
+    ("depths = 0", |board| board.depths = 0),
+    ("depths = 248", |board| board.depths = 0xf8),
+    ("taps = 0", |board| board.taps = 0),
+    ("taps = 6", |board| board.taps = 6),
+    ("taps = 255", |board| board.taps = 255),
+    ("latency = 0", |board| board.latency = 0),
+    ("latency = 2", |board| board.latency = 2),
+    ("latency = 33", |board| board.latency = 33),
+    ("ring = 0", |board| board.ring = 0),
+    ("ring = 1", |board| board.ring = 1),
+    ("ring = 100", |board| (board.ring, board.max_width) = (100, 64)),
+    ("ring = 65535", |board| board.ring = 65_535),
+    ("ring = 1024", |board| board.ring = 1024),
+    ("table_banks = 0", |board| board.table_banks = 0),
+    ("table_banks = 3", |board| board.table_banks = 3),
+    ("row_banks_in = 1", |board| board.row_banks_in = 1),
+    ("row_banks_out = 1", |board| board.row_banks_out = 1),
+    ("step_ports = 0", |board| board.step_ports = 0),
+    ("kernel_ports = 0", |board| board.kernel_ports = 0),
+];
+
+/// What is unusual, and legal.
+const UNUSUAL: &[Claim] = &[
+    ("the least", |board| (board.max_width, board.max_height, board.ring) = (64, 8, 64)),
+    ("the most", |board| (board.max_width, board.max_height, board.ring) = (2592, 2048, 16_384)),
+    ("an odd width", |board| board.max_width = 2047),
+    ("12 bits alone", |board| board.depths = 4),
+    ("a depth to come", |board| board.depths = 0x0f),
+];
+
+#[test]
+fn a_board_that_cannot_be_is_refused_by_the_capability_s_name() {
+    for &(claim, change) in IMPOSSIBLE {
+        let report = judge_claims(&System::TINY, change);
+        assert_eq!(report.exit_code, Exit::Refused, "{claim}: {}", report.headline);
+        assert!(report.headline.contains(&format!("the board says {claim}, and ")), "{}", report.headline);
+        assert!(report.frames.is_empty());
+    }
+}
+
+#[test]
+fn a_board_that_is_only_unusual_is_judged() {
+    for &(claim, change) in UNUSUAL {
+        let report = judge_claims(&System::TINY, change);
+        assert_eq!(report.exit_code, Exit::Pass, "{claim}: {}", report.headline);
+    }
+}

@@ -1,0 +1,205 @@
+//! What boards do over rows that no link can do, and what links do that is no fault of a board.
+
+use halfrow::report::Report;
+use halfrow::verdict::Verdict;
+use halfrow_protocol::message::{RowOut, RowPlace};
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
+use halfrow_tests::system::{System, failed_check};
+
+#[track_caller]
+fn fails(report: &Report, check: &str, sentence: &str) {
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline);
+    assert_eq!(failed_check(report), Some(check), "{}", report.headline);
+    assert!(report.headline.contains(sentence), "{}", report.headline);
+}
+
+#[track_caller]
+fn passes(report: &Report) {
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline);
+}
+
+/// The place of a returned row.
+fn place(packet: &Passing) -> Option<RowPlace> {
+    match packet.reply() {
+        Some(Reply::RowOut(row)) => Some(row.place),
+        _ => None,
+    }
+}
+
+/// A ROW_OUT packet under another number, with what `change` makes of its row.
+fn changed(packet: &Passing, number: u16, change: impl FnOnce(&mut RowOut<'_>, &mut Vec<u8>)) -> Passing {
+    let Some(Reply::RowOut(mut row)) = packet.reply() else { panic!("no row") };
+    let mut packed = row.packed.to_vec();
+    change(&mut row, &mut packed);
+    let mut other = packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row }));
+    other.header.sequence = number;
+    other
+}
+
+#[test]
+fn a_board_whose_replies_have_no_flag_is_understood() {
+    passes(&judge_each(&System::TINY, |_, mut packet| {
+        packet.header.reply = false;
+        packet
+    }));
+    passes(&judge_each(&System::TINY, |_, mut packet| {
+        packet.header.reply = true;
+        packet
+    }));
+}
+
+/// A row that comes again just before the answer to STATUS, under a number that is the request's as well.
+#[test]
+fn rows_are_no_answers_whatever_their_number() {
+    let mut last: Option<Passing> = None;
+    passes(&judge(&System::TINY, move |toward, packet| {
+        if toward == Toward::Host && packet.is(Kind::RowOut) {
+            last = Some(packet.clone());
+        }
+        match last.take_if(|_| toward == Toward::Host && packet.is(Kind::Status)) {
+            Some(row) => vec![changed(&row, packet.header.sequence, |row, _| row.repeats = 1), packet],
+            None => vec![packet],
+        }
+    }));
+}
+
+#[test]
+fn a_second_copy_that_differs_is_the_board_s_fault() {
+    let mut extra = 0;
+    let report = judge(&System::TINY, move |_, mut packet| {
+        let Some(at) = place(&packet) else { return vec![packet] };
+        packet.header.sequence = packet.header.sequence.wrapping_add(extra);
+        if at.row != 3 {
+            return vec![packet];
+        }
+        extra += 1;
+        let number = packet.header.sequence.wrapping_add(1);
+        let copy = changed(&packet, number, |row, packed| {
+            row.repeats = 1;
+            packed.iter_mut().for_each(|byte| *byte ^= 0xff);
+        });
+        vec![packet, copy]
+    });
+    fails(&report, "frames", "row 3 of frame 0 came twice, and not the same both times");
+}
+
+#[test]
+fn a_second_copy_that_is_the_same_is_none() {
+    passes(&judge(&System::TINY, |_, packet| match place(&packet) {
+        Some(_) => vec![packet.clone(), packet],
+        None => vec![packet],
+    }));
+}
+
+#[test]
+fn rows_that_nobody_sent_are_the_board_s_fault() {
+    let mut extra = 0;
+    let report = judge(&System::TINY, move |_, mut packet| {
+        let Some(at) = place(&packet) else { return vec![packet] };
+        packet.header.sequence = packet.header.sequence.wrapping_add(extra);
+        if at.row != 3 {
+            return vec![packet];
+        }
+        extra += 1;
+        let number = packet.header.sequence.wrapping_add(1);
+        let invented = changed(&packet, number, |row, _| row.place.row_sequence += 1_000_000);
+        vec![packet, invented]
+    });
+    fails(&report, "frames", "which it was never given");
+}
+
+#[test]
+fn a_number_of_packets_that_does_not_count_is_the_board_s_fault() {
+    let report = judge_each(&System::TINY, |_, mut packet| {
+        if packet.is(Kind::RowOut) {
+            packet.header.sequence = 0;
+        }
+        packet
+    });
+    fails(
+        &report,
+        "frames",
+        "the board numbers its ROW_OUT packets wrongly: row 1 of frame 0 has the number 0",
+    );
+}
+
+/// Rows 4 and 5 of every frame, the other way round. With `honest`, the board numbers its packets as it sends them.
+fn reorders(honest: bool) -> Report {
+    let mut held: Option<Passing> = None;
+    judge(&System::TINY, move |_, packet| match place(&packet) {
+        Some(at) if at.row == 4 => {
+            held = Some(packet);
+            Vec::new()
+        }
+        Some(at) if at.row == 5 => {
+            let Some(mut before) = held.take() else { return vec![packet] };
+            let mut after = packet;
+            if honest {
+                std::mem::swap(&mut before.header.sequence, &mut after.header.sequence);
+            }
+            vec![after, before]
+        }
+        _ => vec![packet],
+    })
+}
+
+#[test]
+fn a_board_that_reorders_rows_is_told_from_a_link_that_does() {
+    fails(&reorders(true), "frames", "the board reorders rows: row 4 of frame 0 left it behind a later row");
+    passes(&reorders(false));
+}
+
+/// STATUS with another value in one counter.
+fn with_counter(change: fn(&mut halfrow_protocol::message::Status)) -> Report {
+    judge_each(&System::TINY, move |_, packet| match packet.reply() {
+        Some(Reply::Status(mut status)) => {
+            change(&mut status);
+            packet.saying(&Reply::Status(status))
+        }
+        _ => packet,
+    })
+}
+
+#[test]
+fn counters_are_compared_with_what_the_host_saw() {
+    for (sentence, change) in [
+        ("rows in, and it is", (|status| status.rows_in += 1) as fn(&mut halfrow_protocol::message::Status)),
+        ("rows out, and it is", |status| status.rows_out += 1),
+        ("as the first row that has not arrived", |status| status.next_row_in += 1),
+        ("as the first row that is not acknowledged", |status| status.next_row_out += 1),
+        ("as the tables' generation, and it is 2", |status| status.generation = 7),
+        ("rows sent again, and it is 0", |status| status.rows_repeated = 3),
+        ("rows that were not needed, and it is 0", |status| status.rows_unneeded = 3),
+        ("1 refusals, and it is 0", |status| status.refusals = 1),
+        ("packets of another session, and it is 0", |status| status.foreign_packets = 2),
+    ] {
+        fails(&with_counter(change), "counters", sentence);
+    }
+}
+
+#[test]
+fn damaged_packets_that_nobody_missed_are_only_noted() {
+    let report = with_counter(|status| status.crc_errors = 5);
+    passes(&report);
+    let counters = report.checks.iter().find(|check| check.name == "counters").unwrap();
+    assert!(counters.detail.contains("it counts 5 damaged packets, and nothing had to be sent again"));
+}
+
+#[test]
+fn gaps_are_compared_with_their_seed() {
+    let report = judge_each(&System::TINY, |_, packet| match place(&packet) {
+        Some(at) if at.row == 5 => changed(&packet, packet.header.sequence, |row, _| row.pauses += 1),
+        _ => packet,
+    });
+    fails(&report, "counters", "was kept waiting by gaps for 1 board clocks");
+}
+
+/// The comparisons hold for the Verilog as for the mock, over sound links and poor ones.
+#[cfg(feature = "sim")]
+#[test]
+fn the_verilog_counts_what_the_host_sees() {
+    for board in ["sim", "sim,fault=lose,rate=0.02,seed=3", "sim,fault=stall,every=12000,seconds=3"] {
+        passes(&System::TINY.judge_at(board));
+    }
+}

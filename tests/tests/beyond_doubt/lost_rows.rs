@@ -1,0 +1,102 @@
+//! Rows that do not come back: the board's fault only when the board says so itself.
+
+use halfrow::report::Report;
+use halfrow::verdict::Verdict;
+use halfrow_protocol::message::Status;
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Passing, Toward, judge};
+use halfrow_tests::system::System;
+
+/// A row of every frame, or none.
+fn is_row_out(packet: &Passing, row: u16) -> bool {
+    matches!(packet.reply(), Some(Reply::RowOut(found)) if found.place.row == row)
+}
+
+fn row_of_request(packet: &Passing) -> Option<u16> {
+    // Behind the row sequence number and the frame.
+    packet.is(Kind::RowIn).then(|| u16::from_le_bytes([packet.payload[6], packet.payload[7]]))
+}
+
+#[test]
+fn a_board_that_swallows_rows_fails() {
+    for row in [0, 3, 7] {
+        let report = System::TINY.judge(&format!(",fault=lost-row,row={row}"));
+        assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline);
+        let sentence = format!("row {row} of frame 0 went into the board and never came out");
+        assert!(report.headline.contains(&sentence), "{}", report.headline);
+    }
+}
+
+/// A link, or a front end: the board counts that it sent the row again and again.
+#[test]
+fn rows_that_the_board_says_it_sent_are_lost_behind_it() {
+    for row in [0, 3, 7] {
+        let report = judge(&System::TINY, move |toward, packet| {
+            let lost = toward == Toward::Host && is_row_out(&packet, row);
+            if lost { Vec::new() } else { vec![packet] }
+        });
+        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline);
+        assert!(report.headline.contains(&format!("row {row} of frame 0")), "{}", report.headline);
+    }
+}
+
+#[test]
+fn rows_that_never_reach_the_board_are_lost_in_front_of_it() {
+    for row in [0, 3, 7] {
+        let report = judge(&System::TINY, move |toward, packet| {
+            let lost = toward == Toward::Board && row_of_request(&packet) == Some(row);
+            if lost { Vec::new() } else { vec![packet] }
+        });
+        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline);
+    }
+}
+
+/// Row 3 stays inside the board when row 4 never reaches it, and the board is right to say that it needs row 3 no more.
+#[test]
+fn a_row_that_waits_for_its_successor_is_not_swallowed() {
+    let mut copies = 0;
+    let report = judge(&System::TINY, move |toward, packet| match row_of_request(&packet) {
+        Some(4) if toward == Toward::Board => Vec::new(),
+        // The counts of packets agree all the same.
+        Some(3) if toward == Toward::Board => {
+            copies += 1;
+            if copies % 2 == 0 { vec![packet.clone(), packet] } else { vec![packet] }
+        }
+        _ => vec![packet],
+    });
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline);
+}
+
+/// What a sound board's row 3 comes to that never leaves its front end, when `change` is made to its counters: as a
+/// swallowed row looks from here.
+fn withheld(change: fn(&mut Status)) -> Report {
+    judge(&System::TINY, move |_, packet| match packet.reply() {
+        Some(Reply::Status(mut status)) => {
+            (status.rows_repeated, status.rows_unneeded) = (0, 3);
+            change(&mut status);
+            vec![packet.saying(&Reply::Status(status))]
+        }
+        Some(Reply::RowOut(row)) if row.place.row == 3 => Vec::new(),
+        _ => vec![packet],
+    })
+}
+
+/// Each takes one of the board's words away that FAIL needs.
+#[test]
+fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
+    let admitted = withheld(|_| {});
+    assert_eq!(admitted.verdict, Verdict::Fail, "{}", admitted.headline);
+    let denials: [(&str, fn(&mut Status)); 7] = [
+        ("it did not take it", |status| status.rows_in = status.rows_in.saturating_sub(1)),
+        ("it waits for it", |status| status.next_row_in = status.next_row_out),
+        ("it sent it again", |status| status.rows_repeated += 1),
+        ("it brought it out", |status| status.rows_unneeded = 0),
+        ("it was acknowledged", |status| status.next_row_out += 1),
+        ("packets are missing", |status| status.packets = status.packets.saturating_sub(1)),
+        ("packets were damaged", |status| status.crc_errors += 1),
+    ];
+    for (what, denial) in denials {
+        let report = withheld(denial);
+        assert_eq!(report.verdict, Verdict::Error, "{what}: {}", report.headline);
+    }
+}

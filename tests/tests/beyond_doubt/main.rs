@@ -1,0 +1,12 @@
+//! FAIL is the board's beyond doubt, and ERROR no more often than it must be: links that stall, lose, repeat and reorder
+//! before sound boards, and boards that are wrong in what they say.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+mod capabilities;
+mod conduct;
+mod lost_rows;
+mod recordings;
+mod stale_packets;
+mod stalls;

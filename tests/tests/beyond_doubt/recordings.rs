@@ -1,0 +1,104 @@
+//! Clocks that go back, as that of a spoilt recording does.
+
+use std::cell::Cell;
+use std::time::Duration;
+
+use halfrow::link::{Candidate, Link, LinkError};
+use halfrow::target::Target;
+use halfrow::verdict::Verdict;
+use halfrow_tests::dice::Dice;
+use halfrow_tests::program::Folder;
+use halfrow_tests::system::System;
+
+/// Where the exchanges of a recording begin: behind the magic and one line.
+fn first_exchange(recording: &[u8]) -> usize {
+    let mut lines =
+        recording.iter().enumerate().filter(|(_, byte)| **byte == b'\n').map(|(place, _)| place + 1);
+    lines.nth(1).unwrap()
+}
+
+/// Gives every exchange of a recording another time.
+fn retimed(recording: &[u8], mut time: impl FnMut(u64) -> u64) -> Vec<u8> {
+    let (mut spoilt, mut at) = (recording.to_vec(), first_exchange(recording));
+    while let Some(head) = recording.get(at..at + 16) {
+        let then = u64::from_le_bytes(head[..8].try_into().unwrap());
+        let length = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().unwrap()) as usize;
+        spoilt[at..at + 8].copy_from_slice(&time(then).to_le_bytes());
+        at += 16 + length(&head[8..12]) + length(&head[12..16]);
+    }
+    spoilt
+}
+
+#[test]
+fn a_recording_whose_times_go_back_is_judged_or_refused() {
+    const SMALL: [&str; 4] = ["--width", "64", "--height", "8"];
+    let folder = Folder::new();
+    let verify = |board: &str, more: &[&str]| {
+        let call = ["verify", "--json", "--frame", "builtin:noise", "--board", board];
+        folder.halfrow(call.into_iter().chain(SMALL).chain(more.iter().copied()))
+    };
+    let recorded = verify("mock,speed=100000,delay=0.01", &["--record", "sound.rec"]);
+    assert_eq!(recorded.code, Some(0), "{}{}", recorded.stdout, recorded.stderr);
+    let sound = folder.read("sound.rec");
+    let mut dice = Dice::new(11);
+    let last = 1_000_000_000_000;
+    let mut wild = |_| dice.below(5_000_000_000) as u64;
+    for (name, spoilt) in [
+        ("backwards", retimed(&sound, |then| last - then)),
+        ("never", retimed(&sound, |_| 0)),
+        ("the end of time", retimed(&sound, |then| u64::MAX - then)),
+        ("wild", retimed(&sound, &mut wild)),
+        ("wilder", retimed(&sound, &mut wild)),
+    ] {
+        folder.write("spoilt.rec", &spoilt);
+        let ended = verify("replay:spoilt.rec", &[]);
+        assert!(matches!(ended.code, Some(0 | 3)), "{name}: {:?} {}", ended.code, ended.stderr);
+    }
+}
+
+/// A link whose clock goes back at every other look.
+struct Backwards {
+    link: Box<dyn Link>,
+    looks: Cell<u64>,
+}
+
+impl Link for Backwards {
+    fn exchange(&mut self, out: &[u8], back: &mut Vec<u8>, wait: Duration) -> Result<usize, LinkError> {
+        self.link.exchange(out, back, wait)
+    }
+
+    fn now(&self) -> Duration {
+        self.looks.set(self.looks.get() + 1);
+        Duration::from_millis(1_000_000)
+            .saturating_sub(Duration::from_micros(self.looks.get() % 2 + self.looks.get()))
+    }
+
+    fn bytes_per_second(&self) -> Option<f64> {
+        None
+    }
+
+    fn name(&self) -> String {
+        "a link whose clock goes back".to_owned()
+    }
+}
+
+fn backwards() -> Candidate {
+    let target: Target = "mock".parse().unwrap();
+    let Candidate { target, kind, link } = halfrow::link::open(&target).unwrap();
+    Candidate { target, kind, link: Box::new(Backwards { link, looks: Cell::new(0) }) }
+}
+
+#[test]
+fn a_clock_that_goes_back_costs_nothing_but_the_time() {
+    let report = System::TINY.judge_candidate(backwards());
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline);
+}
+
+#[test]
+fn the_link_test_bears_such_a_clock() {
+    let options = halfrow::board::OpenOptions::default();
+    let mut board =
+        halfrow::board::Board::open(backwards().link, &options).map_err(|(error, _)| error).unwrap();
+    let figures = halfrow::link_test::run(&mut board, Duration::from_millis(50), 1).unwrap();
+    assert_eq!((figures.errors.wrong, figures.to_board.seconds), (0, 0.0));
+}

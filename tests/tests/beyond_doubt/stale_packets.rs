@@ -1,0 +1,63 @@
+//! Links that deliver a second copy of a request late, behind newer ones: a sound board is never FAIL for it, and a broken one
+//! never PASS.
+
+use std::collections::VecDeque;
+
+use halfrow::report::Report;
+use halfrow::verdict::Verdict;
+use halfrow_protocol::Kind;
+use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::system::System;
+
+/// A link that delivers the request number `which` of a kind once more, in front of the request number `before` of another, and
+/// may lose the answer to that copy.
+fn late_copy(which: (Kind, usize), before: (Kind, usize), answered: bool) -> Report {
+    let (mut seen, mut waited) = (0, 0);
+    let mut copy: Option<Passing> = None;
+    // The answers to be lost, which come in the order of the requests.
+    let mut to_lose = VecDeque::new();
+    let alter = move |toward, packet: Passing| {
+        if toward == Toward::Host {
+            let is_answer = to_lose.front() == Some(&(packet.header.kind, packet.header.sequence));
+            return if is_answer && to_lose.pop_front().is_some() { Vec::new() } else { vec![packet] };
+        }
+        let mut passed = Vec::new();
+        waited += usize::from(packet.is(before.0) && copy.is_some());
+        if waited > before.1
+            && let Some(late) = copy.take()
+        {
+            if !answered {
+                to_lose.push_back((late.header.kind, late.header.sequence));
+            }
+            waited = 0;
+            passed.push(late);
+        }
+        seen += usize::from(packet.is(which.0));
+        if packet.is(which.0) && seen == which.1 + 1 {
+            copy = Some(packet.clone());
+        }
+        passed.push(packet);
+        passed
+    };
+    System::TINY.judge_candidate(Altered::new(&halfrow_mock::Options::default(), alter).candidate())
+}
+
+#[test]
+fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
+    let requests = [Kind::Status, Kind::Reset, Kind::TableWrite, Kind::Commit, Kind::Configure];
+    let others = [Kind::TableCrc, Kind::Commit, Kind::RowIn, Kind::Status];
+    let mut ends = Vec::new();
+    for which in requests.into_iter().flat_map(|kind| (0..3).map(move |number| (kind, number))) {
+        for before in others.into_iter().flat_map(|kind| [0, 3, 40].map(|number| (kind, number))) {
+            for answered in [true, false] {
+                let report = late_copy(which, before, answered);
+                let what = format!("{which:?} before {before:?}, answered: {answered}: {}", report.headline);
+                assert_ne!(report.verdict, Verdict::Fail, "{what}");
+                ends.push(report.verdict);
+            }
+        }
+    }
+    // Most of them do no harm, and some would have.
+    let errors = ends.iter().filter(|&&verdict| verdict == Verdict::Error).count();
+    assert!(errors > 0 && 2 * errors < ends.len(), "{errors} errors of {}", ends.len());
+}

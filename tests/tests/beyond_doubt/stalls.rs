@@ -1,0 +1,52 @@
+//! Links that only stand still: a sound board passes.
+
+use std::time::Duration;
+
+use halfrow::report::Report;
+use halfrow::verdict::Verdict;
+use halfrow_tests::proxy::{Proxy, Suffers};
+use halfrow_tests::served::Served;
+use halfrow_tests::system::System;
+
+/// The system with which a false FAIL was seen.
+const SEEN: System = System { width: 128, height: 72, radius: 73.78, board: "mock", ring: 2048 };
+
+const STALL: Duration = Duration::from_secs(3);
+
+#[track_caller]
+fn passes(report: &Report, what: &str) {
+    assert_eq!(report.verdict, Verdict::Pass, "{what}: {}", report.headline);
+}
+
+/// Judges a served board behind a proxy whose both directions stand still behind every 12,000 bytes from the host.
+#[track_caller]
+fn passes_behind_a_proxy(system: &System) {
+    let served = Served::on_a_tcp_port("127.0.0.1", "mock");
+    let stalls = Suffers::Stalls { every: 12_000, time: STALL, both: true };
+    let proxy = Proxy::before(served.address(), stalls, Suffers::Nothing, 0);
+    passes(&system.judge_at(proxy.target()), "behind a proxy");
+}
+
+#[test]
+fn a_proxy_that_stands_still_now_and_then_costs_no_verdict() {
+    passes_behind_a_proxy(&System { height: 16, ..SEEN });
+}
+
+/// A good board behind a link that only stalls, as it was seen to fail.
+#[test]
+#[ignore = "a minute long; scripts/soak runs it"]
+fn the_link_that_gave_a_false_fail_passes() {
+    passes_behind_a_proxy(&SEEN);
+}
+
+#[test]
+fn on_the_virtual_clock_every_stall_within_the_patience_passes() {
+    for every in [5000, 8000, 12_000, 24_000] {
+        for (toward, longest) in [("board", 9.0), ("host", 9.0), ("both", 5.0)] {
+            for seconds in [0.5, 3.0, longest] {
+                let options = format!(",fault=stall,every={every},seconds={seconds},toward={toward}");
+                passes(&SEEN.judge(&options), &options);
+            }
+        }
+    }
+}
