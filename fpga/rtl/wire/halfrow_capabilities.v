@@ -39,8 +39,13 @@ module halfrow_capabilities #(
     localparam KERNEL_PORTS = 2;
 
     function integer bytes_of(input [8*69-1:0] name);
-        for (bytes_of = 0; bytes_of < 69 && name[8*bytes_of +: 8] != 8'd0; bytes_of = bytes_of + 1);
+        reg [8*69-1:0] rest;
+        begin
+            rest = name;
+            for (bytes_of = 0; rest[7:0] != 8'd0; bytes_of = bytes_of + 1) rest = rest >> 8;
+        end
     endfunction
+
     localparam NAME_LENGTH = bytes_of(NAME);
     generate
         if (NAME_LENGTH < 1 || NAME_LENGTH > 68) halfrow_illegal_NAME has_1_to_68_bytes ();

@@ -250,7 +250,7 @@ module halfrow_dispatcher #(
                 KIND_TABLE_READ: {source, length} <= {FROM_TABLE, read_length};
                 KIND_TABLE_CRC: {source, length} <= {FROM_CRC, 13'd4};
                 KIND_COMMIT: {source, length} <= {FROM_COMMIT, 13'd1};
-                default:;
+                default: ;
             endcase
     end
 

@@ -26,7 +26,7 @@ module halfrow_request (
             KIND_HELLO, KIND_COMMIT: least = 4'd11;
             KIND_STATUS: least = 4'd1;
             KIND_RESET: least = 4'd5;
-            KIND_TABLE_WRITE, KIND_TABLE_READ, KIND_TABLE_CRC: least = 4'd7;
+            KIND_TABLE_WRITE, KIND_TABLE_READ, KIND_TABLE_CRC: least = SPAN_BYTES[3:0];
             KIND_CONFIGURE: least = 4'd13;
             default: least = 4'd0;
         endcase

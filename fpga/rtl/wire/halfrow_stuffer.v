@@ -52,7 +52,7 @@ module halfrow_stuffer (
                     tail <= tail + 9'd1;
                     if (zero) open <= tail;
                 end
-                default:;
+                default: ;
             endcase
             run <= consume && !zero ? run + 8'd1 : 8'd0;
         end
