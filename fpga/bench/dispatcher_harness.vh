@@ -1,5 +1,5 @@
 // A dispatcher between a receiver, a sender, a core and a row path that do as a bench says. Included in the bench's module,
-// behind its localparams MAX_WIDTH, MAX_HEIGHT, ROW_BITS, TAPS, LATENCY, LEAST_BLANKING, TABLE_BANKS, ROW_BANKS_IN, ROW_BANKS_OUT.
+// behind its localparams MAX_WIDTH, MAX_HEIGHT, ROW_BITS, TAPS, LEAST_BLANKING, TABLE_BANKS, ROW_BANKS_IN, ROW_BANKS_OUT.
 localparam HELLO = 8'h00, CAPABILITIES = 8'h01, STATUS = 8'h02, RESET = 8'h03, ECHO = 8'h04, TABLE_WRITE = 8'h10,
            TABLE_READ = 8'h11, TABLE_CRC = 8'h12, COMMIT = 8'h13, CONFIGURE = 8'h18, ROW_IN = 8'h20, ROW_ACK = 8'h22;
 localparam NONE = 0, VERSION_WRONG = 1, KIND_UNKNOWN = 2, PAYLOAD = 3, RANGE = 4, SESSION = 5, HELD = 6, BUSY = 7,
@@ -80,9 +80,9 @@ always @(posedge clk) begin
 end
 
 halfrow_dispatcher #(
-    .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .TAPS(TAPS), .LATENCY(LATENCY),
+    .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .TAPS(TAPS),
     .LEAST_BLANKING(LEAST_BLANKING), .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN), .ROW_BANKS_OUT(ROW_BANKS_OUT),
-    .BUILD(32'h9f3c1e07), .NAME_LENGTH(18), .NAME({"straightener ", 24'he28496, " 7"})
+    .BUILD(32'h9f3c1e07), .NAME({"straightener ", 24'he28496, " 7"})
 ) dut (
     .clk(clk), .rst(rst), .millisecond(millisecond), .clock_source(8'd2), .clock_hz(32'd74250000),
     .serial(64'h0123456789abcdef), .packet_valid(packet_valid), .packet_kind(packet_kind),

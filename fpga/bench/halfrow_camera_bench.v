@@ -38,7 +38,7 @@ module halfrow_camera_bench;
         .step_write(step_write), .node_write(node_write), .table_bank(1'b0), .table_entry(entry),
         .table_data(table_data), .table_read(1'b0), .step_port(), .node_port_0(), .node_port_1());
 
-    halfrow_camera_output #(.LATENCY(LATENCY)) camera_output (
+    halfrow_camera_output #(.TAPS(7)) camera_output (
         .clk(clk), .rst(rst), .width(width[11:0]), .frame_valid(frame_valid),
         .out_valid(out_valid), .out_sample(out_sample),
         .isp_frame_valid(isp_fv), .isp_line_valid(isp_lv), .isp_data(isp_data));

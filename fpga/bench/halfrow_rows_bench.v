@@ -122,7 +122,7 @@ module halfrow_rows_bench;
     wire [15:0] frame_number, row_sequence, row_length, first_latency, last_latency;
     wire [31:0] credit_window, acknowledged, next_row_in;
 
-    halfrow_rows #(.LATENCY(L)) rows (
+    halfrow_rows #(.TAPS(7)) rows (
         .clk(clk), .rst(rst), .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal), .row_busy(row_busy),
         .packet_address(packet_address), .packet_byte(packet_byte), .packet_length(packet_length), .hold(1'b0),
         .acknowledge(acknowledge), .acknowledge_window(window), .drop_rows(drop_rows),

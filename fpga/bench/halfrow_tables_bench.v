@@ -10,7 +10,7 @@ module tables_cases #(
 ) (
     output reg finished
 );
-    localparam MAX_WIDTH = 2048, LATENCY = 12, LEAST_BLANKING = 0, ROW_BANKS_IN = 2, ROW_BANKS_OUT = 2;
+    localparam MAX_WIDTH = 2048, LEAST_BLANKING = 0, ROW_BANKS_IN = 2, ROW_BANKS_OUT = 2;
     `include "dispatcher_harness.vh"
 
     localparam SEVEN = TAPS == 7;

@@ -10,8 +10,9 @@ import re
 import subprocess
 import sys
 
+import rtl
+
 HERE = pathlib.Path(__file__).resolve().parent
-RTL = HERE.parent / "rtl"
 WORK, COUNT = pathlib.Path(sys.argv[1]), int(sys.argv[2])
 GROUP = 50
 FLOOR = 90                                   # per cent; some of what survives is no fault
@@ -19,7 +20,7 @@ CASES = ["golden", "random", "200", "1", "hostile", "100", "2"]
 MORE_CASES = ["random", "3000", "3", "hostile", "1500", "4", "frame", "hermite"]   # for what survives those
 
 # Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port.
-BASE = f"""read_verilog {RTL}/halfrow_core.v; hierarchy -libdir {RTL} -top halfrow_core -chparam TAPS 5 -chparam TABLE_BANKS 1;
+BASE = f"""{rtl.read("halfrow_core", ["TAPS=5", "TABLE_BANKS=1"])}
 prep -flatten; simplemap t:$dff t:$dffe t:$sdff t:$sdffe t:$sdffce t:$mux t:$pmux t:$and t:$or t:$not t:$xor; opt -full; wreduce;
 opt -full; rename -top top; opt_clean -purge; write_ilang {WORK}/base.il;
 select c:* t:$mem* %d; mutate -list {COUNT} -seed 1 -ctrl mutsel 16 1 -o {WORK}/faults.txt"""

@@ -11,9 +11,9 @@ import subprocess
 import sys
 
 import netlist
+import rtl
 
 CHECKS = pathlib.Path(__file__).resolve().parent
-RTL = CHECKS.parent / "rtl"
 LX25 = {"luts": 15032, "registers": 30064, "block_rams": 52, "dsps": 38}
 
 
@@ -21,11 +21,9 @@ def synthesise(work, name, build):
     """The flat netlist of a build, as yosys writes it in JSON."""
     stem = work / "".join(c if c.isalnum() else "_" for c in name)
     top = build["top"]
-    source = RTL / f"{top}.v"
-    if not source.is_file():
-        sys.exit(f"resources: {source.relative_to(CHECKS.parent.parent)} is missing")
-    parameters = [f"-chparam {key} {value}" for key, value in (word.split("=") for word in build["parameters"].split())]
-    script = (f"read_verilog {source}; hierarchy -libdir {RTL} -top {top} {' '.join(parameters)}; "
+    if top not in rtl.modules():
+        sys.exit(f"resources: there is no module {top} in fpga/rtl")
+    script = (f"{rtl.read(top, build['parameters'].split())}"
               f"synth_xilinx -family xc6s -flatten -noiopad -noclkbuf -nosrl; rename -top top; write_json {stem}.json")
     done = subprocess.run(["yosys", "-q", "-l", f"{stem}.log", "-p", script], capture_output=True, text=True)
     if done.returncode:

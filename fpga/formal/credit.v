@@ -41,7 +41,7 @@ module credit #(
     wire        leaves = wants_exit && left != entered;
     wire        sends = wants_sending && sent != left;
 
-    halfrow_row_numbers #(.ROW_BANKS_IN(BANKS), .IN_BITS(IN_BITS), .ENTRY_BITS(ENTRY_BITS)) numbers (
+    halfrow_row_numbers #(.IN_BITS(IN_BITS), .ENTRY_BITS(ENTRY_BITS)) numbers (
         .clk(clk), .rst(!running), .drop(drop), .drop_next_row(drop_next_row),
         .acknowledge(acknowledge), .acknowledge_window(acknowledge_window), .settling(settling),
         .arrived(1'b0), .arrived_bank({IN_BITS{1'b0}}), .entered(enters), .left(leaves), .sent(sends),

@@ -35,7 +35,7 @@ const BUILDS: [Model; 7] = [
 ];
 
 /// What every board under simulation says of itself.
-const IDENTITY: [&str; 3] = ["NATURE=2", "NAME_LENGTH=23", "NAME=\"halfrow simulated board\""];
+const IDENTITY: [&str; 2] = ["NATURE=2", "NAME=\"halfrow simulated board\""];
 
 const REMEDY: &str = "install it with `apt-get install verilator g++`, or build without `--features sim`";
 
@@ -86,7 +86,14 @@ impl Verilator {
         command.args(["--top-module", model.top, "--prefix", model.class]).arg("--Mdir").arg(folder);
         let identity = IDENTITY.iter().filter(|_| model.top != "halfrow_core");
         command.args(model.parameters.iter().chain(identity).map(|parameter| format!("-G{parameter}")));
-        command.arg("-y").arg(rtl).arg(rtl.join(model.top).with_extension("v"));
+        command.arg(format!("-I{}", rtl.display()));
+        for group in folders(rtl) {
+            command.arg("-y").arg(&group);
+            let top = group.join(model.top).with_extension("v");
+            if top.exists() {
+                command.arg(top);
+            }
+        }
         match command.output() {
             Ok(output) if output.status.success() => {}
             Ok(output) => fail(&format!("{command:?} failed:\n{}", String::from_utf8_lossy(&output.stderr))),
@@ -119,6 +126,14 @@ impl Verilator {
         }
         build
     }
+}
+
+/// The folders in a folder, in the order of their names.
+fn folders(within: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(within).into_iter().flatten().flatten();
+    let mut folders: Vec<_> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    folders.sort();
+    folders
 }
 
 /// What a command prints, if it runs and succeeds.

@@ -36,9 +36,10 @@ module board #(
     output wire        pin_isp_line_valid,
     output wire [11:0] pin_isp_data
 );
+    `include "halfrow_wire.vh"
+
     localparam [31:0] LINK_HZ = 32'd96000000;
     localparam [16:0] LINK_KHZ = 17'd96000;
-    localparam [7:0] FROM_PIXCLK = 8'd1, FROM_PLL = 8'd2;
 
     (* KEEP = "TRUE" *) wire choose_pixclk;    // named in sensor.ucf
     wire locked, pixclk_direct, hold, pixclk_alive, link_millisecond, number_ready, pixclk_runs;
@@ -75,7 +76,7 @@ module board #(
             wire [31:0] wide = {15'd0, khz};
 
             assign clock_hz = pixclk_runs ? (wide << 10) - (wide << 4) - (wide << 3) : LINK_HZ;
-            assign clock_source = pixclk_runs ? FROM_PIXCLK : FROM_PLL;
+            assign clock_source = pixclk_runs ? CLOCK_PIXCLK : CLOCK_PLL;
 
             board_sensor sensor (
                 .clk(clk), .pixclk_runs(pixclk_runs),
@@ -93,7 +94,7 @@ module board #(
             assign hold = 1'b0;
             assign pixclk_alive = 1'b0;
             assign clock_hz = LINK_HZ;
-            assign clock_source = FROM_PLL;
+            assign clock_source = CLOCK_PLL;
             assign camera_frame_valid = 1'b0;
             assign camera_line_valid = 1'b0;
             assign camera_data = 12'd0;

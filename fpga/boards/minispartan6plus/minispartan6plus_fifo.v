@@ -67,7 +67,7 @@ module minispartan6plus_fifo (
 
     halfrow_fifo_bridge #(
         .BUILD(`HALFROW_BUILD),
-        .NAME_LENGTH(23), .NAME("miniSpartan6+ LX25 FIFO")
+        .NAME("miniSpartan6+ LX25 FIFO")
     ) bridge (
         .link_clk(link_clk), .link_rst(link_rst),
         .ft_rxf_n(ft_rxf_n), .ft_txe_n(ft_txe_n), .ft_rd_n(ft_rd_n), .ft_wr_n(wr_n), .ft_siwu_n(siwu_n),

@@ -58,7 +58,7 @@ module minispartan6plus_uart (
 
     halfrow_uart_bridge #(
         .BUILD(`HALFROW_BUILD),
-        .NAME_LENGTH(23), .NAME("miniSpartan6+ LX25 UART")
+        .NAME("miniSpartan6+ LX25 UART")
     ) bridge (
         .link_clk(link_clk), .link_rst(link_rst),
         .rxd(uart_rxd), .txd(uart_txd), .rts_n(uart_rts_n), .cts_n(uart_cts_n),

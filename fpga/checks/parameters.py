@@ -1,0 +1,96 @@
+#!/usr/bin/env python3
+"""Elaborates what parameters.ini says with Verilator, Icarus Verilog and yosys: a build that cannot be must fail in each of them and
+the failure must name the parameter; those at the ends of what is legal must pass. Every parameter of fpga/rtl is to be found there.
+"""
+import concurrent.futures
+import configparser
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import rtl
+
+HERE = pathlib.Path(__file__).resolve().parent
+OTHERS = ("legal", "any")
+
+
+def declared(path):
+    header = re.search(r"^module \w+ #\((.*?)^\) \(", path.read_text(), re.MULTILINE | re.DOTALL)
+    return re.findall(r"^    parameter (?:\[[^]]+\] )?(\w+) =", header[1], re.MULTILINE) if header else []
+
+
+def unlisted(cases):
+    """Parameters that no section has, and sections' keys that are none."""
+    inside = {f"halfrow_{name}" for name in cases["inside"]["modules"].split()}
+    for module, path in rtl.modules().items():
+        names = set(declared(path))
+        if module in cases:
+            listed = {key for key in cases[module] if key not in OTHERS} | set(cases[module].get("any", "").split())
+            yield from (f"{module}: {name}" for name in sorted(names ^ listed))
+        elif (names != set()) != (module in inside):
+            yield f"{module}: {'its parameters' if names else 'it has none'}"
+
+
+def wrapper(module, values):
+    return f"module elaborated;\n    {module} #({', '.join(f'.{name}({value})' for name, value in values)}) dut ();\nendmodule\n"
+
+
+def assignments(first, words):
+    """`VALUE, NAME=VALUE...` or `NAME=VALUE, ...` as pairs."""
+    parts = [part.strip() for part in re.split(r',(?=(?:[^"]*"[^"]*")*[^"]*$)', words)]
+    return [tuple(part.split("=", 1)) if re.match(r"[A-Z_]+=", part) else (first, part) for part in parts]
+
+
+def commands(source, folder):
+    folders = sorted({path.parent for path in rtl.modules().values()})
+    search = [f"-I{rtl.RTL}", *(word for place in folders for word in ("-y", str(place)))]
+    return {
+        "verilator": ["verilator", "--lint-only", "-Wno-fatal", "-Wno-PINMISSING", "--Mdir", str(folder), "--top-module", "elaborated", *search,
+                      str(source)],
+        "iverilog": ["iverilog", "-g2001", "-t", "null", "-s", "elaborated", *search, str(source)],
+        "yosys": ["yosys", "-q", "-p",
+                  f"{rtl.includes()}read_verilog {source}; hierarchy -check {rtl.libraries()} -top elaborated"],
+    }
+
+
+def judged(module, parameter, values, work):
+    """What is wrong with a case: of an illegal one `parameter` is the parameter's name, of a legal one None."""
+    with tempfile.TemporaryDirectory(dir=work) as folder:
+        source = pathlib.Path(folder) / "elaborated.v"
+        source.write_text(wrapper(module, values))
+        wrong = []
+        for tool, command in commands(source, folder).items():
+            done = subprocess.run(command, capture_output=True, text=True)
+            said = done.stdout + done.stderr
+            shown = f"{tool}: {module} with {', '.join(f'{name}={value}' for name, value in values)}"
+            if parameter is None and done.returncode != 0:
+                wrong.append(f"{shown} is legal and does not elaborate:\n{said[-1500:]}")
+            elif parameter is not None and done.returncode == 0:
+                wrong.append(f"{shown} elaborates")
+            elif parameter is not None and not re.search(rf"\bhalfrow_illegal_{parameter}\b", said):
+                wrong.append(f"{shown} does not elaborate, but {parameter} is not named:\n{said[-1500:]}")
+        return wrong
+
+
+def main():
+    cases = configparser.ConfigParser(interpolation=None, comment_prefixes=(";",), inline_comment_prefixes=None)
+    cases.optionxform = str
+    cases.read(HERE / "parameters.ini")
+    missing = list(unlisted(cases))
+    if missing:
+        sys.exit("parameters: parameters.ini and fpga/rtl do not agree on\n  " + "\n  ".join(missing))
+    chosen = sys.argv[1:] or [section for section in cases.sections() if section != "inside"]
+    illegal = [(module, name, assignments(name, words)) for module in chosen for name, line in cases[module].items()
+               if name not in OTHERS for words in line.split(";")]
+    legal = [(module, None, assignments(None, words)) for module in chosen for words in cases[module]["legal"].split(";")]
+    with tempfile.TemporaryDirectory() as work, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        wrong = [line for lines in pool.map(lambda case: judged(*case, work), legal + illegal) for line in lines]
+    if wrong:
+        sys.exit("parameters: " + "\nparameters: ".join(wrong))
+    print(f"PASS {len(illegal)} builds that cannot be are refused by three tools, {len(legal)} at the ends of what is legal are not")
+
+
+main()

@@ -1,0 +1,27 @@
+"""Where a module of fpga/rtl stands, and how yosys is told to read it."""
+
+import pathlib
+
+RTL = pathlib.Path(__file__).resolve().parent.parent / "rtl"
+
+
+def modules(rtl=RTL):
+    """All modules' files, by name."""
+    return {path.stem: path for path in sorted(rtl.glob("*/*.v"))}
+
+
+def includes(rtl=RTL):
+    """Has every later read_verilog find the include files."""
+    return f"verilog_defaults -add -I{rtl}; "
+
+
+def libraries(rtl=RTL):
+    """For yosys' `hierarchy`: the folders of modules."""
+    return " ".join(f"-libdir {folder}" for folder in sorted({path.parent for path in modules(rtl).values()}))
+
+
+def read(module, parameters=(), rtl=RTL):
+    """yosys commands that read a module with these NAME=VALUE, and all below it."""
+    chosen = "".join(f" -chparam {name} {value}" for name, value in (word.split("=", 1) for word in parameters))
+    return (f"{includes(rtl)}read_verilog {modules(rtl)[module]}; "
+            f"hierarchy -check {libraries(rtl)} -top {module}{chosen}; ")

@@ -1,0 +1,69 @@
+// What stands in front of the core and behind it: test frames while a session is open, the sensor otherwise, both
+// through the same silicon. At each change the core is emptied for one clock.
+`default_nettype none
+
+module halfrow_multiplexer #(
+    parameter ROW_BITS = 11
+) (
+    input  wire                clk,
+    input  wire                rst,
+    input  wire                session_open,
+    input  wire                tables_ready, // high once the tables have contents
+    output wire                camera_reset, // the sensor is not looked at
+
+    input  wire                test_reset,   // one clock: test rows are dropped
+    input  wire                test_enable,
+    input  wire                test_prepare,
+    input  wire [ROW_BITS-1:0] test_prepare_row,
+    input  wire                test_prepare_bank,
+    input  wire                test_valid,
+    input  wire                test_start,
+    input  wire [11:0]         test_sample,
+    output wire                test_out_valid,
+
+    input  wire                camera_prepare,
+    input  wire [ROW_BITS-1:0] camera_prepare_row,
+    input  wire                camera_prepare_bank,
+    input  wire                camera_valid,
+    input  wire                camera_start,
+    input  wire [11:0]         camera_sample,
+    output wire                camera_out_valid,
+
+    output wire                core_reset,
+    output wire                core_enable,
+    output wire                prepare,
+    output wire [ROW_BITS-1:0] prepare_row,
+    output wire                prepare_bank,
+    output wire                in_valid,
+    output wire                in_start,
+    output wire [11:0]         in_sample,
+    input  wire                out_valid
+);
+    reg test;
+    reg camera; // never high together with `test`
+
+    always @(posedge clk)
+        if (rst) begin
+            test <= 1'b0;
+            camera <= 1'b0;
+        end else begin
+            test <= session_open;
+            camera <= !session_open && (camera || tables_ready);
+        end
+
+    assign camera_reset = rst || !camera || session_open;
+    assign core_reset = rst || test_reset || (test != session_open);
+    assign core_enable = test ? test_enable : 1'b1;
+
+    assign prepare = test ? test_prepare : camera_prepare && camera;
+    assign prepare_row = test ? test_prepare_row : camera_prepare_row;
+    assign prepare_bank = test ? test_prepare_bank : camera_prepare_bank;
+    assign in_valid = test ? test_valid : camera_valid && camera;
+    assign in_start = test ? test_start : camera_start;
+    assign in_sample = test ? test_sample : camera_sample;
+
+    assign test_out_valid = out_valid && test;
+    assign camera_out_valid = out_valid && !test;
+endmodule
+
+`default_nettype wire
