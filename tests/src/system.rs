@@ -12,6 +12,8 @@ use halfrow::run::{Circumstances, FrameSource, Plan, verify};
 use halfrow::target::Target;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
 
+use crate::late_host::LateHost;
+
 /// A lens, a frame behind it, and the mock board that is built for it.
 #[derive(Clone, Copy, Debug)]
 pub struct System {
@@ -71,9 +73,20 @@ impl System {
     /// If there is no such board.
     #[must_use]
     pub fn judge_patiently(&self, target: &str, patience: Option<Duration>) -> Report {
-        let target: Target = target.parse().unwrap();
-        let candidate = link::open(&target).unwrap();
-        judge_by(&Plan { reconnect: patience, ..self.plan() }, candidate)
+        judge_by(&Plan { reconnect: patience, ..self.plan() }, open(target))
+    }
+
+    /// The report on this system's board with `options`, for a host that stands still for `pause` at every `every`-th look
+    /// at the clock.
+    ///
+    /// # Panics
+    /// If there is no such board.
+    #[must_use]
+    pub fn judge_late(&self, options: &str, every: u32, pause: Duration) -> Report {
+        let candidate = open(&format!("{}{options}", self.board));
+        let link = Box::new(LateHost::new(candidate.link, every, pause));
+        let candidate = Candidate { link, ..candidate };
+        self.judge_candidate(candidate)
     }
 
     /// The report on a board whose link is there.
@@ -116,6 +129,11 @@ impl System {
 #[must_use]
 pub fn judge_by(plan: &Plan, candidate: Candidate) -> Report {
     verify(plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
+}
+
+fn open(target: &str) -> Candidate {
+    let target: Target = target.parse().unwrap();
+    link::open(&target).unwrap()
 }
 
 /// The check that found the board wrong, if one did.

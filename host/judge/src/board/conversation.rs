@@ -11,6 +11,10 @@ use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
 use crate::link::{LineErrors, Link, Severed};
 
+/// The most that an exchange counts as a wait that brought something: all the rest may be that the host was kept from
+/// running, and then there is more to be read.
+const BRIEF: Duration = Duration::from_millis(50);
+
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -75,6 +79,9 @@ pub(super) struct Conversation {
     pub(super) acknowledged: u32,
     pub(super) tally: Tally,
     pub(super) limit: RetryLimit,
+    /// The time that was spent waiting at the link, by which deadlines go: a host that is kept from running, or has something
+    /// else to do, cannot say that a board is late.
+    pub(super) waited: Duration,
     /// What the session's rows have shown of the board.
     pub(super) conduct: Conduct,
     /// Requests that change the board and came to it more than once in this session, as far as can be seen.
@@ -101,6 +108,7 @@ impl Conversation {
             acknowledged: 0,
             tally: Tally::default(),
             limit,
+            waited: Duration::ZERO,
             conduct: Conduct::default(),
             repeated_changes: 0,
             rows_sent: 0,
@@ -227,7 +235,10 @@ impl Conversation {
     ) -> Result<(), BoardError> {
         self.stop.check(self.link.now())?;
         self.incoming.clear();
+        let begun = self.link.now();
         let moved = self.link.exchange(&self.outgoing, &mut self.incoming, wait);
+        let counts = if self.incoming.is_empty() { wait } else { wait.min(BRIEF) };
+        self.waited += self.since(begun).min(counts);
         self.tally.line_errors = self.link.line_errors();
         let taken = moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         self.outgoing.drain(..taken);
@@ -291,8 +302,8 @@ impl Conversation {
             }
             // The reply may be as long as the longest packet.
             let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
-            let mut deadline = self.now() + self.wait_for(step, attempt, bytes);
-            while let Some(wait) = deadline.checked_sub(self.now()).filter(|wait| !wait.is_zero()) {
+            let mut deadline = self.waited + self.wait_for(step, attempt, bytes);
+            while let Some(wait) = deadline.checked_sub(self.waited).filter(|wait| !wait.is_zero()) {
                 let late = self.tally.late;
                 if let Some(answer) = self.answer_within(wait, kind, sequence, &accept)? {
                     self.took(attempt, self.since(begun));
@@ -300,7 +311,7 @@ impl Conversation {
                 }
                 if self.tally.late > late {
                     // What was asked before still arrives, and this stands in the queue behind it.
-                    (attempt, deadline) = (0, self.now() + self.wait_for(step, 0, bytes));
+                    (attempt, deadline) = (0, self.waited + self.wait_for(step, 0, bytes));
                 }
             }
             attempt += 1;

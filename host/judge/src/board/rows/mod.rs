@@ -87,7 +87,7 @@ struct Stream<'a> {
 
 impl<'a> Stream<'a> {
     fn new(conversation: &'a mut Conversation, traffic: &'a mut dyn RowTraffic, most: u32) -> Self {
-        let (first_row, now) = (conversation.acknowledged, conversation.now());
+        let (first_row, now) = (conversation.acknowledged, conversation.waited);
         Self {
             conversation,
             arrivals: Arrivals::new(traffic, first_row),
@@ -119,7 +119,7 @@ impl<'a> Stream<'a> {
 
     /// From now on the oldest missing row is waited for.
     fn go_on(&mut self) {
-        self.progress_at = self.conversation.now();
+        self.progress_at = self.conversation.waited;
         self.missing_since = self.progress_at;
     }
 
@@ -145,8 +145,6 @@ impl<'a> Stream<'a> {
             if self.sent == self.arrivals.in_flight.end() {
                 if !self.exhausted {
                     self.fetch();
-                    // What the host takes to make a frame is not the board's.
-                    self.go_on();
                 }
                 if self.exhausted {
                     break;
@@ -173,7 +171,7 @@ impl<'a> Stream<'a> {
     }
 
     fn receive(&mut self) -> Result<(), BoardError> {
-        let wait = self.patience().saturating_sub(self.conversation.since(self.progress_at));
+        let wait = self.patience().saturating_sub(self.conversation.waited.saturating_sub(self.progress_at));
         let missing = self.missing();
         self.arrivals.gap = false;
         let (arrivals, mut taken) = (&mut self.arrivals, Ok(()));
@@ -189,7 +187,7 @@ impl<'a> Stream<'a> {
         self.conversation.acknowledged = self.missing();
         taken?;
         if self.missing() > missing {
-            let took = self.conversation.since(self.missing_since);
+            let took = self.conversation.waited.saturating_sub(self.missing_since);
             self.conversation.took(self.attempts - 1, took);
             self.late.came(missing, self.attempts - 1, took);
             self.attempts = 1;
@@ -200,7 +198,7 @@ impl<'a> Stream<'a> {
             if let Some(took) = self.late.came_again(row) {
                 self.conversation.was_late(took);
                 // What was asked for before still arrives, and the missing row stands in the queue behind it.
-                self.progress_at = self.conversation.now();
+                self.progress_at = self.conversation.waited;
                 self.attempts = self.attempts.min(2);
             }
         }
@@ -220,7 +218,7 @@ impl<'a> Stream<'a> {
     }
 
     fn overdue(&self) -> bool {
-        self.conversation.since(self.progress_at) >= self.patience()
+        self.conversation.waited.saturating_sub(self.progress_at) >= self.patience()
     }
 
     fn ask_again(&mut self) -> Result<(), BoardError> {
@@ -232,7 +230,7 @@ impl<'a> Stream<'a> {
         tracing::info!("row {} of frame {} is missing; sending it again", place.row, place.frame);
         self.conversation.count_retry()?;
         self.attempts += 1;
-        self.progress_at = self.conversation.now();
+        self.progress_at = self.conversation.waited;
         if self.conversation.queued() < QUEUE {
             self.send(missing);
             // A row leaves the core while its successor enters, so the successor may be the one that was lost.
