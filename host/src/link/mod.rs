@@ -16,7 +16,7 @@ mod wire;
 use std::time::Duration;
 
 pub use open::{Candidate, OpenError, open, replayed_file};
-pub use recording::{Recorder, Recording, RecordingError, Unfinished};
+pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub use replay::ReplayLink;
 pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
 pub use severed::Severed;

@@ -19,6 +19,7 @@ use crate::link::LineErrors;
 use crate::verdict::{Exit, Verdict};
 
 pub use crate::target::BoardKind;
+pub(crate) use folder::check as check_folder;
 pub use folder::{ReportError, ReportFolder};
 pub(crate) use html::document;
 pub use html::render as html;
