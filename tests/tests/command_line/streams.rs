@@ -64,58 +64,79 @@ fn on(folder: &Folder, out: Option<Wrong>, err: Option<Wrong>, arguments: &[&str
     Ended { code: output.status.code(), stdout: text(output.stdout), stderr: text(output.stderr) }
 }
 
-/// Calls of every command: what they end with, and with what if stdout does not take their only result.
-fn calls() -> Vec<(Vec<&'static str>, i32, i32)> {
+/// A call, what it ends with, and with what if stdout does not take its only result.
+type Call = (Vec<&'static str>, i32, i32);
+
+/// What is wrong with stdout and with stderr, and how much is said.
+type Way = (Option<Wrong>, Option<Wrong>, Option<&'static str>);
+
+/// Calls that judge or are refused: the exit code is their result.
+fn judging() -> Vec<Call> {
     let broken = "mock,fault=stuck-data";
-    vec![
-        (small("verify", &[]), 0, 0),
-        (small("verify", &["--board", broken]), 1, 1),
-        (small("verify", &["--board", broken, "--json"]), 1, 1),
-        (small("verify", &["--board", "mock,fault=disconnect,byte=0"]), 3, 3),
-        (small("verify", &["--board", "mock,fault=wrong-datapath"]), 6, 6),
-        (small("verify", &["--require-hardware"]), 5, 5),
-        (vec!["verify", "--json", "--frame", "nope.pgm"], 2, 2),
-        (vec!["verify", "--bogus"], 2, 2),
-        (vec!["verify", "--board", "tcp:localhost:1"], 3, 3),
-        (small("verify", &["--list"]), 0, 3),
-        (vec!["info"], 0, 3),
-        (vec!["info", "--json"], 0, 3),
-        (vec!["info", "--json", "--board", "tcp:localhost:1"], 3, 3),
-        (vec!["link", "--seconds", "0.001"], 0, 3),
-        (vec!["boards"], 0, 3),
-        (vec!["faults"], 0, 3),
-        (vec!["faults", "--json"], 0, 3),
-        (vec!["completions", "bash"], 0, 3),
-        (vec!["--help"], 0, 3),
-        (vec!["help", "verify"], 0, 3),
-        (vec!["--version"], 0, 3),
-        (small("lens", &[]), 0, 3),
-        (small("lens", &["--json"]), 0, 3),
-        (vec!["lens", "--lens", "nope.yml"], 2, 2),
-        (small("tables", &["-o", "t.json", "--overwrite"]), 0, 0),
-        (small("tables", &["-o", "missing/t.json"]), 2, 2),
-        (small("frames", &["-o", "frames", "--overwrite"]), 0, 0),
-        (small("correct", &["builtin:black", "--model", "-o", "q.pgm", "--overwrite"]), 0, 0),
-        (small("correct", &["builtin:black", "--model", "--json", "-o", "q.pgm", "--overwrite"]), 0, 0),
-        (vec!["correct", "nope.pgm", "--model", "-o", "r.pgm"], 2, 2),
-        (vec!["kernel", "measure", "--kernel", "nope", "--images", "x"], 2, 2),
-        (vec!["paper", "fig8", "-o", "paper", "--overwrite"], 0, 0),
-        (vec!["manual", "man", "--overwrite"], 0, 0),
-        (vec!["serve", "--tcp", "x"], 2, 2),
-    ]
+    let calls = [
+        (small("verify", &[]), 0),
+        (small("verify", &["--board", broken]), 1),
+        (small("verify", &["--board", broken, "--json"]), 1),
+        (small("verify", &["--board", "mock,fault=disconnect,byte=0"]), 3),
+        (small("verify", &["--board", "mock,fault=wrong-datapath"]), 6),
+        (small("verify", &["--require-hardware"]), 5),
+        (vec!["verify", "--board", "tcp:localhost:1"], 3),
+        (vec!["verify", "--json", "--frame", "nope.pgm"], 2),
+        (vec!["verify", "--bogus"], 2),
+        (vec!["info", "--json", "--board", "tcp:localhost:1"], 3),
+        (vec!["lens", "--lens", "nope.yml"], 2),
+        (small("tables", &["-o", "missing/t.json"]), 2),
+        (vec!["correct", "nope.pgm", "--model", "-o", "r.pgm"], 2),
+        (vec!["kernel", "measure", "--kernel", "nope", "--images", "x"], 2),
+        (vec!["serve", "--tcp", "x"], 2),
+    ];
+    calls.into_iter().map(|(call, code)| (call, code, code)).collect()
 }
 
-/// Runs every call as often as there are `ways`, and lists what ended otherwise than it should.
-fn surprises(ways: &[(Option<Wrong>, Option<Wrong>, Option<&'static str>)]) -> Vec<String> {
-    let runs: Vec<_> =
-        calls().into_iter().flat_map(|call| ways.iter().map(move |way| (call.clone(), *way))).collect();
-    let run = |((call, code, lost), (out, err, verbosity)): &((Vec<&'static str>, i32, i32), _)| {
-        let (out, err): (&Option<Wrong>, &Option<Wrong>) = (out, err);
-        let arguments: Vec<_> = call.iter().copied().chain(*verbosity).collect();
+/// Calls that write files, which stdout only tells of.
+fn writing() -> Vec<Call> {
+    let calls = [
+        small("tables", &["-o", "t.json"]),
+        small("frames", &["-o", "frames"]),
+        small("correct", &["builtin:black", "--model", "-o", "q.pgm"]),
+        small("correct", &["builtin:black", "--model", "--json", "-o", "q.pgm"]),
+        vec!["paper", "fig8", "-o", "paper"],
+        vec!["manual", "man"],
+    ];
+    calls.into_iter().map(|call| (call, 0, 0)).collect()
+}
+
+/// Calls whose only result is what they print.
+fn printing() -> Vec<Call> {
+    let calls = [
+        small("verify", &["--list"]),
+        vec!["info"],
+        vec!["info", "--json"],
+        vec!["link", "--seconds", "0.001"],
+        vec!["boards"],
+        vec!["faults"],
+        vec!["faults", "--json"],
+        vec!["completions", "bash"],
+        vec!["--help"],
+        vec!["help", "verify"],
+        vec!["--version"],
+        small("lens", &[]),
+        small("lens", &["--json"]),
+    ];
+    calls.into_iter().map(|call| (call, 0, 3)).collect()
+}
+
+/// Runs every call in every way, and lists what ended otherwise than it should.
+fn surprises(ways: &[Way]) -> Vec<String> {
+    let calls = [judging(), writing(), printing()].concat();
+    let runs: Vec<(&Call, &Way)> =
+        calls.iter().flat_map(|call| ways.iter().map(move |way| (call, way))).collect();
+    let run = |((call, code, lost), (out, err, verbosity)): &(&Call, &Way)| {
+        let arguments: Vec<_> = verbosity.iter().chain(call).copied().collect();
         let ended = on(&Folder::new(), *out, *err, &arguments);
-        let expected = if out.is_some_and(Wrong::loses) { *lost } else { *code };
-        let is_named = expected == *code || err.is_some() || ended.stderr.contains("stdout; free some space");
-        let as_expected = ended.code == Some(expected) && is_named;
+        let expected = if out.is_some_and(Wrong::loses) { lost } else { code };
+        let is_named = expected == code || err.is_some() || ended.stderr.contains("stdout; free some space");
+        let as_expected = ended.code == Some(*expected) && is_named;
         (!as_expected).then(|| format!("{arguments:?} out {out:?} err {err:?}: not {expected}, {ended:?}"))
     };
     parallel::map(&runs, run).into_iter().flatten().collect()
