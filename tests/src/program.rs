@@ -122,18 +122,28 @@ impl Folder {
         blocks: usize,
         arguments: impl IntoIterator<Item = &'a str>,
     ) -> Ended {
+        // POSIX counts in blocks of 512 bytes. Ignoring the signal makes the write fail instead.
+        finish(&mut self.by_shell(&format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\""), arguments))
+    }
+
+    /// A command that will start `halfrow` in this folder by this line of a shell, which has it as `"$@"`.
+    ///
+    /// # Panics
+    /// As [`command`].
+    #[cfg(unix)]
+    #[must_use]
+    pub fn by_shell<'a>(&self, line: &str, arguments: impl IntoIterator<Item = &'a str>) -> Command {
         let command = self.command(arguments);
         let mut shell = Command::new("sh");
-        // POSIX counts in blocks of 512 bytes. Ignoring the signal makes the write fail instead.
-        shell.args(["-c", &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\""), "sh"]);
-        shell.arg(command.get_program()).args(command.get_args()).current_dir(self.path());
+        shell.args(["-c", line, "sh"]).arg(command.get_program()).args(command.get_args());
         for (name, value) in command.get_envs() {
             match value {
                 Some(value) => shell.env(name, value),
                 None => shell.env_remove(name),
             };
         }
-        finish(shell.stdin(Stdio::null()))
+        shell.current_dir(self.path()).stdin(Stdio::null());
+        shell
     }
 
     /// Writes a file.

@@ -7,30 +7,63 @@ use serde_json::json;
 use tracing::level_filters::LevelFilter;
 
 use halfrow::verdict::Exit;
-use halfrow_cli::commands::{Cli, Failure};
+use halfrow_cli::{console, guard, signals};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let level = match cli.verbosity() {
+    let exit = guard::guarded(program).unwrap_or_else(|fault| {
+        console::error(&fault);
+        Exit::Error
+    });
+    ExitCode::from(exit.code())
+}
+
+fn program() -> Exit {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(told) => return tell(&told),
+    };
+    log(cli.verbosity());
+    let ended = guard::guarded(|| {
+        signals::watch().map_err(Failure::error)?;
+        cli.run()
+    });
+    let ended = ended.unwrap_or_else(|fault| Err(Failure { exit: Exit::Error, error: fault.into() }));
+    ended.unwrap_or_else(|failure| explain(&failure, cli.wants_json()))
+}
+
+/// Tells what the command line's reader has to tell: help and version on stdout, what is wrong with a call on stderr.
+fn tell(told: &clap::Error) -> Exit {
+    let text = told.render().ansi().to_string();
+    if told.use_stderr() {
+        console::diagnose_raw(&text);
+        return Exit::Usage;
+    }
+    match console::print_raw(&text) {
+        Ok(()) => Exit::Pass,
+        Err(unprinted) => explain(&Failure::error(unprinted), false),
+    }
+}
+
+fn log(verbosity: u8) {
+    let level = match verbosity {
         0 => LevelFilter::WARN,
         1 => LevelFilter::INFO,
         _ => LevelFilter::DEBUG,
     };
     tracing_subscriber::fmt()
         .with_max_level(level)
-        .with_writer(std::io::stderr)
+        .with_writer(|| console::Log)
+        .log_internal_errors(false)
         .with_ansi(false)
         .without_time()
         .with_target(false)
         .init();
-    let exit = cli.run().unwrap_or_else(|failure| explain(&failure, cli.wants_json()));
-    ExitCode::from(exit.code())
 }
 
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
 fn explain(failure: &Failure, as_json: bool) -> Exit {
     let Failure { exit, error } = failure;
-    anstream::eprintln!("error: {error:#}");
+    console::error(&format_args!("{error:#}"));
     if as_json {
         let result = json!({
             "verdict": exit.verdict(),
@@ -38,7 +71,7 @@ fn explain(failure: &Failure, as_json: bool) -> Exit {
             "board": { "kind": null },
             "error": format!("{error:#}"),
         });
-        anstream::println!("{result:#}");
+        console::tell(&format!("{result:#}"));
     }
     *exit
 }

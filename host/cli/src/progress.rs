@@ -1,20 +1,21 @@
 //! Progress of a long run, for whoever watches: a bar on a terminal, plain lines otherwise, or nothing.
 
 use std::fmt::Write;
-use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use halfrow::progress::{Progress, Silent};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
+use indicatif::{ProgressBar, ProgressState, ProgressStyle};
+
+use crate::console;
 
 /// What suits the standard error stream: a bar on a terminal, a line now and then elsewhere.
 #[must_use]
 pub(crate) fn for_stderr(quiet: bool) -> Box<dyn Progress> {
     if quiet {
         Box::new(Silent)
-    } else if std::io::stderr().is_terminal() {
+    } else if console::is_watched() {
         Box::new(Bar::new())
     } else {
         Box::new(Lines::default())
@@ -26,7 +27,7 @@ struct Bar(ProgressBar);
 
 impl Bar {
     fn new() -> Self {
-        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr_with_hz(10));
+        let bar = ProgressBar::with_draw_target(None, console::bar());
         bar.set_style(
             ProgressStyle::with_template("{spinner} {msg}")
                 .unwrap_or_else(|_| ProgressStyle::default_spinner()),
@@ -101,6 +102,6 @@ impl Progress for Lines {
         let seconds = self.begun.elapsed().as_secs_f64();
         let rate = rows as f64 / seconds;
         let left = expected.saturating_sub(rows) as f64 / rate;
-        eprintln!("{rows} of {expected} rows, {rate:.0} rows/s, {left:.0} s left");
+        console::diagnose(&format_args!("{rows} of {expected} rows, {rate:.0} rows/s, {left:.0} s left"));
     }
 }

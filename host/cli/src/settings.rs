@@ -114,8 +114,14 @@ impl Settings {
     pub fn load(explicit: Option<&Path>) -> Result<Self, SettingsError> {
         match explicit {
             Some(path) => Self::read(path),
-            None => Self::read_standard(standard_path(|name| std::env::var_os(name))),
+            None => Self::read_standard(Self::file(None)),
         }
+    }
+
+    /// The file that [`Self::load`] looks for, whether it is there or not.
+    #[must_use]
+    pub fn file(explicit: Option<&Path>) -> Option<PathBuf> {
+        explicit.map(PathBuf::from).or_else(|| standard_path(|name| std::env::var_os(name)))
     }
 
     fn read(path: &Path) -> Result<Self, SettingsError> {

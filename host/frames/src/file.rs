@@ -121,14 +121,23 @@ fn write_plain_rows<E: From<WriteError>>(
     }
 }
 
+/// Whether `path` names a PNG file.
+///
+/// # Errors
+/// [`WriteError::NotPng`] when its extension is not `.png`.
+pub fn check_png(path: &Path) -> Result<(), WriteError> {
+    match Format::of(path) {
+        Ok(Format::Png) => Ok(()),
+        _ => Err(WriteError::NotPng { path: path.to_owned() }),
+    }
+}
+
 /// Writes `image` to the PNG file `path`, which is whole or as it was, whatever goes wrong.
 ///
 /// # Errors
 /// [`WriteError`] when the extension is not `.png`, the file exists and `overwrite` is false, or it cannot be written.
 pub fn write_rgb(path: &Path, image: &RgbImage, overwrite: bool) -> Result<(), WriteError> {
-    if !matches!(Format::of(path), Ok(Format::Png)) {
-        return Err(WriteError::NotPng { path: path.to_owned() });
-    }
+    check_png(path)?;
     let mut bytes = Vec::new();
     encode_png_rgb(image, &mut bytes)
         .map_err(|source| WriteError::Encode { path: path.to_owned(), source: source.into() })?;

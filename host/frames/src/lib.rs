@@ -30,7 +30,7 @@ use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{read, read_rgb, write, write_rgb, write_rows};
+pub use file::{check_png, read, read_rgb, write, write_rgb, write_rows};
 pub use format::{Format, UnknownFormat};
 pub use heat_map::HeatMap;
 pub use mosaic::mosaic;

@@ -1,13 +1,31 @@
-//! Files that are whole or as they were: written aside in the same folder, then renamed into their place.
+//! Outputs that are whole or as they were: written aside in the same folder, then renamed into their place.
+//!
+//! What is aside goes by a name of ours and is locked, so that a run can tell what killed runs left from what running ones
+//! write, and clears it ([`clear`]).
 
-use std::fs::{self, File};
+mod claim;
+mod folder;
+mod lock;
+mod place;
+mod rename;
+mod under_way;
+
+use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+pub use claim::Claim;
+pub use folder::{AsideFolder, Misplaced};
+pub use place::{Place, check, check_folder, clear};
+pub use under_way::abandon_all;
+
 /// Bytes that are written at once.
-pub(crate) const BUFFER: usize = 1 << 17;
+pub const BUFFER: usize = 1 << 17;
+
+/// The same for streams.
+const STREAM_BUFFER: usize = 1 << 13;
 
 /// A file that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -24,6 +42,20 @@ pub enum WriteAsideError {
         /// What is there.
         path: PathBuf,
     },
+    /// What is there is a symbolic link.
+    #[error("{} is a link to {}, and links are not written through; name the file itself", path.display(), to.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// Where it leads.
+        to: PathBuf,
+    },
+    /// Another run is making a file or folder of this name.
+    #[error("another run is writing {}; wait until it is done, or choose another name", path.display())]
+    Claimed {
+        /// The name.
+        path: PathBuf,
+    },
     /// The system did not take the file.
     #[error("cannot write {}; check that its folder exists, is writable and has space", path.display())]
     Io {
@@ -34,13 +66,29 @@ pub enum WriteAsideError {
     },
 }
 
+/// A stream whose file could not be put in its place.
+#[derive(Debug, thiserror::Error)]
+#[error("{source}{}", match kept {
+    Some(kept) => format!(" (what there is of it is kept in {})", kept.display()),
+    None => String::new(),
+})]
+pub struct Unfinished {
+    /// Where it is kept as far as it goes; none if it is not.
+    pub kept: Option<PathBuf>,
+    /// Why.
+    pub source: WriteAsideError,
+}
+
 /// A file that is written but not in its place: it goes by another name in the same folder until [`Self::put_in_place`],
 /// and is removed if that is never called.
 #[derive(Debug)]
 pub struct Aside {
-    file: NamedTempFile,
+    out: BufWriter<NamedTempFile>,
     path: PathBuf,
     overwrite: bool,
+    /// Until the file is in its place, so that two that may not overwrite cannot both begin.
+    _claim: Option<Claim>,
+    _noted: under_way::Noted,
 }
 
 impl Aside {
@@ -53,36 +101,96 @@ impl Aside {
         overwrite: bool,
         write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<Self, WriteAsideError> {
-        let path = destination(path, overwrite)?;
-        match filled(folder(&path), write) {
-            Ok(file) => Ok(Self { file, path, overwrite }),
-            Err(source) => Err(WriteAsideError::Io { path, source }),
+        check(path, overwrite)?;
+        let mut aside = Self::begun(path, overwrite, None, None)?;
+        match write(&mut aside.out).and_then(|()| aside.out.flush()) {
+            Ok(()) => Ok(aside),
+            Err(source) => Err(WriteAsideError::Io { path: path.to_owned(), source }),
         }
+    }
+
+    /// A file for `path` that grows for as long as a run takes, and that is worth keeping as far as it goes. Nobody else may begin
+    /// one of that name meanwhile, unless either may overwrite.
+    ///
+    /// # Errors
+    /// As [`write_aside`].
+    pub fn stream(path: &Path, overwrite: bool) -> Result<Self, WriteAsideError> {
+        check(path, overwrite)?;
+        let claim = if overwrite { None } else { Some(Claim::take(path)?) };
+        // Whoever had the claim before may have put its file in place.
+        check(path, overwrite)?;
+        Self::begun(path, overwrite, path.file_name(), claim)
+    }
+
+    fn begun(
+        path: &Path,
+        overwrite: bool,
+        kept_for: Option<&std::ffi::OsStr>,
+        claim: Option<Claim>,
+    ) -> Result<Self, WriteAsideError> {
+        let (file, noted) = under_way::file(folder_of(path), kept_for)
+            .map_err(|source| WriteAsideError::Io { path: path.to_owned(), source })?;
+        // What is worth keeping is not kept back.
+        let capacity = if kept_for.is_some() { STREAM_BUFFER } else { BUFFER };
+        let out = BufWriter::with_capacity(capacity, file);
+        Ok(Self { out, path: path.to_owned(), overwrite, _claim: claim, _noted: noted })
     }
 
     /// Renames the file into its place, once its bytes are on the disk, and sees that the new name is too.
     ///
     /// # Errors
     /// [`WriteAsideError`] when the place has been taken meanwhile and may not be, or the system refuses.
-    pub fn put_in_place(self) -> Result<(), WriteAsideError> {
-        let Self { file, path, overwrite } = self;
-        let placed = file.as_file().sync_all().and_then(|()| {
-            let placed = if overwrite { file.persist(&path) } else { file.persist_noclobber(&path) };
-            placed.map_err(|refused| refused.error)?;
-            sync_folder(folder(&path))
-        });
-        placed.map_err(|source| match source.kind() {
-            io::ErrorKind::AlreadyExists => WriteAsideError::Exists { path },
-            _ => WriteAsideError::Io { path, source },
-        })
+    pub fn put_in_place(mut self) -> Result<(), WriteAsideError> {
+        let written = self.whole();
+        let Self { out, path, overwrite, .. } = self;
+        let file = out.into_parts().0;
+        match written.and_then(|()| place(file, &path, overwrite).map_err(|(error, _)| error)) {
+            Ok(()) => synced(&path),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// [`Self::put_in_place`], or else keeps what there is under a name that nothing else has.
+    ///
+    /// # Errors
+    /// [`Unfinished`] where [`Self::put_in_place`] has an error.
+    pub fn put_in_place_or_keep(mut self) -> Result<(), Unfinished> {
+        let written = self.whole();
+        let Self { out, path, overwrite, .. } = self;
+        let file = out.into_parts().0;
+        let placed = match written {
+            Ok(()) => place(file, &path, overwrite),
+            Err(error) => Err((error, file)),
+        };
+        match placed {
+            Ok(()) => synced(&path).map_err(|source| Unfinished { kept: None, source }),
+            Err((source, file)) => {
+                let kept = keep(file).and_then(|kept| Some(path.with_file_name(kept.file_name()?)));
+                Err(Unfinished { kept, source })
+            }
+        }
+    }
+
+    fn whole(&mut self) -> Result<(), WriteAsideError> {
+        let written = self.out.flush().and_then(|()| self.out.get_ref().as_file().sync_all());
+        written.map_err(|source| WriteAsideError::Io { path: self.path.clone(), source })
     }
 }
 
-/// Writes the file `path` with what `write` puts into it. Whatever goes wrong, the file is whole or as it was. A link to a
-/// file stays a link.
+impl Write for Aside {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+/// Writes the file `path` with what `write` puts into it. Whatever goes wrong, the file is whole or as it was.
 ///
 /// # Errors
-/// [`WriteAsideError`] when `path` is no regular file, is there and `overwrite` is false, or cannot be written.
+/// [`WriteAsideError`] when `path` is a link or no regular file, is there and `overwrite` is false, or cannot be written.
 pub fn write_aside(
     path: &Path,
     overwrite: bool,
@@ -91,65 +199,52 @@ pub fn write_aside(
     Aside::written(path, overwrite, write)?.put_in_place()
 }
 
-/// Whether the file `path` could be written, as far as can be told beforehand.
-///
-/// # Errors
-/// As those of [`write_aside`].
-pub fn check(path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
-    let path = destination(path, overwrite)?;
-    match fs::metadata(folder(&path)) {
-        Ok(_) => Ok(()),
-        Err(source) => Err(WriteAsideError::Io { path, source }),
+/// Renames a file into its place, or gives it back.
+fn place(file: NamedTempFile, path: &Path, overwrite: bool) -> Result<(), (WriteAsideError, NamedTempFile)> {
+    if overwrite && let Err(error) = check(path, true) {
+        return Err((error, file));
     }
+    let placed = if overwrite {
+        file.persist(path).map_err(|refused| (refused.error, refused.file))
+    } else {
+        file.persist_noclobber(path).map_err(|refused| (refused.error, refused.file))
+    };
+    placed.map(drop).map_err(|(source, file)| {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::AlreadyExists => (WriteAsideError::Exists { path }, file),
+            _ => (WriteAsideError::Io { path, source }, file),
+        }
+    })
 }
 
-/// A temporary file in `folder` with what `write` puts into it.
-fn filled(folder: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<NamedTempFile> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let file = builder.tempfile_in(folder)?;
-    let mut out = BufWriter::with_capacity(BUFFER, file.as_file());
-    write(&mut out)?;
-    out.flush()?;
-    drop(out);
-    Ok(file)
-}
-
-/// Where a file for `path` belongs: where its link leads, if it is one.
-fn destination(path: &Path, overwrite: bool) -> Result<PathBuf, WriteAsideError> {
-    let path = path.to_owned();
-    match fs::metadata(&path) {
-        Ok(there) if !there.is_file() => Err(WriteAsideError::NotAFile { path }),
-        Ok(_) if !overwrite => Err(WriteAsideError::Exists { path }),
-        Ok(_) => fs::canonicalize(&path).map_err(|source| WriteAsideError::Io { path, source }),
-        // Nothing is there, or whatever is wrong stops the file from being made.
-        Err(_) => Ok(path),
+/// Keeps what there is of a file, and says where.
+fn keep(file: NamedTempFile) -> Option<PathBuf> {
+    if file.as_file().metadata().is_ok_and(|about| about.len() == 0) {
+        return None;
     }
+    let (_file, path) = file.keep().ok()?;
+    Some(under_way::kept(&path).unwrap_or(path))
 }
 
-fn folder(path: &Path) -> &Path {
+fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Brings the folder's names to the disk, where the file system knows how to.
-#[cfg(unix)]
-fn sync_folder(folder: &Path) -> io::Result<()> {
-    match File::open(folder).and_then(|folder| folder.sync_all()) {
-        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
-            Ok(())
+/// Brings the new name to the disk, where the file system knows how to.
+fn synced(path: &Path) -> Result<(), WriteAsideError> {
+    match File::open(folder_of(path)).and_then(|folder| folder.sync_all()) {
+        Err(source) if !matches!(source.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
+            Err(WriteAsideError::Io { path: path.to_owned(), source })
         }
-        synced => synced,
+        _ => Ok(()),
     }
-}
-
-#[cfg(not(unix))]
-fn sync_folder(_: &Path) -> io::Result<()> {
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
+    use std::fs;
+
     use super::*;
 
     fn write(path: &Path, overwrite: bool, text: &str) -> Result<(), WriteAsideError> {
@@ -214,7 +309,6 @@ mod tests {
         assert!(matches!(write(folder.path(), true, "text"), Err(WriteAsideError::NotAFile { .. })));
     }
 
-    #[cfg(unix)]
     #[test]
     fn what_is_no_regular_file_is_never_replaced() {
         // A socket stands for a device: run as root, a broken check would replace a real one.
@@ -224,19 +318,22 @@ mod tests {
         assert!(matches!(write(&path, true, "text"), Err(WriteAsideError::NotAFile { .. })));
     }
 
-    #[cfg(unix)]
     #[test]
-    fn a_link_stays_a_link_and_its_file_is_replaced() {
+    fn a_link_is_never_written_through_nor_replaced() {
         let folder = tempfile::tempdir().unwrap();
         let (file, link) = (folder.path().join("file"), folder.path().join("link"));
         fs::write(&file, "first").unwrap();
-        std::os::unix::fs::symlink("file", &link).unwrap();
-        write(&link, true, "second").unwrap();
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::read_to_string(&file).unwrap(), "second");
+        for to in ["file", "nowhere"] {
+            std::os::unix::fs::symlink(to, &link).unwrap();
+            let refused = write(&link, true, "second").unwrap_err();
+            assert!(matches!(&refused, WriteAsideError::Link { .. }), "{refused}");
+            assert!(refused.to_string().contains(&format!("link is a link to {to}")), "{refused}");
+            assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+            fs::remove_file(&link).unwrap();
+        }
+        assert_eq!(fs::read_to_string(&file).unwrap(), "first");
     }
 
-    #[cfg(unix)]
     #[test]
     fn the_permissions_are_those_of_an_ordinary_file() {
         use std::os::unix::fs::PermissionsExt;

@@ -45,6 +45,8 @@ pub enum Exit {
     NothingJudged = 5,
     /// ERROR: the board's identity, datapath or protocol version was refused.
     Refused = 6,
+    /// ERROR: stopped because the terminal or connection was gone (SIGHUP).
+    HungUp = 129,
     /// ERROR: stopped by Ctrl-C.
     Interrupted = 130,
     /// ERROR: stopped by SIGTERM.
@@ -56,6 +58,13 @@ impl Exit {
     #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
+    }
+
+    /// The exit of a run that a signal with this code stopped; none if none did.
+    #[must_use]
+    pub fn of_signal(code: usize) -> Option<Self> {
+        let stops = [Self::HungUp, Self::Interrupted, Self::Terminated];
+        stops.into_iter().find(|exit| usize::from(exit.code()) == code)
     }
 
     /// The verdict that the code carries; none after a usage error.

@@ -28,7 +28,7 @@ pub use class::Class;
 pub use error::OpenError;
 pub use line_errors::LineErrors;
 pub use open::{Candidate, open, replayed_file};
-pub use recording::{Recorder, Recording, RecordingError, Unfinished};
+pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub use replay::ReplayLink;
 pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
 pub use severed::Severed;

@@ -7,8 +7,7 @@
 //! ```
 //! Integers are little endian. A recording that ends early is one of an interrupted run.
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -17,6 +16,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::{LineErrors, Link, LinkError};
+use halfrow_frames::written_aside::{Aside, Unfinished, WriteAsideError};
 
 const MAGIC: &[u8] = b"halfrow recording 1\n";
 
@@ -24,17 +24,8 @@ const MAGIC: &[u8] = b"halfrow recording 1\n";
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// It cannot be created.
-    #[error("the recording {path} cannot be created; choose another place with --record")]
-    Create {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        #[source]
-        source: std::io::Error,
-    },
-    /// It is there already.
-    #[error("{0} is there already; choose another name with --record, or give --overwrite")]
-    Exists(PathBuf),
+    #[error(transparent)]
+    Create(#[from] WriteAsideError),
     /// It cannot be read.
     #[error("the recording {path} cannot be read; check the path in replay:FILE")]
     Read {
@@ -101,70 +92,69 @@ impl Exchange {
     }
 }
 
-/// A link that writes down what another one carries. The file has the ending `.partial` until the recorder is dropped.
+/// The file of a recording to come. It is written aside until the recorder is dropped.
+#[derive(Debug)]
+pub struct RecordingFile(Aside);
+
+impl RecordingFile {
+    /// Makes sure that a recording can be written to `path`, before a board is opened for it.
+    ///
+    /// # Errors
+    /// [`RecordingError::Create`] when the file is there and `overwrite` is not given, is being recorded by another run, or
+    /// cannot be written.
+    pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, RecordingError> {
+        Ok(Self(Aside::stream(path, overwrite)?))
+    }
+}
+
+/// A link that writes down what another one carries.
 pub struct Recorder {
     link: Box<dyn Link>,
-    file: BufWriter<File>,
-    partial: PathBuf,
-    path: PathBuf,
-    unfinished: Unfinished,
+    file: Option<RecordingFile>,
+    lost: Lost,
 }
 
 /// Why a recording could not be finished, once its recorder is gone; empty when it is whole.
-pub type Unfinished = Arc<OnceLock<std::io::Error>>;
+pub type Lost = Arc<OnceLock<Unfinished>>;
 
 impl Recorder {
-    /// Records what `link` carries to `path`, with `run` in front.
+    /// Records what `link` carries to `file`, with `run` in front.
     ///
     /// # Errors
-    /// [`RecordingError`] when the file is there and `overwrite` is not given, or cannot be written.
-    pub fn create(
+    /// [`LinkError::Record`] when the file cannot be written.
+    pub fn begin(
         link: Box<dyn Link>,
-        path: &Path,
+        mut file: RecordingFile,
         run: &impl Serialize,
-        overwrite: bool,
-    ) -> Result<Self, RecordingError> {
-        if path.exists() && !overwrite {
-            return Err(RecordingError::Exists(path.to_owned()));
-        }
-        let mut partial = path.as_os_str().to_owned();
-        partial.push(".partial");
-        let partial = PathBuf::from(partial);
-        let create = |source| RecordingError::Create { path: path.to_owned(), source };
-        let mut file = BufWriter::new(File::create(&partial).map_err(create)?);
+    ) -> Result<Self, LinkError> {
         let head = Head {
             link: link.name(),
             bytes_per_second: link.bytes_per_second(),
             exclusive: link.is_exclusive(),
             run,
         };
-        let write_head = |file: &mut BufWriter<File>| {
-            file.write_all(MAGIC)?;
-            serde_json::to_writer(&mut *file, &head)?;
-            file.write_all(b"\n")
+        let mut write_head = || {
+            file.0.write_all(MAGIC)?;
+            serde_json::to_writer(&mut file.0, &head)?;
+            file.0.write_all(b"\n")?;
+            file.0.flush()
         };
-        write_head(&mut file).map_err(create)?;
-        Ok(Self { link, file, partial, path: path.to_owned(), unfinished: Unfinished::default() })
+        write_head().map_err(LinkError::Record)?;
+        Ok(Self { link, file: Some(file), lost: Lost::default() })
     }
 
     /// Where it will be said if the recording cannot be finished.
     #[must_use]
-    pub fn unfinished(&self) -> Unfinished {
-        Arc::clone(&self.unfinished)
-    }
-
-    fn finish(&mut self) -> std::io::Result<()> {
-        self.file.flush()?;
-        self.file.get_ref().sync_all()?;
-        std::fs::rename(&self.partial, &self.path)
+    pub fn lost(&self) -> Lost {
+        Arc::clone(&self.lost)
     }
 }
 
 impl Drop for Recorder {
     fn drop(&mut self) {
-        if let Err(error) = self.finish() {
-            tracing::error!("the recording stays in {}: {error}", self.partial.display());
-            let _ = self.unfinished.set(error);
+        let finished = self.file.take().map_or(Ok(()), |file| file.0.put_in_place_or_keep());
+        if let Err(unfinished) = finished {
+            let _ = self.lost.set(unfinished);
         }
     }
 }
@@ -183,7 +173,9 @@ impl Link for Recorder {
             taken: outgoing[..taken].to_vec(),
             received: incoming[before..].to_vec(),
         };
-        exchange.write(&mut self.file).map_err(LinkError::Record)?;
+        if let Some(file) = &mut self.file {
+            exchange.write(&mut file.0).map_err(LinkError::Record)?;
+        }
         Ok(taken)
     }
 

@@ -38,7 +38,12 @@ fn build(folder: &Path) {
     cargo
         .arg("--target-dir")
         .arg(folder.parent().unwrap())
-        .args(cfg!(feature = "sim").then_some(["--workspace", "--features=halfrow-tests/sim"]).into_iter().flatten())
+        .args(
+            cfg!(feature = "sim")
+                .then_some(["--workspace", "--features=halfrow-tests/sim"])
+                .into_iter()
+                .flatten(),
+        )
         .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let built = cargo.output().unwrap();
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));

@@ -72,7 +72,6 @@ fn more_frames_than_can_be_numbered_are_refused() {
 #[test]
 fn places_that_are_not_there_are_refused() {
     let folder = Folder::new();
-    refused(&folder, &["manual", "missing"], "name a folder that is there");
     refused(&folder, &["verify", "--tables", "missing.json"], "cannot read missing.json");
     refused(&folder, &["verify", "--frame", "missing.pgm"], "cannot read missing.pgm");
 }

@@ -3,6 +3,7 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
+mod at_once;
 mod bad_calls;
 mod bad_frames;
 mod bad_tables;
@@ -11,14 +12,17 @@ mod corrected;
 mod help;
 mod lenses;
 mod made_files;
+mod outputs;
 mod paper;
 mod previewed;
 mod replay;
 mod report_folder;
+mod running;
 mod settings;
 mod signals;
 #[cfg(feature = "sim")]
 mod simulated;
+mod streams;
 mod verdicts;
 
 use halfrow_tests::program::{Ended, Folder};

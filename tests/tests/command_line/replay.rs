@@ -144,7 +144,7 @@ fn what_is_no_recording_is_refused() {
 fn a_recording_that_is_there_is_kept() {
     let folder = Folder::new();
     folder.write("run.rec", "precious");
-    refused(&folder, &small("verify", &["--record", "run.rec"]), "run.rec is there already");
+    refused(&folder, &small("verify", &["--record", "run.rec"]), "run.rec exists; give --overwrite");
     assert_eq!(folder.text("run.rec"), "precious");
     assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec", "--overwrite"])).code, Some(0));
     assert!(folder.read("run.rec").starts_with(b"halfrow recording 1\n"));
@@ -171,6 +171,6 @@ fn a_recording_cannot_be_written_nowhere() {
     refused(
         &Folder::new(),
         &small("verify", &["--record", "missing/run.rec"]),
-        "choose another place with --record",
+        "name another place with --record",
     );
 }

@@ -1,46 +1,111 @@
-//! Ctrl-C and SIGTERM: the run ends soon, says so, and leaves nothing half done.
+//! Ctrl-C, SIGTERM and SIGHUP: a command ends soon, says so, and leaves nothing half done.
 
-#![cfg(unix)]
+use std::fs::OpenOptions;
 
-use halfrow_tests::program::{Ended, Folder, Running};
+use halfrow_tests::program::{Ended, Folder};
 
-/// At 20,000 bytes a second the built-in frames would take an hour, so that nothing but the signal ends a run soon.
-const SLOW: &str = "mock,pace=real,speed=20000";
+use crate::running::{Running, until_there_is};
+use crate::small;
 
 /// Starts a slow run, sends it `signal` while it streams, and waits for its end.
 fn interrupted(folder: &Folder, signal: &str, arguments: &[&str]) -> Ended {
-    let mut command = folder
-        .command(["verify", "-vv", "--json", "--board", SLOW].into_iter().chain(arguments.iter().copied()));
-    let mut run = Running::start(&mut command);
-    // When it has got its session it already listens for signals.
-    run.wait_for("session ");
-    run.send(signal);
-    run.end()
+    let running = Running::streaming(folder, arguments.iter().copied());
+    running.send(signal);
+    running.ended()
 }
 
-#[test]
-fn ctrl_c_ends_a_run_with_130() {
-    let ended = interrupted(&Folder::new(), "INT", &[]);
-    assert_eq!(ended.code, Some(130), "{}", ended.stderr);
-    let said = ended.json();
-    assert_eq!((&said["verdict"], &said["exit_code"]), (&"ERROR".into(), &130.into()));
-    assert!(said["headline"].as_str().unwrap().starts_with("stopped by a signal"), "{}", said["headline"]);
-}
+/// Signals, and the codes of commands that they end.
+const SIGNALS: [(&str, i32); 3] = [("HUP", 129), ("INT", 130), ("TERM", 143)];
 
 #[test]
-fn sigterm_ends_a_run_with_143() {
-    let ended = interrupted(&Folder::new(), "TERM", &[]);
-    assert_eq!((ended.code, &ended.json()["exit_code"]), (Some(143), &143.into()), "{}", ended.stderr);
+fn a_signal_ends_a_run_with_its_code() {
+    for (signal, code) in SIGNALS {
+        let ended = interrupted(&Folder::new(), signal, &[]);
+        assert_eq!(ended.code, Some(code), "{signal}: {}", ended.stderr);
+        let said = ended.json();
+        assert_eq!((&said["verdict"], &said["exit_code"]), (&"ERROR".into(), &code.into()));
+        assert!(
+            said["headline"].as_str().unwrap().starts_with("stopped by a signal"),
+            "{}",
+            said["headline"]
+        );
+    }
 }
 
 #[test]
 fn an_interrupted_run_leaves_a_whole_report_that_says_so_and_a_recording() {
+    for (signal, code) in SIGNALS {
+        let folder = Folder::new();
+        let ended = interrupted(&folder, signal, &["--report", "out", "--record", "run.rec"]);
+        assert_eq!(ended.code, Some(code));
+        assert_eq!(folder.names("."), ["out", "run.rec"], "{signal}");
+        assert_eq!(folder.names("out"), ["report.html", "report.json", "report.xml"]);
+        let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+        assert_eq!(report, ended.json());
+        assert!(folder.text("out/report.html").trim_end().ends_with("</html>"));
+        let again = folder.halfrow(["verify", "--board", "replay:run.rec"]);
+        assert_eq!(again.code, Some(3), "{}", again.stdout);
+    }
+}
+
+#[test]
+fn a_run_that_is_to_outlive_its_terminal_does() {
     let folder = Folder::new();
-    let ended = interrupted(&folder, "INT", &["--report", "out", "--record", "run.rec"]);
-    assert_eq!(ended.code, Some(130));
-    assert_eq!(folder.names("."), ["out", "run.rec"]);
-    assert_eq!(folder.names("out"), ["report.html", "report.json", "report.xml"]);
-    let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
-    assert_eq!(report, ended.json());
-    assert!(folder.text("out/report.html").trim_end().ends_with("</html>"));
+    let call = ["verify", "-vv", "--json", "--board", crate::running::SLOW];
+    let line = "trap '' HUP; exec env --default-signal=INT,TERM \"$@\"";
+    let mut running = Running::start_by(&folder, line, call);
+    running.until_it_says("session ");
+    running.send("HUP");
+    running.send("INT");
+    assert_eq!(running.ended().code, Some(130));
+}
+
+/// Frames of the paper's size, which take a while to write.
+pub(crate) const LARGE: [&str; 9] = [
+    "correct",
+    "builtin:street",
+    "builtin:noise",
+    "builtin:bars",
+    "builtin:grey",
+    "--quiet",
+    "--model",
+    "-o",
+    "out",
+];
+
+#[test]
+fn frames_that_are_half_written_go_with_the_program() {
+    for (signal, code) in SIGNALS {
+        let folder = Folder::new();
+        let running = Running::start(&folder, LARGE);
+        running.stop_amid(&folder.path().join("out"));
+        running.send(signal);
+        running.send("CONT");
+        let ended = running.ended();
+        assert_eq!(ended.code, Some(code), "{signal}: {}", ended.stderr);
+        let written = folder.names("out");
+        assert!(written.iter().all(|name| !name.starts_with('.')), "{signal}: {written:?}");
+        // Those that are there are whole.
+        let header = "P5\n1920 1080\n4095\n".len();
+        assert!(
+            written.iter().all(|name| folder.read(&format!("out/{name}")).len() == header + 2 * 1920 * 1080)
+        );
+    }
+}
+
+#[test]
+fn a_second_signal_ends_at_once_what_the_first_could_not() {
+    let folder = Folder::new();
+    let pipe = folder.path().join("in.pgm");
+    nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
+    let _pipe = OpenOptions::new().read(true).write(true).open(pipe).unwrap();
+    let call = small("correct", &["in.pgm", "-o", "out", "--board", "mock"]);
+    let running = Running::start(&folder, call);
+    // It makes the folder when it has its board, and then waits for a frame that does not come.
+    until_there_is(folder.path(), |name| name == "out");
+    running.send("INT");
+    running.send("TERM");
+    let ended = running.ended();
+    assert!([Some(130), Some(143)].contains(&ended.code), "{ended:?}");
+    assert_eq!(folder.names("out"), [""; 0]);
 }

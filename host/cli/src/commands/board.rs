@@ -1,19 +1,18 @@
 //! The options of the board and its link, which several commands share.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
 
 use super::Failure;
 use crate::settings::Settings;
+use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::Draws;
 use halfrow::target::Target;
-use halfrow::verdict::Exit;
 
 /// Which board, and how patiently.
 #[derive(Clone, Debug, Args)]
@@ -47,6 +46,18 @@ impl BoardArguments {
         self.board.is_some() || settings.board.is_some()
     }
 
+    /// The recording that the target names, if it is one.
+    pub(super) fn replayed(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
+        Ok(link::replayed_file(&self.target(settings)?))
+    }
+
+    /// The waveform that the target has a simulated board write.
+    pub(super) fn trace(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
+        let target = self.target(settings)?;
+        let trace = target.options.into_iter().find(|(key, _)| key == "trace");
+        Ok(trace.filter(|_| target.kind == "sim").map(|(_, file)| file.into()))
+    }
+
     fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
@@ -63,8 +74,7 @@ impl BoardArguments {
 
     /// The recording, if the target is one.
     pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
-        let file = link::replayed_file(&self.target(settings)?);
-        Ok(file.map(|file| Recording::read(&file)).transpose()?)
+        Ok(self.replayed(settings)?.map(|file| Recording::read(&file)).transpose()?)
     }
 
     pub(super) fn open_options(
@@ -79,13 +89,8 @@ impl BoardArguments {
             take_over: self.take_over,
             polite: false,
             retry_limit: self.retry_limit(settings),
-            stop: self.stop(self.timeout(settings)?)?,
+            stop: Stop::new(signals::stop(), self.timeout(settings)?),
         })
-    }
-
-    /// What ends the run early: Ctrl-C, SIGTERM, or the time limit. A second signal ends the program at once.
-    pub(super) fn stop(&self, limit: Option<Duration>) -> Result<Stop, Failure> {
-        Ok(Stop::new(signals()?, limit))
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
@@ -101,19 +106,4 @@ impl BoardArguments {
             None => limit,
         }
     }
-}
-
-/// Holds the exit code of the signal that came, Ctrl-C or SIGTERM, and 0 before. A second one ends the program at once.
-pub(super) fn signals() -> Result<Arc<AtomicUsize>, Failure> {
-    use signal_hook::consts::{SIGINT, SIGTERM};
-    let signal = Arc::new(AtomicUsize::new(0));
-    for (number, exit) in [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated)] {
-        let code = usize::from(exit.code());
-        let second = Arc::new(std::sync::atomic::AtomicBool::new(false));
-        signal_hook::flag::register_conditional_shutdown(number, exit.code().into(), Arc::clone(&second))
-            .map_err(Failure::error)?;
-        signal_hook::flag::register(number, second).map_err(Failure::error)?;
-        signal_hook::flag::register_usize(number, Arc::clone(&signal), code).map_err(Failure::error)?;
-    }
-    Ok(signal)
 }

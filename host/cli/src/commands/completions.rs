@@ -5,9 +5,12 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 use clap_complete::Shell;
+use clap_mangen::Man;
 
-use super::Failure;
+use super::files::Files;
+use super::{Context, Failure};
 use halfrow::verdict::Exit;
+use halfrow_frames::written_aside::write_aside;
 
 /// Print a completion script for a shell
 ///
@@ -23,8 +26,11 @@ pub(super) struct Completions {
 /// Then: man -l FOLDER/halfrow.1
 #[derive(Debug, Args)]
 pub(super) struct Manual {
-    /// The folder, which must be there
+    /// The folder, made if it is not there
     folder: PathBuf,
+    /// Replace pages that are there
+    #[arg(long)]
+    overwrite: bool,
 }
 
 pub(super) fn complete(arguments: &Completions, command: &mut clap::Command) -> Result<Exit, Failure> {
@@ -34,9 +40,27 @@ pub(super) fn complete(arguments: &Completions, command: &mut clap::Command) -> 
     Ok(Exit::Pass)
 }
 
-pub(super) fn manual(arguments: &Manual, command: clap::Command) -> Result<Exit, Failure> {
-    clap_mangen::generate_to(command, &arguments.folder).with_context(|| {
-        format!("the manual cannot be written to {}; name a folder that is there", arguments.folder.display())
-    })?;
+pub(super) fn manual(arguments: &Manual, command: clap::Command, context: &Context) -> Result<Exit, Failure> {
+    let folder = &arguments.folder;
+    let mut command = command.disable_help_subcommand(true);
+    command.build();
+    let mut pages = Vec::new();
+    collect(command, &mut pages);
+    let places: Vec<_> = pages.iter().map(|page| folder.join(page.get_filename())).collect();
+    Files::new(arguments.overwrite).reads(&context.settings_file).writes_into("FOLDER", &places).check()?;
+    std::fs::create_dir_all(folder)
+        .with_context(|| format!("{} cannot be made; name another folder", folder.display()))
+        .map_err(Failure::error)?;
+    for (page, place) in pages.iter().zip(&places) {
+        write_aside(place, arguments.overwrite, |out| page.render(out)).map_err(Failure::error)?;
+    }
     Ok(Exit::Pass)
+}
+
+/// The pages of a command's subcommands, then its own.
+fn collect(command: clap::Command, pages: &mut Vec<Man>) {
+    for subcommand in command.get_subcommands().filter(|subcommand| !subcommand.is_hide_set()) {
+        collect(subcommand.clone(), pages);
+    }
+    pages.push(Man::new(command));
 }

@@ -11,11 +11,12 @@ use halfrow_model::Frame;
 use serde_json::json;
 
 use super::board::BoardArguments;
+use super::files::Files;
 use super::inputs::{FrameName, InputArguments};
 use super::optics::{self, Chosen, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, print, print_json};
-use crate::progress;
+use super::{Context, Failure, json_text};
+use crate::{console, progress};
 use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
 use halfrow::target::BoardKind;
 use halfrow::verdict::Exit;
@@ -71,6 +72,11 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
     let file = arguments.tables.file(&arguments.lens, settings)?;
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
+    let files = Files::new(arguments.overwrite)
+        .reads(&context.settings_file)
+        .reads(file)
+        .reads(arguments.lens.file())
+        .reads_kernel(kernel);
     let chosen = optics::choose(file, &arguments.lens, kernel)?;
     let geometry = *chosen.tables.geometry();
     let job = Job {
@@ -82,6 +88,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     job.check()?;
     let places = Places::of(&job.inputs, &arguments.wanted())?;
+    places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file))).check()?;
     let watched = progress::for_stderr(context.quiet || arguments.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {
@@ -120,7 +127,7 @@ impl Job<'_> {
 impl Arguments {
     fn wanted(&self) -> Wanted<'_> {
         let (preview, format) = (self.preview.as_deref(), self.format);
-        Wanted { output: &self.output, format, preview, overwrite: self.overwrite }
+        Wanted { output: &self.output, format, preview }
     }
 }
 
@@ -130,17 +137,18 @@ fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Ex
         let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
         let [outputs, previews] = [&places.frames, &places.previews]
             .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-        print_json(&json!({
+        let result = json!({
             "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs, "previews": previews,
-        }))?;
+        });
+        console::tell(&json_text(&result)?);
         return Ok(Exit::Pass);
     }
     let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));
     for path in &places.frames {
-        print(&format!("wrote {}, corrected by the {whom}, not judged", path.display()))?;
+        console::tell(&format!("wrote {}, corrected by the {whom}, not judged", path.display()));
     }
     for path in &places.previews {
-        print(&format!("wrote {}, a preview", path.display()))?;
+        console::tell(&format!("wrote {}, a preview", path.display()));
     }
     Ok(Exit::Pass)
 }

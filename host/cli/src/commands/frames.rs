@@ -5,8 +5,10 @@ use std::path::PathBuf;
 use anyhow::Context as _;
 use clap::Args;
 
+use super::files::Files;
 use super::optics::LensArguments;
-use super::{Failure, print};
+use super::{Context, Failure};
+use crate::console;
 use halfrow::frames::{self, Builtin};
 use halfrow::verdict::Exit;
 
@@ -29,20 +31,25 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     if arguments.lens.has_rows() {
         return Err(anyhow::anyhow!("a frame has no row factors; leave --rows out").into());
     }
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let chosen = if arguments.only.is_empty() { &Builtin::ALL[..] } else { &arguments.only };
     let folder = &arguments.output;
+    let places: Vec<_> = chosen.iter().map(|frame| folder.join(format!("{}.pgm", frame.name()))).collect();
+    Files::new(arguments.overwrite)
+        .reads(&context.settings_file)
+        .reads(arguments.lens.file())
+        .writes_into("--output", &places)
+        .check()?;
     std::fs::create_dir_all(folder)
         .with_context(|| format!("{} cannot be made; choose another folder", folder.display()))
         .map_err(Failure::error)?;
-    for builtin in chosen {
-        let path = folder.join(format!("{}.pgm", builtin.name()));
+    for (builtin, path) in chosen.iter().zip(places) {
         frames::write(&path, &builtin.render(&scene)?, arguments.overwrite).map_err(Failure::error)?;
-        print(&format!("{:<28} {}", path.display(), builtin.description()))?;
+        console::tell(&format!("{:<28} {}", path.display(), builtin.description()));
     }
     Ok(Exit::Pass)
 }

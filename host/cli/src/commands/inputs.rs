@@ -60,6 +60,14 @@ impl FrameName {
         }
     }
 
+    /// The file, if it is one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Builtin(_) => None,
+            Self::File(path) => Some(path),
+        }
+    }
+
     /// Whether it is a file, there or not, that can be read twice, as a pipe cannot.
     pub(super) fn can_be_read_twice(&self) -> bool {
         match self {

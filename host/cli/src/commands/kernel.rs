@@ -8,15 +8,16 @@ use halfrow_model::{Kernel, Taps};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use super::files::Files;
 use super::inputs::file_hash;
-use super::{Context, Failure, optics, print};
+use super::{Context, Failure, optics, print, print_json};
+use crate::console;
 use crate::progress;
 use halfrow::frames;
 use halfrow::frames::lying;
 use halfrow::frames::preview::RgbImage;
 use halfrow::tables::KernelFile;
 use halfrow::verdict::Exit;
-use halfrow_frames::written_aside;
 use halfrow_lab::training;
 use halfrow_lab::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
 
@@ -98,8 +99,8 @@ struct Origin {
     sha256: String,
 }
 
-/// The PNG files of the folders in the order of their names. Photographs that stand are turned to lie.
-fn photographs(folders: &[PathBuf]) -> anyhow::Result<(Vec<Origin>, Vec<RgbImage>)> {
+/// The PNG files of the folders in the order of their names.
+fn paths(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for folder in folders {
         paths.extend(pictures(folder).map_err(|error| {
@@ -107,6 +108,11 @@ fn photographs(folders: &[PathBuf]) -> anyhow::Result<(Vec<Origin>, Vec<RgbImage
         })?);
     }
     anyhow::ensure!(!paths.is_empty(), "there is no .png file in the folders of --images");
+    Ok(paths)
+}
+
+/// The photographs. Those that stand are turned to lie.
+fn photographs(paths: &[PathBuf]) -> anyhow::Result<(Vec<Origin>, Vec<RgbImage>)> {
     let photographs: anyhow::Result<Vec<_>> = paths.iter().map(|path| photograph(path)).collect();
     Ok(photographs?.into_iter().unzip())
 }
@@ -128,9 +134,14 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 }
 
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
+    let paths = paths(&arguments.images)?;
     // Training takes minutes, after which a refusal comes too late.
-    written_aside::check(&arguments.output, arguments.overwrite)?;
-    let (origins, images) = photographs(&arguments.images)?;
+    Files::new(arguments.overwrite)
+        .reads(&context.settings_file)
+        .reads(&paths)
+        .writes("--output", [&arguments.output])
+        .check()?;
+    let (origins, images) = photographs(&paths)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,
         TapCount::Seven => Taps::Seven,
@@ -143,7 +154,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
-    print(&format!(
+    console::tell(&format!(
         "{} photographs: {:+.2} dB over Hermite on them; each by the kernel of the others {:+.2} dB \
          ({:+.2} to {:+.2}); noise gain {:.3}",
         images.len(),
@@ -152,8 +163,8 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
         held_out.least,
         held_out.most,
         mean_noise_gain(&trained.kernel)
-    ))?;
-    print(&format!("wrote {}", arguments.output.display()))?;
+    ));
+    console::tell(&format!("wrote {}", arguments.output.display()));
     Ok(Exit::Pass)
 }
 
@@ -190,24 +201,22 @@ fn rows(images: &[RgbImage]) -> u64 {
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let kernel = optics::kernel(&arguments.kernel)?;
-    let (_, images) = photographs(&arguments.images)?;
+    let (_, images) = photographs(&paths(&arguments.images)?)?;
     let watched = progress::for_stderr(context.quiet);
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());
     watched.done();
     let (measured, noise) = (measured?, Spread::of(&noise_gain(&kernel)));
     if arguments.json {
-        super::print_json(&json!({"kernel": arguments.kernel, "gains_db": measured, "noise_gain": noise}))?;
+        print_json(&json!({"kernel": arguments.kernel, "gains_db": measured, "noise_gain": noise}))?;
         return Ok(Exit::Pass);
     }
-    print(&format!("{} on {} photographs, over Hermite in dB", arguments.kernel, images.len()))?;
-    for gains in measured {
+    let mut lines = vec![format!("{} on {} photographs, over Hermite in dB", arguments.kernel, images.len())];
+    lines.extend(measured.iter().map(|gains| {
         let Spread { mean, least, most } = gains.gain;
-        print(&format!(
-            "  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {:.4}",
-            gains.condition, gains.hermite
-        ))?;
-    }
-    print(&format!("  noise gain {:.3} ({:.3} to {:.3})", noise.mean, noise.least, noise.most))?;
+        format!("  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {:.4}", gains.condition, gains.hermite)
+    }));
+    lines.push(format!("  noise gain {:.3} ({:.3} to {:.3})", noise.mean, noise.least, noise.most));
+    print(&lines.join("\n"))?;
     Ok(Exit::Pass)
 }

@@ -6,9 +6,11 @@ use clap::Args;
 use halfrow_model::TableError;
 use serde_json::{Value, json};
 
+use super::files::Files;
 use super::optics::{LensArguments, Optics, Rows};
-use super::{Failure, print, print_json};
-use halfrow::frames::{self, HeatMap, WriteError};
+use super::{Context, Failure, print, print_json};
+use crate::console;
+use halfrow::frames::{self, HeatMap};
 use halfrow::verdict::Exit;
 use halfrow_lab::{Residuals, Spread};
 
@@ -32,7 +34,13 @@ pub(super) struct Arguments {
     pub(super) json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    arguments.map.as_deref().map_or(Ok(()), frames::check_png)?;
+    Files::new(arguments.overwrite)
+        .reads(&context.settings_file)
+        .reads(arguments.lens.file())
+        .writes("--map", &arguments.map)
+        .check()?;
     let optics = arguments.lens.optics()?;
     let figures = Figures::of(&optics)?;
     let most = match &arguments.map {
@@ -46,7 +54,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     print(&figures.text())?;
     if let (Some(path), Some(most)) = (&arguments.map, most) {
-        print(&format!("wrote {}, from 0 (dark) to {most:.3} px (bright)", path.display()))?;
+        console::tell(&format!("wrote {}, from 0 (dark) to {most:.3} px (bright)", path.display()));
     }
     Ok(Exit::Pass)
 }
@@ -134,8 +142,5 @@ impl<'a> Figures<'a> {
 /// Writes the picture and returns the error that is brightest in it, in pixels.
 fn write_map(path: &Path, residuals: &Residuals, overwrite: bool) -> Result<f64, Failure> {
     let HeatMap { image, most } = HeatMap::new(&residuals.map);
-    match frames::write_rgb(path, &image, overwrite) {
-        Err(error @ WriteError::NotPng { .. }) => Err(error.into()),
-        written => written.map(|()| most).map_err(Failure::error),
-    }
+    frames::write_rgb(path, &image, overwrite).map(|()| most).map_err(Failure::error)
 }

@@ -6,7 +6,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::BoardArguments;
-use super::{Context, Failure, print, print_json};
+use super::{Context, Failure, conclude, json_text};
 use halfrow::board::{Board, BoardError};
 use halfrow::link_test::{self, Figures, LinkTestError, Rate};
 use halfrow::report::{BoardReport, Identity};
@@ -54,11 +54,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
     if arguments.json {
         let board = BoardReport { kind, target: candidate.target, identity: Some(identity) };
-        print_json(&json!({ "verdict": null, "exit_code": exit, "board": board, "link": figures }))?;
-    } else {
-        print(&format!("{:<12} {} ({kind})\n{}", "board", candidate.target, text(&figures)))?;
+        let result = json!({ "verdict": null, "exit_code": exit, "board": board, "link": figures });
+        return conclude(exit, &json_text(&result)?);
     }
-    Ok(exit)
+    conclude(exit, &format!("{:<12} {} ({kind})\n{}", "board", candidate.target, text(&figures)))
 }
 
 fn text(figures: &Figures) -> String {

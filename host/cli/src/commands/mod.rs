@@ -5,6 +5,7 @@ mod boards;
 mod completions;
 mod correct;
 mod faults;
+mod files;
 mod frames;
 mod info;
 mod inputs;
@@ -23,6 +24,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use halfrow_model::ModelPath;
 
+use crate::console;
 use crate::settings::Settings;
 use halfrow::reference;
 use halfrow::verdict::Exit;
@@ -31,6 +33,8 @@ use halfrow::verdict::Exit;
 pub struct Context {
     /// The settings file, if there is one.
     pub settings: Settings,
+    /// That file.
+    pub settings_file: Option<PathBuf>,
     /// No progress.
     pub quiet: bool,
 }
@@ -86,7 +90,7 @@ pub struct Failure {
 
 impl Failure {
     /// A failure that is not the caller's.
-    pub(crate) fn error(error: impl Into<anyhow::Error>) -> Self {
+    pub fn error(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Error, error: error.into() }
     }
 }
@@ -129,37 +133,47 @@ impl Cli {
         let settings = Settings::load(self.settings.as_deref())?;
         let path = reference::choose(self.model_path)?;
         tracing::info!("the model takes the path {path}");
-        let context = Context { settings, quiet: self.quiet };
+        let settings_file = Settings::file(self.settings.as_deref());
+        let context = Context { settings, settings_file, quiet: self.quiet };
         match &self.command {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
-            Command::Tables(arguments) => tables::run(arguments),
-            Command::Lens(arguments) => lens::run(arguments),
+            Command::Tables(arguments) => tables::run(arguments, &context),
+            Command::Lens(arguments) => lens::run(arguments, &context),
             Command::Kernel(arguments) => kernel::run(arguments, &context),
             Command::Paper(arguments) => paper::run(arguments, &context),
-            Command::Frames(arguments) => frames::run(arguments),
+            Command::Frames(arguments) => frames::run(arguments, &context),
             Command::Boards(arguments) => boards::run(arguments),
             Command::Info(arguments) => info::run(arguments, &context),
             Command::Link(arguments) => link::run(arguments, &context),
             Command::Serve(arguments) => serve::run(arguments),
             Command::Faults(arguments) => faults::run(arguments),
             Command::Completions(arguments) => completions::complete(arguments, &mut Self::command()),
-            Command::Manual(arguments) => completions::manual(arguments, Self::command()),
+            Command::Manual(arguments) => completions::manual(arguments, Self::command(), &context),
         }
     }
 }
 
-/// Prints a JSON result to stdout.
-fn print_json(result: &impl serde::Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string_pretty(result).map_err(Failure::error)?;
-    print(&text)
+/// Prints what `exit` sums up. It stands if that cannot be printed, unless all that it says is that there was something to print.
+fn conclude(exit: Exit, text: &str) -> Result<Exit, Failure> {
+    if exit == Exit::Pass {
+        print(text)?;
+    } else {
+        console::tell(text);
+    }
+    Ok(exit)
 }
 
-/// Prints a result to stdout. A reader that went away, as `head` does, has seen enough.
+/// Prints a JSON result, which is the command's only one.
+fn print_json(result: &impl serde::Serialize) -> Result<(), Failure> {
+    print(&json_text(result)?)
+}
+
+fn json_text(result: &impl serde::Serialize) -> Result<String, Failure> {
+    serde_json::to_string_pretty(result).map_err(Failure::error)
+}
+
+/// Prints a result, which is the command's only one.
 fn print(text: &str) -> Result<(), Failure> {
-    use std::io::Write;
-    match writeln!(anstream::stdout().lock(), "{text}") {
-        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(()),
-        written => written.map_err(Failure::error),
-    }
+    console::print(text).map_err(Failure::error)
 }

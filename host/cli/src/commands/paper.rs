@@ -7,9 +7,10 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::board::BoardArguments;
-use super::{Context, Failure, print, print_json};
-use crate::progress;
+use super::files::Files;
+use super::{Context, Failure, json_text};
 use crate::settings::Settings;
+use crate::{console, progress};
 use halfrow::board::{Board, BoardError};
 use halfrow::frames::preview::RgbImage;
 use halfrow::target::BoardKind;
@@ -53,6 +54,11 @@ fn item_parser() -> impl TypedValueParser<Value = Item> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let begun = Instant::now();
     let items = arguments.items();
+    Files::new(arguments.overwrite)
+        .reads(&context.settings_file)
+        .reads([&arguments.synthesis])
+        .writes_into("--output", Folder::fixed_files(&arguments.output))
+        .check()?;
     let photographs = arguments.photographs(&items)?;
     let folder = Folder::prepare(&arguments.output, arguments.overwrite)?;
     let through_board = arguments.board.is_named(&context.settings);
@@ -68,11 +74,11 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     closed.map_err(failed)?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
     if arguments.json {
-        print_json(&paper::numbers(&exhibits))?;
+        console::tell(&json_text(&paper::numbers(&exhibits))?);
         return Ok(exit(&exhibits));
     }
-    conclude(&exhibits)?;
-    print(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()))?;
+    conclude(&exhibits);
+    console::tell(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()));
     Ok(exit(&exhibits))
 }
 
@@ -98,17 +104,16 @@ fn failed(error: PaperError) -> Failure {
 }
 
 /// Every claim in a line.
-fn conclude(exhibits: &[Exhibit]) -> Result<(), Failure> {
+fn conclude(exhibits: &[Exhibit]) {
     for exhibit in exhibits {
-        print(exhibit.item.title())?;
+        console::tell(exhibit.item.title());
         for claim in &exhibit.claims {
-            print(&line(claim))?;
+            console::tell(&line(claim));
         }
         for open in &exhibit.open {
-            print(&format!("  open    {open}"))?;
+            console::tell(&format!("  open    {open}"));
         }
     }
-    Ok(())
 }
 
 fn line(claim: &Claim) -> String {

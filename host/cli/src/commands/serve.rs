@@ -5,9 +5,9 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 
-use super::board::signals;
 use super::{Failure, print};
 use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
+use crate::signals;
 use halfrow::link;
 use halfrow::target::Target;
 use halfrow::verdict::Exit;
@@ -23,18 +23,27 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TARGET", default_value = "mock")]
     board: Target,
     /// A TCP port instead of a pseudo-terminal: PORT of this computer alone, or ADDRESS:PORT; 0 for any that is free
-    #[arg(long, value_name = "PORT")]
+    #[arg(long, value_name = "PORT", value_parser = door)]
     tcp: Option<String>,
     /// A symbolic link to the pseudo-terminal, which has another name every time
     #[arg(long, value_name = "PATH", conflicts_with = "tcp")]
     link: Option<PathBuf>,
 }
 
+/// A port, or an address with one. Whether it is this computer's is found out later.
+fn door(text: &str) -> Result<String, String> {
+    let (host, port) = text.rsplit_once(':').unwrap_or(("127.0.0.1", text));
+    match port.parse::<u16>() {
+        Ok(_) if !host.is_empty() => Ok(text.to_owned()),
+        _ => Err("give PORT or ADDRESS:PORT, with a port of 0 to 65535".to_owned()),
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let opened = link::open(&arguments.board);
     let candidate = opened.map_err(|error| Failure { exit: error.class().into(), error: error.into() })?;
     let mut board = Hosted::new(candidate.link);
-    let signal = signals()?;
+    let signal = signals::stop();
     let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
     let served = match &arguments.tcp {
         Some(address) => {

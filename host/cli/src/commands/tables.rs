@@ -2,12 +2,16 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::bail;
 use clap::Args;
 
+use super::files::Files;
 use super::optics::{self, LensArguments};
-use super::{Failure, print};
+use super::{Context, Failure};
+use crate::console;
 use halfrow::tables::{TableFile, mem};
 use halfrow::verdict::Exit;
+use halfrow_frames::written_aside::WriteAsideError;
 
 /// Make a table file: a row factor for every row, and a kernel
 #[derive(Debug, Args)]
@@ -25,18 +29,25 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let format = Format::of(&arguments.output)?;
+    Files::new(arguments.overwrite)
+        .reads(&context.settings_file)
+        .reads(arguments.lens.file())
+        .reads_kernel(Some(&arguments.kernel))
+        .writes("--output", format.places(&arguments.output))
+        .check()?;
     let chosen = optics::choose(None, &arguments.lens, Some(&arguments.kernel))?;
     let geometry = *chosen.tables.geometry();
     chosen.tables.check_ring(geometry.width().next_power_of_two())?;
     let outside = chosen.optics.camera.rows_outside_circle();
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
-    let written = write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
-    for path in written {
-        print(&format!("wrote {}: {}", path.display(), chosen.source))?;
+    format.write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
+    for path in format.places(&arguments.output) {
+        console::tell(&format!("wrote {}: {}", path.display(), chosen.source));
     }
     if outside > 0 {
-        print(&format!("{outside} rows lie outside the image circle and are not stretched"))?;
+        console::tell(&format!("{outside} rows lie outside the image circle and are not stretched"));
     }
     Ok(Exit::Pass)
 }
@@ -48,10 +59,38 @@ fn about(source: &str) -> Option<serde_json::Map<String, serde_json::Value>> {
     Some(about)
 }
 
-fn write(file: &TableFile, path: &Path, overwrite: bool) -> anyhow::Result<Vec<PathBuf>> {
-    if path.extension().is_some_and(|extension| extension == "mem") {
-        return Ok(mem::write(path, &file.tables, &file.kernel, overwrite)?);
+/// What a table file is written as.
+#[derive(Clone, Copy)]
+enum Format {
+    Json,
+    Mem,
+}
+
+impl Format {
+    /// The one that the name tells.
+    fn of(path: &Path) -> anyhow::Result<Self> {
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("json") => Ok(Self::Json),
+            Some("mem") => Ok(Self::Mem),
+            _ => bail!(
+                "{} names no format of tables; end it in .json, or in .mem for $readmemh",
+                path.display()
+            ),
+        }
     }
-    file.write(path, overwrite)?;
-    Ok(vec![path.to_owned()])
+
+    /// The files that stand for `path`.
+    fn places(self, path: &Path) -> Vec<PathBuf> {
+        match self {
+            Self::Json => vec![path.to_owned()],
+            Self::Mem => mem::paths(path).into(),
+        }
+    }
+
+    fn write(self, file: &TableFile, path: &Path, overwrite: bool) -> Result<(), WriteAsideError> {
+        match self {
+            Self::Json => file.write(path, overwrite),
+            Self::Mem => mem::write(path, &file.tables, &file.kernel, overwrite).map(drop),
+        }
+    }
 }

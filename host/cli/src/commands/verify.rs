@@ -9,22 +9,24 @@ use clap::Args;
 use clap::builder::FalseyValueParser;
 
 use super::board::BoardArguments;
+use super::files::Files;
 use super::inputs::{InputArguments, file_hash, frame_sources};
 use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
 use super::{Context, Failure, print};
-use crate::progress;
 use crate::settings::Settings;
+use crate::{console, progress, signals};
+use halfrow::board::Stop;
 use halfrow::frames::Builtin;
-use halfrow::link::{Candidate, Recorder, Unfinished};
-use halfrow::report::{self, Report, ReportFolder};
+use halfrow::link::{Candidate, Lost, Recorder, RecordingFile};
+use halfrow::report::{self, Report, ReportError, ReportFolder};
 use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
 use halfrow::verdict::{Exit, Verdict};
 
 /// Judge a board: stream frames through it and compare every sample with the reference
 ///
 /// Without --board the built-in mock board is judged. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
-/// 6 identity or version refused, 130 or 143 interrupted.
+/// 6 identity or version refused, 129, 130 or 143 interrupted.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -82,56 +84,71 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         None => (arguments.plan(settings)?, arguments.circumstances(settings)?),
     };
     plan.check_length()?;
-    let candidate = arguments.board.candidate(settings)?;
     if arguments.list {
+        arguments.board.candidate(settings)?;
         print(&listing(&plan))?;
         return Ok(Exit::Pass);
     }
-    let overwrite = arguments.overwrite || settings.overwrite.unwrap_or(false);
-    let folder = arguments.report.as_ref().or(settings.report.as_ref());
-    let folder = folder.map(|path| ReportFolder::prepare(path, overwrite)).transpose()?;
-    let mut unfinished = Unfinished::default();
-    let candidate = match &arguments.record {
-        None => candidate,
-        Some(path) => {
-            let run = recorded::RecordedRun::of(&plan, &circumstances);
-            let link = Recorder::create(candidate.link, path, &run, overwrite)?;
-            unfinished = link.unfinished();
-            Candidate { link: Box::new(link), ..candidate }
-        }
-    };
-    let stop = arguments.board.stop(plan.timeout)?;
+    let outputs = arguments.outputs(context)?;
+    let mut candidate = arguments.board.candidate(settings)?;
+    let mut lost = Lost::default();
+    if let Some(file) = outputs.recording {
+        let run = recorded::RecordedRun::of(&plan, &circumstances);
+        let link = Recorder::begin(candidate.link, file, &run).map_err(Failure::error)?;
+        lost = link.lost();
+        candidate = Candidate { link: Box::new(link), ..candidate };
+    }
+    let stop = Stop::new(signals::stop(), plan.timeout);
     let watched = progress::for_stderr(context.quiet || arguments.json);
     let mut finished = run::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
     if finished.report.exit_code == Exit::Usage {
         // The call does not fit the board: there is no verdict, and so nothing to report on.
         return Err(anyhow::anyhow!(finished.report.headline).into());
     }
-    if let Some(error) = unfinished.get() {
-        lose(&mut finished.report, format!("the recording could not be written: {error}"), "--record");
+    if let Some(error) = lost.get() {
+        lose(
+            &mut finished.report,
+            &format!("the recording could not be written: {error}"),
+            ANOTHER_RECORDING,
+        );
     }
-    let written = folder.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
+    let written = outputs.report.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
     if let Err(error) = written {
+        let remedy = if matches!(error, ReportError::Exists { .. }) { ANOTHER_REPORT } else { ROOM };
         let error = anyhow::Error::from(error);
-        lose(&mut finished.report, format!("the report could not be written: {error:#}"), "--report");
+        lose(&mut finished.report, &format!("the report could not be written: {error:#}"), remedy);
     }
     conclude(&finished, arguments.json)
 }
 
-/// A result that could not be written is none, even when all samples were equal.
-fn lose(report: &mut Report, headline: String, option: &str) {
-    report.headline = headline;
+/// What a run writes, with its places taken.
+struct Outputs {
+    report: Option<ReportFolder>,
+    recording: Option<RecordingFile>,
+}
+
+const ROOM: &str = "Free some space or choose another place with --report, then run again.";
+const ANOTHER_REPORT: &str = "Name another folder with --report, or give --overwrite, then run again.";
+const ANOTHER_RECORDING: &str = "Free some space or choose another place with --record, then run again.";
+
+/// A PASS whose files could not be written is none. Any other verdict stands, and stderr says what it lacks.
+fn lose(report: &mut Report, what: &str, remedy: &str) {
+    if report.verdict != Verdict::Pass {
+        console::error(&what);
+        return;
+    }
+    report.headline = what.to_owned();
     report.verdict = Verdict::Error;
     report.exit_code = Exit::Error;
-    report.remedy = Some(format!("Free some space or choose another place with {option}, then run again."));
+    report.remedy = Some(remedy.to_owned());
 }
 
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
     let report = &finished.report;
     if as_json {
-        print(&report::json(report).map_err(Failure::error)?)?;
+        console::tell(&report::json(report).map_err(Failure::error)?);
     } else {
-        print(report::text(report).trim_end())?;
+        console::tell(report::text(report).trim_end());
     }
     Ok(report.exit_code)
 }
@@ -194,6 +211,38 @@ impl Arguments {
         patience.map_err(|_| anyhow::anyhow!("--reconnect takes a number of seconds, 0 or more").into())
     }
 
+    /// Looks at all that is read and written, and takes the places of what is written.
+    fn outputs(&self, context: &Context) -> Result<Outputs, Failure> {
+        let settings = &context.settings;
+        let overwrite = self.overwrite || settings.overwrite.unwrap_or(false);
+        let report = self.report.as_deref().or(settings.report.as_deref());
+        Files::new(overwrite)
+            .reads(&context.settings_file)
+            .reads(self.input_files(settings)?)
+            .reads_kernel(self.kernel.as_deref().or(settings.kernel.as_deref()))
+            .reads(self.board.replayed(settings)?)
+            .writes("trace", self.board.trace(settings)?)
+            .writes("--record", &self.record)
+            .writes_report("--report", report)
+            .check()?;
+        Ok(Outputs {
+            report: report.map(|path| ReportFolder::prepare(path, overwrite)).transpose()?,
+            recording: self
+                .record
+                .as_ref()
+                .map(|path| RecordingFile::prepare(path, overwrite))
+                .transpose()?,
+        })
+    }
+
+    /// Tables, lens and frames that are files.
+    fn input_files(&self, settings: &Settings) -> Result<Vec<PathBuf>, Failure> {
+        let tables = self.tables.file(&self.lens, settings)?.map(PathBuf::from);
+        let names = self.frame_names(settings).iter();
+        let frames = names.filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
+        Ok(tables.into_iter().chain(self.lens.file().map(PathBuf::from)).chain(frames).collect())
+    }
+
     fn frame_names<'a>(&'a self, settings: &'a Settings) -> &'a [String] {
         if self.frame.is_empty() { settings.frame.as_deref().unwrap_or_default() } else { &self.frame }
     }
@@ -203,14 +252,13 @@ impl Arguments {
     }
 
     fn circumstances(&self, settings: &Settings) -> Result<Circumstances, Failure> {
-        let tables = self.tables.file(&self.lens, settings)?.map(PathBuf::from);
-        let names = self.frame_names(settings).iter();
-        let frames = names.filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
-        let lens = self.lens.file().map(PathBuf::from);
-        let files = tables.into_iter().chain(lens).chain(frames);
         Ok(Circumstances {
             arguments: std::env::args().collect(),
-            files: files.map(|path| file_hash(&path)).collect::<Result<_, _>>()?,
+            files: self
+                .input_files(settings)?
+                .iter()
+                .map(|path| file_hash(path))
+                .collect::<Result<_, _>>()?,
             draws: run::Draws::draw(),
         })
     }

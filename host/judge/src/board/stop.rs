@@ -31,10 +31,7 @@ impl Stop {
     pub(crate) fn check(&self, now: Duration) -> Result<(), BoardError> {
         match self.signal.load(Ordering::Relaxed) {
             0 => {}
-            code if code == usize::from(Exit::Terminated.code()) => {
-                return Err(BoardError::Stopped(Exit::Terminated));
-            }
-            _ => return Err(BoardError::Stopped(Exit::Interrupted)),
+            code => return Err(BoardError::Stopped(Exit::of_signal(code).unwrap_or(Exit::Interrupted))),
         }
         match self.limit {
             Some(limit) if self.spent + now > limit => Err(BoardError::Timeout { limit }),

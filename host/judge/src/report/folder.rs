@@ -6,15 +6,13 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use tempfile::TempDir;
 
 use super::{Evidence, Report, html, json, junit};
+use halfrow_frames::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
 
 const JSON: &str = "report.json";
 const JUNIT: &str = "report.xml";
 const HTML: &str = "report.html";
-/// What an earlier report is called while it is out of the way.
-const EARLIER: &str = "earlier";
 
 /// A report that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -26,8 +24,22 @@ pub enum ReportError {
         path: PathBuf,
     },
     /// Something is there and may not be replaced.
-    #[error("{} exists; name another folder, or allow it to be overwritten", path.display())]
+    #[error("{} exists; give --overwrite to replace it, or name another folder", path.display())]
     Exists {
+        /// The path.
+        path: PathBuf,
+    },
+    /// What is there is a symbolic link.
+    #[error("{} is a link to {}, and links are not written through; name the folder itself", path.display(), to.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+        /// Where it leads.
+        to: PathBuf,
+    },
+    /// Another run is writing it.
+    #[error("another run is writing {}; wait until it is done, or name another folder", path.display())]
+    Claimed {
         /// The path.
         path: PathBuf,
     },
@@ -81,29 +93,26 @@ pub enum ReportError {
 #[derive(Debug)]
 pub struct ReportFolder {
     path: PathBuf,
-    parent: PathBuf,
     overwrite: bool,
-    aside: TempDir,
+    aside: AsideFolder,
+    /// Until the report is in its place, so that two that may not overwrite cannot both begin.
+    _claim: Option<Claim>,
 }
 
 impl ReportFolder {
     /// Makes sure that a report can be written to `path`, before a board is opened for it.
     ///
     /// # Errors
-    /// [`ReportError`] when the folder above does not exist or is not writable, or when there is something at `path` that
-    /// is no earlier report or, without `overwrite`, anything.
+    /// [`ReportError`] when the folder above does not exist or is not writable, when there is something at `path` that
+    /// is no earlier report or, without `overwrite`, anything, or when another run is about to put a report there.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ReportError> {
-        if path.file_name().is_none() {
-            return Err(ReportError::Name { path: path.to_owned() });
-        }
         check(path, overwrite)?;
-        let parent = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
-            _ => PathBuf::from("."),
-        };
+        let claim = if overwrite { None } else { Some(claim(path)?) };
+        // Whoever had the claim before may have put a report in place.
+        check(path, overwrite)?;
         let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
-        let aside = beside(&parent).map_err(failed)?;
-        Ok(Self { path: path.to_owned(), parent, overwrite, aside })
+        let aside = AsideFolder::new(path).map_err(failed)?;
+        Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim })
     }
 
     /// Writes the report and puts it in its place. When that fails, an earlier report stays as it was.
@@ -114,10 +123,13 @@ impl ReportFolder {
         self.write(JSON, &json::render(report)?)?;
         self.write(JUNIT, &junit::render(report)?)?;
         self.write(HTML, &html::render(report, evidence)?)?;
-        check(&self.path, self.overwrite)?;
-        let failed = |source| ReportError::Place { path: self.path.clone(), source };
-        sync(self.aside.path()).map_err(failed)?;
-        self.place().map_err(failed)
+        let Self { path, overwrite, aside, .. } = self;
+        let placed = if overwrite { aside.replace(foreign) } else { aside.put_in_place() };
+        placed.map_err(|misplaced| match misplaced {
+            Misplaced::Taken(None) => ReportError::Exists { path },
+            Misplaced::Taken(Some(why)) => ReportError::NotAReport { path, why },
+            Misplaced::Io(source) => ReportError::Place { path, source },
+        })
     }
 
     fn write(&self, name: &'static str, text: &str) -> Result<(), ReportError> {
@@ -125,38 +137,30 @@ impl ReportFolder {
         let mut file = File::create_new(self.aside.path().join(name)).map_err(failed)?;
         file.write_all(text.as_bytes()).and_then(|()| file.sync_all()).map_err(failed)
     }
+}
 
-    /// Renames the new folder into place. An earlier report is moved out of the way, and back when the new one is not
-    /// taken; it goes for good only when the new one stands.
-    fn place(&self) -> io::Result<()> {
-        let earlier = if self.path.exists() { Some(self.moved_away()?) } else { None };
-        if let Err(refused) = fs::rename(self.aside.path(), &self.path) {
-            earlier.map_or(Ok(()), |earlier| self.move_back(earlier))?;
-            return Err(refused);
-        }
-        sync(&self.parent)
-    }
-
-    /// The earlier report, in a folder beside it that goes when it is dropped.
-    fn moved_away(&self) -> io::Result<TempDir> {
-        let folder = beside(&self.parent)?;
-        fs::rename(&self.path, folder.path().join(EARLIER))?;
-        Ok(folder)
-    }
-
-    /// Puts the earlier report back. When even that fails it stays where it is, never to be removed.
-    fn move_back(&self, earlier: TempDir) -> io::Result<()> {
-        let folder = earlier.keep();
-        fs::rename(folder.join(EARLIER), &self.path)?;
-        fs::remove_dir(folder)
-    }
+fn claim(path: &Path) -> Result<Claim, ReportError> {
+    Claim::take(path).map_err(|error| match error {
+        WriteAsideError::Io { path, source } => ReportError::Prepare { path, source },
+        _ => ReportError::Claimed { path: path.to_owned() },
+    })
 }
 
 /// Whether a report may go to `path` as things are.
-fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
+///
+/// # Errors
+/// [`ReportError`] when `path` names no folder of its own, or when something is there that may not be replaced.
+pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
+    if path.file_name().is_none() {
+        return Err(ReportError::Name { path: path.to_owned() });
+    }
     match fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         Err(source) => Err(ReportError::Prepare { path: path.to_owned(), source }),
+        Ok(there) if there.is_symlink() => {
+            let to = fs::read_link(path).unwrap_or_default();
+            Err(ReportError::Link { path: path.to_owned(), to })
+        }
         Ok(_) if !overwrite => Err(ReportError::Exists { path: path.to_owned() }),
         Ok(_) => match foreign(path) {
             None => Ok(()),
@@ -192,36 +196,4 @@ fn is_report(path: &Path) -> bool {
         _exit_code: IgnoredAny,
     }
     File::open(path).is_ok_and(|file| serde_json::from_reader::<_, Head>(BufReader::new(file)).is_ok())
-}
-
-/// A new folder in `parent`, on the same file system as the report, with the permissions of an ordinary folder.
-fn beside(parent: &Path) -> io::Result<TempDir> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".halfrow-report-");
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));
-    builder.tempdir_in(parent)
-}
-
-/// Makes a folder's entries last through a power cut, where the system can.
-fn sync(folder: &Path) -> io::Result<()> {
-    if cfg!(unix) { File::open(folder)?.sync_all() } else { Ok(()) }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_earlier_report_comes_back_when_the_new_one_is_not_taken() {
-        let station = TempDir::new().unwrap();
-        let path = station.path().join("today");
-        fs::create_dir(&path).unwrap();
-        fs::write(path.join(JSON), r#"{"verdict": "PASS", "exit_code": 0}"#).unwrap();
-        let folder = ReportFolder::prepare(&path, true).unwrap();
-        fs::remove_dir(folder.aside.path()).unwrap();
-        assert_eq!(folder.place().unwrap_err().kind(), io::ErrorKind::NotFound);
-        assert!(is_report(&path.join(JSON)));
-        assert_eq!(fs::read_dir(station.path()).unwrap().count(), 1);
-    }
 }

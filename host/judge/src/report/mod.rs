@@ -19,6 +19,7 @@ use crate::link::LineErrors;
 use crate::verdict::{Exit, Verdict};
 
 pub use crate::target::BoardKind;
+pub use folder::check as check_folder;
 pub use folder::{ReportError, ReportFolder};
 pub use html::document;
 pub use html::render as html;

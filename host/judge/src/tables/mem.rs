@@ -11,7 +11,7 @@ use halfrow_model::{BitDepth, Geometry, Kernel, TAP_NAMES, TableSet};
 
 use super::text::{self, quoted};
 use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath};
-use halfrow_frames::written_aside::{Aside, WriteAsideError};
+use halfrow_frames::written_aside::{Aside, Claim, WriteAsideError};
 
 /// Hexadecimal digits of a step.
 const STEP_DIGITS: usize = 7;
@@ -46,6 +46,8 @@ pub fn write(
     overwrite: bool,
 ) -> Result<Vec<PathBuf>, WriteAsideError> {
     let [steps, nodes] = paths(path);
+    // Of two runs that overwrite each other, both files are those of the one or of the other.
+    let _turn = Claim::wait(path)?;
     let written = [
         Aside::written(&steps, overwrite, |out| out.write_all(steps_text(tables).as_bytes()))?,
         Aside::written(&nodes, overwrite, |out| out.write_all(kernel_text(kernel).as_bytes()))?,

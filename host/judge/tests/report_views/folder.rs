@@ -121,7 +121,8 @@ fn what_came_into_the_way_during_the_run_is_not_replaced() {
     let station = TempDir::new().unwrap();
     let path = station.path().join("today");
     let folder = ReportFolder::prepare(&path, false).unwrap();
-    write(&path, false, &made::pass());
+    assert!(matches!(ReportFolder::prepare(&path, false), Err(ReportError::Claimed { .. })));
+    write(&path, true, &made::pass());
     assert!(matches!(folder.commit(&made::error(), &[]), Err(ReportError::Exists { .. })));
     assert_eq!(headline(&path), made::pass().headline);
     assert_eq!(names(station.path()), ["today"]);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::exhibit::{Drawing, Exhibit, Picture};
 use super::page;
 use halfrow::frames::preview;
-use halfrow_frames::written_aside::{WriteAsideError, write_aside};
+use halfrow_frames::written_aside::{Claim, WriteAsideError, check, write_aside};
 
 /// The page's name.
 const PAGE: &str = "paper.html";
@@ -36,23 +36,31 @@ pub enum FolderError {
 }
 
 /// A place for exhibits. Files in it that they do not name stay as they are.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Folder {
     path: PathBuf,
     overwrite: bool,
+    /// Until all is written, so that two that may not overwrite cannot both begin.
+    _claim: Option<Claim>,
 }
 
 impl Folder {
     /// Makes the folder unless it is there, and makes sure that it holds no earlier page unless that may be replaced.
     ///
     /// # Errors
-    /// [`FolderError`] when it cannot be made or holds one.
+    /// [`FolderError`] when it cannot be made or holds one, or when another run is about to put one there.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, FolderError> {
         fs::create_dir_all(path).map_err(|source| FolderError::Make { path: path.to_owned(), source })?;
-        match path.join(PAGE) {
-            page if page.exists() && !overwrite => Err(WriteAsideError::Exists { path: page }.into()),
-            _ => Ok(Self { path: path.to_owned(), overwrite }),
-        }
+        let page = path.join(PAGE);
+        let claim = if overwrite { None } else { Some(Claim::take(&page)?) };
+        check(&page, overwrite)?;
+        Ok(Self { path: path.to_owned(), overwrite, _claim: claim })
+    }
+
+    /// The files that there are in `folder` whatever the exhibits.
+    #[must_use]
+    pub fn fixed_files(folder: &Path) -> [PathBuf; 2] {
+        [PAGE, NUMBERS].map(|name| folder.join(name))
     }
 
     /// Writes everything, the page last, and returns where that is.
@@ -60,6 +68,8 @@ impl Folder {
     /// # Errors
     /// [`FolderError`] for the first file that cannot be written.
     pub fn write(&self, exhibits: &[Exhibit]) -> Result<PathBuf, FolderError> {
+        // Of two that overwrite each other, the files are those of the one or of the other.
+        let _turn = if self.overwrite { Some(Claim::wait(&self.path.join(PAGE))?) } else { None };
         for exhibit in exhibits {
             for table in &exhibit.tables {
                 self.file(&format!("{}.csv", table.name), table.csv().as_bytes())?;

@@ -5,8 +5,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail, ensure};
 
+use super::super::files::Files;
 use super::super::inputs::FrameName;
-use halfrow::frames::{Format, WriteError};
+use halfrow::frames::{Format, check_png};
+use halfrow_frames::written_aside::Place;
 
 /// The files of a call, one for each input, in the order of the inputs.
 pub(super) struct Places {
@@ -25,8 +27,6 @@ pub(super) struct Wanted<'a> {
     pub(super) format: Option<Format>,
     /// The file or folder of the previews.
     pub(super) preview: Option<&'a Path>,
-    /// Whether what is there may be replaced.
-    pub(super) overwrite: bool,
 }
 
 impl Places {
@@ -44,10 +44,8 @@ impl Places {
                 bail!("{} is no {format}; leave --format out, or name a folder with -o", path.display());
             }
         }
-        if let Some(path) = places.previews.iter().find(|path| !matches!(Format::of(path), Ok(Format::Png))) {
-            return Err(WriteError::NotPng { path: path.clone() }.into());
-        }
-        places.check(wanted.overwrite)?;
+        places.previews.iter().try_for_each(|path| check_png(path))?;
+        places.check()?;
         Ok(places)
     }
 
@@ -72,19 +70,26 @@ impl Places {
         inputs.iter().map(path).collect()
     }
 
-    /// No file twice, and none that is there unless it may be replaced.
-    fn check(&self, overwrite: bool) -> anyhow::Result<()> {
+    /// No file twice.
+    fn check(&self) -> anyhow::Result<()> {
         let mut seen = HashSet::new();
         for path in self.frames.iter().chain(&self.previews) {
-            if !seen.insert(resolved(path)) {
+            if !seen.insert(Place::of(path)) {
                 let shared = path.display();
                 bail!("two inputs would both be written to {shared}, or a frame and its preview; part them");
             }
         }
-        match self.frames.iter().chain(&self.previews).find(|path| path.exists() && !overwrite) {
-            Some(taken) => bail!("{} is there already; give --overwrite to replace it", taken.display()),
-            None => Ok(()),
+        Ok(())
+    }
+
+    /// Adds these files to those of the call.
+    pub(super) fn add_to(&self, mut files: Files) -> Files {
+        for (option, paths) in [("--output", &self.frames), ("--preview", &self.previews)] {
+            let is_in = |path: &&PathBuf| self.folders.iter().any(|folder| path.parent() == Some(folder));
+            let (inside, named): (Vec<_>, Vec<_>) = paths.iter().partition(is_in);
+            files = files.writes_into(option, inside).writes(option, named);
         }
+        files
     }
 
     /// Makes the folders that are not there.
@@ -95,13 +100,4 @@ impl Places {
         }
         Ok(())
     }
-}
-
-/// The path by which a file of many names is known again, if it or its folder is there.
-fn resolved(path: &Path) -> PathBuf {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    path.canonicalize().unwrap_or_else(|_| {
-        let name = path.file_name().unwrap_or_default();
-        folder.canonicalize().map_or_else(|_| path.to_owned(), |folder| folder.join(name))
-    })
 }

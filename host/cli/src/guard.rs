@@ -1,0 +1,58 @@
+//! Faults of the program itself: a panic ends a command with an error, never by itself.
+
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::sync::Mutex;
+
+use crate::console;
+
+/// A panic.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "halfrow itself has failed: {0}; nothing was judged, so run it again, and report this line with the call that led to it"
+)]
+pub struct InternalError(String);
+
+/// What the first panic was, for a panic that comes through other threads loses its place.
+static FIRST: Mutex<Option<String>> = Mutex::new(None);
+
+/// What `run` returns.
+///
+/// # Errors
+/// [`InternalError`] when it panics, on whatever thread that it waits for.
+pub fn guarded<T>(run: impl FnOnce() -> T) -> Result<T, InternalError> {
+    panic::set_hook(Box::new(note));
+    let ended = panic::catch_unwind(AssertUnwindSafe(run));
+    ended.map_err(|_| {
+        let first = FIRST.lock().ok().and_then(|mut first| first.take());
+        InternalError(first.unwrap_or_else(|| "for no reason that is known".to_owned()))
+    })
+}
+
+/// Keeps what a panic says, and writes its backtrace where one is asked for with `RUST_BACKTRACE`.
+fn note(panic: &PanicHookInfo<'_>) {
+    let message = panic.payload_as_str().unwrap_or("a panic without a message");
+    let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
+    if let Ok(mut first) = FIRST.lock() {
+        first.get_or_insert_with(|| format!("{message}{place}"));
+    }
+    let trace = Backtrace::capture();
+    if trace.status() == BacktraceStatus::Captured {
+        console::diagnose(&format_args!("{message}{place}\n{trace}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_an_error_that_says_what_and_where() {
+        assert_eq!(guarded(|| 7).unwrap(), 7);
+        let said = guarded(|| panic!("the sky fell")).map(|()| 0).unwrap_err().to_string();
+        assert!(said.contains("the sky fell (") && said.contains("guard.rs:"), "{said}");
+        let behind = || std::thread::scope(|scope| scope.spawn(|| panic!("below ground")).join().is_ok());
+        let said = guarded(|| assert!(behind())).unwrap_err().to_string();
+        assert!(said.contains("below ground"), "{said}");
+    }
+}

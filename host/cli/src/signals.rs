@@ -1,0 +1,70 @@
+//! Signals that end a command: Ctrl-C, SIGTERM, and SIGHUP from a terminal or connection that is gone.
+//!
+//! A command with a board listens for them ([`stop`]): the first is noted, so that it can end in order, and a second ends the
+//! program at once. Any other command ends at the first. However it ends, nothing half written stays.
+
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock};
+use std::thread;
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+
+use crate::console;
+use halfrow::verdict::Exit;
+use halfrow_frames::written_aside;
+
+/// Holds the exit code of the first signal, and 0 before.
+static FIRST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
+/// Whether somebody looks at it.
+static IS_HEEDED: AtomicBool = AtomicBool::new(false);
+
+/// Waits for signals from now on, on a thread of its own.
+///
+/// # Errors
+/// The system's, when it takes no handler or has no thread left.
+pub fn watch() -> io::Result<()> {
+    let mut wanted = vec![SIGINT, SIGTERM];
+    // Whoever starts a program with `nohup` wants it to outlive the terminal.
+    if !is_ignored(SIGHUP) {
+        wanted.push(SIGHUP);
+    }
+    let mut signals = Signals::new(wanted)?;
+    thread::Builder::new().name("signals".to_owned()).spawn(move || {
+        for signal in &mut signals {
+            receive(match signal {
+                SIGHUP => Exit::HungUp,
+                SIGTERM => Exit::Terminated,
+                _ => Exit::Interrupted,
+            });
+        }
+    })?;
+    Ok(())
+}
+
+/// Holds the exit code of the first signal, and 0 before. Whoever asks for it must look at it: the program goes on.
+#[must_use]
+pub fn stop() -> Arc<AtomicUsize> {
+    IS_HEEDED.store(true, Ordering::SeqCst);
+    Arc::clone(&FIRST)
+}
+
+fn receive(exit: Exit) {
+    let code = usize::from(exit.code());
+    let is_first = FIRST.compare_exchange(0, code, Ordering::SeqCst, Ordering::SeqCst).is_ok();
+    if is_first && IS_HEEDED.load(Ordering::SeqCst) {
+        return;
+    }
+    written_aside::abandon_all();
+    console::error(&"stopped by a signal; what was not whole yet is gone");
+    signal_hook::low_level::exit(exit.code().into());
+}
+
+/// Whether whoever started the program wants it not to hear this signal, as far as the system tells.
+fn is_ignored(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or_default();
+    mask >> (signal - 1) & 1 == 1
+}

@@ -1,0 +1,202 @@
+//! A folder that is written aside.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::under_way::{self, Noted};
+use super::{folder_of, rename};
+
+/// How often a place is looked at again that changes between two looks.
+const LOOKS: usize = 100;
+/// What was in the place is called so while it is out of the way, where folders cannot be swapped.
+const EARLIER: &str = "earlier";
+
+/// A folder with a name of ours beside the place that it is for. It goes, with all that is in it, if it is not put there.
+#[derive(Debug)]
+pub struct AsideFolder {
+    dir: TempDir,
+    target: PathBuf,
+    /// Holds the lock.
+    _held: File,
+    _noted: Noted,
+}
+
+/// A folder that was not put in its place.
+#[derive(Debug)]
+pub enum Misplaced {
+    /// Something is there that may not be replaced: why, or nothing when nothing may.
+    Taken(Option<String>),
+    /// The system's reason.
+    Io(io::Error),
+}
+
+impl From<io::Error> for Misplaced {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl AsideFolder {
+    /// A folder for `target`, with the permissions of an ordinary one.
+    ///
+    /// # Errors
+    /// The system's reason.
+    pub fn new(target: &Path) -> io::Result<Self> {
+        let (dir, held, noted) = under_way::folder(folder_of(target))?;
+        Ok(Self { dir, target: target.to_owned(), _held: held, _noted: noted })
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        self.dir.path()
+    }
+
+    /// Renames it into its place, which nothing may have.
+    ///
+    /// # Errors
+    /// [`Misplaced`]
+    pub fn put_in_place(self) -> Result<(), Misplaced> {
+        sync(self.path())?;
+        self.moved()?;
+        self.done()
+    }
+
+    /// Renames it into its place. What is there goes, unless `foreign` says why it may not.
+    ///
+    /// # Errors
+    /// [`Misplaced`], with everything as it was.
+    pub fn replace(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
+        sync(self.path())?;
+        for _ in 0..LOOKS {
+            match self.moved() {
+                Err(Misplaced::Taken(_)) => {}
+                Err(error) => return Err(error),
+                Ok(()) => return self.done(),
+            }
+            if let Some(why) = foreign(&self.target) {
+                return Err(Misplaced::Taken(Some(why)));
+            }
+            match rename::swap(self.path(), &self.target) {
+                Ok(()) => return self.drop_earlier(foreign),
+                Err(error) if error.kind() == io::ErrorKind::Unsupported => {
+                    self.exchange()?;
+                    return self.done();
+                }
+                Err(error) if error.kind() == io::ErrorKind::NotFound && self.path().exists() => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Err(Misplaced::Taken(Some("it is replaced all the time".to_owned())))
+    }
+
+    fn moved(&self) -> Result<(), Misplaced> {
+        rename::to_new(self.path(), &self.target).map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => Misplaced::Taken(None),
+            _ => Misplaced::Io(error),
+        })
+    }
+
+    /// Removes what was swapped out, unless somebody put something else there between the look and the swap.
+    fn drop_earlier(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
+        if let Some(why) = foreign(self.path()) {
+            rename::swap(self.path(), &self.target)?;
+            return Err(Misplaced::Taken(Some(why)));
+        }
+        Ok(sync(folder_of(&self.target))?)
+    }
+
+    /// Swaps in three steps. What is moved out of the way comes back when ours is not taken.
+    fn exchange(&self) -> io::Result<()> {
+        let away =
+            tempfile::Builder::new().prefix(".halfrow-away-").tempdir_in(folder_of(&self.target))?.keep();
+        fs::rename(&self.target, away.join(EARLIER))?;
+        if let Err(refused) = rename::to_new(self.path(), &self.target) {
+            // When even that fails it stays where it is, never to be removed.
+            rename::to_new(&away.join(EARLIER), &self.target)?;
+            fs::remove_dir(&away)?;
+            return Err(refused);
+        }
+        fs::remove_dir_all(&away)
+    }
+
+    fn done(self) -> Result<(), Misplaced> {
+        let Self { dir, target, .. } = self;
+        // It has another name by now, under which it stays.
+        let _ = dir.keep();
+        Ok(sync(folder_of(&target))?)
+    }
+}
+
+/// Makes a folder's entries last through a power cut, where the file system can.
+fn sync(folder: &Path) -> io::Result<()> {
+    match File::open(folder)?.sync_all() {
+        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
+            Ok(())
+        }
+        synced => synced,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn text(folder: &Path) -> String {
+        fs::read_to_string(folder.join("text")).unwrap()
+    }
+
+    /// A folder aside for `target`, with a text in it.
+    fn aside(target: &Path, text: &str) -> AsideFolder {
+        let aside = AsideFolder::new(target).unwrap();
+        fs::write(aside.path().join("text"), text).unwrap();
+        aside
+    }
+
+    fn entries(folder: &Path) -> usize {
+        fs::read_dir(folder).unwrap().count()
+    }
+
+    #[test]
+    fn what_is_there_is_replaced_whole_or_not_at_all() {
+        let station = TempDir::new().unwrap();
+        let target = station.path().join("today");
+        aside(&target, "first").put_in_place().unwrap();
+        let taken = aside(&target, "second").put_in_place();
+        assert!(matches!(taken, Err(Misplaced::Taken(None))), "{taken:?}");
+        let kept = aside(&target, "third").replace(|_| Some("it is precious".to_owned()));
+        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
+        aside(&target, "fourth").replace(|_| None).unwrap();
+        assert_eq!((text(&target), entries(station.path())), ("fourth".to_owned(), 1));
+    }
+
+    #[test]
+    fn what_came_between_the_look_and_the_swap_comes_back() {
+        let station = TempDir::new().unwrap();
+        let target = station.path().join("today");
+        aside(&target, "first").put_in_place().unwrap();
+        // The second look is at what the swap took away.
+        let changed = |path: &Path| (path != target).then(|| "it is precious".to_owned());
+        let kept = aside(&target, "second").replace(changed);
+        assert!(matches!(kept, Err(Misplaced::Taken(Some(_)))), "{kept:?}");
+        assert_eq!((text(&target), entries(station.path())), ("first".to_owned(), 1));
+    }
+
+    #[test]
+    fn where_folders_cannot_be_swapped_the_earlier_one_comes_back_when_the_new_one_is_not_taken() {
+        let station = TempDir::new().unwrap();
+        let target = station.path().join("today");
+        aside(&target, "first").put_in_place().unwrap();
+        let second = aside(&target, "second");
+        second.exchange().unwrap();
+        second.done().unwrap();
+        assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
+        let third = aside(&target, "third");
+        fs::remove_dir_all(third.path()).unwrap();
+        assert_eq!(third.exchange().unwrap_err().kind(), io::ErrorKind::NotFound);
+        assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
+    }
+}

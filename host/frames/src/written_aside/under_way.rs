@@ -1,0 +1,199 @@
+//! Files and folders that are under way, by names of ours, and those that killed runs left behind.
+//!
+//! ```text
+//! .halfrow-XXXXXXXXXX.aside           a file or folder that is worth nothing until it is whole
+//! .halfrow-XXXXXXXXXX.NAME.partial    a stream for NAME that is worth keeping as far as it goes
+//! .halfrow-NAME.claim                 NAME is being made by somebody
+//! ```
+//! Each is locked by the run that made it. A lock that can be taken means that its owner is gone.
+
+use std::collections::BTreeSet;
+use std::ffi::{OsStr, OsString};
+use std::fs::{self, DirEntry, File};
+use std::io;
+use std::os::unix::ffi::OsStrExt as _;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::{NamedTempFile, TempDir};
+
+use super::lock::{self, Tried};
+use super::rename;
+
+const PREFIX: &str = ".halfrow-";
+const ASIDE: &str = ".aside";
+const PARTIAL: &str = ".partial";
+const CLAIM: &str = ".claim";
+/// Drawn characters of a name.
+const DRAWN: usize = 10;
+/// The longest name that one of ours is made of, in bytes, so that file systems take it.
+const LONGEST: usize = 200;
+/// How often a name is drawn anew when another run took the fresh file for a dead one's.
+const TRIES: usize = 100;
+
+static UNDER_WAY: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn under_way() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    UNDER_WAY.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Something of this run that [`abandon_all`] would remove. It is forgotten when this is dropped.
+#[derive(Debug)]
+pub(super) struct Noted(PathBuf);
+
+impl Noted {
+    /// Notes what was made before.
+    pub(super) fn new(path: PathBuf) -> Self {
+        under_way().insert(path.clone());
+        Self(path)
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for Noted {
+    fn drop(&mut self) {
+        under_way().remove(&self.0);
+    }
+}
+
+/// Makes something, and notes it before a signal can come between.
+fn made<T>(make: impl FnOnce() -> io::Result<(T, PathBuf)>) -> io::Result<(T, Noted)> {
+    let mut under_way = under_way();
+    let (made, path) = make()?;
+    under_way.insert(path.clone());
+    Ok((made, Noted(path)))
+}
+
+/// Removes all that is under way, for a program that must end at once, and lets nothing more be begun. Streams that are worth
+/// keeping stay for the next run to find.
+pub fn abandon_all() {
+    let under_way = under_way();
+    for path in under_way.iter().filter(|path| !is_worth_keeping(path)) {
+        let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    }
+    std::mem::forget(under_way);
+}
+
+/// A locked file in `folder` that will be `kept_for`, if it is worth that.
+pub(super) fn file(folder: &Path, kept_for: Option<&OsStr>) -> io::Result<(NamedTempFile, Noted)> {
+    let suffix = kept_for.map_or_else(
+        || OsString::from(ASIDE),
+        |name| {
+            let name = if name.len() > LONGEST { OsStr::new("recording") } else { name };
+            [OsStr::new("."), name, OsStr::new(PARTIAL)].into_iter().collect()
+        },
+    );
+    for _ in 0..TRIES {
+        let (file, noted) = made(|| {
+            let file = builder(&suffix, 0o666).tempfile_in(folder)?;
+            let path = file.path().to_owned();
+            Ok((file, path))
+        })?;
+        if is_ours(file.as_file(), file.path()) {
+            return Ok((file, noted));
+        }
+    }
+    Err(io::ErrorKind::ResourceBusy.into())
+}
+
+/// A locked folder in `parent`, with what holds its lock.
+pub(super) fn folder(parent: &Path) -> io::Result<(TempDir, File, Noted)> {
+    for _ in 0..TRIES {
+        let (folder, noted) = made(|| {
+            let folder = builder(OsStr::new(ASIDE), 0o777).tempdir_in(parent)?;
+            let path = folder.path().to_owned();
+            Ok((folder, path))
+        })?;
+        match lock::open(folder.path()) {
+            Ok(held) if is_ours(&held, folder.path()) => return Ok((folder, held, noted)),
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
+            _ => {}
+        }
+    }
+    Err(io::ErrorKind::ResourceBusy.into())
+}
+
+fn builder(suffix: &OsStr, mode: u32) -> tempfile::Builder<'static, '_> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(PREFIX).rand_bytes(DRAWN).suffix(suffix).permissions(fs::Permissions::from_mode(mode));
+    builder
+}
+
+/// Takes the lock of what was just made. A run that cleans may have been faster, and have removed it.
+fn is_ours(made: &File, path: &Path) -> bool {
+    match lock::try_lock(made) {
+        Tried::Theirs => false,
+        Tried::Ours | Tried::Unknown => lock::is_named(made, path),
+    }
+}
+
+/// The file that claims `target`.
+pub(super) fn claim_on(target: &Path) -> PathBuf {
+    let name = target.file_name().unwrap_or_default();
+    let name = OsStr::from_bytes(&name.as_bytes()[..name.len().min(LONGEST)]);
+    let parts = [OsStr::new(PREFIX), name, OsStr::new(CLAIM)];
+    super::folder_of(target).join(parts.into_iter().collect::<OsString>())
+}
+
+/// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a name
+/// that nothing else has, which is returned. What cannot be told or removed stays.
+pub(super) fn clean(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter(is_one_of_ours).filter_map(|entry| clear(&entry.path())).collect()
+}
+
+fn clear(path: &Path) -> Option<PathBuf> {
+    let file = lock::open(path).ok()?;
+    let (Tried::Ours, true) = (lock::try_lock(&file), lock::is_named(&file, path)) else { return None };
+    let about = file.metadata().ok()?;
+    if about.is_dir() {
+        let _ = fs::remove_dir_all(path);
+        None
+    } else if is_worth_keeping(path) && about.len() > 0 {
+        kept(path).ok()
+    } else {
+        let _ = fs::remove_file(path);
+        None
+    }
+}
+
+/// Whether it has one of our names and may be what that says.
+fn is_one_of_ours(entry: &DirEntry) -> bool {
+    let name = entry.file_name();
+    let Some(rest) = name.as_bytes().strip_prefix(PREFIX.as_bytes()) else { return false };
+    let Ok(about) = entry.metadata() else { return false };
+    let is_drawn = rest.len() > DRAWN && rest[..DRAWN].iter().all(u8::is_ascii_alphanumeric);
+    let drawn = is_drawn.then(|| &rest[DRAWN..]);
+    let is_partial = |rest: &[u8]| rest.starts_with(b".") && rest.ends_with(PARTIAL.as_bytes());
+    match drawn {
+        Some(rest) if rest == ASIDE.as_bytes() => about.is_file() || about.is_dir(),
+        Some(rest) if is_partial(rest) => about.is_file(),
+        _ => rest.ends_with(CLAIM.as_bytes()) && about.is_file() && about.len() == 0,
+    }
+}
+
+fn is_worth_keeping(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == &PARTIAL[1..])
+}
+
+/// Gives a stream that ended early its name for good, NAME.partial, or with a number if that is taken.
+pub(super) fn kept(path: &Path) -> io::Result<PathBuf> {
+    let name = path.file_name().unwrap_or_default().as_bytes();
+    let name = OsStr::from_bytes(name.get(PREFIX.len() + DRAWN + 1..).unwrap_or(name));
+    for number in 1..1000 {
+        let mut name = name.to_owned();
+        if number > 1 {
+            name.push(format!("-{number}"));
+        }
+        let place = path.with_file_name(name);
+        match rename::to_new(path, &place) {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            renamed => return renamed.map(|()| place),
+        }
+    }
+    Err(io::ErrorKind::AlreadyExists.into())
+}

@@ -1,0 +1,163 @@
+//! Several runs at once, and what killed ones leave behind.
+
+use std::fs;
+
+use halfrow_tests::parallel;
+use halfrow_tests::program::{Ended, Folder};
+
+use crate::running::Running;
+use crate::signals::LARGE;
+use crate::small;
+
+/// A run whose report and recording are the same for every seed.
+fn run(folder: &Folder, seed: usize, more: &[&str]) -> Ended {
+    let seed = seed.to_string();
+    let call = ["--seed", &seed, "--report", "out", "--record", "run.rec", "--json"];
+    folder.halfrow(small("verify", &[&call, more].concat()))
+}
+
+/// The seed that the report names, in both views that name it.
+fn reported_seed(folder: &Folder) -> u64 {
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    let seed = report["run"]["seed"].as_u64().unwrap();
+    assert!(folder.text("out/report.html").contains(&format!("--seed {seed}")));
+    seed
+}
+
+/// Starts runs with the seeds 1 to 6 at once.
+fn six(folder: &Folder, more: &[&str]) -> Vec<Ended> {
+    std::thread::scope(|scope| {
+        let started: Vec<_> = (1..=6).map(|seed| scope.spawn(move || run(folder, seed, more))).collect();
+        started.into_iter().map(|run| run.join().unwrap()).collect()
+    })
+}
+
+#[test]
+fn of_runs_with_one_name_one_wins_and_the_others_say_so() {
+    for round in 0..5 {
+        let folder = Folder::new();
+        let ended = six(&folder, &[]);
+        let codes: Vec<_> = ended.iter().map(|ended| ended.code).collect();
+        let winner = codes.iter().position(|code| *code == Some(0)).unwrap();
+        for (index, ended) in ended.iter().enumerate().filter(|(index, _)| *index != winner) {
+            assert_eq!(ended.code, Some(2), "round {round}, run {index}: {codes:?} {}", ended.stderr);
+            let says =
+                ["another run is writing out", "out exists"].iter().any(|why| ended.stderr.contains(why));
+            assert!(says, "{}", ended.stderr);
+        }
+        assert_eq!(reported_seed(&folder), winner as u64 + 1, "round {round}");
+        assert_eq!(folder.names("."), ["out", "run.rec"], "round {round}");
+        assert_eq!(folder.halfrow(["verify", "--board", "replay:run.rec"]).code, Some(0));
+    }
+}
+
+#[test]
+fn of_runs_that_replace_one_another_the_last_is_whole() {
+    for round in 0..3 {
+        let folder = Folder::new();
+        let ended = six(&folder, &["--overwrite"]);
+        assert!(ended.iter().all(|ended| ended.code == Some(0)), "round {round}: {ended:?}");
+        assert!((1..=6).contains(&reported_seed(&folder)));
+        assert_eq!(folder.names("."), ["out", "run.rec"], "round {round}");
+        assert_eq!(folder.names("out"), ["report.html", "report.json", "report.xml"]);
+        assert_eq!(folder.halfrow(["verify", "--board", "replay:run.rec"]).code, Some(0));
+    }
+}
+
+#[test]
+fn memory_images_that_replace_one_another_are_of_one_run() {
+    let folder = Folder::new();
+    let kernels = ["nearest", "linear", "keys", "hermite"];
+    let made = |kernel: &str, name: &str| {
+        let radius = (40 + 9 * kernel.len()).to_string();
+        let call = ["--kernel", kernel, "--radius", &radius, "-o", name, "--overwrite"];
+        assert_eq!(folder.halfrow(small("tables", &call)).code, Some(0));
+    };
+    let both = |name| (folder.text(&format!("{name}.steps.mem")), folder.text(&format!("{name}.kernel.mem")));
+    for _ in 0..5 {
+        parallel::map(&kernels, |kernel| made(kernel, "t.mem"));
+        let written = both("t");
+        assert!(kernels.iter().any(|kernel| {
+            made(kernel, "alone.mem");
+            both("alone") == written
+        }));
+    }
+}
+
+#[test]
+fn a_name_is_taken_before_the_board_is_opened() {
+    for option in ["--report", "--record"] {
+        let folder = Folder::new();
+        let first = Running::streaming(&folder, [option, "name"]);
+        let second =
+            folder.halfrow(small("verify", &[option, "name", "--board", "mock,fault=disconnect,byte=0"]));
+        assert_eq!(second.code, Some(2), "{}", second.stderr);
+        assert!(
+            second.stderr.contains("another run is writing name; wait until it is done"),
+            "{}",
+            second.stderr
+        );
+        first.send("INT");
+        assert_eq!(first.ended().code, Some(130));
+        assert_eq!(folder.names("."), ["name"]);
+    }
+}
+
+#[test]
+fn a_place_that_is_taken_during_the_run_is_left_alone() {
+    let folder = Folder::new();
+    let first = Running::streaming(&folder, ["--report", "out", "--record", "run.rec"]);
+    folder.write("run.rec", "precious");
+    folder.write("run.rec.partial", "evidence of yesterday");
+    fs::create_dir(folder.path().join("out")).unwrap();
+    first.send("INT");
+    let ended = first.ended();
+    assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+    assert!(ended.stderr.contains("what there is of it is kept in run.rec.partial-2"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("the report could not be written: out exists"), "{}", ended.stderr);
+    assert_eq!(folder.names("."), ["out", "run.rec", "run.rec.partial", "run.rec.partial-2"]);
+    assert_eq!((folder.text("run.rec"), folder.names("out").len()), ("precious".to_owned(), 0));
+    assert_eq!(folder.text("run.rec.partial"), "evidence of yesterday");
+    assert!(folder.read("run.rec.partial-2").starts_with(b"halfrow recording 1\n"));
+}
+
+/// What there is in the folder by names of ours.
+fn under_way(folder: &Folder) -> Vec<String> {
+    folder.names(".").into_iter().filter(|name| name.starts_with(".halfrow-")).collect()
+}
+
+#[test]
+fn what_killed_runs_left_is_cleared_and_what_running_ones_write_is_not() {
+    let folder = Folder::new();
+    Running::streaming(&folder, ["--report", "out", "--record", "run.rec"]).killed();
+    let dead = under_way(&folder);
+    // Two claims, the report's folder, the recording.
+    assert_eq!(dead.len(), 4, "{dead:?}");
+    folder.write(".halfrow-notes", "somebody's own");
+    // One that runs clears what is dead, and nobody clears what it has.
+    let alive = Running::streaming(&folder, ["--report", "alive", "--record", "alive.rec"]);
+    assert_eq!(folder.halfrow(small("tables", &["-o", "t.json"])).code, Some(0));
+    let left = under_way(&folder);
+    assert!(dead.iter().all(|name| !left.contains(name)), "{left:?}");
+    assert_eq!(left.len(), 5, "{left:?}");
+    assert!(folder.read("run.rec.partial").starts_with(b"halfrow recording 1\n"));
+    assert_eq!(run(&folder, 1, &[]).code, Some(0));
+    alive.send("INT");
+    assert_eq!(alive.ended().code, Some(130));
+    let names = [".halfrow-notes", "alive", "alive.rec", "out", "run.rec", "run.rec.partial", "t.json"];
+    assert_eq!(folder.names("."), names);
+    assert_eq!(folder.names("alive").len(), 3);
+}
+
+#[test]
+fn a_frame_that_a_killed_program_left_is_cleared() {
+    let folder = Folder::new();
+    let running = Running::start(&folder, LARGE);
+    running.stop_amid(&folder.path().join("out"));
+    running.killed();
+    let half = |name: &&String| name.starts_with('.');
+    assert!(folder.names("out").iter().any(|name| half(&name)));
+    let call = small("correct", &["builtin:black", "--model", "-o", "out"]);
+    assert_eq!(folder.halfrow(call).code, Some(0));
+    assert_eq!(folder.names("out").iter().filter(half).count(), 0);
+}

@@ -1,0 +1,219 @@
+//! What is in an output's way is found before a board is opened or anything is computed, and stays as it was.
+
+use std::fs;
+use std::os::unix::fs::symlink;
+use std::os::unix::net::UnixListener;
+use std::path::Path;
+
+use halfrow_tests::program::Folder;
+
+use crate::{refused, small};
+
+/// A board that would end a run with another code than a refusal's.
+const DEAD: &str = "mock,fault=disconnect,byte=0";
+
+/// A call of every command that writes, and where it would write a file.
+fn calls() -> Vec<(Vec<&'static str>, &'static str)> {
+    vec![
+        (small("verify", &["--board", DEAD, "--record", "run.rec"]), "run.rec"),
+        (small("tables", &["-o", "t.json"]), "t.json"),
+        (small("tables", &["-o", "t.mem"]), "t.kernel.mem"),
+        (small("lens", &["--map", "map.png"]), "map.png"),
+        (small("frames", &["--only", "black", "-o", "."]), "black.pgm"),
+        (small("frames", &["-o", "frames"]), "frames/bars.pgm"),
+        (small("correct", &["builtin:black", "--board", DEAD, "-o", "out.png"]), "out.png"),
+        (small("correct", &["builtin:black", "--model", "-o", "out"]), "out/black.pgm"),
+        (small("correct", &["builtin:black", "--model", "-o", "a.raw", "--preview", "b.png"]), "b.png"),
+        (vec!["kernel", "train", "--images", ".", "-o", "kernel.json"], "kernel.json"),
+        (vec!["paper", "fig8", "delay", "--board", DEAD, "-o", "paper"], "paper/paper.html"),
+        (vec!["manual", "man"], "man/halfrow-lens.1"),
+    ]
+}
+
+/// A folder with what is wanted at `place`, and with a picture that `kernel train` could begin with.
+fn folder_with(place: &str, make: impl Fn(&Path)) -> Folder {
+    let folder = Folder::new();
+    folder.write("a.png", "no picture");
+    let path = folder.path().join(place);
+    fs::create_dir_all(path.parent().unwrap()).unwrap();
+    make(&path);
+    folder
+}
+
+#[test]
+fn a_file_that_is_there_is_replaced_by_request_alone() {
+    for (call, place) in calls() {
+        let folder = folder_with(place, |path| fs::write(path, "precious").unwrap());
+        refused(&folder, &call, &format!("{place} exists; give --overwrite"));
+        assert_eq!(folder.text(place), "precious", "{call:?}");
+        // A folder is named where the call named one.
+        let named = if place.contains('/') || call.contains(&"frames") { "folder" } else { "file" };
+        refused(&folder, &call, &format!("or name another {named}"));
+    }
+}
+
+#[test]
+fn what_is_no_regular_file_is_never_replaced() {
+    // A socket and a FIFO stand for devices: run as root, a broken check would replace a real one.
+    let makers: [(&str, fn(&Path)); 5] = [
+        ("no regular file", |path| drop(UnixListener::bind(path).unwrap())),
+        ("no regular file", |path| {
+            nix::unistd::mkfifo(path, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
+        }),
+        ("no regular file", |path| fs::create_dir(path).unwrap()),
+        ("a link to victim", |path| symlink("victim", path).unwrap()),
+        ("a link to nowhere", |path| symlink("nowhere", path).unwrap()),
+    ];
+    for (sentence, make) in makers {
+        for (call, place) in calls() {
+            let folder = folder_with(place, make);
+            // A folder is a place for frames.
+            if call[0] == "correct" && folder.path().join(place).is_dir() && !place.contains('/') {
+                continue;
+            }
+            let kind = |folder: &Folder| fs::symlink_metadata(folder.path().join(place)).unwrap().file_type();
+            let before = kind(&folder);
+            let call: Vec<_> = call.iter().copied().chain(["--overwrite"]).collect();
+            refused(&folder, &call, sentence);
+            assert_eq!(kind(&folder), before, "{call:?}");
+        }
+    }
+}
+
+#[test]
+fn a_folder_that_takes_no_files_is_found_at_once() {
+    let folder = Folder::new();
+    folder.write("file", "");
+    folder.write("a.png", "no picture");
+    let calls: [(&[&str], &str); 6] = [
+        (&["verify", "--board", DEAD, "--record"], "run.rec"),
+        (&["verify", "--board", DEAD, "--report"], "out"),
+        (&["tables", "-o"], "t.json"),
+        (&["lens", "--map"], "map.png"),
+        (&["correct", "builtin:black", "--board", DEAD, "-o"], "out.pgm"),
+        (&["kernel", "train", "--images", ".", "-o"], "kernel.json"),
+    ];
+    for (call, name) in calls {
+        for place in ["missing", "file", "/proc"] {
+            let place = format!("{place}/{name}");
+            let call: Vec<_> = call.iter().copied().chain([place.as_str()]).collect();
+            refused(&folder, &call, "folder");
+        }
+    }
+    // A folder that can be made is no fault.
+    let calls: [&[&str]; 4] = [
+        &["frames", "-o"],
+        &["correct", "builtin:black", "--model", "-o"],
+        &["paper", "fig8", "-o"],
+        &["manual"],
+    ];
+    for call in calls {
+        for place in ["file/out", "/proc/out"] {
+            refused(&folder, &call.iter().copied().chain([place]).collect::<Vec<_>>(), "out");
+        }
+    }
+}
+
+#[test]
+fn a_report_s_place_is_no_link_and_no_file() {
+    let folder = Folder::new();
+    let call = small("verify", &["--report", "out", "--overwrite", "--board", DEAD]);
+    symlink("elsewhere", folder.path().join("out")).unwrap();
+    refused(&folder, &call, "out is a link to elsewhere");
+    fs::remove_file(folder.path().join("out")).unwrap();
+    let _socket = UnixListener::bind(folder.path().join("out")).unwrap();
+    refused(&folder, &call, "it is no folder");
+}
+
+/// Writes files that can be read: frames, tables, a kernel, a lens, settings, and a recording.
+fn inputs() -> Folder {
+    let folder = Folder::new();
+    let made = |call: Vec<&str>| assert_eq!(folder.halfrow(call.iter().copied()).code, Some(0), "{call:?}");
+    made(small("frames", &["--only", "noise", "-o", "."]));
+    made(small("correct", &["builtin:noise", "--model", "-o", "noise.png"]));
+    made(small("tables", &["-o", "t.json"]));
+    made(small("verify", &["--record", "run.rec"]));
+    made(vec!["frames", "--width", "64", "--height", "2", "--only", "noise", "-o", "tiny"]);
+    folder.write("s.toml", "seed = 3\n");
+    folder.write(
+        "lens.json",
+        r#"{"K":[[90,0,64],[0,90,8],[0,0,1]],"D":[0,0,0,0],"image_width":128,"image_height":16}"#,
+    );
+    folder.write("lens.png", folder.read("lens.json"));
+    let table: serde_json::Value = serde_json::from_slice(&folder.read("t.json")).unwrap();
+    folder.write("kernel.json", serde_json::json!({ "kernel": table["kernel"] }).to_string());
+    fs::hard_link(folder.path().join("noise.pgm"), folder.path().join("again.rec")).unwrap();
+    folder
+}
+
+#[test]
+fn an_input_is_never_overwritten() {
+    let folder = inputs();
+    let calls = [
+        (small("verify", &["--tables", "t.json", "--record", "t.json"]), "t.json"),
+        (small("verify", &["--frame", "noise.pgm", "--record", "noise.pgm"]), "noise.pgm"),
+        (small("verify", &["--frame", "noise.pgm", "--record", "tiny/../noise.pgm"]), "noise.pgm"),
+        (small("verify", &["--frame", "noise.pgm", "--record", "again.rec"]), "noise.pgm"),
+        (small("verify", &["--lens", "lens.json", "--record", "lens.json"]), "lens.json"),
+        (small("verify", &["--kernel", "kernel.json", "--record", "kernel.json"]), "kernel.json"),
+        (small("verify", &["--settings", "s.toml", "--record", "s.toml"]), "s.toml"),
+        (vec!["verify", "--board", "replay:run.rec", "--record", "run.rec"], "run.rec"),
+        (small("correct", &["noise.pgm", "--model", "-o", "noise.pgm"]), "noise.pgm"),
+        (small("correct", &["noise.pgm", "--model", "-o", "."]), "noise.pgm"),
+        (small("correct", &["noise.png", "--model", "-o", "x.pgm", "--preview", "noise.png"]), "noise.png"),
+        (small("tables", &["--lens", "lens.json", "-o", "lens.json"]), "lens.json"),
+        (small("tables", &["--kernel", "kernel.json", "-o", "kernel.json"]), "kernel.json"),
+        (small("lens", &["--lens", "lens.png", "--map", "lens.png"]), "lens.png"),
+        (vec!["kernel", "train", "--images", ".", "-o", "noise.png"], "noise.png"),
+        (vec!["paper", "resources", "--synthesis", "tiny/paper.json", "-o", "tiny"], "tiny/paper.json"),
+    ];
+    folder.write("tiny/paper.json", "{}");
+    for (call, input) in calls {
+        let before = folder.read(input);
+        let call: Vec<_> = call.iter().copied().chain(["--overwrite"]).collect();
+        refused(&folder, &call, "is read by this call");
+        assert!(folder.read(input) == before, "{call:?}");
+    }
+}
+
+#[test]
+fn two_outputs_are_two() {
+    let folder = Folder::new();
+    let call = |more: &[&'static str]| small("verify", &[&["--board", DEAD, "--overwrite"], more].concat());
+    refused(&folder, &call(&["--record", "rr", "--report", "rr"]), "would both be written to rr");
+    assert_eq!(folder.halfrow(small("verify", &["--report", "rep"])).code, Some(0));
+    refused(&folder, &call(&["--record", "rep/run.rec", "--report", "rep"]), "would both be written to rep");
+    refused(&folder, &call(&["--record", "rep/report.xml", "--report", "./rep"]), "would both be written to");
+    assert_eq!(folder.names("rep"), ["report.html", "report.json", "report.xml"]);
+}
+
+#[test]
+fn manual_pages_are_written_into_a_folder_as_other_files_are() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(["manual", "a/man"]).code, Some(0));
+    let pages = folder.names("a/man");
+    folder.write("a/man/halfrow.1", "precious");
+    refused(
+        &folder,
+        &["manual", "a/man"],
+        ".1 exists; give --overwrite to replace it, or name another folder",
+    );
+    assert_eq!(folder.text("a/man/halfrow.1"), "precious");
+    assert_eq!(folder.halfrow(["manual", "a/man", "--overwrite"]).code, Some(0));
+    assert!(folder.text("a/man/halfrow.1").contains(".TH halfrow"));
+    assert_eq!(folder.names("a/man"), pages);
+}
+
+#[test]
+fn tables_have_two_formats() {
+    for name in ["t.txt", "t", "t.JSON"] {
+        refused(&Folder::new(), &small("tables", &["-o", name]), "end it in .json, or in .mem");
+    }
+}
+
+#[test]
+fn a_port_that_there_is_not_is_refused() {
+    for port in ["99999", "-1", "x", "localhost:", ":3000", "host:99999"] {
+        refused(&Folder::new(), &["serve", &format!("--tcp={port}")], "0 to 65535");
+    }
+}
