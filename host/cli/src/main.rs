@@ -7,6 +7,7 @@ use serde_json::json;
 use tracing::level_filters::LevelFilter;
 
 use halfrow::verdict::Exit;
+use halfrow_cli::commands::{Cli, Failure};
 use halfrow_cli::{console, guard, signals};
 
 fn main() -> ExitCode {
