@@ -9,6 +9,7 @@ const SEED: u64 = 20_140_401;
 
 /// Judges so many faults, prints what found them, and allows none that nothing finds.
 #[track_caller]
+#[allow(clippy::print_stdout)]
 fn every_fault_is_found(system: &System, count: usize) {
     let campaign = campaign::run(system, count, SEED);
     println!("{campaign}");
@@ -19,6 +20,7 @@ fn every_fault_is_found(system: &System, count: usize) {
 
 /// Judges over so many poor links, prints the verdicts, and allows no false one.
 #[track_caller]
+#[allow(clippy::print_stdout)]
 fn no_verdict_is_false(count: usize) {
     let links = poor_links::run(count, SEED);
     println!("{links}");

@@ -221,7 +221,6 @@ impl Arguments {
             .reads(self.input_files(settings)?)
             .reads_kernel(self.kernel.as_deref().or(settings.kernel.as_deref()))
             .reads(self.board.replayed(settings)?)
-            .writes("trace", self.board.trace(settings)?)
             .writes("--record", &self.record)
             .writes_report("--report", report)
             .check()?;
