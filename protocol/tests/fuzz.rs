@@ -17,6 +17,7 @@ const SEED: [u8; 16] = *b"halfrow's wire 1";
 struct Input(Vec<u8>);
 
 impl Drop for Input {
+    #[allow(clippy::print_stderr)]
     fn drop(&mut self) {
         if std::thread::panicking() {
             eprintln!("the input was {:02x?}", self.0);

@@ -9,6 +9,7 @@ use halfrow_model::{Frame, Geometry};
 /// The photographs in their order; none when there is no such folder, which is said past the harness, since that keeps
 /// what passing tests print.
 #[must_use]
+#[allow(clippy::disallowed_methods)]
 pub fn paths() -> Vec<PathBuf> {
     let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/kodak");
     let folder = std::env::var_os("HALFROW_IMAGES").map_or_else(|| PathBuf::from(beside), PathBuf::from);

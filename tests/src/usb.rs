@@ -178,6 +178,7 @@ pub fn is_quick(scenario: &&Scenario) -> bool {
 ///
 /// # Panics
 /// When one of them comes to anything else than it should.
+#[allow(clippy::print_stdout)]
 pub fn run_all<'a, B>(
     scenarios: impl IntoIterator<Item = &'a Scenario>,
     target: &str,

@@ -16,6 +16,7 @@ const SEED: u64 = 20_140_401;
 
 /// Judges so many faults, prints what found them, and allows none that nothing finds.
 #[track_caller]
+#[allow(clippy::print_stdout)]
 fn every_fault_is_found(system: &System, count: usize) {
     let campaign = campaign::run(system, count, SEED);
     println!("{campaign}");
@@ -29,6 +30,7 @@ const SOON: Duration = Duration::from_secs(300);
 
 /// Judges the boards of all `cases`, prints the verdicts, and allows no false one.
 #[track_caller]
+#[allow(clippy::print_stdout)]
 fn no_verdict_is_false(cases: &[Case], kept: &Kept) {
     let links = poor_links::run(cases, SOON, kept);
     println!("{links}");

@@ -16,6 +16,7 @@ use halfrow_tests::simulated_core;
 use halfrow_tests::whole_board::{self, WholeBoard};
 
 /// Plays so many cases on each build of the core.
+#[allow(clippy::print_stdout)]
 fn cores_agree(cases: u64) {
     let mut counts = BTreeMap::new();
     for core_build in CoreBuild::ALL {
@@ -50,6 +51,7 @@ fn board_agrees(verilog: &mut WholeBoard, case: &Case, name: &str) -> Played {
 }
 
 /// Plays so many cases on a simulated board, all in one session.
+#[allow(clippy::print_stdout)]
 fn boards_agree(front: Front, cases: u64) {
     let mut verilog = WholeBoard::open(link(Board::new(front, 1)));
     let build = verilog.build();

@@ -7,6 +7,7 @@ use halfrow_tests::program::Folder;
 use serde_json::Value;
 
 /// The claims of `halfrow paper table1` with these arguments, which must end with `code`; none without photographs.
+#[allow(clippy::print_stdout)]
 fn table_1(code: i32, arguments: &[&str]) -> Option<Vec<Value>> {
     let first = photographs::paths().into_iter().next()?;
     let images = first.parent().and_then(|folder| folder.to_str()).map(str::to_owned)?;

@@ -11,6 +11,7 @@ use halfrow_sim::{Board, Core, CoreBuild, CoreInputs, Front};
 const WIDTH: u16 = 1920;
 const ROWS: u32 = 1080;
 
+#[allow(clippy::print_stdout)]
 fn main() {
     let clocks = u64::from(ROWS) * u64::from(WIDTH);
     let core = timed(|| {

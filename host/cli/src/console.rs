@@ -1,6 +1,6 @@
 //! The standard streams. Nothing else of the program writes to them, and a stream that takes nothing ends no run.
 //!
-//! A stream that is closed is one that nobody wants to read, as `/dev/null` is: Rust's start-up code puts that in its place.
+//! A stream that is closed is one that nobody wants to read, as `/dev/null` is: Rust's start-up code puts that there.
 
 // Here alone.
 #![allow(clippy::disallowed_methods)]
@@ -36,8 +36,8 @@ pub fn print_raw(text: &str) -> Result<(), Unprinted> {
     }
 }
 
-/// Prints what is not the only result of a command: its files or its exit code say it, too. If stdout does not take it, stderr
-/// says so, once.
+/// Prints what is not the only result of a command: its files or its exit code say it, too. If stdout does not take it,
+/// stderr says so, once.
 pub fn tell(text: &str) {
     static SAID: AtomicBool = AtomicBool::new(false);
     if let Err(unprinted) = print(text)

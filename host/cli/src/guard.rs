@@ -9,7 +9,8 @@ use crate::console;
 /// A panic.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "halfrow itself has failed: {0}; nothing was judged, so run it again, and report this line with the call that led to it"
+    "halfrow itself has failed: {0}; nothing was judged, so run it again, and report this line with the call that led \
+     to it"
 )]
 pub struct InternalError(String);
 

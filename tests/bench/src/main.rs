@@ -31,6 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
+#[allow(clippy::disallowed_methods)]
 fn serve(mut benchmarks: Vec<Benchmark>) -> Result<(), Box<dyn Error>> {
     let mut output = std::io::stdout().lock();
     for benchmark in &benchmarks {

@@ -131,6 +131,7 @@ impl Plugged {
 
 impl Drop for Plugged {
     /// Waits until the port can be used again: the hub takes a device for the old one if that is not gone yet.
+    #[allow(clippy::print_stderr)]
     fn drop(&mut self) {
         let folder = Path::new(DEVICES).join(&self.bus_name);
         self.unplug();

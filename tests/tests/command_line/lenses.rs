@@ -125,7 +125,7 @@ fn the_error_that_is_left_is_told_and_drawn() {
 fn refused_map(folder: &Folder) {
     let before = folder.read("left.png");
     let ended = folder.halfrow(["lens", "--lens", "dsl215.txt", "--map", "left.png"]);
-    assert!(ended.code == Some(3) && ended.stderr.contains("--overwrite"), "{}", ended.stderr);
+    assert!(ended.code == Some(2) && ended.stderr.contains("--overwrite"), "{}", ended.stderr);
     assert!(folder.read("left.png") == before);
     refused(folder, &["lens", "--lens", "dsl215.txt", "--map", "left.txt"], "left.txt is to be a PNG");
 }

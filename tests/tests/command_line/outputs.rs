@@ -30,6 +30,9 @@ fn calls() -> Vec<(Vec<&'static str>, &'static str)> {
     ]
 }
 
+/// Puts something at a place.
+type Make = fn(&Path);
+
 /// A folder with what is wanted at `place`, and with a picture that `kernel train` could begin with.
 fn folder_with(place: &str, make: impl Fn(&Path)) -> Folder {
     let folder = Folder::new();
@@ -55,7 +58,7 @@ fn a_file_that_is_there_is_replaced_by_request_alone() {
 #[test]
 fn what_is_no_regular_file_is_never_replaced() {
     // A socket and a FIFO stand for devices: run as root, a broken check would replace a real one.
-    let makers: [(&str, fn(&Path)); 5] = [
+    let makers: [(&str, Make); 5] = [
         ("no regular file", |path| drop(UnixListener::bind(path).unwrap())),
         ("no regular file", |path| {
             nix::unistd::mkfifo(path, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();

@@ -21,6 +21,7 @@ type Share = Take<StepBy<RangeInclusive<u32>>>;
 const WIDTHS: [usize; 4] = [MAX_WIDTH, 1920, 1086, 64];
 
 /// Runs `check` for all factors from 1 on, `stride` apart, a share at a time on all processors, and says how long it took.
+#[allow(clippy::print_stdout)]
 fn over_factors(what: &str, stride: usize, check: impl Fn(Share) + Sync) {
     const SHARE: usize = 1 << 10;
     let (started, next) = (Instant::now(), AtomicU32::new(1));

@@ -51,13 +51,6 @@ impl BoardArguments {
         Ok(link::replayed_file(&self.target(settings)?))
     }
 
-    /// The waveform that the target has a simulated board write.
-    pub(super) fn trace(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
-        let target = self.target(settings)?;
-        let trace = target.options.into_iter().find(|(key, _)| key == "trace");
-        Ok(trace.filter(|_| target.kind == "sim").map(|(_, file)| file.into()))
-    }
-
     fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),

@@ -106,19 +106,21 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return Err(anyhow::anyhow!(finished.report.headline).into());
     }
     if let Some(error) = lost.get() {
-        lose(
-            &mut finished.report,
-            &format!("the recording could not be written: {error}"),
-            ANOTHER_RECORDING,
-        );
+        let what = format!("the recording could not be written: {error}");
+        lose(&mut finished.report, &what, ANOTHER_RECORDING);
     }
-    let written = outputs.report.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
-    if let Err(error) = written {
+    if let Some(folder) = outputs.report {
+        write_report(folder, &mut finished);
+    }
+    conclude(&finished, arguments.json)
+}
+
+fn write_report(folder: ReportFolder, finished: &mut Finished) {
+    if let Err(error) = folder.commit(&finished.report, &finished.evidence) {
         let remedy = if matches!(error, ReportError::Exists { .. }) { ANOTHER_REPORT } else { ROOM };
         let error = anyhow::Error::from(error);
         lose(&mut finished.report, &format!("the report could not be written: {error:#}"), remedy);
     }
-    conclude(&finished, arguments.json)
 }
 
 /// What a run writes, with its places taken.
@@ -221,7 +223,6 @@ impl Arguments {
             .reads(self.input_files(settings)?)
             .reads_kernel(self.kernel.as_deref().or(settings.kernel.as_deref()))
             .reads(self.board.replayed(settings)?)
-            .writes("trace", self.board.trace(settings)?)
             .writes("--record", &self.record)
             .writes_report("--report", report)
             .check()?;

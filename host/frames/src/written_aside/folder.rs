@@ -14,7 +14,8 @@ const LOOKS: usize = 100;
 /// What was in the place is called so while it is out of the way, where folders cannot be swapped.
 const EARLIER: &str = "earlier";
 
-/// A folder with a name of ours beside the place that it is for. It goes, with all that is in it, if it is not put there.
+/// A folder with a name of ours beside the place that it is for. It goes, with all that is in it, if it is not put
+/// there.
 #[derive(Debug)]
 pub struct AsideFolder {
     dir: TempDir,

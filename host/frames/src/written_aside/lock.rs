@@ -1,4 +1,5 @@
-//! Who is still at work: a file or folder under way is locked by its owner, and the system frees the lock when that dies.
+//! Who is still at work: a file or folder under way is locked by its owner, and the system frees the lock when that
+//! dies.
 
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io;

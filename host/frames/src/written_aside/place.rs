@@ -50,8 +50,8 @@ fn is_link(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|there| there.is_symlink())
 }
 
-/// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a name
-/// that nothing else has, which is returned.
+/// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a
+/// name that nothing else has, which is returned.
 #[must_use]
 pub fn clear(folder: &Path) -> Vec<PathBuf> {
     under_way::clean(folder)

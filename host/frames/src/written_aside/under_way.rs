@@ -68,8 +68,8 @@ fn made<T>(make: impl FnOnce() -> io::Result<(T, PathBuf)>) -> io::Result<(T, No
     Ok((made, Noted(path)))
 }
 
-/// Removes all that is under way, for a program that must end at once, and lets nothing more be begun. Streams that are worth
-/// keeping stay for the next run to find.
+/// Removes all that is under way, for a program that must end at once, and lets nothing more be begun. Streams that are
+/// worth keeping stay for the next run to find.
 pub fn abandon_all() {
     let under_way = under_way();
     for path in under_way.iter().filter(|path| !is_worth_keeping(path)) {
@@ -139,8 +139,8 @@ pub(super) fn claim_on(target: &Path) -> PathBuf {
     super::folder_of(target).join(parts.into_iter().collect::<OsString>())
 }
 
-/// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a name
-/// that nothing else has, which is returned. What cannot be told or removed stays.
+/// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a
+/// name that nothing else has, which is returned. What cannot be told or removed stays.
 pub(super) fn clean(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter(is_one_of_ours).filter_map(|entry| clear(&entry.path())).collect()

@@ -54,6 +54,7 @@ struct Tally {
     wrong_for_certain: usize,
 }
 
+#[allow(clippy::print_stdout)]
 fn tally(faults: u64) -> Tally {
     let mut tally = Tally::default();
     let benches = [narrow(), wide(), off_centre()];
@@ -113,6 +114,7 @@ fn full_frames_are_diagnosed_within_two_seconds() {
     judge_in_time(&bench, "what nothing explains", &upside_down);
 }
 
+#[allow(clippy::print_stdout)]
 fn judge_in_time(bench: &Bench, text: &str, seen: &Seen) {
     let begun = Instant::now();
     let suspects = bench.judge(seen);
