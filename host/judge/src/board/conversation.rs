@@ -11,8 +11,8 @@ use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
 use crate::link::{LineErrors, Link, Severed};
 
-/// The most that an exchange counts as a wait that brought something: all the rest may be that the host was kept from
-/// running, and then there is more to be read.
+/// The most that an exchange counts as a wait that moved something, and so did not wait to the end: all the rest may be that
+/// the host was kept from running, and then there is more to be read.
 const BRIEF: Duration = Duration::from_millis(50);
 
 /// What a link did.
@@ -237,7 +237,8 @@ impl Conversation {
         self.incoming.clear();
         let begun = self.link.now();
         let moved = self.link.exchange(&self.outgoing, &mut self.incoming, wait);
-        let counts = if self.incoming.is_empty() { wait } else { wait.min(BRIEF) };
+        let is_idle = self.incoming.is_empty() && matches!(moved, Ok(0));
+        let counts = if is_idle { wait } else { wait.min(BRIEF) };
         self.waited += self.since(begun).min(counts);
         self.tally.line_errors = self.link.line_errors();
         let taken = moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
