@@ -1,10 +1,17 @@
 //! Tells the program which commit it was built from.
 
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
-    println!("cargo::rerun-if-changed=../.git/HEAD");
-    println!("cargo::rerun-if-changed=../.git/refs/heads");
+    println!("cargo::rerun-if-changed=build.rs");
+    // A worktree keeps them elsewhere, and an unpacked archive has none. With a file that is not there, Cargo would build anew
+    // each time.
+    let watched =
+        ["HEAD", "logs/HEAD"].into_iter().filter_map(|name| git(&["rev-parse", "--git-path", name]));
+    for path in watched.filter(|path| Path::new(path).exists()) {
+        println!("cargo::rerun-if-changed={path}");
+    }
     let commit = git(&["rev-parse", "--short=12", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
     println!("cargo::rustc-env=HALFROW_COMMIT={commit}");
 }

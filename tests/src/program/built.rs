@@ -33,11 +33,18 @@ fn build(folder: &Path) {
         Some(profile) => profile,
     };
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["build", "--package", "halfrow", "--bin", "halfrow", "--profile", profile, "--target-dir"]);
+    // As whoever built this test: alone, all that it needs would be built once more, with fewer features.
+    cargo.args(["build", "--locked", "--bin", "halfrow", "--test", "command_line", "--profile", profile]);
     cargo
+        .arg("--target-dir")
         .arg(folder.parent().unwrap())
-        .args(cfg!(feature = "sim").then_some("--features=sim"))
-        .current_dir(env!("CARGO_MANIFEST_DIR"));
+        .args(
+            cfg!(feature = "sim")
+                .then_some(["--workspace", "--features=halfrow-tests/sim"])
+                .into_iter()
+                .flatten(),
+        )
+        .current_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
     let built = cargo.output().unwrap();
     assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
 }
