@@ -11,7 +11,9 @@
 pub mod campaign;
 pub mod cases;
 pub mod dice;
+pub mod late_host;
 pub mod parallel;
+pub mod patience;
 pub mod photographs;
 pub mod poor_links;
 pub mod program;

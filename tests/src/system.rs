@@ -5,12 +5,14 @@ use std::time::Duration;
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::frames::Builtin;
-use halfrow::link;
+use halfrow::link::{self, Candidate};
 use halfrow::progress::Silent;
 use halfrow::report::{Outcome, Report};
 use halfrow::session::{Circumstances, FrameSource, Plan, verify};
 use halfrow::target::Target;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
+
+use crate::late_host::LateHost;
 
 /// A lens, a frame behind it, and the mock board that is built for it.
 #[derive(Clone, Copy, Debug)]
@@ -71,10 +73,21 @@ impl System {
     /// If there is no such board.
     #[must_use]
     pub fn judge_patiently(&self, target: &str, patience: Option<Duration>) -> Report {
-        let target: Target = target.parse().unwrap();
-        let candidate = link::open(&target).unwrap();
         let plan = Plan { reconnect: patience, ..self.plan() };
-        verify(&plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
+        verify(&plan, open(target), &Circumstances::default(), &Stop::default(), &Silent).report
+    }
+
+    /// The report on this system's board with `options`, for a host that stands still for `pause` at every `every`-th look
+    /// at the clock.
+    ///
+    /// # Panics
+    /// If there is no such board.
+    #[must_use]
+    pub fn judge_late(&self, options: &str, every: u32, pause: Duration) -> Report {
+        let candidate = open(&format!("{}{options}", self.board));
+        let link = Box::new(LateHost::new(candidate.link, every, pause));
+        let candidate = Candidate { link, ..candidate };
+        verify(&self.plan(), candidate, &Circumstances::default(), &Stop::default(), &Silent).report
     }
 
     fn plan(&self) -> Plan {
@@ -100,6 +113,11 @@ impl System {
             keep_pictures: false,
         }
     }
+}
+
+fn open(target: &str) -> Candidate {
+    let target: Target = target.parse().unwrap();
+    link::open(&target).unwrap()
 }
 
 /// The check that found the board wrong, if one did.

@@ -9,6 +9,10 @@ use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
 use crate::link::{LineErrors, Link, Severed};
 
+/// The most that an exchange counts as a wait that moved something, and so did not wait to the end: all the rest may be that
+/// the host was kept from running, and then there is more to be read.
+const BRIEF: Duration = Duration::from_millis(50);
+
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
@@ -67,6 +71,9 @@ pub(super) struct Conversation {
     pub(super) acknowledged: u32,
     pub(super) tally: Tally,
     pub(super) limit: RetryLimit,
+    /// The time that was spent waiting at the link, by which deadlines go: a host that is kept from running, or has something
+    /// else to do, cannot say that a board is late.
+    pub(super) waited: Duration,
     stop: Stop,
 }
 
@@ -84,6 +91,7 @@ impl Conversation {
             acknowledged: 0,
             tally: Tally::default(),
             limit,
+            waited: Duration::ZERO,
             stop,
         }
     }
@@ -183,7 +191,11 @@ impl Conversation {
     ) -> Result<(), BoardError> {
         self.stop.check(self.link.now())?;
         self.incoming.clear();
+        let begun = self.link.now();
         let moved = self.link.exchange(&self.outgoing, &mut self.incoming, wait);
+        let is_idle = self.incoming.is_empty() && matches!(moved, Ok(0));
+        let counts = if is_idle { wait } else { wait.min(BRIEF) };
+        self.waited += self.link.now().saturating_sub(begun).min(counts);
         self.tally.line_errors = self.link.line_errors();
         let taken = moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         self.outgoing.drain(..taken);
@@ -218,7 +230,7 @@ impl Conversation {
     ) -> Result<Kept, BoardError> {
         let kind = request.kind();
         let sequence = self.next_sequence();
-        let begun = self.now();
+        let begun = self.waited;
         let attempts = step.deadline().attempts;
         for attempt in 0..attempts {
             if attempt > 0 {
@@ -230,10 +242,10 @@ impl Conversation {
             }
             // The reply may be as long as the longest packet.
             let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
-            let deadline = self.now() + self.wait_for(step, bytes);
-            while self.now() < deadline {
+            let deadline = self.waited + self.wait_for(step, bytes);
+            while self.waited < deadline {
                 let mut answer = None;
-                let wait = deadline - self.now();
+                let wait = deadline - self.waited;
                 self.exchange(
                     wait,
                     || format!("waiting for the answer to {kind:?}"),
@@ -249,7 +261,7 @@ impl Conversation {
                 }
             }
         }
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.now() - begun })
+        Err(BoardError::NoAnswer { kind, attempts, waited: self.waited - begun })
     }
 
     /// Asks, and takes the expected part of the reply.

@@ -26,7 +26,7 @@ pub(super) fn stream(
 ) -> Result<(), BoardError> {
     let first_row = conversation.acknowledged;
     let mut stream = Stream {
-        progress_at: conversation.now(),
+        progress_at: conversation.waited,
         conversation,
         arrivals: Arrivals::new(traffic, first_row),
         exhausted: false,
@@ -53,7 +53,7 @@ struct Stream<'a> {
 impl Stream<'_> {
     fn run(&mut self) -> Result<(), BoardError> {
         self.fetch();
-        self.progress_at = self.conversation.now();
+        self.progress_at = self.conversation.waited;
         while self.arrivals.flow.is_continue() && !self.is_complete() {
             self.fill();
             self.receive()?;
@@ -88,8 +88,6 @@ impl Stream<'_> {
             if self.sent == self.arrivals.in_flight.end() {
                 if !self.exhausted {
                     self.fetch();
-                    // What the host takes to make a frame is not the board's.
-                    self.progress_at = self.conversation.now();
                 }
                 if self.exhausted {
                     break;
@@ -116,7 +114,7 @@ impl Stream<'_> {
     }
 
     fn receive(&mut self) -> Result<(), BoardError> {
-        let wait = self.patience().saturating_sub(self.conversation.now() - self.progress_at);
+        let wait = self.patience().saturating_sub(self.conversation.waited - self.progress_at);
         let missing = self.missing();
         self.arrivals.gap = false;
         let (arrivals, mut taken) = (&mut self.arrivals, Ok(()));
@@ -133,7 +131,7 @@ impl Stream<'_> {
         taken?;
         if self.missing() > missing {
             self.attempts = 1;
-            self.progress_at = self.conversation.now();
+            self.progress_at = self.conversation.waited;
         }
         if self.arrivals.gap && self.attempts == 1 {
             // Rows come in order, so the missing one was made and got lost on the way.
@@ -150,7 +148,7 @@ impl Stream<'_> {
     }
 
     fn overdue(&self) -> bool {
-        self.conversation.now() - self.progress_at >= self.patience()
+        self.conversation.waited - self.progress_at >= self.patience()
     }
 
     fn ask_again(&mut self) -> Result<(), BoardError> {
@@ -162,7 +160,7 @@ impl Stream<'_> {
         tracing::info!("row {} of frame {} is missing; sending it again", place.row, place.frame);
         self.conversation.count_retry()?;
         self.attempts += 1;
-        self.progress_at = self.conversation.now();
+        self.progress_at = self.conversation.waited;
         if self.conversation.queued() < QUEUE {
             self.send(missing);
             // A row leaves the core while its successor enters, so the successor may be the one that was lost.
