@@ -1,19 +1,12 @@
 //! Asks a device whether it is a board. That writes a greeting to it, whatever it is.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
-use std::time::Duration;
-
 use serde::Serialize;
 
-use crate::board::{Board, BoardError, OpenOptions, Stop};
+use crate::board::{Board, BoardError, OpenOptions};
 use crate::link::{self, OpenError};
 use crate::session::Draws;
 use crate::target::Target;
 use crate::verdict::Exit;
-
-/// Three greetings' time: a board answers the first, unless stale bytes are in its way.
-const PATIENCE: Duration = Duration::from_millis(1000);
 
 /// What came of asking.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -44,7 +37,8 @@ pub enum Answer {
     },
 }
 
-/// Opens `target` and greets what is there. Takes a second at most if nothing answers, beside the time to connect.
+/// Opens `target` and greets what is there, as often as a run does. Takes some two seconds if nothing answers, beside the
+/// time to connect.
 #[must_use]
 pub fn probe(target: &Target) -> Answer {
     let candidate = match link::open(target) {
@@ -52,8 +46,7 @@ pub fn probe(target: &Target) -> Answer {
         Err(error) => return not_opened(&error),
     };
     let Draws { nonce, host } = Draws::draw();
-    let stop = Stop::new(Arc::new(AtomicUsize::new(0)), Some(PATIENCE));
-    let options = OpenOptions { nonce, host, polite: true, stop, ..OpenOptions::default() };
+    let options = OpenOptions { nonce, host, polite: true, ..OpenOptions::default() };
     match Board::open(candidate.link, &options) {
         Ok(mut board) => {
             let (name, datapath) = (board.capabilities.name.clone(), board.capabilities.datapath);
@@ -63,7 +56,7 @@ pub fn probe(target: &Target) -> Answer {
             Answer::Board { name, datapath }
         }
         Err((BoardError::Held { .. }, _)) => Answer::Held,
-        Err((BoardError::NoAnswer { .. } | BoardError::Timeout { .. }, _)) => Answer::Silent,
+        Err((BoardError::NoAnswer { .. }, _)) => Answer::Silent,
         Err((error @ (BoardError::NotABoard | BoardError::Version { .. }), _)) => {
             Answer::Foreign { reason: error.to_string() }
         }

@@ -23,6 +23,12 @@ const INCOMING: usize = 1 << 20;
 /// How often the threads look whether they are still wanted.
 const BREATH: Duration = Duration::from_millis(100);
 
+/// The shortest look for what has come: the reading thread may have been kept from running as long as its caller was.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// Writes in a row of which a device took nothing, before it is taken for one that never will.
+const VAIN: u32 = 2;
+
 /// Takes a transfer apart and appends the data in it.
 pub(super) type Unpack = dyn Fn(&[u8], &mut Vec<u8>, &mut LineErrors) + Send + Sync;
 
@@ -32,6 +38,8 @@ struct Queues {
     outgoing: VecDeque<u8>,
     /// Bytes that have left that queue and are not written yet.
     in_flight: usize,
+    /// Writes in a row of which the device took nothing.
+    in_vain: u32,
     errors: LineErrors,
     failure: Option<Failure>,
     is_over: bool,
@@ -105,11 +113,15 @@ impl Shared {
             queues.in_flight = bytes.len();
             drop(queues);
             self.changed.notify_all();
-            match self.transport.write(&bytes, BREATH) {
-                Ok(written) => drop(bytes.drain(..written)),
+            let written = match self.transport.write(&bytes, BREATH) {
+                Ok(written) => written,
                 Err(failure) => return self.fail(failure),
-            }
-            self.queues().in_flight = bytes.len();
+            };
+            bytes.drain(..written);
+            let mut queues = self.queues();
+            queues.in_flight = bytes.len();
+            queues.in_vain = if written == 0 { queues.in_vain + 1 } else { 0 };
+            drop(queues);
             self.changed.notify_all();
         }
     }
@@ -140,7 +152,7 @@ impl Pump {
         incoming: &mut Vec<u8>,
         wait: Duration,
     ) -> Result<usize, Failure> {
-        let deadline = Instant::now() + wait;
+        let deadline = Instant::now() + wait.max(LOOK);
         let mut queues = self.shared.queues();
         loop {
             let room =
@@ -170,12 +182,12 @@ impl Pump {
 }
 
 impl Drop for Pump {
-    /// Waits for what is still to be written, since the last words of a session free the board, but not for ever.
+    /// Waits for what is still to be written, since the last words of a session free the board, but not for a device that
+    /// takes nothing.
     fn drop(&mut self) {
-        let deadline = Instant::now() + 2 * BREATH;
         let mut queues = self.shared.queues();
-        while queues.outgoing.len() + queues.in_flight > 0 && !queues.is_over && Instant::now() < deadline {
-            queues = self.shared.wait(queues, BREATH / 10);
+        while queues.outgoing.len() + queues.in_flight > 0 && !queues.is_over && queues.in_vain < VAIN {
+            queues = self.shared.wait(queues, BREATH);
         }
         queues.is_over = true;
         drop(queues);
@@ -191,7 +203,8 @@ impl Drop for Pump {
 mod tests {
     use super::*;
 
-    const LONG: Duration = Duration::from_secs(5);
+    /// Only a hang takes so long.
+    const LONG: Duration = Duration::from_secs(300);
 
     /// A device that says what is put in it, in pieces, and then fails or is silent. It takes bytes until it is `stuck`.
     #[derive(Default)]
@@ -276,20 +289,24 @@ mod tests {
         let pump = pump(Device { stuck: true, ..Device::default() });
         let begun = Instant::now();
         let mut taken = 0;
-        while begun.elapsed() < Duration::from_millis(300) {
+        for _ in 0..6 {
             taken += pump.exchange(&[0; 10_000], &mut Vec::new(), Duration::from_millis(50)).unwrap();
         }
         // What waits to be written, and what the writing thread holds.
         assert!(taken <= OUTGOING + WRITE, "{taken}");
         drop(pump);
-        assert!(begun.elapsed() < Duration::from_secs(2), "{:?}", begun.elapsed());
+        assert!(begun.elapsed() < LONG, "{:?}", begun.elapsed());
     }
 
     #[test]
     fn noise_without_end_does_not_fill_the_memory() {
         let says = (0..200).map(|_| Ok(vec![0x55; READ])).collect();
         let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
-        thread::sleep(Duration::from_millis(300));
+        let begun = Instant::now();
+        while pump.shared.queues().incoming.len() <= INCOMING {
+            assert!(begun.elapsed() < LONG);
+            thread::sleep(BREATH / 100);
+        }
         let mut incoming = Vec::new();
         pump.exchange(&[], &mut incoming, LONG).unwrap();
         assert!(incoming.len() <= INCOMING + READ, "{}", incoming.len());
