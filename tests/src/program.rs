@@ -1,6 +1,7 @@
 //! The `halfrow` program, started as a user starts it.
 
 mod built;
+mod running;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,6 +10,8 @@ use std::sync::OnceLock;
 
 use serde_json::Value;
 use tempfile::TempDir;
+
+pub use running::Running;
 
 /// How a started program ended.
 #[derive(Clone, Debug)]

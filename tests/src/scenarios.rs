@@ -35,5 +35,5 @@ const fn expect(
 ) -> Scenario {
     // Options build a board, unless the scenario says otherwise.
     let on = if options.is_empty() { On::AnyBoard } else { On::MockOnly };
-    Scenario { name, on, options, arguments, verdict, exit_code, sentence }
+    Scenario { name, on, options, arguments, verdict, exit_code, sentence, when_late: &[] }
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Sender, channel};
 use std::thread::JoinHandle;
@@ -10,7 +11,7 @@ use std::time::Duration;
 use halfrow::link;
 use halfrow::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 
-/// How long a board is away that is plugged in again.
+/// How long a board is away that is plugged in again. No outcome hangs on it: what was there before is gone at once.
 const AWAY: Duration = Duration::from_millis(50);
 
 /// How a board comes back.
@@ -29,6 +30,7 @@ pub enum Replug {
 pub struct Served {
     target: String,
     ended: Arc<AtomicBool>,
+    traffic: Arc<Mutex<Traffic>>,
     thread: Option<JoinHandle<Result<(), ServeError>>>,
 }
 
@@ -102,15 +104,29 @@ impl Served {
     ) -> Self {
         let (said, heard) = channel();
         let ended = Arc::new(AtomicBool::new(false));
+        let traffic = Arc::new(Mutex::new(Traffic::default()));
         let board = board.parse().unwrap();
         let thread = std::thread::spawn({
-            let ended = Arc::clone(&ended);
+            let (ended, traffic) = (Arc::clone(&ended), Arc::clone(&traffic));
             move || {
                 let mut board = Hosted::new(link::open(&board).unwrap().link);
-                serve(&mut board, Box::new(move |_| ended.load(Ordering::Relaxed)), &said)
+                let is_over = move |moved| {
+                    *traffic.lock().unwrap() = moved;
+                    ended.load(Ordering::Relaxed)
+                };
+                serve(&mut board, Box::new(is_over), &said)
             }
         });
-        Self { target: heard.recv().unwrap(), ended, thread: Some(thread) }
+        Self { target: heard.recv().unwrap(), ended, traffic, thread: Some(thread) }
+    }
+
+    /// What it has moved for the host that it attends to.
+    ///
+    /// # Panics
+    /// When the thread that serves it has panicked.
+    #[must_use]
+    pub fn traffic(&self) -> Traffic {
+        *self.traffic.lock().unwrap()
     }
 
     /// The target that leads to it.

@@ -4,16 +4,20 @@ mod qemu;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 use halfrow::target::Target;
 use halfrow_ft2232h::{ChannelMode, Chip, ChipOptions, Eeprom, FarEnd, Plugged, Unplugged};
 use halfrow_mock::Wire;
 
+use crate::patience::wait_until;
 use crate::program::{Ended, halfrow};
 use crate::scenario::Scenario;
+use crate::scenarios::{BROKEN_BOARDS, MISFITS, SOUND_BOARDS};
 
-pub use qemu::{QEMU_CHIP, QemuBoard, plug_qemu_chip, unplug_qemu_chip};
+pub use qemu::{QEMU_CHIP, QemuBoard, QemuChipOut};
 
 /// What cannot be seen in fewer pixels than the paper's.
 const FULL_SIZE: &[&str] = &[
@@ -31,8 +35,28 @@ const FULL_SIZE: &[&str] = &[
 /// What takes ten seconds and more.
 const SLOW: &[&str] = &["the highest frame", "a serial line", "a distant board"];
 
+/// How many bytes a board has said to its host.
+#[derive(Clone, Debug, Default)]
+pub struct Said(Arc<AtomicU64>);
+
+impl Said {
+    /// More than a small run's handshake, tables and echoes: rows flow.
+    const ROWS: u64 = 100_000;
+
+    /// Waits until rows flow, in a run that is long enough.
+    ///
+    /// # Panics
+    /// If they never do.
+    pub fn wait_for_rows(&self) {
+        wait_until("rows to flow", || self.0.load(Ordering::Relaxed) > Self::ROWS);
+    }
+}
+
 /// A mock board at a chip's pins. Its wire's clock is kept at the real time.
-struct MockAtChip(Wire);
+struct MockAtChip {
+    wire: Wire,
+    said: Said,
+}
 
 impl MockAtChip {
     /// The mock board that `options`, as of a target, describe.
@@ -40,7 +64,7 @@ impl MockAtChip {
         let target: Target = format!("mock{options}").parse().unwrap();
         let options: Vec<_> =
             target.options.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
-        Self(Wire::from_options(&options).unwrap())
+        Self { wire: Wire::from_options(&options).unwrap(), said: Said::default() }
     }
 }
 
@@ -54,10 +78,11 @@ impl FarEnd for MockAtChip {
         let mut taken = 0;
         loop {
             let before = to_host.len();
-            let wait = now.saturating_sub(self.0.now());
+            let wait = now.saturating_sub(self.wire.now());
             // A wire that breaks is a plug that is pulled.
-            let moved = self.0.exchange(&to_board[taken..], to_host, wait).map_err(|_| Unplugged)?;
+            let moved = self.wire.exchange(&to_board[taken..], to_host, wait).map_err(|_| Unplugged)?;
             taken += moved;
+            self.said.0.fetch_add((to_host.len() - before) as u64, Ordering::Relaxed);
             if moved == 0 && to_host.len() == before {
                 return Ok(taken);
             }
@@ -80,7 +105,19 @@ pub fn chip(chip: ChipOptions, options: &str) -> Chip {
 /// If there is no such board, or no port for it.
 #[must_use]
 pub fn plug(options: &str) -> Plugged {
-    Plugged::new(chip(ChipOptions::default(), options), 0).unwrap()
+    plug_and_watch(options).0
+}
+
+/// The same, with what it says.
+///
+/// # Panics
+/// As [`plug`].
+#[must_use]
+pub fn plug_and_watch(options: &str) -> (Plugged, Said) {
+    let board = MockAtChip::new(options);
+    let said = board.said.clone();
+    let chip = Chip::new(ChipOptions::default(), Box::new(board));
+    (Plugged::new(chip, 0).unwrap(), said)
 }
 
 /// A chip whose channel B is a UART.
@@ -125,6 +162,11 @@ pub fn is_small(scenario: &&Scenario) -> bool {
     !FULL_SIZE.contains(&scenario.name)
 }
 
+/// Those that say something about a board, and are small: QEMU's chip stays plugged in whatever becomes of the link behind it.
+pub fn of_boards() -> impl Iterator<Item = &'static Scenario> {
+    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(is_small)
+}
+
 /// Whether it also takes a few seconds only.
 #[must_use]
 pub fn is_quick(scenario: &&Scenario) -> bool {
@@ -151,16 +193,4 @@ pub fn run_all<'a, B>(
     }
     let surprises: Vec<_> = surprises.iter().map(ToString::to_string).collect();
     assert!(surprises.is_empty(), "{}", surprises.join("\n"));
-}
-
-/// Waits until `is_done`.
-///
-/// # Panics
-/// When that takes longer than anything in such a kernel should.
-pub fn wait_until(what: &str, is_done: impl Fn() -> bool) {
-    let begun = Instant::now();
-    while !is_done() {
-        assert!(begun.elapsed() < Duration::from_secs(20), "still waiting: {what}");
-        std::thread::sleep(Duration::from_millis(5));
-    }
 }

@@ -20,8 +20,8 @@ const DEVICES: &str = "/sys/bus/usb/devices";
 /// High speed, as the kernel counts.
 const HIGH_SPEED: u32 = 3;
 
-/// How long the kernel may take to give a device a name, or a port free.
-const PATIENCE: Duration = Duration::from_secs(20);
+/// The kernel gives a device a name, and a port free, however busy it is; only a hang takes longer.
+const PATIENCE: Duration = Duration::from_secs(300);
 
 /// A chip that is plugged in until it is dropped.
 pub struct Plugged {

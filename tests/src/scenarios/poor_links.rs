@@ -32,32 +32,43 @@ pub const SLOW_LINKS: &[Scenario] = &[
     passes("a second of silence", ",fault=stall,packet=90,seconds=1,toward=host", SMALL),
 ];
 
+/// How a run over a link ends that spoils most of what it carries.
+const POOR: &[&str] =
+    &["no answer to", "the link is too poor to judge a board over", "did not come back in 8 tries"];
+
 /// Links over which nothing can be judged.
 pub const HOPELESS_LINKS: &[Scenario] = &[
     stops("no byte gets through", ",fault=drop,rate=1", "no answer to Hello in 6 tries"),
     stops("no answer gets through", ",fault=drop,rate=1,toward=host", "no answer to Hello in 6 tries"),
-    stops("bits that flip all the time", ",fault=flip,rate=1e-2", "no answer to Echo in 8 tries"),
-    stops("bits that flip far too often", ",fault=flip,rate=1e-3,seed=1", "no answer to Echo in 8 tries"),
-    stops("bytes that get lost far too often", ",fault=drop,rate=1e-3", "no answer to Echo in 8 tries"),
+    stops("bits that flip all the time", ",fault=flip,rate=1e-2", "no answer to Echo in 8 tries")
+        .or_when_late(POOR),
+    stops("bits that flip far too often", ",fault=flip,rate=1e-3,seed=1", "no answer to Echo in 8 tries")
+        .or_when_late(POOR),
+    stops("bytes that get lost far too often", ",fault=drop,rate=1e-3", "no answer to Echo in 8 tries")
+        .or_when_late(POOR),
     stops(
         "bytes that come twice far too often",
         ",fault=duplicate,rate=1e-3",
         "no answer to Echo in 8 tries",
-    ),
+    )
+    .or_when_late(POOR),
     stops(
         "packets that end early far too often",
         ",fault=truncate,rate=0.2",
         "the link is too poor to judge a board over",
-    ),
+    )
+    .or_when_late(POOR),
     stops(
         "a cable that was never plugged in",
         ",fault=disconnect,byte=0",
         "the link broke while waiting for the answer to Hello",
     ),
-    stops("a cable that was pulled", ",fault=disconnect,packet=90", "the link broke while waiting for row"),
+    stops("a cable that was pulled", ",fault=disconnect,packet=90", "the link broke while waiting for row")
+        .or_when_late(&["the link broke while waiting for the answer"]),
     stops("a cable pulled at the end", ",fault=disconnect,packet=280,toward=host", "the link broke"),
-    stops("a minute of silence", ",fault=stall,packet=20,seconds=60", "no answer to"),
-    stops("a minute of silence in a frame", ",fault=stall,packet=90,seconds=60", "no answer to"),
+    stops("a minute of silence", ",fault=stall,packet=20,seconds=60", "no answer to").or_when_late(POOR),
+    stops("a minute of silence in a frame", ",fault=stall,packet=90,seconds=60", "no answer to")
+        .or_when_late(POOR),
 ];
 
 const SMALL: &[&str] = &["--width", "128", "--height", "16"];

@@ -12,7 +12,8 @@ use std::time::{Duration, Instant};
 use halfrow_ft2232h::FarEnd as _;
 use nix::fcntl::OFlag;
 
-use super::{MockAtChip, wait_until};
+use super::{MockAtChip, Said};
+use crate::patience::wait_until;
 
 const SERIAL: &str = "QEMU0001";
 
@@ -23,6 +24,7 @@ pub const QEMU_CHIP: &str = "usb:QEMU0001";
 #[derive(Debug)]
 pub struct QemuBoard {
     is_over: Arc<AtomicBool>,
+    said: Said,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -36,8 +38,14 @@ impl QemuBoard {
         wait_until("QEMU's chip to be there", is_there);
         let (port, board) = (port("usb-serial"), MockAtChip::new(options));
         let is_over = Arc::new(AtomicBool::new(false));
-        let over = Arc::clone(&is_over);
-        Self { is_over, thread: Some(thread::spawn(move || serve(port, board, &over))) }
+        let (over, said) = (Arc::clone(&is_over), board.said.clone());
+        Self { is_over, said, thread: Some(thread::spawn(move || serve(port, board, &over))) }
+    }
+
+    /// What it says.
+    #[must_use]
+    pub fn said(&self) -> &Said {
+        &self.said
     }
 }
 
@@ -93,22 +101,31 @@ fn say(command: &str) {
     monitor.write_all(format!("{command}\n").as_bytes()).unwrap();
 }
 
-/// Pulls QEMU's chip out.
-///
-/// # Panics
-/// If it stays.
-pub fn unplug_qemu_chip() {
-    say("device_del chip");
-    wait_until("QEMU's chip to be gone", || !is_there());
+/// QEMU's chip is out of its socket until this is dropped, whatever becomes of the test: others need it.
+#[derive(Debug)]
+pub struct QemuChipOut(());
+
+impl QemuChipOut {
+    /// Pulls it out.
+    ///
+    /// # Panics
+    /// If it stays.
+    #[must_use]
+    pub fn pull() -> Self {
+        let out = Self(());
+        say("device_del chip");
+        wait_until("QEMU's chip to be gone", || !is_there());
+        out
+    }
 }
 
-/// Plugs QEMU's chip in again.
-///
-/// # Panics
-/// If the kernel does not see it.
-pub fn plug_qemu_chip() {
-    say(&format!("device_add usb-serial,id=chip,bus=xhci.0,chardev=far,serial={SERIAL},always-plugged=on"));
-    wait_until("QEMU's chip to be there", is_there);
+impl Drop for QemuChipOut {
+    /// Plugs it in. Whoever needs it waits until the kernel sees it.
+    fn drop(&mut self) {
+        say(&format!(
+            "device_add usb-serial,id=chip,bus=xhci.0,chardev=far,serial={SERIAL},always-plugged=on"
+        ));
+    }
 }
 
 /// Whether the kernel sees QEMU's chip.

@@ -2,40 +2,20 @@
 
 #![cfg(unix)]
 
-use std::io::{BufRead as _, BufReader, Read as _};
-use std::process::{Command, Stdio};
-use std::thread::sleep;
-use std::time::{Duration, Instant};
+use halfrow_tests::program::{Ended, Folder, Running};
 
-use halfrow_tests::program::{Ended, Folder};
-
-/// At 20,000 bytes a second the built-in frames would take an hour.
+/// At 20,000 bytes a second the built-in frames would take an hour, so that nothing but the signal ends a run soon.
 const SLOW: &str = "mock,pace=real,speed=20000";
-
-/// How long a run may go on after a signal. It looks for one between any two exchanges with the board.
-const SOON: Duration = Duration::from_secs(3);
 
 /// Starts a slow run, sends it `signal` while it streams, and waits for its end.
 fn interrupted(folder: &Folder, signal: &str, arguments: &[&str]) -> Ended {
     let mut command = folder
         .command(["verify", "-vv", "--json", "--board", SLOW].into_iter().chain(arguments.iter().copied()));
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut run = Running::start(&mut command);
     // When it has got its session it already listens for signals.
-    let mut log = BufReader::new(child.stderr.take().unwrap());
-    let mut stderr = String::new();
-    while !stderr.contains("session ") {
-        assert!(log.read_line(&mut stderr).unwrap() > 0, "it ended by itself: {stderr}");
-    }
-    let sent = Instant::now();
-    let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", child.id())]).status();
-    assert!(kill.unwrap().success());
-    while child.try_wait().unwrap().is_none() {
-        assert!(sent.elapsed() < SOON, "still running {SOON:?} after {signal}");
-        sleep(Duration::from_millis(10));
-    }
-    log.read_to_string(&mut stderr).unwrap();
-    let output = child.wait_with_output().unwrap();
-    Ended { code: output.status.code(), stdout: String::from_utf8(output.stdout).unwrap(), stderr }
+    run.wait_for("session ");
+    run.send(signal);
+    run.end()
 }
 
 #[test]

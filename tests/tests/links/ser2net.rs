@@ -1,11 +1,10 @@
 //! ser2net on this computer, with a board behind a pseudo-terminal.
 
 use std::fs;
-use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
-use std::time::{Duration, Instant};
 
+use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::Folder;
 use halfrow_tests::served::{Replug, Served};
 
@@ -20,18 +19,20 @@ struct Ser2net {
 impl Ser2net {
     /// Exports `device`.
     fn start(folder: &Folder, device: &Path) -> Self {
-        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         let device = device.display();
         let configuration = format!(
-            "connection: &board\n  accepter: tcp,127.0.0.1,{port}\n  connector: serialdev,{device},3000000n81,local\n  \
+            "connection: &board\n  accepter: tcp,127.0.0.1,0\n  connector: serialdev,{device},3000000n81,local\n  \
              options:\n    kickolduser: false\n    chardelay: false\n"
         );
         folder.write("ser2net.yaml", configuration);
         let mut command = Command::new(program());
         command.args(["-n", "-d", "-c"]).arg(folder.path().join("ser2net.yaml"));
         let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-        let started = Self { child, port };
-        started.wait_for_port();
+        let mut started = Self { child, port: 0 };
+        wait_until("ser2net to listen", || {
+            started.port = started.listens_on().unwrap_or_default();
+            started.port > 0
+        });
         started
     }
 
@@ -39,14 +40,24 @@ impl Ser2net {
         format!("tcp:127.0.0.1:{}", self.port)
     }
 
-    /// A connection would open the device, so it is looked for among the ports that are listened on.
-    fn wait_for_port(&self) {
-        let begun = Instant::now();
-        let listening = format!("0100007F:{:04X} 00000000:0000 0A", self.port);
-        while !fs::read_to_string("/proc/net/tcp").unwrap().contains(&listening) {
-            assert!(begun.elapsed() < Duration::from_secs(10), "ser2net does not start");
-            std::thread::sleep(Duration::from_millis(20));
-        }
+    /// What its descriptors lead to.
+    fn open_files(&self) -> Vec<PathBuf> {
+        let descriptors =
+            fs::read_dir(format!("/proc/{}/fd", self.child.id())).into_iter().flatten().flatten();
+        descriptors.filter_map(|descriptor| fs::read_link(descriptor.path()).ok()).collect()
+    }
+
+    /// The port that the system has given it. A connection would open the device, so it is looked for among the ports that
+    /// are listened on.
+    fn listens_on(&self) -> Option<u16> {
+        let ours = self.open_files();
+        fs::read_to_string("/proc/net/tcp").unwrap().lines().find_map(|line| {
+            // Number, near end, far end, state (0A: listening), and five more in front of the inode.
+            let fields: Vec<_> = line.split_whitespace().collect();
+            let [_, near, _, "0A", _, _, _, _, _, inode, ..] = fields[..] else { return None };
+            let is_ours = ours.contains(&format!("socket:[{inode}]").into());
+            u16::from_str_radix(near.rsplit_once(':')?.1, 16).ok().filter(|_| is_ours)
+        })
     }
 }
 
@@ -84,7 +95,8 @@ fn a_second_host_is_busy_and_a_board_that_is_not_there_is_named() {
     let served = Served::on_a_serial_port("mock");
     let ser2net = Ser2net::start(&folder, Path::new(served.address()));
     let first = std::net::TcpStream::connect(("127.0.0.1", ser2net.port)).unwrap();
-    std::thread::sleep(Duration::from_millis(100));
+    let device = fs::canonicalize(served.address()).unwrap();
+    wait_until("ser2net to open the device", || ser2net.open_files().contains(&device));
     ends(&verify(&ser2net.target(), &[]), 4, "another host is connected");
     drop(first);
     drop(ser2net);
@@ -107,7 +119,7 @@ fn a_run_goes_on_when_the_board_behind_ser2net_comes_back() {
     let path = folder.path().join("board");
     let served = Served::unplugged_once("mock", &path, 5000, Some(Replug::Powered));
     let ser2net = Ser2net::start(&folder, Path::new(served.address()));
-    let ended = verify(&ser2net.target(), &["--reconnect=10"]);
+    let ended = verify(&ser2net.target(), &["--reconnect=300"]);
     assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
     assert_eq!(ended.json()["link"]["reconnections"].as_array().unwrap().len(), 1);
 }

@@ -1,14 +1,16 @@
 //! Serial ports: set, locked, drained, and never waited for beyond a deadline.
 
-use std::fs::OpenOptions;
+use std::fs::{self, OpenOptions};
 use std::io::Write as _;
-use std::os::fd::AsRawFd as _;
+use std::os::fd::AsRawFd;
 use std::time::{Duration, Instant};
 
 use halfrow::link::{self, SerialError};
 use halfrow::serve::Pty;
+use halfrow_tests::patience::{LIMIT, come_to_an_end, wait_until};
 use halfrow_tests::program::halfrow;
 use halfrow_tests::served::Served;
+use nix::poll::{PollFd, PollFlags, poll};
 
 use crate::{ends, passes, verify};
 
@@ -55,6 +57,12 @@ fn a_port_in_use_is_busy_until_it_is_closed() {
     passes(&served);
 }
 
+/// Waits until the kernel, which takes its time, has carried what was written at one end of a pseudo-terminal to `end`.
+fn wait_for_bytes(end: &impl AsRawFd) {
+    let ready = poll(&mut [PollFd::new(end.as_raw_fd(), PollFlags::POLLIN)], LIMIT.as_millis() as i32);
+    assert_eq!(ready, Ok(1));
+}
+
 #[test]
 fn stale_bytes_are_dropped() {
     let served = Served::on_a_serial_port("mock");
@@ -68,14 +76,16 @@ fn stale_bytes_are_dropped() {
     let pty = Pty::open().unwrap();
     let say = |bytes: &[u8]| assert_eq!(nix::unistd::write(pty.as_raw_fd(), bytes), Ok(bytes.len()));
     say(&[0x55; 3000]);
+    wait_for_bytes(&OpenOptions::new().read(true).write(true).open(pty.path()).unwrap());
     let mut link = link::open(&format!("serial:{}", pty.path().display()).parse().unwrap()).unwrap().link;
     let mut incoming = Vec::new();
     link.exchange(&[], &mut incoming, Duration::from_millis(10)).unwrap();
     assert_eq!(incoming, b"");
     say(b"new");
-    link.exchange(&[], &mut incoming, Duration::from_millis(500)).unwrap();
+    link.exchange(&[], &mut incoming, LIMIT).unwrap();
     assert_eq!(incoming, b"new");
-    link.exchange(b"answer", &mut incoming, Duration::from_millis(500)).unwrap();
+    link.exchange(b"answer", &mut incoming, LIMIT).unwrap();
+    wait_for_bytes(&pty);
     let mut answer = [0; 6];
     assert_eq!(nix::unistd::read(pty.as_raw_fd(), &mut answer), Ok(6));
     assert_eq!(&answer, b"answer");
@@ -84,19 +94,20 @@ fn stale_bytes_are_dropped() {
 #[test]
 fn a_peer_that_takes_nothing_holds_nobody_up() {
     let pty = Pty::open().unwrap();
-    let mut link = link::open(&format!("serial:{}", pty.path().display()).parse().unwrap()).unwrap().link;
-    let (mut taken, mut incoming) = (0, Vec::new());
-    let begun = Instant::now();
-    for _ in 0..20 {
-        let before = Instant::now();
-        taken += link.exchange(&[0x55; 100_000], &mut incoming, Duration::from_millis(20)).unwrap();
-        assert!(before.elapsed() < Duration::from_millis(500), "{:?}", before.elapsed());
-    }
+    let target = format!("serial:{}", pty.path().display());
+    let opened = target.parse().unwrap();
+    let taken = come_to_an_end(move || {
+        let mut link = link::open(&opened).unwrap().link;
+        let mut taken = 0;
+        for _ in 0..20 {
+            taken += link.exchange(&[0x55; 100_000], &mut Vec::new(), Duration::from_millis(20)).unwrap();
+        }
+        // Nor does closing it wait for what was never taken.
+        drop(link);
+        taken
+    });
     assert!((1000..1_000_000).contains(&taken), "{taken}");
-    // Nor does closing it wait for what was never taken.
-    drop(link);
-    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
-    let silent = verify(&format!("serial:{}", pty.path().display()), &[]);
+    let silent = verify(&target, &[]);
     ends(&silent, 3, "no answer to Hello in 6 tries");
 }
 
@@ -104,17 +115,19 @@ fn a_peer_that_takes_nothing_holds_nobody_up() {
 fn a_port_that_hangs_up_says_so_at_once() {
     let pty = Pty::open().unwrap();
     let mut link = link::open(&format!("serial:{}", pty.path().display()).parse().unwrap()).unwrap().link;
-    let waiting = std::thread::spawn(move || {
-        std::thread::sleep(Duration::from_millis(50));
+    let this_thread = fs::canonicalize("/proc/thread-self").unwrap();
+    let hanging_up = std::thread::spawn(move || {
+        let asleep = || fs::read_to_string(this_thread.join("stat")).unwrap().contains(") S ");
+        wait_until("the link to wait", asleep);
         drop(pty);
     });
     let begun = Instant::now();
-    let gone = link.exchange(&[], &mut Vec::new(), Duration::from_secs(10)).unwrap_err();
-    assert!(begun.elapsed() < Duration::from_secs(2));
+    let gone = link.exchange(&[], &mut Vec::new(), LIMIT).unwrap_err();
+    assert!(begun.elapsed() < LIMIT);
     assert!(gone.to_string().contains("the board was unplugged or lost power"), "{gone}");
-    let again = link.exchange(b"x", &mut Vec::new(), Duration::from_secs(10)).unwrap_err();
+    let again = link.exchange(b"x", &mut Vec::new(), LIMIT).unwrap_err();
     assert!(again.to_string().contains("the board was unplugged"), "{again}");
-    waiting.join().unwrap();
+    hanging_up.join().unwrap();
 }
 
 #[test]

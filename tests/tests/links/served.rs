@@ -1,49 +1,43 @@
 //! `halfrow serve`, and what a host that vanishes leaves behind.
 
-use std::io::{BufRead as _, BufReader};
-use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
-
-use halfrow_tests::program::{self, Folder};
+use halfrow_tests::patience::wait_until;
+use halfrow_tests::program::{self, Folder, Running};
 use halfrow_tests::served::Served;
 
-use crate::{ends, send, verify};
+use crate::{ends, verify};
 
 /// A running `halfrow serve`.
 struct Server {
-    child: Child,
+    running: Running,
     target: String,
 }
 
 impl Server {
     fn start(arguments: &[&str]) -> Self {
         let call = ["serve"].into_iter().chain(arguments.iter().copied());
-        let mut child = program::command(call).stdout(Stdio::piped()).spawn().unwrap();
-        let mut target = String::new();
-        BufReader::new(child.stdout.take().unwrap()).read_line(&mut target).unwrap();
-        Self { child, target: target.trim().to_owned() }
+        let mut running = Running::start(&mut program::command(call));
+        let target = running.line();
+        Self { running, target }
     }
 
-    /// Sends it a signal, and returns the exit code of its end, which must come soon.
-    fn end(mut self, signal: &str) -> Option<i32> {
-        send(&self.child, signal);
-        let begun = Instant::now();
-        loop {
-            if let Some(status) = self.child.try_wait().unwrap() {
-                return status.code();
-            }
-            assert!(begun.elapsed() < Duration::from_secs(5), "{signal} does not end the server");
-            std::thread::sleep(Duration::from_millis(5));
-        }
+    /// Sends it a signal, and returns the exit code of its end.
+    fn end(self, signal: &str) -> Option<i32> {
+        self.running.send(signal);
+        self.running.end().code
     }
 }
 
-impl Drop for Server {
-    /// A server that outlives a test that failed would keep the tests' output open.
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
+/// A run that has got its session with the board, and moves bytes both ways.
+fn streaming(served: &Served) -> Running {
+    let slow = ["verify", "-vv", "--quiet", "--board", &served.target()];
+    let mut run = Running::start(&mut program::command(slow));
+    run.wait_for("session ");
+    let before = served.traffic();
+    wait_until("bytes to flow both ways", || {
+        let now = served.traffic();
+        now.to_board > before.to_board && now.to_host > before.to_host
+    });
+    run
 }
 
 #[test]
@@ -82,15 +76,9 @@ fn a_name_that_is_taken_stays_what_it_is() {
 fn a_host_that_vanishes_leaves_a_board_that_the_next_can_use() {
     let served = Served::on_a_serial_port("mock,speed=20000");
     for signal in ["KILL", "INT", "TERM"] {
-        let slow = ["verify", "-vv", "--quiet", "--board", &served.target()];
-        let mut child = program::command(slow).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-        // It streams once it has got its session.
-        let log = BufReader::new(child.stderr.take().unwrap()).lines();
-        let begun = log.map_while(Result::ok).any(|line| line.contains("session "));
-        assert!(begun);
-        std::thread::sleep(Duration::from_millis(300));
-        send(&child, signal);
-        child.wait().unwrap();
+        let run = streaming(&served);
+        run.send(signal);
+        let _ = run.end();
         let info = program::halfrow(["info", "--board", &served.target()]);
         assert_eq!(info.code, Some(0), "after {signal}: {}", info.stderr);
     }
@@ -99,12 +87,8 @@ fn a_host_that_vanishes_leaves_a_board_that_the_next_can_use() {
 #[test]
 fn a_board_held_by_another_host_is_busy_over_the_network() {
     let served = Served::on_a_tcp_port("127.0.0.1", "mock,speed=20000");
-    let slow = ["verify", "-vv", "--quiet", "--board", &served.target()];
-    let mut child = program::command(slow).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
-    let log = BufReader::new(child.stderr.take().unwrap()).lines();
-    assert!(log.map_while(Result::ok).any(|line| line.contains("session ")));
-    child.kill().unwrap();
-    child.wait().unwrap();
+    // A run that is killed does not close its session.
+    drop(streaming(&served));
     ends(&verify(&served.target(), &[]), 4, "another host holds the board");
     let taken = program::halfrow(["info", "--take-over", "--board", &served.target()]);
     assert_eq!(taken.code, Some(0), "{}", taken.stderr);

@@ -1,7 +1,7 @@
 //! TCP, without anything between.
 
 use std::io::Write as _;
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 
 use halfrow_tests::served::Served;
 
@@ -29,9 +29,11 @@ fn a_board_behind_an_ipv6_port_passes() {
 
 #[test]
 fn ports_that_lead_nowhere_are_told_apart() {
-    let free = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    // The near end of a connection: nothing listens there, and while it lasts nobody else can.
+    let near = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
     ends(
-        &verify(&format!("tcp:{free}"), &[]),
+        &verify(&format!("tcp:{}", near.local_addr().unwrap()), &[]),
         3,
         "refuses connections: the host is there, and nothing listens",
     );
@@ -75,7 +77,7 @@ fn a_server_that_speaks_in_words_is_quoted() {
 #[test]
 fn a_second_host_is_turned_away_while_a_first_is_connected() {
     let served = Served::on_a_tcp_port("127.0.0.1", "mock");
-    let first = std::net::TcpStream::connect(served.address()).unwrap();
+    let first = TcpStream::connect(served.address()).unwrap();
     ends(&verify(&served.target(), &[]), 4, "another host is connected");
     drop(first);
     passes(&served);

@@ -1,23 +1,18 @@
 //! Boards that are unplugged: at every packet, and in the middle of one.
 
-use std::time::{Duration, Instant};
-
 use halfrow::report::{self, Outcome::Error, Outcome::Skipped};
 use halfrow::verdict::Exit;
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
+use halfrow_tests::patience::come_to_an_end;
 use halfrow_tests::served::Served;
 use halfrow_tests::system::System;
-
-/// A run that hangs would take all of its deadlines, many times over.
-const SOON: Duration = Duration::from_secs(20);
 
 /// Judges a board that is unplugged as `options` say, which must end in an error. Returns whether the run came that far.
 fn is_unplugged(options: &str) -> bool {
     let served = Served::on_a_serial_port(&format!("mock,fault=disconnect,{options}"));
-    let begun = Instant::now();
-    let report = System::TINIEST.judge_at(&served.target());
-    assert!(begun.elapsed() < SOON, "{options}: {:?}", begun.elapsed());
+    let target = served.target();
+    let report = come_to_an_end(move || System::TINIEST.judge_at(&target));
     if report.exit_code == Exit::Pass {
         return false;
     }

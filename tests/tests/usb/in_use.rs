@@ -3,11 +3,11 @@
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::thread;
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
-use halfrow_tests::program::command;
-use halfrow_tests::usb::{plug, sentence, serial_port, verify, wait_until};
+use halfrow_tests::patience::wait_until;
+use halfrow_tests::program::{Running, command};
+use halfrow_tests::usb::{plug, plug_and_watch, sentence, serial_port, verify};
 
 /// A shell that has a serial port open.
 struct Holding(Child);
@@ -84,15 +84,10 @@ fn two_programs_do_not_share_a_channel() {
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn a_run_that_was_killed_leaves_a_board_for_the_next_one() {
-    let board = plug("");
-    let mut run = command(["verify", "--board", "usb", "--repeat", "99"]);
-    let mut run = run.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
-    // While it has the channel, the driver has not.
-    let port = serial_port(&board, 1);
-    wait_until("the run to have the channel", || !port.exists());
-    thread::sleep(Duration::from_secs(1));
-    run.kill().unwrap();
-    run.wait().unwrap();
+    let (_board, said) = plug_and_watch("");
+    let run = Running::start(&mut command(["verify", "--board", "usb", "--repeat", "99"]));
+    said.wait_for_rows();
+    drop(run);
     let ended = verify("usb");
     assert_eq!(ended.code, Some(0), "{ended:?}");
 }

@@ -1,9 +1,7 @@
 //! The link drives a chip that somebody else wrote.
 
-use std::thread;
-use std::time::Duration;
-
-use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, plug_qemu_chip, sentence, unplug_qemu_chip, verify};
+use halfrow_tests::program::{Running, command};
+use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, QemuChipOut, sentence, verify};
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
@@ -26,14 +24,16 @@ fn boards_behind_qemu_s_chip_are_told_apart() {
 #[ignore = "needs scripts/in-linux"]
 fn qemu_s_chip_is_pulled_out_in_the_middle_and_comes_back() {
     let board = QemuBoard::new("");
-    let run = thread::spawn(|| verify(QEMU_CHIP));
-    thread::sleep(Duration::from_millis(700));
-    unplug_qemu_chip();
-    let ended = run.join().unwrap();
+    let call =
+        ["verify", "--json", "--board", QEMU_CHIP, "--width", "128", "--height", "16", "--repeat", "99"];
+    let run = Running::start(&mut command(call));
+    board.said().wait_for_rows();
+    let out = QemuChipOut::pull();
+    let ended = run.end();
     assert_eq!(ended.code, Some(3), "{ended:?}");
     assert!(sentence(&ended).contains("went away at"), "{ended:?}");
     drop(board);
-    plug_qemu_chip();
+    drop(out);
     let _board = QemuBoard::new("");
     let ended = verify(QEMU_CHIP);
     assert_eq!(ended.code, Some(0), "{ended:?}");

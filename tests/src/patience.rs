@@ -1,0 +1,55 @@
+//! Waiting for what a test needs to see. How busy the machine is decides nothing: the limit is there to end a hang.
+
+use std::panic::resume_unwind;
+use std::process::{Child, ExitStatus};
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Far longer than anything takes that comes to an end.
+pub const LIMIT: Duration = Duration::from_secs(300);
+
+/// How often it is looked.
+const TICK: Duration = Duration::from_millis(2);
+
+/// Waits until `is_done`.
+///
+/// # Panics
+/// When that does not come within [`LIMIT`].
+pub fn wait_until(what: &str, mut is_done: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !is_done() {
+        assert!(begun.elapsed() < LIMIT, "waited in vain: {what}");
+        thread::sleep(TICK);
+    }
+}
+
+/// The exit status of `child`, which must end.
+///
+/// # Panics
+/// When it does not within [`LIMIT`].
+pub fn end_of(child: &mut Child) -> ExitStatus {
+    let mut status = None;
+    wait_until("a program to end", || {
+        status = child.try_wait().unwrap();
+        status.is_some()
+    });
+    status.unwrap()
+}
+
+/// The result of `work`, which must come to an end.
+///
+/// # Panics
+/// When it does not within [`LIMIT`], and when `work` panics.
+pub fn come_to_an_end<T: Send + 'static>(work: impl FnOnce() -> T + Send + 'static) -> T {
+    let (say, hear) = channel();
+    let thread = thread::spawn(move || {
+        // Nobody listens any more when it took too long.
+        let _ = say.send(work());
+    });
+    match hear.recv_timeout(LIMIT) {
+        Ok(result) => result,
+        Err(RecvTimeoutError::Timeout) => panic!("it hangs: nothing came of it in {LIMIT:?}"),
+        Err(RecvTimeoutError::Disconnected) => resume_unwind(thread.join().unwrap_err()),
+    }
+}

@@ -1,0 +1,115 @@
+//! A program that a test watches while it runs.
+
+use std::io::{BufRead as _, BufReader, Read};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread;
+
+use super::Ended;
+use crate::patience::{LIMIT, end_of};
+
+/// A program that was started. It is killed when this is dropped.
+#[derive(Debug)]
+pub struct Running {
+    child: Child,
+    stdout: Said,
+    stderr: Said,
+}
+
+/// What a program says on one of its streams, as it comes.
+#[derive(Debug)]
+struct Said {
+    lines: Receiver<String>,
+    text: String,
+}
+
+impl Said {
+    fn new(stream: impl Read + Send + 'static) -> Self {
+        let (say, lines) = channel();
+        thread::spawn(move || {
+            let mut stream = BufReader::new(stream);
+            let mut line = String::new();
+            while stream.read_line(&mut line).is_ok_and(|length| length > 0) {
+                // Read on to the end even if nobody listens: a full pipe would hold the program up.
+                let _ = say.send(std::mem::take(&mut line));
+            }
+        });
+        Self { lines, text: String::new() }
+    }
+
+    /// The next line; none behind the last.
+    fn next(&mut self) -> Option<String> {
+        let line = self.lines.recv_timeout(LIMIT).ok()?;
+        self.text.push_str(&line);
+        Some(line)
+    }
+
+    fn all(&mut self) -> String {
+        while self.next().is_some() {}
+        std::mem::take(&mut self.text)
+    }
+}
+
+impl Running {
+    /// Starts `command`.
+    ///
+    /// # Panics
+    /// If it cannot be started.
+    #[must_use]
+    pub fn start(command: &mut Command) -> Self {
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let (stdout, stderr) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
+        Self { child, stdout: Said::new(stdout), stderr: Said::new(stderr) }
+    }
+
+    /// Waits until it says `words` on stderr.
+    ///
+    /// # Panics
+    /// If it ends or hangs without having said them.
+    pub fn wait_for(&mut self, words: &str) {
+        loop {
+            let line = self.stderr.next();
+            assert!(line.is_some(), "it never said `{words}`: {}", self.stderr.text);
+            if line.is_some_and(|line| line.contains(words)) {
+                return;
+            }
+        }
+    }
+
+    /// The next line on stdout.
+    ///
+    /// # Panics
+    /// If it ends or hangs without one.
+    #[must_use]
+    pub fn line(&mut self) -> String {
+        self.stdout.next().unwrap().trim_end().to_owned()
+    }
+
+    /// Sends it a signal, as `TERM`.
+    ///
+    /// # Panics
+    /// If it has ended already.
+    #[cfg(unix)]
+    pub fn send(&self, signal: &str) {
+        let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", self.child.id())]).status();
+        assert!(kill.unwrap().success());
+    }
+
+    /// Waits for its end.
+    ///
+    /// # Panics
+    /// If it hangs.
+    #[must_use]
+    pub fn end(mut self) -> Ended {
+        let code = end_of(&mut self.child).code();
+        Ended { code, stdout: self.stdout.all(), stderr: self.stderr.all() }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        // It may have ended by itself, and then there is nothing to do.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,49 @@
+//! What takes an hour in all, in parts of some minutes; `scripts/test-usb --long` boots for each and remembers those that have
+//! passed.
+
+mod speed;
+
+use halfrow_tests::scenarios::all;
+use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_small, of_boards, plug, run_all};
+
+use crate::unplugged;
+
+const PARTS: usize = 4;
+
+/// The scenarios behind an FT2232H whose number is `part` among all that fewer pixels suit, or that they do not.
+fn behind_an_ft2232h(part: usize) {
+    run_all(all().filter(is_small).skip(part).step_by(PARTS), "usb", true, plug);
+    run_all(all().filter(|scenario| !is_small(scenario)).skip(part).step_by(PARTS), "usb", false, plug);
+}
+
+fn behind_qemu_s_chip(part: usize) {
+    run_all(of_boards().skip(part).step_by(PARTS), QEMU_CHIP, true, QemuBoard::new);
+}
+
+macro_rules! parts {
+    ($($name:ident: $part:literal),*) => {
+        /// As many as there are parts, so that none is left out.
+        const _: () = assert!([$($part),*].len() == PARTS);
+        $(mod $name {
+            #[test]
+            #[ignore = "long"]
+            fn of_all_scenarios_behind_an_ft2232h() {
+                super::behind_an_ft2232h($part);
+            }
+
+            #[test]
+            #[ignore = "long"]
+            fn of_the_small_scenarios_behind_qemu_s_chip() {
+                super::behind_qemu_s_chip($part);
+            }
+
+            #[test]
+            #[ignore = "long"]
+            fn of_two_hundred_places_to_pull_the_plug() {
+                super::unplugged::anywhere($part, 200 / super::PARTS);
+            }
+        })*
+    };
+}
+
+parts!(first_part: 0, second_part: 1, third_part: 2, fourth_part: 3);
