@@ -45,9 +45,12 @@ impl LastAsked {
         })
     }
 
-    /// Takes a packet that is no row; returns what it tells when it is not the first answer to a request.
+    /// Takes a packet; returns what it tells when it is no row, and not the first answer to a request.
     pub(super) fn answered(&mut self, packet: &Packet<'_>, now: Duration) -> Option<Stray> {
         let kind = Kind::from_code(packet.header.kind);
+        if kind == Some(Kind::RowOut) {
+            return None;
+        }
         let known = self.0.iter_mut().find(|asked| asked.sequence == packet.header.sequence);
         let Some(asked) = known else {
             // A row may be refused.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, VecDeque};
 use std::fmt;
 
 use halfrow_protocol::message::{RowOut, RowPlace};
+use halfrow_protocol::{Kind, Packet, Reply};
 
 /// ROW_OUT packets that are remembered. One that a link held back for longer is not compared with the others.
 const PACKETS: usize = 256;
@@ -97,8 +98,17 @@ impl Conduct {
         self.misconduct.get_or_insert(misconduct);
     }
 
+    /// Takes what is a row, when rows before `sent` were sent.
+    pub(super) fn packet(&mut self, packet: &Packet<'_>, sent: u32) {
+        if packet.header.kind == Kind::RowOut.code()
+            && let Ok(Reply::RowOut(row)) = Reply::read(packet)
+        {
+            self.row(packet.header.sequence, &row, sent);
+        }
+    }
+
     /// Takes a row in the packet `number` of the board's count, when rows before `sent` were sent.
-    pub(super) fn row(&mut self, number: u16, row: &RowOut<'_>, sent: u32) {
+    fn row(&mut self, number: u16, row: &RowOut<'_>, sent: u32) {
         let (place, row_sequence) = (row.place, row.place.row_sequence);
         if row_sequence >= sent {
             self.note(Misconduct::NeverSent { place });

@@ -5,7 +5,7 @@ use std::time::Duration;
 use halfrow_protocol::message::{RefusalCode, Reply, Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
-use super::asked::LastAsked;
+use super::asked::{LastAsked, Stray};
 use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
@@ -246,7 +246,7 @@ impl Conversation {
         self.tally.bytes_out += taken as u64;
         self.tally.bytes_in += self.incoming.len() as u64;
         let now = self.link.now();
-        let mut late = Vec::new();
+        let mut strays = Vec::new();
         let mut bytes = self.incoming.as_slice();
         while let Some(packet) = self.decoder.next(&mut bytes) {
             match packet {
@@ -254,16 +254,8 @@ impl Conversation {
                     self.tally.packets_in += 1;
                     if self.session != 0 {
                         self.credit = self.credit.max(packet.header.window);
-                        if packet.header.kind == Kind::RowOut.code() {
-                            if let Ok(Reply::RowOut(row)) = Reply::read(&packet) {
-                                self.conduct.row(packet.header.sequence, &row, self.rows_sent);
-                            }
-                        } else if let Some(stray) = self.asked.answered(&packet, now) {
-                            tracing::debug!("a second answer of kind {}", packet.header.kind);
-                            self.tally.strays += 1;
-                            self.repeated_changes += u64::from(stray.changed);
-                            late.extend(stray.needless);
-                        }
+                        self.conduct.packet(&packet, self.rows_sent);
+                        strays.extend(self.asked.answered(&packet, now));
                     }
                     take(&packet);
                 }
@@ -277,7 +269,11 @@ impl Conversation {
                 }
             }
         }
-        late.into_iter().for_each(|took| self.was_late(took));
+        for Stray { needless, changed } in strays {
+            self.tally.strays += 1;
+            self.repeated_changes += u64::from(changed);
+            needless.into_iter().for_each(|took| self.was_late(took));
+        }
         Ok(())
     }
 
