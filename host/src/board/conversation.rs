@@ -249,7 +249,8 @@ impl Conversation {
                 }
             }
         }
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.now() - begun })
+        let (answered, damaged) = (self.tally.packets_in > 0, self.tally.damaged_in);
+        Err(BoardError::NoAnswer { kind, attempts, waited: self.now() - begun, answered, damaged })
     }
 
     /// Asks, and takes the expected part of the reply.

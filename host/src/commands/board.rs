@@ -5,14 +5,17 @@ use std::sync::atomic::AtomicUsize;
 use std::time::Duration;
 
 use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
+
+use halfrow_mock::Streamed;
 
 use super::Failure;
 use crate::board::deadlines::RetryLimit;
 use crate::board::{OpenOptions, Stop};
-use crate::link::{self, Candidate, Recording};
-use crate::session::Draws;
+use crate::link::{self, Candidate, OpenError, Recording};
+use crate::session::{Draws, JUDGED, Plan};
 use crate::settings::Settings;
-use crate::target::Target;
+use crate::target::{Target, TargetError};
 use crate::verdict::Exit;
 
 /// Which board, and how patiently.
@@ -20,9 +23,9 @@ use crate::verdict::Exit;
 #[command(next_help_heading = "Board")]
 pub(super) struct BoardArguments {
     /// The board: mock, mock,fault=NAME, sim, serial:PATH, tcp:HOST:PORT, replay:FILE; see `halfrow boards` [default: mock]
-    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD")]
+    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", value_parser = target())]
     board: Option<Target>,
-    /// The longest that the run may take, in seconds of the link's clock
+    /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
     timeout: Option<f64>,
     /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5]
@@ -31,6 +34,14 @@ pub(super) struct BoardArguments {
     /// Take the board over from another host that holds it
     #[arg(long)]
     pub(super) take_over: bool,
+}
+
+/// Reads a target, and names its option when it is no text.
+pub(super) fn target() -> impl TypedValueParser<Value = Target> {
+    OsStringValueParser::new().try_map(|text| match text.into_string() {
+        Ok(text) => text.parse().map_err(|error: TargetError| error.to_string()),
+        Err(_) => Err("a target is text in UTF-8; give the file another name, or link to it".to_owned()),
+    })
 }
 
 fn percent(text: &str) -> Result<f64, String> {
@@ -52,16 +63,39 @@ impl BoardArguments {
         }
     }
 
+    /// Refuses a fault of the mock board that a run of `plan` never comes upon.
+    pub(super) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
+        let target = self.target(settings)?;
+        let fault = link::fault(&target).map_err(unopened)?;
+        let judged = plan.schedule(2).into_iter().flat_map(|segment| segment.frames);
+        let frames = judged.filter(|frame| frame.generation == JUDGED).count();
+        let streamed = Streamed { height: plan.tables.geometry().height(), frames };
+        match fault.and_then(|fault| fault.without_effect(&streamed)) {
+            None => Ok(()),
+            Some(why) => Err(anyhow::anyhow!("the fault of {target} would change nothing: {why}").into()),
+        }
+    }
+
     /// The link to the board that is named; by default the mock, never a guess.
     pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
-        link::open(&self.target(settings)?)
-            .map_err(|error| Failure { exit: error.exit(), error: error.into() })
+        link::open(&self.target(settings)?).map_err(unopened)
+    }
+
+    /// The link to the board that is named, which is the one in `recording` if there is one.
+    pub(super) fn candidate_of(
+        &self,
+        settings: &Settings,
+        recording: Option<Recording>,
+    ) -> Result<Candidate, Failure> {
+        match recording {
+            None => self.candidate(settings),
+            Some(recording) => link::replay(&self.target(settings)?, recording).map_err(unopened),
+        }
     }
 
     /// The recording, if the target is one.
     pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
-        let file = link::replayed_file(&self.target(settings)?);
-        Ok(file.map(|file| Recording::read(&file)).transpose()?)
+        link::recording(&self.target(settings)?).map_err(unopened)
     }
 
     pub(super) fn open_options(
@@ -76,13 +110,14 @@ impl BoardArguments {
             take_over: self.take_over,
             polite: false,
             retry_limit: self.retry_limit(settings),
-            stop: self.stop(self.timeout(settings)?)?,
+            stop: self.stop(settings, self.timeout(settings)?)?,
         })
     }
 
-    /// What ends the run early: Ctrl-C, SIGTERM, or the time limit. A second signal ends the program at once.
-    pub(super) fn stop(&self, limit: Option<Duration>) -> Result<Stop, Failure> {
-        Ok(Stop::new(signals()?, limit))
+    /// What ends the run early: Ctrl-C, SIGTERM, `limit` on the link's clock, or the call's own on this computer's. A
+    /// second signal ends the program at once.
+    pub(super) fn stop(&self, settings: &Settings, limit: Option<Duration>) -> Result<Stop, Failure> {
+        Ok(Stop::new(signals()?, limit).within(self.timeout(settings)?))
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
@@ -98,6 +133,10 @@ impl BoardArguments {
             None => limit,
         }
     }
+}
+
+fn unopened(error: OpenError) -> Failure {
+    Failure { exit: error.exit(), error: error.into() }
 }
 
 /// Holds the exit code of the signal that came, Ctrl-C or SIGTERM, and 0 before. A second one ends the program at once.

@@ -4,6 +4,7 @@ mod by_board;
 mod by_model;
 mod places;
 
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -11,6 +12,7 @@ use halfrow_model::Frame;
 use serde_json::json;
 
 use super::board::BoardArguments;
+use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments};
 use super::optics::{self, Chosen, LensArguments};
 use super::table_file::TableArgument;
@@ -24,14 +26,16 @@ use places::{Places, Wanted};
 /// Correct frames with the reference model, or with a board, unjudged
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// The frames: PGM, PNG, TIFF, DNG, headerless files with --raw, or builtin:NAME
     #[arg(required = true, value_name = "IN")]
-    inputs: Vec<String>,
+    inputs: Vec<OsString>,
     #[command(flatten)]
     tables: TableArgument,
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE")]
-    kernel: Option<String>,
+    kernel: Option<OsString>,
     /// Correct with the reference model, whatever board is set
     #[arg(long)]
     model: bool,
@@ -69,13 +73,20 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     if !arguments.model && !arguments.board.is_named(settings) {
         return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
     }
-    let file = arguments.tables.file(&arguments.lens, settings)?;
-    let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
-    let chosen = optics::choose(file, &arguments.lens, kernel)?;
+    let inputs = FrameName::all(&arguments.inputs)?;
+    if inputs.iter().all(|input| input.file().is_none()) {
+        arguments.given.refuse_void(Decider::NoFrameFile, &[])?;
+    }
+    if arguments.model {
+        arguments.given.refuse_void(Decider::Model, &settings.keys())?;
+    }
+    let tables = arguments.tables.read(&arguments.given, &arguments.lens, settings)?;
+    let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
+    let chosen = optics::choose(tables, &arguments.lens, kernel)?;
     let geometry = *chosen.tables.geometry();
     let job = Job {
         arguments,
-        inputs: FrameName::all(&arguments.inputs)?,
+        inputs,
         how: arguments.input.read_options(&geometry, arguments.lens.phase),
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,

@@ -1,5 +1,6 @@
 //! `halfrow kernel`
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
@@ -13,7 +14,7 @@ use super::{Context, Failure, optics, print};
 use crate::frames::lying;
 use crate::frames::preview::RgbImage;
 use crate::tables::KernelFile;
-use crate::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
+use crate::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
 use crate::verdict::Exit;
 use crate::{frames, progress, training, written_aside};
 
@@ -60,7 +61,7 @@ struct Measure {
     images: Vec<PathBuf>,
     /// nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
     #[arg(long, value_name = "NAME|FILE")]
-    kernel: String,
+    kernel: OsString,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
@@ -136,7 +137,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     watched.rows_expected(rows(&images));
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
-    let trained = trained?;
+    let trained = trained.map_err(failed)?;
     let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
@@ -173,6 +174,10 @@ fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Va
     Ok(about)
 }
 
+fn failed(error: TrainingError) -> Failure {
+    Failure { exit: error.exit(), error: error.into() }
+}
+
 fn rounded(figure: f64) -> f64 {
     (figure * 1000.0).round() / 1000.0
 }
@@ -192,12 +197,13 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());
     watched.done();
-    let (measured, noise) = (measured?, Spread::of(&noise_gain(&kernel)));
+    let (measured, noise) = (measured.map_err(failed)?, Spread::of(&noise_gain(&kernel)));
+    let name = arguments.kernel.to_string_lossy();
     if arguments.json {
-        super::print_json(&json!({"kernel": arguments.kernel, "gains_db": measured, "noise_gain": noise}))?;
+        super::print_json(&json!({"kernel": name, "gains_db": measured, "noise_gain": noise}))?;
         return Ok(Exit::Pass);
     }
-    print(&format!("{} on {} photographs, over Hermite in dB", arguments.kernel, images.len()))?;
+    print(&format!("{name} on {} photographs, over Hermite in dB", images.len()))?;
     for gains in measured {
         let Spread { mean, least, most } = gains.gain;
         print(&format!(

@@ -6,6 +6,7 @@ mod completions;
 mod correct;
 mod faults;
 mod frames;
+mod given;
 mod info;
 mod inputs;
 mod kernel;

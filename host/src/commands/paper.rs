@@ -6,6 +6,7 @@ use std::time::Instant;
 use clap::Args;
 
 use super::board::BoardArguments;
+use super::given::{Decider, Given};
 use super::{Context, Failure, print, print_json};
 use crate::board::{Board, BoardError};
 use crate::frames::preview::RgbImage;
@@ -22,6 +23,8 @@ use crate::verdict::Exit;
 /// not be tried.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// What to reproduce [default: all]
     #[arg(value_name = "ITEM")]
     items: Vec<Item>,
@@ -47,6 +50,9 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let begun = Instant::now();
     let items = arguments.items();
+    if !items.iter().any(|item| item.goes_through_boards()) {
+        arguments.given.refuse_void(Decider::NoBoardItem, &context.settings.keys())?;
+    }
     let photographs = arguments.photographs(&items)?;
     let folder = Folder::prepare(&arguments.output, arguments.overwrite)?;
     let through_board = arguments.board.is_named(&context.settings);
@@ -85,7 +91,7 @@ fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<
 fn failed(error: PaperError) -> Failure {
     let exit = match &error {
         PaperError::Board(error) => error.exit(),
-        PaperError::Misfit(_) => Exit::Usage,
+        PaperError::Misfit(_) | PaperError::Synthesis { .. } => Exit::Usage,
         _ => Exit::Error,
     };
     Failure { exit, error: error.into() }

@@ -15,7 +15,7 @@ mod wire;
 
 use std::time::Duration;
 
-pub use open::{Candidate, OpenError, open, replayed_file};
+pub use open::{Candidate, OpenError, fault, open, recording, replay};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
 pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};

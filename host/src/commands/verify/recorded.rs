@@ -104,8 +104,13 @@ fn frames(
     geometry: &Geometry,
     phase: Phase,
 ) -> anyhow::Result<Vec<FrameSource>> {
-    let sent = Sent::find(&recording.sent());
-    let first = sent.first_frames.get(&JUDGED).copied().unwrap_or_default();
+    let is_file = |name: &&String| !name.starts_with("builtin:");
+    let files: Vec<u16> =
+        (0..).zip(&run.frames).filter(|(_, name)| is_file(name)).map(|(index, _)| index).collect();
+    let commits = Sent::find(recording.sent(), |_| false);
+    let first = commits.first_frames.get(&JUDGED).copied().unwrap_or_default();
+    let is_of_file = |number: u16| number.checked_sub(first).is_some_and(|index| files.contains(&index));
+    let sent = Sent::find(recording.sent(), is_of_file);
     let sources = run.frames.iter().zip(first..);
     sources
         .map(|(name, number)| {
