@@ -84,7 +84,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let (plan, circumstances) = match &recording {
         Some(recording) => {
             arguments.given.refuse_void(Decider::Recording, &settings.keys())?;
-            recorded::restore(recording, arguments.requires_hardware(settings))?
+            let has_report = arguments.has_report(settings);
+            recorded::restore(recording, arguments.requires_hardware(settings), has_report)?
         }
         None => arguments.plan(settings)?,
     };
@@ -213,7 +214,7 @@ impl Arguments {
             timeout: self.board.timeout(settings)?,
             retry_limit: self.board.retry_limit(settings),
             reconnect: self.patience(settings)?,
-            keep_pictures: self.report.is_some() || settings.report.is_some(),
+            keep_pictures: self.has_report(settings),
         })
     }
 
@@ -229,6 +230,10 @@ impl Arguments {
             Some(names) if self.frame.is_empty() => names.iter().map(OsString::from).collect(),
             _ => self.frame.clone(),
         }
+    }
+
+    fn has_report(&self, settings: &Settings) -> bool {
+        self.report.is_some() || settings.report.is_some()
     }
 
     fn requires_hardware(&self, settings: &Settings) -> bool {

@@ -166,7 +166,7 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
         let (columns, rows) = (geometry.width(), geometry.height());
         let mut remedy = "use smaller frames and tables".to_owned();
         if capabilities.nature == BoardNature::Mock {
-            remedy = format!("{remedy}, or a mock that takes these: mock,max-width={columns}");
+            remedy = format!("{remedy}, or a mock that takes these: --board mock,max-width={columns}");
             if rows > height {
                 remedy = format!("{remedy},max-height={rows}");
             }

@@ -63,11 +63,12 @@ impl RecordedRun {
     }
 }
 
-/// The plan and the circumstances of the run that `recording` holds. Whether hardware is required is for the present
-/// call to say.
+/// The plan and the circumstances of the run that `recording` holds. Whether hardware is required and pictures are kept is
+/// for the present call to say.
 pub(super) fn restore(
     recording: &Recording,
     require_hardware: bool,
+    keep_pictures: bool,
 ) -> Result<(Plan, Circumstances), Failure> {
     let run: RecordedRun = recording.run()?;
     let file = TableFile::parse(&run.tables).map_err(|error| Failure {
@@ -92,7 +93,7 @@ pub(super) fn restore(
         timeout: run.timeout,
         retry_limit: RetryLimit { fixed: run.retries, share: run.retry_share },
         reconnect: None,
-        keep_pictures: true,
+        keep_pictures,
     };
     let circumstances = Circumstances { arguments: run.arguments, files: Vec::new(), draws: run.draws };
     Ok((plan, circumstances))
