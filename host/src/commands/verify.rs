@@ -179,13 +179,15 @@ impl Arguments {
         let tables = self.tables.read(&self.given, &self.lens, settings)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
         let chosen = optics::choose(tables, &self.lens, kernel)?;
-        let files = chosen.file.iter().chain(&lens).chain(&files);
+        let table_file = chosen.file.clone();
+        let plan = self.plan_of(chosen, frames, settings)?;
+        let files = table_file.iter().chain(&lens).chain(&files);
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
             files: files.map(|path| file_hash(path)).collect::<Result<_, _>>()?,
             draws: session::Draws::draw(),
         };
-        Ok((self.plan_of(chosen, frames, settings)?, circumstances))
+        Ok((plan, circumstances))
     }
 
     fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, settings: &Settings) -> Result<Plan, Failure> {
