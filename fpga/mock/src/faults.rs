@@ -1,6 +1,7 @@
 //! Faults by name: one part of the board out of order, on purpose.
 
 mod catalogue;
+mod effect;
 
 use std::collections::BTreeMap;
 
@@ -8,6 +9,7 @@ use crate::kernel::{NODES, Weight};
 use crate::value::{Limits, ValueError, parse_word};
 
 pub use catalogue::{FaultInfo, Place, catalogue};
+pub use effect::Streamed;
 
 /// The row that faults of single rows pick by default. Small frames have it too.
 const DEFAULT_ROW: u16 = 3;

@@ -37,7 +37,7 @@ pub use crate::banks::{OutBanks, RowName, RowOut};
 pub use crate::board::Board;
 pub use crate::core::{Core, Entering, Leaving, RowBinding};
 pub use crate::depth::Depth;
-pub use crate::faults::{BoardFault, FaultError, FaultInfo, Parameters, Place, catalogue};
+pub use crate::faults::{BoardFault, FaultError, FaultInfo, Parameters, Place, Streamed, catalogue};
 pub use crate::kernel::{Kernel, NODES, Node, Weight};
 pub use crate::options::{OptionError, Options, TapCount};
 pub use crate::player::{PlayError, Player, RowIn};

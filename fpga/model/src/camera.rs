@@ -1,6 +1,6 @@
 //! A lens before the frame: the row factors for it, by Eq. 9 and fitted, and the error that they leave.
 
-use crate::lens::is_positive;
+use crate::lens::{Short, is_positive};
 use crate::projection::{is_outside, shrink_factor};
 use crate::table::nearest_step;
 use crate::{CalibratedLens, Geometry, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, STEP_ONE, TableSet};
@@ -23,8 +23,12 @@ pub enum CameraError {
     /// The optical centre is outside the frame.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
-    /// The row of the optical centre is no finite number.
-    #[error("the optical centre is at row {0}; give a finite number")]
+    /// The row of the optical centre is no finite number, or farther from the frame than any lens reaches.
+    #[error(
+        "the optical centre is at row {}, beyond {max:e}; give the row of the lens's axis, counted from 0",
+        Short(*.0),
+        max = MAX_RADIUS
+    )]
     CentreRow(f64),
 }
 
@@ -54,8 +58,9 @@ impl Camera {
     /// `field_of_view_deg` is what counts as image circle, in degrees across: 180 is the hemisphere of the paper.
     ///
     /// # Errors
-    /// [`CameraError`] when the centre is outside the frame, the field of view not above 0° and at most 360°, R outside
-    /// [`MIN_RADIUS`] to [`MAX_RADIUS`], or r(θ) turns back inside the circle and inside the frame.
+    /// [`CameraError`] when the centre is at no column of the frame or beyond [`MAX_RADIUS`], the field of view not above
+    /// 0° and at most 360°, R outside [`MIN_RADIUS`] to [`MAX_RADIUS`], or r(θ) turns back inside the circle and inside
+    /// the frame.
     pub fn new(
         geometry: Geometry,
         lens: CalibratedLens,
@@ -65,7 +70,7 @@ impl Camera {
         if !is_positive(field_of_view_deg) || field_of_view_deg > 360.0 {
             return Err(LensError::FieldOfView(field_of_view_deg).into());
         }
-        if !centre.1.is_finite() {
+        if !(-MAX_RADIUS..=MAX_RADIUS).contains(&centre.1) {
             return Err(CameraError::CentreRow(centre.1));
         }
         let geometry = geometry.with_centre(centre.0)?;

@@ -1,6 +1,7 @@
 //! The frame's geometry: what a board must know of a frame beside its samples.
 
 use crate::BitDepth;
+use crate::lens::Short;
 
 /// The narrowest frame of the datapath, in columns; half a row is then always longer than a board's fixed delay.
 pub const MIN_WIDTH: usize = 64;
@@ -35,8 +36,9 @@ pub enum GeometryError {
     Height(usize),
     /// An optical centre outside the frame.
     #[error(
-        "the optical centre is at column {column}, outside the frame's 0 to {last}; \
-         give the column of the lens's axis, counted from 0"
+        "the optical centre is at column {}, outside the frame's 0 to {last}; \
+         give the column of the lens's axis, counted from 0",
+        Short(*.column)
     )]
     Centre {
         /// The column given.

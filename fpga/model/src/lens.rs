@@ -3,6 +3,7 @@
 //! Image points are in pixels from the optical centre, x to the right and y down.
 
 use std::f64::consts::{FRAC_PI_2, PI};
+use std::fmt;
 
 /// The smallest image radius that a lens may have, in pixels.
 pub const MIN_RADIUS: f64 = 1.0;
@@ -37,31 +38,49 @@ impl Spherical {
     }
 }
 
+/// A number for a sentence: one that plain digits would make long is printed with an exponent.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Short(pub f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(number) = *self;
+        let size = number.abs();
+        if size.is_finite() && size != 0.0 && !(1e-6..1e9).contains(&size) {
+            write!(f, "{number:e}")
+        } else {
+            write!(f, "{number}")
+        }
+    }
+}
+
 /// Figures that describe no lens.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LensError {
     /// An image radius outside [`MIN_RADIUS`] to [`MAX_RADIUS`].
     #[error(
-        "an image radius of {0} pixels is outside {min} to {max:e}; give the distance in pixels from the optical \
+        "an image radius of {} pixels is outside {min} to {max:e}; give the distance in pixels from the optical \
          centre to where a ray at 90 degrees lands",
+        Short(*.0),
         min = MIN_RADIUS,
         max = MAX_RADIUS
     )]
     Radius(f64),
     /// A focal length that is not above zero.
-    #[error("a focal length of {0} mm is not above zero; take it from the lens's data sheet")]
+    #[error("a focal length of {} mm is not above zero; take it from the lens's data sheet", Short(*.0))]
     FocalLength(f64),
     /// A pixel pitch that is not above zero.
-    #[error("a pixel pitch of {0} um is not above zero; take it from the sensor's data sheet")]
+    #[error("a pixel pitch of {} um is not above zero; take it from the sensor's data sheet", Short(*.0))]
     PixelPitch(f64),
     /// A field of view outside 0° to 360°.
     #[error(
-        "a field of view of {0} degrees is outside 0 to 360; give the full angle across the image circle, \
-         180 for a hemisphere"
+        "a field of view of {} degrees is outside 0 to 360; give the full angle across the image circle, \
+         180 for a hemisphere",
+        Short(*.0)
     )]
     FieldOfView(f64),
     /// A coefficient that is no finite number, or that leads to one.
-    #[error("a coefficient of {0} gives no lens; calibrate the lens again")]
+    #[error("a coefficient of {} gives no lens; calibrate the lens again", Short(*.0))]
     Coefficient(f64),
     /// A profile that does not rise from the axis outwards.
     #[error(
@@ -70,8 +89,10 @@ pub enum LensError {
     Axis,
     /// A picture that is not upright.
     #[error(
-        "the lens's picture is mirrored, upside down or flat: its axes are {right} pixels to the right and {down} pixels \
-         down; flip the frames, not the lens, and calibrate with upright ones"
+        "the lens's picture is mirrored, upside down or flat: its axes are {} pixels to the right and {} pixels \
+         down; flip the frames, not the lens, and calibrate with upright ones",
+        Short(*.right),
+        Short(*.down)
     )]
     Mirrored {
         /// Pixels to the right for a unit to the right.

@@ -38,7 +38,7 @@ pub use frame::{BitDepth, Frame, FrameError};
 pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 pub use interpolant::{Interpolant, UnknownInterpolant};
 pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_ONE};
-pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Spherical};
+pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Short, Spherical};
 pub use profile::Profile;
 pub use projection::{exact, exact_inverse, simplified, simplified_inverse, stretch_factor};
 pub use real::{correct_real, round_to_frame};

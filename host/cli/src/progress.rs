@@ -22,6 +22,18 @@ pub(crate) fn for_stderr(quiet: bool) -> Box<dyn Progress> {
     }
 }
 
+/// The share of rows, and the time, from which on the rest can be told. The first rows wait for what is made once.
+const TELLING_SHARE: f64 = 0.1;
+const TELLING_TIME: Duration = Duration::from_secs(5);
+
+/// The seconds that the rest of the `expected` rows will take, when `rows` of them took `time`; none as long as that
+/// tells little.
+fn seconds_left(rows: u64, expected: u64, time: Duration) -> Option<f64> {
+    let share = rows as f64 / expected.max(1) as f64;
+    let left = time.as_secs_f64() * (1.0 / share - 1.0).max(0.0);
+    (share >= TELLING_SHARE && time >= TELLING_TIME).then_some(left)
+}
+
 /// A bar with rate and time left.
 struct Bar(ProgressBar);
 
@@ -43,13 +55,19 @@ impl Progress for Bar {
     }
 
     fn rows_expected(&self, rows: u64) {
-        let template = "{bar:30} {pos}/{len} rows  {rate}  {eta} left  {msg}";
+        let template = "{bar:30} {pos}/{len} rows  {rate}{left}  {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             let rate = |state: &ProgressState, text: &mut dyn Write| {
                 // A watcher whose terminal went away needs no number.
                 let _ = write!(text, "{:.0} rows/s", state.per_sec());
             };
-            self.0.set_style(style.with_key("rate", rate));
+            let left = |state: &ProgressState, text: &mut dyn Write| {
+                let expected = state.len().unwrap_or_default();
+                if let Some(seconds) = seconds_left(state.pos(), expected, state.elapsed()) {
+                    let _ = write!(text, "  {seconds:.0} s left");
+                }
+            };
+            self.0.set_style(style.with_key("rate", rate).with_key("left", left));
         }
         self.0.set_length(rows);
     }
@@ -98,10 +116,27 @@ impl Progress for Lines {
             return;
         }
         *last = Instant::now();
-        let expected = self.expected.load(Ordering::Relaxed);
-        let seconds = self.begun.elapsed().as_secs_f64();
-        let rate = rows as f64 / seconds;
-        let left = expected.saturating_sub(rows) as f64 / rate;
-        console::diagnose(&format_args!("{rows} of {expected} rows, {rate:.0} rows/s, {left:.0} s left"));
+        console::diagnose(&line(rows, self.expected.load(Ordering::Relaxed), self.begun.elapsed()));
+    }
+}
+
+/// What stands in a log after `time`.
+fn line(rows: u64, expected: u64, time: Duration) -> String {
+    let rate = rows as f64 / time.as_secs_f64();
+    let left = seconds_left(rows, expected, time).map(|seconds| format!(", {seconds:.0} s left"));
+    format!("{rows} of {expected} rows, {rate:.0} rows/s{}", left.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_that_is_left_is_told_when_enough_is_done_to_tell_it() {
+        let after = |rows, seconds| line(rows, 13_368, Duration::from_secs(seconds));
+        assert_eq!(after(512, 9), "512 of 13368 rows, 57 rows/s");
+        assert_eq!(after(6684, 2), "6684 of 13368 rows, 3342 rows/s");
+        assert_eq!(after(6684, 10), "6684 of 13368 rows, 668 rows/s, 10 s left");
+        assert_eq!(line(5, 0, Duration::from_secs(9)), "5 of 0 rows, 1 rows/s, 0 s left");
     }
 }

@@ -74,7 +74,8 @@ pub struct Settings {
 pub enum SettingsError {
     /// The system did not hand the file over, or it is no text.
     #[error(
-        "cannot read the settings file {}; check that it exists and that you may read it, or name another with --settings",
+        "cannot read the settings file {}; check that it exists and that you may read it, name another with \
+         --settings, or do without by HALFROW_SETTINGS=/dev/null",
         path.display()
     )]
     Io {
@@ -107,7 +108,7 @@ pub enum SettingsError {
 
 impl Settings {
     /// The settings of the file `explicit`, which must be there; without one, of `halfrow/settings.toml` in
-    /// `$XDG_CONFIG_HOME` or else `~/.config`, if that is there; without either, none.
+    /// `$XDG_CONFIG_HOME` or else `~/.config`, if that is there and may be read; without either, none.
     ///
     /// # Errors
     /// [`SettingsError`] when the file cannot be read, is no TOML, or has a key or a value that settings do not have.
@@ -124,15 +125,44 @@ impl Settings {
         explicit.map(PathBuf::from).or_else(|| standard_path(|name| std::env::var_os(name)))
     }
 
+    /// The keys that have a value.
+    #[must_use]
+    pub fn keys(&self) -> Vec<&'static str> {
+        let given = [
+            self.board.is_some(),
+            self.tables.is_some(),
+            self.kernel.is_some(),
+            self.frame.is_some(),
+            self.report.is_some(),
+            self.overwrite.is_some(),
+            self.timeout.is_some(),
+            self.retry_limit.is_some(),
+            self.reconnect.is_some(),
+            self.require_hardware.is_some(),
+            self.seed.is_some(),
+        ];
+        KEYS.into_iter().zip(given).filter_map(|(key, given)| given.then_some(key)).collect()
+    }
+
     fn read(path: &Path) -> Result<Self, SettingsError> {
-        let text = text::read(path).map_err(|source| SettingsError::Io { path: path.to_owned(), source })?;
+        let text = text::read(path, text::MAX_BYTES)
+            .map_err(|source| SettingsError::Io { path: path.to_owned(), source })?;
         Self::parse(path, &text)
     }
 
     fn read_standard(path: Option<PathBuf>) -> Result<Self, SettingsError> {
-        use io::ErrorKind::{NotADirectory, NotFound};
+        use io::ErrorKind::{NotADirectory, NotFound, PermissionDenied};
         match path.map(|path| Self::read(&path)) {
             None => Ok(Self::default()),
+            // Nobody named it, and the home of another user says nothing of this one's wishes.
+            Some(Err(SettingsError::Io { path, source })) if source.kind() == PermissionDenied => {
+                tracing::warn!(
+                    "the settings file {} may not be read, and is passed over; HALFROW_SETTINGS=/dev/null does so \
+                     without a word",
+                    path.display()
+                );
+                Ok(Self::default())
+            }
             Some(Err(SettingsError::Io { source, .. }))
                 if matches!(source.kind(), NotFound | NotADirectory) =>
             {

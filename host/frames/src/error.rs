@@ -27,6 +27,12 @@ pub enum ReadError {
         /// The file.
         path: PathBuf,
     },
+    /// It is no regular file, where a file is read more than once.
+    #[error("{} is a pipe or a device, which cannot be read twice; write it to a file, and name that", path.display())]
+    NotRegular {
+        /// The file.
+        path: PathBuf,
+    },
     /// The bytes are no frame; the source says why and what to do.
     #[error("{} holds no frame that can be used", path.display())]
     Decode {
@@ -40,10 +46,13 @@ pub enum ReadError {
 /// Bytes that are no frame.
 #[derive(Debug, thiserror::Error)]
 pub enum DecodeError {
+    /// There are no bytes.
+    #[error("it is empty; copy or export it again")]
+    Empty,
     /// No format known here begins like this.
     #[error(
         "it begins like no format known here (PGM P5, PNG, TIFF, DNG); convert it, or for samples without a header \
-         give width, height and layout"
+         give their layout with --raw"
     )]
     UnknownFormat,
     /// A kind of file that is understood but not taken.
@@ -90,6 +99,19 @@ pub enum DecodeError {
         /// Where, in bytes from the start of the file.
         offset: usize,
     },
+    /// The PGM header has a number beyond any frame's.
+    #[error(
+        "the PGM header's {wanted} at byte {offset} has {digits} digits, more than any frame's; check the header, or \
+         write the file again"
+    )]
+    PgmNumber {
+        /// What the number is.
+        wanted: &'static str,
+        /// Where it begins, in bytes from the start of the file.
+        offset: usize,
+        /// Its digits.
+        digits: usize,
+    },
     /// The PGM header gives a maximum that the format does not have.
     #[error("the PGM maxval is {0}; it must be 1 to 65535, so write the file again")]
     PgmMaxval(u32),
@@ -109,8 +131,8 @@ pub enum DecodeError {
         maxval: u16,
     },
     /// The PNG decoder gave up.
-    #[error("the PNG is damaged; copy or export it again")]
-    Png(#[source] png::DecodingError),
+    #[error("the PNG is damaged: {}; copy or export it again", png_damage(.0))]
+    Png(png::DecodingError),
     /// The TIFF directory is cut off or malformed.
     #[error("the TIFF's directory is damaged at byte {offset}; copy or export the file again")]
     TiffDirectory {
@@ -118,8 +140,8 @@ pub enum DecodeError {
         offset: usize,
     },
     /// The TIFF decoder gave up.
-    #[error("the TIFF is damaged; copy or export it again")]
-    Tiff(#[source] tiff::TiffError),
+    #[error("the TIFF is damaged: {}; copy or export it again", tiff_damage(.0))]
+    Tiff(tiff::TiffError),
     /// The file tells another arrangement of the colours than was asked for.
     #[error("it says that its colours lie as {found}, not as {asked}; give --phase {found}")]
     OtherPhase {
@@ -145,6 +167,36 @@ pub enum DecodeError {
     /// The samples are no frame.
     #[error(transparent)]
     Frame(#[from] FrameError),
+}
+
+/// What a reader says that came to the end of its bytes.
+const BROKEN_OFF: &str = "it breaks off";
+
+/// What the PNG decoder found, without the names of its own types.
+fn png_damage(error: &png::DecodingError) -> String {
+    if let png::DecodingError::IoError(error) = error
+        && error.kind() == io::ErrorKind::UnexpectedEof
+    {
+        return BROKEN_OFF.to_owned();
+    }
+    let text = error.to_string();
+    let text = text.trim_end_matches('.');
+    let chunk = text.split_once("ChunkType {").and_then(|(before, rest)| {
+        let (inside, after) = rest.split_once('}')?;
+        let (_, name) = inside.split_once("type: ")?;
+        Some(format!("{before}{}{after}", name.split(',').next().unwrap_or_default().trim()))
+    });
+    chunk.unwrap_or_else(|| text.to_owned())
+}
+
+/// What the TIFF decoder found.
+fn tiff_damage(error: &tiff::TiffError) -> String {
+    match error {
+        tiff::TiffError::IoError(error) if error.kind() == io::ErrorKind::UnexpectedEof => {
+            BROKEN_OFF.to_owned()
+        }
+        other => other.to_string(),
+    }
 }
 
 /// A row that a packed layout cannot hold.

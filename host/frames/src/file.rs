@@ -29,6 +29,7 @@ pub(super) fn read_open(input: File, path: &Path, how: &ReadOptions) -> Result<F
 }
 
 fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
+    let _file = tracing::warn_span!("frame", path = %path.display()).entered();
     super::decode(bytes, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
 }
 
@@ -38,6 +39,20 @@ fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Frame, ReadErr
 /// [`ReadError`] when the file cannot be read or holds no such picture.
 pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
     png::decode_rgb(&bytes(path)?).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+}
+
+/// Refuses what cannot be read twice: a pipe, which may also never begin, or a device. What is not there is left to be
+/// said by who reads it, and so is a folder.
+///
+/// # Errors
+/// [`ReadError::NotRegular`].
+pub fn check_regular(path: &Path) -> Result<(), ReadError> {
+    match std::fs::metadata(path) {
+        Ok(about) if !about.is_file() && !about.is_dir() => {
+            Err(ReadError::NotRegular { path: path.to_owned() })
+        }
+        _ => Ok(()),
+    }
 }
 
 /// All bytes of a file that is no longer than any frame.

@@ -10,6 +10,7 @@ mod file;
 mod format;
 mod heat_map;
 mod mosaic;
+mod narrow;
 mod patterns;
 pub mod pgm;
 pub mod png;
@@ -30,7 +31,7 @@ use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{check_png, read, read_rgb, write, write_rgb, write_rows};
+pub use file::{check_png, check_regular, read, read_rgb, write, write_rgb, write_rows};
 pub use format::{Format, UnknownFormat};
 pub use heat_map::HeatMap;
 pub use mosaic::mosaic;
@@ -69,12 +70,23 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
     }
 }
 
-/// The refusal of `bytes` of no known format; their relatives get a remedy of their own.
+/// The refusal of `bytes` of no known format; those that people have get a remedy of their own.
 fn unknown(bytes: &[u8]) -> DecodeError {
+    const PICTURE: &str = "convert it to PNG or TIFF";
+    const LOSSY: &str = "give the samples before compression, as PGM, PNG or TIFF";
     let (what, remedy) = match bytes {
+        [] => return DecodeError::Empty,
         [b'P', b'2', ..] => ("a PGM in plain text (P2)", "convert it to the binary kind (P5)"),
-        [b'P', b'3' | b'6', ..] => ("a PPM", "convert it to PNG or TIFF"),
-        [0xff, 0xd8, 0xff, ..] => ("a JPEG", "give the samples before compression, as PGM, PNG or TIFF"),
+        [b'P', b'3' | b'6', ..] => ("a PPM", PICTURE),
+        [b'P', b'1' | b'4', ..] => ("a PBM, black and white,", "give the samples, as PGM, PNG or TIFF"),
+        [b'P', b'7', b'\n', ..] => ("a PAM", "convert it to PGM (P5), PNG or TIFF"),
+        [0xff, 0xd8, 0xff, ..] => ("a JPEG", LOSSY),
+        [b'I', b'I', b'+', 0, ..] | [b'M', b'M', 0, b'+', ..] => ("a BigTIFF", "save it as a classic TIFF"),
+        [b'B', b'M', ..] => ("a BMP", PICTURE),
+        [b'G', b'I', b'F', b'8', ..] => ("a GIF", PICTURE),
+        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => ("a WebP", LOSSY),
+        [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => ("an AVIF", LOSSY),
+        [_, _, _, _, b'f', b't', b'y', b'p', b'h' | b'm', b'e' | b'i', ..] => ("a HEIC", LOSSY),
         _ => return DecodeError::UnknownFormat,
     };
     DecodeError::Unsupported { what: what.to_owned(), remedy }

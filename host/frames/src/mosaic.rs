@@ -3,7 +3,7 @@
 use halfrow_model::{BitDepth, Colour, Frame, FrameError, Phase};
 
 use super::preview::RgbImage;
-use super::{DecodeError, ReadOptions};
+use super::{DecodeError, ReadOptions, narrow};
 
 /// A decoded picture: `channels` interleaved samples a pixel, row after row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,6 +26,9 @@ impl Picture {
     /// [`DecodeError`] when the samples are no frame of `how.depth`.
     pub(super) fn into_frame(self, how: &ReadOptions) -> Result<Frame, DecodeError> {
         let Self { width, channels, full, samples } = self;
+        if channels < 3 {
+            narrow::note(full, how.depth);
+        }
         let samples = match channels {
             1 => samples,
             2 => samples.chunks_exact(2).map(|pixel| pixel[0]).collect(),

@@ -88,14 +88,13 @@ impl<'a> Header<'a> {
         let before = self.offset;
         self.skip_blanks();
         let digits = self.rest().iter().take_while(|byte| byte.is_ascii_digit()).count();
-        let value = std::str::from_utf8(&self.rest()[..digits]).ok().and_then(|text| text.parse().ok());
-        match value {
-            Some(value) if self.offset > before => {
-                self.offset += digits;
-                Ok(value)
-            }
-            _ => Err(missing(self.offset)),
+        if digits == 0 || self.offset == before {
+            return Err(missing(self.offset));
         }
+        let value = std::str::from_utf8(&self.rest()[..digits]).ok().and_then(|text| text.parse().ok());
+        let value = value.ok_or(DecodeError::PgmNumber { wanted, offset: self.offset, digits })?;
+        self.offset += digits;
+        Ok(value)
     }
 
     fn maxval(&mut self) -> Result<u16, DecodeError> {

@@ -2,7 +2,7 @@
 
 use halfrow_model::{BitDepth, Frame, FrameError};
 
-use super::{DecodeError, RawLayout, ReadOptions, size};
+use super::{DecodeError, RawLayout, ReadOptions, narrow, size};
 
 /// Where a frame's rows are in a file.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +40,14 @@ impl Raster {
     /// [`DecodeError`] when it does not.
     pub(super) fn check_length(&self, length: usize) -> Result<(), DecodeError> {
         size::exact(length.saturating_sub(self.start), self.line_bytes() * self.height)
+    }
+
+    /// The largest sample that the file can hold.
+    pub(super) fn full(&self) -> u16 {
+        match self.lines {
+            Lines::Pgm { maxval } => maxval,
+            Lines::Raw(layout) => u16::MAX >> (u16::BITS - layout.bits()),
+        }
     }
 
     /// Unpacks the bytes of row `index` into `samples`.
@@ -81,6 +89,7 @@ impl Raster {
     /// [`DecodeError`] when the length is not exactly that of the rows, or a sample is too large.
     pub(super) fn decode(&self, bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
         self.check_length(bytes.len())?;
+        narrow::note(self.full(), how.depth);
         let mut samples = vec![0; self.width * self.height];
         if samples.is_empty() {
             return Err(FrameError::Empty.into());

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use halfrow_model::{BitDepth, Frame, Phase};
 
 use super::raster::Raster;
-use super::{ReadError, ReadOptions, file, pgm, raw};
+use super::{ReadError, ReadOptions, file, narrow, pgm, raw};
 
 /// Bytes in which the header of a PGM is looked for. A file with a longer one is read whole.
 const HEAD: u64 = 4096;
@@ -72,6 +72,8 @@ impl RowReader {
         let length = usize::try_from(about.len()).unwrap_or(usize::MAX);
         let checked = raster.check_length(length);
         checked.map_err(|source| ReadError::Decode { path: path.to_owned(), source })?;
+        let _file = tracing::warn_span!("frame", path = %path.display()).entered();
+        narrow::note(raster.full(), how.depth);
         input.seek(SeekFrom::Start(raster.start as u64)).map_err(failed)?;
         let lines =
             Lines { path: path.to_owned(), input, raster, depth: how.depth, bytes: Vec::new(), taken: 0 };

@@ -117,8 +117,7 @@ impl Tags {
     fn read(bytes: &[u8]) -> Result<Self, DecodeError> {
         let file = Bytes::new(bytes);
         if file.short(2)? != 42 {
-            let what = "a BigTIFF, or no TIFF at all,".to_owned();
-            return Err(DecodeError::Unsupported { what, remedy: "save it as a classic TIFF" });
+            return Err(DecodeError::TiffDirectory { offset: 2 });
         }
         let directory = usize::try_from(file.long(4)?).unwrap_or(usize::MAX);
         let entries = usize::from(file.short(directory)?);

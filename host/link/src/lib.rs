@@ -27,7 +27,7 @@ use std::time::Duration;
 pub use class::Class;
 pub use error::OpenError;
 pub use line_errors::LineErrors;
-pub use open::{Candidate, open, replayed_file};
+pub use open::{Candidate, fault, open, recording, replay};
 pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
 pub use replay::ReplayLink;
 pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};

@@ -1,8 +1,8 @@
 //! From a target string to a link.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use halfrow_mock::{Wire, WireError};
+use halfrow_mock::{BoardFault, Wire, WireError};
 
 #[cfg(feature = "sim")]
 pub(crate) use super::simulated::open_simulated;
@@ -21,12 +21,6 @@ pub struct Candidate {
     pub link: Box<dyn Link>,
 }
 
-/// The file of a `replay:FILE` target.
-#[must_use]
-pub fn replayed_file(target: &Target) -> Option<PathBuf> {
-    target.address.as_ref().filter(|_| target.kind == "replay").map(PathBuf::from)
-}
-
 /// Opens the link that `target` names; nothing is said over it yet.
 ///
 /// # Errors
@@ -34,6 +28,18 @@ pub fn replayed_file(target: &Target) -> Option<PathBuf> {
 pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let kind = kinds::of(target).ok_or_else(|| OpenError::UnknownKind(target.kind.clone()))?;
     Ok(Candidate { target: target.to_string(), kind: kind.board, link: (kind.open)(target)? })
+}
+
+/// What is broken in the board of a `mock` target, on purpose; none when nothing is, or the target is another.
+///
+/// # Errors
+/// [`OpenError`] when the mock board has no such options.
+pub fn fault(target: &Target) -> Result<Option<BoardFault>, OpenError> {
+    if target.kind != "mock" {
+        return Ok(None);
+    }
+    let (_, options) = pace(target)?;
+    Wire::board_fault(&options).map_err(|source| wrong_options(MOCK, target, source))
 }
 
 pub(crate) fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
@@ -73,9 +79,30 @@ pub(super) fn wrong_options(board: &'static str, target: &Target, source: WireEr
 }
 
 pub(crate) fn open_replay(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+    Ok(Box::new(ReplayLink::new(read_replay(target)?)?))
+}
+
+/// The recording that `target` names, if it names one.
+///
+/// # Errors
+/// [`OpenError`] when it has options or no file, or the file is no recording.
+pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
+    if target.kind == "replay" { read_replay(target).map(Some) } else { Ok(None) }
+}
+
+/// The board that answered in `recording`, which `target` names.
+///
+/// # Errors
+/// [`OpenError::Recording`] when its head is damaged.
+pub fn replay(target: &Target, recording: Recording) -> Result<Candidate, OpenError> {
+    let link = Box::new(ReplayLink::new(recording)?);
+    Ok(Candidate { target: target.to_string(), kind: BoardKind::Replay, link })
+}
+
+fn read_replay(target: &Target) -> Result<Recording, OpenError> {
     if let Some((key, value)) = target.options.first() {
         return Err(OpenError::NoOption { kind: target.kind.clone(), option: format!("{key}={value}") });
     }
     let file = target.address.as_deref().ok_or_else(|| OpenError::address_missing(target))?;
-    Ok(Box::new(ReplayLink::new(Recording::read(Path::new(file))?)?))
+    Ok(Recording::read(Path::new(file))?)
 }

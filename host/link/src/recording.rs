@@ -59,36 +59,32 @@ struct Head<T> {
 }
 
 /// What one call of [`Link::exchange`] moved.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(super) struct Exchange {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Exchange<'a> {
     pub(super) at: Duration,
-    pub(super) taken: Vec<u8>,
-    pub(super) received: Vec<u8>,
+    pub(super) taken: &'a [u8],
+    pub(super) received: &'a [u8],
 }
 
-impl Exchange {
+impl<'a> Exchange<'a> {
     fn write(&self, file: &mut impl Write) -> std::io::Result<()> {
         let nanoseconds = u64::try_from(self.at.as_nanos()).unwrap_or(u64::MAX);
         let length = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(u32::MAX).to_le_bytes();
         file.write_all(&nanoseconds.to_le_bytes())?;
-        file.write_all(&length(&self.taken))?;
-        file.write_all(&length(&self.received))?;
-        file.write_all(&self.taken)?;
-        file.write_all(&self.received)
+        file.write_all(&length(self.taken))?;
+        file.write_all(&length(self.received))?;
+        file.write_all(self.taken)?;
+        file.write_all(self.received)
     }
 
-    fn read(rest: &mut &[u8]) -> Option<Self> {
+    fn read(rest: &mut &'a [u8]) -> Option<Self> {
         let (nanoseconds, after) = rest.split_first_chunk()?;
         let (taken, after) = after.split_first_chunk()?;
         let (received, after) = after.split_first_chunk()?;
         let (taken, after) = after.split_at_checked(u32::from_le_bytes(*taken) as usize)?;
         let (received, after) = after.split_at_checked(u32::from_le_bytes(*received) as usize)?;
         *rest = after;
-        Some(Self {
-            at: Duration::from_nanos(u64::from_le_bytes(*nanoseconds)),
-            taken: taken.to_vec(),
-            received: received.to_vec(),
-        })
+        Some(Self { at: Duration::from_nanos(u64::from_le_bytes(*nanoseconds)), taken, received })
     }
 }
 
@@ -168,11 +164,8 @@ impl Link for Recorder {
     ) -> Result<usize, LinkError> {
         let before = incoming.len();
         let taken = self.link.exchange(outgoing, incoming, wait)?;
-        let exchange = Exchange {
-            at: self.link.now(),
-            taken: outgoing[..taken].to_vec(),
-            received: incoming[before..].to_vec(),
-        };
+        let exchange =
+            Exchange { at: self.link.now(), taken: &outgoing[..taken], received: &incoming[before..] };
         if let Some(file) = &mut self.file {
             exchange.write(&mut file.0).map_err(LinkError::Record)?;
         }
@@ -205,7 +198,9 @@ impl Link for Recorder {
 pub struct Recording {
     path: PathBuf,
     head: String,
-    exchanges: Vec<Exchange>,
+    bytes: Vec<u8>,
+    /// Where the exchanges begin.
+    start: usize,
 }
 
 impl Recording {
@@ -216,16 +211,14 @@ impl Recording {
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
         let bytes =
             std::fs::read(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
-        Self::parse(path, &bytes).ok_or_else(|| RecordingError::Foreign(path.to_owned()))
+        Self::parse(path, bytes).ok_or_else(|| RecordingError::Foreign(path.to_owned()))
     }
 
-    fn parse(path: &Path, bytes: &[u8]) -> Option<Self> {
+    fn parse(path: &Path, bytes: Vec<u8>) -> Option<Self> {
         let rest = bytes.strip_prefix(MAGIC)?;
         let end = rest.iter().position(|&byte| byte == b'\n')?;
         let head = String::from_utf8(rest[..end].to_vec()).ok()?;
-        let mut rest = &rest[end + 1..];
-        let exchanges = std::iter::from_fn(|| Exchange::read(&mut rest)).collect();
-        Some(Self { path: path.to_owned(), head, exchanges })
+        Some(Self { path: path.to_owned(), head, start: MAGIC.len() + end + 1, bytes })
     }
 
     /// What the host wrote in front of the bytes.
@@ -263,13 +256,22 @@ impl Recording {
         &self.path
     }
 
-    /// All bytes that the host sent, in order.
-    #[must_use]
-    pub fn sent(&self) -> Vec<u8> {
-        self.exchanges.iter().flat_map(|exchange| &exchange.taken).copied().collect()
+    /// All bytes that the host sent, in order, piece by piece.
+    pub fn sent(&self) -> impl Iterator<Item = &[u8]> {
+        let mut place = self.start;
+        std::iter::from_fn(move || self.next(&mut place)).map(|exchange| exchange.taken)
     }
 
-    pub(super) fn into_exchanges(self) -> Vec<Exchange> {
-        self.exchanges
+    /// Where the first exchange is, for [`Self::next`].
+    pub(super) fn start(&self) -> usize {
+        self.start
+    }
+
+    /// The exchange at `place`, which becomes that of the one behind it.
+    pub(super) fn next(&self, place: &mut usize) -> Option<Exchange<'_>> {
+        let mut rest = self.bytes.get(*place..)?;
+        let exchange = Exchange::read(&mut rest)?;
+        *place = self.bytes.len() - rest.len();
+        Some(exchange)
     }
 }

@@ -2,7 +2,6 @@
 
 use std::time::Duration;
 
-use super::recording::Exchange;
 use super::{Link, LinkError, Recording, RecordingError};
 
 /// A pipe to a board that answered once.
@@ -11,7 +10,9 @@ pub struct ReplayLink {
     name: String,
     bytes_per_second: Option<f64>,
     exclusive: bool,
-    exchanges: std::vec::IntoIter<Exchange>,
+    recording: Recording,
+    /// Where its next exchange is.
+    place: usize,
     now: Duration,
     sent: u64,
 }
@@ -25,8 +26,8 @@ impl ReplayLink {
         let name = format!("the recording {}", recording.path().display());
         let bytes_per_second = recording.bytes_per_second()?;
         let exclusive = recording.is_exclusive()?;
-        let exchanges = recording.into_exchanges().into_iter();
-        Ok(Self { name, bytes_per_second, exclusive, exchanges, now: Duration::ZERO, sent: 0 })
+        let place = recording.start();
+        Ok(Self { name, bytes_per_second, exclusive, recording, place, now: Duration::ZERO, sent: 0 })
     }
 }
 
@@ -37,8 +38,8 @@ impl Link for ReplayLink {
         incoming: &mut Vec<u8>,
         _wait: Duration,
     ) -> Result<usize, LinkError> {
-        let Some(exchange) = self.exchanges.next() else {
-            return Err(LinkError::Closed { link: self.name(), at: self.now });
+        let Some(exchange) = self.recording.next(&mut self.place) else {
+            return Err(LinkError::Closed { link: self.name.clone(), at: self.now });
         };
         let same = exchange.taken.iter().zip(outgoing).take_while(|(then, now)| then == now).count();
         if same < exchange.taken.len() {
@@ -46,7 +47,7 @@ impl Link for ReplayLink {
         }
         self.sent += same as u64;
         self.now = exchange.at;
-        incoming.extend_from_slice(&exchange.received);
+        incoming.extend_from_slice(exchange.received);
         Ok(exchange.taken.len())
     }
 

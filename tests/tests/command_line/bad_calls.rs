@@ -2,7 +2,7 @@
 
 use halfrow_tests::program::Folder;
 
-use crate::{refused, small};
+use crate::{refused, refused_with, small};
 
 #[test]
 fn a_frame_that_no_datapath_takes_is_refused() {
@@ -52,6 +52,23 @@ fn names_of_nothing_are_refused_with_those_that_there_are() {
     refused(&folder, &["moon"], "unrecognized subcommand 'moon'");
     refused(&folder, &["completions", "moon"], "invalid value 'moon'");
     refused(&folder, &["info", "--board", "replay:moon"], "moon");
+}
+
+/// What is wrong with an address is known before there is anything to serve.
+#[test]
+fn an_address_that_is_none_is_a_wrong_call() {
+    let folder = Folder::new();
+    for address in ["99999", "x", "localhost", ":3001", "localhost:99999"] {
+        refused(
+            &folder,
+            &["serve", "--tcp", address],
+            "is no TCP port to listen on; give a PORT of this computer",
+        );
+    }
+    let busy = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = busy.local_addr().unwrap().port().to_string();
+    refused_with(3, &folder, &["serve", "--tcp", &port], "cannot be made; choose another one");
+    refused(&folder, &["serve", "--link", "missing/board"], "the link missing/board cannot be made");
 }
 
 #[test]

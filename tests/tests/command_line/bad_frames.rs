@@ -46,7 +46,7 @@ fn a_file_that_breaks_off_is_refused() {
         "it has 4094 bytes of samples where its size calls for 4096",
     );
     folder.write("empty.pgm", "");
-    bad_frame(&folder, "empty.pgm", &[], "it begins like no format known here");
+    bad_frame(&folder, "empty.pgm", &[], "it is empty; copy or export it again");
 }
 
 #[test]
@@ -95,6 +95,148 @@ fn what_is_no_frame_at_all_is_refused() {
     bad_frame(&folder, "huge.pgm", &[], "it is 99999999 x 16");
     folder.write("deep.pgm", "P5\n128 16\n65536\n");
     bad_frame(&folder, "deep.pgm", &[], "the PGM maxval is 65536");
+    folder.write("wide.pgm", "P5\n12345678901234567890123 16\n4095\n");
+    bad_frame(
+        &folder,
+        "wide.pgm",
+        &[],
+        "the PGM header's width at byte 3 has 23 digits, more than any frame's",
+    );
     std::fs::create_dir(folder.path().join("folder.pgm")).unwrap();
     bad_frame(&folder, "folder.pgm", &[], "cannot read folder.pgm");
+}
+
+#[test]
+fn formats_that_people_have_are_refused_by_their_names() {
+    let folder = Folder::new();
+    for (bytes, sentence) in [
+        (&b"II+\0\x08\0\0\0"[..], "a BigTIFF cannot be used; save it as a classic TIFF"),
+        (b"MM\0+\0\x08\0\0", "a BigTIFF cannot be used"),
+        (b"\0\0\0\x18ftypheic\0\0\0\0", "a HEIC cannot be used; give the samples before compression"),
+        (b"\0\0\0\x18ftypmif1\0\0\0\0", "a HEIC cannot be used"),
+        (b"\0\0\0\x1cftypavif\0\0\0\0", "an AVIF cannot be used; give the samples before compression"),
+        (b"RIFF\x24\0\0\0WEBPVP8 ", "a WebP cannot be used; give the samples before compression"),
+        (b"BM\x36\0\0\0", "a BMP cannot be used; convert it to PNG or TIFF"),
+        (b"GIF89a", "a GIF cannot be used; convert it to PNG or TIFF"),
+        (b"P7\nWIDTH 2\n", "a PAM cannot be used; convert it to PGM (P5), PNG or TIFF"),
+        (b"P4\n8 1\n\0", "a PBM, black and white, cannot be used"),
+        (b"\0\x01\x02\x03", "for samples without a header give their layout with --raw"),
+    ] {
+        folder.write("frame", bytes);
+        bad_frame(&folder, "frame", &[], sentence);
+    }
+}
+
+#[test]
+fn a_picture_that_no_board_takes_is_to_be_scaled() {
+    let folder = Folder::new();
+    folder.write("phone.pgm", [b"P5\n4032 3024\n255\n".to_vec(), vec![0; 4032 * 3024]].concat());
+    bad_frame(
+        &folder,
+        "phone.pgm",
+        &[],
+        "an even number of columns from 64 to 2592 and up to 2048 rows; scale or crop",
+    );
+    folder.write("odd.pgm", [b"P5\n129 16\n255\n".to_vec(), vec![0; 129 * 16]].concat());
+    let ended = folder.halfrow(small("correct", &["odd.pgm", "--model", "-o", "out.pgm"]));
+    assert!(ended.code == Some(2) && !ended.stderr.contains("halfrow tables"), "{}", ended.stderr);
+}
+
+/// A chunk that is damaged, told without the names of the decoder's own types.
+#[test]
+fn a_damaged_png_is_told_in_plain_words() {
+    let folder = frames();
+    let mut damaged = folder.read("frame.png");
+    let middle = damaged.len() / 2;
+    damaged[middle] ^= 0x55;
+    folder.write("damaged.png", &damaged);
+    let ended = folder.halfrow(small("verify", &["--frame", "damaged.png"]));
+    assert_eq!(ended.code, Some(2));
+    assert!(ended.stderr.contains("the PNG is damaged: "), "{}", ended.stderr);
+    assert!(ended.stderr.contains("while decoding IDAT chunk; copy or export it again"), "{}", ended.stderr);
+}
+
+#[test]
+fn samples_of_few_bits_in_deep_frames_are_told_once() {
+    let folder = Folder::new();
+    let flat = [b"P5\n128 16\n255\n".to_vec(), vec![200; 128 * 16]].concat();
+    folder.write("a.pgm", &flat);
+    folder.write("b.pgm", &flat);
+    folder.write("c.raw", vec![200; 128 * 16]);
+    let said = |more: &[&str]| {
+        let ended = folder.halfrow(small("correct", more));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        ended.stderr
+    };
+    let note = "samples of 0 to 255 are taken as they are, of 0 to 4095, and so are dark; give --bits";
+    let both = said(&["-q", "a.pgm", "b.pgm", "--model", "-o", "out"]);
+    assert!(both.contains(note) && both.lines().count() == 1 && both.contains(".pgm"), "{both}");
+    let raw = said(&["-q", "c.raw", "--raw", "u8", "--model", "-o", "c.pgm"]);
+    assert!(raw.contains(note) && raw.contains("c.raw"), "{raw}");
+    assert_eq!(said(&["-q", "a.pgm", "--bits", "8", "--model", "-o", "d.pgm"]), "");
+    let ended = folder.halfrow(small("verify", &["-q", "--frame", "a.pgm", "--frame", "b.pgm"]));
+    assert!(ended.code == Some(0) && ended.stderr.contains(note), "{}", ended.stderr);
+}
+
+/// A run reads each file twice, for its samples and for its hash.
+#[cfg(unix)]
+#[test]
+fn a_pipe_is_no_frame_to_judge_with() {
+    let folder = Folder::new();
+    let pipe = folder.path().join("pipe.pgm");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let sentence =
+        "pipe.pgm is a pipe or a device, which cannot be read twice; write it to a file, and name that";
+    refused(&folder, &small("verify", &["--frame", "pipe.pgm"]), sentence);
+    refused(&folder, &["verify", "--tables", "pipe.pgm"], sentence);
+    refused(&folder, &["verify", "--lens", "pipe.pgm"], sentence);
+}
+
+/// Names are bytes, and need not be text.
+#[cfg(target_os = "linux")]
+#[test]
+fn files_whose_names_are_no_text_are_read() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt as _;
+    let folder = Folder::new();
+    let name = OsStr::from_bytes(b"caf\xe9.pgm");
+    let made = folder.halfrow(small("correct", &["builtin:bars", "--model", "-o", "bars.pgm"]));
+    assert_eq!(made.code, Some(0));
+    std::fs::rename(folder.path().join("bars.pgm"), folder.path().join(name)).unwrap();
+    let verify = folder.command(small("verify", &["-q", "--json", "--frame"])).arg(name).output().unwrap();
+    assert_eq!(verify.status.code(), Some(0), "{}", String::from_utf8_lossy(&verify.stderr));
+    let correct =
+        folder.command(small("correct", &["-q", "--model", "-o", "out.pgm"])).arg(name).output().unwrap();
+    assert_eq!(correct.status.code(), Some(0), "{}", String::from_utf8_lossy(&correct.stderr));
+    let board = folder.command(["info", "--board"]).arg(name).output().unwrap();
+    let said = String::from_utf8_lossy(&board.stderr);
+    assert!(board.status.code() == Some(2) && said.contains("--board <TARGET>"), "{said}");
+}
+
+/// A TIFF of 128 x 16 whose directory comes first, as scanners write it, and whose samples break off.
+#[test]
+fn a_tiff_without_all_of_its_samples_is_told_once() {
+    let folder = Folder::new();
+    // Tag, type (3 for 16 bits, 4 for 32) and value; the samples begin behind these nine entries.
+    let entries: [(u16, u16, u32); 9] = [
+        (256, 4, 128),
+        (257, 4, 16),
+        (258, 3, 16),
+        (259, 3, 1),
+        (262, 3, 1),
+        (273, 4, 8 + 2 + 9 * 12 + 4),
+        (277, 3, 1),
+        (278, 4, 16),
+        (279, 4, 4096),
+    ];
+    let mut bytes = b"II*\0\x08\0\0\0\x09\0".to_vec();
+    for (tag, kind, value) in entries {
+        bytes.extend([tag.to_le_bytes(), kind.to_le_bytes()].concat());
+        bytes.extend([1_u32.to_le_bytes(), value.to_le_bytes()].concat());
+    }
+    bytes.extend([0; 4]);
+    folder.write("whole.tif", [&bytes[..], &[0; 4096]].concat());
+    folder.write("short.tif", [&bytes[..], &[0; 100]].concat());
+    assert_eq!(folder.halfrow(small("verify", &["-q", "--frame", "whole.tif"])).code, Some(0));
+    bad_frame(&folder, "short.tif", &[], "the TIFF is damaged: it breaks off; copy or export it again\n");
 }

@@ -102,6 +102,20 @@ fn what_no_table_file_has_is_refused() {
     refused(&folder, &["verify", "--tables", "half.json"], "it breaks off at line");
 }
 
+/// The largest table file that there can be has under 64 KiB; one of 10 MB would take hundreds to parse.
+#[test]
+fn a_file_longer_than_any_tables_is_refused_before_it_is_parsed() {
+    let (folder, _) = legal();
+    folder.write("long.json", vec![b'['; (1 << 20) + 1]);
+    refused(&folder, &["verify", "--tables", "long.json"], "it is longer than 1048576 bytes");
+    refused(&folder, &["verify", "--kernel", "long.json"], "it is longer than 1048576 bytes");
+    folder.write(
+        "notes.json",
+        folder.text("legal.json").replacen('{', &format!("{{{}", " ".repeat(500_000)), 1),
+    );
+    assert_eq!(folder.halfrow(["verify", "--tables", "notes.json"]).code, Some(0));
+}
+
 #[test]
 fn a_kernel_file_is_checked_as_a_table_file_is() {
     let folder = Folder::new();

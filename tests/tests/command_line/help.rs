@@ -100,3 +100,22 @@ fn there_is_a_manual_page_for_the_program_and_for_every_command() {
         assert!(text.contains(&title) && text.contains(".SH SYNOPSIS"), "{page}: {text}");
     }
 }
+
+#[test]
+fn the_synopsis_of_a_manual_page_names_the_values() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(["manual", "."]).code, Some(0));
+    assert!(folder.names(".").contains(&"halfrow-kernel-train.1".to_owned()));
+    let page = folder.text("halfrow-verify.1");
+    let synopsis = page.split(".SH SYNOPSIS\n").nth(1).unwrap().split("\n.SH").next().unwrap();
+    for option in [
+        "[\\fB\\-\\-board\\fR \\fITARGET\\fR]",
+        "[\\fB\\-\\-lens\\-pitch\\fR \\fIUM\\fR]",
+        "[\\fB\\-\\-lens\\fR \\fIFILE|equidistant:RADIUS\\fR]",
+        "[\\fB\\-\\-json\\fR]",
+    ] {
+        assert!(synopsis.contains(option), "{option} in {synopsis}");
+    }
+    let page = folder.text("halfrow-tables.1");
+    assert!(page.contains("\\fB\\-\\-output\\fR \\fIFILE\\fR"), "{page}");
+}

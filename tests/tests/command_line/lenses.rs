@@ -185,7 +185,7 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
         "--pixel-pitch does nothing with a lens file unless --lens-pitch",
     );
     let both = |option: [&str; 2]| {
-        let sentence = format!("{} is for making tables, and --tables made.json holds some", option[0]);
+        let sentence = format!("{} is for making tables, and the file of --tables holds some", option[0]);
         for call in [&["verify"][..], &["correct", "builtin:noise", "--model", "-o", "x.pgm"]] {
             let call: Vec<_> = call.iter().copied().chain(option).chain(["--tables", "made.json"]).collect();
             refused(&folder, &call, &sentence);
@@ -214,6 +214,83 @@ fn rows_outside_the_image_circle_are_those_of_the_lens_file() {
     assert_eq!(outside(&["--lens", "high.yaml", "--record", "run.rec"]), 60);
     assert_eq!(outside(&["--board", "replay:run.rec"]), 60);
     assert_eq!(outside(&["--tables", "high.json"]), Value::Null);
+}
+
+/// A calibration's file with these keys more, of OpenCV's fisheye model with f = `focal`.
+fn calibration(folder: &Folder, focal: &str, more: &str) {
+    let matrix = format!("\"K\":[[{focal},0,31.5],[0,{focal},8],[0,0,1]],\"D\":[0,0,0,0]");
+    folder.write("lens.json", format!("{{{matrix}{more}}}"));
+}
+
+#[test]
+fn a_calibration_without_a_picture_size_needs_one() {
+    let folder = Folder::new();
+    calibration(&folder, "40", "");
+    let sentence = "lens.json does not say how large its pictures are; give --width and --height";
+    let lens = ["--lens", "lens.json"];
+    for call in [
+        &["lens"][..],
+        &["tables", "-o", "x.json"],
+        &["verify", "-q"],
+        &["correct", "builtin:grey", "--model", "-o", "out.pgm"],
+        &["lens", "--width", "64"],
+        &["lens", "--height", "17"],
+    ] {
+        refused(&folder, &[call, &lens].concat(), sentence);
+    }
+    for more in [&["--width", "64", "--height", "17"][..], &["--lens-pitch", "66"]] {
+        let ended = folder.halfrow([&["lens"], &lens[..], more].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    }
+    // ROS's drivers write 0 x 0 for what they do not know.
+    calibration(&folder, "40", ",\"width\":0,\"height\":0");
+    refused(&folder, &["lens", "--lens", "lens.json"], sentence);
+}
+
+/// R = f · π/2, so f = 1 reaches one row above and below the axis at row 8.
+#[test]
+fn a_lens_that_misses_the_frame_is_refused_or_told() {
+    let folder = Folder::new();
+    let size = ",\"width\":64,\"height\":17";
+    calibration(&folder, "1", size);
+    for call in [&["tables", "-o", "made.json"][..], &["lens"], &["verify", "-q"]] {
+        let ended = folder.halfrow([call, &["--lens", "lens.json"]].concat());
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let said = "14 of 17 rows lie outside the image circle, whose radius is 1.571 pixels around row 8.0";
+        assert!(ended.stderr.contains(said), "{}", ended.stderr);
+    }
+    let sentence = "so nothing would be stretched; check the lens, its centre and the size of the frames";
+    for call in [&["tables", "-o", "x.json"][..], &["lens"], &["verify", "-q"]] {
+        refused(&folder, &[call, &["--lens", "lens.json", "--centre-y", "1000"]].concat(), sentence);
+    }
+    let far = ["verify", "-q", "--width", "128", "--height", "16", "--radius", "20", "--centre-y"];
+    refused(&folder, &[&far[..], &["1000"]].concat(), "16 of 16 rows lie outside the image circle");
+    refused(&folder, &[&far[..], &["1e308"]].concat(), "the optical centre is at row 1e308, beyond 1e9");
+    calibration(&folder, "40", size);
+    let ended = folder.halfrow(["lens", "--lens", "lens.json"]);
+    assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
+}
+
+#[test]
+fn long_numbers_are_told_in_short() {
+    let folder = Folder::new();
+    for (option, sentence) in [
+        (["--radius", "1e300"], "an image radius of 1e300 pixels is outside"),
+        (["--pixel-pitch", "1e308"], "an image radius of 0 pixels is outside"),
+        (["--focal-length", "-1e300"], "a focal length of -1e300 mm"),
+        (["--field-of-view", "1e200"], "a field of view of 1e200 degrees"),
+        (["--centre-x", "1e300"], "at column 1e300, outside"),
+    ] {
+        let option = format!("{}={}", option[0], option[1]);
+        let ended = folder.halfrow(["tables", "-o", "x.json", &option]);
+        assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+        assert!(
+            ended.stderr.contains(sentence) || option.starts_with("--pixel"),
+            "{option}: {}",
+            ended.stderr
+        );
+        assert!(ended.stderr.len() < 250, "{option}: {}", ended.stderr);
+    }
 }
 
 /// The window of taps must be there: the model says which row cannot have it.

@@ -8,6 +8,7 @@ mod bad_calls;
 mod bad_frames;
 mod bad_tables;
 mod bad_targets;
+mod contradictions;
 mod corrected;
 mod help;
 mod lenses;

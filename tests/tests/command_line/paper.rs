@@ -3,7 +3,7 @@
 use halfrow_tests::program::Folder;
 use serde_json::Value;
 
-use crate::{refused, refused_with};
+use crate::refused;
 
 /// The report of a run with these arguments, which must end with `code`.
 #[track_caller]
@@ -112,12 +112,23 @@ fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
     let (_, said) = made(&folder, 3, &["resources", "--overwrite", "--synthesis", "large.json"]);
     assert!(said.contains("MISSED"), "{said}");
     folder.write("bad.json", "{}");
-    refused_with(
-        3,
-        &folder,
-        &["paper", "resources", "--overwrite", "-o", "out", "--synthesis", "bad.json"],
-        "make it anew",
-    );
+    let call = ["paper", "resources", "--overwrite", "-o", "out", "--synthesis", "bad.json"];
+    refused(&folder, &call, "make it anew");
+}
+
+/// What was not tried is said where the result is said, which is not green then.
+#[test]
+fn a_page_of_which_a_part_was_not_tried_says_so_at_its_head() {
+    let folder = Folder::new();
+    made(&folder, 0, &["delay", "resources"]);
+    let page = folder.text("out/paper.html");
+    let (head, _) = page.split_once("</header>").unwrap();
+    assert!(head.contains("<header class=\"error\">") && head.contains("REPRODUCED IN PART"), "{head}");
+    assert!(head.contains("3 of 3 numbers that were tried are accepted, 1 not tried"), "{head}");
+    made(&folder, 0, &["delay", "--overwrite"]);
+    let page = folder.text("out/paper.html");
+    let (head, _) = page.split_once("</header>").unwrap();
+    assert!(head.contains("<header class=\"pass\">") && !head.contains("not tried"), "{head}");
 }
 
 #[test]

@@ -66,7 +66,7 @@ fn a_station_that_requires_hardware_judges_nothing_else() {
 #[test]
 fn frames_tables_and_report_come_from_the_file_too() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(["tables", "--width", "64", "--height", "9", "-o", "lens.json"]).code, Some(0));
+    assert_eq!(folder.halfrow(small("tables", &["--radius", "500", "-o", "lens.json"])).code, Some(0));
     let settings = "frame = ['builtin:bars']\ntables = 'lens.json'\nreport = 'out'\n";
     let ended = run(&folder, settings, None, &[]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
@@ -74,7 +74,7 @@ fn frames_tables_and_report_come_from_the_file_too() {
         ended.json()["frames"].as_array().unwrap().iter().map(|it| it["name"].clone()).collect();
     assert_eq!(names.iter().filter(|name| *name == "builtin:bars").count(), 1);
     assert_eq!(names.len(), 5);
-    assert_eq!(ended.json()["tables"]["height"], 9);
+    assert_eq!(ended.json()["tables"]["source"], "lens.json");
     assert_eq!(folder.names("out").len(), 3);
     assert_eq!(run(&folder, settings, None, &[]).code, Some(2));
     assert_eq!(run(&folder, &format!("{settings}overwrite = true\n"), None, &[]).code, Some(0));
@@ -84,7 +84,7 @@ fn frames_tables_and_report_come_from_the_file_too() {
 #[test]
 fn a_lens_on_the_command_line_beats_tables_from_elsewhere() {
     let folder = Folder::new();
-    assert_eq!(folder.halfrow(["tables", "--width", "64", "--height", "9", "-o", "lens.json"]).code, Some(0));
+    assert_eq!(folder.halfrow(small("tables", &["-o", "lens.json"])).code, Some(0));
     let (file, variable) = ("tables = 'lens.json'\n", Some(("HALFROW_TABLES", "lens.json")));
     for (settings, variable) in [(file, None), ("", variable)] {
         let source = |more: &[&str]| {
@@ -144,6 +144,31 @@ fn the_user_s_own_settings_file_is_read() {
     assert_eq!(seed(&finish(command.env("XDG_CONFIG_HOME", folder.path()))), 11);
     folder.write(FILE, "seed = 12\n");
     assert_eq!(seed(&finish(command.env("HALFROW_SETTINGS", FILE))), 12);
+}
+
+/// The home of another user, which `USER` in a container's image often leaves.
+#[cfg(unix)]
+#[test]
+fn the_user_s_own_settings_file_is_passed_over_when_it_may_not_be_read_and_a_named_one_is_not() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = Folder::new();
+    let (home, file) = (folder.path().join("halfrow"), folder.path().join("halfrow/settings.toml"));
+    std::fs::create_dir(&home).unwrap();
+    folder.write("halfrow/settings.toml", "seed = 11\n");
+    let mode = |mode| std::fs::set_permissions(&home, std::fs::Permissions::from_mode(mode)).unwrap();
+    mode(0o000);
+    let call = small("verify", &["--json", "--frame", "builtin:grey"]);
+    let passed_over = finish(folder.as_nobody(&call).env("XDG_CONFIG_HOME", folder.path()));
+    let silent = finish(folder.as_nobody(&call).env("HALFROW_SETTINGS", "/dev/null"));
+    let named = finish(folder.as_nobody(&call).env("HALFROW_SETTINGS", &file));
+    mode(0o755);
+    assert_eq!(seed(&passed_over), 1, "{}", passed_over.stderr);
+    let said = format!("the settings file {} may not be read, and is passed over", file.display());
+    assert!(passed_over.stderr.contains(&said), "{}", passed_over.stderr);
+    assert!(passed_over.stderr.contains("HALFROW_SETTINGS=/dev/null"), "{}", passed_over.stderr);
+    assert_eq!((silent.code, silent.stderr.contains("settings")), (Some(0), false), "{}", silent.stderr);
+    assert_eq!(named.code, Some(2), "{}", named.stderr);
+    assert!(named.stderr.contains("HALFROW_SETTINGS=/dev/null"), "{}", named.stderr);
 }
 
 #[test]

@@ -42,10 +42,13 @@ fn the_text_ends_with_the_verdict_and_says_that_no_hardware_was_tested() {
 fn the_text_of_a_failure_names_the_suspect_and_what_to_do() {
     let ended = halfrow(small("verify", &["--board", "mock,fault=stuck-data"]));
     assert_eq!(ended.code, Some(1));
-    let last = ended.stdout.split("\n\n").last().unwrap();
+    assert!(ended.stdout.contains("line memory, data bit 5, stuck at 1"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("Next: Check data line 5"), "{}", ended.stdout);
+    let last = ended.stdout.lines().last().unwrap();
     assert!(last.starts_with("FAIL: "), "{last}");
-    assert!(last.contains("line memory, data bit 5, stuck at 1"), "{last}");
-    assert!(last.contains("Next: Check data line 5"), "{last}");
+    let error = halfrow(small("verify", &["--board", "mock,fault=truncate,rate=0.2"]));
+    let last = error.stdout.lines().last().unwrap();
+    assert!(error.code == Some(3) && last.starts_with("ERROR: "), "{last}");
 }
 
 #[test]
@@ -130,4 +133,65 @@ fn limits_that_make_no_sense_are_refused() {
     refused(&folder, &["verify", "--retry-limit=-1"], "percent");
     refused(&folder, &["verify", "--retry-limit=nan"], "percent");
     refused(&folder, &["verify", "--seed=-1"], "invalid value '-1'");
+}
+
+/// A board in this program has a clock of its own, and --timeout means somebody's patience, too.
+#[test]
+fn the_time_limit_is_also_this_computer_s() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    let mock = folder.halfrow(small("verify", &["--timeout", "0"]));
+    let replay = folder.halfrow(["verify", "--board", "replay:run.rec", "--timeout", "0"]);
+    for ended in [mock, replay] {
+        assert_eq!(ended.code, Some(3), "{}", ended.stdout);
+        assert!(ended.stdout.contains("the run took longer than the 0 s of --timeout"), "{}", ended.stdout);
+    }
+}
+
+/// Somebody who has answered is there: what stands between is the suspect.
+#[test]
+fn a_board_that_falls_silent_behind_a_noisy_link_is_not_the_suspect() {
+    let silent = halfrow(small("verify", &["--board", "mock,fault=stall,packet=0,seconds=1000"]));
+    assert_eq!(silent.code, Some(3));
+    let last = silent.stdout.lines().last().unwrap();
+    assert!(last.contains("check that the board is powered and loaded"), "{last}");
+    for (fault, sentence) in [
+        ("stall,packet=60,seconds=1000", "though the board had answered before; check the cable"),
+        ("flip,rate=1e-3,seed=1", "came damaged: the link loses what is sent over it; check the cable"),
+    ] {
+        let ended = halfrow(small("verify", &["--board", &format!("mock,fault={fault}")]));
+        assert_eq!(ended.code, Some(3));
+        let last = ended.stdout.lines().last().unwrap();
+        assert!(last.contains(sentence) && !last.contains("powered and loaded"), "{last}");
+    }
+}
+
+/// What a mock board is too small for, a larger one is not.
+#[test]
+fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
+    let wide = ["--width", "2592", "--height", "4", "--frame", "builtin:grey"];
+    let call = |board| ["verify", "-q", "--board", board].into_iter().chain(wide);
+    refused(
+        &Folder::new(),
+        &call("mock").collect::<Vec<_>>(),
+        "or a mock that takes these: --board mock,max-width=2592",
+    );
+    assert_eq!(halfrow(call("mock,max-width=2592")).code, Some(0));
+    let high = ["verify", "-q", "--board", "mock,max-height=8", "--width", "64", "--height", "9"];
+    refused(&Folder::new(), &high, "--board mock,max-width=64,max-height=9");
+}
+
+/// A wire without a speed takes no time at all by its own clock.
+#[test]
+fn a_virtual_clock_measures_nothing_of_a_link() {
+    let link = |board| halfrow(["link", "--seconds", "0.01", "--board", board]);
+    let still = link("mock").stdout;
+    let lines: Vec<_> = still.lines().collect();
+    for (line, name) in lines[3..].iter().zip(["round trip", "to board", "to host", "together"]) {
+        let words = line.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(words, format!("{name} virtual clock: not measured"), "{still}");
+    }
+    assert!(lines[2].contains("(0 out, 0 in): none, below"), "{still}");
+    let moving = link("mock,speed=1000000").stdout;
+    assert!(!moving.contains("not measured") && moving.contains("MB/s"), "{moving}");
 }

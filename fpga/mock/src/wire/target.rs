@@ -135,6 +135,14 @@ impl Wire {
         let (setup, board_fault) = parse(options, Some(&mut build))?;
         Ok(setup.connect(Board::new(&build, board_fault)?))
     }
+
+    /// The fault of the board that [`Self::from_options`] would build from the same options, if it has one.
+    ///
+    /// # Errors
+    /// [`WireError`] as there, but for a build that cannot exist.
+    pub fn board_fault(options: &[(&str, &str)]) -> Result<Option<BoardFault>, WireError> {
+        parse(options, Some(&mut Options::default())).map(|(_, fault)| fault)
+    }
 }
 
 /// The wire and the board's fault that `options` describe. Without a `build` the board is no mock, which alone has options and

@@ -4,23 +4,26 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use clap::builder::{OsStringValueParser, TypedValueParser};
+
+use halfrow_mock::Streamed;
 
 use super::Failure;
 use crate::settings::Settings;
 use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
-use halfrow::link::{self, Candidate, Recording, kinds};
-use halfrow::run::Draws;
-use halfrow::target::Target;
+use halfrow::link::{self, Candidate, OpenError, Recording, kinds};
+use halfrow::run::{Draws, JUDGED, Plan};
+use halfrow::target::{Target, TargetError};
 
 /// Which board, and how patiently.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Board")]
 pub(super) struct BoardArguments {
-    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = board_help())]
+    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = board_help(), value_parser = target())]
     board: Option<Target>,
-    /// The longest that the run may take, in seconds of the link's clock
+    /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
     timeout: Option<f64>,
     /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5]
@@ -33,6 +36,14 @@ pub(super) struct BoardArguments {
 
 fn board_help() -> String {
     format!("The board: {}; see `halfrow boards` [default: mock]", kinds::forms().join(", "))
+}
+
+/// Reads a target, and names its option when it is no text.
+pub(super) fn target() -> impl TypedValueParser<Value = Target> {
+    OsStringValueParser::new().try_map(|text| match text.into_string() {
+        Ok(text) => text.parse().map_err(|error: TargetError| error.to_string()),
+        Err(_) => Err("a target is text in UTF-8; give the file another name, or link to it".to_owned()),
+    })
 }
 
 fn percent(text: &str) -> Result<f64, String> {
@@ -48,7 +59,8 @@ impl BoardArguments {
 
     /// The recording that the target names, if it is one.
     pub(super) fn replayed(&self, settings: &Settings) -> Result<Option<PathBuf>, Failure> {
-        Ok(link::replayed_file(&self.target(settings)?))
+        let target = self.target(settings)?;
+        Ok(target.address.filter(|_| target.kind == "replay").map(PathBuf::from))
     }
 
     fn target(&self, settings: &Settings) -> Result<Target, Failure> {
@@ -59,15 +71,39 @@ impl BoardArguments {
         }
     }
 
+    /// Refuses a fault of the mock board that a run of `plan` never comes upon.
+    pub(super) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
+        let target = self.target(settings)?;
+        let fault = link::fault(&target).map_err(unopened)?;
+        let judged = plan.schedule(2).into_iter().flat_map(|segment| segment.frames);
+        let frames = judged.filter(|frame| frame.generation == JUDGED).count();
+        let streamed = Streamed { height: plan.tables.geometry().height(), frames };
+        match fault.and_then(|fault| fault.without_effect(&streamed)) {
+            None => Ok(()),
+            Some(why) => Err(anyhow::anyhow!("the fault of {target} would change nothing: {why}").into()),
+        }
+    }
+
     /// The link to the board that is named; by default the mock, never a guess.
     pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
-        link::open(&self.target(settings)?)
-            .map_err(|error| Failure { exit: error.class().into(), error: error.into() })
+        link::open(&self.target(settings)?).map_err(unopened)
+    }
+
+    /// The link to the board that is named, which is the one in `recording` if there is one.
+    pub(super) fn candidate_of(
+        &self,
+        settings: &Settings,
+        recording: Option<Recording>,
+    ) -> Result<Candidate, Failure> {
+        match recording {
+            None => self.candidate(settings),
+            Some(recording) => link::replay(&self.target(settings)?, recording).map_err(unopened),
+        }
     }
 
     /// The recording, if the target is one.
     pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
-        Ok(self.replayed(settings)?.map(|file| Recording::read(&file)).transpose()?)
+        link::recording(&self.target(settings)?).map_err(unopened)
     }
 
     pub(super) fn open_options(
@@ -82,8 +118,13 @@ impl BoardArguments {
             take_over: self.take_over,
             polite: false,
             retry_limit: self.retry_limit(settings),
-            stop: Stop::new(signals::stop(), self.timeout(settings)?),
+            stop: self.stop(settings, self.timeout(settings)?)?,
         })
+    }
+
+    /// What ends the run early: a signal, `limit` on the link's clock, or the call's own on this computer's.
+    pub(super) fn stop(&self, settings: &Settings, limit: Option<Duration>) -> Result<Stop, Failure> {
+        Ok(Stop::new(signals::stop(), limit).within(self.timeout(settings)?))
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
@@ -99,4 +140,8 @@ impl BoardArguments {
             None => limit,
         }
     }
+}
+
+fn unopened(error: OpenError) -> Failure {
+    Failure { exit: error.class().into(), error: error.into() }
 }

@@ -16,7 +16,7 @@ use halfrow_link::kinds::{Form, KINDS};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Look at these targets instead of searching
-    #[arg(value_name = "TARGET")]
+    #[arg(value_name = "TARGET", value_parser = super::board::target())]
     targets: Vec<Target>,
     /// Greet what is free: some ten bytes are written to it, whatever it is
     #[arg(long)]
@@ -97,7 +97,7 @@ fn state(device: &Found) -> String {
         Some(Answer::Foreign { reason }) => return format!("something else answers: {reason}"),
         Some(Answer::Silent) => return "nothing answers".to_owned(),
         Some(Answer::Busy) => return "busy: it is open elsewhere".to_owned(),
-        Some(Answer::Failed { reason }) => return format!("cannot be opened: {reason}"),
+        Some(Answer::Failed { reason }) => return format!("free, but cannot be asked: {reason}"),
         None => {}
     }
     match &device.access {

@@ -4,6 +4,7 @@ mod by_board;
 mod by_model;
 mod places;
 
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 
 use clap::Args;
@@ -12,6 +13,7 @@ use serde_json::json;
 
 use super::board::BoardArguments;
 use super::files::Files;
+use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments};
 use super::optics::{self, Chosen, LensArguments};
 use super::table_file::TableArgument;
@@ -25,14 +27,16 @@ use places::{Places, Wanted};
 /// Correct frames with the reference model, or with a board, unjudged
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// The frames: PGM, PNG, TIFF, DNG, headerless files with --raw, or builtin:NAME
     #[arg(required = true, value_name = "IN")]
-    inputs: Vec<String>,
+    inputs: Vec<OsString>,
     #[command(flatten)]
     tables: TableArgument,
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE")]
-    kernel: Option<String>,
+    kernel: Option<OsString>,
     /// Correct with the reference model, whatever board is set
     #[arg(long)]
     model: bool,
@@ -70,18 +74,25 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     if !arguments.model && !arguments.board.is_named(settings) {
         return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
     }
-    let file = arguments.tables.file(&arguments.lens, settings)?;
-    let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
+    let inputs = FrameName::all(&arguments.inputs)?;
+    if inputs.iter().all(|input| input.file().is_none()) {
+        arguments.given.refuse_void(Decider::NoFrameFile, &[])?;
+    }
+    if arguments.model {
+        arguments.given.refuse_void(Decider::Model, &settings.keys())?;
+    }
+    let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
     let files = Files::new(arguments.overwrite)
         .reads(&context.settings_file)
-        .reads(file)
+        .reads(arguments.tables.path(settings))
         .reads(arguments.lens.file())
         .reads_kernel(kernel);
-    let chosen = optics::choose(file, &arguments.lens, kernel)?;
+    let tables = arguments.tables.read(&arguments.given, &arguments.lens, settings)?;
+    let chosen = optics::choose(tables, &arguments.lens, kernel)?;
     let geometry = *chosen.tables.geometry();
     let job = Job {
         arguments,
-        inputs: FrameName::all(&arguments.inputs)?,
+        inputs,
         how: arguments.input.read_options(&geometry, arguments.lens.phase),
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,

@@ -1,6 +1,7 @@
 //! What a command reads and what it writes, looked at before anything is done.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context as _, bail};
@@ -50,8 +51,10 @@ impl Files {
     }
 
     /// Adds a kernel that is read if it is not one with a name.
-    pub(super) fn reads_kernel(self, kernel: Option<&str>) -> Self {
-        self.reads(kernel.filter(|kernel| kernel.parse::<NamedKernel>().is_err()))
+    pub(super) fn reads_kernel(self, kernel: Option<&OsStr>) -> Self {
+        self.reads(
+            kernel.filter(|kernel| kernel.to_str().is_none_or(|name| name.parse::<NamedKernel>().is_err())),
+        )
     }
 
     /// Adds files that `option` names.

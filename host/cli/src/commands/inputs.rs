@@ -1,12 +1,13 @@
 //! Frames that a user names: built-in ones and files.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use anyhow::{Context as _, ensure};
 use clap::Args;
-use halfrow_model::{Frame, Geometry, Phase};
+use halfrow_model::{Frame, Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, Phase};
 
 use halfrow::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions, RowReader, Scene};
 use halfrow::report::{FileHash, sha256};
@@ -40,13 +41,21 @@ pub(super) enum FrameName {
 }
 
 impl FrameName {
-    /// The frames with these names.
-    pub(super) fn all(names: &[String]) -> anyhow::Result<Vec<Self>> {
-        let read = |name: &String| match name.strip_prefix("builtin:") {
+    /// The frames with these names. A file's name need not be text.
+    pub(super) fn all<S: AsRef<OsStr>>(names: &[S]) -> anyhow::Result<Vec<Self>> {
+        let read = |name: &S| match name.as_ref().to_str().and_then(|name| name.strip_prefix("builtin:")) {
             Some(builtin) => Ok(Self::Builtin(builtin.parse()?)),
             None => Ok(Self::File(PathBuf::from(name))),
         };
         names.iter().map(read).collect()
+    }
+
+    /// The file, if it is one.
+    pub(super) fn file(&self) -> Option<&Path> {
+        match self {
+            Self::Builtin(_) => None,
+            Self::File(path) => Some(path),
+        }
     }
 
     /// The name without folder and extension.
@@ -57,14 +66,6 @@ impl FrameName {
                 let stem = path.file_stem().context("an input has no file name; name a file")?;
                 Ok(stem.to_string_lossy().into_owned())
             }
-        }
-    }
-
-    /// The file, if it is one.
-    pub(super) fn file(&self) -> Option<&Path> {
-        match self {
-            Self::Builtin(_) => None,
-            Self::File(path) => Some(path),
         }
     }
 
@@ -97,9 +98,9 @@ impl FrameName {
     }
 }
 
-/// The frames with these names, the files' read whole, which must fit `geometry`.
+/// These frames, the files' read whole, which must fit `geometry`.
 pub(super) fn frame_sources(
-    names: &[String],
+    names: Vec<FrameName>,
     how: &ReadOptions,
     geometry: &Geometry,
 ) -> anyhow::Result<Vec<FrameSource>> {
@@ -110,7 +111,7 @@ pub(super) fn frame_sources(
             Ok(FrameSource::File { path, frame })
         }
     };
-    FrameName::all(names)?.into_iter().map(source).collect()
+    names.into_iter().map(source).collect()
 }
 
 fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<Frame> {
@@ -120,10 +121,19 @@ fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Re
 }
 
 fn check_size(path: &Path, (width, height): (usize, usize), geometry: &Geometry) -> anyhow::Result<()> {
+    let remedy = match Geometry::centred(width, height, geometry.depth()) {
+        Ok(_) => format!(
+            "make tables of the frame's size with `halfrow tables --width {width} --height {height}`, or give these \
+             options here"
+        ),
+        Err(_) => format!(
+            "no tables can have the frame's size, since the datapath takes an even number of columns from \
+             {MIN_WIDTH} to {MAX_WIDTH} and up to {MAX_HEIGHT} rows; scale or crop the picture"
+        ),
+    };
     ensure!(
         (width, height) == (geometry.width(), geometry.height()),
-        "{} is {width} x {height}, and the tables are for {} x {}; make tables of the frame's size with `halfrow \
-         tables --width {width} --height {height}`, or give these options here",
+        "{} is {width} x {height}, and the tables are for {} x {}; {remedy}",
         path.display(),
         geometry.width(),
         geometry.height(),

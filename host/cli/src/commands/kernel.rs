@@ -1,5 +1,6 @@
 //! `halfrow kernel`
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context as _;
@@ -11,15 +12,14 @@ use serde_json::{Map, Value, json};
 use super::files::Files;
 use super::inputs::file_hash;
 use super::{Context, Failure, optics, print, print_json};
-use crate::console;
-use crate::progress;
+use crate::{console, progress};
 use halfrow::frames;
 use halfrow::frames::lying;
 use halfrow::frames::preview::RgbImage;
 use halfrow::tables::KernelFile;
 use halfrow::verdict::Exit;
 use halfrow_lab::training;
-use halfrow_lab::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
+use halfrow_lab::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
 
 /// Fit a kernel to photographs, or measure one on them
 #[derive(Debug, Args)]
@@ -64,7 +64,7 @@ struct Measure {
     images: Vec<PathBuf>,
     /// nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
     #[arg(long, value_name = "NAME|FILE")]
-    kernel: String,
+    kernel: OsString,
     /// Print the figures as JSON
     #[arg(long)]
     json: bool,
@@ -150,7 +150,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     watched.rows_expected(rows(&images));
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
-    let trained = trained?;
+    let trained = trained.map_err(failed)?;
     let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
@@ -187,6 +187,10 @@ fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Va
     Ok(about)
 }
 
+fn failed(error: TrainingError) -> Failure {
+    Failure { exit: error.exit(), error: error.into() }
+}
+
 fn rounded(figure: f64) -> f64 {
     (figure * 1000.0).round() / 1000.0
 }
@@ -206,12 +210,13 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());
     watched.done();
-    let (measured, noise) = (measured?, Spread::of(&noise_gain(&kernel)));
+    let (measured, noise) = (measured.map_err(failed)?, Spread::of(&noise_gain(&kernel)));
+    let name = arguments.kernel.to_string_lossy();
     if arguments.json {
-        print_json(&json!({"kernel": arguments.kernel, "gains_db": measured, "noise_gain": noise}))?;
+        print_json(&json!({"kernel": name, "gains_db": measured, "noise_gain": noise}))?;
         return Ok(Exit::Pass);
     }
-    let mut lines = vec![format!("{} on {} photographs, over Hermite in dB", arguments.kernel, images.len())];
+    let mut lines = vec![format!("{} on {} photographs, over Hermite in dB", name, images.len())];
     lines.extend(measured.iter().map(|gains| {
         let Spread { mean, least, most } = gains.gain;
         format!("  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {:.4}", gains.condition, gains.hermite)

@@ -72,6 +72,7 @@ impl<'a> Figures<'a> {
     fn of(optics: &'a Optics) -> anyhow::Result<Self> {
         let (equation_9, fitted) = (optics.tables_by(Rows::Equation9)?, optics.tables_by(Rows::Fitted)?);
         let used = if optics.rows == Rows::Fitted { &fitted } else { &equation_9 };
+        optics.check_circle(used)?;
         let illegal = used.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
         let residuals = |tables| Residuals::of(&optics.camera, tables);
         Ok(Self { optics, equation_9: residuals(&equation_9), fitted: residuals(&fitted), illegal })

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::board::BoardArguments;
 use super::{Context, Failure, conclude, json_text};
 use halfrow::board::{Board, BoardError};
-use halfrow::link_test::{self, Figures, LinkTestError, Rate};
+use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
 use halfrow::report::{BoardReport, Identity};
 use halfrow::verdict::Exit;
 
@@ -63,34 +63,18 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 fn text(figures: &Figures) -> String {
     let Figures { link, errors, round_trips, .. } = figures;
     let damaged = errors.damaged_out + errors.damaged_in;
+    let share = if damaged == 0 { "none".to_owned() } else { format!("{:.1e}", errors.rate) };
     let mut lines = vec![
         format!("{:<12} {link}", "link"),
         format!(
-            "{:<12} {damaged} of {} packets ({} out, {} in): {:.1e}, below {:.1e} at 95 % confidence; {} sent again",
-            "damaged",
-            errors.packets,
-            errors.damaged_out,
-            errors.damaged_in,
-            errors.rate,
-            errors.bound,
-            errors.retries
+            "{:<12} {damaged} of {} packets ({} out, {} in): {share}, below {:.1e} at 95 % confidence; {} sent again",
+            "damaged", errors.packets, errors.damaged_out, errors.damaged_in, errors.bound, errors.retries
         ),
-        format!(
-            "{:<12} median {:.0} µs, 90 % {:.0} µs, 99 % {:.0} µs, {:.0} to {:.0} µs in {}",
-            "round trip",
-            round_trips.median_us,
-            round_trips.p90_us,
-            round_trips.p99_us,
-            round_trips.least_us,
-            round_trips.most_us,
-            round_trips.count
-        ),
+        format!("{:<12} {}", "round trip", times(round_trips)),
     ];
     let parts =
         [("to board", &figures.to_board), ("to host", &figures.to_host), ("together", &figures.together)];
-    lines.extend(
-        parts.map(|(name, both)| format!("{name:<12} {} out, {} in", rate(&both.out), rate(&both.back))),
-    );
+    lines.extend(parts.map(|(name, both)| format!("{name:<12} {}", rates(both))));
     if errors.wrong > 0 {
         let wrong = errors.wrong;
         lines.push(format!(
@@ -101,10 +85,30 @@ fn text(figures: &Figures) -> String {
     lines.join("\n")
 }
 
+/// What stands in the place of a figure that a wire without a speed has not.
+const NOT_MEASURED: &str = "virtual clock: not measured";
+
+fn times(trips: &RoundTrips) -> String {
+    if trips.most_us <= 0.0 {
+        return NOT_MEASURED.to_owned();
+    }
+    format!(
+        "median {:.0} µs, 90 % {:.0} µs, 99 % {:.0} µs, {:.0} to {:.0} µs in {}",
+        trips.median_us, trips.p90_us, trips.p99_us, trips.least_us, trips.most_us, trips.count
+    )
+}
+
+fn rates(both: &Throughput) -> String {
+    match (both.out.bytes_per_second, both.back.bytes_per_second) {
+        (None, None) => NOT_MEASURED.to_owned(),
+        _ => format!("{} out, {} in", rate(&both.out), rate(&both.back)),
+    }
+}
+
 fn rate(rate: &Rate) -> String {
     match (rate.bytes_per_second, rate.share) {
         (Some(rate), Some(share)) => format!("{:.3} MB/s ({:.1} %)", rate / 1e6, 100.0 * share),
         (Some(rate), None) => format!("{:.3} MB/s", rate / 1e6),
-        (None, _) => "in no time".to_owned(),
+        (None, _) => NOT_MEASURED.to_owned(),
     }
 }

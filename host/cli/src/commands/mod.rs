@@ -7,6 +7,7 @@ mod correct;
 mod faults;
 mod files;
 mod frames;
+mod given;
 mod info;
 mod inputs;
 mod kernel;

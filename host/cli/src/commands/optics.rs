@@ -1,19 +1,22 @@
 //! The options of geometry, lens and kernel, which several commands share.
 
+use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
-use anyhow::{Context as _, bail};
+use anyhow::{Context as _, bail, ensure};
+use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
-    LensError, Phase, TableSet,
+    LensError, Phase, STEP_ONE, TableSet,
 };
 
 use halfrow::frames::Scene;
 use halfrow::kernels::NamedKernel;
 use halfrow::lenses::LensFile;
-use halfrow::tables::{KernelFile, TableFile, TableFileError};
+use halfrow::tables::{KernelFile, TableFileError};
+
+use super::table_file::NamedTables;
 
 /// The paper's frame.
 const DEFAULT_SIZE: (usize, usize) = (1920, 1080);
@@ -39,7 +42,9 @@ pub(super) struct LensArguments {
     #[arg(long, default_value_t = Phase::Grbg)]
     pub(super) phase: Phase,
     /// The lens: a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or equidistant:RADIUS
-    #[arg(long, value_name = "FILE|equidistant:RADIUS", conflicts_with_all = ["radius", "focal_length"])]
+    #[arg(long, value_name = "FILE|equidistant:RADIUS")]
+    #[arg(value_parser = OsStringValueParser::new().try_map(LensName::read))]
+    #[arg(conflicts_with_all = ["radius", "focal_length"])]
     lens: Option<LensName>,
     /// Distance between two pixels of the camera that the lens file was made with, in micrometres: takes the lens alone from
     /// it, scaled to --pixel-pitch, with its axis in the middle of the frame
@@ -75,11 +80,9 @@ enum LensName {
     File(PathBuf),
 }
 
-impl FromStr for LensName {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text.strip_prefix("equidistant:") {
+impl LensName {
+    fn read(text: OsString) -> Result<Self, String> {
+        match text.to_str().and_then(|text| text.strip_prefix("equidistant:")) {
             None => Ok(Self::File(PathBuf::from(text))),
             Some(radius) => radius.parse().map(Self::Equidistant).map_err(|_| {
                 "equidistant: takes the radius of the image of 180 degrees, in pixels".to_owned()
@@ -121,9 +124,14 @@ impl LensArguments {
         }
     }
 
-    /// The option, if one is given, that means nothing but making tables.
-    pub(super) fn making_tables(&self) -> Option<&'static str> {
-        self.lens.as_ref().map(|_| "--lens").or(self.rows.map(|_| "--rows"))
+    /// Whether the option `id`, one of [`super::given::IN_TABLE_FILES`], says what `geometry` has.
+    pub(super) fn agrees(&self, id: &str, geometry: &Geometry) -> bool {
+        match id {
+            "width" => self.width == Some(geometry.width()),
+            "height" => self.height == Some(geometry.height()),
+            "bits" => self.bits == geometry.depth(),
+            _ => self.centre_x.is_some_and(|column| geometry.with_centre(column).as_ref() == Ok(geometry)),
+        }
     }
 
     /// Whether the call says how row factors are made.
@@ -190,7 +198,14 @@ impl LensArguments {
 
     fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
         let file = LensFile::read(path)?;
-        let pictures = file.size.filter(|_| self.lens_pitch.is_none()).unwrap_or(DEFAULT_SIZE);
+        let pictures = match file.size {
+            Some(size) if self.lens_pitch.is_none() => size,
+            None if self.lens_pitch.is_none() && (self.width.is_none() || self.height.is_none()) => bail!(
+                "the lens file {} does not say how large its pictures are; give --width and --height",
+                path.display()
+            ),
+            _ => DEFAULT_SIZE,
+        };
         let geometry = self.geometry(pictures)?;
         let (lens, centre) = match self.lens_pitch {
             Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, middle(&geometry)),
@@ -276,6 +291,32 @@ impl Optics {
         })
     }
 
+    /// Refuses `tables` of this lens that stretch nothing, as its image circle misses the rows, and warns when it
+    /// misses most.
+    pub(super) fn check_circle(&self, tables: &TableSet) -> anyhow::Result<()> {
+        let (rows, outside) = (self.camera.geometry().height(), self.camera.rows_outside_circle());
+        let circle = || {
+            format!(
+                "{outside} of {rows} rows lie outside the image circle, whose radius is {:.3} pixels around row {:.1}",
+                self.camera.radius(),
+                self.camera.centre().1
+            )
+        };
+        let stretches = tables.steps().iter().any(|&step| step != STEP_ONE);
+        ensure!(
+            outside == 0 || stretches,
+            "{}, so nothing would be stretched; check the lens, its centre and the size of the frames",
+            circle()
+        );
+        if 2 * outside > rows {
+            tracing::warn!(
+                "{}, and are not stretched; check the lens, its centre and the size of the frames",
+                circle()
+            );
+        }
+        Ok(())
+    }
+
     /// A sentence on where the row factors come from.
     pub(super) fn source(&self) -> String {
         let how = match self.rows {
@@ -287,10 +328,11 @@ impl Optics {
 }
 
 /// A kernel by name, or from a kernel file.
-pub(super) fn kernel(name: &str) -> Result<Kernel, super::Failure> {
-    match name.parse::<NamedKernel>() {
+pub(super) fn kernel(name: &OsStr) -> Result<Kernel, super::Failure> {
+    match name.to_string_lossy().parse::<NamedKernel>() {
         Ok(named) => named.kernel().map_err(super::Failure::error),
         Err(unknown) if !Path::new(name).exists() => {
+            let name = name.display();
             Err(anyhow::anyhow!("there is no file {name}, and {unknown}, or a kernel file").into())
         }
         Err(_) => Ok(KernelFile::read(Path::new(name)).map_err(table_failure)?.kernel),
@@ -303,38 +345,45 @@ pub(super) struct Chosen {
     pub(super) tables: TableSet,
     pub(super) kernel: Kernel,
     pub(super) source: String,
+    /// The table file, if the tables are of one.
+    pub(super) file: Option<PathBuf>,
     /// Rows outside of the lens's image circle; none for a file, which does not say.
     pub(super) rows_outside_circle: Option<usize>,
 }
 
-/// Takes the table file if there is one, and the lens otherwise; `kernel_name` replaces the file's kernel.
+/// Takes the tables `named` if there are some, and those of the lens otherwise; `kernel_name` replaces the file's
+/// kernel.
 pub(super) fn choose(
-    file: Option<&Path>,
+    named: Option<NamedTables>,
     lens: &LensArguments,
-    kernel_name: Option<&str>,
+    kernel_name: Option<&OsStr>,
 ) -> Result<Chosen, super::Failure> {
-    let named = kernel_name.map(kernel).transpose()?;
+    let kernel = kernel_name.map(kernel).transpose()?;
+    let kernel_name = kernel_name.map(OsStr::to_string_lossy);
     let optics = lens.optics()?;
-    let Some(path) = file else {
-        let (tables, from) = (optics.tables()?, optics.source());
-        let name = kernel_name.unwrap_or(Interpolant::Hermite.name());
-        let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
-        let rows_outside_circle = Some(optics.camera.rows_outside_circle());
-        return Ok(Chosen {
-            optics,
-            tables,
-            kernel,
-            source: format!("{from}, {name} kernel"),
-            rows_outside_circle,
-        });
+    let Some(NamedTables { path, file }) = named else {
+        return by_lens(optics, kernel, kernel_name.as_deref());
     };
-    let read = TableFile::read(path).map_err(table_failure)?;
     let mut source = path.display().to_string();
     if let Some(name) = kernel_name {
         source = format!("{source}, {name} kernel");
     }
-    let kernel = named.unwrap_or(read.kernel);
-    Ok(Chosen { optics, tables: read.tables, kernel, source, rows_outside_circle: None })
+    let kernel = kernel.unwrap_or(file.kernel);
+    Ok(Chosen { optics, tables: file.tables, kernel, source, file: Some(path), rows_outside_circle: None })
+}
+
+fn by_lens(
+    optics: Optics,
+    kernel: Option<Kernel>,
+    kernel_name: Option<&str>,
+) -> Result<Chosen, super::Failure> {
+    let tables = optics.tables()?;
+    optics.check_circle(&tables)?;
+    let name = kernel_name.unwrap_or(Interpolant::Hermite.name());
+    let source = format!("{}, {name} kernel", optics.source());
+    let rows_outside_circle = Some(optics.camera.rows_outside_circle());
+    let kernel = kernel.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
+    Ok(Chosen { optics, tables, kernel, source, file: None, rows_outside_circle })
 }
 
 /// A table file of another datapath is refused like a board of another datapath.

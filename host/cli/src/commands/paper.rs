@@ -8,6 +8,7 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::board::BoardArguments;
 use super::files::Files;
+use super::given::{Decider, Given};
 use super::{Context, Failure, json_text};
 use crate::settings::Settings;
 use crate::{console, progress};
@@ -24,6 +25,8 @@ use halfrow_lab::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperErro
 /// not be tried.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
     /// What to reproduce [default: all]
     #[arg(value_name = "ITEM", value_parser = item_parser())]
     items: Vec<Item>,
@@ -54,6 +57,9 @@ fn item_parser() -> impl TypedValueParser<Value = Item> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let begun = Instant::now();
     let items = arguments.items();
+    if !items.iter().any(|item| item.goes_through_boards()) {
+        arguments.given.refuse_void(Decider::NoBoardItem, &context.settings.keys())?;
+    }
     Files::new(arguments.overwrite)
         .reads(&context.settings_file)
         .reads([&arguments.synthesis])
@@ -97,7 +103,7 @@ fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<
 fn failed(error: PaperError) -> Failure {
     let exit = match &error {
         PaperError::Board(error) => error.exit(),
-        PaperError::Misfit(_) => Exit::Usage,
+        PaperError::Misfit(_) | PaperError::Synthesis { .. } => Exit::Usage,
         _ => Exit::Error,
     };
     Failure { exit, error: error.into() }

@@ -20,7 +20,7 @@ use halfrow::verdict::Exit;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The board to serve
-    #[arg(long, value_name = "TARGET", default_value = "mock")]
+    #[arg(long, value_name = "TARGET", default_value = "mock", value_parser = super::board::target())]
     board: Target,
     /// A TCP port instead of a pseudo-terminal: PORT of this computer alone, or ADDRESS:PORT; 0 for any that is free
     #[arg(long, value_name = "PORT", value_parser = door)]
@@ -47,15 +47,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
     let served = match &arguments.tcp {
         Some(address) => {
-            let port = Port::listen(address).map_err(Failure::error)?;
-            let address = port.address().map_err(Failure::error)?;
+            let port = Port::listen(address).map_err(failed)?;
+            let address = port.address().map_err(failed)?;
             print(&format!("tcp:{address}"))?;
             port.serve(&mut board, &mut ended)
         }
         None => serve_pty(arguments, &mut board, &mut ended)?,
     };
-    served.map_err(Failure::error)?;
+    served.map_err(failed)?;
     Ok(Exit::Pass)
+}
+
+fn failed(error: ServeError) -> Failure {
+    Failure { exit: error.exit(), error: error.into() }
 }
 
 fn serve_pty(
@@ -63,8 +67,9 @@ fn serve_pty(
     board: &mut Hosted,
     ended: &mut dyn FnMut(Traffic) -> bool,
 ) -> Result<Result<(), ServeError>, Failure> {
-    let pty = Pty::open().map_err(Failure::error)?;
-    let name = arguments.link.as_ref().map(|path| Name::link(path, pty.path())).transpose()?;
+    let pty = Pty::open().map_err(failed)?;
+    let name = arguments.link.as_ref().map(|path| Name::link(path, pty.path())).transpose();
+    let name = name.map_err(|error| Failure { exit: Exit::Usage, error: error.into() })?;
     let path = arguments.link.as_deref().filter(|_| name.is_some()).unwrap_or(pty.path());
     print(&format!("serial:{}", path.display()))?;
     Ok(pty.serve(board, ended))

@@ -2,66 +2,81 @@
 
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
-use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, value_parser};
+use clap::Args;
 
-use super::optics::LensArguments;
+use super::Failure;
+use super::given::{Decider, Given, IN_TABLE_FILES, written};
+use super::optics::{LensArguments, table_failure};
 use crate::settings::Settings;
-
-const NAME: &str = "tables";
+use halfrow::tables::TableFile;
 
 /// The table file that the command line or the environment names.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Args)]
 pub(super) struct TableArgument {
-    path: Option<PathBuf>,
-    /// Whether it is the command line that does.
-    is_flag: bool,
+    /// The table file; without it the lens options make the tables
+    ///
+    /// Options that make tables are refused beside it, but a size, depth or column of the centre that is the file's.
+    /// Built-in frames are seen through the default lens then; `halfrow frames` writes them through others.
+    #[arg(long, value_name = "FILE", env = "HALFROW_TABLES")]
+    tables: Option<PathBuf>,
+}
+
+/// A table file that was read.
+pub(super) struct NamedTables {
+    pub(super) path: PathBuf,
+    pub(super) file: TableFile,
 }
 
 impl TableArgument {
+    /// The file that is named, whether its tables will be taken or not.
+    pub(super) fn path<'a>(&'a self, settings: &'a Settings) -> Option<&'a PathBuf> {
+        self.tables.as_ref().or(settings.tables.as_ref())
+    }
+
     /// The file to take the tables from; none for those of the lens options. Options that make tables are flags, and so come
     /// before a file that the environment or `settings` names.
-    pub(super) fn file<'a>(
-        &'a self,
+    pub(super) fn read(
+        &self,
+        given: &Given,
         lens: &LensArguments,
-        settings: &'a Settings,
-    ) -> anyhow::Result<Option<&'a Path>> {
-        let named = self.path.as_deref();
-        match (lens.making_tables(), named.filter(|_| self.is_flag)) {
-            (None, _) => Ok(named.or(settings.tables.as_deref())),
-            (Some(_), None) => Ok(None),
-            (Some(option), Some(path)) => {
-                bail!(
-                    "{option} is for making tables, and --tables {} holds some; give one of them",
+        settings: &Settings,
+    ) -> Result<Option<NamedTables>, Failure> {
+        let Some(path) = self.path(settings) else { return Ok(None) };
+        let is_flag = given.is_flag("tables");
+        if is_flag {
+            given.refuse_void(Decider::Tables, &[])?;
+        } else if let Some(option) = given.void_flag(Decider::Tables) {
+            tracing::info!("the table file {} is passed over, since {option} makes tables", path.display());
+            return Ok(None);
+        }
+        let file = TableFile::read(path).map_err(table_failure)?;
+        let geometry = file.tables.geometry();
+        let flags = IN_TABLE_FILES.into_iter().filter(|id| given.is_flag(id));
+        let mut others = flags.filter(|id| !lens.agrees(id, geometry)).map(written);
+        match others.next() {
+            None => Ok(Some(NamedTables { path: path.clone(), file })),
+            Some(option) if is_flag => refuse(&option, path, &file),
+            Some(option) => {
+                tracing::info!(
+                    "the table file {} is passed over, since {option} makes others",
                     path.display()
-                )
+                );
+                Ok(None)
             }
         }
     }
 }
 
-/// By hand, since what clap derives does not say where a value comes from.
-impl FromArgMatches for TableArgument {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let is_flag = matches.value_source(NAME) == Some(ValueSource::CommandLine);
-        Ok(Self { path: matches.get_one(NAME).cloned(), is_flag })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
-impl Args for TableArgument {
-    fn augment_args(command: Command) -> Command {
-        let tables = Arg::new(NAME).long(NAME).value_name("FILE").env("HALFROW_TABLES");
-        let help = "The table file; without it the lens options make the tables";
-        command.arg(tables.value_parser(value_parser!(PathBuf)).help(help))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
+fn refuse<T>(option: &str, path: &Path, file: &TableFile) -> Result<T, Failure> {
+    let geometry = file.tables.geometry();
+    let refused = format!(
+        "{option} is not that of --tables {}, which is for {} x {}, {} bits, centre at column {}; leave {option} out, \
+         or make other tables",
+        path.display(),
+        geometry.width(),
+        geometry.height(),
+        geometry.depth().bits(),
+        f64::from(geometry.centre2()) / 2.0,
+    );
+    Err(anyhow::anyhow!(refused).into())
 }

@@ -1,5 +1,6 @@
 //! `halfrow tables`
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use anyhow::bail;
@@ -20,7 +21,7 @@ pub(super) struct Arguments {
     lens: LensArguments,
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
     #[arg(long, default_value = "hermite", value_name = "NAME|FILE")]
-    kernel: String,
+    kernel: OsString,
     /// Where to: FILE.json, or FILE.mem for two files that Verilog's $readmemh reads
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,

@@ -2,6 +2,7 @@
 
 mod recorded;
 
+use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -10,14 +11,14 @@ use clap::builder::FalseyValueParser;
 
 use super::board::BoardArguments;
 use super::files::Files;
-use super::inputs::{InputArguments, file_hash, frame_sources};
-use super::optics::{self, LensArguments};
+use super::given::{Decider, Given};
+use super::inputs::{FrameName, InputArguments, file_hash, frame_sources};
+use super::optics::{self, Chosen, LensArguments};
 use super::table_file::TableArgument;
 use super::{Context, Failure, print};
 use crate::settings::Settings;
-use crate::{console, progress, signals};
-use halfrow::board::Stop;
-use halfrow::frames::Builtin;
+use crate::{console, progress};
+use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{Candidate, Lost, Recorder, RecordingFile};
 use halfrow::report::{self, Report, ReportError, ReportFolder};
 use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
@@ -30,15 +31,17 @@ use halfrow::verdict::{Exit, Verdict};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
+    given: Given,
+    #[command(flatten)]
     board: BoardArguments,
     /// A frame to stream instead of the built-in ones: a file, or builtin:NAME; may be given several times
     #[arg(long, value_name = "FILE", env = "HALFROW_FRAME")]
-    frame: Vec<String>,
+    frame: Vec<OsString>,
     #[command(flatten)]
     tables: TableArgument,
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
-    kernel: Option<String>,
+    kernel: Option<OsString>,
     /// Print the result as JSON
     #[arg(long)]
     pub(super) json: bool,
@@ -80,9 +83,14 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
     let (plan, circumstances) = match &recording {
-        Some(recording) => recorded::restore(recording, arguments.requires_hardware(settings))?,
-        None => (arguments.plan(settings)?, arguments.circumstances(settings)?),
+        Some(recording) => {
+            arguments.given.refuse_void(Decider::Recording, &settings.keys())?;
+            let has_report = arguments.has_report(settings);
+            recorded::restore(recording, arguments.requires_hardware(settings), has_report)?
+        }
+        None => arguments.plan(settings)?,
     };
+    arguments.board.check_fault(settings, &plan)?;
     plan.check_length()?;
     if arguments.list {
         arguments.board.candidate(settings)?;
@@ -90,7 +98,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return Ok(Exit::Pass);
     }
     let outputs = arguments.outputs(context)?;
-    let mut candidate = arguments.board.candidate(settings)?;
+    let mut candidate = arguments.board.candidate_of(settings, recording)?;
     let mut lost = Lost::default();
     if let Some(file) = outputs.recording {
         let run = recorded::RecordedRun::of(&plan, &circumstances);
@@ -98,7 +106,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         lost = link.lost();
         candidate = Candidate { link: Box::new(link), ..candidate };
     }
-    let stop = Stop::new(signals::stop(), plan.timeout);
+    let stop = arguments.board.stop(settings, plan.timeout)?;
     let watched = progress::for_stderr(context.quiet || arguments.json);
     let mut finished = run::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
     if finished.report.exit_code == Exit::Usage {
@@ -172,18 +180,42 @@ fn listing(plan: &Plan) -> String {
 }
 
 impl Arguments {
-    fn plan(&self, settings: &Settings) -> Result<Plan, Failure> {
-        let file = self.tables.file(&self.lens, settings)?;
-        let kernel = self.kernel.as_deref().or(settings.kernel.as_deref());
-        let chosen = optics::choose(file, &self.lens, kernel)?;
+    /// What is to be streamed, and where it comes from.
+    fn plan(&self, settings: &Settings) -> Result<(Plan, Circumstances), Failure> {
+        let frames = FrameName::all(&self.frame_names(settings))?;
+        let files: Vec<_> = frames.iter().filter_map(FrameName::file).map(PathBuf::from).collect();
+        if files.is_empty() {
+            self.given.refuse_void(Decider::NoFrameFile, &[])?;
+        }
+        let lens = self.lens.file().map(PathBuf::from);
+        // Each file is hashed, too.
+        files
+            .iter()
+            .chain(&lens)
+            .chain(self.tables.path(settings))
+            .try_for_each(|path| check_regular(path))?;
+        let tables = self.tables.read(&self.given, &self.lens, settings)?;
+        let kernel = self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
+        let chosen = optics::choose(tables, &self.lens, kernel)?;
+        let table_file = chosen.file.clone();
+        let plan = self.plan_of(chosen, frames, settings)?;
+        let files = table_file.iter().chain(&lens).chain(&files);
+        let circumstances = Circumstances {
+            arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
+            files: files.map(|path| file_hash(path)).collect::<Result<_, _>>()?,
+            draws: run::Draws::draw(),
+        };
+        Ok((plan, circumstances))
+    }
+
+    fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, settings: &Settings) -> Result<Plan, Failure> {
         let geometry = chosen.tables.geometry();
         chosen.tables.check_ring(geometry.width().next_power_of_two())?;
         let how = self.input.read_options(geometry, self.lens.phase);
-        let names = self.frame_names(settings);
-        let frames = if names.is_empty() {
+        let frames = if frames.is_empty() {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
-            frame_sources(names, &how, geometry)?
+            frame_sources(frames, &how, geometry)?
         };
         Ok(Plan {
             lens: chosen.optics.lens,
@@ -202,7 +234,7 @@ impl Arguments {
             timeout: self.board.timeout(settings)?,
             retry_limit: self.board.retry_limit(settings),
             reconnect: self.patience(settings)?,
-            keep_pictures: self.report.is_some() || settings.report.is_some(),
+            keep_pictures: self.has_report(settings),
         })
     }
 
@@ -221,7 +253,7 @@ impl Arguments {
         Files::new(overwrite)
             .reads(&context.settings_file)
             .reads(self.input_files(settings)?)
-            .reads_kernel(self.kernel.as_deref().or(settings.kernel.as_deref()))
+            .reads_kernel(self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new)))
             .reads(self.board.replayed(settings)?)
             .writes("--record", &self.record)
             .writes_report("--report", report)
@@ -238,29 +270,24 @@ impl Arguments {
 
     /// Tables, lens and frames that are files.
     fn input_files(&self, settings: &Settings) -> Result<Vec<PathBuf>, Failure> {
-        let tables = self.tables.file(&self.lens, settings)?.map(PathBuf::from);
-        let names = self.frame_names(settings).iter();
-        let frames = names.filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
+        let frames = FrameName::all(&self.frame_names(settings))?;
+        let frames = frames.iter().filter_map(FrameName::file).map(PathBuf::from);
+        let tables = self.tables.path(settings).map(PathBuf::from);
         Ok(tables.into_iter().chain(self.lens.file().map(PathBuf::from)).chain(frames).collect())
     }
 
-    fn frame_names<'a>(&'a self, settings: &'a Settings) -> &'a [String] {
-        if self.frame.is_empty() { settings.frame.as_deref().unwrap_or_default() } else { &self.frame }
+    fn frame_names(&self, settings: &Settings) -> Vec<OsString> {
+        match settings.frame.as_deref() {
+            Some(names) if self.frame.is_empty() => names.iter().map(OsString::from).collect(),
+            _ => self.frame.clone(),
+        }
+    }
+
+    fn has_report(&self, settings: &Settings) -> bool {
+        self.report.is_some() || settings.report.is_some()
     }
 
     fn requires_hardware(&self, settings: &Settings) -> bool {
         self.require_hardware || settings.require_hardware.unwrap_or(false)
-    }
-
-    fn circumstances(&self, settings: &Settings) -> Result<Circumstances, Failure> {
-        Ok(Circumstances {
-            arguments: std::env::args().collect(),
-            files: self
-                .input_files(settings)?
-                .iter()
-                .map(|path| file_hash(path))
-                .collect::<Result<_, _>>()?,
-            draws: run::Draws::draw(),
-        })
     }
 }

@@ -14,6 +14,7 @@ use std::time::{Duration, Instant};
 
 use halfrow::link::descriptor::{Gone, Pump, is_ready, send};
 use halfrow::link::{Link, LinkError};
+use halfrow::verdict::Exit;
 
 pub use pty::{Name, Pty};
 pub use tcp::Port;
@@ -41,12 +42,26 @@ pub enum ServeError {
         #[source]
         source: std::io::Error,
     },
+    /// The address is none.
+    #[error("`{0}` is no TCP port to listen on; give a PORT of this computer, 0 to 65535, or ADDRESS:PORT")]
+    Address(String),
     /// Its name is taken.
     #[error("{0} is there already; remove it, or choose another name with --link")]
     Exists(std::path::PathBuf),
     /// The board is gone.
     #[error("the board that was served is gone")]
     Board(#[source] LinkError),
+}
+
+impl ServeError {
+    /// The exit code of a command that ends with it.
+    #[must_use]
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Address(_) | Self::Exists(_) => Exit::Usage,
+            Self::Door { .. } | Self::Board(_) => Exit::Error,
+        }
+    }
 }
 
 /// Bytes that a served board has moved.

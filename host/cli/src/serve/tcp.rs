@@ -25,10 +25,17 @@ impl Port {
     /// Listens on `address`, HOST:PORT, or a port of this computer alone. Port 0 is any that is free.
     ///
     /// # Errors
-    /// [`ServeError::Door`] when it is taken or not this computer's.
+    /// [`ServeError::Address`] when it is none; [`ServeError::Door`] when it is taken or not this computer's.
     pub fn listen(address: &str) -> Result<Self, ServeError> {
         let local = address.parse::<u16>().map(|port| format!("127.0.0.1:{port}"));
+        let has_port = |address: &str| {
+            let port = address.rsplit_once(':').filter(|(host, _)| !host.is_empty()).map(|(_, port)| port);
+            port.is_some_and(|port| port.parse::<u16>().is_ok())
+        };
         let address = local.unwrap_or_else(|_| address.to_owned());
+        if !has_port(&address) {
+            return Err(ServeError::Address(address));
+        }
         let listen = || {
             let listener = TcpListener::bind(&address)?;
             listener.set_nonblocking(true)?;

@@ -313,7 +313,8 @@ impl Conversation {
             }
             attempt += 1;
         }
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun) })
+        let (answered, damaged) = (self.tally.packets_in > 0, self.tally.damaged_in);
+        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), answered, damaged })
     }
 
     /// Moves bytes once, and returns the answer if it is among them.

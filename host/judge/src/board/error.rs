@@ -22,9 +22,9 @@ pub enum BoardError {
     },
     /// Nobody answered.
     #[error(
-        "no answer to {kind:?} in {attempts} tries ({:.1} s); check that the board is powered and loaded, and that \
-         the target's rate is the board's",
-        waited.as_secs_f64()
+        "no answer to {kind:?} in {attempts} tries ({:.1} s){}",
+        waited.as_secs_f64(),
+        suspect(*.answered, *.damaged)
     )]
     NoAnswer {
         /// The request.
@@ -33,6 +33,10 @@ pub enum BoardError {
         attempts: u32,
         /// Time in all.
         waited: Duration,
+        /// Whether the board had answered before.
+        answered: bool,
+        /// Packets that came damaged.
+        damaged: u64,
     },
     /// Somebody answered, but not as a halfrow board.
     #[error("what answers is no halfrow board; check the target and what is loaded into the FPGA")]
@@ -124,6 +128,25 @@ pub enum BoardError {
     /// Ctrl-C or SIGTERM.
     #[error("stopped by a signal; nothing is wrong with the board as far as it was tested")]
     Stopped(Exit),
+}
+
+/// Who is to blame for silence: the board if nothing was ever heard of it, and the way to it otherwise.
+fn suspect(answered: bool, damaged: u64) -> String {
+    let packets = if damaged == 1 { "packet" } else { "packets" };
+    match (answered, damaged) {
+        (false, 0) => {
+            "; check that the board is powered and loaded, and that the target's rate is the board's".into()
+        }
+        (_, 0) => {
+            ", though the board had answered before; check the cable, its connectors and the rate, and that \
+                   the board still has power"
+                .into()
+        }
+        _ => format!(
+            ", and {damaged} {packets} came damaged: the link loses what is sent over it; check the cable, its \
+             connectors and the rate"
+        ),
+    }
 }
 
 impl BoardError {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use halfrow_protocol::message::Request;
+use halfrow_protocol::message::{Request, RowIn};
 use halfrow_protocol::{Decoder, samples};
 
 /// Rows and commits among recorded bytes.
@@ -14,27 +14,31 @@ pub struct Sent {
 }
 
 impl Sent {
-    /// Finds them in all bytes that a host sent.
+    /// Finds them in all bytes that a host sent, which come in `pieces`. Rows of frames that are not `wanted` are left
+    /// out.
     #[must_use]
-    pub fn find(bytes: &[u8]) -> Self {
+    pub fn find<'a>(pieces: impl Iterator<Item = &'a [u8]>, wanted: impl Fn(u16) -> bool) -> Self {
         let mut sent = Self::default();
         let mut decoder = Decoder::new();
-        let mut bytes = bytes;
-        while let Some(packet) = decoder.next(&mut bytes) {
-            let Ok(packet) = packet else { continue };
-            match Request::read(&packet) {
-                Ok(Request::Commit(commit)) => {
-                    sent.first_frames.insert(commit.generation, commit.first_frame);
+        for mut bytes in pieces {
+            while let Some(packet) = decoder.next(&mut bytes) {
+                let Ok(packet) = packet else { continue };
+                match Request::read(&packet) {
+                    Ok(Request::Commit(commit)) => {
+                        sent.first_frames.insert(commit.generation, commit.first_frame);
+                    }
+                    Ok(Request::RowIn(row)) if wanted(row.place.frame) => sent.keep(&row),
+                    _ => {}
                 }
-                Ok(Request::RowIn(row)) => {
-                    let mut unpacked = vec![0; usize::from(row.place.width)];
-                    samples::unpack(row.packed, &mut unpacked);
-                    sent.rows.insert((row.place.frame, row.place.row), unpacked);
-                }
-                _ => {}
             }
         }
         sent
+    }
+
+    fn keep(&mut self, row: &RowIn<'_>) {
+        let mut unpacked = vec![0; usize::from(row.place.width)];
+        samples::unpack(row.packed, &mut unpacked);
+        self.rows.insert((row.place.frame, row.place.row), unpacked);
     }
 
     /// The samples of frame `number`, `width` × `height`; rows that were never sent are black.

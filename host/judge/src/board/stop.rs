@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::BoardError;
 use crate::verdict::Exit;
@@ -14,13 +14,22 @@ pub struct Stop {
     limit: Option<Duration>,
     /// Of the limit, what had passed when the link's clock began.
     spent: Duration,
+    /// The limit on this computer's clock, and since when it counts.
+    wall: Option<(Instant, Duration)>,
 }
 
 impl Stop {
     /// Stops when `signal` holds an exit code other than 0, or when the link's clock has passed `limit`.
     #[must_use]
     pub fn new(signal: Arc<AtomicUsize>, limit: Option<Duration>) -> Self {
-        Self { signal, limit, spent: Duration::ZERO }
+        Self { signal, limit, spent: Duration::ZERO, wall: None }
+    }
+
+    /// Stops also when `limit` from here on has passed on this computer's clock, which a board in this program or a
+    /// recording does not keep to.
+    #[must_use]
+    pub fn within(self, limit: Option<Duration>) -> Self {
+        Self { wall: limit.map(|limit| (Instant::now(), limit)), ..self }
     }
 
     /// The same for a link whose clock began when `spent` of the limit had passed.
@@ -32,6 +41,9 @@ impl Stop {
         match self.signal.load(Ordering::Relaxed) {
             0 => {}
             code => return Err(BoardError::Stopped(Exit::of_signal(code).unwrap_or(Exit::Interrupted))),
+        }
+        if let Some((_, limit)) = self.wall.filter(|(begun, limit)| begun.elapsed() > *limit) {
+            return Err(BoardError::Timeout { limit });
         }
         match self.limit {
             Some(limit) if self.spent + now > limit => Err(BoardError::Timeout { limit }),

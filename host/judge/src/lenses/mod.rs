@@ -20,6 +20,9 @@ use crate::tables::text;
 /// The most columns and rows that pictures of a calibration may have.
 const MAX_SIDE: usize = 65_535;
 
+/// The longest lens file that is read: OpenCV's programs put every corner of every picture into theirs.
+const MAX_BYTES: u64 = 16 << 20;
+
 /// Which model a lens file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LensModel {
@@ -57,7 +60,8 @@ impl LensFile {
     /// # Errors
     /// [`LensFileError`] when the file cannot be read or holds no lens that can be used.
     pub fn read(path: &Path) -> Result<Self, LensFileError> {
-        let text = text::read(path).map_err(|source| LensFileError::Io { path: path.to_owned(), source })?;
+        let text = text::read(path, MAX_BYTES)
+            .map_err(|source| LensFileError::Io { path: path.to_owned(), source })?;
         Self::parse(&text).map_err(|source| LensFileError::Content { path: path.to_owned(), source })
     }
 

@@ -32,6 +32,7 @@ pub fn render(report: &Report) -> String {
         sections.push(frames(report));
     }
     sections.push(figures(report));
+    sections.extend(Some(advice(report)).filter(|advice| !advice.is_empty()));
     sections.push(verdict(report));
     sections.join("\n")
 }
@@ -105,7 +106,19 @@ fn figures(report: &Report) -> String {
     text
 }
 
-/// The verdict, and what to do about it.
+/// Who is suspected, and what to do about it.
+fn advice(report: &Report) -> String {
+    let mut text = String::new();
+    for suspect in &report.suspects {
+        push_suspect(&mut text, suspect);
+    }
+    if let Some(remedy) = wording::remedy(report) {
+        push(&mut text, "do", BOLD, remedy);
+    }
+    text
+}
+
+/// The verdict in one line, the last one.
 fn verdict(report: &Report) -> String {
     let style = match report.verdict {
         Verdict::Pass => GREEN,
@@ -115,14 +128,7 @@ fn verdict(report: &Report) -> String {
     let line = wording::verdict_line(report);
     let word = report.verdict.to_string();
     let rest = line.strip_prefix(&word).unwrap_or(&line);
-    let mut text = format!("{style}{word}{style:#}{rest}\n");
-    for suspect in &report.suspects {
-        push_suspect(&mut text, suspect);
-    }
-    if let Some(remedy) = wording::remedy(report) {
-        push(&mut text, "do", BOLD, remedy);
-    }
-    text
+    format!("{style}{word}{style:#}{rest}\n")
 }
 
 fn push_suspect(text: &mut String, suspect: &Suspect) {

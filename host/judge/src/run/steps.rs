@@ -4,6 +4,7 @@ use std::sync::mpsc::Receiver;
 use std::thread;
 
 use halfrow_model::{Kernel, TableSet, Taps};
+use halfrow_protocol::message::BoardNature;
 
 use super::findings::{End, Findings};
 use super::golden;
@@ -167,11 +168,16 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
     let geometry = tables.geometry();
     let (width, height) = (usize::from(capabilities.max_width), usize::from(capabilities.max_height));
     if geometry.width() > width || geometry.height() > height {
+        let (columns, rows) = (geometry.width(), geometry.height());
+        let mut remedy = "use smaller frames and tables".to_owned();
+        if capabilities.nature == BoardNature::Mock {
+            remedy = format!("{remedy}, or a mock that takes these: --board mock,max-width={columns}");
+            if rows > height {
+                remedy = format!("{remedy},max-height={rows}");
+            }
+        }
         return Some(format!(
-            "frames of {} x {} do not fit the board, which takes {width} x {height} at most; use smaller \
-             frames and tables",
-            geometry.width(),
-            geometry.height()
+            "frames of {columns} x {rows} do not fit the board, which takes {width} x {height} at most; {remedy}"
         ));
     }
     let bits = geometry.depth().bits();

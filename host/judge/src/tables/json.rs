@@ -126,7 +126,8 @@ impl KernelFile {
 }
 
 fn read<T>(path: &Path, parse: fn(&str) -> Result<T, ContentError>) -> Result<T, TableFileError> {
-    let text = text::read(path).map_err(|source| TableFileError::Io { path: path.to_owned(), source })?;
+    let text = text::read(path, text::MAX_BYTES)
+        .map_err(|source| TableFileError::Io { path: path.to_owned(), source })?;
     parse(&text).map_err(|source| TableFileError::content(path.to_owned(), source))
 }
 

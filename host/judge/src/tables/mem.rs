@@ -66,7 +66,7 @@ pub fn read(path: &Path) -> Result<(TableSet, Kernel), TableFileError> {
 }
 
 fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<T, TableFileError> {
-    match text::read(&path) {
+    match text::read(&path, text::MAX_BYTES) {
         Ok(text) => parse(&text).map_err(|source| TableFileError::mem(path, source)),
         Err(source) => Err(TableFileError::Io { path, source }),
     }

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The longest text file that is read: many times the largest tables there can be.
-pub const MAX_BYTES: u64 = 16 << 20;
+/// The longest table file or settings file that is read: many times the largest tables there can be, and notes.
+pub const MAX_BYTES: u64 = 1 << 20;
 
 /// Characters of a foreign value that an error quotes.
 const QUOTED: usize = 40;
@@ -14,12 +14,12 @@ const QUOTED: usize = 40;
 ///
 /// # Errors
 /// The system's, [`io::ErrorKind::InvalidData`] when it is not UTF-8, [`io::ErrorKind::FileTooLarge`] when it is longer than
-/// [`MAX_BYTES`].
-pub fn read(path: &Path) -> io::Result<String> {
+/// `most` bytes.
+pub fn read(path: &Path, most: u64) -> io::Result<String> {
     let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_BYTES + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > MAX_BYTES {
-        let reason = format!("it is longer than {MAX_BYTES} bytes");
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most {
+        let reason = format!("it is longer than {most} bytes");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, reason));
     }
     String::from_utf8(bytes).map_err(|error| {

@@ -37,16 +37,17 @@ fn no_pass_without_hardware_is_taken_for_one_with() {
 }
 
 #[test]
-fn a_fail_names_the_suspect_and_the_next_step_after_the_verdict() {
+fn a_fail_names_the_suspect_and_the_next_step_before_the_verdict() {
     let text = plain(&made::fail().0);
-    let (_, after) = text.split_once("\nFAIL: 5 samples of row 3 differ\n").unwrap();
-    let expected = "\
+    let expected = "
 suspect  row factor, row 3, bit 4 (explains 100 % of the differences)
          With that bit the other way round the reference gives the same samples.
          Next: Check the table memory's data line 4.
 do       Read the tables back.
+
+FAIL: 5 samples of row 3 differ
 ";
-    assert_eq!(after, expected);
+    assert!(text.ends_with(expected), "{text}");
 }
 
 #[test]
@@ -59,7 +60,7 @@ fn a_remedy_that_a_suspect_already_gives_is_not_repeated() {
 #[test]
 fn an_error_says_what_to_do() {
     let text = plain(&made::error());
-    assert!(text.ends_with("\nERROR: no answer within 2 s\ndo       Check cable and power.\n"), "{text}");
+    assert!(text.ends_with("\ndo       Check cable and power.\n\nERROR: no answer within 2 s\n"), "{text}");
 }
 
 #[test]

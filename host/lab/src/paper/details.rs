@@ -50,6 +50,8 @@ pub(super) fn exhibit(photographs: &[RgbImage]) -> Result<Exhibit, PaperError> {
     ));
     let developed = corrected.each_ref().map(demosaic_coded);
     let reference = demosaic_coded(&mosaic(photograph, Phase::Grbg)?);
+    // A row for each method: the whole picture, and its details.
+    exhibit.in_threes = true;
     let pictures = METHODS.map(name).into_iter().zip(&developed).chain([("original", &reference)]);
     for (name, image) in pictures {
         exhibit.pictures.extend(shown(name, image, corners));

@@ -20,6 +20,8 @@ pub struct Exhibit {
     pub tables: Vec<Table>,
     /// What there is to see.
     pub pictures: Vec<Picture>,
+    /// Whether three pictures at a time belong side by side.
+    pub in_threes: bool,
 }
 
 impl Exhibit {
@@ -32,6 +34,7 @@ impl Exhibit {
             claims: Vec::new(),
             tables: Vec::new(),
             pictures: Vec::new(),
+            in_threes: false,
         }
     }
 

@@ -120,6 +120,12 @@ impl Item {
         self.words().summary
     }
 
+    /// Whether it goes through a board, or does when one is named.
+    #[must_use]
+    pub fn goes_through_boards(self) -> bool {
+        matches!(self, Self::Table1 | Self::Delay)
+    }
+
     /// Whether it takes the photographs of `--images`.
     #[must_use]
     pub fn needs_photographs(self) -> bool {

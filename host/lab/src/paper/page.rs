@@ -26,13 +26,13 @@ pub(super) fn render(exhibits: &[Exhibit]) -> Result<String, EncodingError> {
 fn banner(exhibits: &[Exhibit]) -> Markup {
     let claims: Vec<&Claim> = exhibits.iter().flat_map(|exhibit| &exhibit.claims).collect();
     let missed = || claims.iter().filter(|claim| !claim.holds());
+    let open = exhibits.iter().map(|exhibit| exhibit.open.len()).sum::<usize>();
     let (class, word) = match missed().find(|claim| claim.judges_board).or(missed().next()) {
         Some(claim) if claim.judges_board => ("fail", "BOARD DIFFERS"),
         Some(_) => ("error", "NOT REPRODUCED"),
-        None if claims.is_empty() && exhibits.iter().any(|exhibit| !exhibit.open.is_empty()) => {
-            ("error", "NOTHING TRIED")
-        }
+        None if claims.is_empty() && open > 0 => ("error", "NOTHING TRIED"),
         None if claims.is_empty() => ("pass", "DRAWN"),
+        None if open > 0 => ("error", "REPRODUCED IN PART"),
         None => ("pass", "REPRODUCED"),
     };
     html! {
@@ -40,7 +40,10 @@ fn banner(exhibits: &[Exhibit]) -> Markup {
             p.verdict { (word) }
             h1 {
                 @if claims.is_empty() { "No number was held to the paper" }
-                @else { (claims.len() - missed().count()) " of " (claims.len()) " numbers are accepted" }
+                @else {
+                    (claims.len() - missed().count()) " of " (claims.len()) " numbers that were tried are accepted"
+                }
+                @if open > 0 { ", " (open) " not tried" }
             }
             @for open in exhibits.iter().flat_map(|exhibit| &exhibit.open) { p.facts { "Not tried: " (open) } }
             p.facts {
@@ -59,7 +62,9 @@ fn section(exhibit: &Exhibit) -> Result<Markup, EncodingError> {
             @for remark in &exhibit.remarks { p { (remark) } }
             @for open in &exhibit.open { p.remedy { (open) } }
             @if !exhibit.claims.is_empty() { (claims(&exhibit.claims)) }
-            @if !pictures.is_empty() { div.previews { @for picture in pictures { (picture) } } }
+            @if !pictures.is_empty() {
+                div.previews.threes[exhibit.in_threes] { @for picture in pictures { (picture) } }
+            }
             @for table in &exhibit.tables { (numbers(table)) }
         }
     })

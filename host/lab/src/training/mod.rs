@@ -22,6 +22,7 @@ use halfrow_model::{
 
 use halfrow::frames::preview::RgbImage;
 use halfrow::progress::Progress;
+use halfrow::verdict::Exit;
 
 /// A kernel and how good it is.
 #[derive(Clone, Debug)]
@@ -58,6 +59,17 @@ pub enum TrainingError {
     /// A frame could not be corrected.
     #[error("a frame of the experiment cannot be corrected; this is a fault of halfrow, so report it")]
     Correct(#[from] CorrectError),
+}
+
+impl TrainingError {
+    /// The exit code of a command that ends with it: photographs are the caller's, and the rest is this program's.
+    #[must_use]
+    pub fn exit(&self) -> Exit {
+        match self {
+            Self::Table(_) | Self::Frame(_) | Self::Correct(_) => Exit::Error,
+            _ => Exit::Usage,
+        }
+    }
 }
 
 /// The kernel that fits `photographs` best under all of [`Model::ALL`], each photograph weighing the same whatever its size.

@@ -52,7 +52,8 @@ pub enum SerialError {
     },
     /// The driver took another rate.
     #[error(
-        "{path} was asked for {baud} baud and its driver took {taken}; give a rate that it can make with baud=RATE"
+        "{path} cannot make {baud} baud, and its driver took {taken} in their place; give a rate that port and board \
+         have with baud=RATE"
     )]
     OtherRate {
         /// The port.

@@ -47,7 +47,8 @@ impl Job<'_> {
             frames::write_rows(&places.frames[index], &shape, self.arguments.overwrite, correct_next);
         written.map_err(unwritten)?;
         if !kept.is_empty() {
-            let corrected = Frame::new(shape.width, shape.depth, shape.phase, kept)?;
+            let corrected =
+                Frame::new(shape.width, shape.depth, shape.phase, kept).map_err(Failure::error)?;
             self.write_preview(places, index, &corrected).map_err(Failure::error)?;
         }
         Ok(())

@@ -63,11 +63,12 @@ impl RecordedRun {
     }
 }
 
-/// The plan and the circumstances of the run that `recording` holds. Whether hardware is required is for the present
-/// call to say.
+/// The plan and the circumstances of the run that `recording` holds. Whether hardware is required and pictures are kept is
+/// for the present call to say.
 pub(super) fn restore(
     recording: &Recording,
     require_hardware: bool,
+    keep_pictures: bool,
 ) -> Result<(Plan, Circumstances), Failure> {
     let run: RecordedRun = recording.run()?;
     let file = TableFile::parse(&run.tables).map_err(|error| Failure {
@@ -92,7 +93,7 @@ pub(super) fn restore(
         timeout: run.timeout,
         retry_limit: RetryLimit { fixed: run.retries, share: run.retry_share },
         reconnect: None,
-        keep_pictures: true,
+        keep_pictures,
     };
     let circumstances = Circumstances { arguments: run.arguments, files: Vec::new(), draws: run.draws };
     Ok((plan, circumstances))
@@ -104,8 +105,13 @@ fn frames(
     geometry: &Geometry,
     phase: Phase,
 ) -> anyhow::Result<Vec<FrameSource>> {
-    let sent = Sent::find(&recording.sent());
-    let first = sent.first_frames.get(&JUDGED).copied().unwrap_or_default();
+    let is_file = |name: &&String| !name.starts_with("builtin:");
+    let files: Vec<u16> =
+        (0..).zip(&run.frames).filter(|(_, name)| is_file(name)).map(|(index, _)| index).collect();
+    let commits = Sent::find(recording.sent(), |_| false);
+    let first = commits.first_frames.get(&JUDGED).copied().unwrap_or_default();
+    let is_of_file = |number: u16| number.checked_sub(first).is_some_and(|index| files.contains(&index));
+    let sent = Sent::find(recording.sent(), is_of_file);
     let sources = run.frames.iter().zip(first..);
     sources
         .map(|(name, number)| {

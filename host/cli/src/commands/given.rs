@@ -1,0 +1,179 @@
+//! Which options a call gives, and which of them it leaves without effect.
+//!
+//! An option that does nothing beside another one is refused when it stands on the command line, since somebody wants
+//! what it says. From the environment or the settings, which are the same for every call, it is passed over.
+
+use anyhow::bail;
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches};
+
+/// The options of a call by their ids, which are those of clap, and where their values come from.
+///
+/// It has to be the first field of a command's arguments: what clap derives takes each field's values out of the
+/// matches, and with them where they come from.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Given {
+    flags: Vec<String>,
+    variables: Vec<String>,
+}
+
+/// What decides in the place of options.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Decider {
+    /// A recording that is judged again.
+    Recording,
+    /// A table file, whatever it holds.
+    Tables,
+    /// The model, which corrects without a board.
+    Model,
+    /// Frames none of which is a file.
+    NoFrameFile,
+    /// Items none of which goes through a board.
+    NoBoardItem,
+}
+
+/// Options that tables are made from, and that a table file has too: they stand where both say the same.
+pub(super) const IN_TABLE_FILES: [&str; 4] = ["width", "height", "bits", "centre_x"];
+
+/// Options that mean nothing but making tables, or rendering built-in frames through their lens.
+const LENS: [&str; 8] =
+    ["lens", "lens_pitch", "rows", "radius", "focal_length", "pixel_pitch", "field_of_view", "centre_y"];
+
+/// What a recording says of its run beside the options that make tables. Its time limit is on the board's clock, which
+/// leaves --timeout that of this computer.
+const RECORDED: [&str; 10] =
+    ["frame", "tables", "kernel", "phase", "raw", "repeat", "fail_fast", "seed", "take_over", "retry_limit"];
+
+/// The options of a board.
+const BOARD: [&str; 4] = ["board", "timeout", "retry_limit", "take_over"];
+
+impl Decider {
+    /// The options that are of no use beside it.
+    fn voids(self) -> Vec<&'static str> {
+        let options: &[&[&str]] = match self {
+            Self::Recording => &[&RECORDED, &["reconnect"], &IN_TABLE_FILES, &LENS],
+            Self::Tables => &[&LENS],
+            Self::Model | Self::NoBoardItem => &[&BOARD],
+            Self::NoFrameFile => &[&["raw"]],
+        };
+        options.concat()
+    }
+
+    /// Why, behind the option's name.
+    fn reason(self) -> &'static str {
+        match self {
+            Self::Recording => {
+                "does nothing beside a recording, which holds what was streamed, and how; leave it out, or judge a \
+                 board"
+            }
+            Self::Tables => "is for making tables, and the file of --tables holds some; give one of them",
+            Self::Model => "does nothing beside --model, which corrects without a board; give one of them",
+            Self::NoFrameFile => {
+                "is for files without a header, and no frame is a file; leave it out, or name a file"
+            }
+            Self::NoBoardItem => {
+                "does nothing, since no item that is asked for goes through a board; leave it out, or add table1 or \
+                 delay"
+            }
+        }
+    }
+}
+
+impl Given {
+    /// Whether the command line gives the option `id`.
+    pub(super) fn is_flag(&self, id: &str) -> bool {
+        self.flags.iter().any(|flag| flag == id)
+    }
+
+    /// The first of the options that are void beside `decider` and on the command line, as it is written there.
+    pub(super) fn void_flag(&self, decider: Decider) -> Option<String> {
+        decider.voids().into_iter().find(|id| self.is_flag(id)).map(written)
+    }
+
+    /// Refuses a flag that is void beside `decider`. Of what the environment or the settings, which have the keys
+    /// `settings`, say in vain is only told in the log.
+    pub(super) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> anyhow::Result<()> {
+        if let Some(option) = self.void_flag(decider) {
+            bail!("{option} {}", decider.reason());
+        }
+        for id in decider.voids() {
+            let of_variable = self.variables.iter().any(|variable| variable == id);
+            if of_variable || settings.contains(&id) {
+                let place = if of_variable { "the environment" } else { "the settings" };
+                tracing::info!("{} of {place} is passed over: it {}", written(id), decider.reason());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// An option as the command line has it.
+pub(super) fn written(id: &str) -> String {
+    format!("--{}", id.replace('_', "-"))
+}
+
+/// By hand, since what clap derives does not say where a value comes from.
+impl FromArgMatches for Given {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let from = |source| {
+            let ids = matches.ids().map(clap::Id::as_str);
+            ids.filter(|id| matches.value_source(id) == Some(source)).map(str::to_owned).collect()
+        };
+        Ok(Self { flags: from(ValueSource::CommandLine), variables: from(ValueSource::EnvVariable) })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl Args for Given {
+    fn augment_args(command: Command) -> Command {
+        command
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        command
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::super::Cli;
+    use super::*;
+
+    /// The ids of the options that a command has by itself.
+    fn options(command: &str) -> Vec<String> {
+        let cli = Cli::command();
+        let found = cli.find_subcommand(command).unwrap();
+        found.get_arguments().map(|argument| argument.get_id().to_string()).collect()
+    }
+
+    /// A new option has to be put on one side or the other.
+    #[test]
+    fn every_option_of_verify_is_void_or_does_something_beside_a_recording() {
+        let stand = ["board", "json", "report", "record", "overwrite", "require_hardware", "list", "timeout"];
+        let mut decided: Vec<&str> = Decider::Recording.voids();
+        decided.extend(stand);
+        decided.sort_unstable();
+        let mut options = options("verify");
+        options.sort_unstable();
+        assert_eq!(options, decided);
+    }
+
+    #[test]
+    fn options_that_are_void_exist() {
+        for (decider, command) in [
+            (Decider::Tables, "verify"),
+            (Decider::Model, "correct"),
+            (Decider::NoFrameFile, "correct"),
+            (Decider::NoBoardItem, "paper"),
+        ] {
+            let known = options(command);
+            assert!(decider.voids().iter().all(|id| known.iter().any(|known| known == id)), "{decider:?}");
+        }
+    }
+}

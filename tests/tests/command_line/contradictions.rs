@@ -1,0 +1,208 @@
+//! Options that another one leaves without effect: refused on the command line, passed over from elsewhere.
+
+use halfrow_tests::program::{Folder, finish};
+
+use crate::{refused, small};
+
+/// A folder with a recording of two frames of 128 x 16 in it, and a file that would be a frame.
+fn recorded() -> Folder {
+    let folder = Folder::new();
+    let frames = ["--frame", "builtin:bars", "--frame", "builtin:grey", "--record", "run.rec"];
+    assert_eq!(folder.halfrow(small("verify", &frames)).code, Some(0));
+    folder
+}
+
+const REPLAY: [&str; 3] = ["verify", "--board", "replay:run.rec"];
+
+#[test]
+fn a_recording_takes_no_option_that_it_decides_itself() {
+    let folder = recorded();
+    for option in [
+        ["--frame", "nowhere.pgm"],
+        ["--tables", "other.json"],
+        ["--kernel", "keys"],
+        ["--seed", "7"],
+        ["--repeat", "3"],
+        ["--bits", "8"],
+        ["--phase", "rggb"],
+        ["--width", "128"],
+        ["--height", "74"],
+        ["--radius", "100"],
+        ["--lens", "README.md"],
+        ["--rows", "fitted"],
+        ["--focal-length", "2"],
+        ["--pixel-pitch", "3"],
+        ["--field-of-view", "170"],
+        ["--centre-x", "5"],
+        ["--centre-y", "5"],
+        ["--raw", "u8"],
+        ["--retry-limit", "50"],
+        ["--reconnect=5", "--fail-fast"],
+        ["--fail-fast", "--json"],
+        ["--take-over", "-q"],
+    ] {
+        let call: Vec<_> = REPLAY.into_iter().chain(option).collect();
+        let name = if option[0] == "--reconnect=5" { "--fail-fast" } else { option[0] };
+        let ended = folder.halfrow(call);
+        assert_eq!(ended.code, Some(2), "{option:?}: {}{}", ended.stdout, ended.stderr);
+        let sentence = format!("{name} does nothing beside a recording");
+        assert!(ended.stderr.contains(&sentence), "{option:?}: {}", ended.stderr);
+    }
+    let call: Vec<_> = REPLAY.into_iter().chain(["--lens", "x.yml", "--lens-pitch", "3"]).collect();
+    refused(&folder, &call, "does nothing beside a recording");
+    let stands = ["--report", "out", "--record", "again.rec", "--overwrite", "--timeout", "600"];
+    assert_eq!(folder.halfrow(REPLAY.into_iter().chain(stands)).code, Some(0));
+}
+
+#[test]
+fn what_a_station_always_says_is_passed_over_beside_a_recording() {
+    let folder = recorded();
+    folder.write(
+        "settings.toml",
+        "seed = 9\nkernel = 'keys'\nframe = ['nowhere.pgm']\ntables = 'nowhere.json'\n",
+    );
+    let call = |verbose: &'static [&'static str]| {
+        let call = verbose.iter().copied().chain(REPLAY).chain(["--settings", "settings.toml"]);
+        finish(folder.command(call).env("HALFROW_RETRY_LIMIT", "1"))
+    };
+    let quiet = call(&["-q"]);
+    assert_eq!((quiet.code, quiet.stderr.as_str()), (Some(0), ""), "{}", quiet.stdout);
+    let said = call(&["-v"]).stderr;
+    for option in ["--seed of the settings", "--kernel of the settings", "--frame of the settings"] {
+        assert!(said.contains(&format!("{option} is passed over")), "{said}");
+    }
+    assert!(said.contains("--retry-limit of the environment is passed over"), "{said}");
+}
+
+#[test]
+fn the_list_of_a_recording_is_what_it_holds() {
+    let folder = recorded();
+    let listed = folder.halfrow(REPLAY.into_iter().chain(["--list"]));
+    assert_eq!(listed.code, Some(0), "{}", listed.stderr);
+    let named: Vec<_> = listed.stdout.lines().filter_map(|line| line.split_whitespace().nth(1)).collect();
+    let noise = "builtin:noise";
+    assert_eq!(named, [noise, noise, "builtin:bars", "builtin:grey", noise, noise]);
+}
+
+/// `verify` and `correct` with `option` beside a table file for 128 x 16, 12 bits, centre at 63.5.
+fn beside_tables<'a>(option: &[&'a str]) -> [Vec<&'a str>; 2] {
+    let call = |command: &[&'a str]| [command, &["--tables", "made.json"], option].concat();
+    [call(&["verify", "-q"]), call(&["correct", "builtin:street", "--model", "-o", "out.pgm"])]
+}
+
+fn with_tables() -> Folder {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("tables", &["-o", "made.json"])).code, Some(0));
+    folder
+}
+
+#[test]
+fn a_table_file_takes_no_option_that_makes_tables() {
+    let folder = with_tables();
+    for option in [
+        ["--radius", "100"],
+        ["--focal-length", "2"],
+        ["--pixel-pitch", "3"],
+        ["--field-of-view", "170"],
+        ["--centre-y", "5"],
+        ["--rows", "fitted"],
+        ["--lens", "equidistant:100"],
+    ] {
+        let sentence = format!("{} is for making tables, and the file of --tables holds some", option[0]);
+        for call in beside_tables(&option) {
+            refused(&folder, &call, &sentence);
+        }
+    }
+    for option in [["--width", "1280"], ["--height", "80"], ["--bits", "8"], ["--centre-x", "5"]] {
+        let sentence =
+            format!("{} is not that of --tables made.json, which is for 128 x 16, 12 bits", option[0]);
+        for call in beside_tables(&option) {
+            refused(&folder, &call, &sentence);
+        }
+    }
+}
+
+#[test]
+fn what_a_table_file_says_itself_may_be_said() {
+    let folder = with_tables();
+    let same = ["--width", "128", "--height", "16", "--bits", "12", "--centre-x", "63.5", "--phase", "rggb"];
+    for call in beside_tables(&same) {
+        let ended = folder.halfrow(call);
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    }
+}
+
+/// Flags come before a table file that a station always takes.
+#[test]
+fn options_that_make_tables_beat_a_file_from_elsewhere() {
+    let folder = with_tables();
+    let tables = |more: &[&str]| {
+        let call = ["-v", "verify", "--json"].into_iter().chain(more.iter().copied());
+        let ended = finish(folder.command(call).env("HALFROW_TABLES", "made.json"));
+        assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+        let said = ended.json()["tables"].clone();
+        (said["source"].as_str().unwrap().to_owned(), said["width"].clone(), ended.stderr)
+    };
+    let (source, _, _) = tables(&["--width", "128"]);
+    assert_eq!(source, "made.json");
+    for more in
+        [&["--width", "64", "--height", "9"][..], &["--width", "64", "--height", "9", "--radius", "40"]]
+    {
+        let (source, width, said) = tables(more);
+        assert!(source.starts_with("equidistant lens") && width == 64, "{source}");
+        assert!(said.contains("the table file made.json is passed over, since --"), "{said}");
+    }
+}
+
+#[test]
+fn the_model_takes_no_board() {
+    let folder = Folder::new();
+    let correct = small("correct", &["builtin:grey", "--model", "-o", "out.pgm"]);
+    for option in [&["--board", "mock"][..], &["--timeout", "5"], &["--retry-limit", "5"], &["--take-over"]] {
+        let call: Vec<_> = correct.iter().copied().chain(option.iter().copied()).collect();
+        refused(&folder, &call, &format!("{} does nothing beside --model", option[0]));
+    }
+    assert_eq!(finish(folder.command(correct).env("HALFROW_BOARD", "mock")).code, Some(0));
+}
+
+#[test]
+fn a_layout_needs_a_file() {
+    let folder = Folder::new();
+    let sentence = "--raw is for files without a header, and no frame is a file";
+    refused(&folder, &small("verify", &["--raw", "u8"]), sentence);
+    refused(
+        &folder,
+        &small("correct", &["builtin:grey", "--model", "--raw", "u8", "-o", "out.pgm"]),
+        sentence,
+    );
+}
+
+#[test]
+fn a_board_needs_an_item_that_goes_through_it() {
+    let folder = Folder::new();
+    let call = ["paper", "fig5", "-o", "paper", "--board", "mock"];
+    refused(&folder, &call, "--board does nothing, since no item that is asked for goes through a board");
+}
+
+/// Faults of the mock board that a run never comes upon.
+#[test]
+fn a_fault_without_effect_is_refused_with_one_that_has_some() {
+    let folder = Folder::new();
+    for (fault, sentence) in [
+        ("row-factor,row=16", "there is no row=16 in frames of 16 rows; give one from 0 to 15"),
+        ("lost-row,row=16", "there is no row=16"),
+        ("drifting-table,row=16", "there is no row=16"),
+        ("tap-offset,columns=0", "columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3"),
+        ("dead-tap,tap=4,reads=4", "tap=4,reads=4 lets the tap carry its own sample"),
+        // One frame and two of noise with these tables: 32 rows are played before row 3 of the last.
+        ("drifting-table,after=36", "give 35 at most, or stream more frames"),
+    ] {
+        let board = format!("mock,fault={fault}");
+        refused(&folder, &small("verify", &["--board", &board, "--frame", "builtin:noise"]), sentence);
+    }
+    for fault in ["row-factor,row=15", "drifting-table,after=35", "tap-offset,columns=-1"] {
+        let board = format!("mock,fault={fault}");
+        let ended = folder.halfrow(small("verify", &["--board", &board, "--frame", "builtin:noise"]));
+        assert_eq!(ended.code, Some(1), "{fault}: {}", ended.stdout);
+    }
+}
