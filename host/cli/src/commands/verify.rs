@@ -16,12 +16,12 @@ use super::inputs::{FrameName, InputArguments, file_hash, frame_sources};
 use super::optics::{self, Chosen, LensArguments};
 use super::table_file::TableArgument;
 use super::{Context, Failure, print};
-use crate::settings::Settings;
-use crate::{console, progress};
 use halfrow::frames::{Builtin, check_regular};
-use halfrow::link::{Candidate, Lost, Recorder, RecordingFile};
+use halfrow::link::{Candidate, Lost, Recorder, Recording, RecordingFile};
+use crate::{console, progress};
 use halfrow::report::{self, Report, ReportError, ReportFolder};
 use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
+use crate::settings::Settings;
 use halfrow::verdict::{Exit, Verdict};
 
 /// Judge a board: stream frames through it and compare every sample with the reference
@@ -82,18 +82,9 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
-    let (plan, circumstances) = match &recording {
-        Some(recording) => {
-            arguments.given.refuse_void(Decider::Recording, &settings.keys())?;
-            let has_report = arguments.has_report(settings);
-            recorded::restore(recording, arguments.requires_hardware(settings), has_report)?
-        }
-        None => arguments.plan(settings)?,
-    };
-    arguments.board.check_fault(settings, &plan)?;
-    plan.check_length()?;
+    let (plan, circumstances) = arguments.planned(recording.as_ref(), settings)?;
     if arguments.list {
-        arguments.board.candidate(settings)?;
+        arguments.board.candidate_of(settings, recording)?;
         print(&listing(&plan))?;
         return Ok(Exit::Pass);
     }
@@ -180,7 +171,25 @@ fn listing(plan: &Plan) -> String {
 }
 
 impl Arguments {
-    /// What is to be streamed, and where it comes from.
+    /// What is to be streamed, or was when `recording` was made, and where it comes from.
+    fn planned(
+        &self,
+        recording: Option<&Recording>,
+        settings: &Settings,
+    ) -> Result<(Plan, Circumstances), Failure> {
+        let (plan, circumstances) = match recording {
+            Some(recording) => {
+                self.given.refuse_void(Decider::Recording, &settings.keys())?;
+                recorded::restore(recording, self.requires_hardware(settings), self.has_report(settings))?
+            }
+            None => self.plan(settings)?,
+        };
+        self.board.check_fault(settings, &plan)?;
+        plan.check_length()?;
+        Ok((plan, circumstances))
+    }
+
+    /// What the options say is to be streamed, and where it comes from.
     fn plan(&self, settings: &Settings) -> Result<(Plan, Circumstances), Failure> {
         let frames = FrameName::all(&self.frame_names(settings))?;
         let files: Vec<_> = frames.iter().filter_map(FrameName::file).map(PathBuf::from).collect();
