@@ -8,7 +8,8 @@ use std::time::{Duration, Instant};
 
 use halfrow::target::Target;
 use halfrow_ft2232h::{ChannelMode, Chip, ChipOptions, Eeprom, FarEnd, Plugged, Unplugged};
-use halfrow_mock::Wire;
+use halfrow_mock::Board;
+use halfrow_pipe::Pipe;
 
 use crate::program::{Ended, halfrow};
 use crate::scenario::Scenario;
@@ -32,7 +33,7 @@ const FULL_SIZE: &[&str] = &[
 const SLOW: &[&str] = &["the highest frame", "a serial line", "a distant board"];
 
 /// A mock board at a chip's pins. Its wire's clock is kept at the real time.
-struct MockAtChip(Wire);
+struct MockAtChip(Pipe<Board>);
 
 impl MockAtChip {
     /// The mock board that `options`, as of a target, describe.
@@ -40,7 +41,7 @@ impl MockAtChip {
         let target: Target = format!("mock{options}").parse().unwrap();
         let options: Vec<_> =
             target.options.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
-        Self(Wire::from_options(&options).unwrap())
+        Self(halfrow_mock::connect(&options).unwrap())
     }
 }
 

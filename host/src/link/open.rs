@@ -1,8 +1,7 @@
 //! From a target string to a link.
 
+use std::error::Error;
 use std::path::{Path, PathBuf};
-
-use halfrow_mock::{Wire, WireError};
 
 #[cfg(feature = "sim")]
 use super::simulated::open_simulated;
@@ -77,7 +76,7 @@ pub enum OpenError {
         target: String,
         /// Why.
         #[source]
-        source: Box<WireError>,
+        source: Box<dyn Error + Send + Sync>,
     },
     /// An option whose value is none.
     #[error("`{key}={value}` is not an option of this board; write {key}=virtual or {key}=real")]
@@ -155,8 +154,8 @@ fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
         return Err(OpenError::NoAddress { kind: target.kind.clone(), address: address.clone() });
     }
     let (paced, options) = pace(target)?;
-    let wire = Wire::from_options(&options).map_err(|source| wrong_options(MOCK, target, source))?;
-    Ok(Box::new(WireLink::new(wire, MOCK, paced)))
+    let pipe = halfrow_mock::connect(&options).map_err(|source| wrong_options(MOCK, target, source))?;
+    Ok(Box::new(WireLink::new(pipe, MOCK, paced)))
 }
 
 #[cfg(not(feature = "sim"))]
@@ -167,7 +166,7 @@ fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
 /// Options of a target, each with its value.
 pub(super) type Options<'a> = Vec<(&'a str, &'a str)>;
 
-/// Whether the wire of a board in this process is paced, and the other options.
+/// Whether the pipe of a board in this process is paced, and the other options.
 pub(super) fn pace(target: &Target) -> Result<(bool, Options<'_>), OpenError> {
     let mut paced = false;
     let mut options = Options::new();
@@ -182,7 +181,11 @@ pub(super) fn pace(target: &Target) -> Result<(bool, Options<'_>), OpenError> {
     Ok((paced, options))
 }
 
-pub(super) fn wrong_options(board: &'static str, target: &Target, source: WireError) -> OpenError {
+pub(super) fn wrong_options(
+    board: &'static str,
+    target: &Target,
+    source: impl Error + Send + Sync + 'static,
+) -> OpenError {
     OpenError::Options { board, target: target.to_string(), source: Box::new(source) }
 }
 

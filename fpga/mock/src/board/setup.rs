@@ -5,8 +5,8 @@ use halfrow_protocol::message::{Bank, Commit, Configuration, Entries, NODES, Ref
 
 use super::identity::{KERNEL_PORTS, STEP_PORTS};
 use super::{Board, Refused};
+use crate::core::Node;
 use crate::depth::Depth;
-use crate::kernel::Node;
 use crate::settings::{Settings, SettingsError};
 use crate::tables::{self, Port, TableError};
 

@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use halfrow_mock::{BoardFault, Endpoint, Options};
+use halfrow_mock::{BoardFault, Options};
+use halfrow_pipe::Endpoint;
 use halfrow_protocol::message::{Hello, Refusal, RefusalCode, RowOut, Status, Welcome};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply, Request};
 

@@ -1,11 +1,11 @@
-//! One direction of the wire: bytes that travel.
+//! One direction of the pipe: bytes that travel.
 
 use std::collections::VecDeque;
 use std::num::NonZeroU64;
 use std::time::Duration;
 
 use super::damage::{Damage, Interruption};
-use super::options::WireOptions;
+use super::options::PipeOptions;
 use super::queue::ByteQueue;
 
 /// Bytes that travel together at most: a packet of USB 2 in high speed.
@@ -13,7 +13,7 @@ const SLICE: usize = 512;
 
 const NANOSECONDS: u128 = 1_000_000_000;
 
-/// One direction of the wire.
+/// One direction of the pipe.
 #[derive(Debug)]
 pub(super) struct Lane {
     speed: Option<NonZeroU64>,
@@ -22,7 +22,7 @@ pub(super) struct Lane {
     /// Taken in and not yet handed over.
     bytes: ByteQueue,
     slices: VecDeque<Slice>,
-    /// When the wire last began to be busy, and the bytes it took since: times come from their sum, so that rounding
+    /// When the pipe last began to be busy, and the bytes it took since: times come from their sum, so that rounding
     /// does not add up.
     busy_since: Duration,
     busy_bytes: u64,
@@ -42,12 +42,12 @@ struct Slice {
 pub(super) struct Delivery {
     /// Bytes that left the lane, spoilt or not.
     pub(super) bytes: usize,
-    /// Whether the wire broke after them.
+    /// Whether the pipe broke after them.
     pub(super) broken: bool,
 }
 
 impl Lane {
-    pub(super) fn new(options: &WireOptions, damage: Damage) -> Self {
+    pub(super) fn new(options: &PipeOptions, damage: Damage) -> Self {
         Self {
             speed: options.speed,
             delay: options.delay,
@@ -78,7 +78,7 @@ impl Lane {
         accepted.len()
     }
 
-    /// Bytes that can be taken in. Without a buffer, one slice is on the wire at a time.
+    /// Bytes that can be taken in. Without a buffer, one slice is in the pipe at a time.
     fn room(&self) -> usize {
         match self.buffer {
             0 if self.is_empty() => SLICE,
@@ -86,7 +86,7 @@ impl Lane {
         }
     }
 
-    /// Keeps the wire busy for `length` more bytes, from when it is free.
+    /// Keeps the pipe busy for `length` more bytes, from when it is free.
     fn occupy(&mut self, length: usize, now: Duration) {
         if self.free_at <= now {
             (self.busy_since, self.busy_bytes) = (now, 0);
@@ -140,7 +140,7 @@ mod tests {
     const MILLISECOND: Duration = Duration::from_millis(1);
 
     fn lane(speed: u64, delay: Duration, buffer: usize) -> Lane {
-        Lane::new(&WireOptions { speed: NonZeroU64::new(speed), delay, buffer }, Damage::None)
+        Lane::new(&PipeOptions { speed: NonZeroU64::new(speed), delay, buffer }, Damage::None)
     }
 
     /// When bytes arrive and how many have arrived by then.
@@ -170,7 +170,7 @@ mod tests {
         lane.accept(&[0; 100], 50 * MILLISECOND);
         assert_eq!(arrivals(&mut lane), [(100 * MILLISECOND, 100), (200 * MILLISECOND, 200)]);
         lane.accept(&[0; 100], 500 * MILLISECOND);
-        assert_eq!(arrivals(&mut lane), [(600 * MILLISECOND, 100)], "the wire was idle in between");
+        assert_eq!(arrivals(&mut lane), [(600 * MILLISECOND, 100)], "the pipe was idle in between");
     }
 
     #[test]

@@ -3,20 +3,20 @@
 use std::time::Duration;
 
 use super::Passage;
-use crate::wire::chance::Chance;
+use crate::chance::Chance;
 
 /// What stops a stream.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::wire) enum Interruption {
+pub(crate) enum Interruption {
     /// It stands still for so long.
     Stall(Duration),
-    /// The wire breaks, for good.
+    /// The pipe breaks, for good.
     Disconnect,
 }
 
 /// What is counted to find the place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::wire) enum Unit {
+pub(crate) enum Unit {
     /// Bytes.
     Byte,
     /// Packets: non-empty runs between zeros.
@@ -25,7 +25,7 @@ pub(in crate::wire) enum Unit {
 
 /// A stream that is interrupted before some of its bytes or packets.
 #[derive(Debug)]
-pub(in crate::wire) struct InterruptedStream {
+pub(crate) struct InterruptedStream {
     unit: Unit,
     interruption: Interruption,
     chance: Chance,

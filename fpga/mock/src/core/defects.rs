@@ -1,8 +1,7 @@
 //! What a fault does to the core's wires.
 
-use crate::faults::BoardFault;
-use crate::weights::ROUNDING;
-use crate::window::TAPS;
+use super::weights::ROUNDING;
+use super::window::TAPS;
 
 /// Lines of a bus that are stuck at 0 or at 1. The default is none.
 #[derive(Clone, Copy, Debug)]
@@ -19,7 +18,7 @@ impl Default for StuckBits {
 
 impl StuckBits {
     /// A bus with one line stuck. A line that the bus does not have changes nothing.
-    fn one(bit: u8, value: bool) -> Self {
+    pub(crate) fn one(bit: u8, value: bool) -> Self {
         let line = 1_u16.checked_shl(bit.into()).unwrap_or(0);
         Self { free: !line, high: if value { line } else { 0 } }
     }
@@ -33,8 +32,10 @@ impl StuckBits {
 /// A tap that does not carry its own sample.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DeadTap {
-    tap: u8,
-    reads: Option<u8>,
+    /// The tap, 0 for G0 to 6 for G6.
+    pub(crate) tap: u8,
+    /// The tap whose sample it carries; none for zero.
+    pub(crate) reads: Option<u8>,
 }
 
 impl DeadTap {
@@ -50,7 +51,7 @@ impl DeadTap {
 
 /// The core's wiring: as specified by default, with one part out of order under a fault.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Defects {
+pub(crate) struct CoreDefects {
     /// Address lines of the line memory, for reading and for writing.
     pub(crate) address_lines: StuckBits,
     /// Data lines of the line memory.
@@ -65,28 +66,15 @@ pub(crate) struct Defects {
     pub(crate) extra_delay: u32,
 }
 
-impl Defects {
-    /// The wiring of a board with `fault`. Faults that lie outside the core leave it as specified.
-    pub(crate) fn of(fault: Option<BoardFault>) -> Self {
-        let mut defects = Self {
+impl Default for CoreDefects {
+    fn default() -> Self {
+        Self {
             address_lines: StuckBits::default(),
             data_lines: StuckBits::default(),
             tap_offset: 0,
             rounding: ROUNDING,
             dead_tap: None,
             extra_delay: 0,
-        };
-        match fault {
-            Some(BoardFault::StuckData { bit, value }) => defects.data_lines = StuckBits::one(bit, value),
-            Some(BoardFault::StuckAddress { bit, value }) => {
-                defects.address_lines = StuckBits::one(bit, value);
-            }
-            Some(BoardFault::TapOffset { columns }) => defects.tap_offset = columns.into(),
-            Some(BoardFault::NoRounding) => defects.rounding = 0,
-            Some(BoardFault::DeadTap { tap, reads }) => defects.dead_tap = Some(DeadTap { tap, reads }),
-            Some(BoardFault::Late) => defects.extra_delay = 1,
-            _ => {}
         }
-        defects
     }
 }

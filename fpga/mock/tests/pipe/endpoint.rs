@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow_mock::{Broken, Endpoint, WireSetup};
+use halfrow_pipe::{Broken, Endpoint, PipeSetup};
 
 /// Sends back what it gets, and stops at an `x`.
 #[derive(Default)]
@@ -29,7 +29,7 @@ impl Endpoint for Echo {
 
 #[test]
 fn a_board_that_stops_breaks_the_wire_once_what_it_said_has_arrived() {
-    let mut wire = WireSetup::from_options(&[]).unwrap().connect(Echo::default());
+    let mut wire = PipeSetup::from_options(&[]).unwrap().connect(Echo::default());
     let mut incoming = Vec::new();
     assert_eq!(wire.exchange(b"ab", &mut incoming, Duration::ZERO), Ok(2));
     assert_eq!(wire.exchange(b"xc", &mut incoming, Duration::ZERO), Ok(2));

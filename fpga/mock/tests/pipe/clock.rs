@@ -2,12 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use halfrow_mock::{Board, Options, Wire, WireOptions};
+use halfrow_mock::{Board, Options};
+use halfrow_pipe::{Pipe, PipeOptions};
 
 use crate::support::{SILENCE, answer, echo, hello, wire};
 
 /// The time at which the answer to `bytes` is complete.
-fn answered_at(wire: &mut Wire, bytes: &[u8]) -> Duration {
+fn answered_at(wire: &mut Pipe<Board>, bytes: &[u8]) -> Duration {
     let (mut rest, mut incoming, mut last) = (bytes, Vec::new(), Duration::ZERO);
     loop {
         let heard = incoming.len();
@@ -97,5 +98,5 @@ fn the_rate_is_the_one_that_was_asked_for() {
     assert_eq!(wire(&[]).bytes_per_second(), None);
     assert_eq!(wire(&[("speed", "1200000")]).bytes_per_second(), Some(1.2e6));
     let board = Board::new(&Options::default(), None).unwrap();
-    assert_eq!(Wire::new(board, WireOptions::default(), None).bytes_per_second(), None);
+    assert_eq!(Pipe::new(board, PipeOptions::default(), None).bytes_per_second(), None);
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow_mock::{Broken, Parameters, Place, WireFault, catalogue};
+use halfrow_pipe::{Broken, FAULTS, Parameters};
 
 use crate::support::{answer, echo, echo_reply, hello, sequences, status, talk, wire};
 
@@ -122,30 +122,31 @@ fn a_run_comes_out_the_same_again_and_with_another_seed_otherwise() {
 }
 
 #[test]
-fn the_catalogue_says_the_true_defaults() {
-    let wire_faults = catalogue().iter().filter(|fault| fault.place == Place::Wire);
-    for fault in wire_faults {
-        let words = fault.summary.split(|letter| " ,;()".contains(letter));
+fn what_the_summary_says_is_what_holds_without_parameters() {
+    for fault in FAULTS {
+        let summary = fault.info.summary();
+        let words = summary.split(|letter| " ,()".contains(letter));
         let mut said: Parameters = words
             .filter_map(|word| word.split_once('='))
-            .filter(|(_, value)| !["N", "P"].contains(value))
+            .filter(|(_, value)| *value != "N")
             .map(|(key, value)| (key.to_owned(), value.to_owned()))
             .collect();
-        assert!(said.len() >= 3, "{}", fault.summary);
-        let default = WireFault::from_name(fault.name, &mut Parameters::new()).unwrap();
-        assert_eq!(WireFault::from_name(fault.name, &mut said), Ok(default), "{}", fault.summary);
-        assert!(said.is_empty(), "{} has no {said:?}", fault.name);
+        assert!(said.len() >= 3, "{summary}");
+        assert_eq!(fault.make(&mut said), fault.make(&mut Parameters::new()), "{summary}");
+        assert!(said.is_empty(), "{} has no {said:?}", fault.info.name);
     }
 }
 
 #[test]
-fn the_catalogue_says_all_places_where_a_fault_can_strike() {
-    for fault in catalogue().iter().filter(|fault| fault.place == Place::Wire) {
-        for key in ["byte", "packet", "rate"] {
-            let mut parameters = Parameters::from([(key.to_owned(), "1".to_owned())]);
-            WireFault::from_name(fault.name, &mut parameters).unwrap();
-            let said = fault.summary.contains(&format!("{key}="));
-            assert_eq!(parameters.is_empty(), said, "{key} in {}", fault.summary);
+fn every_place_that_a_fault_lists_makes_another_fault() {
+    for fault in FAULTS {
+        let default = fault.make(&mut Parameters::new()).unwrap();
+        let mut made = vec![default];
+        for key in ["byte", "packet", "rate"].into_iter().filter(|key| fault.info.takes(key)) {
+            let other = fault.make(&mut Parameters::from([(key.to_owned(), "1".to_owned())])).unwrap();
+            assert!(!made.contains(&other), "{key} of {}", fault.info.name);
+            made.push(other);
         }
+        assert!(made.len() > 2, "{} strikes at one place alone", fault.info.name);
     }
 }

@@ -1,8 +1,8 @@
 //! The weighted sum: weights between the kernel's nodes, times the taps.
 
-use crate::kernel::{Kernel, NODES};
-use crate::source::FRACTION_BITS;
-use crate::window::TAPS;
+use super::kernel::{Kernel, NODES};
+use super::source::FRACTION_BITS;
+use super::window::TAPS;
 
 /// Fractional bits of a weight.
 const WEIGHT_BITS: u32 = 14;

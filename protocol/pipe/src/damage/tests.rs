@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::*;
-use crate::faults::Parameters;
+use crate::{FAULTS, Fault, Parameters};
 
 /// Packets at the bytes 1 to 3, 6 to 9, and 11 and 12.
 const STREAM: &[u8] = b"\0abc\0\0defg\0hi\0";
@@ -11,7 +11,7 @@ const STREAM: &[u8] = b"\0abc\0\0defg\0hi\0";
 fn damage(name: &str, parameters: &[(&str, &str)]) -> Damage {
     let mut parameters: Parameters =
         parameters.iter().map(|(key, value)| ((*key).to_owned(), (*value).to_owned())).collect();
-    let fault = WireFault::from_name(name, &mut parameters).unwrap();
+    let fault = Fault::named(FAULTS, name, &mut parameters).unwrap();
     assert_eq!(parameters, Parameters::new(), "what was given is of use");
     Damage::new(Some(fault), Side::Host)
 }
@@ -218,7 +218,7 @@ fn a_fault_does_not_see_how_the_stream_is_cut() {
 #[test]
 fn a_direction_can_be_spared() {
     let mut parameters = Parameters::from([("toward".to_owned(), "board".to_owned())]);
-    let fault = WireFault::from_name("drop", &mut parameters).unwrap();
+    let fault = Fault::named(FAULTS, "drop", &mut parameters).unwrap();
     assert!(matches!(Damage::new(Some(fault), Side::Host), Damage::None));
     assert!(matches!(Damage::new(Some(fault), Side::Board), Damage::Bytes(_)));
 }
@@ -226,7 +226,7 @@ fn a_direction_can_be_spared() {
 #[test]
 fn the_directions_throw_their_own_dice() {
     let fault =
-        WireFault::from_name("drop", &mut Parameters::from([("rate".to_owned(), "0.5".to_owned())])).unwrap();
+        Fault::named(FAULTS, "drop", &mut Parameters::from([("rate".to_owned(), "0.5".to_owned())])).unwrap();
     let left = |side| {
         let mut out = Vec::new();
         Damage::new(Some(fault), side).pass(&(1..=100).collect::<Vec<u8>>(), &mut out);

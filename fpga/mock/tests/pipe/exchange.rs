@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use halfrow_mock::{Place, catalogue};
+use halfrow_mock::catalogue;
+use halfrow_pipe::Place;
 use proptest::prelude::*;
 
 use crate::support::{answer, echo, echo_reply, hello, wire};
@@ -99,14 +100,14 @@ fn without_a_buffer_the_board_is_listened_to_even_if_its_words_get_lost() {
 proptest! {
     #[test]
     fn whatever_is_sent_over_whatever_wire_the_clock_goes_on_and_all_is_taken(
-        fault in prop::sample::select(catalogue()),
+        fault in prop::sample::select(catalogue().collect::<Vec<_>>()),
         place in prop::sample::select(vec![("packet", "1"), ("rate", "0.2"), ("rate", "1")]),
         (buffer, speed) in (prop::sample::select(vec!["0", "1", "700"]), prop::sample::select(vec!["7", "1000000000000"])),
         // Many zeros, so that there are packets.
         sent in prop::collection::vec(prop_oneof![Just(0), any::<u8>()], 0..2000),
     ) {
         let mut options = vec![("fault", fault.name), ("buffer", buffer), ("speed", speed)];
-        options.extend((fault.place == Place::Wire).then_some(place));
+        options.extend((fault.place == Place::Pipe).then_some(place));
         let mut wire = wire(&options);
         let (mut rest, mut incoming) = (sent.as_slice(), Vec::new());
         while !rest.is_empty() {

@@ -1,6 +1,6 @@
 //! The line memory: the one row of samples that the core holds.
 
-use crate::defects::StuckBits;
+use super::defects::StuckBits;
 
 /// Width of the line memory in bits. Narrower samples leave the upper bits zero.
 const SAMPLE_MASK: u16 = 0x0FFF;

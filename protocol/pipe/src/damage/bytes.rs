@@ -1,10 +1,10 @@
 //! Single bytes that suffer.
 
-use crate::wire::chance::Chance;
+use crate::chance::Chance;
 
 /// What happens to a byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::wire) enum ByteHarm {
+pub(crate) enum ByteHarm {
     /// One of its bits, picked at random, flips.
     Flip,
     /// It gets lost.
@@ -17,7 +17,7 @@ pub(in crate::wire) enum ByteHarm {
 
 /// A stream of which some bytes suffer.
 #[derive(Debug)]
-pub(in crate::wire) struct SpoiltBytes {
+pub(crate) struct SpoiltBytes {
     harm: ByteHarm,
     chance: Chance,
     /// Bytes that have come, which is the next one's number.

@@ -5,7 +5,7 @@ mod interruption;
 mod packets;
 
 use super::chance::Chance;
-use super::fault::{Harm, WireFault};
+use super::fault::{Harm, PipeFault};
 
 use bytes::SpoiltBytes;
 use interruption::InterruptedStream;
@@ -15,7 +15,7 @@ pub(super) use bytes::ByteHarm;
 pub(super) use interruption::{Interruption, Unit};
 pub(super) use packets::PacketHarm;
 
-/// An end of the wire.
+/// An end of the pipe.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Board,
@@ -42,7 +42,7 @@ pub(super) struct Passage {
 
 impl Damage {
     /// What `fault` does to bytes towards `side`.
-    pub(super) fn new(fault: Option<WireFault>, side: Side) -> Self {
+    pub(super) fn new(fault: Option<PipeFault>, side: Side) -> Self {
         let Some(fault) = fault.filter(|fault| fault.concerns(side)) else { return Self::None };
         let chance = Chance::new(fault.occurrence, fault.seed(side));
         match fault.harm {

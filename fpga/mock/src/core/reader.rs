@@ -2,13 +2,29 @@
 
 use std::sync::Arc;
 
-use crate::core::{Leaving, RowBinding};
-use crate::defects::Defects;
-use crate::kernel::Kernel;
-use crate::ring::Ring;
-use crate::source::{FRACTION_BITS, Source};
-use crate::weights::Weights;
-use crate::window::Window;
+use super::defects::CoreDefects;
+use super::delay::Leaving;
+use super::kernel::Kernel;
+use super::ring::Ring;
+use super::source::{FRACTION_BITS, Source};
+use super::weights::Weights;
+use super::window::Window;
+use crate::depth::Depth;
+
+/// What a row is bound to when its first sample enters. It keeps it until its last sample has left.
+#[derive(Clone, Debug)]
+pub struct RowBinding {
+    /// Columns W.
+    pub width: u16,
+    /// Twice the optical centre's column, C.
+    pub centre2: u16,
+    /// Bits a sample; outputs are clamped to it.
+    pub depth: Depth,
+    /// The row's table entry Q, 1/k in units of 2^-24 (Eq. 9).
+    pub factor: u32,
+    /// The interpolation kernel.
+    pub kernel: Arc<Kernel>,
+}
 
 /// The state of the row that leaves.
 #[derive(Debug)]
@@ -24,7 +40,7 @@ pub(crate) struct Reader {
 impl Reader {
     /// Starts to read a row whose first sample went to the address `base`, loading the whole window.
     #[cold]
-    pub(crate) fn start(binding: &RowBinding, base: usize, ring: &Ring, defects: &Defects) -> Self {
+    pub(crate) fn start(binding: &RowBinding, base: usize, ring: &Ring, defects: &CoreDefects) -> Self {
         let row = RowInRing { base, width: i32::from(binding.width), offset: defects.tap_offset };
         let source = Source::new(binding.centre2, binding.factor);
         let window = Window::load(source.position().n, |column| row.sample(ring, column));
@@ -33,7 +49,7 @@ impl Reader {
     }
 
     /// One pixel clock: the sample of the next column, until the row is through.
-    pub(crate) fn make(&mut self, ring: &Ring, defects: &Defects) -> Option<Leaving> {
+    pub(crate) fn make(&mut self, ring: &Ring, defects: &CoreDefects) -> Option<Leaving> {
         let column = self.column;
         if i32::from(column) >= self.row.width {
             return None;

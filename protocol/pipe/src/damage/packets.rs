@@ -1,10 +1,10 @@
 //! Whole packets that suffer.
 
-use crate::wire::chance::Chance;
+use crate::chance::Chance;
 
 /// What happens to a packet, a non-empty run between zeros.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::wire) enum PacketHarm {
+pub(crate) enum PacketHarm {
     /// One of its bits, picked at random, flips.
     Flip,
     /// It gets lost; the zeros around it stay.
@@ -19,7 +19,7 @@ pub(in crate::wire) enum PacketHarm {
 
 /// A stream of which some packets suffer.
 #[derive(Debug)]
-pub(in crate::wire) struct SpoiltPackets {
+pub(crate) struct SpoiltPackets {
     harm: PacketHarm,
     chance: Chance,
     /// Packets that have begun, which is the next one's number.

@@ -1,6 +1,13 @@
 //! The pipeline between the ring's read and the output.
 
-use crate::core::Leaving;
+/// A sample that leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Leaving {
+    /// The corrected sample.
+    pub sample: u16,
+    /// Its column, from 0.
+    pub column: u16,
+}
 
 /// Samples on their way out. The line moves on every pixel clock, whether a sample entered it or not.
 #[derive(Debug)]

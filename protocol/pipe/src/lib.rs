@@ -1,4 +1,4 @@
-//! The wire: a board behind a byte pipe, on a virtual clock.
+//! The byte pipe to a board in this process, on a virtual clock: it has a speed and a delay, and faults on purpose.
 //!
 //! ```text
 //! host ── exchange ─► Lane to the board ─► Endpoint::receive
@@ -10,6 +10,7 @@
 //! It is simulated event by event. The clock stands still while bytes can move; when none can, it jumps to the next
 //! arrival. So a run takes no more of the real clock than its computing does, and comes out the same every time.
 
+mod catalogue;
 mod chance;
 mod damage;
 mod endpoint;
@@ -22,31 +23,30 @@ mod value;
 
 use std::time::Duration;
 
-use crate::board::Board;
-
 use damage::{Damage, Side};
 use lane::Lane;
 use queue::ByteQueue;
 
+pub use catalogue::{Fault, FaultError, FaultInfo, Parameter, Parameters, Place, Range, Values};
 pub use endpoint::Endpoint;
-pub use fault::{WireFault, WireFaultError};
-pub use options::WireOptions;
-pub use target::{WireError, WireSetup};
-pub use value::WireValueError;
+pub use fault::{FAULTS, PipeFault};
+pub use options::PipeOptions;
+pub use target::{BoardOptions, NoOptions, PipeSetup, TargetError};
+pub use value::{Limits, ValueError, parse_word};
 
-/// A wire that carries nothing any more.
+/// A pipe that carries nothing any more.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Broken<F> {
     /// The fault `disconnect` has struck.
     #[error("the wire broke at {:.3} s and stays broken; open a new one", at.as_secs_f64())]
     Disconnected {
-        /// When it broke, on the wire's clock.
+        /// When it broke, on the pipe's clock.
         at: Duration,
     },
     /// The board has failed.
     #[error("the board stopped at {:.3} s", at.as_secs_f64())]
     Board {
-        /// When, on the wire's clock.
+        /// When, on the pipe's clock.
         at: Duration,
         /// Why.
         #[source]
@@ -56,9 +56,9 @@ pub enum Broken<F> {
 
 /// A board and the byte pipe to it.
 #[derive(Debug)]
-pub struct Wire<B: Endpoint = Board> {
+pub struct Pipe<B: Endpoint> {
     board: B,
-    options: WireOptions,
+    options: PipeOptions,
     now: Duration,
     to_board: Lane,
     to_host: Lane,
@@ -69,10 +69,10 @@ pub struct Wire<B: Endpoint = Board> {
     broken: Option<Broken<B::Failure>>,
 }
 
-impl<B: Endpoint> Wire<B> {
-    /// A wire to `board`, which is switched on now: the clock starts at 0.
+impl<B: Endpoint> Pipe<B> {
+    /// A pipe to `board`, which is switched on now: the clock starts at 0.
     #[must_use]
-    pub fn new(board: B, options: WireOptions, fault: Option<WireFault>) -> Self {
+    pub fn new(board: B, options: PipeOptions, fault: Option<PipeFault>) -> Self {
         let lane = |side| Lane::new(&options, Damage::new(fault, side));
         Self {
             to_board: lane(Side::Board),
@@ -91,7 +91,7 @@ impl<B: Endpoint> Wire<B> {
     /// `wait` has passed on the virtual clock, 0.
     ///
     /// # Errors
-    /// [`Broken`] once the wire is broken. Bytes that moved in the call in which it broke are returned by that
+    /// [`Broken`] once the pipe is broken. Bytes that moved in the call in which it broke are returned by that
     /// call, and the next one fails.
     pub fn exchange(
         &mut self,
@@ -125,7 +125,7 @@ impl<B: Endpoint> Wire<B> {
         self.now
     }
 
-    /// Bytes per second that either direction carries; none for a wire without a limit.
+    /// Bytes per second that either direction carries; none for a pipe without a limit.
     #[must_use]
     pub fn bytes_per_second(&self) -> Option<f64> {
         self.options.speed.map(|speed| speed.get() as f64)

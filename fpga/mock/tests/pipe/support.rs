@@ -3,7 +3,8 @@
 use std::convert::Infallible;
 use std::time::Duration;
 
-use halfrow_mock::{Broken, Wire, WireError};
+use halfrow_mock::{Board, ConnectError, connect};
+use halfrow_pipe::{Broken, Pipe, TargetError};
 use halfrow_protocol::message::{Hello, Status};
 use halfrow_protocol::{Decoder, Encoder, Header, Reply, Request};
 
@@ -13,13 +14,15 @@ pub(crate) const SILENCE: Duration = Duration::from_secs(10_000);
 /// The session that a board opens first.
 const SESSION: u8 = 1;
 
-pub(crate) fn wire(options: &[(&str, &str)]) -> Wire {
-    Wire::from_options(options).unwrap()
+pub(crate) fn wire(options: &[(&str, &str)]) -> Pipe<Board> {
+    connect(options).unwrap()
 }
 
 /// The error of options that make no wire, with its causes.
-pub(crate) fn refusal(options: &[(&str, &str)]) -> (WireError, String) {
-    let error = Wire::from_options(options).unwrap_err();
+pub(crate) fn refusal(options: &[(&str, &str)]) -> (TargetError, String) {
+    let ConnectError::Target(error) = connect(options).unwrap_err() else {
+        panic!("{options:?} do not fit each other")
+    };
     let mut text = error.to_string();
     let mut cause = std::error::Error::source(&error);
     while let Some(error) = cause {
@@ -59,7 +62,7 @@ pub(crate) fn hello() -> Vec<u8> {
 }
 
 /// Sends `bytes` and listens until the wire is silent. Returns what came, or with the error what came before it.
-pub(crate) fn talk(wire: &mut Wire, bytes: &[u8]) -> (Vec<u8>, Result<(), Broken<Infallible>>) {
+pub(crate) fn talk(wire: &mut Pipe<Board>, bytes: &[u8]) -> (Vec<u8>, Result<(), Broken<Infallible>>) {
     let (mut rest, mut incoming) = (bytes, Vec::new());
     loop {
         let heard = incoming.len();
@@ -75,7 +78,7 @@ pub(crate) fn talk(wire: &mut Wire, bytes: &[u8]) -> (Vec<u8>, Result<(), Broken
 }
 
 /// What comes back for `bytes` on a wire that does not break.
-pub(crate) fn answer(wire: &mut Wire, bytes: &[u8]) -> Vec<u8> {
+pub(crate) fn answer(wire: &mut Pipe<Board>, bytes: &[u8]) -> Vec<u8> {
     let (incoming, done) = talk(wire, bytes);
     done.unwrap();
     incoming
@@ -92,7 +95,7 @@ pub(crate) fn sequences(mut bytes: &[u8]) -> Vec<u16> {
 }
 
 /// The board's counters.
-pub(crate) fn status(wire: &mut Wire) -> Status {
+pub(crate) fn status(wire: &mut Pipe<Board>) -> Status {
     let bytes = answer(wire, &packet(999, &Request::Status { clear: false }));
     let (mut decoder, mut rest) = (Decoder::new(), bytes.as_slice());
     let packet = decoder.next(&mut rest).unwrap().unwrap();
