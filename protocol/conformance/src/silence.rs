@@ -5,6 +5,7 @@ use std::time::Duration;
 use halfrow_protocol::message::{Hello, RefusalCode, Request, Reset, ResetLevel};
 use halfrow_protocol::{Kind, VERSION};
 
+use crate::Boards;
 use crate::bench::{Bench, HELLO};
 
 const OTHER: Request<'_> =
@@ -16,37 +17,32 @@ fn other_is_told(bench: &mut Bench, milliseconds: u64) -> Option<(RefusalCode, u
     bench.ask(&OTHER).refusal()
 }
 
-#[test]
-fn another_host_is_told_for_how_long_the_board_is_held() {
-    let mut bench = Bench::greeted();
+pub(crate) fn another_host_is_told_for_how_long_the_board_is_held(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     for (milliseconds, tenths) in [(0, 100), (2700, 73), (5000, 50), (9900, 1)] {
         assert_eq!(other_is_told(&mut bench, milliseconds), Some((RefusalCode::Held, tenths)));
     }
 }
 
-#[test]
-fn a_refusal_of_hello_has_the_session_number_of_hello() {
-    assert_eq!(Bench::greeted().ask(&OTHER).header.session, 0);
+pub(crate) fn a_refusal_of_hello_has_the_session_number_of_hello(on: &dyn Boards) {
+    assert_eq!(Bench::greeted(on).ask(&OTHER).header.session, 0);
 }
 
-#[test]
-fn the_board_is_free_after_10_s_and_not_before() {
-    let mut bench = Bench::greeted();
+pub(crate) fn the_board_is_free_after_10_s_and_not_before(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.now = Duration::from_nanos(9_999_999_999);
     assert_eq!(bench.refused(&OTHER), (RefusalCode::Held, 1));
     assert_eq!(other_is_told(&mut bench, 10_000), None);
 }
 
-#[test]
-fn the_host_that_holds_the_board_may_open_another_session_at_any_time() {
-    let mut bench = Bench::greeted();
+pub(crate) fn the_host_that_holds_the_board_may_open_another_session_at_any_time(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let old = bench.session;
     assert_ne!(bench.greet(&Hello { nonce: 1, ..HELLO }).session, old);
 }
 
-#[test]
-fn every_whole_packet_of_the_holder_counts_even_one_that_is_refused() {
-    let mut bench = Bench::greeted();
+pub(crate) fn every_whole_packet_of_the_holder_counts_even_one_that_is_refused(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.now = Duration::from_secs(6);
     bench.say(&Request::RowAck);
     assert_eq!(other_is_told(&mut bench, 9000), Some((RefusalCode::Held, 70)));
@@ -55,17 +51,15 @@ fn every_whole_packet_of_the_holder_counts_even_one_that_is_refused() {
     assert_eq!(other_is_told(&mut bench, 18_000), Some((RefusalCode::Held, 10)));
 }
 
-#[test]
-fn a_repeated_hello_of_the_holder_counts() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_repeated_hello_of_the_holder_counts(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.now = Duration::from_secs(6);
     bench.greet(&HELLO);
     assert_eq!(other_is_told(&mut bench, 11_000), Some((RefusalCode::Held, 50)));
 }
 
-#[test]
-fn damaged_and_foreign_packets_do_not_count() {
-    let mut bench = Bench::greeted();
+pub(crate) fn damaged_and_foreign_packets_do_not_count(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.now = Duration::from_secs(6);
     let mut damaged = bench.packet(&Request::Echo(b"damaged"));
     damaged[8] ^= 0x10;
@@ -78,16 +72,14 @@ fn damaged_and_foreign_packets_do_not_count() {
     assert_eq!(other_is_told(&mut bench, 10_000), None);
 }
 
-#[test]
-fn a_closed_session_holds_nothing() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_closed_session_holds_nothing(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.done(&Request::Reset(Reset { level: ResetLevel::Session, next_row: 0 }));
     assert_eq!(bench.ask(&OTHER).refusal(), None);
 }
 
-#[test]
-fn a_host_of_another_version_is_told_so_even_while_the_board_is_held() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_host_of_another_version_is_told_so_even_while_the_board_is_held(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let header = bench.header(Kind::Hello.code());
     let payload = [1, 0, 0, 0, 2, 0, 0, 0, VERSION + 1, VERSION + 1, 0];
     assert_eq!(bench.answer(&header, &payload).refusal(), Some((RefusalCode::Version, VERSION.into())));

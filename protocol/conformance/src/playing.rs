@@ -1,6 +1,5 @@
 //! Section 5 of WIRE.md: samples, latencies and gaps of the rows that come back.
 
-use halfrow_mock::{Kernel, Options, UNSTRETCHED};
 use halfrow_protocol::message::{Configuration, Hello, Request};
 use halfrow_protocol::samples;
 use proptest::prelude::*;
@@ -8,13 +7,14 @@ use proptest::prelude::*;
 use crate::bench::{Bench, HELLO, rows_of};
 use crate::frames::{Row, configuration, lean, ready, row, samples_of};
 use crate::golden_rows::{HERMITE, KEYS};
-use crate::material::{GOLDEN_FACTOR, hermite, keys, noise_row};
-use crate::subject::{CASES, offered};
+use crate::material::{GOLDEN_FACTOR, Nodes, UNSTRETCHED, hermite, keys, noise_row};
+use crate::{Boards, Build, cases};
+
 use crate::uploads::TableSet;
 
 /// A board for frames of one row with this kernel and the golden factor.
-fn golden(kernel: &Kernel) -> Bench {
-    let mut bench = Bench::greeted();
+fn golden(on: &dyn Boards, kernel: &Nodes) -> Bench {
+    let mut bench = Bench::greeted(on);
     bench.done(&Request::Configure(configuration(1)));
     let tables = TableSet::new(&[GOLDEN_FACTOR], kernel);
     tables.upload(&mut bench);
@@ -22,16 +22,14 @@ fn golden(kernel: &Kernel) -> Bench {
     bench
 }
 
-#[test]
-fn the_golden_rows_come_out_of_the_wire() {
+pub(crate) fn the_golden_rows_come_out_of_the_wire(on: &dyn Boards) {
     for (kernel, expected) in [(hermite(), HERMITE), (keys(), KEYS)] {
-        assert_eq!(samples_of(&golden(&kernel).send_all(1, [0])[0].row()), expected);
+        assert_eq!(samples_of(&golden(on, &kernel).send_all(1, [0])[0].row()), expected);
     }
 }
 
-#[test]
-fn every_row_has_its_own_factor() {
-    let mut bench = Bench::greeted();
+pub(crate) fn every_row_has_its_own_factor(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.done(&Request::Configure(configuration(3)));
     let tables = TableSet::new(&[UNSTRETCHED, GOLDEN_FACTOR, UNSTRETCHED], &hermite());
     tables.upload(&mut bench);
@@ -46,9 +44,8 @@ fn every_row_has_its_own_factor() {
     assert_eq!(heard.len(), 3);
 }
 
-#[test]
-fn outputs_are_clamped_to_the_depth_and_inputs_go_in_as_they_are() {
-    let mut bench = ready(&Options::default(), 1);
+pub(crate) fn outputs_are_clamped_to_the_depth_and_inputs_go_in_as_they_are(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 1);
     bench.done(&Request::Configure(Configuration { bits: 8, ..configuration(1) }));
     let samples: Vec<u16> = (0..64).map(|column| column * 65).collect();
     let clamped: Vec<u16> = samples.iter().map(|&sample| sample.min(255)).collect();
@@ -56,16 +53,16 @@ fn outputs_are_clamped_to_the_depth_and_inputs_go_in_as_they_are() {
     assert_eq!(samples_of(&heard[0].row()), clamped);
 }
 
-#[test]
-fn a_row_leaves_when_half_of_the_next_has_entered_and_a_frame_when_its_last_row_was_played() {
-    let mut bench = ready(&Options::default(), 3);
+pub(crate) fn a_row_leaves_when_half_of_the_next_has_entered_and_a_frame_when_its_last_row_was_played(
+    on: &dyn Boards,
+) {
+    let mut bench = ready(on, &Build::default(), 3);
     let heard: Vec<_> = (0..3).map(|number| rows_of(&bench.send_all(3, [number]))).collect();
     assert_eq!(heard, [vec![], vec![0], vec![1, 2]]);
 }
 
-#[test]
-fn latencies_are_half_a_row_and_l() {
-    let of = |latency| Options { latency, ..Options::default() };
+pub(crate) fn latencies_are_half_a_row_and_l(on: &dyn Boards) {
+    let of = |latency| Build { latency, ..Build::default() };
     for (build, width, delay) in [
         (of(4), 64, 36),
         (of(12), 64, 44),
@@ -75,10 +72,10 @@ fn latencies_are_half_a_row_and_l() {
         (of(20), 2048, 1044),
         (lean(), 64, 43),
     ] {
-        if offered([build.clone()]).is_empty() {
+        if !on.offers(&build) {
             continue;
         }
-        let mut bench = ready(&build, 2);
+        let mut bench = ready(on, &build, 2);
         let centre2 = width - 1;
         bench.done(&Request::Configure(Configuration { width, centre2, ..configuration(2) }));
         for number in 0..2 {
@@ -98,9 +95,8 @@ fn latencies_are_half_a_row_and_l() {
     }
 }
 
-#[test]
-fn without_a_seed_nothing_pauses() {
-    let heard = ready(&Options::default(), 4).send_all(4, 0..4);
+pub(crate) fn without_a_seed_nothing_pauses(on: &dyn Boards) {
+    let heard = ready(on, &Build::default(), 4).send_all(4, 0..4);
     assert!(heard.iter().all(|packet| packet.row().pauses == 0));
 }
 
@@ -130,8 +126,8 @@ fn pauses(seed: u32, width: u16, height: u16) -> Vec<u16> {
 }
 
 /// Pauses of the rows of two frames that the board played with this seed and blanking.
-fn pauses_of_board(gap_seed: u32, blanking: u16, height: u16) -> Vec<u16> {
-    let mut bench = ready(&Options::default(), height);
+fn pauses_of_board(on: &dyn Boards, gap_seed: u32, blanking: u16, height: u16) -> Vec<u16> {
+    let mut bench = ready(on, &Build::default(), height);
     bench.done(&Request::Configure(Configuration { gap_seed, blanking, ..configuration(height) }));
     let mut heard = Vec::new();
     for number in 0..u32::from(height) * 2 {
@@ -142,41 +138,35 @@ fn pauses_of_board(gap_seed: u32, blanking: u16, height: u16) -> Vec<u16> {
     heard.iter().map(|packet| packet.row().pauses).collect()
 }
 
-#[test]
-fn the_tests_own_pattern_is_marsaglias() {
+pub(crate) fn the_tests_own_pattern_is_marsaglias(_: &dyn Boards) {
     assert_eq!(draws(2_463_534_242).next(), Some(723_471_715));
     // Counted in Python.
     assert_eq!(pauses(1, 64, 4), [6, 15, 9, 10]);
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(CASES / 8))]
-
-    #[test]
-    fn gaps_follow_the_seed_and_begin_anew_with_every_frame(
-        seed in 1_u32..,
+pub(crate) fn gaps_follow_the_seed_and_begin_anew_with_every_frame(on: &dyn Boards) {
+    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/playing.txt")), |(seed in 1_u32..,
         blanking in 0_u16..200,
-        height in 1_u16..6,
-    ) {
+        height in 1_u16..6,)| {
         let expected = pauses(seed, 64, height);
-        prop_assert_eq!(pauses_of_board(seed, blanking, height), [expected.clone(), expected].concat());
-    }
+        prop_assert_eq!(pauses_of_board(on, seed, blanking, height), [expected.clone(), expected].concat());
+    });
+}
 
-    #[test]
-    fn gaps_and_blanking_change_no_sample(seed: u32, blanking in 0_u16..2000) {
-        let mut bench = ready(&Options::default(), 2);
+pub(crate) fn gaps_and_blanking_change_no_sample(on: &dyn Boards) {
+    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/playing.txt")), |(seed in any::<u32>(), blanking in 0_u16..2000)| {
+        let mut bench = ready(on, &Build::default(), 2);
         let gaps = Configuration { gap_seed: seed, blanking, ..configuration(2) };
         bench.done(&Request::Configure(gaps));
         for (number, packet) in (0..).zip(bench.send_all(2, 0..4)) {
             prop_assert_eq!(samples_of(&packet.row()), row(2, number).samples);
         }
         prop_assert_eq!(bench.status().rows_out, 4);
-    }
+    });
 }
 
-#[test]
-fn samples_are_packed_two_in_three_bytes() {
-    let mut bench = ready(&Options::default(), 1);
+pub(crate) fn samples_are_packed_two_in_three_bytes(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 1);
     let mut row = row(1, 0);
     (row.samples[0], row.samples[1]) = (0x123, 0xabc);
     let heard = bench.send(&row);
@@ -184,9 +174,8 @@ fn samples_are_packed_two_in_three_bytes() {
     assert_eq!(heard[0].row().packed.len(), samples::packed_length(64));
 }
 
-#[test]
-fn a_row_that_a_new_session_cuts_off_leaves_no_trace() {
-    let mut bench = ready(&Options::default(), 2);
+pub(crate) fn a_row_that_a_new_session_cuts_off_leaves_no_trace(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 2);
     bench.send_all(2, [0]);
     bench.greet(&Hello { nonce: 8, ..HELLO });
     let other = Row { samples: noise_row(50, 64), ..row(2, 0) };

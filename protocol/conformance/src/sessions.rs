@@ -1,22 +1,20 @@
 //! Section 2 of WIRE.md: how a session opens, and what becomes of packets of another one.
 
-use halfrow_mock::Options;
 use halfrow_protocol::message::{Hello, RefusalCode, Reply, Request, Reset, ResetLevel};
 use halfrow_protocol::{Header, Kind};
 
 use crate::bench::{Bench, HELLO, rows_of, wire};
 use crate::frames::{ready, row};
-use crate::subject::offered;
+use crate::{Boards, Build, offered};
 
 const OTHER: Hello = Hello { nonce: 0x0bad_cafe, host: 0x0000_0b0b, take_over: false, ..HELLO };
 
-fn new_board() -> Bench {
-    Bench::switched_on(&Options::default(), None)
+fn new_board(on: &dyn Boards) -> Bench {
+    Bench::switched_on(on, &Build::default())
 }
 
-#[test]
-fn hello_is_answered_with_nonce_magic_version_and_session() {
-    let mut bench = new_board();
+pub(crate) fn hello_is_answered_with_nonce_magic_version_and_session(on: &dyn Boards) {
+    let mut bench = new_board(on);
     let answer = bench.done(&Request::Hello(HELLO));
     let (start, rest) = answer.payload.split_at(10);
     assert_eq!(start, [0x0d, 0xf0, 0x0d, 0x60, 0x48, 0x52, 0x57, 0x31, 1, answer.header.session]);
@@ -24,20 +22,18 @@ fn hello_is_answered_with_nonce_magic_version_and_session() {
     assert_ne!(answer.header.session, 0);
 }
 
-#[test]
-fn the_reply_to_hello_gives_credit_for_the_input_banks() {
+pub(crate) fn the_reply_to_hello_gives_credit_for_the_input_banks(on: &dyn Boards) {
     for row_banks_in in [2, 4, 7] {
-        let build = Options { row_banks_in, row_banks_out: row_banks_in.min(4), ..Options::default() };
-        for build in offered([build]) {
-            let mut bench = Bench::switched_on(&build, None);
+        let build = Build { row_banks_in, row_banks_out: row_banks_in.min(4), ..Build::default() };
+        for build in offered(on, [build]) {
+            let mut bench = Bench::switched_on(on, &build);
             assert_eq!(bench.done(&Request::Hello(HELLO)).header.window, row_banks_in.into());
         }
     }
 }
 
-#[test]
-fn a_repeated_nonce_is_answered_as_the_first_time_and_changes_nothing() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn a_repeated_nonce_is_answered_as_the_first_time_and_changes_nothing(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, 0..2);
     let before = bench.status();
     let session = bench.session;
@@ -47,9 +43,8 @@ fn a_repeated_nonce_is_answered_as_the_first_time_and_changes_nothing() {
     assert_eq!(after.packets, before.packets + 2, "the HELLO and this STATUS");
 }
 
-#[test]
-fn a_new_session_drops_rows_and_counters_and_keeps_configuration_and_tables() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn a_new_session_drops_rows_and_counters_and_keeps_configuration_and_tables(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [0, 1, 3]);
     let old = bench.session;
     bench.greet(&Hello { nonce: 1, ..HELLO });
@@ -60,18 +55,16 @@ fn a_new_session_drops_rows_and_counters_and_keeps_configuration_and_tables() {
     assert_eq!(rows_of(&bench.send_all(4, 0..4)), [0, 1, 2, 3]);
 }
 
-#[test]
-fn rows_are_counted_from_0_again_in_a_new_session() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn rows_are_counted_from_0_again_in_a_new_session(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, 0..4);
     bench.greet(&Hello { nonce: 1, ..HELLO });
     let numbers: Vec<_> = bench.send_all(4, 0..4).iter().map(|packet| packet.header.sequence).collect();
     assert_eq!(numbers, [0, 1, 2, 3]);
 }
 
-#[test]
-fn session_numbers_are_never_0_and_never_the_last_one() {
-    let mut bench = new_board();
+pub(crate) fn session_numbers_are_never_0_and_never_the_last_one(on: &dyn Boards) {
+    let mut bench = new_board(on);
     let mut last = 0;
     for nonce in 0..600 {
         let session = bench.greet(&Hello { nonce, ..HELLO }).session;
@@ -80,9 +73,8 @@ fn session_numbers_are_never_0_and_never_the_last_one() {
     }
 }
 
-#[test]
-fn without_a_common_version_the_refusal_names_the_boards() {
-    let mut bench = new_board();
+pub(crate) fn without_a_common_version_the_refusal_names_the_boards(on: &dyn Boards) {
+    let mut bench = new_board(on);
     for (version_min, version_max) in [(2, 255), (0, 0), (2, 1)] {
         let hello = Hello { version_min, version_max, ..HELLO };
         assert_eq!(bench.refused(&Request::Hello(hello)), (RefusalCode::Version, 1));
@@ -90,25 +82,22 @@ fn without_a_common_version_the_refusal_names_the_boards() {
     assert_eq!(bench.greet(&Hello { version_min: 0, version_max: 255, ..HELLO }).version, 1);
 }
 
-#[test]
-fn a_hello_that_is_too_short_is_refused() {
-    let mut bench = new_board();
+pub(crate) fn a_hello_that_is_too_short_is_refused(on: &dyn Boards) {
+    let mut bench = new_board(on);
     let header = bench.header(Kind::Hello.code());
     assert_eq!(bench.answer(&header, &[0; 10]).refusal(), Some((RefusalCode::Payload, 0)));
 }
 
-#[test]
-fn hello_may_carry_fields_of_a_later_version() {
-    let mut bench = new_board();
+pub(crate) fn hello_may_carry_fields_of_a_later_version(on: &dyn Boards) {
+    let mut bench = new_board(on);
     let header = bench.header(Kind::Hello.code());
     let mut payload = vec![0; 8];
     payload.extend([1, 9, 0, 0xaa, 0xbb]);
     assert_eq!(bench.answer(&header, &payload).refusal(), None);
 }
 
-#[test]
-fn outside_a_session_all_but_hello_is_refused() {
-    let mut bench = new_board();
+pub(crate) fn outside_a_session_all_but_hello_is_refused(on: &dyn Boards) {
+    let mut bench = new_board(on);
     let reset = Request::Reset(Reset { level: ResetLevel::Rows, next_row: 0 });
     for request in [Request::Capabilities, Request::Status { clear: false }, Request::Echo(b"?"), reset] {
         for session in [0, 1, 255] {
@@ -120,9 +109,8 @@ fn outside_a_session_all_but_hello_is_refused() {
     }
 }
 
-#[test]
-fn a_refusal_of_a_foreign_packet_carries_its_session_number() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_refusal_of_a_foreign_packet_carries_its_session_number(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let open = bench.session;
     for session in (0..=255).filter(|&session| session != open) {
         bench.session = session;
@@ -135,9 +123,8 @@ fn a_refusal_of_a_foreign_packet_carries_its_session_number() {
     assert_eq!((status.foreign_packets, status.refusals), (255, 255));
 }
 
-#[test]
-fn the_session_is_looked_at_before_kind_and_payload() {
-    let mut bench = Bench::greeted();
+pub(crate) fn the_session_is_looked_at_before_kind_and_payload(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.session += 1;
     for kind in [0x55, Kind::Status.code()] {
         let header = bench.header(kind);
@@ -145,9 +132,8 @@ fn the_session_is_looked_at_before_kind_and_payload() {
     }
 }
 
-#[test]
-fn a_foreign_acknowledgement_is_counted_and_not_answered() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_foreign_acknowledgement_is_counted_and_not_answered(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let open = bench.session;
     bench.session = open + 1;
     assert_eq!(bench.say(&Request::RowAck), []);
@@ -156,9 +142,8 @@ fn a_foreign_acknowledgement_is_counted_and_not_answered() {
     assert_eq!((status.foreign_packets, status.refusals), (1, 0));
 }
 
-#[test]
-fn a_foreign_packet_is_not_carried_out() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn a_foreign_packet_is_not_carried_out(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, 0..2);
     let open = bench.session;
     (bench.session, bench.window) = (open + 1, 1);
@@ -169,9 +154,8 @@ fn a_foreign_packet_is_not_carried_out() {
     assert_eq!((status.next_row_in, status.next_row_out, status.generation), (2, 0, 1));
 }
 
-#[test]
-fn the_window_of_hello_is_not_looked_at() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn the_window_of_hello_is_not_looked_at(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, 0..2);
     bench.window = 1;
     bench.done(&Request::Hello(HELLO));
@@ -179,9 +163,8 @@ fn the_window_of_hello_is_not_looked_at() {
     assert_eq!(bench.status().next_row_out, 0);
 }
 
-#[test]
-fn a_hello_that_names_a_session_is_answered_with_the_one_it_opens() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_hello_that_names_a_session_is_answered_with_the_one_it_opens(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     for session in [bench.session, 77] {
         let hello = Hello { nonce: session.into(), ..HELLO };
         let header = Header { session, ..bench.header(Kind::Hello.code()) };
@@ -192,9 +175,8 @@ fn a_hello_that_names_a_session_is_answered_with_the_one_it_opens() {
     }
 }
 
-#[test]
-fn whoever_takes_over_has_the_board_and_the_other_one_is_told() {
-    let mut bench = Bench::greeted();
+pub(crate) fn whoever_takes_over_has_the_board_and_the_other_one_is_told(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let old = bench.session;
     bench.greet(&Hello { take_over: true, ..OTHER });
     let new = bench.session;
@@ -206,9 +188,8 @@ fn whoever_takes_over_has_the_board_and_the_other_one_is_told() {
     assert_eq!(bench.refused(&Request::Hello(Hello { nonce: 9, ..HELLO })), (RefusalCode::Held, 100));
 }
 
-#[test]
-fn any_take_over_but_0_is_one() {
-    let mut bench = Bench::greeted();
+pub(crate) fn any_take_over_but_0_is_one(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let header = bench.header(Kind::Hello.code());
     let mut payload = Vec::new();
     Request::Hello(OTHER).write(&mut payload);

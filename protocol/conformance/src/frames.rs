@@ -1,25 +1,26 @@
 //! Frames of the specification's samples, 64 columns wide, and boards that are ready for them.
 
-use halfrow_mock::{BoardFault, Options, TapCount};
 use halfrow_protocol::message::{Configuration, Request, RowIn, RowOut, RowPlace};
 use halfrow_protocol::samples;
 
-use crate::bench::{Bench, HELLO, Heard};
 use crate::material::noise_row;
 use crate::uploads::TableSet;
+use crate::{Bench, Boards, Build, HELLO, Heard};
 
 /// Columns of a row.
-pub(crate) const WIDTH: u16 = 64;
+pub const WIDTH: u16 = 64;
 
 /// A row on its way to the board.
 #[derive(Clone, Debug)]
-pub(crate) struct Row {
-    pub(crate) place: RowPlace,
-    pub(crate) samples: Vec<u16>,
+pub struct Row {
+    /// Where it belongs.
+    pub place: RowPlace,
+    /// Its samples.
+    pub samples: Vec<u16>,
 }
 
 /// The row with this number in frames of `height` rows, the first of which is frame 0.
-pub(crate) fn row(height: u16, row_sequence: u32) -> Row {
+pub fn row(height: u16, row_sequence: u32) -> Row {
     let frame = (row_sequence / u32::from(height)) as u16;
     let row = (row_sequence % u32::from(height)) as u16;
     let place = RowPlace { row_sequence, frame, row, width: WIDTH, last: row + 1 == height };
@@ -28,37 +29,34 @@ pub(crate) fn row(height: u16, row_sequence: u32) -> Row {
 }
 
 /// The samples of a row that came back.
-pub(crate) fn samples_of(row: &RowOut<'_>) -> Vec<u16> {
+pub fn samples_of(row: &RowOut<'_>) -> Vec<u16> {
     let mut unpacked = vec![0; row.place.width.into()];
     samples::unpack(row.packed, &mut unpacked);
     unpacked
 }
 
 /// A configuration for 12-bit rows with the centre in the middle.
-pub(crate) fn configuration(height: u16) -> Configuration {
+pub fn configuration(height: u16) -> Configuration {
     Configuration { width: WIDTH, height, centre2: WIDTH - 1, blanking: 0, gap_seed: 0, bits: 12 }
 }
 
 /// A build with five taps and one bank of tables.
-pub(crate) fn lean() -> Options {
-    Options { taps: TapCount::Five, latency: 11, table_banks: 1, ..Options::default() }
+#[must_use]
+pub fn lean() -> Build {
+    Build { taps: 5, latency: 11, table_banks: 1, ..Build::default() }
 }
 
 /// A board of this build that is ready for frames of `height` rows and changes no sample.
-pub(crate) fn ready(options: &Options, height: u16) -> Bench {
-    ready_with(options, None, height)
-}
-
-/// The same with a fault.
-pub(crate) fn ready_with(options: &Options, fault: Option<BoardFault>, height: u16) -> Bench {
-    let mut bench = Bench::switched_on(options, fault);
+#[must_use]
+pub fn ready(on: &dyn Boards, build: &Build, height: u16) -> Bench {
+    let mut bench = Bench::switched_on(on, build);
     bench.greet(&HELLO);
     make_ready(&mut bench, height);
     bench
 }
 
 /// Configures for frames of `height` rows and commits tables that change no sample as generation 1, for frame 0.
-pub(crate) fn make_ready(bench: &mut Bench, height: u16) {
+pub fn make_ready(bench: &mut Bench, height: u16) {
     let tables = TableSet::unstretched(height);
     bench.done(&Request::Configure(configuration(height)));
     tables.upload(bench);
@@ -67,20 +65,20 @@ pub(crate) fn make_ready(bench: &mut Bench, height: u16) {
 
 impl Bench {
     /// The bytes of a ROW_IN.
-    pub(crate) fn row_packet(&mut self, row: &Row) -> Vec<u8> {
+    pub fn row_packet(&mut self, row: &Row) -> Vec<u8> {
         let mut packed = Vec::new();
         samples::pack(&row.samples, &mut packed);
         self.packet(&Request::RowIn(RowIn { place: row.place, packed: &packed }))
     }
 
     /// Sends a row and returns all that comes back.
-    pub(crate) fn send(&mut self, row: &Row) -> Vec<Heard> {
+    pub fn send(&mut self, row: &Row) -> Vec<Heard> {
         let packet = self.row_packet(row);
         self.receive(&packet)
     }
 
     /// Sends the rows with these numbers, a packet at a time.
-    pub(crate) fn send_all(&mut self, height: u16, numbers: impl IntoIterator<Item = u32>) -> Vec<Heard> {
+    pub fn send_all(&mut self, height: u16, numbers: impl IntoIterator<Item = u32>) -> Vec<Heard> {
         numbers.into_iter().flat_map(|number| self.send(&row(height, number))).collect()
     }
 }

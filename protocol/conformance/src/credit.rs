@@ -1,23 +1,21 @@
 //! Section 4 of WIRE.md: credit and acknowledgement.
 
-use halfrow_mock::Options;
 use halfrow_protocol::message::{RefusalCode, Request};
 
 use crate::bench::{Bench, rows_of, wire};
 use crate::frames::{ready, row};
-use crate::subject::offered;
+use crate::{Boards, Build, offered};
 
-fn banks(row_banks_in: u8, row_banks_out: u8) -> Options {
-    Options { row_banks_in, row_banks_out, ..Options::default() }
+fn banks(row_banks_in: u8, row_banks_out: u8) -> Build {
+    Build { row_banks_in, row_banks_out, ..Build::default() }
 }
 
 fn window(bench: &mut Bench) -> u32 {
     bench.done(&Request::Echo(b"")).header.window
 }
 
-#[test]
-fn credit_reaches_past_the_first_row_that_has_not_entered_by_the_input_banks() {
-    let mut bench = ready(&banks(4, 2), 8);
+pub(crate) fn credit_reaches_past_the_first_row_that_has_not_entered_by_the_input_banks(on: &dyn Boards) {
+    let mut bench = ready(on, &banks(4, 2), 8);
     let mut windows = vec![window(&mut bench)];
     for number in 0..5 {
         bench.send_all(8, [number]);
@@ -27,9 +25,8 @@ fn credit_reaches_past_the_first_row_that_has_not_entered_by_the_input_banks() {
     assert_eq!(windows, [4, 5, 6, 6, 6, 6]);
 }
 
-#[test]
-fn a_row_at_or_beyond_the_window_is_refused() {
-    let mut bench = ready(&banks(4, 4), 8);
+pub(crate) fn a_row_at_or_beyond_the_window_is_refused(on: &dyn Boards) {
+    let mut bench = ready(on, &banks(4, 4), 8);
     for number in [4, 5, 1000, u32::MAX] {
         assert_eq!(bench.send(&row(8, number))[0].refusal(), Some((RefusalCode::Credit, 0)));
     }
@@ -40,10 +37,9 @@ fn a_row_at_or_beyond_the_window_is_refused() {
     assert_eq!(bench.status().rows_in, 3);
 }
 
-#[test]
-fn an_acknowledgement_in_any_packet_frees_output_banks() {
+pub(crate) fn an_acknowledgement_in_any_packet_frees_output_banks(on: &dyn Boards) {
     for carrier in [Request::RowAck, Request::Echo(b""), Request::Status { clear: false }] {
-        let mut bench = ready(&banks(4, 2), 8);
+        let mut bench = ready(on, &banks(4, 2), 8);
         bench.send_all(8, 0..4);
         bench.window = 1;
         let heard = bench.say(&carrier);
@@ -52,9 +48,8 @@ fn an_acknowledgement_in_any_packet_frees_output_banks() {
     }
 }
 
-#[test]
-fn even_a_refused_packet_acknowledges() {
-    let mut bench = ready(&banks(4, 2), 8);
+pub(crate) fn even_a_refused_packet_acknowledges(on: &dyn Boards) {
+    let mut bench = ready(on, &banks(4, 2), 8);
     bench.send_all(8, 0..4);
     bench.window = 1;
     let header = bench.header(0x55);
@@ -63,9 +58,8 @@ fn even_a_refused_packet_acknowledges() {
     assert_eq!(heard[1].row().place.row_sequence, 1);
 }
 
-#[test]
-fn a_smaller_window_than_before_means_nothing() {
-    let mut bench = ready(&banks(4, 4), 8);
+pub(crate) fn a_smaller_window_than_before_means_nothing(on: &dyn Boards) {
+    let mut bench = ready(on, &banks(4, 4), 8);
     bench.send_all(8, 0..4);
     bench.acknowledge(3);
     bench.acknowledge(1);
@@ -73,18 +67,16 @@ fn a_smaller_window_than_before_means_nothing() {
     assert_eq!(bench.status().next_row_out, 3);
 }
 
-#[test]
-fn rows_that_were_never_sent_back_cannot_be_acknowledged() {
-    let mut bench = ready(&banks(2, 2), 8);
+pub(crate) fn rows_that_were_never_sent_back_cannot_be_acknowledged(on: &dyn Boards) {
+    let mut bench = ready(on, &banks(2, 2), 8);
     bench.send_all(8, 0..2);
     bench.acknowledge(u32::MAX);
     assert_eq!(bench.status().next_row_out, 1);
     assert_eq!(rows_of(&bench.send_all(8, [2])), [1]);
 }
 
-#[test]
-fn one_acknowledgement_may_free_many_banks() {
-    let mut bench = ready(&banks(4, 4), 8);
+pub(crate) fn one_acknowledgement_may_free_many_banks(on: &dyn Boards) {
+    let mut bench = ready(on, &banks(4, 4), 8);
     bench.send_all(8, 0..8);
     assert_eq!(window(&mut bench), 8, "rows 4 to 7 wait");
     assert_eq!(rows_of(&bench.acknowledge(3)), [3, 4, 5]);
@@ -92,8 +84,8 @@ fn one_acknowledgement_may_free_many_banks() {
 }
 
 /// Streams 60 rows in frames of 20, and fails when nothing moves any more.
-fn stream(build: &Options) {
-    let mut bench = ready(build, 20);
+fn stream(on: &dyn Boards, build: &Build) {
+    let mut bench = ready(on, build, 20);
     let mut credit = window(&mut bench);
     let mut sent = 0;
     while bench.window < 60 {
@@ -108,11 +100,10 @@ fn stream(build: &Options) {
     }
 }
 
-#[test]
-fn frames_stream_through_any_number_of_banks() {
+pub(crate) fn frames_stream_through_any_number_of_banks(on: &dyn Boards) {
     for row_banks_in in [2, 3, 4, 255] {
-        for build in offered([2, 3, 4, 255].map(|row_banks_out| banks(row_banks_in, row_banks_out))) {
-            stream(&build);
+        for build in offered(on, [2, 3, 4, 255].map(|row_banks_out| banks(row_banks_in, row_banks_out))) {
+            stream(on, &build);
         }
     }
 }

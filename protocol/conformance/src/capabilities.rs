@@ -2,16 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use halfrow_mock::{BoardFault, Options, TapCount};
 use halfrow_protocol::message::Request;
 
 use crate::bench::{Bench, HELLO};
 use crate::frames::lean;
-use crate::subject::offered;
+use crate::{Boards, Build, offered};
 
-/// The values by their tags, little endian; the name left out.
-pub(crate) fn values(options: &Options, fault: Option<BoardFault>) -> BTreeMap<u8, u32> {
-    let mut bench = Bench::switched_on(options, fault);
+/// The values by their tags, of a board that was just switched on, little endian; the name left out.
+pub fn values(bench: &mut Bench) -> BTreeMap<u8, u32> {
     bench.greet(&HELLO);
     let payload = bench.done(&Request::Capabilities).payload;
     let (mut rest, mut values) = (payload.as_slice(), BTreeMap::new());
@@ -26,9 +24,8 @@ pub(crate) fn values(options: &Options, fault: Option<BoardFault>) -> BTreeMap<u
     values
 }
 
-#[test]
-fn every_board_sends_all_tags_in_their_widths() {
-    let mut bench = Bench::greeted();
+pub(crate) fn every_board_sends_all_tags_in_their_widths(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let payload = bench.done(&Request::Capabilities).payload;
     let (mut rest, mut widths) = (payload.as_slice(), BTreeMap::new());
     while let [tag, length, tail @ ..] = rest {
@@ -41,13 +38,12 @@ fn every_board_sends_all_tags_in_their_widths() {
     assert_eq!(widths, (1..=15).zip(numbers).chain([(0x20, 1)]).collect());
 }
 
-#[test]
-fn the_build_shows() {
-    let two = Options { row_banks_in: 2, row_banks_out: 2, ..Options::default() };
-    for build in offered([Options::default(), lean(), two]) {
-        let values = values(&build, None);
-        let taps = if build.taps == TapCount::Five { 5 } else { 7 };
-        let expected = [1, 2048, 2048, 7, taps, build.latency.into(), 2048, 0, build.table_banks.into()];
+pub(crate) fn the_build_shows(on: &dyn Boards) {
+    let two = Build { row_banks_in: 2, row_banks_out: 2, ..Build::default() };
+    for build in offered(on, [Build::default(), lean(), two]) {
+        let values = values(&mut Bench::switched_on(on, &build));
+        let expected =
+            [1, 2048, 2048, 7, build.taps.into(), build.latency.into(), 2048, 0, build.table_banks.into()];
         let shown: Vec<_> = (0x01..=0x09).map(|tag| values[&tag]).collect();
         assert_eq!(shown, expected);
         let banks = [build.row_banks_in, build.row_banks_out].map(u32::from);

@@ -1,37 +1,34 @@
 //! TABLE_READ and TABLE_CRC: what comes back, through which port, and when.
 
-use halfrow_mock::{Node, Options};
 use halfrow_protocol::message::{Bank, RefusalCode, Request, Table};
 
 use crate::bench::Bench;
 use crate::frames::ready;
 use crate::material::{crc_of_words, factors, hermite, keys};
 use crate::uploads::{TableSet, span, write};
+use crate::{Boards, Build};
 
 /// The golden tables of 1080 rows, in the shadow bank.
-fn golden() -> Bench {
-    let mut bench = Bench::greeted();
+fn golden(on: &dyn Boards) -> Bench {
+    let mut bench = Bench::greeted(on);
     let bytes: Vec<_> = factors(1080, 1106.697).into_iter().flat_map(u32::to_le_bytes).collect();
     bench.done(&write(Table::Steps, 0, &bytes[..2160]));
     bench.done(&write(Table::Steps, 540, &bytes[2160..]));
-    let words: Vec<_> = hermite().nodes.iter().flat_map(Node::words).collect();
-    let bytes: Vec<_> = words.into_iter().flat_map(i16::to_le_bytes).collect();
+    let bytes: Vec<_> = hermite().into_iter().flatten().flat_map(i16::to_le_bytes).collect();
     bench.done(&write(Table::Kernel, 0, &bytes));
     bench
 }
 
-#[test]
-fn the_golden_tables_read_back_with_the_golden_crcs_through_every_port() {
-    let mut bench = golden();
+pub(crate) fn the_golden_tables_read_back_with_the_golden_crcs_through_every_port(on: &dyn Boards) {
+    let mut bench = golden(on);
     assert_eq!(bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 1080)), 0x5f5a_7553);
     for port in 0..2 {
         assert_eq!(bench.crc(span(Table::Kernel, Bank::Shadow, port, 0, 65)), 0x16e2_9b0f);
     }
 }
 
-#[test]
-fn a_read_answers_with_its_span_and_the_entries() {
-    let mut bench = golden();
+pub(crate) fn a_read_answers_with_its_span_and_the_entries(on: &dyn Boards) {
+    let mut bench = golden(on);
     let payload = bench.done(&Request::TableRead(span(Table::Steps, Bank::Shadow, 0, 539, 1))).payload;
     // Q[539] of the golden table is 16777214.
     assert_eq!(payload, [0, 0, 0, 0x1b, 0x02, 1, 0, 0xfe, 0xff, 0xff, 0x00]);
@@ -40,16 +37,14 @@ fn a_read_answers_with_its_span_and_the_entries() {
     assert_eq!(payload, [1, 0, 1, 32, 0, 1, 0, 0, 0, 0, 0xf8, 0, 0x20, 0, 0xf8, 0, 0]);
 }
 
-#[test]
-fn the_crc_of_no_entries_is_that_of_no_bytes() {
-    let mut bench = Bench::greeted();
+pub(crate) fn the_crc_of_no_entries_is_that_of_no_bytes(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     assert_eq!(bench.crc(span(Table::Steps, Bank::Shadow, 0, 2048, 0)), 0);
     assert_eq!(bench.crc(span(Table::Kernel, Bank::Active, 1, 65, 0)), 0);
 }
 
-#[test]
-fn ports_and_entries_that_are_not_there_are_refused() {
-    let mut bench = Bench::greeted();
+pub(crate) fn ports_and_entries_that_are_not_there_are_refused(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     for wrong in [
         span(Table::Steps, Bank::Shadow, 1, 3, 1),
         span(Table::Kernel, Bank::Shadow, 2, 3, 1),
@@ -65,9 +60,8 @@ fn ports_and_entries_that_are_not_there_are_refused() {
     }
 }
 
-#[test]
-fn a_read_that_fits_no_packet_is_refused_and_its_crc_is_not() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_read_that_fits_no_packet_is_refused_and_its_crc_is_not(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     // A packet has room for 4080 bytes, of which the span takes 7.
     let payload = bench.done(&Request::TableRead(span(Table::Steps, Bank::Shadow, 0, 5, 1018))).payload;
     assert_eq!(payload.len(), 7 + 4 * 1018);
@@ -77,9 +71,8 @@ fn a_read_that_fits_no_packet_is_refused_and_its_crc_is_not() {
     bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 2048));
 }
 
-#[test]
-fn both_banks_are_read_and_a_commit_that_takes_effect_swaps_them() {
-    let mut bench = ready(&Options::default(), 1);
+pub(crate) fn both_banks_are_read_and_a_commit_that_takes_effect_swaps_them(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 1);
     let kernel = |bench: &mut Bench, bank| bench.crc(span(Table::Kernel, bank, 0, 0, 65));
     let none = kernel(&mut bench, Bank::Active);
     assert_eq!(none, crc_of_words([0; 325]));
@@ -92,9 +85,8 @@ fn both_banks_are_read_and_a_commit_that_takes_effect_swaps_them() {
     assert_eq!(kernel(&mut bench, Bank::Shadow), 0x54f5_e990);
 }
 
-#[test]
-fn nothing_is_read_while_a_row_is_inside() {
-    let mut bench = ready(&Options::default(), 2);
+pub(crate) fn nothing_is_read_while_a_row_is_inside(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 2);
     let requests = [
         Request::TableRead(span(Table::Steps, Bank::Active, 0, 0, 1)),
         Request::TableCrc(span(Table::Kernel, Bank::Shadow, 1, 0, 1)),

@@ -3,6 +3,7 @@
 use halfrow_protocol::message::Request;
 use halfrow_protocol::{Header, Kind, MAX_PACKET};
 
+use crate::Boards;
 use crate::bench::{Bench, wire};
 
 /// Whole packets but for STATUS itself, CRC errors and framing errors since the session began.
@@ -33,9 +34,8 @@ fn echo_body(session: u8, version: u8, length: u8) -> [u8; 15] {
     [version, Kind::Echo.code(), 7, 0, length, 0, 0, session, 0, 0, 0, 0, b'a', b'b', b'c']
 }
 
-#[test]
-fn a_flipped_bit_anywhere_is_a_crc_error_or_broken_framing() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_flipped_bit_anywhere_is_a_crc_error_or_broken_framing(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let whole = bench.packet(&Request::Echo(b"some bytes, none of them zero"));
     for place in 1..whole.len() - 1 {
         let mut damaged = whole.clone();
@@ -48,9 +48,8 @@ fn a_flipped_bit_anywhere_is_a_crc_error_or_broken_framing() {
     assert_eq!(bench.receive(&whole).len(), 1);
 }
 
-#[test]
-fn a_wrong_crc_is_a_crc_error() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_wrong_crc_is_a_crc_error(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let mut damaged = sealed(&echo_body(bench.session, 1, 3));
     let last = damaged.len() - 2;
     damaged[last] = damaged[last].wrapping_add(1).max(1);
@@ -58,24 +57,21 @@ fn a_wrong_crc_is_a_crc_error() {
     assert_eq!(counted(&mut bench), (0, 1, 0));
 }
 
-#[test]
-fn broken_stuffing_is_a_framing_error() {
-    let mut bench = Bench::greeted();
+pub(crate) fn broken_stuffing_is_a_framing_error(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     assert_eq!(bench.receive(&[0, 9, 1, 2, 0]), []);
     assert_eq!(counted(&mut bench), (0, 0, 1));
 }
 
-#[test]
-fn a_packet_that_is_too_short_is_a_framing_error() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_packet_that_is_too_short_is_a_framing_error(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     assert_eq!(bench.receive(&stuffed(&[1])), []);
     assert_eq!(bench.receive(&stuffed(&[1; 15])), []);
     assert_eq!(counted(&mut bench), (0, 0, 2));
 }
 
-#[test]
-fn a_packet_that_is_too_long_is_one_framing_error() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_packet_that_is_too_long_is_one_framing_error(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let run = [vec![0], vec![1; MAX_PACKET + 100], vec![0]].concat();
     assert_eq!(bench.receive(&run), []);
     for chunk in vec![0xff; 100_000].chunks(77) {
@@ -85,9 +81,8 @@ fn a_packet_that_is_too_long_is_one_framing_error() {
     assert_eq!(counted(&mut bench), (0, 0, 2));
 }
 
-#[test]
-fn another_version_or_length_is_a_framing_error() {
-    let mut bench = Bench::greeted();
+pub(crate) fn another_version_or_length_is_a_framing_error(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let session = bench.session;
     for (version, length) in [(0, 3), (2, 3), (1, 2), (1, 4)] {
         assert_eq!(bench.receive(&sealed(&echo_body(session, version, length))), []);
@@ -96,23 +91,20 @@ fn another_version_or_length_is_a_framing_error() {
     assert_eq!(counted(&mut bench), (1, 0, 4));
 }
 
-#[test]
-fn zeros_are_no_packets() {
-    let mut bench = Bench::greeted();
+pub(crate) fn zeros_are_no_packets(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     assert_eq!(bench.receive(&[0; 1000]), []);
     assert_eq!(counted(&mut bench), (0, 0, 0));
 }
 
-#[test]
-fn garbage_before_the_first_zero_is_counted() {
-    let mut bench = Bench::greeted();
+pub(crate) fn garbage_before_the_first_zero_is_counted(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     assert_eq!(bench.receive(&[7, 7, 7, 0]), []);
     assert_eq!(counted(&mut bench), (0, 0, 1));
 }
 
-#[test]
-fn damage_takes_one_packet_and_not_its_neighbours() {
-    let mut bench = Bench::greeted();
+pub(crate) fn damage_takes_one_packet_and_not_its_neighbours(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let header = bench.header(Kind::Echo.code());
     let packet = |sequence| wire(&Header { sequence, ..header }, |payload| payload.extend(b"abc"));
     let mut middle = packet(2);
@@ -122,9 +114,8 @@ fn damage_takes_one_packet_and_not_its_neighbours() {
     assert_eq!(sequences, [1, 3]);
 }
 
-#[test]
-fn packets_may_come_in_pieces_of_any_size() {
-    let mut bench = Bench::greeted();
+pub(crate) fn packets_may_come_in_pieces_of_any_size(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     for size in [1, 2, 3, 7, 100] {
         let bytes = [bench.packet(&Request::Echo(b"one")), bench.packet(&Request::Echo(b"two"))].concat();
         let heard: Vec<_> = bytes.chunks(size).flat_map(|chunk| bench.receive(chunk)).collect();

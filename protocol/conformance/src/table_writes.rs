@@ -1,11 +1,11 @@
 //! TABLE_WRITE: what may be written, and when.
 
-use halfrow_mock::Options;
 use halfrow_protocol::message::{Bank, Entries, RefusalCode, Request, Span, Table};
 
 use crate::bench::{Bench, HELLO};
 use crate::frames::{lean, ready};
-use crate::subject::offered;
+use crate::{Boards, Build, offered};
+
 use crate::uploads::{span, write};
 
 fn factors(values: &[u32]) -> Vec<u8> {
@@ -20,9 +20,8 @@ fn read(bench: &mut Bench, table: Table, first: u16, count: u16) -> Vec<u8> {
     bench.read(span(table, Bank::Shadow, 0, first, count))
 }
 
-#[test]
-fn entries_are_written_from_the_first_one_on_and_nowhere_else() {
-    let mut bench = Bench::greeted();
+pub(crate) fn entries_are_written_from_the_first_one_on_and_nowhere_else(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let before = read(&mut bench, Table::Steps, 0, 8);
     bench.done(&write(Table::Steps, 3, &factors(&[1, 1 << 24, 123_456])));
     let expected = [&before[..12], &factors(&[1, 1 << 24, 123_456]), &before[24..]].concat();
@@ -33,19 +32,17 @@ fn entries_are_written_from_the_first_one_on_and_nowhere_else() {
     assert_eq!(read(&mut bench, Table::Kernel, 0, 65), expected);
 }
 
-#[test]
-fn the_reply_is_empty_and_the_port_is_not_looked_at() {
-    let mut bench = Bench::greeted();
+pub(crate) fn the_reply_is_empty_and_the_port_is_not_looked_at(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let span = Span { table: Table::Steps, bank: Bank::Shadow, port: 255, first: 0, count: 1 };
     let bytes = &factors(&[5]);
     assert_eq!(bench.done(&Request::TableWrite(Entries { span, bytes })).payload, []);
     assert_eq!(read(&mut bench, Table::Steps, 0, 1), factors(&[5]));
 }
 
-#[test]
-fn a_factor_out_of_range_is_named_by_its_index_and_nothing_is_written() {
+pub(crate) fn a_factor_out_of_range_is_named_by_its_index_and_nothing_is_written(on: &dyn Boards) {
     for wrong in [0, (1 << 24) + 1, u32::MAX] {
-        let mut bench = Bench::greeted();
+        let mut bench = Bench::greeted(on);
         let before = read(&mut bench, Table::Steps, 100, 4);
         let refusal = bench.refused(&write(Table::Steps, 100, &factors(&[7, 7, wrong, 0])));
         assert_eq!(refusal, (RefusalCode::Range, 102));
@@ -53,11 +50,10 @@ fn a_factor_out_of_range_is_named_by_its_index_and_nothing_is_written() {
     }
 }
 
-#[test]
-fn spans_end_before_max_height_and_node_65() {
+pub(crate) fn spans_end_before_max_height_and_node_65(on: &dyn Boards) {
     for max_height in [100, 2048] {
-        for build in offered([Options { max_height, ..Options::default() }]) {
-            let mut bench = Bench::switched_on(&build, None);
+        for build in offered(on, [Build { max_height, ..Build::default() }]) {
+            let mut bench = Bench::switched_on(on, &build);
             bench.greet(&HELLO);
             bench.done(&write(Table::Steps, max_height - 1, &factors(&[1])));
             for first in [max_height - 1, max_height, 0xffff] {
@@ -66,7 +62,7 @@ fn spans_end_before_max_height_and_node_65() {
             }
         }
     }
-    let mut bench = Bench::greeted();
+    let mut bench = Bench::greeted(on);
     bench.done(&write(Table::Kernel, 64, &node([0; 5])));
     for first in [64, 65, 0xffff] {
         let refusal = bench.refused(&write(Table::Kernel, first, &[0; 20]));
@@ -75,17 +71,15 @@ fn spans_end_before_max_height_and_node_65() {
     assert_eq!(bench.refused(&write(Table::Kernel, 0, &[0; 660])), (RefusalCode::Range, 0));
 }
 
-#[test]
-fn a_span_of_no_entries_is_legal() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_span_of_no_entries_is_legal(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     bench.done(&write(Table::Steps, 0, &[]));
     bench.done(&write(Table::Steps, 2048, &[]));
     bench.done(&write(Table::Kernel, 65, &[]));
 }
 
-#[test]
-fn the_active_bank_is_not_written() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn the_active_bank_is_not_written(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     for first in [0, 9] {
         let span = Span { table: Table::Steps, bank: Bank::Active, port: 0, first, count: 1 };
         let bytes = &factors(&[5]);
@@ -94,9 +88,8 @@ fn the_active_bank_is_not_written() {
     }
 }
 
-#[test]
-fn five_taps_refuse_a_node_that_needs_seven_and_name_it() {
-    let mut bench = Bench::switched_on(&lean(), None);
+pub(crate) fn five_taps_refuse_a_node_that_needs_seven_and_name_it(on: &dyn Boards) {
+    let mut bench = Bench::switched_on(on, &lean());
     bench.greet(&HELLO);
     let five = node([0, -1, 2, -3, 0]);
     bench.done(&write(Table::Kernel, 10, &five));
@@ -107,17 +100,15 @@ fn five_taps_refuse_a_node_that_needs_seven_and_name_it() {
     }
 }
 
-#[test]
-fn nothing_is_written_while_a_commit_is_pending() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn nothing_is_written_while_a_commit_is_pending(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     assert_eq!(bench.refused(&write(Table::Steps, 0, &factors(&[1]))), (RefusalCode::Busy, 0));
     bench.send_all(4, 0..4);
     bench.done(&write(Table::Steps, 0, &factors(&[1])));
 }
 
-#[test]
-fn the_shadow_bank_is_written_while_rows_use_the_other_one() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn the_shadow_bank_is_written_while_rows_use_the_other_one(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [0]);
     bench.done(&write(Table::Steps, 0, &factors(&[1])));
 }

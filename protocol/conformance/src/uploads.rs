@@ -1,38 +1,41 @@
 //! Tables on their way to the board and back.
 
-use halfrow_mock::{Kernel, Node, UNSTRETCHED};
 use halfrow_protocol::message::{Bank, Commit, Entries, Reply, Request, Span, Table};
 
 use crate::bench::Bench;
-use crate::material::hermite;
+use crate::material::{Nodes, UNSTRETCHED, hermite};
 
 /// Row factors and a kernel, as a host uploads them.
 #[derive(Clone)]
-pub(crate) struct TableSet {
+pub struct TableSet {
     factors: Vec<u8>,
     nodes: Vec<u8>,
 }
 
 impl TableSet {
-    pub(crate) fn new(factors: &[u32], kernel: &Kernel) -> Self {
-        let words = kernel.nodes.iter().flat_map(Node::words);
+    /// These factors, one a row, and this kernel.
+    #[must_use]
+    pub fn new(factors: &[u32], kernel: &Nodes) -> Self {
         Self {
             factors: factors.iter().flat_map(|factor| factor.to_le_bytes()).collect(),
-            nodes: words.flat_map(i16::to_le_bytes).collect(),
+            nodes: kernel.iter().flatten().flat_map(|weight| weight.to_le_bytes()).collect(),
         }
     }
 
     /// Tables that change no sample.
-    pub(crate) fn unstretched(height: u16) -> Self {
+    pub fn unstretched(height: u16) -> Self {
         Self::new(&vec![UNSTRETCHED; height.into()], &hermite())
     }
 
-    pub(crate) fn upload(&self, bench: &mut Bench) {
+    /// Writes both into the shadow bank.
+    pub fn upload(&self, bench: &mut Bench) {
         bench.done(&write(Table::Steps, 0, &self.factors));
         bench.done(&write(Table::Kernel, 0, &self.nodes));
     }
 
-    pub(crate) fn commit(&self, generation: u8, first_frame: u16) -> Request<'static> {
+    /// The request that commits them.
+    #[must_use]
+    pub fn commit(&self, generation: u8, first_frame: u16) -> Request<'static> {
         let steps_crc = crc32fast::hash(&self.factors);
         let kernel_crc = crc32fast::hash(&self.nodes);
         Request::Commit(Commit { steps_crc, kernel_crc, first_frame, generation })
@@ -40,26 +43,26 @@ impl TableSet {
 }
 
 /// A write of whole entries, from the entry `first` on.
-pub(crate) fn write(table: Table, first: u16, bytes: &[u8]) -> Request<'_> {
+pub fn write(table: Table, first: u16, bytes: &[u8]) -> Request<'_> {
     let count = (bytes.len() / table.entry_bytes()) as u16;
     Request::TableWrite(Entries { span: Span { table, bank: Bank::Shadow, port: 0, first, count }, bytes })
 }
 
 /// Entries of a bank as a port reads them.
-pub(crate) fn span(table: Table, bank: Bank, port: u8, first: u16, count: u16) -> Span {
+pub fn span(table: Table, bank: Bank, port: u8, first: u16, count: u16) -> Span {
     Span { table, bank, port, first, count }
 }
 
 impl Bench {
     /// The bytes of entries.
-    pub(crate) fn read(&mut self, span: Span) -> Vec<u8> {
+    pub fn read(&mut self, span: Span) -> Vec<u8> {
         let answer = self.done(&Request::TableRead(span));
         let Reply::TableRead(entries) = answer.reply() else { panic!("{answer:?}") };
         entries.bytes.to_vec()
     }
 
     /// The CRC-32 of entries as the board computes it.
-    pub(crate) fn crc(&mut self, span: Span) -> u32 {
+    pub fn crc(&mut self, span: Span) -> u32 {
         let answer = self.done(&Request::TableCrc(span));
         let Reply::TableCrc(crc) = answer.reply() else { panic!("{answer:?}") };
         crc

@@ -1,12 +1,11 @@
 //! A link that loses packets both ways, and a host whose one remedy is to send a row again.
 
-use halfrow_mock::Options;
 use halfrow_protocol::message::Request;
 use proptest::prelude::*;
 
 use crate::bench::{Bench, Heard};
 use crate::frames::{ready, row, samples_of};
-use crate::subject::{CASES, offered};
+use crate::{Boards, Build, cases, offered};
 
 const ROWS: u32 = 24;
 const HEIGHT: u16 = 6;
@@ -50,25 +49,19 @@ impl LossyHost {
     }
 }
 
-fn builds() -> Vec<Options> {
+fn builds(on: &dyn Boards) -> Vec<Build> {
     let pairs =
         (2..6).flat_map(|row_banks_in| (2..6).map(move |row_banks_out| (row_banks_in, row_banks_out)));
-    offered(pairs.map(|(row_banks_in, row_banks_out)| Options {
-        row_banks_in,
-        row_banks_out,
-        ..Options::default()
-    }))
+    offered(
+        on,
+        pairs.map(|(row_banks_in, row_banks_out)| Build { row_banks_in, row_banks_out, ..Build::default() }),
+    )
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(CASES / 8))]
-
-    #[test]
-    fn every_row_comes_back_once_played(
-        build in prop::sample::select(builds()),
-        losses in prop::collection::vec(any::<(u32, u32)>(), 0..60),
-    ) {
-        let bench = ready(&build, HEIGHT);
+pub(crate) fn every_row_comes_back_once_played(on: &dyn Boards) {
+    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/lossy_link.txt")), |(build in prop::sample::select(builds(on)),
+        losses in prop::collection::vec(any::<(u32, u32)>(), 0..60),)| {
+        let bench = ready(on, &build, HEIGHT);
         let mut host = LossyHost { bench, credit: build.row_banks_in.into(), back: [false; ROWS as usize] };
         for (lost_out, lost_in) in losses {
             host.round(lost_out, lost_in);
@@ -80,5 +73,5 @@ proptest! {
         let status = host.bench.status();
         prop_assert_eq!((status.rows_in, status.rows_out, status.refusals), (ROWS, ROWS, 0));
         prop_assert_eq!((status.least_latency, status.most_latency), (44, 44));
-    }
+    });
 }

@@ -1,11 +1,11 @@
 //! RESET: what each level drops, and where the window goes on.
 
-use halfrow_mock::Options;
 use halfrow_protocol::message::{Hello, RefusalCode, Request, Reset, ResetLevel, Status};
 
 use crate::bench::{Bench, HELLO, rows_of};
 use crate::frames::{Row, configuration, make_ready, ready, row};
 use crate::uploads::TableSet;
+use crate::{Boards, Build};
 
 fn reset(level: ResetLevel, next_row: u32) -> Request<'static> {
     Request::Reset(Reset { level, next_row })
@@ -19,15 +19,14 @@ fn row_behind(first: u32, number: u32) -> Row {
 }
 
 /// A board with a row in the core, one that waits, and one that was not acknowledged.
-fn full_of_rows() -> Bench {
-    let mut bench = ready(&Options::default(), 4);
+fn full_of_rows(on: &dyn Boards) -> Bench {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [0, 1, 3]);
     bench
 }
 
-#[test]
-fn level_0_drops_all_rows_and_keeps_the_rest() {
-    let mut bench = full_of_rows();
+pub(crate) fn level_0_drops_all_rows_and_keeps_the_rest(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     bench.done(&reset(ResetLevel::Rows, 4));
     let Status { next_row_in, next_row_out, core_busy, generation, rows_in, .. } = bench.status();
     assert_eq!((next_row_in, next_row_out, core_busy, generation, rows_in), (4, 4, 0, 1, 3));
@@ -35,17 +34,15 @@ fn level_0_drops_all_rows_and_keeps_the_rest() {
     assert_eq!(rows_of(&corrected), [4, 5, 6, 7]);
 }
 
-#[test]
-fn rows_in_front_of_the_next_one_count_as_acknowledged() {
-    let mut bench = full_of_rows();
+pub(crate) fn rows_in_front_of_the_next_one_count_as_acknowledged(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     bench.done(&reset(ResetLevel::Rows, 9));
     assert_eq!(bench.send_all(4, [0, 1, 3]), []);
     assert_eq!(bench.status().rows_unneeded, 3);
 }
 
-#[test]
-fn the_window_is_counted_from_the_next_row() {
-    let mut bench = full_of_rows();
+pub(crate) fn the_window_is_counted_from_the_next_row(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     let window = bench.done(&Request::Echo(b"")).header.window;
     assert_eq!(window, 6, "two rows have entered, and there are four banks");
     assert_eq!(bench.done(&reset(ResetLevel::Rows, window)).header.window, 10);
@@ -54,26 +51,23 @@ fn the_window_is_counted_from_the_next_row() {
     assert_eq!(bench.status().next_row_in, 6);
 }
 
-#[test]
-fn rows_are_counted_on_through_a_reset() {
-    let mut bench = full_of_rows();
+pub(crate) fn rows_are_counted_on_through_a_reset(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     bench.done(&reset(ResetLevel::Rows, 4));
     let sequences: Vec<_> = (0..3).flat_map(|number| bench.send(&row_behind(4, number))).collect();
     let sequences: Vec<_> = sequences.iter().map(|packet| packet.header.sequence).collect();
     assert_eq!(sequences, [1, 2], "one was sent before the reset");
 }
 
-#[test]
-fn a_frame_must_begin_anew_behind_a_reset() {
-    let mut bench = full_of_rows();
+pub(crate) fn a_frame_must_begin_anew_behind_a_reset(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     bench.done(&reset(ResetLevel::Rows, 4));
     assert_eq!(bench.send(&row_behind(2, 2))[0].refusal(), Some((RefusalCode::Row, 0)));
     assert_eq!(bench.status().rows_in, 3);
 }
 
-#[test]
-fn level_1_answers_and_closes_the_session() {
-    let mut bench = full_of_rows();
+pub(crate) fn level_1_answers_and_closes_the_session(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     let session = bench.session;
     let answer = bench.done(&reset(ResetLevel::Session, 4));
     assert_eq!((answer.header.session, answer.payload.len()), (session, 0));
@@ -85,17 +79,15 @@ fn level_1_answers_and_closes_the_session() {
     assert_eq!(rows_of(&bench.send_all(4, 0..2)), [0]);
 }
 
-#[test]
-fn a_nonce_opens_another_session_once_its_own_is_closed() {
-    let mut bench = Bench::greeted();
+pub(crate) fn a_nonce_opens_another_session_once_its_own_is_closed(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
     let session = bench.session;
     bench.done(&reset(ResetLevel::Session, 0));
     assert_ne!(bench.greet(&HELLO).session, session);
 }
 
-#[test]
-fn level_2_drops_configuration_and_tables_too() {
-    let mut bench = full_of_rows();
+pub(crate) fn level_2_drops_configuration_and_tables_too(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     bench.done(&reset(ResetLevel::Tables, 4));
     let status = bench.status();
     assert_eq!((status.generation, status.core_busy, status.next_row_in), (0, 0, 4));
@@ -110,27 +102,24 @@ fn level_2_drops_configuration_and_tables_too() {
     assert_eq!(bench.status().generation, 1);
 }
 
-#[test]
-fn a_repeated_reset_changes_nothing() {
-    let mut bench = full_of_rows();
+pub(crate) fn a_repeated_reset_changes_nothing(on: &dyn Boards) {
+    let mut bench = full_of_rows(on);
     bench.done(&reset(ResetLevel::Rows, 20));
     let status = bench.status();
     assert_eq!(bench.done(&reset(ResetLevel::Rows, 20)).header.window, 24);
     assert_eq!(bench.status(), Status { packets: status.packets + 2, ..status });
 }
 
-#[test]
-fn a_reset_ends_a_wait_for_a_lost_row() {
-    let mut bench = ready(&Options::default(), 4);
+pub(crate) fn a_reset_ends_a_wait_for_a_lost_row(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [1, 2, 3]);
     assert_eq!(bench.refused(&Request::Configure(configuration(4))), (RefusalCode::Busy, 0));
     bench.done(&reset(ResetLevel::Rows, 8));
     bench.done(&Request::Configure(configuration(4)));
 }
 
-#[test]
-fn the_last_row_numbers_of_all_can_be_waited_for() {
-    let mut bench = ready(&Options::default(), 1);
+pub(crate) fn the_last_row_numbers_of_all_can_be_waited_for(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 1);
     bench.send_all(1, [0]);
     for next_row in [u32::MAX - 2, u32::MAX - 1, u32::MAX] {
         bench.done(&reset(ResetLevel::Rows, next_row));

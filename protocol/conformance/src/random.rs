@@ -1,6 +1,5 @@
 //! Requests and bytes that no host would send: the board stays up, keeps its promises and answers the next HELLO.
 
-use halfrow_mock::{Depth, Options, TapCount};
 use halfrow_protocol::message::{
     Bank, Commit, Configuration, Entries, Hello, Reply, Request, Reset, ResetLevel, RowIn, RowPlace, Span,
     Status, Table,
@@ -10,7 +9,7 @@ use proptest::prelude::*;
 
 use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
 use crate::frames::{lean, make_ready, ready, row, samples_of};
-use crate::subject::{CASES, offered};
+use crate::{Boards, Build, cases, offered};
 
 const HEIGHT: u16 = 2;
 
@@ -47,20 +46,19 @@ fn field() -> impl Strategy<Value = u32> + Clone {
     prop_oneof![0_u32..5, 60_u32..70, 1010_u32..1030, 2040_u32..2060, Just(u32::MAX), any::<u32>()]
 }
 
-fn build() -> impl Strategy<Value = Options> {
+fn build(on: &dyn Boards) -> impl Strategy<Value = Build> + use<> {
     let mut builds = vec![lean()];
     for banks in 0..16 {
-        for (taps, latency) in [(TapCount::Five, 11), (TapCount::Seven, 12)] {
+        for (taps, latency) in [(5, 11), (7, 12)] {
             for table_banks in [1, 2] {
                 let (row_banks_in, row_banks_out) = (2 + banks % 4, 2 + banks / 4);
                 let build =
-                    Options { row_banks_in, row_banks_out, table_banks, taps, latency, ..Options::default() };
-                builds
-                    .extend([build.clone(), Options { depths: vec![Depth::Eight, Depth::Twelve], ..build }]);
+                    Build { row_banks_in, row_banks_out, table_banks, taps, latency, ..Build::default() };
+                builds.extend([build.clone(), Build { depths: &[8, 12], ..build }]);
             }
         }
     }
-    prop::sample::select(offered(builds))
+    prop::sample::select(offered(on, builds))
 }
 
 /// The payload of a request of this kind, made of four numbers.
@@ -201,31 +199,25 @@ impl Observer {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(CASES))]
-
-    #[test]
-    fn whatever_comes_the_board_keeps_its_promises_and_answers_the_next_hello(
-        build in build(),
-        events in prop::collection::vec(event(), 0..40),
-    ) {
-        let bench = ready(&build, HEIGHT);
+pub(crate) fn whatever_comes_the_board_keeps_its_promises_and_answers_the_next_hello(on: &dyn Boards) {
+    proptest!(cases(on, 1, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/random.txt")), |(build in build(on),
+        events in prop::collection::vec(event(), 0..40),)| {
+        let bench = ready(on, &build, HEIGHT);
         let mut observer = Observer { bench, credit: 0, next_count: Some(0) };
         for event in events {
             observer.meet(event);
         }
         observer.recover();
-    }
+    });
+}
 
-    #[test]
-    fn any_bytes_in_any_pieces_are_survived(
-        bytes in prop::collection::vec(prop_oneof![2 => Just(0_u8), 1 => any::<u8>()], 0..9000),
-        size in 1_usize..300,
-    ) {
-        let mut bench = ready(&Options::default(), HEIGHT);
+pub(crate) fn any_bytes_in_any_pieces_are_survived(on: &dyn Boards) {
+    proptest!(cases(on, 1, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/random.txt")), |(bytes in prop::collection::vec(prop_oneof![2 => Just(0_u8), 1 => any::<u8>()], 0..9000),
+        size in 1_usize..300,)| {
+        let mut bench = ready(on, &Build::default(), HEIGHT);
         for piece in bytes.chunks(size) {
             bench.receive(piece);
         }
         Observer { bench, credit: 0, next_count: None }.recover();
-    }
+    });
 }
