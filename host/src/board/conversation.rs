@@ -239,7 +239,9 @@ impl Conversation {
                     || format!("waiting for the answer to {kind:?}"),
                     |packet| {
                         let header = packet.header;
-                        if header.reply && header.sequence == sequence && accept(packet) {
+                        // Rows count their own sequence numbers, and bit 0 of the flags is not looked at.
+                        let is_reply = header.kind != Kind::RowOut.code();
+                        if is_reply && header.sequence == sequence && accept(packet) {
                             answer = Some(Kept { header, payload: packet.payload.to_vec() });
                         }
                     },
