@@ -1,13 +1,14 @@
 //! The body of a fuzzer: from any bytes to nothing, or to a panic when the wire breaks a promise.
 //!
-//! Any engine can drive [`decode`]; `tests/fuzz.rs` does, with the frozen vectors and [`mutate`].
+//! Any engine can drive [`decode`]; `fuzz.rs` does, with the frozen vectors and [`mutate`].
 
-use alloc::vec::Vec;
-
-use crate::packet::{CRC, HEADER};
-use crate::{
-    Damage, Decoder, Encoder, Header, MAX_PACKET, MAX_PAYLOAD, Packet, Reply, Request, VERSION, cobs,
+use halfrow_protocol::{
+    Damage, Decoder, Encoder, Header, MAX_PACKET, MAX_PAYLOAD, Packet, Reply, Request, VERSION,
 };
+
+/// Bytes of a header and of a CRC, as section 1 of WIRE.md has them.
+const HEADER: usize = 12;
+const CRC: usize = 4;
 
 /// What a decoder delivers, kept.
 type Event = Result<(Header, Vec<u8>), Damage>;
@@ -15,10 +16,9 @@ type Event = Result<(Header, Vec<u8>), Damage>;
 /// Takes `bytes` for three things, in turn: what a link delivers; a packet, to which the right CRC is added; and the code
 /// of a kind with its payload.
 ///
-/// # Panics
-/// When a promise of the wire is broken: packets depend on how the bytes were cut into reads, a payload is over its limit,
+/// Panics when a promise of the wire is broken: packets depend on how the bytes were cut into reads, a payload is over its limit,
 /// a packet with a wrong length or version is accepted, or a message is not the same after it was written and read again.
-pub fn decode(bytes: &[u8]) {
+pub(crate) fn decode(bytes: &[u8]) {
     check_stream(bytes);
     check_sealed(bytes);
     if let Some((&kind, payload)) = bytes.split_first() {
@@ -29,7 +29,7 @@ pub fn decode(bytes: &[u8]) {
 
 /// Damages `bytes` in one place, as a link would, or sets a byte to one of its limits. `below(n)` draws a number
 /// under `n`, which is never 0.
-pub fn mutate(bytes: &mut Vec<u8>, below: &mut impl FnMut(usize) -> usize) {
+pub(crate) fn mutate(bytes: &mut Vec<u8>, below: &mut impl FnMut(usize) -> usize) {
     const LIMITS: [u8; 7] = [0, 1, 2, 0x7f, 0x80, 0xfe, 0xff];
     let place = below(bytes.len() + 1);
     let end = (place + below(16)).min(bytes.len());
@@ -55,9 +55,7 @@ fn check_stream(bytes: &[u8]) {
 /// `body` is sent with its right CRC, so nothing but its size, version and length decides.
 fn check_sealed(body: &[u8]) {
     let packet = [body, &crc32fast::hash(body).to_le_bytes()].concat();
-    let mut wire = alloc::vec![0];
-    cobs::stuff(&packet, &mut wire);
-    wire.push(0);
+    let wire = [&[0][..], &stuffed(&packet), &[0]].concat();
     let event = events(&wire, wire.len()).pop();
     match (damage_of(body), event) {
         (None, Some(Ok((header, payload)))) => {
@@ -66,6 +64,26 @@ fn check_sealed(body: &[u8]) {
         }
         (damage, event) => assert_eq!(event.map(Result::err), Some(damage)),
     }
+}
+
+/// A packet as section 1 of WIRE.md stuffs it: cut at its zeros and behind every 254th byte, with one zero imagined at its end.
+fn stuffed(packet: &[u8]) -> Vec<u8> {
+    let mut wire = Vec::new();
+    for between_zeros in packet.split(|&byte| byte == 0) {
+        let pieces: Vec<_> = between_zeros.chunks(254).collect();
+        let (last, full) = pieces.split_last().map_or((&[][..], &[][..]), |(last, full)| (*last, full));
+        for piece in full {
+            wire.push(255);
+            wire.extend_from_slice(piece);
+        }
+        wire.push(last.len() as u8 + 1);
+        wire.extend_from_slice(last);
+        // A piece of 254 implies no zero; the one behind it is a piece of its own.
+        if last.len() == 254 {
+            wire.push(1);
+        }
+    }
+    wire
 }
 
 /// The first check, in the order of section 1 of WIRE.md, that a packet fails whose CRC is right.
