@@ -80,6 +80,16 @@ pub(crate) fn a_depth_that_the_build_does_not_have_is_field_5(on: &dyn Boards) {
     });
 }
 
+pub(crate) fn of_several_wrong_fields_bits_is_named_else_the_first(on: &dyn Boards) {
+    let wrong = |fine: Configuration| Configuration { width: 63, height: 0, centre2: u16::MAX, ..fine };
+    expect(on, Some(5), |build, fine| {
+        let not_had = [0, 8, 9, 10, 12].into_iter().filter(|bits| !build.depths.contains(bits));
+        not_had.map(|bits| Configuration { bits, ..wrong(fine) }).collect()
+    });
+    expect(on, Some(0), |_, fine| vec![wrong(fine)]);
+    expect(on, Some(1), |_, fine| vec![Configuration { width: fine.width, ..wrong(fine) }]);
+}
+
 pub(crate) fn a_refused_configuration_leaves_the_one_before(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 1);
     bench.refused(&Request::Configure(Configuration { width: 128, bits: 9, ..configuration(1) }));

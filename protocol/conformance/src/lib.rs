@@ -105,6 +105,7 @@ suite! { $
         a_centre_outside_the_row_is_field_2,
         too_little_blanking_is_field_3,
         a_depth_that_the_build_does_not_have_is_field_5,
+        of_several_wrong_fields_bits_is_named_else_the_first,
         a_refused_configuration_leaves_the_one_before,
         a_repeated_configuration_is_taken_and_changes_nothing,
         nothing_is_configured_while_a_row_is_in_the_core,
@@ -171,6 +172,7 @@ suite! { $
         nothing_but_row_0_follows_the_last_row,
         the_first_row_of_all_is_row_0,
         a_row_whose_predecessor_is_missing_is_taken_as_it_is,
+        a_row_that_its_late_predecessor_does_not_fit_is_played_under_the_place_that_it_names,
         row_0_may_follow_any_row,
         frame_numbers_are_as_the_host_likes,
         without_configuration_or_tables_no_row_is_taken,
@@ -203,6 +205,7 @@ suite! { $
         level_2_drops_configuration_and_tables_too,
         a_repeated_reset_changes_nothing,
         a_reset_ends_a_wait_for_a_lost_row,
+        a_reset_to_a_smaller_row_begins_there_anew,
         the_last_row_numbers_of_all_can_be_waited_for;
     sessions:
         hello_is_answered_with_nonce_magic_version_and_session,
@@ -225,7 +228,7 @@ suite! { $
         any_take_over_but_0_is_one;
     silence:
         another_host_is_told_for_how_long_the_board_is_held,
-        a_refusal_of_hello_has_the_session_number_of_hello,
+        a_refusal_of_hello_has_the_session_number_of_hello_and_the_boards_window,
         the_board_is_free_after_10_s_and_not_before,
         the_host_that_holds_the_board_may_open_another_session_at_any_time,
         every_whole_packet_of_the_holder_counts_even_one_that_is_refused,
@@ -249,6 +252,7 @@ suite! { $
     table_reads:
         the_golden_tables_read_back_with_the_golden_crcs_through_every_port,
         a_read_answers_with_its_span_and_the_entries,
+        before_any_write_nothing_is_stretched_and_all_nodes_are_0,
         the_crc_of_no_entries_is_that_of_no_bytes,
         ports_and_entries_that_are_not_there_are_refused,
         a_read_that_fits_no_packet_is_refused_and_its_crc_is_not,
@@ -261,6 +265,7 @@ suite! { $
         spans_end_before_max_height_and_node_65,
         a_span_of_no_entries_is_legal,
         the_active_bank_is_not_written,
+        of_several_wrong_things_the_bank_is_named_then_busy_then_the_span,
         five_taps_refuse_a_node_that_needs_seven_and_name_it,
         nothing_is_written_while_a_commit_is_pending,
         the_shadow_bank_is_written_while_rows_use_the_other_one;

@@ -112,6 +112,19 @@ pub(crate) fn a_row_whose_predecessor_is_missing_is_taken_as_it_is(on: &dyn Boar
     assert_eq!(bench.status().rows_in, 1);
 }
 
+pub(crate) fn a_row_that_its_late_predecessor_does_not_fit_is_played_under_the_place_that_it_names(
+    on: &dyn Boards,
+) {
+    let mut bench = board(on, 4);
+    let misplaced = moved(4, 1, |place| place.row = 2);
+    assert_eq!(bench.send(&misplaced), []);
+    assert_eq!(rows_of(&bench.send_all(4, [0])), [0]);
+    assert_eq!(refusals(&bench.send_all(4, [2])), ROW, "it is row 2 of the frame once more");
+    let heard = bench.send(&moved(4, 2, |place| (place.row, place.last) = (3, true)));
+    assert_eq!(heard.iter().map(|packet| packet.row().place.row).collect::<Vec<_>>(), [2, 3]);
+    assert_eq!(samples_of(&heard[0].row()), misplaced.samples);
+}
+
 pub(crate) fn row_0_may_follow_any_row(on: &dyn Boards) {
     let mut bench = board(on, 4);
     bench.send_all(4, 0..2);

@@ -3,7 +3,7 @@
 use halfrow_protocol::message::{Hello, RefusalCode, Request, Reset, ResetLevel, Status};
 
 use crate::bench::{Bench, HELLO, rows_of};
-use crate::frames::{Row, configuration, make_ready, ready, row};
+use crate::frames::{Row, configuration, make_ready, ready, row, samples_of};
 use crate::uploads::TableSet;
 use crate::{Boards, Build};
 
@@ -100,6 +100,22 @@ pub(crate) fn level_2_drops_configuration_and_tables_too(on: &dyn Boards) {
     make_ready(&mut bench, 4);
     assert_eq!(bench.send(&row_behind(4, 0)), []);
     assert_eq!(bench.status().generation, 1);
+}
+
+pub(crate) fn a_reset_to_a_smaller_row_begins_there_anew(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
+    assert_eq!(bench.send_all(4, 0..8).len(), 4, "the output banks are full");
+    bench.acknowledge(4);
+    let packets = bench.status().rows_out;
+    bench.window = 0;
+    assert_eq!(bench.done(&reset(ResetLevel::Rows, 0)).header.window, 4);
+    let Status { next_row_in, next_row_out, core_busy, .. } = bench.status();
+    assert_eq!((next_row_in, next_row_out, core_busy), (0, 0, 0));
+    let other = Row { samples: row(4, 9).samples, ..row(4, 0) };
+    assert_eq!(bench.send(&other), [], "it is a row that the board does not know");
+    let heard = bench.send_all(4, [1]);
+    assert_eq!((rows_of(&heard), samples_of(&heard[0].row())), (vec![0], other.samples));
+    assert_eq!((heard[0].row().repeats, u32::from(heard[0].header.sequence)), (0, packets));
 }
 
 pub(crate) fn a_repeated_reset_changes_nothing(on: &dyn Boards) {

@@ -24,8 +24,11 @@ pub(crate) fn another_host_is_told_for_how_long_the_board_is_held(on: &dyn Board
     }
 }
 
-pub(crate) fn a_refusal_of_hello_has_the_session_number_of_hello(on: &dyn Boards) {
-    assert_eq!(Bench::greeted(on).ask(&OTHER).header.session, 0);
+pub(crate) fn a_refusal_of_hello_has_the_session_number_of_hello_and_the_boards_window(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
+    let window = bench.done(&Request::Echo(b"")).header.window;
+    let refusal = bench.ask(&OTHER).header;
+    assert_eq!((refusal.session, refusal.window), (0, window));
 }
 
 pub(crate) fn the_board_is_free_after_10_s_and_not_before(on: &dyn Boards) {

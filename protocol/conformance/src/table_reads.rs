@@ -1,12 +1,12 @@
 //! TABLE_READ and TABLE_CRC: what comes back, through which port, and when.
 
-use halfrow_protocol::message::{Bank, RefusalCode, Request, Table};
+use halfrow_protocol::message::{Bank, RefusalCode, Request, Reset, ResetLevel, Table};
 
-use crate::bench::Bench;
-use crate::frames::ready;
-use crate::material::{crc_of_words, factors, hermite, keys};
+use crate::bench::{Bench, HELLO};
+use crate::frames::{lean, ready};
+use crate::material::{UNSTRETCHED, crc_of_words, factors, hermite, keys};
 use crate::uploads::{TableSet, span, write};
-use crate::{Boards, Build};
+use crate::{Boards, Build, offered};
 
 /// The golden tables of 1080 rows, in the shadow bank.
 fn golden(on: &dyn Boards) -> Bench {
@@ -35,6 +35,28 @@ pub(crate) fn a_read_answers_with_its_span_and_the_entries(on: &dyn Boards) {
     let payload = bench.done(&Request::TableRead(span(Table::Kernel, Bank::Shadow, 1, 32, 1))).payload;
     // Hermite at x = 1: r1 = −1/8, g4 = 1/2, r5 = −1/8, in units of 2^-14.
     assert_eq!(payload, [1, 0, 1, 32, 0, 1, 0, 0, 0, 0, 0xf8, 0, 0x20, 0, 0xf8, 0, 0]);
+}
+
+/// That every factor of both banks is 2^24 and every node 0, through every port.
+fn expect_blank(bench: &mut Bench, rows: u16) {
+    let unstretched = vec![UNSTRETCHED.to_le_bytes(); rows.into()].concat();
+    for bank in [Bank::Shadow, Bank::Active] {
+        assert_eq!(bench.crc(span(Table::Steps, bank, 0, 0, rows)), crc32fast::hash(&unstretched));
+        for port in 0..2 {
+            assert_eq!(bench.crc(span(Table::Kernel, bank, port, 0, 65)), crc_of_words([0; 325]));
+        }
+    }
+}
+
+pub(crate) fn before_any_write_nothing_is_stretched_and_all_nodes_are_0(on: &dyn Boards) {
+    for build in offered(on, [Build::default(), lean()]) {
+        let mut bench = Bench::switched_on(on, &build);
+        bench.greet(&HELLO);
+        expect_blank(&mut bench, build.max_height);
+        TableSet::new(&[7], &hermite()).upload(&mut bench);
+        bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }));
+        expect_blank(&mut bench, build.max_height);
+    }
 }
 
 pub(crate) fn the_crc_of_no_entries_is_that_of_no_bytes(on: &dyn Boards) {

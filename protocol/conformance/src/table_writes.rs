@@ -100,6 +100,23 @@ pub(crate) fn five_taps_refuse_a_node_that_needs_seven_and_name_it(on: &dyn Boar
     }
 }
 
+pub(crate) fn of_several_wrong_things_the_bank_is_named_then_busy_then_the_span(on: &dyn Boards) {
+    let write_to = |bank, first| {
+        let span = Span { table: Table::Steps, bank, port: 0, first, count: 1 };
+        Request::TableWrite(Entries { span, bytes: &[0; 4] })
+    };
+    let mut bench = ready(on, &Build::default(), 1);
+    assert_eq!(
+        bench.refused(&write_to(Bank::Active, 9)),
+        (RefusalCode::Range, 9),
+        "while a commit is pending"
+    );
+    assert_eq!(bench.refused(&write_to(Bank::Shadow, 0xffff)), (RefusalCode::Busy, 0));
+    bench.send_all(1, [0]);
+    assert_eq!(bench.refused(&write_to(Bank::Shadow, 0xffff)), (RefusalCode::Range, 0xffff));
+    assert_eq!(bench.refused(&write_to(Bank::Shadow, 3)), (RefusalCode::Range, 3));
+}
+
 pub(crate) fn nothing_is_written_while_a_commit_is_pending(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 4);
     assert_eq!(bench.refused(&write(Table::Steps, 0, &factors(&[1]))), (RefusalCode::Busy, 0));

@@ -40,7 +40,7 @@ pub(crate) struct DeadTap {
 
 impl DeadTap {
     /// The taps with the dead one replaced by another tap's sample, or by zero.
-    pub(crate) fn apply(self, mut taps: [i32; TAPS]) -> [i32; TAPS] {
+    fn apply(self, mut taps: [i32; TAPS]) -> [i32; TAPS] {
         let sample = self.reads.and_then(|other| taps.get(usize::from(other)).copied()).unwrap_or(0);
         if let Some(tap) = taps.get_mut(usize::from(self.tap)) {
             *tap = sample;
@@ -64,6 +64,18 @@ pub(crate) struct CoreDefects {
     pub(crate) dead_tap: Option<DeadTap>,
     /// Pixel clocks by which the pipeline is longer than it claims to be.
     pub(crate) extra_delay: u32,
+}
+
+impl CoreDefects {
+    /// What the taps carry.
+    pub(crate) fn taps(&self, taps: [i32; TAPS]) -> [i32; TAPS] {
+        self.dead_tap.map_or(taps, |dead| dead.apply(taps))
+    }
+
+    /// The sample that leaves for a weighted sum.
+    pub(crate) fn output(&self, sum: i32, largest: i32) -> u16 {
+        sum.clamp(0, largest) as u16
+    }
 }
 
 impl Default for CoreDefects {

@@ -59,11 +59,11 @@ impl Reader {
         self.window.follow(position.n, |column| row.sample(ring, column));
         let other_colour = (position.n ^ i32::from(column)) & 1;
         let taps = self.window.taps(other_colour == 1);
-        let taps = defects.dead_tap.map_or(taps, |dead| dead.apply(taps));
+        let taps = defects.taps(taps);
         let x = ((other_colour as u32) << FRACTION_BITS) | position.fraction;
         let sum = Weights::at(&self.kernel, x).sum(taps, defects.rounding);
         self.column += 1;
-        Some(Leaving { sample: sum.clamp(0, self.largest) as u16, column })
+        Some(Leaving { sample: defects.output(sum, self.largest), column })
     }
 }
 
