@@ -3,6 +3,7 @@
 use std::io::{ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::os::unix::net::UnixStream;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
@@ -98,9 +99,10 @@ fn told_beside(first: &[u8], patience: Patience) -> Vec<u8> {
     let mut port = Port::listen("127.0.0.1:0").unwrap();
     port.patience = patience;
     let address = port.address().unwrap();
-    let (done, is_done) = std::sync::mpsc::channel();
+    let done = Arc::new(AtomicBool::new(false));
+    let is_done = Arc::clone(&done);
     let server = std::thread::spawn(move || {
-        port.serve(&mut Hosted::new(mock()), &mut |_| is_done.try_recv().is_ok()).unwrap();
+        port.serve(&mut Hosted::new(mock()), &mut |_| is_done.load(Ordering::Relaxed)).unwrap();
     });
     let mut holder = TcpStream::connect(address).unwrap();
     holder.write_all(first).unwrap();
@@ -115,7 +117,7 @@ fn told_beside(first: &[u8], patience: Patience) -> Vec<u8> {
     holder.set_nonblocking(true).unwrap();
     let still_there = holder.read(&mut [0; 1]).map_err(|error| error.kind()) == Err(ErrorKind::WouldBlock);
     assert_eq!(still_there, told.starts_with(b"Port"), "one of the two is served");
-    done.send(()).unwrap();
+    done.store(true, Ordering::Relaxed);
     server.join().unwrap();
     told
 }
