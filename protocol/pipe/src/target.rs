@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::catalogue::{Fault, FaultError, FaultInfo, Parameters};
+use crate::catalogue::{Fault, FaultError, FaultInfo, Parameters, Place};
 use crate::fault::{FAULTS, PipeFault};
 use crate::options::PipeOptions;
 use crate::value::ValueError;
@@ -21,10 +21,10 @@ pub enum TargetError {
     #[error("the wire cannot be like this; correct its options or leave them out")]
     Pipe(#[source] ValueError),
     /// A fault cannot be made.
-    #[error("the {}'s fault cannot be made; see the list of faults", fault.place.name())]
+    #[error("the {}'s fault cannot be made; see the list of faults", place.name())]
     Fault {
-        /// Which.
-        fault: FaultInfo,
+        /// What it would spoil.
+        place: Place,
         /// Why.
         #[source]
         source: FaultError,
@@ -232,14 +232,16 @@ impl<O: BoardOptions> Faults<O> {
 
 fn made<T>(fault: Option<&Fault<T>>, from: &mut Parameters) -> Result<Option<T>, TargetError> {
     fault
-        .map(|fault| fault.make(from).map_err(|source| TargetError::Fault { fault: fault.info, source }))
+        .map(|fault| {
+            fault.make(from).map_err(|source| TargetError::Fault { place: fault.info.place, source })
+        })
         .transpose()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::catalogue::{Parameter, Place, Range};
+    use crate::catalogue::{Parameter, Range};
 
     /// A board with a fault that takes what a fault of the pipe takes.
     struct Seedy;

@@ -123,12 +123,12 @@ fn parameters_out_of_range_are_refused_by_name() {
     ];
     for (fault, key, value) in wrong {
         let (error, text) = refusal(&[("fault", fault), (key, value)]);
-        assert!(matches!(error, TargetError::Fault { fault, .. } if fault.place == Place::Pipe), "{text}");
+        assert!(matches!(error, TargetError::Fault { place: Place::Pipe, .. }), "{text}");
         assert!(text.contains(&format!("fault={fault}")), "{text}");
         assert!(text.contains(&format!("{key}={value}")), "{text}");
     }
     let (error, _) = refusal(&[("fault", "lost-row"), ("row", "-1")]);
-    assert!(matches!(error, TargetError::Fault { fault, .. } if fault.place == Place::Board));
+    assert!(matches!(error, TargetError::Fault { place: Place::Board, .. }));
 }
 
 #[test]
