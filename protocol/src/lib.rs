@@ -18,7 +18,6 @@ extern crate std;
 mod bytes;
 mod cobs;
 mod decoder;
-pub mod fuzz;
 pub mod message;
 mod packet;
 pub mod samples;

@@ -3,12 +3,14 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that they call.
 #![allow(clippy::expect_used)]
 
+mod fuzz_body;
 mod vector_file;
 
 use std::time::{Duration, Instant};
 
-use halfrow_protocol::{Decoder, fuzz};
-use proptest::prelude::RngExt;
+use halfrow_protocol::Decoder;
+use proptest::collection::vec;
+use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 
 const SEED: [u8; 16] = *b"halfrow's wire 1";
@@ -25,7 +27,7 @@ impl Drop for Input {
     }
 }
 
-/// Of each vector: its bytes, and its packets as [`fuzz::decode`] takes them, with and without a header.
+/// Of each vector: its bytes, and its packets as [`fuzz_body::decode`] takes them, with and without a header.
 fn seeds() -> Vec<Vec<u8>> {
     let mut seeds = vec![Vec::new()];
     for (_, text) in vector_file::read_all() {
@@ -53,7 +55,7 @@ fn seconds() -> u64 {
 fn no_input_breaks_a_promise_of_the_wire() {
     let seeds = seeds();
     for seed in &seeds {
-        fuzz::decode(&Input(seed.clone()).0);
+        fuzz_body::decode(&Input(seed.clone()).0);
     }
     let mut random = TestRng::from_seed(RngAlgorithm::XorShift, &SEED);
     let mut below = |limit: usize| random.random_range(0..limit);
@@ -62,10 +64,19 @@ fn no_input_breaks_a_promise_of_the_wire() {
     while Instant::now() < end {
         let mut input = Input(seeds[below(seeds.len())].clone());
         for _ in 0..=below(8) {
-            fuzz::mutate(&mut input.0, &mut below);
+            fuzz_body::mutate(&mut input.0, &mut below);
         }
-        fuzz::decode(&input.0);
+        fuzz_body::decode(&input.0);
         count += 1;
     }
     println!("{count} inputs from {} seeds", seeds.len());
+}
+
+proptest! {
+    #[test]
+    fn any_bytes_keep_every_promise_of_the_wire(bytes in prop_oneof![
+        vec(any::<u8>(), 0..9000), vec(0..6_u8, 0..200), vec(1..=255_u8, 4000..9000)
+    ]) {
+        fuzz_body::decode(&bytes);
+    }
 }

@@ -10,7 +10,8 @@ use std::time::{Duration, Instant};
 
 use halfrow::target::Target;
 use halfrow_ft2232h::{ChannelMode, Chip, ChipOptions, Eeprom, FarEnd, Plugged, Unplugged};
-use halfrow_mock::Wire;
+use halfrow_mock::Board;
+use halfrow_pipe::Pipe;
 
 use crate::patience::wait_until;
 use crate::program::{Ended, halfrow};
@@ -54,7 +55,7 @@ impl Said {
 
 /// A mock board at a chip's pins. Its wire's clock is kept at the real time.
 struct MockAtChip {
-    wire: Wire,
+    pipe: Pipe<Board>,
     said: Said,
 }
 
@@ -64,7 +65,7 @@ impl MockAtChip {
         let target: Target = format!("mock{options}").parse().unwrap();
         let options: Vec<_> =
             target.options.iter().map(|(key, value)| (key.as_str(), value.as_str())).collect();
-        Self { wire: Wire::from_options(&options).unwrap(), said: Said::default() }
+        Self { pipe: halfrow_mock::connect(&options).unwrap(), said: Said::default() }
     }
 }
 
@@ -78,9 +79,9 @@ impl FarEnd for MockAtChip {
         let mut taken = 0;
         loop {
             let before = to_host.len();
-            let wait = now.saturating_sub(self.wire.now());
+            let wait = now.saturating_sub(self.pipe.now());
             // A wire that breaks is a plug that is pulled.
-            let moved = self.wire.exchange(&to_board[taken..], to_host, wait).map_err(|_| Unplugged)?;
+            let moved = self.pipe.exchange(&to_board[taken..], to_host, wait).map_err(|_| Unplugged)?;
             taken += moved;
             self.said.0.fetch_add((to_host.len() - before) as u64, Ordering::Relaxed);
             if moved == 0 && to_host.len() == before {

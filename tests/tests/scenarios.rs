@@ -3,6 +3,7 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
+use halfrow::board::deadlines::Step;
 use halfrow_tests::program::halfrow;
 use halfrow_tests::scenario::{Scenario, boards, run_all};
 use halfrow_tests::scenarios::{
@@ -61,12 +62,33 @@ fn what_does_not_fit_the_board_is_refused_without_a_verdict() {
     on_all_boards(MISFITS);
 }
 
+/// Whoever makes a board goes by the page.
+#[test]
+fn the_host_waits_as_long_as_the_page_of_the_wire_says() {
+    let page = include_str!("../../protocol/WIRE.md");
+    let milliseconds =
+        |cell: &str| cell.trim().strip_suffix(" ms").and_then(|number| number.parse::<u64>().ok());
+    let times: Vec<_> = page
+        .lines()
+        .filter_map(|line| {
+            let cells: Vec<_> = line.trim_matches('|').split('|').collect();
+            let [_, board, host, tries] = cells[..] else { return None };
+            Some((milliseconds(board)?, milliseconds(host)?, tries.trim().parse::<u32>().ok()?))
+        })
+        .collect();
+    let waited = |step: Step| (step.deadline().fixed.as_millis() as u64, step.deadline().attempts);
+    let host: Vec<_> = times.iter().map(|&(_, host, tries)| (host, tries)).collect();
+    assert_eq!(host, [Step::Hello, Step::Request, Step::Row].map(waited));
+    assert!(times.iter().all(|(board, host, _)| 2 * board < *host), "there is time left for the link");
+}
+
 #[test]
 fn every_fault_that_the_program_lists_has_a_scenario() {
     let listed = halfrow(["faults", "--json"]).json();
-    let names: Vec<_> =
+    let listed: Vec<_> =
         listed.as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
-    assert_eq!(names.len(), 22, "{names:?}");
+    let names: Vec<_> = halfrow_mock::catalogue().map(|fault| fault.name).collect();
+    assert_eq!(listed, names);
     let has_scenario = |name: &&&str| {
         let fault = format!("fault={name}");
         scenarios::all().any(|scenario| scenario.options.split(',').any(|option| option == fault))

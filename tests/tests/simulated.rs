@@ -6,8 +6,9 @@
 use std::collections::BTreeMap;
 
 use halfrow::link::{Link, WireLink};
-use halfrow_mock::{Depth, Endpoint, Settings, Wire, WireOptions};
+use halfrow_mock::{Depth, Settings};
 use halfrow_model::{Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet};
+use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_sim::{Board, Core, CoreBuild, Front};
 use halfrow_tests::cases::{Build, Case, Played};
 use halfrow_tests::dice::Dice;
@@ -38,7 +39,7 @@ fn cores_agree(cases: u64) {
 }
 
 fn link<B: Endpoint<Failure: Send + Sync> + 'static>(board: B) -> Box<dyn Link> {
-    Box::new(WireLink::new(Wire::new(board, WireOptions::default(), None), "the board", false))
+    Box::new(WireLink::new(Pipe::new(board, PipeOptions::default(), None), "the board", false))
 }
 
 /// Plays a case on a simulated board, and on a mock of the same build.

@@ -7,8 +7,10 @@ mod setup;
 #[cfg(test)]
 mod tests;
 
+use std::convert::Infallible;
 use std::time::Duration;
 
+use halfrow_pipe::Endpoint;
 use halfrow_protocol::message::{
     Entries, Malformed, Refusal, RefusalCode, Reply, Request, ResetLevel, Status,
 };
@@ -21,6 +23,8 @@ use crate::tables::Tables;
 
 use rows::RowBanks;
 use session::Session;
+
+pub(crate) use identity::WrongClaims;
 
 /// Why a request is refused, with the detail that goes with the reason.
 type Refused = (RefusalCode, u16);
@@ -171,6 +175,19 @@ impl Board {
     fn send(&mut self, header: &Header, reply: &Reply<'_>) {
         // Nothing that a board says is longer than a packet, and what it cannot say it leaves unsaid.
         let _ = self.encoder.encode(header, |payload| reply.write(payload), &mut self.outgoing);
+    }
+}
+
+impl Endpoint for Board {
+    type Failure = Infallible;
+
+    fn receive(&mut self, bytes: &[u8], now: Duration) -> Result<(), Infallible> {
+        Self::receive(self, bytes, now);
+        Ok(())
+    }
+
+    fn outgoing(&mut self) -> &mut Vec<u8> {
+        self.outgoing()
     }
 }
 

@@ -1,33 +1,28 @@
 //! The corrector: samples in, corrected samples out half a row later, clock for clock as in hardware.
 
-use std::sync::Arc;
+mod defects;
+mod delay;
+mod kernel;
+mod reader;
+mod ring;
+mod source;
+mod weights;
+mod window;
 
-use crate::defects::Defects;
-use crate::delay::DelayLine;
-use crate::depth::Depth;
-use crate::faults::BoardFault;
-use crate::kernel::Kernel;
+use crate::faults::{BoardFault, Defects};
 use crate::options::{OptionError, Options};
-use crate::reader::Reader;
-use crate::ring::Ring;
+
+use delay::DelayLine;
+use reader::Reader;
+use ring::Ring;
+
+pub(crate) use defects::{CoreDefects, DeadTap, StuckBits};
+pub use delay::Leaving;
+pub use kernel::{Kernel, NODES, Node, Weight};
+pub use reader::RowBinding;
 
 /// Samples that must have entered beyond half a row before a column can be read; part of the latency L.
 const LOOK_AHEAD: u32 = 3;
-
-/// What a row is bound to when its first sample enters. It keeps it until its last sample has left.
-#[derive(Clone, Debug)]
-pub struct RowBinding {
-    /// Columns W.
-    pub width: u16,
-    /// Twice the optical centre's column, C.
-    pub centre2: u16,
-    /// Bits a sample; outputs are clamped to it.
-    pub depth: Depth,
-    /// The row's table entry Q, 1/k in units of 2^-24 (Eq. 9).
-    pub factor: u32,
-    /// The interpolation kernel.
-    pub kernel: Arc<Kernel>,
-}
 
 /// A sample that enters.
 #[derive(Clone, Copy, Debug)]
@@ -36,15 +31,6 @@ pub struct Entering<'a> {
     pub sample: u16,
     /// With the first sample of a row, what the row is bound to.
     pub begins: Option<&'a RowBinding>,
-}
-
-/// A sample that leaves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Leaving {
-    /// The corrected sample.
-    pub sample: u16,
-    /// Its column, from 0.
-    pub column: u16,
 }
 
 /// A row that has begun to enter and has not yet begun to be read.
@@ -65,7 +51,7 @@ pub struct Core {
     waiting: Option<Waiting>,
     leaving: Option<Reader>,
     delay: DelayLine,
-    defects: Defects,
+    defects: CoreDefects,
     latency: u32,
 }
 
@@ -76,7 +62,7 @@ impl Core {
     /// If the options do not describe a build that can exist.
     pub fn new(options: &Options, fault: Option<BoardFault>) -> Result<Self, OptionError> {
         options.check()?;
-        let defects = Defects::of(fault);
+        let defects = Defects::of(fault).core;
         let latency = u32::from(options.latency) + defects.extra_delay;
         Ok(Self {
             ring: Ring::new(options.ring_size().into(), defects.address_lines, defects.data_lines),

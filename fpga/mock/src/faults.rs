@@ -1,54 +1,15 @@
 //! Faults by name: one part of the board out of order, on purpose.
 
-mod catalogue;
 mod effect;
 
-use std::collections::BTreeMap;
+use halfrow_pipe::{Fault, FaultError, FaultInfo, Parameter, Parameters, Place, Range, ValueError, Values};
 
-use crate::kernel::{NODES, Weight};
-use crate::value::{Limits, ValueError, parse_word};
+use crate::board::WrongClaims;
+use crate::core::{CoreDefects, DeadTap, NODES, StuckBits, Weight};
+use crate::player::PlayerDefects;
+use crate::tables::{Drift, FlippedBit, Stale, TableDefects};
 
-pub use catalogue::{FaultInfo, Place, catalogue};
 pub use effect::Streamed;
-
-/// The row that faults of single rows pick by default. Small frames have it too.
-const DEFAULT_ROW: u16 = 3;
-
-const ROW: Limits = Limits::new("row", 0, 2047);
-const SAMPLE_BIT: Limits = Limits::new("bit", 0, 11);
-const ADDRESS_BIT: Limits = Limits::new("bit", 0, 13);
-const FACTOR_BIT: Limits = Limits::new("bit", 0, 24);
-const WEIGHT_BIT: Limits = Limits::new("bit", 0, 15);
-const NODE: Limits = Limits::new("node", 0, NODES as i64 - 1);
-const COLUMNS: Limits = Limits::new("columns", -3, 3);
-const TAP: Limits = Limits::new("tap", 0, 6);
-const READS: Limits = Limits::new("reads", 0, 6);
-const AFTER: Limits = Limits::new("after", 0, u32::MAX as i64);
-
-const WEIGHTS: [(&str, Weight); 5] =
-    [("g0", Weight::G0), ("r1", Weight::R1), ("g4", Weight::G4), ("r5", Weight::R5), ("g6", Weight::G6)];
-const LEVELS: [(&str, bool); 2] = [("0", false), ("1", true)];
-const TRUTHS: [(&str, bool); 2] = [("false", false), ("true", true)];
-
-/// A fault that cannot be made.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum FaultError {
-    /// No board fault has this name.
-    #[error("no board fault is called {name}; choose a name from the list of faults")]
-    Unknown {
-        /// The name that was given.
-        name: String,
-    },
-    /// A parameter of the fault is wrong.
-    #[error("a parameter of fault={fault} cannot be used; correct it or leave it out")]
-    Parameter {
-        /// The fault's name.
-        fault: String,
-        /// What is wrong.
-        #[source]
-        source: ValueError,
-    },
-}
 
 /// A fault inside the board, with the part that it is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,74 +89,211 @@ pub enum BoardFault {
     WrongDatapath,
 }
 
+/// A row that small frames have too is the default.
+const ROW: Parameter = Parameter::new("row", Range::Whole(0, 2047), Some("3"), "the row");
+const FACTOR_BIT: Parameter = Parameter::new("bit", Range::Whole(0, 24), Some("18"), "the bit of the entry");
+const HIDDEN: Parameter = Parameter::new(
+    "hidden",
+    TRUTHS,
+    Some("false"),
+    "whether only the datapath sees it and reading back shows the right value",
+);
+const TRUTHS: Range = Range::Words(&["false", "true"]);
+const LEVELS: Range = Range::Words(&["0", "1"]);
+const TAP: Range = Range::Whole(0, 6);
+
+/// The faults of the board.
+pub const FAULTS: &[Fault<BoardFault>] = &[
+    fault(
+        "stuck-data",
+        "a data line of the line memory is stuck",
+        &[
+            Parameter::new("bit", Range::Whole(0, 11), Some("5"), "the line"),
+            Parameter::new("value", LEVELS, Some("1"), "the level that it is stuck at"),
+        ],
+        |values| {
+            Ok(BoardFault::StuckData {
+                bit: values.whole("bit")?,
+                value: values.choice("value", &[false, true])?,
+            })
+        },
+    ),
+    fault(
+        "stuck-address",
+        "an address line of the line memory is stuck",
+        &[
+            Parameter::new("bit", Range::Whole(0, 13), Some("3"), "the line"),
+            Parameter::new("value", LEVELS, Some("0"), "the level that it is stuck at"),
+        ],
+        |values| {
+            Ok(BoardFault::StuckAddress {
+                bit: values.whole("bit")?,
+                value: values.choice("value", &[false, true])?,
+            })
+        },
+    ),
+    fault("row-factor", "a bit of a row's table entry is flipped", &[ROW, FACTOR_BIT, HIDDEN], |values| {
+        Ok(BoardFault::RowFactor {
+            row: values.whole("row")?,
+            bit: values.whole("bit")?,
+            hidden: values.choice("hidden", &[false, true])?,
+        })
+    }),
+    fault(
+        "kernel-word",
+        "a bit of a kernel word is flipped",
+        &[
+            Parameter::new("node", Range::Whole(0, NODES as i64 - 1), Some("16"), "the word's node"),
+            Parameter::new(
+                "weight",
+                Range::Words(&["g0", "r1", "g4", "r5", "g6"]),
+                Some("g4"),
+                "the word's weight",
+            ),
+            Parameter::new("bit", Range::Whole(0, 15), Some("12"), "the bit of the word"),
+            HIDDEN,
+        ],
+        |values| {
+            Ok(BoardFault::KernelWord {
+                node: values.whole("node")?,
+                weight: values
+                    .choice("weight", &[Weight::G0, Weight::R1, Weight::G4, Weight::R5, Weight::G6])?,
+                bit: values.whole("bit")?,
+                hidden: values.choice("hidden", &[false, true])?,
+            })
+        },
+    ),
+    fault(
+        "tap-offset",
+        "all taps come from beside their columns",
+        &[Parameter::new("columns", Range::Whole(-3, 3), Some("1"), "how many columns to the right")],
+        |values| Ok(BoardFault::TapOffset { columns: values.whole("columns")? }),
+    ),
+    fault("no-rounding", "the weighted sum is truncated instead of rounded", &[], |_| {
+        Ok(BoardFault::NoRounding)
+    }),
+    fault(
+        "dead-tap",
+        "a tap carries zero, or another tap's sample",
+        &[
+            Parameter::new("tap", TAP, Some("4"), "the tap, from G0 to G6"),
+            Parameter::new("reads", TAP, None, "the tap whose sample it carries; without it, zero"),
+        ],
+        |values| {
+            let reads = values.is_given("reads").then(|| values.whole("reads")).transpose()?;
+            Ok(BoardFault::DeadTap { tap: values.whole("tap")?, reads })
+        },
+    ),
+    fault("late", "samples leave one pixel clock later than claimed", &[], |_| Ok(BoardFault::Late)),
+    fault("wrong-latency-claim", "the claimed latency is one pixel clock too long", &[], |_| {
+        Ok(BoardFault::WrongLatencyClaim)
+    }),
+    fault("lost-row", "a row goes in and never comes out", &[ROW], |values| {
+        Ok(BoardFault::LostRow { row: values.whole("row")? })
+    }),
+    fault(
+        "stale-table",
+        "after a commit, rows are made with the tables before it and say so, given two table banks",
+        &[],
+        |_| Ok(BoardFault::StaleTable { hidden: false }),
+    ),
+    fault(
+        "stale-table-hidden",
+        "after a commit, rows are made with the tables before it and deny it, given two table banks",
+        &[],
+        |_| Ok(BoardFault::StaleTable { hidden: true }),
+    ),
+    fault(
+        "drifting-table",
+        "a bit of a table entry flips some rows after a commit",
+        &[
+            Parameter::new(
+                "after",
+                Range::Whole(0, u32::MAX as i64),
+                Some("8"),
+                "rows of the generation that are played before",
+            ),
+            ROW,
+            FACTOR_BIT,
+        ],
+        |values| {
+            Ok(BoardFault::DriftingTable {
+                after: values.whole("after")?,
+                row: values.whole("row")?,
+                bit: values.whole("bit")?,
+            })
+        },
+    ),
+    fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
+];
+
+const fn fault(
+    name: &'static str,
+    what: &'static str,
+    parameters: &'static [Parameter],
+    make: fn(&Values) -> Result<BoardFault, ValueError>,
+) -> Fault<BoardFault> {
+    Fault::new(name, Place::Board, what, parameters, make)
+}
+
+/// All faults that a mock board and the pipe to it can have, those of the pipe first.
+pub fn catalogue() -> impl Iterator<Item = FaultInfo> {
+    let pipe = halfrow_pipe::FAULTS.iter().map(|fault| fault.info);
+    pipe.chain(FAULTS.iter().map(|fault| fault.info))
+}
+
+/// What is wrong with each part of a board.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Defects {
+    /// The datapath.
+    pub(crate) core: CoreDefects,
+    /// The tables.
+    pub(crate) tables: TableDefects,
+    /// What plays rows and collects them.
+    pub(crate) player: PlayerDefects,
+    /// What the board says of itself.
+    pub(crate) claims: WrongClaims,
+}
+
+impl Defects {
+    /// What is wrong with a board with `fault`.
+    pub(crate) fn of(fault: Option<BoardFault>) -> Self {
+        let mut defects = Self::default();
+        let Self { core, tables, player, claims } = &mut defects;
+        match fault {
+            None => {}
+            Some(BoardFault::StuckData { bit, value }) => core.data_lines = StuckBits::one(bit, value),
+            Some(BoardFault::StuckAddress { bit, value }) => core.address_lines = StuckBits::one(bit, value),
+            Some(BoardFault::RowFactor { row, bit, hidden }) => {
+                tables.factor = Some(FlippedBit { entry: row, bit, hidden });
+            }
+            Some(BoardFault::KernelWord { node, weight, bit, hidden }) => {
+                tables.word = Some(FlippedBit { entry: (node, weight), bit, hidden });
+            }
+            Some(BoardFault::TapOffset { columns }) => core.tap_offset = columns.into(),
+            Some(BoardFault::NoRounding) => core.rounding = 0,
+            Some(BoardFault::DeadTap { tap, reads }) => core.dead_tap = Some(DeadTap { tap, reads }),
+            Some(BoardFault::Late) => core.extra_delay = 1,
+            Some(BoardFault::WrongLatencyClaim) => claims.latency = 1,
+            Some(BoardFault::LostRow { row }) => player.lost_row = Some(row),
+            Some(BoardFault::StaleTable { hidden }) => {
+                tables.stale = Some(if hidden { Stale::Hidden } else { Stale::Admitted });
+            }
+            Some(BoardFault::DriftingTable { after, row, bit }) => {
+                tables.drift = Some(Drift { after, row, bit });
+            }
+            Some(BoardFault::WrongDatapath) => claims.datapath = 1,
+        }
+        defects
+    }
+}
+
 impl BoardFault {
     /// The board fault called `name`. Takes its own parameters out of `parameters` and leaves the others there.
     ///
     /// # Errors
     /// If no board fault has this name or one of its parameters is out of range.
     pub fn from_name(name: &str, parameters: &mut Parameters) -> Result<Self, FaultError> {
-        Self::read(name, parameters)
-            .map_err(|source| FaultError::Parameter { fault: name.to_owned(), source })?
-            .ok_or_else(|| FaultError::Unknown { name: name.to_owned() })
+        Fault::named(FAULTS, name, parameters)
     }
-
-    fn read(name: &str, from: &mut Parameters) -> Result<Option<Self>, ValueError> {
-        Ok(Some(match name {
-            "stuck-data" => Self::StuckData {
-                bit: number(from, &SAMPLE_BIT, 5)?,
-                value: word(from, "value", &LEVELS, true)?,
-            },
-            "stuck-address" => Self::StuckAddress {
-                bit: number(from, &ADDRESS_BIT, 3)?,
-                value: word(from, "value", &LEVELS, false)?,
-            },
-            "row-factor" => Self::RowFactor {
-                row: number(from, &ROW, DEFAULT_ROW)?,
-                bit: number(from, &FACTOR_BIT, 18)?,
-                hidden: word(from, "hidden", &TRUTHS, false)?,
-            },
-            "kernel-word" => Self::KernelWord {
-                node: number(from, &NODE, 16)?,
-                weight: word(from, "weight", &WEIGHTS, Weight::G4)?,
-                bit: number(from, &WEIGHT_BIT, 12)?,
-                hidden: word(from, "hidden", &TRUTHS, false)?,
-            },
-            "tap-offset" => Self::TapOffset { columns: number(from, &COLUMNS, 1)? },
-            "no-rounding" => Self::NoRounding,
-            "dead-tap" => Self::DeadTap {
-                tap: number(from, &TAP, 4)?,
-                reads: from.remove(READS.key()).map(|text| READS.parse(&text)).transpose()?,
-            },
-            "late" => Self::Late,
-            "wrong-latency-claim" => Self::WrongLatencyClaim,
-            "lost-row" => Self::LostRow { row: number(from, &ROW, DEFAULT_ROW)? },
-            "stale-table" => Self::StaleTable { hidden: false },
-            "stale-table-hidden" => Self::StaleTable { hidden: true },
-            "drifting-table" => Self::DriftingTable {
-                after: number(from, &AFTER, 8)?,
-                row: number(from, &ROW, DEFAULT_ROW)?,
-                bit: number(from, &FACTOR_BIT, 18)?,
-            },
-            "wrong-datapath" => Self::WrongDatapath,
-            _ => return Ok(None),
-        }))
-    }
-}
-
-/// Parameters by key, as in `bit=5,value=1`.
-pub type Parameters = BTreeMap<String, String>;
-
-/// Takes a number out of the parameters.
-fn number<T: TryFrom<i64>>(from: &mut Parameters, limits: &Limits, default: T) -> Result<T, ValueError> {
-    from.remove(limits.key()).map_or(Ok(default), |text| limits.parse(&text))
-}
-
-/// Takes one of the `known` words out of the parameters.
-fn word<T: Copy>(
-    from: &mut Parameters,
-    key: &'static str,
-    known: &[(&'static str, T)],
-    default: T,
-) -> Result<T, ValueError> {
-    from.remove(key).map_or(Ok(default), |text| parse_word(key, &text, known))
 }

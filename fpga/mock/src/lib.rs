@@ -14,36 +14,23 @@
 
 mod banks;
 mod board;
+mod connect;
 mod core;
-mod defects;
-mod delay;
 mod depth;
 mod faults;
 mod gaps;
-mod kernel;
 mod options;
 mod player;
-mod reader;
-mod ring;
 mod settings;
-mod source;
 mod tables;
-mod value;
-mod weights;
-mod window;
-mod wire;
 
 pub use crate::banks::{OutBanks, RowName, RowOut};
 pub use crate::board::Board;
-pub use crate::core::{Core, Entering, Leaving, RowBinding};
+pub use crate::connect::{ConnectError, board_fault, connect};
+pub use crate::core::{Core, Entering, Kernel, Leaving, NODES, Node, RowBinding, Weight};
 pub use crate::depth::Depth;
-pub use crate::faults::{BoardFault, FaultError, FaultInfo, Parameters, Place, Streamed, catalogue};
-pub use crate::kernel::{Kernel, NODES, Node, Weight};
+pub use crate::faults::{BoardFault, FAULTS, Streamed, catalogue};
 pub use crate::options::{OptionError, Options, TapCount};
 pub use crate::player::{PlayError, Player, RowIn};
 pub use crate::settings::{Settings, SettingsError};
 pub use crate::tables::{Bank, Bound, Port, TableError, Tables, UNSTRETCHED};
-pub use crate::value::ValueError;
-pub use crate::wire::{
-    Broken, Endpoint, Wire, WireError, WireFault, WireFaultError, WireOptions, WireSetup, WireValueError,
-};

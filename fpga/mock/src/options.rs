@@ -1,7 +1,9 @@
 //! What a build of the board has: the constants that synthesis fixes and the board advertises.
 
+use halfrow_pipe::{BoardOptions, Fault, Limits, ValueError, parse_word};
+
 use crate::depth::Depth;
-use crate::value::{Limits, ValueError, parse_word};
+use crate::faults::{BoardFault, FAULTS};
 
 const LATENCY: Limits = Limits::new("latency", 4, 32);
 const RING: Limits = Limits::new("ring", 64, 16384);
@@ -13,11 +15,14 @@ const MAX_WIDTH: Limits = Limits::new("max-width", 64, 2592);
 const MAX_HEIGHT: Limits = Limits::new("max-height", 1, 2048);
 const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
 
+/// The name of the option that says how many taps there are.
+const TAPS: &str = "taps";
+
 /// The name of the option that lists the depths, as in `depths=8+12`.
 const DEPTHS: &str = "depths";
 
 /// An option that no build can have.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum OptionError {
     /// One option by itself is wrong.
     #[error(transparent)]
@@ -104,32 +109,6 @@ impl Default for Options {
 }
 
 impl Options {
-    /// Sets one option from text, as in `latency=12`. Returns false, with nothing changed, for a key that is no option.
-    ///
-    /// # Errors
-    /// If the value is outside the option's own range. Whether options fit each other is for [`Self::check`] to say,
-    /// so that their order does not matter.
-    pub fn set(&mut self, key: &str, value: &str) -> Result<bool, OptionError> {
-        match key {
-            "latency" => self.latency = LATENCY.parse(value)?,
-            "ring" => self.ring = Some(RING.parse(value)?),
-            "least-blanking" => self.least_blanking = LEAST_BLANKING.parse(value)?,
-            "row-banks-in" => self.row_banks_in = ROW_BANKS_IN.parse(value)?,
-            "row-banks-out" => self.row_banks_out = ROW_BANKS_OUT.parse(value)?,
-            "table-banks" => self.table_banks = TABLE_BANKS.parse(value)?,
-            "max-width" => self.max_width = MAX_WIDTH.parse(value)?,
-            "max-height" => self.max_height = MAX_HEIGHT.parse(value)?,
-            "pixel-clock" => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
-            "taps" => {
-                self.taps =
-                    parse_word("taps", value, &[("five", TapCount::Five), ("seven", TapCount::Seven)])?;
-            }
-            DEPTHS => self.depths = parse_depths(value)?,
-            _ => return Ok(false),
-        }
-        Ok(true)
-    }
-
     /// Samples M in the ring.
     #[must_use]
     pub fn ring_size(&self) -> u16 {
@@ -161,6 +140,47 @@ impl Options {
             return Err(OptionError::OddWidth { max_width });
         }
         if self.depths.is_empty() { Err(OptionError::NoDepth) } else { Ok(()) }
+    }
+}
+
+impl BoardOptions for Options {
+    type Fault = BoardFault;
+
+    const KEYS: &'static [&'static str] = &[
+        LATENCY.key(),
+        RING.key(),
+        LEAST_BLANKING.key(),
+        ROW_BANKS_IN.key(),
+        ROW_BANKS_OUT.key(),
+        TABLE_BANKS.key(),
+        TAPS,
+        MAX_WIDTH.key(),
+        MAX_HEIGHT.key(),
+        DEPTHS,
+        PIXEL_CLOCK.key(),
+    ];
+
+    const FAULTS: &'static [Fault<BoardFault>] = FAULTS;
+
+    /// Whether options fit each other is for [`Options::check`] to say, so that their order does not matter.
+    fn set(&mut self, key: &str, value: &str) -> Result<bool, ValueError> {
+        match key {
+            "latency" => self.latency = LATENCY.parse(value)?,
+            "ring" => self.ring = Some(RING.parse(value)?),
+            "least-blanking" => self.least_blanking = LEAST_BLANKING.parse(value)?,
+            "row-banks-in" => self.row_banks_in = ROW_BANKS_IN.parse(value)?,
+            "row-banks-out" => self.row_banks_out = ROW_BANKS_OUT.parse(value)?,
+            "table-banks" => self.table_banks = TABLE_BANKS.parse(value)?,
+            "max-width" => self.max_width = MAX_WIDTH.parse(value)?,
+            "max-height" => self.max_height = MAX_HEIGHT.parse(value)?,
+            "pixel-clock" => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
+            TAPS => {
+                self.taps = parse_word(TAPS, value, &[("five", TapCount::Five), ("seven", TapCount::Seven)])?;
+            }
+            DEPTHS => self.depths = parse_depths(value)?,
+            _ => return Ok(false),
+        }
+        Ok(true)
     }
 }
 

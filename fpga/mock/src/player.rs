@@ -2,7 +2,7 @@
 
 use crate::banks::{OutBanks, RowName};
 use crate::core::{Core, Entering, RowBinding};
-use crate::faults::BoardFault;
+use crate::faults::{BoardFault, Defects};
 use crate::gaps::Gaps;
 use crate::options::{OptionError, Options};
 use crate::settings::{Settings, SettingsError};
@@ -47,6 +47,13 @@ pub enum PlayError {
     },
 }
 
+/// What is wrong with a player; nothing by default.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PlayerDefects {
+    /// The row of every frame that goes in and never comes out.
+    pub(crate) lost_row: Option<u16>,
+}
+
 /// Plays rows through the core, one sample a pixel clock.
 ///
 /// Between rows it stops the pixel enable, so the time until the next row is there adds no pixel clock. The output of
@@ -70,10 +77,6 @@ impl Player {
     /// # Errors
     /// If the options do not describe a build that can exist.
     pub fn new(options: &Options, fault: Option<BoardFault>) -> Result<Self, OptionError> {
-        let lost_row = match fault {
-            Some(BoardFault::LostRow { row }) => Some(row),
-            _ => None,
-        };
         Ok(Self {
             core: Core::new(options, fault)?,
             options: options.clone(),
@@ -81,7 +84,7 @@ impl Player {
             gaps: Gaps::default(),
             pixel_clock: 0,
             flush: 0,
-            banks: OutBanks::new(options.row_banks_out, lost_row),
+            banks: OutBanks::new(options.row_banks_out, Defects::of(fault).player.lost_row),
         })
     }
 

@@ -91,6 +91,9 @@ impl Settings {
     /// Names the first setting that the build cannot run with.
     pub fn check(&self, options: &Options) -> Result<(), SettingsError> {
         let &Self { width, height, centre2, depth, blanking, .. } = self;
+        if !options.depths.contains(&depth) {
+            return Err(SettingsError::Depth { bits: depth.bits() });
+        }
         if width % 2 != 0 || !(LEAST_WIDTH..=options.max_width).contains(&width) {
             return Err(SettingsError::Width { width, most: options.max_width });
         }
@@ -100,9 +103,6 @@ impl Settings {
         let most = 2 * width - 2;
         if centre2 > most {
             return Err(SettingsError::Centre { centre2, most });
-        }
-        if !options.depths.contains(&depth) {
-            return Err(SettingsError::Depth { bits: depth.bits() });
         }
         if blanking < options.least_blanking {
             return Err(SettingsError::Blanking { blanking, least: options.least_blanking });

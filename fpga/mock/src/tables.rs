@@ -3,8 +3,8 @@
 
 use std::sync::Arc;
 
-use crate::faults::BoardFault;
-use crate::kernel::{Kernel, NODES, Node};
+use crate::core::{Kernel, NODES, Node, Weight};
+use crate::faults::{BoardFault, Defects};
 use crate::options::{Options, TapCount};
 
 /// The table entry of a row that is not stretched, 1.0; also the largest.
@@ -87,7 +87,51 @@ struct Commit {
     first_frame: u16,
 }
 
-/// The banks of tables, and the faults that lie in them.
+/// What is wrong with tables; nothing by default.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct TableDefects {
+    /// A bit of a factor is flipped at some ports, in both banks.
+    pub(crate) factor: Option<FlippedBit<u16>>,
+    /// A bit of a kernel word is flipped at some ports, in both banks.
+    pub(crate) word: Option<FlippedBit<(u8, Weight)>>,
+    /// Rows are made with the tables before the last commit.
+    pub(crate) stale: Option<Stale>,
+    /// A bit of a factor flips while the board runs.
+    pub(crate) drift: Option<Drift>,
+}
+
+/// A bit of an entry that is not as it was written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FlippedBit<Entry> {
+    /// Which entry.
+    pub(crate) entry: Entry,
+    /// The bit.
+    pub(crate) bit: u8,
+    /// Whether only the datapath sees it and reading back shows the right value.
+    pub(crate) hidden: bool,
+}
+
+/// What rows that are made with the tables before the last commit are named after.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Stale {
+    /// The generation that they are made with.
+    Admitted,
+    /// The new one.
+    Hidden,
+}
+
+/// A bit of a factor that flips while the board runs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Drift {
+    /// Rows of the generation that are played before.
+    pub(crate) after: u32,
+    /// The factor's row.
+    pub(crate) row: u16,
+    /// The bit.
+    pub(crate) bit: u8,
+}
+
+/// The banks of tables, and what is wrong with them.
 #[derive(Debug)]
 pub struct Tables {
     /// None where the active bank itself is written.
@@ -95,7 +139,7 @@ pub struct Tables {
     active: Contents,
     commit: Option<Commit>,
     taps: TapCount,
-    fault: Option<BoardFault>,
+    defects: TableDefects,
     rows_bound: u32,
 }
 
@@ -113,7 +157,7 @@ impl Tables {
             active: contents(),
             commit: None,
             taps: options.taps,
-            fault,
+            defects: Defects::of(fault).tables,
             rows_bound: 0,
         }
     }
@@ -175,11 +219,10 @@ impl Tables {
     /// What the row that begins now is bound to.
     pub fn bind(&mut self, row: u16) -> Bound {
         self.drift();
-        let stale = matches!(self.fault, Some(BoardFault::StaleTable { .. }));
-        let bank = if stale { Bank::Shadow } else { Bank::Active };
-        let named_after = match self.fault {
-            Some(BoardFault::StaleTable { hidden: false }) => Bank::Shadow,
-            _ => Bank::Active,
+        let (bank, named_after) = match self.defects.stale {
+            None => (Bank::Active, Bank::Active),
+            Some(Stale::Admitted) => (Bank::Shadow, Bank::Shadow),
+            Some(Stale::Hidden) => (Bank::Shadow, Bank::Active),
         };
         Bound {
             factor: self.factor(bank, row.into(), Port::Datapath).unwrap_or(UNSTRETCHED),
@@ -192,20 +235,16 @@ impl Tables {
     #[must_use]
     pub fn factor(&self, bank: Bank, row: usize, port: Port) -> Option<u32> {
         let stored = *self.contents(bank).factors.get(row)?;
-        Some(match self.fault {
-            Some(BoardFault::RowFactor { row: faulty, bit, hidden }) if row == usize::from(faulty) => {
-                if shows(hidden, port) { flipped(stored, bit) } else { stored }
-            }
-            _ => stored,
-        })
+        let flip = self.defects.factor.filter(|flip| row == usize::from(flip.entry) && flip.shows(port));
+        Some(flip.map_or(stored, |flip| flipped(stored, flip.bit)))
     }
 
     /// The kernel as a port sees it.
     #[must_use]
     pub fn kernel(&self, bank: Bank, port: Port) -> Arc<Kernel> {
         let mut kernel = Arc::clone(&self.contents(bank).kernel);
-        if let Some(BoardFault::KernelWord { node, weight, bit, hidden }) = self.fault
-            && shows(hidden, port)
+        if let Some(FlippedBit { entry: (node, weight), bit, .. }) =
+            self.defects.word.filter(|flip| flip.shows(port))
             && usize::from(node) < NODES
         {
             let word = Arc::make_mut(&mut kernel).nodes[usize::from(node)].word_mut(weight);
@@ -276,7 +315,7 @@ impl Tables {
 
     /// Lets a drifting entry flip once its time has come.
     fn drift(&mut self) {
-        if let Some(BoardFault::DriftingTable { after, row, bit }) = self.fault
+        if let Some(Drift { after, row, bit }) = self.defects.drift
             && after == self.rows_bound
             && let Some(factor) = self.active.factors.get_mut(usize::from(row))
         {
@@ -293,9 +332,11 @@ fn span<T>(table: &mut [T], first: usize, count: usize) -> Result<&mut [T], Tabl
     table.get_mut(first..end).ok_or(TableError::NoSuchEntry { entry: end.saturating_sub(1), entries })
 }
 
-/// Whether a faulty word shows at a port: everywhere, or only to the datapath.
-fn shows(hidden: bool, port: Port) -> bool {
-    !hidden || port == Port::Datapath
+impl<Entry> FlippedBit<Entry> {
+    /// Whether the bit is flipped at a port: at every one, or only at the datapath's.
+    fn shows(&self, port: Port) -> bool {
+        !self.hidden || port == Port::Datapath
+    }
 }
 
 /// A word with one bit flipped. A bit beyond the word leaves it as it is.

@@ -5,7 +5,7 @@
 
 use std::time::{Duration, Instant};
 
-use halfrow_mock::Endpoint;
+use halfrow_pipe::Endpoint;
 use halfrow_sim::{Board, Core, CoreBuild, CoreInputs, Front};
 
 const WIDTH: u16 = 1920;

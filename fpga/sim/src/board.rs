@@ -1,9 +1,9 @@
-//! A simulated board at the end of a wire.
+//! A simulated board at the end of a pipe.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use halfrow_mock::Endpoint;
+use halfrow_pipe::Endpoint;
 
 use crate::byte_port::BytePort;
 use crate::ffi;

@@ -1,13 +1,13 @@
 //! The board's Verilog under Verilator, as a board.
 //!
 //! ```text
-//! halfrow_mock::Wire ─ Board ─┬─ byte ports ───────────────────────────► halfrow_bridge
+//! halfrow_pipe::Pipe ─ Board ─┬─ byte ports ───────────────────────────► halfrow_bridge
 //!   speed, delay, faults      ├─ a UART's other end ── txd rxd rts cts ► halfrow_uart_bridge
 //!                             └─ an FT2232H ── rd wr rxf txe siwu data ► halfrow_fifo_bridge
 //! ```
 //!
-//! [`Board`] is what stands at the end of the mock's wire, so the wire's options and faults are the same for both. The
-//! clock of the wire stands still while the design is simulated, as it does while the mock computes.
+//! [`Board`] is what stands at the end of a pipe, so the pipe's options and faults are the same for both. The
+//! clock of the pipe stands still while the design is simulated, as it does while the mock computes.
 //!
 //! [`Core`] is the corrector alone, clock by clock, for tests (feature `builds`).
 

@@ -91,17 +91,3 @@ fn unknown(bytes: &[u8]) -> DecodeError {
     };
     DecodeError::Unsupported { what: what.to_owned(), remedy }
 }
-
-/// Drives every decoder with `bytes`, whatever they begin with: the body of a fuzzer. It must return.
-pub fn fuzz_decode(bytes: &[u8]) {
-    let how = ReadOptions::default();
-    let mut results = vec![decode(bytes, &how), pgm::decode(bytes, &how), png::decode(bytes, &how)];
-    results.push(tiff::decode(bytes, &how));
-    let (width, samples) = bytes.split_first().map_or((0, bytes), |(&width, rest)| (width.into(), rest));
-    for layout in RawLayout::ALL {
-        for height in [0, 1, samples.len() / 8, usize::MAX] {
-            results.push(raw::decode(samples, RawGeometry { width, height, layout }, &how));
-        }
-    }
-    std::hint::black_box(&results);
-}

@@ -1,6 +1,6 @@
 //! Why a target leads to no board.
 
-use halfrow_mock::WireError;
+use std::error::Error;
 
 use crate::kinds::{self, Kind};
 use crate::{Class, RecordingError, SerialError, Target, TcpError, UsbError};
@@ -54,7 +54,7 @@ pub enum OpenError {
         target: String,
         /// Why.
         #[source]
-        source: Box<WireError>,
+        source: Box<dyn Error + Send + Sync>,
     },
     /// An option whose value is none.
     #[error("`{key}={value}` is not an option of this board; write {key}=virtual or {key}=real")]

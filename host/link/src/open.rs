@@ -1,8 +1,9 @@
 //! From a target string to a link.
 
+use std::error::Error;
 use std::path::Path;
 
-use halfrow_mock::{BoardFault, Wire, WireError};
+use halfrow_mock::BoardFault;
 
 #[cfg(feature = "sim")]
 pub(crate) use super::simulated::open_simulated;
@@ -39,7 +40,7 @@ pub fn fault(target: &Target) -> Result<Option<BoardFault>, OpenError> {
         return Ok(None);
     }
     let (_, options) = pace(target)?;
-    Wire::board_fault(&options).map_err(|source| wrong_options(MOCK, target, source))
+    halfrow_mock::board_fault(&options).map_err(|source| wrong_options(MOCK, target, source))
 }
 
 pub(crate) fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
@@ -47,8 +48,8 @@ pub(crate) fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
         return Err(OpenError::NoAddress { kind: target.kind.clone(), address: address.clone() });
     }
     let (paced, options) = pace(target)?;
-    let wire = Wire::from_options(&options).map_err(|source| wrong_options(MOCK, target, source))?;
-    Ok(Box::new(WireLink::new(wire, MOCK, paced)))
+    let pipe = halfrow_mock::connect(&options).map_err(|source| wrong_options(MOCK, target, source))?;
+    Ok(Box::new(WireLink::new(pipe, MOCK, paced)))
 }
 
 #[cfg(not(feature = "sim"))]
@@ -59,7 +60,7 @@ pub(crate) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError
 /// Options of a target, each with its value.
 pub(super) type Options<'a> = Vec<(&'a str, &'a str)>;
 
-/// Whether the wire of a board in this process is paced, and the other options.
+/// Whether the pipe of a board in this process is paced, and the other options.
 pub(super) fn pace(target: &Target) -> Result<(bool, Options<'_>), OpenError> {
     let mut paced = false;
     let mut options = Options::new();
@@ -74,7 +75,11 @@ pub(super) fn pace(target: &Target) -> Result<(bool, Options<'_>), OpenError> {
     Ok((paced, options))
 }
 
-pub(super) fn wrong_options(board: &'static str, target: &Target, source: WireError) -> OpenError {
+pub(super) fn wrong_options(
+    board: &'static str,
+    target: &Target,
+    source: impl Error + Send + Sync + 'static,
+) -> OpenError {
     OpenError::Options { board, target: target.to_string(), source: Box::new(source) }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use halfrow_mock::WireSetup;
+use halfrow_pipe::PipeSetup;
 use halfrow_sim::{Board, Front};
 
 use super::open::{OpenError, pace, wrong_options};
@@ -24,7 +24,7 @@ pub(super) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError
     let (paced, mut options) = pace(target)?;
     let trace = options.iter().position(|(key, _)| *key == "trace").map(|place| options.remove(place).1);
     let setup =
-        WireSetup::from_options(&options).map_err(|source| wrong_options(SIMULATED, target, source))?;
+        PipeSetup::from_options(&options).map_err(|source| wrong_options(SIMULATED, target, source))?;
     let mut board = Board::new(front, SEED);
     if let Some(file) = trace {
         board.trace(Path::new(file))?;

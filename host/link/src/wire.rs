@@ -1,24 +1,24 @@
-//! A board in this process as a link: on its wire's virtual clock, or paced as a real one would be.
+//! A board in this process as a link: on its pipe's virtual clock, or paced as a real one would be.
 
 use std::time::Duration;
 
-use halfrow_mock::{Broken, Endpoint, Wire};
+use halfrow_pipe::{Broken, Endpoint, Pipe};
 
 use super::{Link, LinkError};
 
 /// A pipe to a board in this process.
 #[derive(Debug)]
 pub struct WireLink<B: Endpoint> {
-    wire: Wire<B>,
+    pipe: Pipe<B>,
     board: &'static str,
     paced: bool,
 }
 
 impl<B: Endpoint> WireLink<B> {
-    /// A link over `wire` to what is called `board`; `paced` lets its clock run as fast as the wall's and no faster.
+    /// A link over `pipe` to what is called `board`; `paced` lets its clock run as fast as the wall's and no faster.
     #[must_use]
-    pub fn new(wire: Wire<B>, board: &'static str, paced: bool) -> Self {
-        Self { wire, board, paced }
+    pub fn new(pipe: Pipe<B>, board: &'static str, paced: bool) -> Self {
+        Self { pipe, board, paced }
     }
 }
 
@@ -32,10 +32,10 @@ where
         incoming: &mut Vec<u8>,
         wait: Duration,
     ) -> Result<usize, LinkError> {
-        let before = self.wire.now();
-        let moved = self.wire.exchange(outgoing, incoming, wait);
+        let before = self.pipe.now();
+        let moved = self.pipe.exchange(outgoing, incoming, wait);
         if self.paced {
-            std::thread::sleep(self.wire.now().saturating_sub(before));
+            std::thread::sleep(self.pipe.now().saturating_sub(before));
         }
         moved.map_err(|broken| match broken {
             Broken::Disconnected { .. } => LinkError::Closed { link: self.name(), at: self.now() },
@@ -46,16 +46,16 @@ where
     }
 
     fn now(&self) -> Duration {
-        self.wire.now()
+        self.pipe.now()
     }
 
     fn bytes_per_second(&self) -> Option<f64> {
-        self.wire.bytes_per_second()
+        self.pipe.bytes_per_second()
     }
 
     fn name(&self) -> String {
         let (board, clock) = (self.board, if self.paced { "paced" } else { "virtual clock" });
-        match self.wire.bytes_per_second() {
+        match self.pipe.bytes_per_second() {
             Some(rate) => format!("{board}'s wire ({rate:.0} bytes/s, {clock})"),
             None => format!("{board}'s wire (unlimited, {clock})"),
         }

@@ -69,6 +69,9 @@ pub struct Span {
 }
 
 impl Span {
+    /// Bytes of a span on the wire.
+    pub const BYTES: usize = 7;
+
     pub(crate) fn write(&self, payload: &mut Vec<u8>) {
         payload.extend_from_slice(&[self.table as u8, self.bank as u8, self.port]);
         payload.extend_from_slice(&self.first.to_le_bytes());

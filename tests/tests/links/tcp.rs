@@ -1,7 +1,10 @@
 //! TCP, without anything between.
 
 use std::io::Write as _;
+use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::time::Duration;
 
 use halfrow_tests::served::Served;
 
@@ -74,11 +77,33 @@ fn a_server_that_speaks_in_words_is_quoted() {
     }
 }
 
+/// The HELLO among the frozen packets.
+fn hello() -> Vec<u8> {
+    let text = include_str!("../../../protocol/vectors/hello-request.hex");
+    let bytes = text.lines().flat_map(|line| line.split("//").next().unwrap_or_default().split_whitespace());
+    bytes.map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect()
+}
+
 #[test]
 fn a_second_host_is_turned_away_while_a_first_is_connected() {
     let served = Served::on_a_tcp_port("127.0.0.1", "mock");
-    let first = TcpStream::connect(served.address()).unwrap();
-    ends(&verify(&served.target(), &[]), 4, "another host is connected");
+    let mut first = TcpStream::connect(served.address()).unwrap();
+    let hello = hello();
+    let (stop, stopped) = channel::<()>();
+    std::thread::scope(|scope| {
+        let stop: Sender<()> = stop;
+        // One that says something every now and then, and reads what it is told.
+        let first = &mut first;
+        let hello = &hello;
+        scope.spawn(move || {
+            while stopped.recv_timeout(Duration::from_millis(100)) == Err(RecvTimeoutError::Timeout) {
+                first.write_all(hello).unwrap();
+                assert_ne!(first.read(&mut [0; 4096]).unwrap(), 0, "the first host is served on");
+            }
+        });
+        ends(&verify(&served.target(), &[]), 4, "another host is connected");
+        drop(stop);
+    });
     drop(first);
     passes(&served);
 }

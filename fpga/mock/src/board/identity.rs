@@ -3,7 +3,7 @@
 use halfrow_protocol::message::{BoardNature, Capabilities, Status};
 
 use super::Board;
-use crate::faults::BoardFault;
+use crate::faults::Defects;
 use crate::options::TapCount;
 
 /// The arithmetic of fpga/DATAPATH.md.
@@ -13,13 +13,21 @@ pub(super) const STEP_PORTS: u8 = 1;
 /// Ports by which it reads nodes: i and i + 1 at once.
 pub(super) const KERNEL_PORTS: u8 = 2;
 
+/// By how much the board's claims are over the truth; by nothing by default.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct WrongClaims {
+    /// The datapath id.
+    pub(crate) datapath: u16,
+    /// L, in pixel clocks.
+    pub(crate) latency: u8,
+}
+
 impl Board {
     pub(super) fn capabilities(&self) -> Capabilities {
         let options = &self.options;
-        let claims_more = u8::from(self.fault == Some(BoardFault::WrongLatencyClaim));
-        let another = u16::from(self.fault == Some(BoardFault::WrongDatapath));
+        let claims = Defects::of(self.fault).claims;
         Capabilities {
-            datapath: DATAPATH + another,
+            datapath: DATAPATH + claims.datapath,
             max_width: options.max_width,
             max_height: options.max_height,
             depths: options.depths.iter().fold(0, |bits, depth| bits | 1 << ((depth.bits() - 8) / 2)),
@@ -27,7 +35,7 @@ impl Board {
                 TapCount::Five => 5,
                 TapCount::Seven => 7,
             },
-            latency: options.latency + claims_more,
+            latency: options.latency + claims.latency,
             ring: options.ring_size(),
             least_blanking: options.least_blanking,
             table_banks: options.table_banks,

@@ -5,13 +5,10 @@ use halfrow_protocol::message::{Bank, Commit, Configuration, Entries, NODES, Ref
 
 use super::identity::{KERNEL_PORTS, STEP_PORTS};
 use super::{Board, Refused};
+use crate::core::Node;
 use crate::depth::Depth;
-use crate::kernel::Node;
 use crate::settings::{Settings, SettingsError};
 use crate::tables::{self, Port, TableError};
-
-/// Bytes of a span in front of the entries.
-const SPAN: usize = 7;
 
 impl Board {
     pub(super) fn configure(&mut self, wanted: &Configuration) -> Result<(), Refused> {
@@ -65,7 +62,7 @@ impl Board {
     /// The bytes of entries for a reply, as the datapath's port reads them.
     pub(super) fn read_packet(&self, span: &Span) -> Result<Vec<u8>, Refused> {
         let bytes = self.read_entries(span)?;
-        let fits = SPAN + bytes.len() <= MAX_PAYLOAD;
+        let fits = Span::BYTES + bytes.len() <= MAX_PAYLOAD;
         if fits { Ok(bytes) } else { Err((RefusalCode::Range, span.first)) }
     }
 

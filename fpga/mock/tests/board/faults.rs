@@ -2,7 +2,8 @@
 
 use std::collections::BTreeMap;
 
-use halfrow_mock::{BoardFault, FaultError, Kernel, Node, Place, ValueError, Weight, catalogue};
+use halfrow_mock::{BoardFault, FAULTS, Kernel, Node, Weight, catalogue};
+use halfrow_pipe::{FaultError, Parameters, Range, ValueError};
 
 use crate::support::{binding, constant, core, fault, hermite, noise_row, row_out, run, unchanged};
 
@@ -78,17 +79,46 @@ fn faults_outside_the_core_leave_it_as_it_is() {
     }
 }
 
+/// Values of a parameter, among them one that is not its default.
+fn samples_of(range: Range) -> Vec<String> {
+    match range {
+        Range::Whole(least, most) => vec![least.to_string(), most.to_string()],
+        Range::Decimal(least, most) => vec![least.to_string(), most.to_string()],
+        Range::Words(words) => words.iter().copied().map(str::to_owned).collect(),
+    }
+}
+
 #[test]
-fn every_board_fault_of_the_catalogue_can_be_made_without_parameters() {
-    for info in catalogue().iter().filter(|info| info.place == Place::Board) {
-        assert!(BoardFault::from_name(info.name, &mut BTreeMap::new()).is_ok(), "{}", info.name);
+fn without_parameters_the_defaults_of_the_table_hold() {
+    for fault in FAULTS {
+        let defaults = fault.info.parameters.iter();
+        let mut defaults: Parameters =
+            defaults.filter_map(|it| Some((it.key.to_owned(), it.default?.to_owned()))).collect();
+        let default = fault.make(&mut Parameters::new()).unwrap();
+        assert_eq!(fault.make(&mut defaults), Ok(default), "{}", fault.info.name);
+    }
+}
+
+#[test]
+fn every_parameter_of_the_table_is_of_use_in_all_of_its_range() {
+    for fault in FAULTS {
+        let default = fault.make(&mut Parameters::new()).unwrap();
+        for parameter in fault.info.parameters {
+            let made = |text: String| {
+                let mut given = Parameters::from([(parameter.key.to_owned(), text)]);
+                fault.make(&mut given).unwrap()
+            };
+            let changes =
+                samples_of(parameter.range).into_iter().map(made).filter(|made| *made != default).count();
+            assert_ne!(changes, 0, "{} of {} changes nothing", parameter.key, fault.info.name);
+        }
     }
 }
 
 #[test]
 fn no_name_is_in_the_catalogue_twice() {
-    let names: std::collections::BTreeSet<_> = catalogue().iter().map(|info| info.name).collect();
-    assert_eq!(names.len(), catalogue().len());
+    let names: std::collections::BTreeSet<_> = catalogue().map(|info| info.name).collect();
+    assert_eq!(names.len(), catalogue().count());
 }
 
 #[test]

@@ -2,11 +2,11 @@
 
 use halfrow_mock::{Depth, Kernel, Options, Player, RowOut, Settings, Tables, UNSTRETCHED};
 
-use crate::golden_rows::{HERMITE, KEYS};
 use crate::support::{
     GOLDEN_FACTOR, binding, core, crc_of_words, factors, hermite, keys, noise_row, play_frame, row_out, run,
     unchanged,
 };
+use halfrow_conformance::golden_rows::{HERMITE, KEYS};
 
 const RADIUS: f64 = 1106.697;
 

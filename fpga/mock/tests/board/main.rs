@@ -5,7 +5,6 @@
 mod edges;
 mod faults;
 mod golden;
-mod golden_rows;
 mod illegal;
 mod options;
 mod player;

@@ -1,6 +1,7 @@
 //! The constants of a build, given as text.
 
-use halfrow_mock::{Core, Depth, OptionError, Options, TapCount, ValueError};
+use halfrow_mock::{Core, Depth, OptionError, Options, TapCount};
+use halfrow_pipe::{BoardOptions, ValueError};
 
 fn options(given: &[(&str, &str)]) -> Result<Options, OptionError> {
     let mut options = Options::default();

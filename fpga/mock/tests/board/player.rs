@@ -5,8 +5,8 @@ use halfrow_mock::{
     UNSTRETCHED,
 };
 
-use crate::golden_rows::HERMITE;
 use crate::support::{GOLDEN_FACTOR, fault, hermite, noise_row, play_frame, small_board, small_settings};
+use halfrow_conformance::golden_rows::HERMITE;
 
 fn row(number: u16, last: bool) -> RowIn {
     RowIn { sequence: number.into(), frame: 0, row: number, last, samples: noise_row(number.into(), 64) }

@@ -3,58 +3,27 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use halfrow_conformance::material;
 use halfrow_mock::{
     BoardFault, Core, Depth, Entering, Kernel, Leaving, NODES, Node, Options, Player, RowBinding, RowIn,
     RowOut, Settings, Tables, UNSTRETCHED,
 };
 
-/// The table entry that the golden rows were made with.
-pub(crate) const GOLDEN_FACTOR: u32 = 14_648_488;
+pub(crate) use halfrow_conformance::material::{GOLDEN_FACTOR, crc_of_words, factors, noise_row};
 
 /// Hermite's five stored weights (Eq. 18).
 pub(crate) fn hermite() -> Kernel {
-    sampled(|x| {
-        let (x2, x3) = (x * x, x * x * x);
-        [0.0, -x3 / 8.0 + x2 / 2.0 - x / 2.0, -x3 / 4.0 + 3.0 * x2 / 4.0, x3 / 8.0 - x2 / 4.0, 0.0]
-    })
+    Kernel { nodes: material::hermite().map(Node::from) }
 }
 
 /// Keys' five stored weights (Eq. 12).
 pub(crate) fn keys() -> Kernel {
-    sampled(|x| {
-        let (x2, x3) = (x * x, x * x * x);
-        let own_right = -3.0 * x3 / 16.0 + x2 / 2.0 + x / 4.0;
-        [-x3 / 16.0 + x2 / 4.0 - x / 4.0, 0.0, own_right, 0.0, x3 / 16.0 - x2 / 8.0]
-    })
+    Kernel { nodes: material::keys().map(Node::from) }
 }
 
 /// A kernel with the same weights at every node.
 pub(crate) fn constant(node: Node) -> Kernel {
     Kernel { nodes: [node; NODES] }
-}
-
-fn sampled(weights: impl Fn(f64) -> [f64; 5]) -> Kernel {
-    let nodes = std::array::from_fn(|node| {
-        let rounded = weights(node as f64 / 32.0).map(|weight| (weight * 16384.0 + 0.5).floor() as i16);
-        Node::from(rounded)
-    });
-    Kernel { nodes }
-}
-
-/// The specification's samples of one row of a frame `width` columns wide.
-pub(crate) fn noise_row(row: u32, width: u16) -> Vec<u16> {
-    let width = u32::from(width);
-    (0..width).map(|column| ((row * width + column).wrapping_mul(2_654_435_761) >> 20) as u16).collect()
-}
-
-/// Table entries of a frame with the circle's radius `radius` (Eq. 9), its centre row in the middle.
-pub(crate) fn factors(height: u16, radius: f64) -> Vec<u32> {
-    let middle = f64::from(height - 1) / 2.0;
-    let entry = |row| {
-        let y = f64::from(row) - middle;
-        (f64::from(UNSTRETCHED) * (radius * radius - y * y).sqrt() / radius + 0.5).floor() as u32
-    };
-    (0..height).map(entry).collect()
 }
 
 /// A 12-bit row with its centre in the middle.
@@ -145,10 +114,4 @@ pub(crate) fn play_frame(player: &mut Player, tables: &mut Tables, frame: u16) -
     player.flush();
     corrected.extend(std::iter::from_fn(|| player.banks.fetch()));
     corrected
-}
-
-/// CRC-32 of samples as 16-bit little-endian words.
-pub(crate) fn crc_of_words(words: impl IntoIterator<Item = u16>) -> u32 {
-    let bytes: Vec<u8> = words.into_iter().flat_map(u16::to_le_bytes).collect();
-    crc32fast::hash(&bytes)
 }

@@ -2,8 +2,8 @@
 
 use halfrow_mock::{Bank, BoardFault, Port, Tables, UNSTRETCHED, Weight};
 
-use crate::golden_rows::HERMITE;
 use crate::support::{GOLDEN_FACTOR, fault, hermite, noise_row, play_frame, small_board};
+use halfrow_conformance::golden_rows::HERMITE;
 
 /// The first row that a board with a fault makes of the golden samples, and its tables after that.
 fn first_row(fault: BoardFault, factor: u32, kernel: &halfrow_mock::Kernel) -> (Vec<u16>, Tables) {

@@ -2,8 +2,8 @@
 
 use halfrow_mock::{Bank, Node, Options, Port, TableError, Tables, TapCount, UNSTRETCHED};
 
-use crate::golden_rows::HERMITE;
 use crate::support::{GOLDEN_FACTOR, hermite, keys, noise_row, play_frame, small_board};
+use halfrow_conformance::golden_rows::HERMITE;
 
 fn tables() -> Tables {
     Tables::new(&Options::default(), None)

@@ -1,32 +1,43 @@
-//! The board against `protocol/WIRE.md`, rule by rule, through its bytes.
+//! The mock against `protocol/WIRE.md`, in any build.
 
-#![expect(clippy::panic, clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
+#![expect(clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
 
-mod bench;
-mod capabilities;
-mod commits;
-mod configuring;
-mod credit;
-mod damage;
-mod echo;
-mod frames;
-#[path = "../board/golden_rows.rs"]
-mod golden_rows;
-mod loss;
-mod lossy_link;
-#[expect(dead_code, reason = "it was made for the tests of the board's parts")]
-#[path = "../board/support.rs"]
-mod material;
 mod mock_only;
-mod one_bank;
-mod order;
-mod playing;
-mod random;
-mod resets;
-mod sessions;
-mod silence;
-mod status;
-mod subject;
-mod table_reads;
-mod table_writes;
-mod uploads;
+
+use halfrow_conformance::{Boards, Build, Subject};
+use halfrow_mock::{Board, Depth, Options, TapCount};
+
+/// Mock boards.
+struct Mock;
+
+/// The build as the mock's options describe it.
+fn options(build: &Build) -> Options {
+    Options {
+        latency: build.latency,
+        taps: if build.taps == 5 { TapCount::Five } else { TapCount::Seven },
+        table_banks: build.table_banks,
+        row_banks_in: build.row_banks_in,
+        row_banks_out: build.row_banks_out,
+        least_blanking: build.least_blanking,
+        max_width: build.max_width,
+        max_height: build.max_height,
+        depths: build.depths.iter().filter_map(|&bits| Depth::from_bits(bits)).collect(),
+        ..Options::default()
+    }
+}
+
+impl Boards for Mock {
+    fn offers(&self, build: &Build) -> bool {
+        options(build).check().is_ok()
+    }
+
+    fn switched_on(&self, build: &Build) -> Box<dyn Subject> {
+        Box::new(Board::new(&options(build), None).unwrap())
+    }
+
+    fn cases(&self) -> u32 {
+        2000
+    }
+}
+
+halfrow_conformance::conformance!(&crate::Mock);

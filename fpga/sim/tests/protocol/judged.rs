@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use halfrow_mock::{Endpoint, Options};
+use halfrow_mock::Options;
+use halfrow_pipe::Endpoint;
 use halfrow_protocol::{Decoder, Header, Kind};
 use halfrow_sim::{Board, Failure};
 

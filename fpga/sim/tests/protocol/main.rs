@@ -1,55 +1,58 @@
-//! The Verilog against `protocol/WIRE.md`, rule by rule, through its bytes: the tests of the mock, but for those in its
-//! `mock_only.rs`. Beside every board stands the mock, which gets the same bytes and must answer the same.
+//! The Verilog against `protocol/WIRE.md`, in the builds that there are. Beside every board stands the mock, which gets the same
+//! bytes and must answer the same.
 
-#![expect(clippy::panic, clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
+#![expect(clippy::unwrap_used, reason = "a test helper that cannot go on fails the test")]
 
 mod judged;
-mod subject;
 
-#[path = "../../../mock/tests/protocol/bench.rs"]
-mod bench;
-#[path = "../../../mock/tests/protocol/capabilities.rs"]
-mod capabilities;
-#[path = "../../../mock/tests/protocol/commits.rs"]
-mod commits;
-#[path = "../../../mock/tests/protocol/configuring.rs"]
-mod configuring;
-#[path = "../../../mock/tests/protocol/credit.rs"]
-mod credit;
-#[path = "../../../mock/tests/protocol/damage.rs"]
-mod damage;
-#[path = "../../../mock/tests/protocol/echo.rs"]
-mod echo;
-#[path = "../../../mock/tests/protocol/frames.rs"]
-mod frames;
-#[path = "../../../mock/tests/board/golden_rows.rs"]
-mod golden_rows;
-#[path = "../../../mock/tests/protocol/loss.rs"]
-mod loss;
-#[path = "../../../mock/tests/protocol/lossy_link.rs"]
-mod lossy_link;
-#[expect(dead_code, reason = "it was made for the tests of the mock's parts")]
-#[path = "../../../mock/tests/board/support.rs"]
-mod material;
-#[path = "../../../mock/tests/protocol/one_bank.rs"]
-mod one_bank;
-#[path = "../../../mock/tests/protocol/order.rs"]
-mod order;
-#[path = "../../../mock/tests/protocol/playing.rs"]
-mod playing;
-#[path = "../../../mock/tests/protocol/random.rs"]
-mod random;
-#[path = "../../../mock/tests/protocol/resets.rs"]
-mod resets;
-#[path = "../../../mock/tests/protocol/sessions.rs"]
-mod sessions;
-#[path = "../../../mock/tests/protocol/silence.rs"]
-mod silence;
-#[path = "../../../mock/tests/protocol/status.rs"]
-mod status;
-#[path = "../../../mock/tests/protocol/table_reads.rs"]
-mod table_reads;
-#[path = "../../../mock/tests/protocol/table_writes.rs"]
-mod table_writes;
-#[path = "../../../mock/tests/protocol/uploads.rs"]
-mod uploads;
+use halfrow_conformance::frames::lean;
+use halfrow_conformance::{Boards, Build, Subject};
+use halfrow_mock::{Options, TapCount};
+use halfrow_sim::Board;
+
+use judged::Judged;
+
+/// Boards under simulation.
+struct Simulated;
+
+/// The builds, as the suite and as the mock describe them.
+fn builds() -> [(halfrow_sim::Build, Build, Options); 4] {
+    let (four, mock) = (Build::default(), Options::default());
+    [
+        (
+            halfrow_sim::Build::Shipped,
+            Build { row_banks_in: 2, row_banks_out: 2, ..four.clone() },
+            Options { row_banks_in: 2, row_banks_out: 2, ..mock.clone() },
+        ),
+        (
+            halfrow_sim::Build::FourRowBanksIn,
+            Build { row_banks_out: 2, ..four.clone() },
+            Options { row_banks_out: 2, ..mock.clone() },
+        ),
+        (
+            halfrow_sim::Build::FiveTapsOneBank,
+            lean(),
+            Options { taps: TapCount::Five, latency: 11, table_banks: 1, ..mock.clone() },
+        ),
+        (halfrow_sim::Build::FourRowBanks, four, mock),
+    ]
+}
+
+impl Boards for Simulated {
+    fn offers(&self, build: &Build) -> bool {
+        builds().iter().any(|(_, described, _)| described == build)
+    }
+
+    fn switched_on(&self, build: &Build) -> Box<dyn Subject> {
+        let found = builds().into_iter().find(|(_, described, _)| described == build);
+        let (build, _, options) = found.unwrap();
+        Box::new(Judged::new(Board::of_build(build, 1), &options))
+    }
+
+    /// `scripts/soak` tries more.
+    fn cases(&self) -> u32 {
+        64
+    }
+}
+
+halfrow_conformance::conformance!(&crate::Simulated);

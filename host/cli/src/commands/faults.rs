@@ -1,6 +1,7 @@
 //! `halfrow faults`
 
 use clap::Args;
+use halfrow_pipe::FaultInfo;
 use serde::Serialize;
 
 use super::{Failure, print, print_json};
@@ -11,7 +12,7 @@ use halfrow::verdict::Exit;
 /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Print a JSON list of objects with name, where (wire or board) and summary
+    /// Print a JSON list of objects with name, where (wire or board), summary and parameters
     #[arg(long)]
     json: bool,
 }
@@ -21,21 +22,37 @@ struct Fault {
     name: &'static str,
     #[serde(rename = "where")]
     place: &'static str,
-    summary: &'static str,
+    summary: String,
+    parameters: Vec<Parameter>,
+}
+
+#[derive(Serialize)]
+struct Parameter {
+    key: &'static str,
+    default: Option<&'static str>,
+    range: String,
+    meaning: &'static str,
+}
+
+impl From<FaultInfo> for Fault {
+    fn from(info: FaultInfo) -> Self {
+        let parameters = info.parameters.iter().map(|it| Parameter {
+            key: it.key,
+            default: it.default,
+            range: it.range.to_string(),
+            meaning: it.meaning,
+        });
+        Self {
+            name: info.name,
+            place: info.place.name(),
+            summary: info.summary(),
+            parameters: parameters.collect(),
+        }
+    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let faults: Vec<Fault> = halfrow_mock::catalogue()
-        .iter()
-        .map(|info| Fault {
-            name: info.name,
-            place: match info.place {
-                halfrow_mock::Place::Wire => "wire",
-                halfrow_mock::Place::Board => "board",
-            },
-            summary: info.summary,
-        })
-        .collect();
+    let faults: Vec<Fault> = halfrow_mock::catalogue().map(Fault::from).collect();
     if arguments.json {
         print_json(&faults)?;
     } else {

@@ -16,12 +16,12 @@ use super::inputs::{FrameName, InputArguments, file_hash, frame_sources};
 use super::optics::{self, Chosen, LensArguments};
 use super::table_file::TableArgument;
 use super::{Context, Failure, print};
+use crate::settings::Settings;
+use crate::{console, progress};
 use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{Candidate, Lost, Recorder, Recording, RecordingFile};
-use crate::{console, progress};
 use halfrow::report::{self, Report, ReportError, ReportFolder};
 use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
-use crate::settings::Settings;
 use halfrow::verdict::{Exit, Verdict};
 
 /// Judge a board: stream frames through it and compare every sample with the reference

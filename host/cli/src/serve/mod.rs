@@ -8,6 +8,8 @@
 
 mod pty;
 mod tcp;
+#[cfg(test)]
+mod tests;
 
 use std::os::fd::AsRawFd;
 use std::time::{Duration, Instant};
@@ -15,6 +17,7 @@ use std::time::{Duration, Instant};
 use halfrow::link::descriptor::{Gone, Pump, is_ready, send};
 use halfrow::link::{Link, LinkError};
 use halfrow::verdict::Exit;
+use halfrow_protocol::Decoder;
 
 pub use pty::{Name, Pty};
 pub use tcp::Port;
@@ -64,13 +67,15 @@ impl ServeError {
     }
 }
 
-/// Bytes that a served board has moved.
+/// What a served board has moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Traffic {
-    /// From the host.
+    /// Bytes from the host.
     pub to_board: u64,
-    /// To the host.
+    /// Bytes to the host.
     pub to_host: u64,
+    /// When the last whole packet came from the host that is attended to.
+    pub heard: Option<Instant>,
 }
 
 /// Why a host is attended to no longer.
@@ -92,6 +97,8 @@ pub struct Hosted {
     to_host: Vec<u8>,
     traffic: Traffic,
     moved_at: Instant,
+    /// What the present host says.
+    said: Decoder,
 }
 
 impl Hosted {
@@ -107,6 +114,7 @@ impl Hosted {
             to_host: Vec::new(),
             traffic: Traffic::default(),
             moved_at: now,
+            said: Decoder::new(),
         }
     }
 
@@ -120,17 +128,16 @@ impl Hosted {
         door: &impl AsRawFd,
         ended: &mut dyn FnMut(Traffic) -> bool,
     ) -> Result<Left, ServeError> {
+        (self.said, self.traffic.heard) = (Decoder::new(), None);
         loop {
             if ended(self.traffic) {
-                return Ok(Left::Ended);
+                return self.leave(Left::Ended);
             }
+            // What comes now must find the board's clock at the wall's: it stands while nobody is attended to.
+            self.run_board()?;
             let before = self.traffic;
             if self.listen(door).and_then(|()| self.speak(door)).is_err() {
-                // What the host said last still counts; what it did not wait for is nobody's.
-                self.run_board()?;
-                self.to_board.clear();
-                self.to_host.clear();
-                return Ok(Left::Host);
+                return self.leave(Left::Host);
             }
             self.run_board()?;
             if self.traffic != before {
@@ -139,6 +146,14 @@ impl Hosted {
                 self.wait(door);
             }
         }
+    }
+
+    /// What the host said last still counts; what it did not wait for is nobody's.
+    fn leave(&mut self, why: Left) -> Result<Left, ServeError> {
+        self.run_board()?;
+        self.to_board.clear();
+        self.to_host.clear();
+        Ok(why)
     }
 
     fn wait(&self, door: &impl AsRawFd) {
@@ -154,9 +169,21 @@ impl Hosted {
 
     fn listen(&mut self, door: &impl AsRawFd) -> Result<(), Gone> {
         if self.to_board.len() < QUEUE {
+            let old = self.to_board.len();
             self.traffic.to_board += self.pump.receive(door.as_raw_fd(), &mut self.to_board)? as u64;
+            self.hear(old);
         }
         Ok(())
+    }
+
+    /// Notes when the host said something that is a packet, among what it said behind the first `old` bytes.
+    fn hear(&mut self, old: usize) {
+        let mut bytes = &self.to_board[old..];
+        while let Some(packet) = self.said.next(&mut bytes) {
+            if packet.is_ok() {
+                self.traffic.heard = Some(Instant::now());
+            }
+        }
     }
 
     fn speak(&mut self, door: &impl AsRawFd) -> Result<(), Gone> {

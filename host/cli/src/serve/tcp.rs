@@ -14,12 +14,36 @@ const TICK: Duration = Duration::from_millis(50);
 /// How long a second host waits for the first to leave. One that was killed leaves only when all that it sent is read.
 const GRACE: Duration = Duration::from_millis(100);
 
+/// When a host that is connected and says nothing gives way to another one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Patience {
+    /// How long it may be connected without a packet of the wire.
+    pub(super) unheard: Duration,
+    /// How long behind its last packet: as long as the wire lets it hold the board.
+    pub(super) silent: Duration,
+}
+
+const PATIENCE: Patience = Patience { unheard: Duration::from_secs(2), silent: Duration::from_secs(10) };
+
 /// What ser2net says to a second host, so that it reads the same from here.
 const IN_USE: &[u8] = b"Port already in use\r\n";
 
 /// A port that is listened on.
 #[derive(Debug)]
-pub struct Port(TcpListener);
+pub struct Port {
+    listener: TcpListener,
+    pub(super) patience: Patience,
+}
+
+impl Patience {
+    /// Whether a host gives way that connected then and was last heard at `heard`.
+    fn ends(self, connected: Instant, heard: Option<Instant>) -> bool {
+        match heard {
+            Some(heard) => heard.elapsed() >= self.silent,
+            None => connected.elapsed() >= self.unheard,
+        }
+    }
+}
 
 impl Port {
     /// Listens on `address`, HOST:PORT, or a port of this computer alone. Port 0 is any that is free.
@@ -39,7 +63,7 @@ impl Port {
         let listen = || {
             let listener = TcpListener::bind(&address)?;
             listener.set_nonblocking(true)?;
-            Ok(Self(listener))
+            Ok(Self { listener, patience: PATIENCE })
         };
         listen().map_err(|source| ServeError::Door { what: format!("the TCP port {address}"), source })
     }
@@ -50,10 +74,11 @@ impl Port {
     /// [`ServeError::Door`] when the system does not say.
     pub fn address(&self) -> Result<SocketAddr, ServeError> {
         let unknown = |source| ServeError::Door { what: "the TCP port".to_owned(), source };
-        self.0.local_addr().map_err(unknown)
+        self.listener.local_addr().map_err(unknown)
     }
 
-    /// Serves `board` to one host after the other, until `ended` says so. Others are turned away meanwhile.
+    /// Serves `board` to one host after the other, until `ended` says so. Others are turned away meanwhile, unless the one
+    /// that is connected has sent no packet for some seconds: then it is, and the next one served.
     ///
     /// # Errors
     /// [`ServeError::Board`] when the board is gone.
@@ -65,12 +90,16 @@ impl Port {
         let mut next: Option<(TcpStream, Instant)> = None;
         while !ended(Traffic::default()) {
             let Some(host) = next.take().map(|(host, _)| host).or_else(|| self.accept()) else {
-                let _ = is_ready(self.0.as_raw_fd(), false, TICK);
+                let _ = is_ready(self.listener.as_raw_fd(), false, TICK);
                 continue;
             };
+            let connected = Instant::now();
             board.attend(&host, &mut |traffic| {
                 if next.is_none() {
                     next = self.accept().map(|host| (host, Instant::now()));
+                }
+                if next.is_some() && self.patience.ends(connected, traffic.heard) {
+                    return true;
                 }
                 if let Some((mut host, _)) = next.take_if(|(_, since)| since.elapsed() > GRACE) {
                     // One that does not wait for the answer needs none.
@@ -83,7 +112,7 @@ impl Port {
     }
 
     fn accept(&self) -> Option<TcpStream> {
-        let (host, from) = self.0.accept().ok()?;
+        let (host, from) = self.listener.accept().ok()?;
         host.set_nodelay(true).ok()?;
         never_block(host.as_raw_fd()).ok()?;
         tracing::info!("{from} has connected");

@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use halfrow_frames::{decode, dng, fuzz_decode, pgm, png, tiff};
+use halfrow_frames::{RawGeometry, RawLayout, ReadOptions, decode, dng, fuzz_decode, pgm, png, raw, tiff};
 use halfrow_model::{BitDepth, Frame, Phase};
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -33,6 +33,20 @@ fn with_checksums(mut file: Vec<u8>) -> Vec<u8> {
         chunk = end + 4;
     }
     file
+}
+
+/// Drives every decoder with `bytes`, whatever they begin with: the body of a fuzzer. It must return.
+fn fuzz_decode(bytes: &[u8]) {
+    let how = ReadOptions::default();
+    let mut results = vec![decode(bytes, &how), pgm::decode(bytes, &how), png::decode(bytes, &how)];
+    results.push(tiff::decode(bytes, &how));
+    let (width, samples) = bytes.split_first().map_or((0, bytes), |(&width, rest)| (width.into(), rest));
+    for layout in RawLayout::ALL {
+        for height in [0, 1, samples.len() / 8, usize::MAX] {
+            results.push(raw::decode(samples, RawGeometry { width, height, layout }, &how));
+        }
+    }
+    std::hint::black_box(&results);
 }
 
 #[test]

@@ -9,6 +9,8 @@ mod rows;
 mod sent;
 mod stop;
 mod tables;
+#[cfg(test)]
+mod unflagged;
 
 use std::time::Duration;
 

@@ -7,9 +7,6 @@ use halfrow_protocol::message::{Bank, Commit, Entries, NODES, Reply, Request, Sp
 use super::deadlines::Step;
 use super::{Board, BoardError};
 
-/// Bytes of a span in front of the entries.
-const SPAN: usize = 7;
-
 /// One of the ports by which the datapath reads its tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TablePort {
@@ -60,7 +57,7 @@ impl Board {
     /// Entries of a table that fit into one packet.
     #[must_use]
     pub const fn entries_at_once(table: Table) -> usize {
-        (MAX_PAYLOAD - SPAN) / table.entry_bytes()
+        (MAX_PAYLOAD - Span::BYTES) / table.entry_bytes()
     }
 
     /// Writes entries, as on the wire, into the shadow bank from its first on.

@@ -125,10 +125,3 @@ fn picture_size(width: f64, height: f64) -> Result<(usize, usize), LensContentEr
     };
     Ok((side(width)?, side(height)?))
 }
-
-/// Reads `bytes` as a lens file: the body of a fuzzer. It must return.
-pub fn fuzz_parse(bytes: &[u8]) {
-    if let Ok(file) = LensFile::parse(&String::from_utf8_lossy(bytes)) {
-        std::hint::black_box(file.for_frame(1920, 1080).is_ok());
-    }
-}

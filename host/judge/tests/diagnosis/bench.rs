@@ -6,10 +6,11 @@ use std::iter;
 use halfrow::compare::Comparison;
 use halfrow::diagnosis::{Case, Uploaded, diagnose};
 use halfrow::report::{Evidence, FrameReport, Suspect};
-use halfrow_mock::{BoardFault, Depth, Node, Options, Parameters, Player, RowIn, Settings, Tables};
+use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
 use halfrow_model::{
     BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, STEP_ONE, TableSet, correct,
 };
+use halfrow_pipe::Parameters;
 
 use crate::scenes::{Scene, scene};
 

@@ -1,0 +1,52 @@
+//! The weighted sum: weights between the kernel's nodes, times the taps.
+
+use super::kernel::{Kernel, NODES};
+use super::source::FRACTION_BITS;
+use super::window::TAPS;
+
+/// Fractional bits of a weight.
+const WEIGHT_BITS: u32 = 14;
+
+/// Half of the last bit that an output keeps.
+pub(crate) const ROUNDING: i32 = 1 << (WEIGHT_BITS - 1);
+
+/// Bits of the position between two nodes.
+const BETWEEN_BITS: u32 = FRACTION_BITS - 5;
+
+/// The five weights of one output, in units of 2^-14.
+pub(crate) struct Weights {
+    g0: i32,
+    r1: i32,
+    g4: i32,
+    r5: i32,
+    g6: i32,
+}
+
+impl Weights {
+    /// The kernel's weights at `x` of 2^-13 column, 0 ≤ x < 2^14, between those of the two nodes around it.
+    pub(crate) fn at(kernel: &Kernel, x: u32) -> Self {
+        let node = (x >> BETWEEN_BITS) as usize % (NODES - 1);
+        let between = (x & ((1 << BETWEEN_BITS) - 1)) as i32;
+        let (left, right) = (&kernel.nodes[node], &kernel.nodes[node + 1]);
+        let weight = |left: i16, right: i16| {
+            let (left, right) = (i32::from(left), i32::from(right));
+            left + (((right - left) * between + (1 << (BETWEEN_BITS - 1))) >> BETWEEN_BITS)
+        };
+        Self {
+            g0: weight(left.g0, right.g0),
+            r1: weight(left.r1, right.r1),
+            g4: weight(left.g4, right.g4),
+            r5: weight(left.r5, right.r5),
+            g6: weight(left.g6, right.g6),
+        }
+    }
+
+    /// The weighted sum of the taps, plus `rounding`, as a whole number. Five products suffice, since the weights of
+    /// the output's own colour add up to one and those of the other to nothing.
+    pub(crate) fn sum(&self, taps: [i32; TAPS], rounding: i32) -> i32 {
+        let [g0, r1, g2, r3, g4, r5, g6] = taps;
+        let own = self.g0 * (g0 - g2) + self.g4 * (g4 - g2) + self.g6 * (g6 - g2);
+        let other = self.r1 * (r1 - r3) + self.r5 * (r5 - r3);
+        ((g2 << WEIGHT_BITS) + own + other + rounding) >> WEIGHT_BITS
+    }
+}

@@ -1,0 +1,54 @@
+//! CAPABILITIES: what the board says of its build.
+
+use std::collections::BTreeMap;
+
+use halfrow_protocol::message::Request;
+
+use crate::bench::{Bench, HELLO};
+use crate::frames::lean;
+use crate::{Boards, Build, offered};
+
+/// The values by their tags, of a board that was just switched on, little endian; the name left out.
+pub fn values(bench: &mut Bench) -> BTreeMap<u8, u32> {
+    bench.greet(&HELLO);
+    let payload = bench.done(&Request::Capabilities).payload;
+    let (mut rest, mut values) = (payload.as_slice(), BTreeMap::new());
+    while let [tag, length, tail @ ..] = rest {
+        let (value, next) = tail.split_at(usize::from(*length));
+        if *tag != 0x21 {
+            let number = value.iter().rev().fold(0, |number, &byte| number << 8 | u32::from(byte));
+            assert_eq!(values.insert(*tag, number), None, "tag {tag:#04x} comes twice");
+        }
+        rest = next;
+    }
+    values
+}
+
+pub(crate) fn every_board_sends_all_tags_in_their_widths(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
+    let payload = bench.done(&Request::Capabilities).payload;
+    let (mut rest, mut widths) = (payload.as_slice(), BTreeMap::new());
+    while let [tag, length, tail @ ..] = rest {
+        widths.insert(*tag, *length);
+        rest = &tail[usize::from(*length)..];
+    }
+    let name = widths.remove(&0x21).unwrap();
+    assert!(name > 0);
+    let numbers = [2, 2, 2, 1, 1, 1, 2, 2, 1, 1, 1, 1, 1, 1, 4];
+    assert_eq!(widths, (1..=15).zip(numbers).chain([(0x20, 1)]).collect());
+}
+
+pub(crate) fn the_build_shows(on: &dyn Boards) {
+    let two = Build { row_banks_in: 2, row_banks_out: 2, ..Build::default() };
+    for build in offered(on, [Build::default(), lean(), two]) {
+        let values = values(&mut Bench::switched_on(on, &build));
+        let expected =
+            [1, 2048, 2048, 7, build.taps.into(), build.latency.into(), 2048, 0, build.table_banks.into()];
+        let shown: Vec<_> = (0x01..=0x09).map(|tag| values[&tag]).collect();
+        assert_eq!(shown, expected);
+        let banks = [build.row_banks_in, build.row_banks_out].map(u32::from);
+        assert_eq!([values[&0x0a], values[&0x0b]], banks);
+        assert_eq!((values[&0x0c], values[&0x0d]), (1, 2), "one port for factors, two for nodes");
+        assert_eq!(values[&0x0e], 0, "the clock is the host's");
+    }
+}

@@ -1,0 +1,223 @@
+//! Requests and bytes that no host would send: the board stays up, keeps its promises and answers the next HELLO.
+
+use halfrow_protocol::message::{
+    Bank, Commit, Configuration, Entries, Hello, Reply, Request, Reset, ResetLevel, RowIn, RowPlace, Span,
+    Status, Table,
+};
+use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
+use proptest::prelude::*;
+
+use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
+use crate::frames::{lean, make_ready, ready, row, samples_of};
+use crate::{Boards, Build, cases, offered};
+
+const HEIGHT: u16 = 2;
+
+/// Something that comes over the wire.
+#[derive(Clone, Debug)]
+enum Event {
+    /// The row that the board waits for, or one so far behind it.
+    Row(u32),
+    /// A packet of the open session, or of another one.
+    Packet { kind: u8, payload: Vec<u8>, foreign: bool },
+    /// Bytes that are no packet.
+    Bytes(Vec<u8>),
+    /// The host has so many rows more.
+    Acknowledge(u32),
+}
+
+fn event() -> impl Strategy<Value = Event> {
+    let fields = [field(), field(), field(), field()];
+    let request = (prop::sample::select(Kind::ALL.to_vec()), fields)
+        .prop_map(|(kind, fields)| (kind.code(), payload(kind, fields)));
+    let packet = (any::<u8>(), prop::collection::vec(any::<u8>(), 0..60));
+    let foreign = prop::bool::weighted(0.1);
+    prop_oneof![
+        4 => (0_u32..4).prop_map(Event::Row),
+        3 => (0_u32..4).prop_map(Event::Acknowledge),
+        3 => (prop_oneof![4 => request, 1 => packet], foreign)
+            .prop_map(|((kind, payload), foreign)| Event::Packet { kind, payload, foreign }),
+        1 => prop::collection::vec(any::<u8>(), 0..60).prop_map(Event::Bytes),
+    ]
+}
+
+/// A number near a limit of some field, or any.
+fn field() -> impl Strategy<Value = u32> + Clone {
+    prop_oneof![0_u32..5, 60_u32..70, 1010_u32..1030, 2040_u32..2060, Just(u32::MAX), any::<u32>()]
+}
+
+fn build(on: &dyn Boards) -> impl Strategy<Value = Build> + use<> {
+    let mut builds = vec![lean()];
+    for banks in 0..16 {
+        for (taps, latency) in [(5, 11), (7, 12)] {
+            for table_banks in [1, 2] {
+                let (row_banks_in, row_banks_out) = (2 + banks % 4, 2 + banks / 4);
+                let build =
+                    Build { row_banks_in, row_banks_out, table_banks, taps, latency, ..Build::default() };
+                builds.extend([build.clone(), Build { depths: &[8, 12], ..build }]);
+            }
+        }
+    }
+    prop::sample::select(offered(on, builds))
+}
+
+/// The payload of a request of this kind, made of four numbers.
+fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
+    let mut payload = Vec::new();
+    match kind {
+        Kind::Hello => {
+            Request::Hello(Hello { nonce: a, host: b, take_over: c > 9, ..HELLO }).write(&mut payload);
+        }
+        Kind::Status => payload.push(a as u8),
+        Kind::Reset => {
+            let level = [ResetLevel::Rows, ResetLevel::Session, ResetLevel::Tables][a as usize % 3];
+            Request::Reset(Reset { level, next_row: b }).write(&mut payload);
+        }
+        Kind::Echo => payload.resize(a as usize % (MAX_PAYLOAD + 1), b as u8),
+        Kind::TableWrite => {
+            let span = span([a, b, c, d % 400]);
+            let bytes = vec![d as u8; usize::from(span.count) * span.table.entry_bytes()];
+            Request::TableWrite(Entries { span, bytes: &bytes }).write(&mut payload);
+        }
+        Kind::TableRead | Kind::TableCrc => Request::TableCrc(span([a, b, c, d])).write(&mut payload),
+        Kind::Commit => {
+            let (first_frame, generation) = (c as u16, d as u8);
+            Request::Commit(Commit { steps_crc: a, kernel_crc: b, first_frame, generation })
+                .write(&mut payload);
+        }
+        Kind::Configure => Request::Configure(configuration([a, b, c, d])).write(&mut payload),
+        Kind::RowIn => {
+            let (frame, row, width) = (b as u16, c as u16, d as u16 % 2600);
+            let place = RowPlace { row_sequence: a, frame, row, width, last: c > d };
+            let packed = vec![d as u8; samples::packed_length(width.into())];
+            Request::RowIn(RowIn { place, packed: &packed }).write(&mut payload);
+        }
+        Kind::Capabilities | Kind::RowOut | Kind::RowAck | Kind::Refusal => {}
+    }
+    payload
+}
+
+fn span([a, b, c, d]: [u32; 4]) -> Span {
+    let table = if a.is_multiple_of(2) { Table::Steps } else { Table::Kernel };
+    let bank = if b.is_multiple_of(3) { Bank::Active } else { Bank::Shadow };
+    Span { table, bank, port: a as u8 % 4, first: c as u16, count: d as u16 }
+}
+
+fn configuration([a, b, c, d]: [u32; 4]) -> Configuration {
+    let bits = [8, 10, 12, 0][d as usize % 4];
+    Configuration {
+        width: a as u16,
+        height: b as u16,
+        centre2: c as u16,
+        blanking: d as u16 % 1000,
+        gap_seed: d,
+        bits,
+    }
+}
+
+/// A host that checks what holds for every packet of a board, whatever made it come.
+struct Observer {
+    bench: Bench,
+    /// The greatest window since the session or the last RESET.
+    credit: u32,
+    /// The count that the next ROW_OUT carries, if one has come in this session.
+    next_count: Option<u16>,
+}
+
+impl Observer {
+    fn receive(&mut self, bytes: &[u8]) -> Vec<Heard> {
+        let heard = self.bench.receive(bytes);
+        for packet in &heard {
+            let window = packet.header.window;
+            match packet.reply() {
+                Reply::Hello(welcome) => self.enter(welcome.session, window),
+                Reply::Reset => self.credit = window,
+                Reply::RowOut(out) => {
+                    assert!(self.next_count.is_none_or(|count| count == packet.header.sequence));
+                    assert_eq!(packet.header.session, self.bench.session);
+                    assert_eq!(out.packed.len(), samples::packed_length(out.place.width.into()));
+                    assert_ne!(out.generation, 0, "a row without tables");
+                    self.next_count = Some(packet.header.sequence.wrapping_add(1));
+                }
+                _ => {}
+            }
+            assert!(window >= self.credit, "the window went from {} to {window}", self.credit);
+            self.credit = window;
+        }
+        heard
+    }
+
+    /// A session was opened, or its HELLO was repeated.
+    fn enter(&mut self, session: u8, window: u32) {
+        if session != self.bench.session {
+            (self.bench.session, self.bench.window) = (session, 0);
+            (self.credit, self.next_count) = (window, Some(0));
+        }
+    }
+
+    /// The board's counters; all 0 when no session is open.
+    fn status(&mut self) -> Status {
+        let packet = self.bench.packet(&Request::Status { clear: false });
+        let status = self.receive(&packet).iter().find_map(|packet| match packet.reply() {
+            Reply::Status(status) => Some(status),
+            _ => None,
+        });
+        status.unwrap_or_default()
+    }
+
+    fn meet(&mut self, event: Event) {
+        let bytes = match event {
+            Event::Row(behind) => {
+                let number = self.status().next_row_in.saturating_add(behind);
+                self.bench.row_packet(&row(HEIGHT, number))
+            }
+            Event::Packet { kind, payload, foreign } => {
+                let mut header = self.bench.header(kind);
+                header.session = header.session.wrapping_add(foreign.into());
+                wire(&header, |to| to.extend(payload))
+            }
+            Event::Bytes(bytes) => bytes,
+            Event::Acknowledge(more) => {
+                self.bench.window = self.status().next_row_out.saturating_add(more);
+                self.bench.packet(&Request::RowAck)
+            }
+        };
+        self.receive(&bytes);
+    }
+
+    /// A greeting behind two zeros must be answered, and a frame must come out as it went in.
+    fn recover(mut self) {
+        self.bench.receive(&[0, 0]);
+        self.bench.greet(&Hello { nonce: 0xffff_0000, host: 1, take_over: true, ..HELLO });
+        self.bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }));
+        make_ready(&mut self.bench, HEIGHT);
+        let heard = self.bench.send_all(HEIGHT, 0..2);
+        assert_eq!(rows_of(&heard), [0, 1]);
+        for (number, packet) in (0..).zip(&heard) {
+            assert_eq!(samples_of(&packet.row()), row(HEIGHT, number).samples);
+        }
+    }
+}
+
+pub(crate) fn whatever_comes_the_board_keeps_its_promises_and_answers_the_next_hello(on: &dyn Boards) {
+    proptest!(cases(on, 1, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/random.txt")), |(build in build(on),
+        events in prop::collection::vec(event(), 0..40),)| {
+        let bench = ready(on, &build, HEIGHT);
+        let mut observer = Observer { bench, credit: 0, next_count: Some(0) };
+        for event in events {
+            observer.meet(event);
+        }
+        observer.recover();
+    });
+}
+
+pub(crate) fn any_bytes_in_any_pieces_are_survived(on: &dyn Boards) {
+    proptest!(cases(on, 1, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/random.txt")), |(bytes in prop::collection::vec(prop_oneof![2 => Just(0_u8), 1 => any::<u8>()], 0..9000),
+        size in 1_usize..300,)| {
+        let mut bench = ready(on, &Build::default(), HEIGHT);
+        for piece in bytes.chunks(size) {
+            bench.receive(piece);
+        }
+        Observer { bench, credit: 0, next_count: None }.recover();
+    });
+}

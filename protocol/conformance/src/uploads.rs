@@ -1,0 +1,70 @@
+//! Tables on their way to the board and back.
+
+use halfrow_protocol::message::{Bank, Commit, Entries, Reply, Request, Span, Table};
+
+use crate::bench::Bench;
+use crate::material::{Nodes, UNSTRETCHED, hermite};
+
+/// Row factors and a kernel, as a host uploads them.
+#[derive(Clone)]
+pub struct TableSet {
+    factors: Vec<u8>,
+    nodes: Vec<u8>,
+}
+
+impl TableSet {
+    /// These factors, one a row, and this kernel.
+    #[must_use]
+    pub fn new(factors: &[u32], kernel: &Nodes) -> Self {
+        Self {
+            factors: factors.iter().flat_map(|factor| factor.to_le_bytes()).collect(),
+            nodes: kernel.iter().flatten().flat_map(|weight| weight.to_le_bytes()).collect(),
+        }
+    }
+
+    /// Tables that change no sample.
+    pub fn unstretched(height: u16) -> Self {
+        Self::new(&vec![UNSTRETCHED; height.into()], &hermite())
+    }
+
+    /// Writes both into the shadow bank.
+    pub fn upload(&self, bench: &mut Bench) {
+        bench.done(&write(Table::Steps, 0, &self.factors));
+        bench.done(&write(Table::Kernel, 0, &self.nodes));
+    }
+
+    /// The request that commits them.
+    #[must_use]
+    pub fn commit(&self, generation: u8, first_frame: u16) -> Request<'static> {
+        let steps_crc = crc32fast::hash(&self.factors);
+        let kernel_crc = crc32fast::hash(&self.nodes);
+        Request::Commit(Commit { steps_crc, kernel_crc, first_frame, generation })
+    }
+}
+
+/// A write of whole entries, from the entry `first` on.
+pub fn write(table: Table, first: u16, bytes: &[u8]) -> Request<'_> {
+    let count = (bytes.len() / table.entry_bytes()) as u16;
+    Request::TableWrite(Entries { span: Span { table, bank: Bank::Shadow, port: 0, first, count }, bytes })
+}
+
+/// Entries of a bank as a port reads them.
+pub fn span(table: Table, bank: Bank, port: u8, first: u16, count: u16) -> Span {
+    Span { table, bank, port, first, count }
+}
+
+impl Bench {
+    /// The bytes of entries.
+    pub fn read(&mut self, span: Span) -> Vec<u8> {
+        let answer = self.done(&Request::TableRead(span));
+        let Reply::TableRead(entries) = answer.reply() else { panic!("{answer:?}") };
+        entries.bytes.to_vec()
+    }
+
+    /// The CRC-32 of entries as the board computes it.
+    pub fn crc(&mut self, span: Span) -> u32 {
+        let answer = self.done(&Request::TableCrc(span));
+        let Reply::TableCrc(crc) = answer.reply() else { panic!("{answer:?}") };
+        crc
+    }
+}
