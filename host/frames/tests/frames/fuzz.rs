@@ -2,7 +2,7 @@
 
 use std::io::Cursor;
 
-use halfrow_frames::{RawGeometry, RawLayout, ReadOptions, decode, dng, fuzz_decode, pgm, png, raw, tiff};
+use halfrow_frames::{RawGeometry, RawLayout, ReadOptions, decode, dng, pgm, png, raw, tiff};
 use halfrow_model::{BitDepth, Frame, Phase};
 use proptest::collection::vec;
 use proptest::prelude::*;
