@@ -27,6 +27,7 @@ pub mod paper;
 pub mod progress;
 pub mod reference;
 pub mod report;
+pub mod result;
 pub mod serve;
 pub mod session;
 pub mod settings;

@@ -8,7 +8,8 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use tempfile::TempDir;
 
-use super::{Evidence, Report, html, json, junit};
+use super::{html, json, junit};
+use crate::result::{Evidence, Report};
 
 const JSON: &str = "report.json";
 const JUNIT: &str = "report.xml";

@@ -6,25 +6,33 @@ use super::plan::{Generation, JUDGED};
 use super::steps::Run;
 use crate::board::{Bank, Status};
 use crate::diagnosis::{self, Case, Uploaded};
-use crate::report::Suspect;
+use crate::result::{CheckName, Finding, LatencyReport, Suspect};
 
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
     /// stands among the checks.
     pub(super) fn judge(&mut self) -> Result<(), End> {
         let after = self.tables_after();
-        let status = self.board.status(false).map_err(|error| End::board("counters", &error))?;
+        self.findings.lap(CheckName::TablesAfter);
+        let status = self.board.status(false).map_err(|error| End::board(CheckName::Counters, &error))?;
         self.findings.note_status(&status);
+        self.findings.lap(CheckName::Counters);
         let frames = self.frames(after.as_ref().err());
+        self.findings.lap(CheckName::Frames);
         // Counters are of rows that came back as they should; a run that ends early leaves rows inside.
         let counters =
             frames.is_ok().then(|| counters(&status, self.findings.rows_counted, &self.findings.seen));
         let latency = latency(&self.findings.seen);
         let mut ends = Vec::new();
-        let results = [("frames", Some(frames)), ("latency", Some(latency)), ("tables after", Some(after))];
-        for (check, result) in results.into_iter().chain([("counters", counters)]) {
+        let results = [
+            (CheckName::Frames, Some(frames)),
+            (CheckName::Latency, Some(latency)),
+            (CheckName::TablesAfter, Some(after)),
+            (CheckName::Counters, counters),
+        ];
+        for (check, result) in results {
             match result {
-                Some(Ok(detail)) => self.findings.passed(check, detail),
+                Some(Ok(finding)) => self.findings.passed(check, finding),
                 Some(Err(end)) => ends.push(end),
                 None => {}
             }
@@ -36,16 +44,16 @@ impl Run<'_> {
     }
 
     /// The tables must still be what was uploaded.
-    fn tables_after(&mut self) -> Result<String, End> {
+    fn tables_after(&mut self) -> Result<Finding, End> {
         let judged = self.generations.iter().find(|generation| generation.number == JUDGED).cloned();
         let Some(judged) = judged.filter(|_| self.streamed_judged()) else {
-            return Ok("no frame came to use them".to_owned());
+            return Ok(Finding::TablesUnused {});
         };
-        let checked = self.check_read_back("tables after", Bank::Active, &judged);
-        checked.map(|_| "the tables are still what was uploaded".to_owned()).map_err(|end| match end {
-            End::Failed { check, headline, remedy, suspects } => {
-                let headline = format!("the tables changed during the run: {headline}");
-                End::Failed { check, headline, remedy, suspects }
+        let checked = self.check_read_back(CheckName::TablesAfter, Bank::Active, &judged);
+        checked.map(|_| Finding::TablesUnchanged {}).map_err(|end| match end {
+            End::Failed { check, finding, suspects } => {
+                let finding = Finding::TablesChanged { found: Box::new(finding) };
+                End::Failed { check, finding, suspects }
             }
             end => end,
         })
@@ -56,34 +64,30 @@ impl Run<'_> {
         self.findings.seen.frames.iter().any(|frame| frame.generation == JUDGED)
     }
 
-    fn frames(&self, tables_after: Option<&End>) -> Result<String, End> {
+    fn frames(&self, tables_after: Option<&End>) -> Result<Finding, End> {
         let seen = &self.findings.seen;
-        if let Some(sentence) = &seen.wrong_generation {
-            let remedy = "The board uses stale tables: check when its bank switch takes effect.";
-            return Err(End::failed("frames", sentence.clone(), remedy));
+        if let Some(finding) = &seen.wrong_generation {
+            return Err(End::failed(CheckName::Frames, finding.clone()));
         }
         let differing = seen.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
         let (samples, frames) = (seen.samples(), seen.frames.len());
         if differing == 0 {
-            return Ok(format!("{frames} frames, {samples} samples, all equal"));
+            return Ok(Finding::FramesEqual { frames, samples });
         }
         // Tables that changed explain the differences better than their pattern does.
-        if let Some(End::Failed { headline, remedy, suspects, .. }) = tables_after {
-            let (headline, remedy, suspects) = (headline.clone(), remedy.clone(), suspects.clone());
-            return Err(End::Failed { check: "frames", headline, remedy, suspects });
+        if let Some(End::Failed { finding, suspects, .. }) = tables_after {
+            let (finding, suspects) = (finding.clone(), suspects.clone());
+            return Err(End::Failed { check: CheckName::Frames, finding, suspects });
         }
         let suspects = self.diagnose();
-        let wrong = seen.differences();
-        let found = format!("{wrong} of {samples} samples differ, in {differing} of {frames} frames");
-        let (suspicion, remedy) = match suspects.first() {
-            Some(suspect) => (format!("the suspect is {}", suspect.place), suspect.next_step.clone()),
-            None => (
-                "no single defect that is known explains them".to_owned(),
-                "Make a report with --report and look at the difference maps.".to_owned(),
-            ),
+        let finding = Finding::SamplesDiffer {
+            differences: seen.differences(),
+            samples,
+            differing_frames: differing,
+            frames,
+            suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
         };
-        let headline = format!("{found}; {suspicion}");
-        Err(End::Failed { check: "frames", headline, remedy, suspects })
+        Err(End::Failed { check: CheckName::Frames, finding, suspects })
     }
 
     fn diagnose(&self) -> Vec<Suspect> {
@@ -101,47 +105,31 @@ impl Run<'_> {
     }
 }
 
-fn latency(seen: &Seen) -> Result<String, End> {
-    let Some(sentence) = &seen.wrong_latency else {
+fn latency(seen: &Seen) -> Result<Finding, End> {
+    let Some(first) = &seen.wrong_latency else {
         let clocks = seen.latency.map_or(0, |latency| latency.claimed);
-        return Ok(format!("every row takes {clocks} pixel clocks, first and last sample"));
+        return Ok(Finding::LatencyRight { clocks });
     };
-    let wrong = seen.latency.map_or(0, |latency| latency.wrong_rows);
-    Err(End::failed(
-        "latency",
-        format!("{wrong} rows have another latency than the board claims: {sentence}"),
-        "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise.",
-    ))
+    let rows = seen.latency.map_or(0, |latency| latency.wrong_rows);
+    Err(End::failed(CheckName::Latency, first.finding(rows)))
 }
 
-fn counters(status: &Status, rows: usize, seen: &Seen) -> Result<String, End> {
+fn counters(status: &Status, rows: usize, seen: &Seen) -> Result<Finding, End> {
     let expected = u32::try_from(rows).unwrap_or(u32::MAX);
-    let failed = |what: String| {
-        Err(End::failed(
-            "counters",
-            what,
-            "Check the board's counters and its row player; the samples themselves were right.",
-        ))
-    };
-    if (status.rows_in, status.rows_out) != (expected, expected) {
-        return failed(format!(
-            "{expected} rows went through the board, and it counts {} in and {} out",
-            status.rows_in, status.rows_out
-        ));
+    let failed = |finding| Err(End::failed(CheckName::Counters, finding));
+    let Status { rows_in, rows_out, samples_over, .. } = *status;
+    if (rows_in, rows_out) != (expected, expected) {
+        return failed(Finding::RowsMiscounted { rows: expected, rows_in, rows_out });
     }
-    if status.samples_over > 0 {
-        return failed(format!(
-            "the board counts {} samples above the depth, and none was sent",
-            status.samples_over
-        ));
+    if samples_over > 0 {
+        return failed(Finding::SamplesMiscounted { samples_over });
     }
+    let (counted_least, counted_most) = (status.least_latency, status.most_latency);
     if let Some(latency) = seen.latency
-        && (status.least_latency, status.most_latency) != (latency.least, latency.most)
+        && (counted_least, counted_most) != (latency.least, latency.most)
     {
-        return failed(format!(
-            "the rows name latencies of {} to {} pixel clocks, and the board's counters {} to {}",
-            latency.least, latency.most, status.least_latency, status.most_latency
-        ));
+        let LatencyReport { least, most, .. } = latency;
+        return failed(Finding::LatencyMiscounted { least, most, counted_least, counted_most });
     }
-    Ok(format!("{rows} rows in, {rows} rows out"))
+    Ok(Finding::CountersRight { rows })
 }

@@ -9,6 +9,7 @@ use super::plan::{SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
 use super::steps::{MAX_LATENCY, Run};
 use crate::board::{BoardError, NumberedFrame, Unjudged};
+use crate::result::{CheckName, Finding, FrameTiming, Problem};
 use crate::verdict::Exit;
 
 /// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
@@ -35,9 +36,10 @@ impl Run<'_> {
         let prepared = judge.finish();
         self.findings.seen = seen;
         streamed?;
-        prepared.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+        self.findings.begin_lap();
+        prepared.map_err(|error| End::error(CheckName::Frames, Exit::Error, Problem::of(&error)))?;
         if self.plan.fail_fast && self.findings.seen.differences() > 0 {
-            self.board.drop_rows().map_err(|error| End::board("frames", &error))?;
+            self.board.drop_rows().map_err(|error| End::board(CheckName::Frames, &error))?;
         }
         Ok(())
     }
@@ -63,11 +65,11 @@ impl Run<'_> {
         }
     }
 
-    fn timing(&self, timing: Timing) -> String {
+    fn timing(&self, timing: Timing) -> FrameTiming {
         match timing {
-            Timing::Least => format!("least blanking ({} clocks)", self.board.capabilities.least_blanking),
-            Timing::Sensor => format!("{SENSOR_BLANKING} clocks of blanking"),
-            Timing::Gaps(seed) => format!("gaps, seed {seed}"),
+            Timing::Least => FrameTiming::LeastBlanking { clocks: self.board.capabilities.least_blanking },
+            Timing::Sensor => FrameTiming::Blanking { clocks: SENSOR_BLANKING },
+            Timing::Gaps(seed) => FrameTiming::Gaps { seed },
         }
     }
 
@@ -76,25 +78,20 @@ impl Run<'_> {
     fn interrupted(&mut self, segment: &Segment, error: BoardError) -> End {
         let place = match error {
             BoardError::RowMissing { place, .. } => place,
-            BoardError::WrongPlace { .. } => {
-                let remedy = "Check how the board keeps a row's place with its samples.";
-                return End::failed("frames", error.to_string(), remedy);
+            BoardError::WrongPlace { place } => {
+                let finding = Finding::RowMisplaced { row: place.row, frame: place.frame };
+                return End::failed(CheckName::Frames, finding);
             }
-            other => return End::board("frames", &other),
+            other => return End::board(CheckName::Frames, &other),
         };
         let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
         match frame.map(|frame| self.lost_again(frame)) {
-            Some(Ok(Some(LostTwice { row }))) => End::failed(
-                "frames",
-                format!(
-                    "row {} of frame {} went into the board and never came out; played again, row {row} was lost, \
-                     and the link is clean",
-                    place.row, place.frame
-                ),
-                "Check the row banks and the row player: the board took the row and lost it inside.",
-            ),
-            Some(Err(other)) => End::board("frames", &other),
-            Some(Ok(None)) | None => End::board("frames", &error),
+            Some(Ok(Some(LostTwice { row: again }))) => {
+                let (row, frame) = (place.row, place.frame);
+                End::failed(CheckName::Frames, Finding::RowSwallowed { row, frame, again })
+            }
+            Some(Err(other)) => End::board(CheckName::Frames, &other),
+            Some(Ok(None)) | None => End::board(CheckName::Frames, &error),
         }
     }
 
