@@ -36,7 +36,7 @@ pub fn run(count: usize, seed: u64) -> PoorLinks {
     PoorLinks(parallel::map(&links, |(link, broken)| {
         let options = if *broken { format!("{link}{BROKEN}") } else { link.clone() };
         let report = System::TINY.judge(&options);
-        Run { link: link.clone(), broken: *broken, verdict: report.verdict, headline: report.headline }
+        Run { link: link.clone(), broken: *broken, verdict: report.verdict, headline: report.headline() }
     }))
 }
 

@@ -7,7 +7,7 @@ use halfrow::board::deadlines::RetryLimit;
 use halfrow::frames::Builtin;
 use halfrow::link;
 use halfrow::progress::Silent;
-use halfrow::report::{Outcome, Report};
+use halfrow::result::{CheckName, Outcome, Report};
 use halfrow::session::{Circumstances, FrameSource, Plan, verify};
 use halfrow::target::Target;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
@@ -104,6 +104,6 @@ impl System {
 
 /// The check that found the board wrong, if one did.
 #[must_use]
-pub fn failed_check(report: &Report) -> Option<&'static str> {
+pub fn failed_check(report: &Report) -> Option<CheckName> {
     report.checks.iter().find(|check| check.outcome == Outcome::Failed).map(|check| check.name)
 }

@@ -10,7 +10,7 @@ use halfrow::target::Target;
 use halfrow_ft2232h::{ChannelMode, Chip, ChipOptions, Eeprom, FarEnd, Plugged, Unplugged};
 use halfrow_mock::Wire;
 
-use crate::program::{Ended, halfrow};
+use crate::program::{Ended, error_sentence, halfrow};
 use crate::scenario::Scenario;
 
 pub use qemu::{QEMU_CHIP, QemuBoard, plug_qemu_chip, unplug_qemu_chip};
@@ -115,8 +115,7 @@ pub fn verify(target: &str) -> Ended {
 #[must_use]
 pub fn sentence(ended: &Ended) -> String {
     let said = ended.json();
-    let sentence = if said["headline"].is_null() { &said["error"] } else { &said["headline"] };
-    sentence.as_str().unwrap_or_default().to_owned()
+    said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned)
 }
 
 /// Whether a scenario comes out the same in 128 x 72 pixels.

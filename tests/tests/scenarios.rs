@@ -65,7 +65,7 @@ fn what_does_not_fit_the_board_is_refused_without_a_verdict() {
 fn every_fault_that_the_program_lists_has_a_scenario() {
     let listed = halfrow(["faults", "--json"]).json();
     let names: Vec<_> =
-        listed.as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
+        listed["faults"].as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
     assert_eq!(names.len(), 21, "{names:?}");
     let has_scenario = |name: &&&str| {
         let fault = format!("fault={name}");

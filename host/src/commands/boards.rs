@@ -3,7 +3,8 @@
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, print, print_json};
+use super::document::print_result;
+use super::{Context, Failure, print};
 use crate::discovery::{self, Access, Answer, Found};
 use crate::target::{BoardKind, Target};
 use crate::verdict::Exit;
@@ -20,9 +21,6 @@ pub(super) struct Arguments {
     /// Greet what is free: some ten bytes are written to it, whatever it is
     #[arg(long)]
     ask: bool,
-    /// Print a JSON list
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 /// A board that is no device.
@@ -62,7 +60,13 @@ enum Entry<'a> {
     BuiltIn(&'static BuiltIn),
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// The whole list.
+#[derive(Serialize)]
+struct Boards<'a> {
+    boards: &'a [Entry<'a>],
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let mut devices: Vec<Found> = if arguments.targets.is_empty() {
         discovery::sources().iter().flat_map(|source| source.find()).collect()
     } else {
@@ -77,8 +81,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.targets.is_empty() {
         entries.extend(BUILT_IN.iter().map(Entry::BuiltIn));
     }
-    if arguments.json {
-        print_json(&entries)?;
+    if context.json {
+        print_result("boards", Exit::Pass, None, Boards { boards: &entries })?;
     } else {
         print(&entries.iter().map(text).collect::<Vec<_>>().join("\n"))?;
     }

@@ -11,10 +11,11 @@ use halfrow_model::Frame;
 use serde_json::json;
 
 use super::board::BoardArguments;
+use super::document::print_result;
 use super::inputs::{FrameName, InputArguments};
 use super::optics::{self, Chosen, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, print, print_json};
+use super::{Context, Failure, print};
 use crate::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
 use crate::progress;
 use crate::target::BoardKind;
@@ -55,9 +56,6 @@ pub(super) struct Arguments {
     /// Replace files that are there
     #[arg(long)]
     overwrite: bool,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
     #[command(flatten)]
     input: InputArguments,
     #[command(flatten)]
@@ -82,7 +80,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     job.check()?;
     let places = Places::of(&job.inputs, &arguments.wanted())?;
-    let watched = progress::for_stderr(context.quiet || arguments.json);
+    let watched = progress::for_stderr(context.quiet || context.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {
         job.by_model(&places, watched.as_ref()).map(|()| None)
@@ -90,7 +88,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         job.by_board(&places, context, watched.as_ref()).map(Some)
     };
     watched.done();
-    report(arguments.json, board?, &places)
+    report(context.json, board?, &places)
 }
 
 /// What is to be corrected, and how.
@@ -130,9 +128,8 @@ fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Ex
         let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
         let [outputs, previews] = [&places.frames, &places.previews]
             .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-        print_json(&json!({
-            "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs, "previews": previews,
-        }))?;
+        let rest = json!({ "corrected_by": kind, "outputs": outputs, "previews": previews });
+        print_result("correct", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
     let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));

@@ -2,19 +2,17 @@
 
 use clap::Args;
 use serde::Serialize;
+use serde_json::json;
 
-use super::{Failure, print, print_json};
+use super::document::print_result;
+use super::{Context, Failure, print};
 use crate::verdict::Exit;
 
 /// List the faults that the mock board can have
 ///
 /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
-    /// Print a JSON list of objects with name, where (wire or board) and summary
-    #[arg(long)]
-    json: bool,
-}
+pub(super) struct Arguments {}
 
 #[derive(Serialize)]
 struct Fault {
@@ -24,7 +22,7 @@ struct Fault {
     summary: &'static str,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(_: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let faults: Vec<Fault> = halfrow_mock::catalogue()
         .iter()
         .map(|info| Fault {
@@ -36,8 +34,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             summary: info.summary,
         })
         .collect();
-    if arguments.json {
-        print_json(&faults)?;
+    if context.json {
+        print_result("faults", Exit::Pass, None, json!({ "faults": faults }))?;
     } else {
         let lines: Vec<String> = faults
             .iter()

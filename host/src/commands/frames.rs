@@ -4,9 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::Args;
+use serde_json::json;
 
+use super::document::print_result;
 use super::optics::LensArguments;
-use super::{Failure, print};
+use super::{Context, Failure, print};
 use crate::frames::{self, Builtin};
 use crate::verdict::Exit;
 
@@ -29,7 +31,7 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     if arguments.lens.has_rows() {
         return Err(anyhow::anyhow!("a frame has no row factors; leave --rows out").into());
     }
@@ -39,10 +41,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     std::fs::create_dir_all(folder)
         .with_context(|| format!("{} cannot be made; choose another folder", folder.display()))
         .map_err(Failure::error)?;
+    let mut written = Vec::new();
     for builtin in chosen {
         let path = folder.join(format!("{}.pgm", builtin.name()));
         frames::write(&path, &builtin.render(&scene)?, arguments.overwrite).map_err(Failure::error)?;
-        print(&format!("{:<28} {}", path.display(), builtin.description()))?;
+        if context.json {
+            written
+                .push(json!({ "path": path.display().to_string(), "name": builtin.name(), "description": builtin.description() }));
+        } else {
+            print(&format!("{:<28} {}", path.display(), builtin.description()))?;
+        }
+    }
+    if context.json {
+        print_result("frames", Exit::Pass, None, json!({ "files": written }))?;
     }
     Ok(Exit::Pass)
 }

@@ -9,7 +9,7 @@ use clap::Args;
 use halfrow_model::{Frame, Geometry, Phase};
 
 use crate::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions, RowReader, Scene};
-use crate::report::{FileHash, sha256};
+use crate::result::{FileHash, sha256};
 use crate::session::FrameSource;
 
 /// How frame files are read.

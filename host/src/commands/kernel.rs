@@ -8,6 +8,7 @@ use halfrow_model::{Kernel, Taps};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use super::document::print_result;
 use super::inputs::file_hash;
 use super::{Context, Failure, optics, print};
 use crate::frames::lying;
@@ -61,9 +62,6 @@ struct Measure {
     /// nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
     #[arg(long, value_name = "NAME|FILE")]
     kernel: String,
-    /// Print the figures as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -72,13 +70,6 @@ enum TapCount {
     Five,
     #[value(name = "7")]
     Seven,
-}
-
-impl Arguments {
-    /// Whether the result is wanted as JSON.
-    pub(super) fn wants_json(&self) -> bool {
-        matches!(&self.command, Command::Measure(Measure { json: true, .. }))
-    }
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
@@ -140,6 +131,14 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
+    if context.json {
+        let rest = json!({
+            "file": arguments.output.display().to_string(), "photographs": images.len(), "gain_db": trained.gain,
+            "held_out_db": held_out, "mean_noise_gain": mean_noise_gain(&trained.kernel),
+        });
+        print_result("kernel", Exit::Pass, None, rest)?;
+        return Ok(Exit::Pass);
+    }
     print(&format!(
         "{} photographs: {:+.2} dB over Hermite on them; each by the kernel of the others {:+.2} dB \
          ({:+.2} to {:+.2}); noise gain {:.3}",
@@ -193,8 +192,9 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let measured = measure(&images, &kernel, watched.as_ref());
     watched.done();
     let (measured, noise) = (measured?, Spread::of(&noise_gain(&kernel)));
-    if arguments.json {
-        super::print_json(&json!({"kernel": arguments.kernel, "gains_db": measured, "noise_gain": noise}))?;
+    if context.json {
+        let rest = json!({ "kernel": arguments.kernel, "gains_db": measured, "noise_gain": noise });
+        print_result("kernel", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
     print(&format!("{} on {} photographs, over Hermite in dB", arguments.kernel, images.len()))?;

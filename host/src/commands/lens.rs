@@ -6,8 +6,9 @@ use clap::Args;
 use halfrow_model::TableError;
 use serde_json::{Value, json};
 
+use super::document::print_result;
 use super::optics::{LensArguments, Optics, Rows};
-use super::{Failure, print, print_json};
+use super::{Context, Failure, print};
 use crate::frames::{self, HeatMap, WriteError};
 use crate::lenses::{Residuals, Spread};
 use crate::verdict::Exit;
@@ -27,21 +28,18 @@ pub(super) struct Arguments {
     /// Replace a picture that is there
     #[arg(long)]
     overwrite: bool,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let optics = arguments.lens.optics()?;
     let figures = Figures::of(&optics)?;
     let most = match &arguments.map {
         None => None,
         Some(path) => Some(write_map(path, figures.used(), arguments.overwrite)?),
     };
-    if arguments.json {
-        let map = most.map(|most| json!({ "file": arguments.map, "brightest_px": most }));
-        print_json(&figures.json(map.as_ref()))?;
+    if context.json {
+        let map = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
+        print_result("lens", Exit::Pass, None, figures.json(map.as_ref()))?;
         return Ok(Exit::Pass);
     }
     print(&figures.text())?;

@@ -6,10 +6,11 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::BoardArguments;
-use super::{Context, Failure, print, print_json};
+use super::document::print_result;
+use super::{Context, Failure, print};
 use crate::board::{Board, BoardError};
 use crate::link_test::{self, Figures, LinkTestError, Rate};
-use crate::report::{BoardReport, Identity};
+use crate::result::{BoardReport, Identity};
 use crate::verdict::Exit;
 
 /// Test the link to a board: error rate, round trips, throughput each way and together
@@ -26,9 +27,6 @@ pub(super) struct Arguments {
     /// Seed of what is sent
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -52,9 +50,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
     let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
-    if arguments.json {
+    if context.json {
         let board = BoardReport { kind, target: candidate.target, identity: Some(identity) };
-        print_json(&json!({ "verdict": null, "exit_code": exit, "board": board, "link": figures }))?;
+        print_result("link", exit, Some(&board), json!({ "link": figures }))?;
     } else {
         print(&format!("{:<12} {} ({kind})\n{}", "board", candidate.target, text(&figures)))?;
     }

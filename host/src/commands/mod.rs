@@ -2,8 +2,10 @@
 
 mod board;
 mod boards;
+mod codes;
 mod completions;
 mod correct;
+mod document;
 mod faults;
 mod frames;
 mod info;
@@ -13,6 +15,7 @@ mod lens;
 mod link;
 mod optics;
 mod paper;
+mod schema;
 mod serve;
 mod table_file;
 mod tables;
@@ -27,12 +30,16 @@ use crate::reference;
 use crate::settings::Settings;
 use crate::verdict::Exit;
 
+pub use document::{failure, usage};
+
 /// What every command is given beside its own arguments.
 pub struct Context {
     /// The settings file, if there is one.
     pub settings: Settings,
     /// No progress.
     pub quiet: bool,
+    /// The result is wanted as JSON.
+    pub json: bool,
 }
 
 /// Validates a board that straightens fisheye Bayer video, bit for bit.
@@ -53,6 +60,9 @@ pub struct Cli {
     /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
     #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
     model_path: Option<ModelPath>,
+    /// Print the result, or why there is none, as JSON; `halfrow schema` tells its shape
+    #[arg(long, global = true)]
+    json: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -71,6 +81,8 @@ enum Command {
     Link(link::Arguments),
     Serve(serve::Arguments),
     Faults(faults::Arguments),
+    Codes(codes::Arguments),
+    Schema(schema::Arguments),
     Completions(completions::Completions),
     Manual(completions::Manual),
 }
@@ -112,16 +124,29 @@ impl Cli {
     /// Whether the result is wanted as JSON.
     #[must_use]
     pub fn wants_json(&self) -> bool {
+        self.json
+    }
+
+    /// The command that was given.
+    #[must_use]
+    pub fn command_name(&self) -> &'static str {
         match &self.command {
-            Command::Verify(arguments) => arguments.json,
-            Command::Correct(arguments) => arguments.json,
-            Command::Paper(arguments) => arguments.json,
-            Command::Kernel(arguments) => arguments.wants_json(),
-            Command::Lens(arguments) => arguments.json,
-            Command::Boards(arguments) => arguments.json,
-            Command::Info(arguments) => arguments.json,
-            Command::Link(arguments) => arguments.json,
-            _ => false,
+            Command::Verify(_) => "verify",
+            Command::Correct(_) => "correct",
+            Command::Tables(_) => "tables",
+            Command::Lens(_) => "lens",
+            Command::Kernel(_) => "kernel",
+            Command::Paper(_) => "paper",
+            Command::Frames(_) => "frames",
+            Command::Boards(_) => "boards",
+            Command::Info(_) => "info",
+            Command::Link(_) => "link",
+            Command::Serve(_) => "serve",
+            Command::Faults(_) => "faults",
+            Command::Codes(_) => "codes",
+            Command::Schema(_) => "schema",
+            Command::Completions(_) => "completions",
+            Command::Manual(_) => "manual",
         }
     }
 
@@ -133,20 +158,28 @@ impl Cli {
         let settings = Settings::load(self.settings.as_deref())?;
         let path = reference::choose(self.model_path)?;
         tracing::info!("the model takes the path {path}");
-        let context = Context { settings, quiet: self.quiet };
+        let context = Context { settings, quiet: self.quiet, json: self.json };
+        if context.json
+            && matches!(self.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
+        {
+            let command = self.command_name();
+            return Err(anyhow::anyhow!("`halfrow {command}` has no result in JSON; leave --json out").into());
+        }
         match &self.command {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
-            Command::Tables(arguments) => tables::run(arguments),
-            Command::Lens(arguments) => lens::run(arguments),
+            Command::Tables(arguments) => tables::run(arguments, &context),
+            Command::Lens(arguments) => lens::run(arguments, &context),
             Command::Kernel(arguments) => kernel::run(arguments, &context),
             Command::Paper(arguments) => paper::run(arguments, &context),
-            Command::Frames(arguments) => frames::run(arguments),
-            Command::Boards(arguments) => boards::run(arguments),
+            Command::Frames(arguments) => frames::run(arguments, &context),
+            Command::Boards(arguments) => boards::run(arguments, &context),
             Command::Info(arguments) => info::run(arguments, &context),
             Command::Link(arguments) => link::run(arguments, &context),
             Command::Serve(arguments) => serve::run(arguments),
-            Command::Faults(arguments) => faults::run(arguments),
+            Command::Faults(arguments) => faults::run(arguments, &context),
+            Command::Codes(arguments) => codes::run(arguments, &context),
+            Command::Schema(arguments) => schema::run(arguments),
             Command::Completions(arguments) => completions::complete(arguments, &mut Self::command()),
             Command::Manual(arguments) => completions::manual(arguments, Self::command()),
         }

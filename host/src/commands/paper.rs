@@ -6,7 +6,8 @@ use std::time::Instant;
 use clap::Args;
 
 use super::board::BoardArguments;
-use super::{Context, Failure, print, print_json};
+use super::document::print_result;
+use super::{Context, Failure, print};
 use crate::board::{Board, BoardError};
 use crate::frames::preview::RgbImage;
 use crate::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperError, TestedBoard};
@@ -37,9 +38,6 @@ pub(super) struct Arguments {
     /// Replace an earlier page
     #[arg(long)]
     overwrite: bool,
-    /// Print every number as JSON, as paper.json in the folder holds them
-    #[arg(long)]
-    pub(super) json: bool,
     #[command(flatten)]
     board: BoardArguments,
 }
@@ -61,9 +59,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let exhibits = exhibits.map_err(failed)?;
     closed.map_err(failed)?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
-    if arguments.json {
-        print_json(&paper::numbers(&exhibits))?;
-        return Ok(exit(&exhibits));
+    if context.json {
+        let exit = exit(&exhibits);
+        print_result("paper", exit, None, paper::numbers(&exhibits))?;
+        return Ok(exit);
     }
     conclude(&exhibits)?;
     print(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()))?;

@@ -3,9 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde_json::json;
 
+use super::document::print_result;
 use super::optics::{self, LensArguments};
-use super::{Failure, print};
+use super::{Context, Failure, print};
 use crate::tables::{TableFile, mem};
 use crate::verdict::Exit;
 
@@ -25,13 +27,19 @@ pub(super) struct Arguments {
     overwrite: bool,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let chosen = optics::choose(None, &arguments.lens, Some(&arguments.kernel))?;
     let geometry = *chosen.tables.geometry();
     chosen.tables.check_ring(geometry.width().next_power_of_two())?;
     let outside = chosen.optics.camera.rows_outside_circle();
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     let written = write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
+    if context.json {
+        let names: Vec<_> = written.iter().map(|path| path.display().to_string()).collect();
+        let rest = json!({ "files": names, "source": chosen.source, "rows_outside_circle": outside });
+        print_result("tables", Exit::Pass, None, rest)?;
+        return Ok(Exit::Pass);
+    }
     for path in written {
         print(&format!("wrote {}: {}", path.display(), chosen.source))?;
     }

@@ -7,8 +7,11 @@ use std::time::Duration;
 
 use clap::Args;
 use clap::builder::FalseyValueParser;
+use serde::Serialize;
+use serde_json::json;
 
 use super::board::BoardArguments;
+use super::document::print_result;
 use super::inputs::{InputArguments, file_hash, frame_sources};
 use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
@@ -16,7 +19,8 @@ use super::{Context, Failure, print};
 use crate::frames::Builtin;
 use crate::link::{Candidate, Recorder, Unfinished};
 use crate::progress;
-use crate::report::{self, Report, ReportFolder};
+use crate::report::{self, ReportFolder};
+use crate::result::{Problem, Report};
 use crate::session::{self, Circumstances, Finished, FrameSource, Plan, Timing};
 use crate::settings::Settings;
 use crate::verdict::{Exit, Verdict};
@@ -37,9 +41,6 @@ pub(super) struct Arguments {
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
     kernel: Option<String>,
-    /// Print the result as JSON
-    #[arg(long)]
-    pub(super) json: bool,
     /// Write a report (JSON, JUnit, HTML) into this folder
     #[arg(long, value_name = "FOLDER", env = "HALFROW_REPORT")]
     report: Option<PathBuf>,
@@ -74,6 +75,11 @@ pub(super) struct Arguments {
     lens: LensArguments,
 }
 
+/// A recording that was asked for and is not there.
+pub(super) const RECORDING_LOST: &str = "recording-lost";
+/// A report that was asked for and is not there.
+pub(super) const REPORT_LOST: &str = "report-lost";
+
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
@@ -84,8 +90,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     plan.check_length()?;
     let candidate = arguments.board.candidate(settings)?;
     if arguments.list {
-        print(&listing(&plan))?;
-        return Ok(Exit::Pass);
+        return list(&plan, context.json);
     }
     let overwrite = arguments.overwrite || settings.overwrite.unwrap_or(false);
     let folder = arguments.report.as_ref().or(settings.report.as_ref());
@@ -101,29 +106,30 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         }
     };
     let stop = arguments.board.stop(plan.timeout)?;
-    let watched = progress::for_stderr(context.quiet || arguments.json);
+    let watched = progress::for_stderr(context.quiet || context.json);
     let mut finished = session::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
     if finished.report.exit_code == Exit::Usage {
         // The call does not fit the board: there is no verdict, and so nothing to report on.
-        return Err(anyhow::anyhow!(finished.report.headline).into());
+        return Err(finished.report.finding.as_problem().into());
     }
     if let Some(error) = unfinished.get() {
-        lose(&mut finished.report, format!("the recording could not be written: {error}"), "--record");
+        let causes = vec![Problem::of(error)];
+        lose(&mut finished.report, RECORDING_LOST, "the recording could not be written", causes, "--record");
     }
     let written = folder.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
     if let Err(error) = written {
-        let error = anyhow::Error::from(error);
-        lose(&mut finished.report, format!("the report could not be written: {error:#}"), "--report");
+        let causes = Problem::of(&error).chain();
+        lose(&mut finished.report, REPORT_LOST, "the report could not be written", causes, "--report");
     }
-    conclude(&finished, arguments.json)
+    conclude(&finished, context.json)
 }
 
 /// A result that could not be written is none, even when all samples were equal.
-fn lose(report: &mut Report, headline: String, option: &str) {
-    report.headline = headline;
+fn lose(report: &mut Report, code: &str, what: &str, causes: Vec<Problem>, option: &str) {
+    let remedy = Some(format!("Free some space or choose another place with {option}, then run again."));
+    report.finding = Problem { remedy, causes, ..Problem::new(code, what) }.into();
     report.verdict = Verdict::Error;
     report.exit_code = Exit::Error;
-    report.remedy = Some(format!("Free some space or choose another place with {option}, then run again."));
 }
 
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
@@ -136,20 +142,43 @@ fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
     Ok(report.exit_code)
 }
 
-fn listing(plan: &Plan) -> String {
-    let mut lines = Vec::new();
+/// A frame that would be streamed.
+#[derive(Serialize)]
+struct Listed {
+    number: u16,
+    name: String,
+    tables: &'static str,
+    timing: &'static str,
+}
+
+/// Prints what would be streamed.
+fn list(plan: &Plan, as_json: bool) -> Result<Exit, Failure> {
+    let listed = listing(plan);
+    if as_json {
+        print_result("verify", Exit::Pass, None, json!({ "listed": listed }))?;
+        return Ok(Exit::Pass);
+    }
+    let line = |Listed { number, name, tables, timing }: &Listed| {
+        format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}")
+    };
+    print(&listed.iter().map(line).collect::<Vec<_>>().join("\n"))?;
+    Ok(Exit::Pass)
+}
+
+fn listing(plan: &Plan) -> Vec<Listed> {
+    let mut listed = Vec::new();
     for segment in plan.schedule(2) {
         let timing = match segment.timing {
             Timing::Least => "least blanking",
             Timing::Sensor => "sensor blanking",
             Timing::Gaps(_) => "gaps",
         };
-        lines.extend(segment.frames.iter().map(|frame| {
+        listed.extend(segment.frames.iter().map(|frame| {
             let tables = if frame.generation == session::DECOY { "decoy" } else { "judged" };
-            format!("{:>4}  {:<24} {tables:<6} tables, {timing}", frame.number, frame.source.name())
+            Listed { number: frame.number, name: frame.source.name(), tables, timing }
         }));
     }
-    lines.join("\n")
+    listed
 }
 
 impl Arguments {

@@ -8,6 +8,7 @@ mod bad_frames;
 mod bad_tables;
 mod bad_targets;
 mod corrected;
+mod documents;
 mod help;
 mod lenses;
 mod made_files;
