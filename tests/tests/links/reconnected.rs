@@ -56,7 +56,7 @@ fn goes_on_after(count: usize) {
     let cuts: Vec<_> = (0..count).map(draw).zip(HOW.into_iter().cycle()).collect();
     let reports = parallel::map(&cuts, |&(byte, how)| interrupted(byte as u64, how("mock".to_owned())));
     for (cut, report) in cuts.iter().zip(&reports) {
-        let away: Vec<_> = report.link.reconnections.iter().map(|away| away.reason.as_str()).collect();
+        let away: Vec<_> = report.link.reconnections.iter().map(|away| away.reason.sentence()).collect();
         assert_eq!(report.exit_code, Exit::Pass, "{cut:?}: {}; {away:?}", report.headline());
         assert_eq!((rows(report), away.len()), (all_rows, 1), "{cut:?}: {away:?}");
         assert!(

@@ -3,6 +3,7 @@
 use std::time::{Duration, Instant};
 
 use halfrow::report;
+use halfrow::result::CheckName;
 use halfrow::result::Outcome::{Error, Skipped};
 use halfrow::verdict::Exit;
 use halfrow_tests::dice::Dice;
@@ -82,7 +83,10 @@ fn what_came_before_is_not_taken_for_a_whole_run() {
     for report in reports {
         assert_eq!(report.exit_code, Exit::Error, "{}", report.headline());
         let of = |name| report.checks.iter().find(|check| check.name == name).unwrap().outcome;
-        assert_eq!((of("frames"), of("latency"), of("counters")), (Error, Skipped, Skipped));
+        assert_eq!(
+            (of(CheckName::Frames), of(CheckName::Latency), of(CheckName::Counters)),
+            (Error, Skipped, Skipped)
+        );
         let torn = report.frames.iter().filter(|frame| frame.rows < System::TINY.height).count();
         let text = report::text(&report);
         assert_eq!(text.matches("not whole").count(), torn, "{text}");
