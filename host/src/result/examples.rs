@@ -66,7 +66,7 @@ fn unjudged() -> [Finding; 5] {
         Finding::DatapathUnknown { datapath: 2, known: 1 },
         Finding::HardwareRequired { board: BoardKind::Mock },
         Finding::BoardExchanged {},
-        Finding::BoardStayedAway { reason, seconds: 30.0 },
+        Finding::BoardStayedAway { reason: Box::new(reason), seconds: 30.0 },
     ]
 }
 

@@ -205,13 +205,13 @@ pub enum Finding {
     /// The board went away and did not come back.
     BoardStayedAway {
         /// How it went.
-        reason: Problem,
+        reason: Box<Problem>,
         /// How long it was waited for, in seconds.
         seconds: f64,
     },
     /// An error of the station, the link or the call.
     #[serde(untagged)]
-    Problem(Problem),
+    Problem(Box<Problem>),
 }
 
 impl Finding {
@@ -237,7 +237,7 @@ impl Finding {
     #[must_use]
     pub fn as_problem(&self) -> Problem {
         if let Self::Problem(problem) = self {
-            return problem.clone();
+            return (**problem).clone();
         }
         let (code, parameters) = tagged(self);
         let (message, remedy) = (self.sentence(), self.remedy());
@@ -247,7 +247,7 @@ impl Finding {
 
 impl From<Problem> for Finding {
     fn from(problem: Problem) -> Self {
-        Self::Problem(problem)
+        Self::Problem(Box::new(problem))
     }
 }
 

@@ -63,7 +63,11 @@ impl WayBack {
             }
             if left.elapsed() > patience {
                 let seconds = patience.as_secs_f64();
-                return Err(End::error(*check, *exit, Finding::BoardStayedAway { reason, seconds }));
+                return Err(End::error(
+                    *check,
+                    *exit,
+                    Finding::BoardStayedAway { reason: Box::new(reason), seconds },
+                ));
             }
             std::thread::sleep(TICK);
         }

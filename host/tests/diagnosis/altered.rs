@@ -229,7 +229,7 @@ fn two_defects_are_both_named_and_neither_for_certain() {
         }
         samples
     });
-    let mut places: Vec<_> = suspects.iter().map(|suspect| suspect.place()).collect();
+    let mut places: Vec<_> = suspects.iter().map(Suspect::place).collect();
     places.retain(|place| place.starts_with("row"));
     places.sort_unstable();
     assert_eq!(places, ["row 21's factor, bit 22", "row 3's factor, bit 20"]);
@@ -266,7 +266,7 @@ fn defects_that_cannot_be_told_apart_are_all_named() {
     let mut seen = bench.play(Some(fault("stuck-data,bit=5,value=0")));
     seen.evidence.retain(|evidence| evidence.index == WHITE);
     let suspects = bench.judge(&seen);
-    let places: Vec<_> = suspects.iter().map(|suspect| suspect.place()).collect();
+    let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
     assert_eq!(places, ["line memory, data bit 5, stuck at 0", "corrected samples, bit 5, stuck at 0"]);
     assert!(suspects.iter().all(|suspect| suspect.explained == 1.0));
     assert!(

@@ -278,7 +278,7 @@ pub(crate) fn off_centre() -> Bench {
 /// A fault must be explained by the part at `place`, wholly and by nothing else.
 pub(crate) fn assert_named(bench: &Bench, text: &str, place: &str) {
     let suspects = bench.diagnose(fault(text));
-    let places: Vec<_> = suspects.iter().map(|suspect| suspect.place()).collect();
+    let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
     assert_eq!(places, [place], "{text}: {suspects:#?}");
     assert_eq!(suspects[0].explained, 1.0, "{text}: {suspects:#?}");
 }

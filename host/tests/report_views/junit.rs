@@ -105,7 +105,8 @@ fn lint(document: &str) -> Result<(), String> {
     let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/report_views/junit.xsd");
     let mut lint = Command::new("xmllint");
     lint.args(["--noout", "--nonet", "--schema", schema, "-"]).stdin(Stdio::piped()).stderr(Stdio::piped());
-    let mut lint = lint.spawn().expect("xmllint is there: apt-get install libxml2-utils");
+    let mut lint =
+        lint.spawn().unwrap_or_else(|error| panic!("xmllint: {error}; apt-get install libxml2-utils"));
     lint.stdin.take().unwrap().write_all(document.as_bytes()).unwrap();
     let output = lint.wait_with_output().unwrap();
     if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned()) }
