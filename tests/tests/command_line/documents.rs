@@ -12,7 +12,7 @@ use crate::small;
 
 fn repository(name: &str) -> String {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..").join(name);
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    fs::read_to_string(path).unwrap()
 }
 
 /// Runs a call with --json, which must end with `code`, and returns its document.
