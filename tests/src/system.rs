@@ -7,7 +7,7 @@ use halfrow::board::deadlines::RetryLimit;
 use halfrow::frames::Builtin;
 use halfrow::link::{self, Candidate};
 use halfrow::progress::Silent;
-use halfrow::report::{Outcome, Report};
+use halfrow::result::{CheckName, Outcome, Report};
 use halfrow::run::{Circumstances, FrameSource, Plan, verify};
 use halfrow::target::Target;
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
@@ -138,6 +138,6 @@ fn open(target: &str) -> Candidate {
 
 /// The check that found the board wrong, if one did.
 #[must_use]
-pub fn failed_check(report: &Report) -> Option<&'static str> {
+pub fn failed_check(report: &Report) -> Option<CheckName> {
     report.checks.iter().find(|check| check.outcome == Outcome::Failed).map(|check| check.name)
 }

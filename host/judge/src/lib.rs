@@ -9,7 +9,7 @@
 //! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`run`] is the one that knows the order of
 //! things. [`probe`] asks a device whether it is a board, [`link_test`] measures what a link can do, [`correction`] uses a
 //! board to correct frames, and [`lenses`] reads what calibrations leave.
-//! [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
+//! [`compare`], [`diagnosis`], [`result`] and [`report`] see samples and counts, never a link.
 
 pub mod board;
 pub mod compare;
@@ -22,6 +22,7 @@ mod probe;
 pub mod progress;
 pub mod reference;
 pub mod report;
+pub mod result;
 pub mod run;
 pub mod tables;
 pub mod verdict;

@@ -31,7 +31,7 @@ pub fn probe(target: &Target) -> Answer {
             Answer::Foreign { reason: error.to_string() }
         }
         Err((error, _)) if error.exit() == Exit::Busy => Answer::Busy,
-        Err((error, _)) => Answer::Failed { reason: crate::run::chain(&error) },
+        Err((error, _)) => Answer::Failed { reason: crate::result::Problem::of(&error).sentence() },
     }
 }
 

@@ -3,10 +3,10 @@
 use std::fmt;
 
 use halfrow_link::Class;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize, de};
 
 /// The judgement on a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum Verdict {
     /// Everything was judged and all was equal.
@@ -54,6 +54,20 @@ pub enum Exit {
 }
 
 impl Exit {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::Pass,
+        Self::Fail,
+        Self::Usage,
+        Self::Error,
+        Self::Busy,
+        Self::NothingJudged,
+        Self::Refused,
+        Self::HungUp,
+        Self::Interrupted,
+        Self::Terminated,
+    ];
+
     /// The process's exit code.
     #[must_use]
     pub const fn code(self) -> u8 {
@@ -92,5 +106,13 @@ impl From<Class> for Exit {
 impl Serialize for Exit {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.serialize_u8(self.code())
+    }
+}
+
+impl<'de> Deserialize<'de> for Exit {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let code = u8::deserialize(deserializer)?;
+        let known = Self::ALL.into_iter().find(|exit| exit.code() == code);
+        known.ok_or_else(|| de::Error::custom(format!("{code} is no exit code of this program")))
     }
 }

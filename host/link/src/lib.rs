@@ -38,6 +38,9 @@ pub use tcp::{TcpError, TcpLink};
 pub use usb::{Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
 pub use wire::WireLink;
 
+#[cfg(feature = "sim")]
+pub use halfrow_sim::TraceError;
+
 /// A byte pipe to a board.
 ///
 /// Both directions move in one call, so a host that uses it cannot deadlock with a board that waits to be read: whatever

@@ -130,7 +130,7 @@ fn json_names_the_outputs_and_the_kind_of_board_and_judges_nothing() {
         let call = small("correct", &["builtin:black", "-o", "out.pgm", "--overwrite", how[0], how[1]]);
         let said = folder.halfrow(call).json();
         assert!(said["verdict"].is_null() && said["exit_code"] == 0);
-        assert_eq!(said["board"]["kind"], kind);
+        assert_eq!(said["corrected_by"], kind);
         assert_eq!(said["outputs"], serde_json::json!(["out.pgm"]));
     }
 }

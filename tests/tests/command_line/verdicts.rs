@@ -9,10 +9,9 @@ use crate::{refused, small};
 const ESCAPE: char = '\u{1b}';
 
 #[test]
-fn json_begins_with_verdict_exit_code_and_kind_of_board() {
+fn json_begins_with_schema_command_verdict_exit_code_and_kind_of_board() {
     let ended = halfrow(small("verify", &["--json"]));
-    let beginning =
-        "{\n  \"verdict\": \"PASS\",\n  \"exit_code\": 0,\n  \"board\": {\n    \"kind\": \"mock\",";
+    let beginning = "{\n  \"schema\": 1,\n  \"command\": \"verify\",\n  \"verdict\": \"PASS\",\n  \"exit_code\": 0,\n  \"board\": {\n    \"kind\": \"mock\",";
     assert!(ended.stdout.starts_with(beginning), "{}", ended.stdout);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     assert!(ended.json().is_object());
@@ -23,9 +22,9 @@ fn json_of_a_refused_call_has_no_verdict() {
     let ended = halfrow(["verify", "--json", "--width", "63"]);
     assert_eq!(ended.code, Some(2));
     let said = ended.json();
-    assert!(said["verdict"].is_null() && said["board"]["kind"].is_null());
+    assert!(said["verdict"].is_null() && said["board"].is_null());
     assert_eq!(said["exit_code"], 2);
-    assert!(ended.stderr.contains(said["error"].as_str().unwrap()));
+    assert!(ended.stderr.contains(said["error"]["message"].as_str().unwrap()));
 }
 
 #[test]

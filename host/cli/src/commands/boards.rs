@@ -3,7 +3,8 @@
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, print, print_json};
+use super::document::print_result;
+use super::{Context, Failure, print};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::Exit;
 use halfrow_link::discovery::{self, Access, Answer, Found};
@@ -21,9 +22,6 @@ pub(super) struct Arguments {
     /// Greet what is free: some ten bytes are written to it, whatever it is
     #[arg(long)]
     ask: bool,
-    /// Print a JSON list
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 /// A kind of board that is no device, by one of the ways to name it.
@@ -47,7 +45,13 @@ enum Entry<'a> {
     BuiltIn(BuiltIn),
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// The whole list.
+#[derive(Serialize)]
+struct Boards<'a> {
+    boards: &'a [Entry<'a>],
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let mut devices: Vec<Found> = if arguments.targets.is_empty() {
         discovery::find()
     } else {
@@ -62,8 +66,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.targets.is_empty() {
         entries.extend(built_in().into_iter().map(Entry::BuiltIn));
     }
-    if arguments.json {
-        print_json(&entries)?;
+    if context.json {
+        print_result("boards", Exit::Pass, None, Boards { boards: &entries })?;
     } else {
         print(&entries.iter().map(text).collect::<Vec<_>>().join("\n"))?;
     }

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::Args;
+use serde_json::json;
 
+use super::document::tell_result;
 use super::files::Files;
 use super::optics::LensArguments;
 use super::{Context, Failure};
@@ -47,9 +49,18 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     std::fs::create_dir_all(folder)
         .with_context(|| format!("{} cannot be made; choose another folder", folder.display()))
         .map_err(Failure::error)?;
+    let mut written = Vec::new();
     for (builtin, path) in chosen.iter().zip(places) {
         frames::write(&path, &builtin.render(&scene)?, arguments.overwrite).map_err(Failure::error)?;
-        console::tell(&format!("{:<28} {}", path.display(), builtin.description()));
+        let (place, description) = (path.display().to_string(), builtin.description());
+        if context.json {
+            written.push(json!({ "path": place, "name": builtin.name(), "description": description }));
+        } else {
+            console::tell(&format!("{place:<28} {description}"));
+        }
+    }
+    if context.json {
+        tell_result("frames", Exit::Pass, None, json!({ "files": written }))?;
     }
     Ok(Exit::Pass)
 }

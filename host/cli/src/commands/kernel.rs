@@ -9,9 +9,10 @@ use halfrow_model::{Kernel, Taps};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use super::document::{print_result, tell_result};
 use super::files::Files;
 use super::inputs::file_hash;
-use super::{Context, Failure, optics, print, print_json};
+use super::{Context, Failure, optics, print};
 use crate::{console, progress};
 use halfrow::frames;
 use halfrow::frames::lying;
@@ -65,9 +66,6 @@ struct Measure {
     /// nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
     #[arg(long, value_name = "NAME|FILE")]
     kernel: OsString,
-    /// Print the figures as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -76,13 +74,6 @@ enum TapCount {
     Five,
     #[value(name = "7")]
     Seven,
-}
-
-impl Arguments {
-    /// Whether the result is wanted as JSON.
-    pub(super) fn wants_json(&self) -> bool {
-        matches!(&self.command, Command::Measure(Measure { json: true, .. }))
-    }
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
@@ -154,6 +145,14 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
+    if context.json {
+        let rest = json!({
+            "file": arguments.output.display().to_string(), "photographs": images.len(), "gain_db": trained.gain,
+            "held_out_db": held_out, "mean_noise_gain": mean_noise_gain(&trained.kernel),
+        });
+        tell_result("kernel", Exit::Pass, None, rest)?;
+        return Ok(Exit::Pass);
+    }
     console::tell(&format!(
         "{} photographs: {:+.2} dB over Hermite on them; each by the kernel of the others {:+.2} dB \
          ({:+.2} to {:+.2}); noise gain {:.3}",
@@ -212,8 +211,9 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     watched.done();
     let (measured, noise) = (measured.map_err(failed)?, Spread::of(&noise_gain(&kernel)));
     let name = arguments.kernel.to_string_lossy();
-    if arguments.json {
-        print_json(&json!({"kernel": name, "gains_db": measured, "noise_gain": noise}))?;
+    if context.json {
+        let rest = json!({ "kernel": name, "gains_db": measured, "noise_gain": noise });
+        print_result("kernel", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
     let mut lines = vec![format!("{} on {} photographs, over Hermite in dB", name, images.len())];

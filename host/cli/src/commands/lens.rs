@@ -6,9 +6,10 @@ use clap::Args;
 use halfrow_model::TableError;
 use serde_json::{Value, json};
 
+use super::document::print_result;
 use super::files::Files;
 use super::optics::{LensArguments, Optics, Rows};
-use super::{Context, Failure, print, print_json};
+use super::{Context, Failure, print};
 use crate::console;
 use halfrow::frames::{self, HeatMap};
 use halfrow::verdict::Exit;
@@ -29,9 +30,6 @@ pub(super) struct Arguments {
     /// Replace a picture that is there
     #[arg(long)]
     overwrite: bool,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
@@ -47,9 +45,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         None => None,
         Some(path) => Some(write_map(path, figures.used(), arguments.overwrite)?),
     };
-    if arguments.json {
-        let map = most.map(|most| json!({ "file": arguments.map, "brightest_px": most }));
-        print_json(&figures.json(map.as_ref()))?;
+    if context.json {
+        let map = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
+        print_result("lens", Exit::Pass, None, figures.json(map.as_ref()))?;
         return Ok(Exit::Pass);
     }
     print(&figures.text())?;

@@ -6,10 +6,11 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::BoardArguments;
-use super::{Context, Failure, conclude, json_text};
+use super::document::result_text;
+use super::{Context, Failure, conclude};
 use halfrow::board::{Board, BoardError};
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
-use halfrow::report::{BoardReport, Identity};
+use halfrow::result::{BoardReport, Identity};
 use halfrow::verdict::Exit;
 
 /// Test the link to a board: error rate, round trips, throughput each way and together
@@ -26,9 +27,6 @@ pub(super) struct Arguments {
     /// Seed of what is sent
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -52,10 +50,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
     let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
-    if arguments.json {
+    if context.json {
         let board = BoardReport { kind, target: candidate.target, identity: Some(identity) };
-        let result = json!({ "verdict": null, "exit_code": exit, "board": board, "link": figures });
-        return conclude(exit, &json_text(&result)?);
+        return conclude(exit, &result_text("link", exit, Some(&board), json!({ "link": figures }))?);
     }
     conclude(exit, &format!("{:<12} {} ({kind})\n{}", "board", candidate.target, text(&figures)))
 }

@@ -7,9 +7,10 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::board::BoardArguments;
+use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
-use super::{Context, Failure, json_text};
+use super::{Context, Failure};
 use crate::settings::Settings;
 use crate::{console, progress};
 use halfrow::board::{Board, BoardError};
@@ -42,9 +43,6 @@ pub(super) struct Arguments {
     /// Replace an earlier page
     #[arg(long)]
     overwrite: bool,
-    /// Print every number as JSON, as paper.json in the folder holds them
-    #[arg(long)]
-    pub(super) json: bool,
     #[command(flatten)]
     board: BoardArguments,
 }
@@ -79,9 +77,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let exhibits = exhibits.map_err(failed)?;
     closed.map_err(failed)?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
-    if arguments.json {
-        console::tell(&json_text(&paper::numbers(&exhibits))?);
-        return Ok(exit(&exhibits));
+    if context.json {
+        let exit = exit(&exhibits);
+        tell_result("paper", exit, None, paper::numbers(&exhibits))?;
+        return Ok(exit);
     }
     conclude(&exhibits);
     console::tell(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()));

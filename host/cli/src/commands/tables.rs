@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::Args;
+use serde_json::json;
 
+use super::document::tell_result;
 use super::files::Files;
 use super::optics::{self, LensArguments};
 use super::{Context, Failure};
@@ -44,6 +46,13 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let outside = chosen.optics.camera.rows_outside_circle();
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     format.write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
+    if context.json {
+        let places = format.places(&arguments.output);
+        let names: Vec<_> = places.iter().map(|path| path.display().to_string()).collect();
+        let rest = json!({ "files": names, "source": chosen.source, "rows_outside_circle": outside });
+        tell_result("tables", Exit::Pass, None, rest)?;
+        return Ok(Exit::Pass);
+    }
     for path in format.places(&arguments.output) {
         console::tell(&format!("wrote {}: {}", path.display(), chosen.source));
     }

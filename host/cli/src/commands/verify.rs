@@ -8,8 +8,11 @@ use std::time::Duration;
 
 use clap::Args;
 use clap::builder::FalseyValueParser;
+use serde::Serialize;
+use serde_json::json;
 
 use super::board::BoardArguments;
+use super::document::print_result;
 use super::files::Files;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, file_hash, frame_sources};
@@ -20,7 +23,8 @@ use crate::settings::Settings;
 use crate::{console, progress};
 use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{Candidate, Lost, Recorder, Recording, RecordingFile};
-use halfrow::report::{self, Report, ReportError, ReportFolder};
+use halfrow::report::{self, ReportError, ReportFolder};
+use halfrow::result::{Problem, Report};
 use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
 use halfrow::verdict::{Exit, Verdict};
 
@@ -42,9 +46,6 @@ pub(super) struct Arguments {
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
     kernel: Option<OsString>,
-    /// Print the result as JSON
-    #[arg(long)]
-    pub(super) json: bool,
     /// Write a report (JSON, JUnit, HTML) into this folder
     #[arg(long, value_name = "FOLDER", env = "HALFROW_REPORT")]
     report: Option<PathBuf>,
@@ -79,14 +80,18 @@ pub(super) struct Arguments {
     lens: LensArguments,
 }
 
+/// A recording that was asked for and is not there.
+pub(super) const RECORDING_LOST: &str = "recording-lost";
+/// A report that was asked for and is not there.
+pub(super) const REPORT_LOST: &str = "report-lost";
+
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
     let (plan, circumstances) = arguments.planned(recording.as_ref(), settings)?;
     if arguments.list {
         arguments.board.candidate_of(settings, recording)?;
-        print(&listing(&plan))?;
-        return Ok(Exit::Pass);
+        return list(&plan, context.json);
     }
     let outputs = arguments.outputs(context)?;
     let mut candidate = arguments.board.candidate_of(settings, recording)?;
@@ -98,27 +103,30 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         candidate = Candidate { link: Box::new(link), ..candidate };
     }
     let stop = arguments.board.stop(settings, plan.timeout)?;
-    let watched = progress::for_stderr(context.quiet || arguments.json);
+    let watched = progress::for_stderr(context.quiet || context.json);
     let mut finished = run::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
     if finished.report.exit_code == Exit::Usage {
         // The call does not fit the board: there is no verdict, and so nothing to report on.
-        return Err(anyhow::anyhow!(finished.report.headline).into());
+        return Err(finished.report.finding.as_problem().into());
     }
     if let Some(error) = lost.get() {
-        let what = format!("the recording could not be written: {error}");
-        lose(&mut finished.report, &what, ANOTHER_RECORDING);
+        let what = Problem::new(RECORDING_LOST, "the recording could not be written");
+        // Its sentence says what its own causes do.
+        let causes = vec![Problem { causes: Vec::new(), ..Problem::of(error) }];
+        lose(&mut finished.report, Problem { causes, ..what }, ANOTHER_RECORDING);
     }
     if let Some(folder) = outputs.report {
         write_report(folder, &mut finished);
     }
-    conclude(&finished, arguments.json)
+    conclude(&finished, context.json)
 }
 
 fn write_report(folder: ReportFolder, finished: &mut Finished) {
     if let Err(error) = folder.commit(&finished.report, &finished.evidence) {
         let remedy = if matches!(error, ReportError::Exists { .. }) { ANOTHER_REPORT } else { ROOM };
-        let error = anyhow::Error::from(error);
-        lose(&mut finished.report, &format!("the report could not be written: {error:#}"), remedy);
+        let what = Problem::new(REPORT_LOST, "the report could not be written");
+        let causes = Problem::of(&error).chain();
+        lose(&mut finished.report, Problem { causes, ..what }, remedy);
     }
 }
 
@@ -133,15 +141,14 @@ const ANOTHER_REPORT: &str = "Name another folder with --report, or give --overw
 const ANOTHER_RECORDING: &str = "Free some space or choose another place with --record, then run again.";
 
 /// A PASS whose files could not be written is none. Any other verdict stands, and stderr says what it lacks.
-fn lose(report: &mut Report, what: &str, remedy: &str) {
+fn lose(report: &mut Report, what: Problem, remedy: &str) {
     if report.verdict != Verdict::Pass {
         console::error(&what);
         return;
     }
-    report.headline = what.to_owned();
+    report.finding = Problem { remedy: Some(remedy.to_owned()), ..what }.into();
     report.verdict = Verdict::Error;
     report.exit_code = Exit::Error;
-    report.remedy = Some(remedy.to_owned());
 }
 
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
@@ -154,20 +161,43 @@ fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
     Ok(report.exit_code)
 }
 
-fn listing(plan: &Plan) -> String {
-    let mut lines = Vec::new();
+/// A frame that would be streamed.
+#[derive(Serialize)]
+struct Listed {
+    number: u16,
+    name: String,
+    tables: &'static str,
+    timing: &'static str,
+}
+
+/// Prints what would be streamed.
+fn list(plan: &Plan, as_json: bool) -> Result<Exit, Failure> {
+    let listed = listing(plan);
+    if as_json {
+        print_result("verify", Exit::Pass, None, json!({ "listed": listed }))?;
+        return Ok(Exit::Pass);
+    }
+    let line = |Listed { number, name, tables, timing }: &Listed| {
+        format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}")
+    };
+    print(&listed.iter().map(line).collect::<Vec<_>>().join("\n"))?;
+    Ok(Exit::Pass)
+}
+
+fn listing(plan: &Plan) -> Vec<Listed> {
+    let mut listed = Vec::new();
     for segment in plan.schedule(2) {
         let timing = match segment.timing {
             Timing::Least => "least blanking",
             Timing::Sensor => "sensor blanking",
             Timing::Gaps(_) => "gaps",
         };
-        lines.extend(segment.frames.iter().map(|frame| {
+        listed.extend(segment.frames.iter().map(|frame| {
             let tables = if frame.generation == run::DECOY { "decoy" } else { "judged" };
-            format!("{:>4}  {:<24} {tables:<6} tables, {timing}", frame.number, frame.source.name())
+            Listed { number: frame.number, name: frame.source.name(), tables, timing }
         }));
     }
-    lines.join("\n")
+    listed
 }
 
 impl Arguments {

@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::{Evidence, Report, html, json, junit};
+use super::{html, json, junit};
+use crate::result::{Evidence, Report};
 use halfrow_frames::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
 
 const JSON: &str = "report.json";

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use crate::report::{
+use crate::result::{
     BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, Outcome, Report, StreetReport,
 };
 use crate::verdict::Verdict;
@@ -42,14 +42,16 @@ pub(super) fn remark(board: &BoardReport) -> String {
 pub(super) fn verdict_line(report: &Report) -> String {
     match report.verdict {
         Verdict::Pass => format!("PASS ({})  {}", remark(&report.board), facts(report)),
-        verdict => format!("{verdict}: {}", plain(&report.headline)),
+        verdict => format!("{verdict}: {}", plain(&report.headline())),
     }
 }
 
-/// What to do, unless a suspect already says so.
-pub(super) fn remedy(report: &Report) -> Option<&str> {
-    let said = |remedy: &&str| report.suspects.iter().any(|suspect| suspect.next_step == *remedy);
-    report.remedy.as_deref().filter(|remedy| !said(remedy))
+/// What to do, unless a suspect or the headline already says so.
+pub(super) fn remedy(report: &Report) -> Option<String> {
+    let headline = report.headline().to_lowercase();
+    let in_headline = |remedy: &str| headline.contains(remedy.trim_end_matches('.').to_lowercase().as_str());
+    let said = |remedy: &String| report.suspects.iter().any(|suspect| suspect.designer() == *remedy);
+    report.remedy().filter(|remedy| !said(remedy) && !in_headline(remedy))
 }
 
 /// What was judged, in figures.

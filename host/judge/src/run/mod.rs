@@ -22,19 +22,19 @@ mod upload;
 use crate::board::{OpenOptions, Stop};
 use crate::link::{Candidate, Link};
 use crate::progress::Progress;
-use crate::report::{Evidence, FileHash, Report};
+use crate::result::{Evidence, FileHash, Report};
 
-pub(crate) use findings::chain;
 use findings::{End, Findings};
 use reconnect::WayBack;
 use steps::{MAX_LATENCY, Run};
 
-pub use golden::judge_the_judge;
+pub use golden::{CannotJudge, GoldenError, judge_the_judge};
 pub use plan::{
     DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, SENSOR_BLANKING, ScheduledFrame, Segment,
     Timing, TooManyFrames,
 };
-pub use steps::misfit;
+pub(crate) use prepared::PrepareError;
+pub use steps::{Misfit, misfit};
 
 /// What the report says of the run beside its findings.
 #[derive(Clone, Debug, Default)]

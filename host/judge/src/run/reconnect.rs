@@ -8,7 +8,7 @@ use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{Board, BoardError, NumberedFrame, OpenOptions, Unjudged};
 use crate::link::{self, Link};
-use crate::report::Reconnection;
+use crate::result::{CheckName, Finding, Problem, Reconnection};
 use crate::target::Target;
 use crate::verdict::Exit;
 
@@ -33,7 +33,7 @@ impl WayBack {
             Err(failed) => failed,
         };
         findings.tally = tally;
-        let end = End::board("identity", &error);
+        let end = End::board(CheckName::Identity, &error);
         match (&error, self.patience) {
             (BoardError::Link { .. }, Some(patience)) if end.is_outage() => {
                 self.open_again(patience, &end, findings)
@@ -44,23 +44,30 @@ impl WayBack {
 
     /// Waits for the board, which was lost with `end`, and opens it.
     fn open_again(&self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
-        let End::Error { check, exit, headline, .. } = end else { return Err(end.clone()) };
-        tracing::warn!("{headline}; waiting {} s for the board to come back", patience.as_secs_f64());
+        let End::Error { check, exit, finding, .. } = end else { return Err(end.clone()) };
+        let reason = finding.as_problem();
+        tracing::warn!(
+            "{}; waiting {} s for the board to come back",
+            reason.sentence(),
+            patience.as_secs_f64()
+        );
         let left = Instant::now();
         loop {
             let spent = findings.earlier.seconds + left.elapsed();
-            self.options.stop.check(spent).map_err(|error| End::board(check, &error))?;
+            self.options.stop.check(spent).map_err(|error| End::board(*check, &error))?;
             if let Some(board) = self.try_open(spent, findings.link.reconnections.len()) {
                 let away = left.elapsed();
                 findings.earlier.seconds += away;
-                let (reason, seconds_away) = (headline.clone(), away.as_secs_f64());
-                findings.link.reconnections.push(Reconnection { reason, seconds_away });
+                findings.link.reconnections.push(Reconnection { reason, seconds_away: away.as_secs_f64() });
                 return Ok(board);
             }
             if left.elapsed() > patience {
-                let waited =
-                    format!("{headline}; the board did not come back in {} s", patience.as_secs_f64());
-                return Err(End::error(check, *exit, waited));
+                let seconds = patience.as_secs_f64();
+                return Err(End::error(
+                    *check,
+                    *exit,
+                    Finding::BoardStayedAway { reason: Box::new(reason), seconds },
+                ));
             }
             std::thread::sleep(TICK);
         }
@@ -115,14 +122,13 @@ impl Run<'_> {
         if is_same {
             return Ok(());
         }
-        let headline = "another board, or another bitstream, came back than went away; run again".to_owned();
-        Err(End::error("identity", Exit::Refused, headline))
+        Err(End::error(CheckName::Identity, Exit::Refused, Finding::BoardExchanged {}))
     }
 
     /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
     /// behind a greeting.
     fn restore(&mut self, segment: &Segment, at: usize) -> Result<(), End> {
-        self.board.start_afresh().map_err(|error| End::board("link", &error))?;
+        self.board.start_afresh().map_err(|error| End::board(CheckName::Link, &error))?;
         self.configure(segment)?;
         let next = segment.frames.get(at);
         let Some(frame) = next.or(segment.frames.last()) else { return Ok(()) };
@@ -131,11 +137,12 @@ impl Run<'_> {
         if next.is_none() || later.is_some() {
             // Tables become the active ones when a frame enters.
             let rendered = self.plan.render(frame);
-            let rendered = rendered.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+            let rendered =
+                rendered.map_err(|error| End::error(CheckName::Frames, Exit::Error, Problem::of(&error)))?;
             self.findings.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
             let played = self.board.stream(&mut Unjudged(iter::once(played)));
-            played.map_err(|error| End::board("frames", &error))?;
+            played.map_err(|error| End::board(CheckName::Frames, &error))?;
         }
         later.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame))
     }

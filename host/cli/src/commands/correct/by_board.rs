@@ -34,7 +34,7 @@ impl Job<'_> {
         let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
         let corrected = match run::misfit(&self.chosen.tables, &self.chosen.kernel, &board.capabilities) {
             None => self.stream(&mut board, places, progress),
-            Some(misfit) => Err(anyhow::anyhow!(misfit).into()),
+            Some(misfit) => Err(misfit.into()),
         };
         // Whatever happened, the next run must find the board free.
         let closed = board.close();
