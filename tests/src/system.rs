@@ -2,15 +2,12 @@
 
 use std::time::Duration;
 
-use halfrow::board::Stop;
-use halfrow::board::deadlines::RetryLimit;
-use halfrow::frames::Builtin;
 use halfrow::link;
 use halfrow::progress::Silent;
 use halfrow::report::{Outcome, Report};
-use halfrow::run::{Circumstances, FrameSource, Plan, verify};
+use halfrow::run::{Circumstances, Plan, RunOptions, verify};
 use halfrow::target::Target;
-use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
+use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, TableSet};
 
 /// A lens, a frame behind it, and the mock board that is built for it.
 #[derive(Clone, Copy, Debug)]
@@ -73,32 +70,22 @@ impl System {
     pub fn judge_patiently(&self, target: &str, patience: Option<Duration>) -> Report {
         let target: Target = target.parse().unwrap();
         let candidate = link::open(&target).unwrap();
-        let plan = Plan { reconnect: patience, ..self.plan() };
-        verify(&plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
+        let circumstances = Circumstances::default();
+        let options = RunOptions { reconnect: patience, circumstances, ..RunOptions::default() };
+        verify(&self.plan(), candidate, &options, &Silent).unwrap().report
     }
 
-    fn plan(&self) -> Plan {
+    /// The built-in frames, up to the first that differs.
+    ///
+    /// # Panics
+    /// If there is no such lens.
+    #[must_use]
+    pub fn plan(&self) -> Plan {
         let lens = Equidistant::from_radius(self.radius).unwrap();
         let geometry = Geometry::centred(self.width, self.height, BitDepth::Twelve).unwrap();
-        Plan {
-            tables: TableSet::from_lens(geometry, &lens, None).unwrap(),
-            kernel: Kernel::from(Interpolant::Hermite),
-            tables_source: String::new(),
-            rows_outside_circle: None,
-            lens,
-            centre_y: None,
-            phase: Phase::Grbg,
-            frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
-            repeat: 1,
-            fail_fast: true,
-            require_hardware: false,
-            take_over: false,
-            seed: 1,
-            timeout: None,
-            retry_limit: RetryLimit::default(),
-            reconnect: None,
-            keep_pictures: false,
-        }
+        let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
+        let plan = Plan::new(tables, Kernel::from(Interpolant::Hermite)).seen_through(lens);
+        Plan { fail_fast: true, ..plan }
     }
 }
 

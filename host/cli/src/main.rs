@@ -6,8 +6,9 @@ use clap::Parser;
 use serde_json::json;
 use tracing::level_filters::LevelFilter;
 
-use halfrow::verdict::Exit;
 use halfrow_cli::commands::{Cli, Failure};
+use halfrow_cli::exit::Exit;
+use halfrow_cli::flags;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -30,13 +31,13 @@ fn main() -> ExitCode {
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
 fn explain(failure: &Failure, as_json: bool) -> Exit {
     let Failure { exit, error } = failure;
-    anstream::eprintln!("error: {error:#}");
+    anstream::eprintln!("error: {}", flags::named(&format!("{error:#}")));
     if as_json {
         let result = json!({
             "verdict": exit.verdict(),
             "exit_code": exit.code(),
             "board": { "kind": null },
-            "error": format!("{error:#}"),
+            "error": flags::named(&format!("{error:#}")),
         });
         anstream::println!("{result:#}");
     }

@@ -1,7 +1,5 @@
 //! Asks a device whether it is a board. That writes a greeting to it, whatever it is.
 
-use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
 use std::time::Duration;
 
 use crate::board::{Board, BoardError, OpenOptions, Stop};
@@ -9,7 +7,7 @@ use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
 use crate::run::Draws;
 use crate::target::Target;
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// Three greetings' time: a board answers the first, unless stale bytes are in its way.
 const PATIENCE: Duration = Duration::from_millis(1000);
@@ -22,7 +20,7 @@ pub fn probe(target: &Target) -> Answer {
         Err(error) => return not_opened(&error),
     };
     let Draws { nonce, host } = Draws::draw();
-    let stop = Stop::new(Arc::new(AtomicUsize::new(0)), Some(PATIENCE));
+    let stop = Stop::default().limited(Some(PATIENCE));
     let options = OpenOptions { nonce, host, polite: true, stop, ..OpenOptions::default() };
     match Board::open(candidate.link, &options) {
         Ok(mut board) => {
@@ -37,7 +35,7 @@ pub fn probe(target: &Target) -> Answer {
         Err((error @ (BoardError::NotABoard | BoardError::Version { .. }), _)) => {
             Answer::Foreign { reason: error.to_string() }
         }
-        Err((error, _)) if error.exit() == Exit::Busy => Answer::Busy,
+        Err((error, _)) if error.cause() == Cause::Busy => Answer::Busy,
         Err((error, _)) => Answer::Failed { reason: crate::run::chain(&error) },
     }
 }

@@ -1,6 +1,7 @@
 //! A link: a pipe that carries bytes to a board and back, with deadlines. [`open`] opens the one that a [`Target`] names, and
 //! [`discovery`] finds what could be a board.
 
+mod candidate;
 mod class;
 pub mod descriptor;
 pub mod discovery;
@@ -19,8 +20,9 @@ mod wire;
 
 use std::time::Duration;
 
+pub use candidate::{Candidate, Reopener};
 pub use class::Class;
-pub use open::{Candidate, OpenError, open, replayed_file};
+pub use open::{OpenError, open, replayed_file};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
 pub use replay::ReplayLink;
 pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
@@ -31,11 +33,11 @@ pub use tcp::{TcpError, TcpLink};
 pub use usb::{LineErrors, Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
 pub use wire::WireLink;
 
-/// A byte pipe to a board.
+/// A byte pipe to a board. It can be sent to another thread, so that each of several boards can be judged on its own.
 ///
 /// Both directions move in one call, so a host that uses it cannot deadlock with a board that waits to be read: whatever
 /// the board sends is taken while the host sends.
-pub trait Link {
+pub trait Link: Send {
     /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes
     /// taken. Returns as soon as a byte has moved either way, and without one when `wait` has passed.
     ///
@@ -142,6 +144,6 @@ pub enum LinkError {
         byte: u64,
     },
     /// The recording could not be written.
-    #[error("the recording could not be written; free some space or choose another place with --record")]
+    #[error("the recording could not be written; free some space or choose another place for the recording")]
     Record(#[source] std::io::Error),
 }

@@ -7,23 +7,13 @@ use halfrow_mock::{Wire, WireError};
 #[cfg(feature = "sim")]
 use super::simulated::open_simulated;
 use super::{
-    Link, Recording, RecordingError, ReplayLink, SerialError, SerialLink, TcpError, TcpLink, UsbError,
-    UsbLink, WireLink,
+    Candidate, Link, Recording, RecordingError, ReplayLink, SerialError, SerialLink, TcpError, TcpLink,
+    UsbError, UsbLink, WireLink,
 };
 use crate::Class;
 use crate::target::{BoardKind, Target};
 
 const MOCK: &str = "the mock board";
-
-/// A board that is about to be opened.
-pub struct Candidate {
-    /// The target string.
-    pub target: String,
-    /// What the target's kind says that it is. A link to the outside may still lead to a mock, and then the board says so.
-    pub kind: BoardKind,
-    /// The link to it.
-    pub link: Box<dyn Link>,
-}
 
 /// A target that leads nowhere.
 #[derive(Debug, thiserror::Error)]
@@ -92,8 +82,8 @@ pub enum OpenError {
     UnknownFront(String),
     /// This program was built without the simulation.
     #[error(
-        "this program was built without the simulated board, which needs Verilator; with it, from the project's folder: \
-         `apt-get install verilator g++`, then `cargo run --release --features sim -- verify --board {0}`"
+        "this program was built without the simulated board, which needs Verilator; for `{0}`, install it with \
+         `apt-get install verilator g++`, and build with Cargo's feature `sim`"
     )]
     NoSimulation(String),
     /// The waveform cannot be written.
@@ -147,7 +137,9 @@ pub fn open(target: &Target) -> Result<Candidate, OpenError> {
         "replay" => (BoardKind::Replay, open_replay(target)?),
         other => return Err(OpenError::UnknownKind(other.to_owned())),
     };
-    Ok(Candidate { target: target.to_string(), kind, link })
+    let again = target.clone();
+    let reopen = Box::new(move || Ok(open(&again)?.link));
+    Ok(Candidate { target: target.to_string(), kind, link, reopen: Some(reopen) })
 }
 
 fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {

@@ -24,7 +24,7 @@ const MAGIC: &[u8] = b"halfrow recording 1\n";
 #[derive(Debug, thiserror::Error)]
 pub enum RecordingError {
     /// It cannot be created.
-    #[error("the recording {path} cannot be created; choose another place with --record")]
+    #[error("the recording {path} cannot be created; choose another place for the recording")]
     Create {
         /// The file.
         path: PathBuf,
@@ -33,7 +33,7 @@ pub enum RecordingError {
         source: std::io::Error,
     },
     /// It is there already.
-    #[error("{0} is there already; choose another name with --record, or give --overwrite")]
+    #[error("{0} is there already; choose another name for the recording, or allow it to be overwritten")]
     Exists(PathBuf),
     /// It cannot be read.
     #[error("the recording {path} cannot be read; check the path in replay:FILE")]
@@ -45,7 +45,7 @@ pub enum RecordingError {
         source: std::io::Error,
     },
     /// It is something else.
-    #[error("{0} is no recording of this version; make one with `halfrow verify --record FILE`")]
+    #[error("{0} is no recording of this version; record a run with `halfrow verify`")]
     Foreign(PathBuf),
     /// Its head does not parse.
     #[error("the head of the recording {path} is damaged; make the recording again")]

@@ -44,7 +44,7 @@ fn ctrl_c_ends_a_run_with_130() {
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
     let said = ended.json();
     assert_eq!((&said["verdict"], &said["exit_code"]), (&"ERROR".into(), &130.into()));
-    assert!(said["headline"].as_str().unwrap().starts_with("stopped by a signal"), "{}", said["headline"]);
+    assert!(said["headline"].as_str().unwrap().starts_with("stopped by hand"), "{}", said["headline"]);
 }
 
 #[test]

@@ -1,19 +1,19 @@
 //! The options of the board and its link, which several commands share.
 
 use std::sync::Arc;
-use std::sync::atomic::AtomicUsize;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use clap::Args;
 
-use super::Failure;
+use super::{Failure, wrong_call};
+use crate::exit::Exit;
 use crate::settings::Settings;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Recording};
 use halfrow::run::Draws;
 use halfrow::target::Target;
-use halfrow::verdict::Exit;
 
 /// Which board, and how patiently.
 #[derive(Clone, Debug, Args)]
@@ -47,21 +47,20 @@ impl BoardArguments {
     fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
-            (None, Some(text)) => Ok(text.parse()?),
+            (None, Some(text)) => text.parse().map_err(Failure::call),
             (None, None) => Ok(Target::mock()),
         }
     }
 
     /// The link to the board that is named; by default the mock, never a guess.
     pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
-        link::open(&self.target(settings)?)
-            .map_err(|error| Failure { exit: error.class().into(), error: error.into() })
+        Ok(link::open(&self.target(settings)?)?)
     }
 
     /// The recording, if the target is one.
     pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
         let file = link::replayed_file(&self.target(settings)?);
-        Ok(file.map(|file| Recording::read(&file)).transpose()?)
+        file.map(|file| Recording::read(&file)).transpose().map_err(Failure::call)
     }
 
     pub(super) fn open_options(
@@ -76,19 +75,14 @@ impl BoardArguments {
             take_over: self.take_over,
             polite: false,
             retry_limit: self.retry_limit(settings),
-            stop: self.stop(self.timeout(settings)?)?,
+            stop: stop()?.limited(self.timeout(settings)?),
         })
-    }
-
-    /// What ends the run early: Ctrl-C, SIGTERM, or the time limit. A second signal ends the program at once.
-    pub(super) fn stop(&self, limit: Option<Duration>) -> Result<Stop, Failure> {
-        Ok(Stop::new(signals()?, limit))
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.timeout.or(settings.timeout);
         let limit = seconds.map(Duration::try_from_secs_f64).transpose();
-        limit.map_err(|_| anyhow::anyhow!("--timeout takes a number of seconds, 0 or more").into())
+        limit.map_err(|_| wrong_call!("--timeout takes a number of seconds, 0 or more"))
     }
 
     pub(super) fn retry_limit(&self, settings: &Settings) -> RetryLimit {
@@ -98,6 +92,12 @@ impl BoardArguments {
             None => limit,
         }
     }
+}
+
+/// What ends a run early: Ctrl-C or SIGTERM. A second signal ends the program at once.
+pub(super) fn stop() -> Result<Stop, Failure> {
+    let signal = signals()?;
+    Ok(Stop::when(move || Exit::stopped_by(signal.load(Ordering::Relaxed))))
 }
 
 /// Holds the exit code of the signal that came, Ctrl-C or SIGTERM, and 0 before. A second one ends the program at once.

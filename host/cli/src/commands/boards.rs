@@ -4,8 +4,8 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{Failure, print, print_json};
+use crate::exit::Exit;
 use halfrow::target::{BoardKind, Target};
-use halfrow::verdict::Exit;
 use halfrow_link::discovery::{self, Access, Answer, Found};
 
 /// List the boards that can be named with --board, and the devices that could be one
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     if arguments.ask {
         for device in devices.iter_mut().filter(|device| device.is_open_to_us()) {
-            device.answer = Some(halfrow::probe(&device.target.parse()?));
+            device.answer = Some(halfrow::probe(&device.target.parse().map_err(Failure::call)?));
         }
     }
     let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();

@@ -7,7 +7,7 @@ use clap::Args;
 use clap_complete::Shell;
 
 use super::Failure;
-use halfrow::verdict::Exit;
+use crate::exit::Exit;
 
 /// Print a completion script for a shell
 ///
@@ -35,8 +35,13 @@ pub(super) fn complete(arguments: &Completions, command: &mut clap::Command) -> 
 }
 
 pub(super) fn manual(arguments: &Manual, command: clap::Command) -> Result<Exit, Failure> {
-    clap_mangen::generate_to(command, &arguments.folder).with_context(|| {
-        format!("the manual cannot be written to {}; name a folder that is there", arguments.folder.display())
-    })?;
+    clap_mangen::generate_to(command, &arguments.folder)
+        .with_context(|| {
+            format!(
+                "the manual cannot be written to {}; name a folder that is there",
+                arguments.folder.display()
+            )
+        })
+        .map_err(Failure::call)?;
     Ok(Exit::Pass)
 }

@@ -12,13 +12,14 @@ use serde_json::json;
 
 use super::board::BoardArguments;
 use super::inputs::{FrameName, InputArguments};
-use super::optics::{self, Chosen, LensArguments};
+use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, print, print_json};
+use super::{Context, Failure, print, print_json, wrong_call};
+use crate::exit::Exit;
 use crate::progress;
 use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
+use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
-use halfrow::verdict::Exit;
 use places::{Places, Wanted};
 
 /// Correct frames with the reference model, or with a board, unjudged
@@ -67,21 +68,21 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     if !arguments.model && !arguments.board.is_named(settings) {
-        return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
+        return Err(wrong_call!("nobody is named to correct; give --model or --board TARGET"));
     }
-    let file = arguments.tables.file(&arguments.lens, settings)?;
+    let file = arguments.tables.file(&arguments.lens, settings).map_err(Failure::call)?;
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref());
     let chosen = optics::choose(file, &arguments.lens, kernel)?;
     let geometry = *chosen.tables.geometry();
     let job = Job {
         arguments,
-        inputs: FrameName::all(&arguments.inputs)?,
+        inputs: FrameName::all(&arguments.inputs).map_err(Failure::call)?,
         how: arguments.input.read_options(&geometry, arguments.lens.phase),
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,
     };
-    job.check()?;
-    let places = Places::of(&job.inputs, &arguments.wanted())?;
+    job.check().map_err(Failure::call)?;
+    let places = Places::of(&job.inputs, &arguments.wanted()).map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet || arguments.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {

@@ -4,7 +4,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::{Failure, print, print_json};
-use halfrow::verdict::Exit;
+use crate::exit::Exit;
 
 /// List the faults that the mock board can have
 ///

@@ -6,9 +6,9 @@ use anyhow::Context as _;
 use clap::Args;
 
 use super::optics::LensArguments;
-use super::{Failure, print};
+use super::{Failure, print, wrong_call};
+use crate::exit::Exit;
 use halfrow::frames::{self, Builtin};
-use halfrow::verdict::Exit;
 
 /// Write the built-in frames as PGM files
 #[derive(Debug, Args)]
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if arguments.lens.has_rows() {
-        return Err(anyhow::anyhow!("a frame has no row factors; leave --rows out").into());
+        return Err(wrong_call!("a frame has no row factors; leave --rows out"));
     }
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let chosen = if arguments.only.is_empty() { &Builtin::ALL[..] } else { &arguments.only };
@@ -41,7 +41,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         .map_err(Failure::error)?;
     for builtin in chosen {
         let path = folder.join(format!("{}.pgm", builtin.name()));
-        frames::write(&path, &builtin.render(&scene)?, arguments.overwrite).map_err(Failure::error)?;
+        frames::write(&path, &builtin.render(&scene).map_err(Failure::call)?, arguments.overwrite)
+            .map_err(Failure::error)?;
         print(&format!("{:<28} {}", path.display(), builtin.description()))?;
     }
     Ok(Exit::Pass)

@@ -10,12 +10,12 @@ use serde_json::{Map, Value, json};
 
 use super::inputs::file_hash;
 use super::{Context, Failure, optics, print};
+use crate::exit::Exit;
 use crate::progress;
 use halfrow::frames;
 use halfrow::frames::lying;
 use halfrow::frames::preview::RgbImage;
 use halfrow::tables::KernelFile;
-use halfrow::verdict::Exit;
 use halfrow_frames::written_aside;
 use halfrow_lab::training;
 use halfrow_lab::training::{Model, RIDGE, Spread, Trained, measure, noise_gain, train};
@@ -129,8 +129,8 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     // Training takes minutes, after which a refusal comes too late.
-    written_aside::check(&arguments.output, arguments.overwrite)?;
-    let (origins, images) = photographs(&arguments.images)?;
+    written_aside::check(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
+    let (origins, images) = photographs(&arguments.images).map_err(Failure::call)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,
         TapCount::Seven => Taps::Seven,
@@ -139,8 +139,11 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     watched.rows_expected(rows(&images));
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
-    let trained = trained?;
-    let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
+    let trained = trained.map_err(Failure::call)?;
+    let file = KernelFile {
+        about: Some(about(&origins, &trained).map_err(Failure::error)?),
+        kernel: trained.kernel.clone(),
+    };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
     print(&format!(
@@ -190,12 +193,12 @@ fn rows(images: &[RgbImage]) -> u64 {
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let kernel = optics::kernel(&arguments.kernel)?;
-    let (_, images) = photographs(&arguments.images)?;
+    let (_, images) = photographs(&arguments.images).map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet);
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());
     watched.done();
-    let (measured, noise) = (measured?, Spread::of(&noise_gain(&kernel)));
+    let (measured, noise) = (measured.map_err(Failure::call)?, Spread::of(&noise_gain(&kernel)));
     if arguments.json {
         super::print_json(&json!({"kernel": arguments.kernel, "gains_db": measured, "noise_gain": noise}))?;
         return Ok(Exit::Pass);

@@ -6,10 +6,11 @@ use clap::Args;
 use halfrow_model::TableError;
 use serde_json::{Value, json};
 
-use super::optics::{LensArguments, Optics, Rows};
+use super::optics::LensArguments;
 use super::{Failure, print, print_json};
+use crate::exit::Exit;
 use halfrow::frames::{self, HeatMap, WriteError};
-use halfrow::verdict::Exit;
+use halfrow::optics::{Optics, RowsBy};
 use halfrow_lab::{Residuals, Spread};
 
 /// Tell a lens's figures, and the error that row factors leave of it
@@ -34,7 +35,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let optics = arguments.lens.optics()?;
-    let figures = Figures::of(&optics)?;
+    let figures = Figures::of(&optics).map_err(Failure::call)?;
     let most = match &arguments.map {
         None => None,
         Some(path) => Some(write_map(path, figures.used(), arguments.overwrite)?),
@@ -61,9 +62,9 @@ struct Figures<'a> {
 }
 
 impl<'a> Figures<'a> {
-    fn of(optics: &'a Optics) -> anyhow::Result<Self> {
-        let (equation_9, fitted) = (optics.tables_by(Rows::Equation9)?, optics.tables_by(Rows::Fitted)?);
-        let used = if optics.rows == Rows::Fitted { &fitted } else { &equation_9 };
+    fn of(optics: &'a Optics) -> Result<Self, TableError> {
+        let (equation_9, fitted) = (optics.tables_by(RowsBy::Equation9)?, optics.tables_by(RowsBy::Fitting)?);
+        let used = if optics.rows == RowsBy::Fitting { &fitted } else { &equation_9 };
         let illegal = used.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
         let residuals = |tables| Residuals::of(&optics.camera, tables);
         Ok(Self { optics, equation_9: residuals(&equation_9), fitted: residuals(&fitted), illegal })
@@ -71,7 +72,7 @@ impl<'a> Figures<'a> {
 
     /// What the row factors leave that are asked for.
     fn used(&self) -> &Residuals {
-        if self.optics.rows == Rows::Fitted { &self.fitted } else { &self.equation_9 }
+        if self.optics.rows == RowsBy::Fitting { &self.fitted } else { &self.equation_9 }
     }
 
     fn text(&self) -> String {
@@ -135,7 +136,7 @@ impl<'a> Figures<'a> {
 fn write_map(path: &Path, residuals: &Residuals, overwrite: bool) -> Result<f64, Failure> {
     let HeatMap { image, most } = HeatMap::new(&residuals.map);
     match frames::write_rgb(path, &image, overwrite) {
-        Err(error @ WriteError::NotPng { .. }) => Err(error.into()),
+        Err(error @ WriteError::NotPng { .. }) => Err(Failure::call(error)),
         written => written.map(|()| most).map_err(Failure::error),
     }
 }

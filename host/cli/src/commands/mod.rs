@@ -23,9 +23,12 @@ use std::path::PathBuf;
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use halfrow_model::ModelPath;
 
+use crate::exit::Exit;
 use crate::settings::Settings;
+use halfrow::board::BoardError;
+use halfrow::link::OpenError;
 use halfrow::reference;
-use halfrow::verdict::Exit;
+use halfrow::run::Misfit;
 
 /// What every command is given beside its own arguments.
 pub struct Context {
@@ -85,16 +88,43 @@ pub struct Failure {
 }
 
 impl Failure {
+    /// A failure of the call or of its input.
+    pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Usage, error: error.into() }
+    }
+
     /// A failure that is not the caller's.
     pub(crate) fn error(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Error, error: error.into() }
     }
+
+    /// An input that is refused, as a board of another datapath is.
+    pub(crate) fn refused(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Refused, error: error.into() }
+    }
 }
 
-/// What goes wrong before a board is opened is a usage error unless it is said otherwise.
-impl<E: Into<anyhow::Error>> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self { exit: Exit::Usage, error: error.into() }
+/// A call that cannot be carried out, for a reason in words.
+macro_rules! wrong_call {
+    ($($words:tt)*) => { $crate::commands::Failure::call(anyhow::anyhow!($($words)*)) };
+}
+use wrong_call;
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        Self { exit: error.class().into(), error: error.into() }
+    }
+}
+
+impl From<BoardError> for Failure {
+    fn from(error: BoardError) -> Self {
+        Self { exit: error.cause().into(), error: error.into() }
+    }
+}
+
+impl From<Misfit> for Failure {
+    fn from(error: Misfit) -> Self {
+        Self::call(error)
     }
 }
 
@@ -126,8 +156,8 @@ impl Cli {
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
-        let settings = Settings::load(self.settings.as_deref())?;
-        let path = reference::choose(self.model_path)?;
+        let settings = Settings::load(self.settings.as_deref()).map_err(Failure::call)?;
+        let path = reference::choose(self.model_path).map_err(Failure::call)?;
         tracing::info!("the model takes the path {path}");
         let context = Context { settings, quiet: self.quiet };
         match &self.command {

@@ -6,21 +6,17 @@ use std::str::FromStr;
 use anyhow::{Context as _, bail};
 use clap::{Args, ValueEnum};
 use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
-    LensError, Phase, TableSet,
+    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Kernel, LensError,
+    Phase,
 };
 
-use halfrow::frames::Scene;
-use halfrow::kernels::NamedKernel;
+use super::Failure;
 use halfrow::lenses::LensFile;
-use halfrow::tables::{KernelFile, TableFile, TableFileError};
+use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, RowsBy};
+use halfrow::tables::TableFile;
 
-/// The paper's frame.
-const DEFAULT_SIZE: (usize, usize) = (1920, 1080);
 /// The pixels of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
-/// The paper's image circle, in degrees.
-const DEFAULT_FIELD: f64 = 180.0;
 
 /// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
 #[derive(Clone, Debug, Args)]
@@ -90,7 +86,7 @@ impl FromStr for LensName {
 
 /// How row factors are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Rows {
+enum Rows {
     /// For every row the factor with the smallest largest error
     Fitted,
     /// The paper's formula
@@ -98,12 +94,11 @@ pub(super) enum Rows {
     Equation9,
 }
 
-impl Rows {
-    /// The name in the spelling of the command line.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Fitted => "fitted",
-            Self::Equation9 => "equation-9",
+impl From<Rows> for RowsBy {
+    fn from(rows: Rows) -> Self {
+        match rows {
+            Rows::Fitted => Self::Fitting,
+            Rows::Equation9 => Self::Equation9,
         }
     }
 }
@@ -132,12 +127,13 @@ impl LensArguments {
     }
 
     /// The frame and the lens before it.
-    pub(super) fn optics(&self) -> anyhow::Result<Optics> {
-        self.check()?;
+    pub(super) fn optics(&self) -> Result<Optics, Failure> {
+        self.check().map_err(Failure::call)?;
         match self.file() {
             Some(path) => self.calibrated(path),
             None => self.equidistant(),
         }
+        .map_err(Failure::call)
     }
 
     /// Refuses options that say nothing beside the lens, or something else than it.
@@ -167,7 +163,7 @@ impl LensArguments {
     }
 
     fn field_of_view(&self) -> f64 {
-        self.field_of_view.unwrap_or(DEFAULT_FIELD)
+        self.field_of_view.unwrap_or(PAPER_FIELD)
     }
 
     fn equidistant(&self) -> anyhow::Result<Optics> {
@@ -181,16 +177,15 @@ impl LensArguments {
                 Equidistant::from_focal_length(self.focal_length, self.pixel_pitch(), self.field_of_view())?
             }
         };
-        let geometry = self.geometry(DEFAULT_SIZE)?;
+        let geometry = self.geometry(PAPER_SIZE)?;
         let camera = self.camera(geometry, lens.into(), middle(&geometry))?;
         let rows = self.rows.unwrap_or(Rows::Equation9);
-        let name = "equidistant lens".to_owned();
-        Ok(Optics { camera, lens, is_calibrated: false, centre_y: self.centre_y, rows, name })
+        Ok(Optics::equidistant(camera, lens, self.centre_y, rows.into()))
     }
 
     fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
         let file = LensFile::read(path)?;
-        let pictures = file.size.filter(|_| self.lens_pitch.is_none()).unwrap_or(DEFAULT_SIZE);
+        let pictures = file.size.filter(|_| self.lens_pitch.is_none()).unwrap_or(PAPER_SIZE);
         let geometry = self.geometry(pictures)?;
         let (lens, centre) = match self.lens_pitch {
             Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, middle(&geometry)),
@@ -200,14 +195,7 @@ impl LensArguments {
         };
         let camera = self.camera(geometry, lens, centre)?;
         let (name, rows) = (format!("{} {}", file.model, path.display()), self.rows.unwrap_or(Rows::Fitted));
-        Ok(Optics {
-            lens: Equidistant::from_radius(camera.radius())?,
-            is_calibrated: true,
-            centre_y: Some(camera.centre().1),
-            camera,
-            rows,
-            name,
-        })
+        Ok(Optics::calibrated(camera, name, rows.into())?)
     }
 
     /// Pixels of the frame for each of a camera with pixels of `pitch`.
@@ -240,71 +228,9 @@ fn middle(geometry: &Geometry) -> (f64, f64) {
     ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0)
 }
 
-/// A frame and the lens before it, as the command line describes them.
-pub(super) struct Optics {
-    pub(super) camera: Camera,
-    /// The equidistant lens of the same R, which built-in frames are rendered through.
-    pub(super) lens: Equidistant,
-    /// Whether the lens is not that one itself.
-    is_calibrated: bool,
-    /// The row of the axis; none for the middle.
-    pub(super) centre_y: Option<f64>,
-    pub(super) rows: Rows,
-    /// What the lens is, for people.
-    pub(super) name: String,
-}
-
-impl Optics {
-    /// What built-in frames are made for.
-    pub(super) fn scene(&self, phase: Phase, seed: u64) -> Scene {
-        let (geometry, centre_y, lens) = (*self.camera.geometry(), self.centre_y, self.lens);
-        Scene { geometry, centre_y, phase, lens, seed }
-    }
-
-    /// The row factors that are asked for.
-    pub(super) fn tables(&self) -> anyhow::Result<TableSet> {
-        self.tables_by(self.rows)
-    }
-
-    /// The row factors that are found so.
-    pub(super) fn tables_by(&self, rows: Rows) -> anyhow::Result<TableSet> {
-        Ok(match rows {
-            Rows::Fitted => self.camera.fitted(),
-            Rows::Equation9 if self.is_calibrated => self.camera.equation_9(),
-            // From R as it was given, which the camera has from f.
-            Rows::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
-        })
-    }
-
-    /// A sentence on where the row factors come from.
-    pub(super) fn source(&self) -> String {
-        let how = match self.rows {
-            Rows::Fitted => "fitted rows",
-            Rows::Equation9 => "Eq. 9",
-        };
-        format!("{}, R = {:.3} pixels ({how})", self.name, self.camera.radius())
-    }
-}
-
 /// A kernel by name, or from a kernel file.
-pub(super) fn kernel(name: &str) -> Result<Kernel, super::Failure> {
-    match name.parse::<NamedKernel>() {
-        Ok(named) => named.kernel().map_err(super::Failure::error),
-        Err(unknown) if !Path::new(name).exists() => {
-            Err(anyhow::anyhow!("there is no file {name}, and {unknown}, or a kernel file").into())
-        }
-        Err(_) => Ok(KernelFile::read(Path::new(name)).map_err(table_failure)?.kernel),
-    }
-}
-
-/// Tables, kernel, and where they come from: a table file, or the lens options and a kernel.
-pub(super) struct Chosen {
-    pub(super) optics: Optics,
-    pub(super) tables: TableSet,
-    pub(super) kernel: Kernel,
-    pub(super) source: String,
-    /// Rows outside of the lens's image circle; none for a file, which does not say.
-    pub(super) rows_outside_circle: Option<usize>,
+pub(super) fn kernel(name: &str) -> Result<Kernel, Failure> {
+    Ok(optics::kernel(name)?)
 }
 
 /// Takes the table file if there is one, and the lens otherwise; `kernel_name` replaces the file's kernel.
@@ -312,36 +238,19 @@ pub(super) fn choose(
     file: Option<&Path>,
     lens: &LensArguments,
     kernel_name: Option<&str>,
-) -> Result<Chosen, super::Failure> {
-    let named = kernel_name.map(kernel).transpose()?;
+) -> Result<Chosen, Failure> {
     let optics = lens.optics()?;
-    let Some(path) = file else {
-        let (tables, from) = (optics.tables()?, optics.source());
-        let name = kernel_name.unwrap_or(Interpolant::Hermite.name());
-        let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
-        let rows_outside_circle = Some(optics.camera.rows_outside_circle());
-        return Ok(Chosen {
-            optics,
-            tables,
-            kernel,
-            source: format!("{from}, {name} kernel"),
-            rows_outside_circle,
-        });
-    };
-    let read = TableFile::read(path).map_err(table_failure)?;
-    let mut source = path.display().to_string();
-    if let Some(name) = kernel_name {
-        source = format!("{source}, {name} kernel");
-    }
-    let kernel = named.unwrap_or(read.kernel);
-    Ok(Chosen { optics, tables: read.tables, kernel, source, rows_outside_circle: None })
+    let file = file.map(|path| TableFile::read(path).map(|file| (path, file))).transpose();
+    Ok(optics::choose(file.map_err(OpticsError::from)?, optics, kernel_name)?)
 }
 
-/// A table file of another datapath is refused like a board of another datapath.
-pub(super) fn table_failure(error: TableFileError) -> super::Failure {
-    let exit = match error {
-        TableFileError::Datapath { .. } => halfrow::verdict::Exit::Refused,
-        _ => halfrow::verdict::Exit::Usage,
-    };
-    super::Failure { exit, error: error.into() }
+/// A file of another datapath is refused like a board of another datapath.
+impl From<OpticsError> for Failure {
+    fn from(error: OpticsError) -> Self {
+        match error {
+            OpticsError::Damaged(_) => Self::error(error),
+            error if error.is_other_datapath() => Self::refused(error),
+            error => Self::call(error),
+        }
+    }
 }

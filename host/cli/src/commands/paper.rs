@@ -7,13 +7,13 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::board::BoardArguments;
-use super::{Context, Failure, print, print_json};
+use super::{Context, Failure, print, print_json, wrong_call};
+use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
-use halfrow::board::{Board, BoardError};
+use halfrow::board::Board;
 use halfrow::frames::preview::RgbImage;
 use halfrow::target::BoardKind;
-use halfrow::verdict::Exit;
 use halfrow_lab::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperError, TestedBoard};
 
 /// Reproduce the paper's figures and tables
@@ -53,8 +53,8 @@ fn item_parser() -> impl TypedValueParser<Value = Item> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let begun = Instant::now();
     let items = arguments.items();
-    let photographs = arguments.photographs(&items)?;
-    let folder = Folder::prepare(&arguments.output, arguments.overwrite)?;
+    let photographs = arguments.photographs(&items).map_err(Failure::call)?;
+    let folder = Folder::prepare(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
     let through_board = arguments.board.is_named(&context.settings);
     let mut material =
         Material { photographs: &photographs, board: None, through_board, synthesis: &arguments.synthesis };
@@ -64,8 +64,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let exhibits = make(&items, &mut material, context.quiet);
     // Whatever happened, the next run must find the board free.
     let closed = material.board.as_mut().map_or(Ok(()), TestedBoard::close);
-    let exhibits = exhibits.map_err(failed)?;
-    closed.map_err(failed)?;
+    let exhibits = exhibits?;
+    closed?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
     if arguments.json {
         print_json(&paper::numbers(&exhibits))?;
@@ -88,13 +88,14 @@ fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<
     made
 }
 
-fn failed(error: PaperError) -> Failure {
-    let exit = match &error {
-        PaperError::Board(error) => error.exit(),
-        PaperError::Misfit(_) => Exit::Usage,
-        _ => Exit::Error,
-    };
-    Failure { exit, error: error.into() }
+impl From<PaperError> for Failure {
+    fn from(error: PaperError) -> Self {
+        match &error {
+            PaperError::Board(of_board) => Self { exit: of_board.cause().into(), error: error.into() },
+            PaperError::Misfit(_) => Self::call(error),
+            _ => Self::error(error),
+        }
+    }
 }
 
 /// Every claim in a line.
@@ -168,11 +169,10 @@ impl Arguments {
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {
         let candidate = self.board.candidate(settings)?;
         if candidate.kind == BoardKind::Replay {
-            return Err(anyhow::anyhow!("a recording corrects no new frames; name another board").into());
+            return Err(wrong_call!("a recording corrects no new frames; name another board"));
         }
         let options = self.board.open_options(settings, None)?;
-        let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
-        let board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+        let board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
         Ok(TestedBoard::new(board, candidate.kind))
     }
 }

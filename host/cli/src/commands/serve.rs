@@ -7,10 +7,10 @@ use clap::Args;
 
 use super::board::signals;
 use super::{Failure, print};
+use crate::exit::Exit;
 use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 use halfrow::link;
 use halfrow::target::Target;
-use halfrow::verdict::Exit;
 
 /// Serve a mock or simulated board to other programs
 ///
@@ -31,9 +31,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let opened = link::open(&arguments.board);
-    let candidate = opened.map_err(|error| Failure { exit: error.class().into(), error: error.into() })?;
-    let mut board = Hosted::new(candidate.link);
+    let mut board = Hosted::new(link::open(&arguments.board)?.link);
     let signal = signals()?;
     let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
     let served = match &arguments.tcp {
@@ -55,7 +53,12 @@ fn serve_pty(
     ended: &mut dyn FnMut(Traffic) -> bool,
 ) -> Result<Result<(), ServeError>, Failure> {
     let pty = Pty::open().map_err(Failure::error)?;
-    let name = arguments.link.as_ref().map(|path| Name::link(path, pty.path())).transpose()?;
+    let name = arguments
+        .link
+        .as_ref()
+        .map(|path| Name::link(path, pty.path()))
+        .transpose()
+        .map_err(Failure::call)?;
     let path = arguments.link.as_deref().filter(|_| name.is_some()).unwrap_or(pty.path());
     print(&format!("serial:{}", path.display()))?;
     Ok(pty.serve(board, ended))

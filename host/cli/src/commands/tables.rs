@@ -6,8 +6,8 @@ use clap::Args;
 
 use super::optics::{self, LensArguments};
 use super::{Failure, print};
+use crate::exit::Exit;
 use halfrow::tables::{TableFile, mem};
-use halfrow::verdict::Exit;
 
 /// Make a table file: a row factor for every row, and a kernel
 #[derive(Debug, Args)]
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let chosen = optics::choose(None, &arguments.lens, Some(&arguments.kernel))?;
     let geometry = *chosen.tables.geometry();
-    chosen.tables.check_ring(geometry.width().next_power_of_two())?;
+    chosen.tables.check_ring(geometry.width().next_power_of_two()).map_err(Failure::call)?;
     let outside = chosen.optics.camera.rows_outside_circle();
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     let written = write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;

@@ -1,25 +1,25 @@
 //! `halfrow verify`
 
-mod recorded;
-
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
 use clap::builder::FalseyValueParser;
 
-use super::board::BoardArguments;
+use super::board::{self, BoardArguments};
 use super::inputs::{InputArguments, file_hash, frame_sources};
 use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, print};
-use crate::progress;
+use super::{Context, Failure, print, wrong_call};
+use crate::exit::Exit;
 use crate::settings::Settings;
+use crate::{flags, json, progress, text};
 use halfrow::frames::Builtin;
 use halfrow::link::{Candidate, Recorder, Unfinished};
-use halfrow::report::{self, Report, ReportFolder};
-use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
-use halfrow::verdict::{Exit, Verdict};
+use halfrow::report::ReportFolder;
+use halfrow::run::{
+    self, Circumstances, Finished, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Timing,
+};
 
 /// Judge a board: stream frames through it and compare every sample with the reference
 ///
@@ -76,12 +76,15 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
-    let recording = arguments.board.recording(settings)?;
-    let (plan, circumstances) = match &recording {
-        Some(recording) => recorded::restore(recording, arguments.requires_hardware(settings))?,
-        None => (arguments.plan(settings)?, arguments.circumstances(settings)?),
+    let (plan, options) = match &arguments.board.recording(settings)? {
+        Some(recording) => {
+            let (plan, options) = RecordedRun::restore(recording)?;
+            let require_hardware = arguments.requires_hardware(settings);
+            (plan, RunOptions { require_hardware, stop: board::stop()?, ..options })
+        }
+        None => (arguments.plan(settings)?, arguments.options(settings)?),
     };
-    plan.check_length()?;
+    plan.check_length().map_err(Failure::call)?;
     let candidate = arguments.board.candidate(settings)?;
     if arguments.list {
         print(&listing(&plan))?;
@@ -89,51 +92,54 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
     let overwrite = arguments.overwrite || settings.overwrite.unwrap_or(false);
     let folder = arguments.report.as_ref().or(settings.report.as_ref());
-    let folder = folder.map(|path| ReportFolder::prepare(path, overwrite)).transpose()?;
+    let folder = folder.map(|path| ReportFolder::prepare(path, overwrite)).transpose();
+    let folder = folder.map_err(Failure::call)?.map(|folder| folder.with_json(json::report));
     let mut unfinished = Unfinished::default();
     let candidate = match &arguments.record {
         None => candidate,
         Some(path) => {
-            let run = recorded::RecordedRun::of(&plan, &circumstances);
-            let link = Recorder::create(candidate.link, path, &run, overwrite)?;
+            let run = RecordedRun::of(&plan, &options);
+            let link = Recorder::create(candidate.link, path, &run, overwrite).map_err(Failure::call)?;
             unfinished = link.unfinished();
             Candidate { link: Box::new(link), ..candidate }
         }
     };
-    let stop = arguments.board.stop(plan.timeout)?;
     let watched = progress::for_stderr(context.quiet || arguments.json);
-    let mut finished = run::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
-    if finished.report.exit_code == Exit::Usage {
-        // The call does not fit the board: there is no verdict, and so nothing to report on.
-        return Err(anyhow::anyhow!(finished.report.headline).into());
+    let mut finished = run::verify(&plan, candidate, &options, watched.as_ref())?;
+    if let Some(error) = unfinished.get()
+        && !finished.lose_recording(error)
+    {
+        lack(error);
     }
-    if let Some(error) = unfinished.get() {
-        lose(&mut finished.report, format!("the recording could not be written: {error}"), "--record");
-    }
-    let written = folder.map_or(Ok(()), |folder| folder.commit(&finished.report, &finished.evidence));
-    if let Err(error) = written {
-        let error = anyhow::Error::from(error);
-        lose(&mut finished.report, format!("the report could not be written: {error:#}"), "--report");
+    let verdict = finished.report.verdict;
+    let written = folder.map_or(Ok(()), |folder| finished.commit(folder));
+    if let Err(error) = written
+        && finished.report.verdict == verdict
+    {
+        lack(&error);
     }
     conclude(&finished, arguments.json)
 }
 
-/// A result that could not be written is none, even when all samples were equal.
-fn lose(report: &mut Report, headline: String, option: &str) {
-    report.headline = headline;
-    report.verdict = Verdict::Error;
-    report.exit_code = Exit::Error;
-    report.remedy = Some(format!("Free some space or choose another place with {option}, then run again."));
+/// Says what a verdict that stands lacks.
+fn lack(error: &dyn std::error::Error) {
+    anstream::eprintln!("error: {}", flags::named(&error.to_string()));
+}
+
+impl From<RestoreError> for Failure {
+    fn from(error: RestoreError) -> Self {
+        if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
+    }
 }
 
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
     let report = &finished.report;
     if as_json {
-        print(&report::json(report).map_err(Failure::error)?)?;
+        print(&json::report(report).map_err(Failure::error)?)?;
     } else {
-        print(report::text(report).trim_end())?;
+        print(text::render(report).trim_end())?;
     }
-    Ok(report.exit_code)
+    Ok(report.cause.into())
 }
 
 fn listing(plan: &Plan) -> String {
@@ -154,36 +160,38 @@ fn listing(plan: &Plan) -> String {
 
 impl Arguments {
     fn plan(&self, settings: &Settings) -> Result<Plan, Failure> {
-        let file = self.tables.file(&self.lens, settings)?;
+        let file = self.tables.file(&self.lens, settings).map_err(Failure::call)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref());
         let chosen = optics::choose(file, &self.lens, kernel)?;
         let geometry = chosen.tables.geometry();
-        chosen.tables.check_ring(geometry.width().next_power_of_two())?;
+        chosen.tables.check_ring(geometry.width().next_power_of_two()).map_err(Failure::call)?;
         let how = self.input.read_options(geometry, self.lens.phase);
         let names = self.frame_names(settings);
         let frames = if names.is_empty() {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
-            frame_sources(names, &how, geometry)?
+            frame_sources(names, &how, geometry).map_err(Failure::call)?
         };
         Ok(Plan {
-            lens: chosen.optics.lens,
-            centre_y: chosen.optics.centre_y,
-            phase: self.lens.phase,
-            tables: chosen.tables,
-            kernel: chosen.kernel,
-            tables_source: chosen.source,
-            rows_outside_circle: chosen.rows_outside_circle,
             frames,
             repeat: self.repeat,
             fail_fast: self.fail_fast,
-            require_hardware: self.requires_hardware(settings),
-            take_over: self.board.take_over,
             seed: self.seed.or(settings.seed).unwrap_or(1),
+            ..chosen.plan(self.lens.phase)
+        })
+    }
+
+    fn options(&self, settings: &Settings) -> Result<RunOptions, Failure> {
+        Ok(RunOptions {
             timeout: self.board.timeout(settings)?,
+            stop: board::stop()?,
             retry_limit: self.board.retry_limit(settings),
             reconnect: self.patience(settings)?,
-            keep_pictures: self.report.is_some() || settings.report.is_some(),
+            take_over: self.board.take_over,
+            require_hardware: self.requires_hardware(settings),
+            keep_equal: self.report.is_some() || settings.report.is_some(),
+            circumstances: self.circumstances(settings)?,
+            ..RunOptions::default()
         })
     }
 
@@ -191,7 +199,7 @@ impl Arguments {
     fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.reconnect.or(settings.reconnect).filter(|_| self.record.is_none());
         let patience = seconds.map(Duration::try_from_secs_f64).transpose();
-        patience.map_err(|_| anyhow::anyhow!("--reconnect takes a number of seconds, 0 or more").into())
+        patience.map_err(|_| wrong_call!("--reconnect takes a number of seconds, 0 or more"))
     }
 
     fn frame_names<'a>(&'a self, settings: &'a Settings) -> &'a [String] {
@@ -203,14 +211,14 @@ impl Arguments {
     }
 
     fn circumstances(&self, settings: &Settings) -> Result<Circumstances, Failure> {
-        let tables = self.tables.file(&self.lens, settings)?.map(PathBuf::from);
+        let tables = self.tables.file(&self.lens, settings).map_err(Failure::call)?.map(PathBuf::from);
         let names = self.frame_names(settings).iter();
         let frames = names.filter(|name| !name.starts_with("builtin:")).map(PathBuf::from);
         let lens = self.lens.file().map(PathBuf::from);
         let files = tables.into_iter().chain(lens).chain(frames);
         Ok(Circumstances {
             arguments: std::env::args().collect(),
-            files: files.map(|path| file_hash(&path)).collect::<Result<_, _>>()?,
+            files: files.map(|path| file_hash(&path)).collect::<Result<_, _>>().map_err(Failure::call)?,
             draws: run::Draws::draw(),
         })
     }

@@ -1,26 +1,34 @@
-//! What ends a run early: a signal, or the run's own time limit.
+//! What ends a run early: whoever began it, or the run's own time limit.
 
+use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use super::BoardError;
-use crate::verdict::Exit;
+use crate::verdict::StoppedBy;
 
 /// Asked between any two exchanges whether to go on.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct Stop {
-    signal: Arc<AtomicUsize>,
+    asked: Option<Arc<Asked>>,
     limit: Option<Duration>,
     /// Of the limit, what had passed when the link's clock began.
     spent: Duration,
 }
 
+type Asked = dyn Fn() -> Option<StoppedBy> + Send + Sync;
+
 impl Stop {
-    /// Stops when `signal` holds an exit code other than 0, or when the link's clock has passed `limit`.
+    /// Stops as soon as `asked` says who wants it to. It is asked often, and so must be quick, as a look at an atomic is.
     #[must_use]
-    pub fn new(signal: Arc<AtomicUsize>, limit: Option<Duration>) -> Self {
-        Self { signal, limit, spent: Duration::ZERO }
+    pub fn when(asked: impl Fn() -> Option<StoppedBy> + Send + Sync + 'static) -> Self {
+        Self { asked: Some(Arc::new(asked)), ..Self::default() }
+    }
+
+    /// Stops as well when the link's clock has passed `limit`, if there is one.
+    #[must_use]
+    pub fn limited(self, limit: Option<Duration>) -> Self {
+        Self { limit, ..self }
     }
 
     /// The same for a link whose clock began when `spent` of the limit had passed.
@@ -29,16 +37,23 @@ impl Stop {
     }
 
     pub(crate) fn check(&self, now: Duration) -> Result<(), BoardError> {
-        match self.signal.load(Ordering::Relaxed) {
-            0 => {}
-            code if code == usize::from(Exit::Terminated.code()) => {
-                return Err(BoardError::Stopped(Exit::Terminated));
-            }
-            _ => return Err(BoardError::Stopped(Exit::Interrupted)),
+        if let Some(by) = self.asked.as_ref().and_then(|asked| asked()) {
+            return Err(BoardError::Stopped(by));
         }
         match self.limit {
             Some(limit) if self.spent + now > limit => Err(BoardError::Timeout { limit }),
             _ => Ok(()),
         }
+    }
+}
+
+impl fmt::Debug for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { asked, limit, spent } = self;
+        f.debug_struct("Stop")
+            .field("is_asked", &asked.is_some())
+            .field("limit", limit)
+            .field("spent", spent)
+            .finish()
     }
 }

@@ -21,7 +21,7 @@ pub(super) fn summary(witnesses: &Witnesses<'_>) -> Suspect {
         part: "unknown",
         place: "no single part".to_owned(),
         evidence: format!("no known defect explains most of the differences: {}", clauses.join(", ")),
-        next_step: "Make a report with --report and look at the difference maps.".to_owned(),
+        next_step: "Make a report and look at the difference maps.".to_owned(),
         explained: 0.0,
     }
 }

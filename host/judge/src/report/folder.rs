@@ -84,7 +84,11 @@ pub struct ReportFolder {
     parent: PathBuf,
     overwrite: bool,
     aside: TempDir,
+    json: JsonView,
 }
+
+/// What makes the JSON of a report.
+pub type JsonView = fn(&Report) -> Result<String, serde_json::Error>;
 
 impl ReportFolder {
     /// Makes sure that a report can be written to `path`, before a board is opened for it.
@@ -103,7 +107,13 @@ impl ReportFolder {
         };
         let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
         let aside = beside(&parent).map_err(failed)?;
-        Ok(Self { path: path.to_owned(), parent, overwrite, aside })
+        Ok(Self { path: path.to_owned(), parent, overwrite, aside, json: json::render })
+    }
+
+    /// The same with JSON that `view` makes, as a program does that adds to it. It begins with `verdict` and holds `board`.
+    #[must_use]
+    pub fn with_json(self, view: JsonView) -> Self {
+        Self { json: view, ..self }
     }
 
     /// Writes the report and puts it in its place. When that fails, an earlier report stays as it was.
@@ -111,7 +121,7 @@ impl ReportFolder {
     /// # Errors
     /// [`ReportError`] when a view cannot be encoded, a file cannot be written, or something came to be in the way.
     pub fn commit(self, report: &Report, evidence: &[Evidence]) -> Result<(), ReportError> {
-        self.write(JSON, &json::render(report)?)?;
+        self.write(JSON, &(self.json)(report)?)?;
         self.write(JUNIT, &junit::render(report)?)?;
         self.write(HTML, &html::render(report, evidence)?)?;
         check(&self.path, self.overwrite)?;
@@ -188,8 +198,8 @@ fn is_report(path: &Path) -> bool {
     struct Head {
         #[serde(rename = "verdict")]
         _verdict: IgnoredAny,
-        #[serde(rename = "exit_code")]
-        _exit_code: IgnoredAny,
+        #[serde(rename = "board")]
+        _board: IgnoredAny,
     }
     File::open(path).is_ok_and(|file| serde_json::from_reader::<_, Head>(BufReader::new(file)).is_ok())
 }
@@ -217,7 +227,7 @@ mod tests {
         let station = TempDir::new().unwrap();
         let path = station.path().join("today");
         fs::create_dir(&path).unwrap();
-        fs::write(path.join(JSON), r#"{"verdict": "PASS", "exit_code": 0}"#).unwrap();
+        fs::write(path.join(JSON), r#"{"verdict": "PASS", "board": {}}"#).unwrap();
         let folder = ReportFolder::prepare(&path, true).unwrap();
         fs::remove_dir(folder.aside.path()).unwrap();
         assert_eq!(folder.place().unwrap_err().kind(), io::ErrorKind::NotFound);

@@ -7,8 +7,7 @@ mod json;
 mod junit;
 mod pictures;
 mod sha256;
-mod text;
-mod wording;
+pub mod wording;
 
 use halfrow_model::Frame;
 use serde::Serialize;
@@ -16,25 +15,24 @@ use serde::Serialize;
 use crate::compare::Comparison;
 use crate::frames::street::EdgeDeviation;
 use crate::link::LineErrors;
-use crate::verdict::{Exit, Verdict};
+use crate::verdict::{Cause, Verdict};
 
 pub use crate::target::BoardKind;
-pub use folder::{ReportError, ReportFolder};
+pub use folder::{JsonView, ReportError, ReportFolder};
 pub use html::document;
 pub use html::render as html;
 pub use identity::Identity;
 pub use json::render as json;
 pub use junit::render as junit;
 pub use sha256::sha256;
-pub use text::render as text;
 
 /// A finished run of `verify`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
     /// The judgement.
     pub verdict: Verdict,
-    /// The exit code that goes with it.
-    pub exit_code: Exit,
+    /// Why it is that.
+    pub cause: Cause,
     /// The board.
     pub board: BoardReport,
     /// The result in one sentence.
@@ -51,6 +49,8 @@ pub struct Report {
     pub latency: Option<LatencyReport>,
     /// How façade edges of the built-in street stand before and after.
     pub street: Option<StreetReport>,
+    /// What was kept for diagnosis and pictures.
+    pub evidence: EvidenceReport,
     /// The link.
     pub link: LinkReport,
     /// What was uploaded.
@@ -155,6 +155,17 @@ pub struct StreetReport {
     pub before: EdgeDeviation,
     /// As the board's correction leaves them.
     pub after: EdgeDeviation,
+}
+
+/// Frames kept for diagnosis and pictures: what went in, what came out and what should have.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct EvidenceReport {
+    /// Frames kept.
+    pub kept: usize,
+    /// Their bytes in memory.
+    pub bytes: u64,
+    /// Frames for which there was no room.
+    pub left_out: usize,
 }
 
 /// What the link did.

@@ -79,7 +79,7 @@ impl Run<'_> {
             Some(suspect) => (format!("the suspect is {}", suspect.place), suspect.next_step.clone()),
             None => (
                 "no single defect that is known explains them".to_owned(),
-                "Make a report with --report and look at the difference maps.".to_owned(),
+                "Make a report and look at the difference maps.".to_owned(),
             ),
         };
         let headline = format!("{found}; {suspicion}");

@@ -4,15 +4,15 @@ use jiff::Timestamp;
 
 use super::findings::{CHECKS, End, Findings};
 use super::judge::{STREET, Seen};
-use super::{Circumstances, Finished, Plan};
+use super::{Finished, Plan, RunOptions};
 use crate::frames::street;
 use crate::report::{Check, LinkReport, Outcome, Report, RunReport, StreetReport, Suspect, TablesReport};
 use crate::target::BoardKind;
-use crate::verdict::{Exit, Verdict};
+use crate::verdict::Cause;
 
 /// How the run ended, in words.
 struct Ending {
-    exit: Exit,
+    cause: Cause,
     headline: String,
     remedy: Option<String>,
     suspects: Vec<Suspect>,
@@ -22,17 +22,18 @@ pub(super) fn conclude(
     plan: &Plan,
     mut findings: Findings,
     end: Option<End>,
-    circumstances: &Circumstances,
+    options: &RunOptions,
     started: Timestamp,
 ) -> Finished {
     let ending = ending(&mut findings, end);
     skip_the_rest(&mut findings.checks);
     let street = street(plan, &findings.seen);
     let ended = Timestamp::now();
-    let verdict = ending.exit.verdict().unwrap_or(Verdict::Error);
+    let (evidence, evidence_report) = findings.seen.evidence.finish();
+    let circumstances = &options.circumstances;
     let report = Report {
-        verdict,
-        exit_code: ending.exit,
+        verdict: ending.cause.verdict(),
+        cause: ending.cause,
         board: findings.board,
         headline: ending.headline,
         remedy: ending.remedy,
@@ -41,6 +42,7 @@ pub(super) fn conclude(
         frames: findings.seen.frames,
         latency: findings.seen.latency,
         street,
+        evidence: evidence_report,
         link: LinkReport {
             bytes_out: findings.tally.bytes_out,
             bytes_in: findings.tally.bytes_in,
@@ -64,7 +66,7 @@ pub(super) fn conclude(
             files: circumstances.files.clone(),
         },
     };
-    Finished { report, evidence: findings.seen.evidence }
+    Finished { report, evidence }
 }
 
 fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
@@ -73,18 +75,18 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
     }
     match end {
         None if findings.seen.samples() == 0 => Ending {
-            exit: Exit::NothingJudged,
+            cause: Cause::NothingJudged,
             headline: "nothing was judged: no frame came back".to_owned(),
-            remedy: Some("Name at least one frame, or leave --frame out for the built-in ones.".to_owned()),
+            remedy: Some("Name at least one frame, or none for the built-in ones.".to_owned()),
             suspects: Vec::new(),
         },
-        None => Ending { exit: Exit::Pass, headline: pass(findings), remedy: None, suspects: Vec::new() },
+        None => Ending { cause: Cause::Equal, headline: pass(findings), remedy: None, suspects: Vec::new() },
         Some(End::Failed { headline, remedy, suspects, .. }) => {
-            Ending { exit: Exit::Fail, headline, remedy: Some(remedy), suspects }
+            Ending { cause: Cause::Different, headline, remedy: Some(remedy), suspects }
         }
-        Some(End::Error { exit, headline, remedy, .. }) => {
+        Some(End::Error { cause, headline, remedy, .. }) => {
             let remedy = remedy.or_else(|| findings.tally.line_errors.advice().map(str::to_owned));
-            Ending { exit, headline, remedy, suspects: Vec::new() }
+            Ending { cause, headline, remedy, suspects: Vec::new() }
         }
     }
 }

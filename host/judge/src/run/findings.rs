@@ -3,10 +3,10 @@
 use std::time::Duration;
 
 use super::judge::Seen;
-use super::{Candidate, Plan};
+use super::{Candidate, Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::report::{BoardReport, Check, Identity, LinkReport, Outcome, Suspect};
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// Every check, in the order of the run.
 pub(super) const CHECKS: [&str; 9] =
@@ -20,7 +20,7 @@ pub(super) enum End {
     /// It could not be judged.
     Error {
         check: &'static str,
-        exit: Exit,
+        cause: Cause,
         headline: String,
         remedy: Option<String>,
         unreachable: bool,
@@ -33,12 +33,12 @@ impl End {
     pub(super) fn board(check: &'static str, error: &BoardError) -> Self {
         let unreachable =
             matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
-        let (exit, headline, outage) = (error.exit(), chain(error), error.is_outage());
-        Self::Error { check, exit, headline, remedy: None, unreachable, outage }
+        let (cause, headline, outage) = (error.cause(), chain(error), error.is_outage());
+        Self::Error { check, cause, headline, remedy: None, unreachable, outage }
     }
 
-    pub(super) fn error(check: &'static str, exit: Exit, headline: String) -> Self {
-        Self::Error { check, exit, headline, remedy: None, unreachable: false, outage: false }
+    pub(super) fn error(check: &'static str, cause: Cause, headline: String) -> Self {
+        Self::Error { check, cause, headline, remedy: None, unreachable: false, outage: false }
     }
 
     pub(super) fn failed(check: &'static str, headline: String, remedy: &str) -> Self {
@@ -92,13 +92,15 @@ pub(super) struct Findings {
     pub(super) earlier: Earlier,
     /// Rows that the board should have counted since it was greeted.
     pub(super) rows_counted: usize,
+    /// Why the board cannot have what the plan uploads.
+    pub(super) misfit: Option<Misfit>,
 }
 
 impl Findings {
-    pub(super) fn new(plan: &Plan, candidate: &Candidate) -> Self {
+    pub(super) fn new(options: &RunOptions, candidate: &Candidate) -> Self {
         let link = LinkReport {
             name: candidate.link.name(),
-            retry_limit: plan.retry_limit.of(0),
+            retry_limit: options.retry_limit.of(0),
             ..LinkReport::default()
         };
         Self {
@@ -109,6 +111,7 @@ impl Findings {
             link,
             earlier: Earlier::default(),
             rows_counted: 0,
+            misfit: None,
         }
     }
 

@@ -7,6 +7,7 @@ use std::sync::mpsc;
 
 use halfrow_model::Frame;
 
+use super::kept::Kept;
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
@@ -17,7 +18,7 @@ use crate::report::{Evidence, FrameReport, LatencyReport};
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) frames: Vec<FrameReport>,
-    pub(super) evidence: Vec<Evidence>,
+    pub(super) evidence: Kept,
     pub(super) latency: Option<LatencyReport>,
     /// Sentence about the first row that names other tables than it should.
     pub(super) wrong_generation: Option<String>,
@@ -35,7 +36,7 @@ impl Seen {
     }
 }
 
-/// Always kept: the report measures its façades.
+/// Kept even if it is equal: the report measures its façades.
 pub(super) const STREET: &str = "builtin:street";
 
 /// How strict, and what to keep.
@@ -44,10 +45,10 @@ pub(super) struct Manner {
     pub(super) claimed_latency: u32,
     pub(super) latency_limit: u32,
     pub(super) fail_fast: bool,
-    /// Frames kept for pictures although they are equal.
-    pub(super) pictures: usize,
-    /// Frames that differ kept for diagnosis.
-    pub(super) differing: usize,
+    /// Keep frames for pictures although they are equal.
+    pub(super) keep_equal: bool,
+    /// Bytes of frames that are kept, at most.
+    pub(super) evidence_bytes: usize,
 }
 
 struct InFlight {
@@ -154,19 +155,17 @@ impl<'a> Judge<'a> {
     fn conclude(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
-        let differs = comparison.differences > 0;
-        let kept = self.seen.evidence.len();
-        let differing =
-            self.seen.evidence.iter().filter(|evidence| evidence.found != evidence.expected).count();
-        let wanted = match differs {
-            true => differing < self.manner.differing,
-            false => kept < self.manner.pictures || name == STREET,
-        };
-        if wanted && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found) {
+        let (differs, height) = (comparison.differences > 0, expected.height());
+        let (is_street, budget) = (name == STREET, self.manner.evidence_bytes);
+        let is_wanted = differs || self.manner.keep_equal || is_street;
+        if is_wanted
+            && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found)
+        {
             let index = self.seen.frames.len();
             let (input, expected) = ((*input).clone(), (*expected).clone());
-            self.seen.evidence.push(Evidence { index, input, found, expected });
+            self.seen.evidence.offer(Evidence { index, input, found, expected }, is_street, budget);
         }
+        let comparison = self.seen.evidence.shorten(comparison, rows >= height, budget);
         self.seen.frames.push(FrameReport {
             name,
             number,
@@ -272,8 +271,13 @@ mod tests {
         [7, 8].into_iter().for_each(|number| sender.send(Ok(frame(number))).unwrap());
         drop(sender);
         let mut seen = Seen::default();
-        let manner =
-            Manner { claimed_latency: 44, latency_limit: 64, fail_fast: false, pictures: 0, differing: 0 };
+        let manner = Manner {
+            claimed_latency: 44,
+            latency_limit: 64,
+            fail_fast: false,
+            keep_equal: false,
+            evidence_bytes: 0,
+        };
         let mut judge = Judge::new(source.iter().take(2), &mut seen, manner, String::new(), &Silent);
         let sent = |judge: &mut Judge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));

@@ -3,14 +3,14 @@
 use std::iter;
 use std::time::{Duration, Instant};
 
-use super::findings::{End, Findings};
+use super::findings::{End, Findings, chain};
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{Board, BoardError, NumberedFrame, OpenOptions, Unjudged};
-use crate::link::{self, Link};
+use crate::link::{Link, Reopener};
+use crate::progress::Step;
 use crate::report::Reconnection;
-use crate::target::Target;
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// More often than this it is a loose contact, and waiting does not mend it.
 const MOST: usize = 16;
@@ -19,7 +19,8 @@ const TICK: Duration = Duration::from_millis(100);
 
 /// How a board is opened, for the first time and again.
 pub(super) struct WayBack {
-    pub(super) target: String,
+    /// Opens the link again; none if it cannot be.
+    pub(super) reopen: Option<Reopener>,
     /// How long a board may stay away; none if the run ends when it goes.
     pub(super) patience: Option<Duration>,
     pub(super) options: OpenOptions,
@@ -27,14 +28,14 @@ pub(super) struct WayBack {
 
 impl WayBack {
     /// Opens the board behind `link`, or behind the next one if that breaks.
-    pub(super) fn open(&self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
+    pub(super) fn open(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
         let (error, tally) = match Board::open(link, &self.options) {
             Ok(board) => return Ok(board),
             Err(failed) => failed,
         };
         findings.tally = tally;
         let end = End::board("identity", &error);
-        match (&error, self.patience) {
+        match (&error, self.patience()) {
             (BoardError::Link { .. }, Some(patience)) if end.is_outage() => {
                 self.open_again(patience, &end, findings)
             }
@@ -43,8 +44,8 @@ impl WayBack {
     }
 
     /// Waits for the board, which was lost with `end`, and opens it.
-    fn open_again(&self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
-        let End::Error { check, exit, headline, .. } = end else { return Err(end.clone()) };
+    fn open_again(&mut self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
+        let End::Error { check, cause, headline, .. } = end else { return Err(end.clone()) };
         tracing::warn!("{headline}; waiting {} s for the board to come back", patience.as_secs_f64());
         let left = Instant::now();
         loop {
@@ -60,15 +61,20 @@ impl WayBack {
             if left.elapsed() > patience {
                 let waited =
                     format!("{headline}; the board did not come back in {} s", patience.as_secs_f64());
-                return Err(End::error(check, *exit, waited));
+                return Err(End::error(check, *cause, waited));
             }
             std::thread::sleep(TICK);
         }
     }
 
-    fn try_open(&self, spent: Duration, times: usize) -> Option<Board> {
-        let candidate = self.target.parse().ok().map(|target: Target| link::open(&target))?;
-        let link = candidate.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?.link;
+    /// How long a board may stay away that can be opened again.
+    fn patience(&self) -> Option<Duration> {
+        self.patience.filter(|_| self.reopen.is_some())
+    }
+
+    fn try_open(&mut self, spent: Duration, times: usize) -> Option<Board> {
+        let link = self.reopen.as_mut()?();
+        let link = link.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?;
         // A board that never lost power must not take this for the greeting that it has answered.
         let nonce = self.options.nonce.wrapping_add(1 + times as u32);
         let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
@@ -100,10 +106,10 @@ impl Run<'_> {
 
     fn come_back(&mut self, end: End) -> Result<(), End> {
         let again = self.findings.link.reconnections.len() < MOST;
-        let Some(patience) = self.way_back.patience.filter(|_| end.is_outage() && again) else {
+        let Some(patience) = self.way_back.patience().filter(|_| end.is_outage() && again) else {
             return Err(end);
         };
-        self.progress.step("waiting for the board to come back");
+        self.progress.step(Step::WaitForTheBoard);
         self.findings.keep_counts(self.board);
         // What is left of the old link would keep the new one from being opened.
         self.board.hang_up();
@@ -116,7 +122,7 @@ impl Run<'_> {
             return Ok(());
         }
         let headline = "another board, or another bitstream, came back than went away; run again".to_owned();
-        Err(End::error("identity", Exit::Refused, headline))
+        Err(End::error("identity", Cause::Refused, headline))
     }
 
     /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
@@ -131,7 +137,7 @@ impl Run<'_> {
         if next.is_none() || later.is_some() {
             // Tables become the active ones when a frame enters.
             let rendered = self.plan.render(frame);
-            let rendered = rendered.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+            let rendered = rendered.map_err(|error| End::error("frames", Cause::Station, chain(&error)))?;
             self.findings.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
             let played = self.board.stream(&mut Unjudged(iter::once(played)));

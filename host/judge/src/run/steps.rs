@@ -3,20 +3,20 @@
 use std::sync::mpsc::Receiver;
 use std::thread;
 
-use halfrow_model::{Kernel, TableSet, Taps};
-
 use super::findings::{End, Findings};
 use super::golden;
+use super::misfit::misfit;
+use super::options::RunOptions;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
-use crate::board::{Board, Capabilities};
-use crate::progress::Progress;
+use crate::board::Board;
+use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::tables::DATAPATH;
 use crate::target::BoardKind;
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// The largest L that a board may have.
 pub(super) const MAX_LATENCY: u8 = 32;
@@ -26,7 +26,8 @@ pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
     pub(super) board: &'a mut Board,
     pub(super) generations: Vec<Generation>,
-    pub(super) way_back: &'a WayBack,
+    pub(super) options: &'a RunOptions,
+    pub(super) way_back: &'a mut WayBack,
     pub(super) progress: &'a dyn Progress,
     pub(super) findings: &'a mut Findings,
 }
@@ -43,7 +44,7 @@ pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
                 "this computer cannot judge: {what}; rebuild halfrow, and if that does not help, test the \
                  computer's memory"
             );
-            Err(End::error("judge", Exit::Error, headline))
+            Err(End::error("judge", Cause::Station, headline))
         }
     }
 }
@@ -57,7 +58,7 @@ impl Run<'_> {
         let (plan, generations) = (self.plan, self.generations.clone());
         thread::scope(|scope| {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
-            self.progress.step("testing the link");
+            self.progress.step(Step::TestTheLink);
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.conclude(last)
@@ -96,26 +97,27 @@ impl Run<'_> {
     }
 
     fn identity(&mut self) -> Result<(), End> {
-        let error = |exit, what| Err(End::error("identity", exit, what));
+        let error = |cause, what| Err(End::error("identity", cause, what));
         let datapath = self.board.capabilities.datapath;
         if datapath != DATAPATH {
             return error(
-                Exit::Refused,
+                Cause::Refused,
                 format!(
                     "the board computes datapath {datapath}, and this program judges datapath {DATAPATH}; load a \
                      bitstream of datapath {DATAPATH}, or install a halfrow that knows {datapath}"
                 ),
             );
         }
-        if self.plan.require_hardware && self.findings.board.kind != BoardKind::Hardware {
+        if self.options.require_hardware && self.findings.board.kind != BoardKind::Hardware {
             return error(
-                Exit::NothingJudged,
-                "hardware is required and this is none, so nothing was judged; name a real board with --board"
-                    .to_owned(),
+                Cause::NothingJudged,
+                "hardware is required and this is none, so nothing was judged; name a real board".to_owned(),
             );
         }
         if let Some(misfit) = misfit(&self.plan.tables, &self.plan.kernel, &self.board.capabilities) {
-            return error(Exit::Usage, misfit);
+            let end = error(Cause::Refused, misfit.to_string());
+            self.findings.misfit = Some(misfit);
+            return end;
         }
         let latency = self.board.capabilities.latency;
         if latency > MAX_LATENCY {
@@ -154,30 +156,4 @@ impl Run<'_> {
         self.findings.passed("link", detail);
         Ok(())
     }
-}
-
-/// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
-#[must_use]
-pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<String> {
-    let geometry = tables.geometry();
-    let (width, height) = (usize::from(capabilities.max_width), usize::from(capabilities.max_height));
-    if geometry.width() > width || geometry.height() > height {
-        return Some(format!(
-            "frames of {} x {} do not fit the board, which takes {width} x {height} at most; use smaller \
-             frames and tables",
-            geometry.width(),
-            geometry.height()
-        ));
-    }
-    let bits = geometry.depth().bits();
-    if !capabilities.sample_depths().has(bits as u8) {
-        return Some(format!("the board has no {bits}-bit samples; use tables of another depth"));
-    }
-    if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
-        return Some(
-            "the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite"
-                .to_owned(),
-        );
-    }
-    tables.check_ring(usize::from(capabilities.ring)).err().map(|error| error.to_string())
 }

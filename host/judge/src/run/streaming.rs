@@ -3,16 +3,13 @@
 use std::iter;
 use std::sync::mpsc::Receiver;
 
-use super::findings::End;
+use super::findings::{End, chain};
 use super::judge::{Judge, Manner};
 use super::plan::{SENSOR_BLANKING, ScheduledFrame, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
 use super::steps::{MAX_LATENCY, Run};
 use crate::board::{BoardError, NumberedFrame, Unjudged};
-use crate::verdict::Exit;
-
-/// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
-const KEPT: usize = 16;
+use crate::verdict::Cause;
 
 /// A frame and the row in which it happened twice that a row did not come back.
 struct LostTwice {
@@ -35,7 +32,7 @@ impl Run<'_> {
         let prepared = judge.finish();
         self.findings.seen = seen;
         streamed?;
-        prepared.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+        prepared.map_err(|error| End::error("frames", Cause::Station, chain(&error)))?;
         if self.plan.fail_fast && self.findings.seen.differences() > 0 {
             self.board.drop_rows().map_err(|error| End::board("frames", &error))?;
         }
@@ -58,8 +55,8 @@ impl Run<'_> {
             claimed_latency: half + u32::from(self.board.capabilities.latency),
             latency_limit: half + u32::from(MAX_LATENCY),
             fail_fast: self.plan.fail_fast,
-            pictures: if self.plan.keep_pictures { KEPT } else { 0 },
-            differing: KEPT,
+            keep_equal: self.options.keep_equal,
+            evidence_bytes: self.options.evidence_bytes,
         }
     }
 

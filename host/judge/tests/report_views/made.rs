@@ -3,10 +3,10 @@
 use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
 use halfrow::report::{
-    BoardKind, BoardReport, Check, Evidence, FrameReport, Identity, LatencyReport, LinkReport, Outcome,
-    Report, RunReport, StreetReport, Suspect, TablesReport,
+    BoardKind, BoardReport, Check, Evidence, EvidenceReport, FrameReport, Identity, LatencyReport,
+    LinkReport, Outcome, Report, RunReport, StreetReport, Suspect, TablesReport,
 };
-use halfrow::verdict::{Exit, Verdict};
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
 
 /// Two equal frames of 1920 × 1080 on the mock board.
@@ -14,7 +14,7 @@ pub(crate) fn pass() -> Report {
     let frames: Vec<_> = [(1, "builtin:street"), (2, "builtin:noise")].map(equal_frame).into();
     Report {
         verdict: Verdict::Pass,
-        exit_code: Exit::Pass,
+        cause: Cause::Equal,
         board: board(),
         headline: "2 frames, all equal to the reference".to_owned(),
         remedy: None,
@@ -25,6 +25,7 @@ pub(crate) fn pass() -> Report {
         ],
         latency: Some(latency(2160)),
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
+        evidence: EvidenceReport::default(),
         link: link(),
         tables: tables(),
         run: run(),
@@ -42,7 +43,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
     second.rows = 40;
     let report = Report {
         verdict: Verdict::Fail,
-        exit_code: Exit::Fail,
+        cause: Cause::Different,
         headline: "5 samples of row 3 differ".to_owned(),
         remedy: Some("Read the tables back.".to_owned()),
         suspects: vec![Suspect {
@@ -67,7 +68,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
 pub(crate) fn error() -> Report {
     Report {
         verdict: Verdict::Error,
-        exit_code: Exit::Error,
+        cause: Cause::Station,
         board: BoardReport {
             kind: BoardKind::Hardware,
             target: "serial:/dev/ttyUSB1".to_owned(),

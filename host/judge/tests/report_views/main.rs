@@ -8,4 +8,3 @@ mod html;
 mod junit;
 mod made;
 mod pictures;
-mod text;

@@ -57,8 +57,7 @@ impl TestedBoard {
     /// # Errors
     /// [`PaperError::Misfit`] when it does not.
     pub fn fits(&self, tables: &TableSet, kernel: &Kernel) -> Result<(), PaperError> {
-        misfit(tables, kernel, &self.board.capabilities)
-            .map_or(Ok(()), |misfit| Err(PaperError::Misfit(misfit)))
+        misfit(tables, kernel, &self.board.capabilities).map_or(Ok(()), |misfit| Err(misfit.into()))
     }
 
     /// Corrects `inputs` with tables and kernel of their own.

@@ -23,7 +23,7 @@ impl Job<'_> {
 
     fn correct_one(&self, places: &Places, index: usize, corrector: &mut Corrector) -> Result<(), Failure> {
         let geometry = self.chosen.tables.geometry();
-        let mut rows = self.inputs[index].rows(&self.how, &self.scene)?;
+        let mut rows = self.inputs[index].rows(&self.how, &self.scene).map_err(Failure::call)?;
         let mut entering = vec![0; geometry.width()];
         let mut steps = self.chosen.tables.steps().iter();
         let mut kept = Vec::new();
@@ -47,7 +47,8 @@ impl Job<'_> {
             frames::write_rows(&places.frames[index], &shape, self.arguments.overwrite, correct_next);
         written.map_err(unwritten)?;
         if !kept.is_empty() {
-            let corrected = Frame::new(shape.width, shape.depth, shape.phase, kept)?;
+            let corrected =
+                Frame::new(shape.width, shape.depth, shape.phase, kept).map_err(Failure::error)?;
             self.write_preview(places, index, &corrected).map_err(Failure::error)?;
         }
         Ok(())
@@ -56,5 +57,5 @@ impl Job<'_> {
 
 /// What is wrong with an input is the caller's to mend, unlike an output that cannot be written.
 fn unwritten(error: anyhow::Error) -> Failure {
-    if error.is::<WriteError>() { Failure::error(error) } else { error.into() }
+    if error.is::<WriteError>() { Failure::error(error) } else { Failure::call(error) }
 }
