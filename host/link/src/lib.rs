@@ -24,13 +24,17 @@ pub use candidate::{Candidate, Reopener};
 pub use class::Class;
 pub use open::{OpenError, open, replayed_file};
 pub use recording::{Recorder, Recording, RecordingError, Unfinished};
-pub use replay::ReplayLink;
-pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
+pub(crate) use replay::ReplayLink;
+pub use serial::{Holder, SerialError, holders};
+pub(crate) use serial::{SerialLink, how_to_get_access};
 pub use severed::Severed;
-pub use sysfs::{UsbDevice, usb_device};
+pub use sysfs::UsbDevice;
+pub(crate) use sysfs::usb_device;
 pub use target::{BoardKind, Target, TargetError};
-pub use tcp::{TcpError, TcpLink};
-pub use usb::{LineErrors, Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
+pub use tcp::TcpError;
+pub(crate) use tcp::TcpLink;
+pub use usb::{LineErrors, UsbBoard, UsbError, UsbFailure};
+pub(crate) use usb::{UsbLink, usb_boards};
 pub use wire::WireLink;
 
 /// A byte pipe to a board. It can be sent to another thread, so that each of several boards can be judged on its own.

@@ -69,7 +69,7 @@ impl TcpError {
 
 /// A pipe to a board behind a TCP connection.
 #[derive(Debug)]
-pub struct TcpLink {
+pub(crate) struct TcpLink {
     stream: TcpStream,
     pump: Pump,
     address: String,
@@ -85,7 +85,7 @@ impl TcpLink {
     ///
     /// # Errors
     /// [`OpenError`] when the target is none, or no connection comes about.
-    pub fn open(target: &Target) -> Result<Self, OpenError> {
+    pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let missing = || OpenError::AddressMissing { kind: target.kind.clone(), form: "tcp:HOST:PORT" };
         let address = target.address.clone().ok_or_else(missing)?;
         let mut baud = None;

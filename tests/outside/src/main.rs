@@ -14,7 +14,7 @@ use halfrow::{Candidate, FrameSource, Link, Plan, RunOptions};
 use halfrow_mock::{Board, Options};
 
 /// Calls until the first link breaks: in the middle of the frames.
-const LIFE: usize = 60;
+const LIFE: usize = 30;
 
 /// A board that keeps its state while nobody is connected.
 type Shared = Arc<Mutex<Board>>;

@@ -129,7 +129,7 @@ pub enum BoardError {
 impl BoardError {
     /// Whether the board is gone, as one is that was unplugged or lost power, and may come back.
     #[must_use]
-    pub fn is_outage(&self) -> bool {
+    pub(crate) fn is_outage(&self) -> bool {
         use LinkError::{Closed, Failed, Unplugged};
         match self {
             Self::Link { source, .. } => {

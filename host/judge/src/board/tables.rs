@@ -59,7 +59,7 @@ impl Board {
 
     /// Entries of a table that fit into one packet.
     #[must_use]
-    pub const fn entries_at_once(table: Table) -> usize {
+    pub(crate) const fn entries_at_once(table: Table) -> usize {
         (MAX_PAYLOAD - SPAN) / table.entry_bytes()
     }
 
@@ -122,7 +122,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
-    pub fn read_entries(
+    pub(crate) fn read_entries(
         &mut self,
         bank: Bank,
         port: TablePort,

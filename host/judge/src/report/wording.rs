@@ -159,7 +159,7 @@ pub fn link(link: &LinkReport) -> String {
 
 /// How a frame came out. Under the verdict ERROR nothing is the board's fault.
 #[must_use]
-pub fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
+pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
     match (report.verdict, frame.comparison.differences) {
         (_, 0) if judged => Outcome::Passed,

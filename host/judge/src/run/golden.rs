@@ -57,7 +57,7 @@ fn frame(width: usize, height: usize) -> Option<Frame> {
 ///
 /// # Errors
 /// A sentence that says which golden value was missed.
-pub fn judge_the_judge() -> Result<usize, String> {
+pub(crate) fn judge_the_judge() -> Result<usize, String> {
     let mut samples = 0;
     for golden in &ROWS {
         samples += judge_row(golden)?;

@@ -33,12 +33,10 @@ use reconnect::WayBack;
 use steps::Run;
 
 pub use finished::Finished;
-pub use golden::judge_the_judge;
 pub use misfit::{Misfit, misfit};
 pub use options::RunOptions;
 pub use plan::{
-    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, SENSOR_BLANKING, ScheduledFrame, Segment,
-    Timing, TooManyFrames,
+    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing, TooManyFrames,
 };
 pub use recorded::{RecordedRun, RestoreError};
 

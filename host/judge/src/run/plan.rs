@@ -8,7 +8,7 @@ use halfrow_model::{Equidistant, Frame, FrameError, Interpolant, Kernel, Phase, 
 use crate::frames::{Builtin, Scene};
 
 /// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
-pub const SENSOR_BLANKING: u16 = 900;
+pub(crate) const SENSOR_BLANKING: u16 = 900;
 
 /// Tables and kernel under one generation.
 #[derive(Clone, Debug)]

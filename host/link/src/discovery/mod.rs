@@ -12,8 +12,8 @@ use crate::target::{BoardKind, Target};
 use crate::{Holder, UsbDevice};
 
 pub use answer::Answer;
-pub use serial_ports::SerialPorts;
-pub use usb_chips::UsbChips;
+use serial_ports::SerialPorts;
+use usb_chips::UsbChips;
 
 /// A place where boards are found: the serial ports, or another kind of device.
 pub trait Source {

@@ -14,7 +14,7 @@ const NAMES: [&str; 2] = ["/dev/serial/by-id", "/dev/serial/by-path"];
 
 /// The serial ports of this computer.
 #[derive(Clone, Copy, Debug)]
-pub struct SerialPorts;
+pub(crate) struct SerialPorts;
 
 impl Source for SerialPorts {
     fn find(&self) -> Vec<Found> {

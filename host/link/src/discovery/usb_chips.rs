@@ -6,7 +6,7 @@ use crate::{UsbBoard, how_to_get_access, usb_boards};
 
 /// The USB of this computer.
 #[derive(Clone, Copy, Debug)]
-pub struct UsbChips;
+pub(crate) struct UsbChips;
 
 impl Source for UsbChips {
     fn find(&self) -> Vec<Found> {
