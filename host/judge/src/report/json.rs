@@ -2,7 +2,7 @@
 
 use crate::report::Report;
 
-/// The report, indented, ending in a line feed. `verdict`, `cause` and `board.kind` come first.
+/// The report, indented, ending in a line feed. `verdict` and `board.kind` come first.
 ///
 /// # Errors
 /// The encoder's. No value that a [`Report`] can hold brings one about.

@@ -31,10 +31,10 @@ pub use sha256::sha256;
 pub struct Report {
     /// The judgement.
     pub verdict: Verdict,
-    /// Why it is that.
-    pub cause: Cause,
     /// The board.
     pub board: BoardReport,
+    /// Why the verdict is what it is.
+    pub cause: Cause,
     /// The result in one sentence.
     pub headline: String,
     /// What to do next, when there is something to do.
