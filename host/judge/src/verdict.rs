@@ -2,7 +2,6 @@
 
 use std::fmt;
 
-use halfrow_link::Class;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 /// The judgement on a board.
@@ -98,16 +97,6 @@ impl Cause {
             Self::Stopped(StoppedBy::System) => "stopped-by-system",
             Self::Stopped(StoppedBy::Disconnection) => "stopped-by-disconnection",
             Self::Stopped(StoppedBy::Caller) => "stopped-by-caller",
-        }
-    }
-}
-
-impl From<Class> for Cause {
-    /// A board that the call names wrongly is, to whoever has a board to judge, a matter of the station.
-    fn from(class: Class) -> Self {
-        match class {
-            Class::Call | Class::Station => Self::Station,
-            Class::Busy => Self::Busy,
         }
     }
 }

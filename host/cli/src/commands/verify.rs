@@ -76,14 +76,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
-    let (plan, options) = match &arguments.board.recording(settings)? {
-        Some(recording) => {
-            let (plan, options) = RecordedRun::restore(recording)?;
-            let require_hardware = arguments.requires_hardware(settings);
-            (plan, RunOptions { require_hardware, stop: board::stop()?, ..options })
-        }
-        None => (arguments.plan(settings)?, arguments.options(settings)?),
-    };
+    let (plan, options) = arguments.planned(settings)?;
     plan.check_length().map_err(Failure::call)?;
     let candidate = arguments.board.candidate(settings)?;
     if arguments.list {
@@ -159,6 +152,16 @@ fn listing(plan: &Plan) -> String {
 }
 
 impl Arguments {
+    /// What is to be done, and how: as the call says, or as a recording does.
+    fn planned(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
+        let Some(recording) = self.board.recording(settings)? else {
+            return Ok((self.plan(settings)?, self.options(settings)?));
+        };
+        let (plan, options) = RecordedRun::restore(&recording)?;
+        let require_hardware = self.requires_hardware(settings);
+        Ok((plan, RunOptions { require_hardware, stop: board::stop()?, ..options }))
+    }
+
     fn plan(&self, settings: &Settings) -> Result<Plan, Failure> {
         let file = self.tables.file(&self.lens, settings).map_err(Failure::call)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref());

@@ -4,7 +4,7 @@ use jiff::Timestamp;
 
 use super::findings::{CHECKS, End, Findings};
 use super::judge::{STREET, Seen};
-use super::{Finished, Plan, RunOptions};
+use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::frames::street;
 use crate::report::{Check, LinkReport, Outcome, Report, RunReport, StreetReport, Suspect, TablesReport};
 use crate::target::BoardKind;
@@ -28,9 +28,7 @@ pub(super) fn conclude(
     let ending = ending(&mut findings, end);
     skip_the_rest(&mut findings.checks);
     let street = street(plan, &findings.seen);
-    let ended = Timestamp::now();
     let (evidence, evidence_report) = findings.seen.evidence.finish();
-    let circumstances = &options.circumstances;
     let report = Report {
         verdict: ending.cause.verdict(),
         cause: ending.cause,
@@ -54,19 +52,24 @@ pub(super) fn conclude(
             ..findings.link
         },
         tables: tables(plan),
-        run: RunReport {
-            version: env!("CARGO_PKG_VERSION"),
-            commit: crate::COMMIT,
-            arguments: circumstances.arguments.clone(),
-            seed: plan.seed,
-            started: format!("{started:.0}"),
-            ended: format!("{ended:.0}"),
-            seconds: ended.duration_since(started).as_secs_f64(),
-            host: host_name(),
-            files: circumstances.files.clone(),
-        },
+        run: run(plan, &options.circumstances, started),
     };
     Finished { report, evidence }
+}
+
+fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunReport {
+    let ended = Timestamp::now();
+    RunReport {
+        version: env!("CARGO_PKG_VERSION"),
+        commit: crate::COMMIT,
+        arguments: circumstances.arguments.clone(),
+        seed: plan.seed,
+        started: format!("{started:.0}"),
+        ended: format!("{ended:.0}"),
+        seconds: ended.duration_since(started).as_secs_f64(),
+        host: host_name(),
+        files: circumstances.files.clone(),
+    }
 }
 
 fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
