@@ -6,6 +6,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use halfrow::verdict::Verdict;
+
 use crate::dice::Dice;
 use crate::parallel;
 use halfrow::result::CheckName;
@@ -147,10 +149,9 @@ impl Kind {
 
 fn check_of(system: &System, options: &str) -> Option<CheckName> {
     let report = system.judge(options);
-    let code = report.exit_code.code();
-    assert!(code <= 1, "{options}: {}", report.headline());
+    assert_ne!(report.verdict, Verdict::Error, "{options}: {}", report.headline());
     let check = failed_check(&report);
-    assert_eq!(check.is_some(), code == 1, "{options}: {}", report.headline());
+    assert_eq!(check.is_some(), report.verdict == Verdict::Fail, "{options}: {}", report.headline());
     check
 }
 

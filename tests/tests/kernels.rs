@@ -115,7 +115,7 @@ fn a_trained_kernel_tells_where_it_comes_from_and_is_the_same_every_time() {
 
     let refused = train(&folder, &["-o", "mine.json"]);
     assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
-    assert!(refused.stderr.contains("give --overwrite"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("allow it to be overwritten (--overwrite)"), "{}", refused.stderr);
     assert_eq!(train(&folder, &["-o", "mine.json", "--overwrite"]).code, Some(0));
     assert!(folder.read("mine.json") == mine, "the same photographs gave another kernel");
     assert_eq!(train(&folder, &["-o", "wide.json", "--taps", "7"]).code, Some(0));

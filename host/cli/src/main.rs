@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use clap::Parser;
 use tracing::level_filters::LevelFilter;
 
-use halfrow::verdict::Exit;
 use halfrow_cli::commands::{self, Cli, Failure};
-use halfrow_cli::{console, guard, signals};
+use halfrow_cli::exit::Exit;
+use halfrow_cli::{console, flags, guard, signals};
 
 fn main() -> ExitCode {
     let exit = guard::guarded(program).unwrap_or_else(|fault| {
@@ -69,7 +69,7 @@ fn log(verbosity: u8) {
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
     let Failure { exit, error } = failure;
-    console::error(&format_args!("{error:#}"));
+    console::error(&flags::named(&format!("{error:#}")));
     if let Some(command) = as_json_of {
         console::tell(&commands::failure(command, failure));
     }

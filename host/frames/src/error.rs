@@ -143,7 +143,7 @@ pub enum DecodeError {
     #[error("the TIFF is damaged: {}; copy or export it again", tiff_damage(.0))]
     Tiff(tiff::TiffError),
     /// The file tells another arrangement of the colours than was asked for.
-    #[error("it says that its colours lie as {found}, not as {asked}; give --phase {found}")]
+    #[error("it says that its colours lie as {found}, not as {asked}; name the phase {found}")]
     OtherPhase {
         /// The file's.
         found: Phase,

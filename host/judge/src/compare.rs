@@ -95,7 +95,7 @@ impl Comparison {
 
     /// The rows that have differences, from the top.
     #[must_use]
-    pub fn differing_rows(&self) -> Vec<usize> {
+    pub(crate) fn differing_rows(&self) -> Vec<usize> {
         (0..self.by_row.len()).filter(|&row| self.by_row[row] > 0).collect()
     }
 }

@@ -172,6 +172,6 @@ fn a_recording_cannot_be_written_nowhere() {
     refused(
         &Folder::new(),
         &small("verify", &["--record", "missing/run.rec"]),
-        "name another place with --record",
+        "choose another place for the recording (--record)",
     );
 }

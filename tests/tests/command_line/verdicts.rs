@@ -110,7 +110,7 @@ fn a_run_ends_at_its_time_limit() {
     let ended = halfrow(arguments);
     assert_eq!(ended.code, Some(3));
     let headline = ended.json()["headline"].as_str().unwrap().to_owned();
-    assert!(headline.contains("the run took longer than the 20 s of --timeout"), "{headline}");
+    assert!(headline.contains("the run took longer than the 20 s of its time limit"), "{headline}");
 }
 
 #[test]

@@ -5,8 +5,8 @@ use serde::Serialize;
 
 use super::document::print_result;
 use super::{Context, Failure, print};
+use crate::exit::Exit;
 use halfrow::target::{BoardKind, Target};
-use halfrow::verdict::Exit;
 use halfrow_link::discovery::{self, Access, Answer, Found};
 use halfrow_link::kinds::{Form, KINDS};
 
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     if arguments.ask {
         for device in devices.iter_mut().filter(|device| device.is_open_to_us()) {
-            device.answer = Some(halfrow::probe(&device.target.parse()?));
+            device.answer = Some(halfrow::probe(&device.target.parse().map_err(Failure::call)?));
         }
     }
     let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();

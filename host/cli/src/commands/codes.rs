@@ -9,15 +9,15 @@ use halfrow_pipe::{FaultError, TargetError as BoardTargetError, ValueError};
 use serde_json::{Value, json};
 
 use super::document::print_result;
-use super::verify::{RECORDING_LOST, REPORT_LOST};
 use super::{Context, Failure, print};
 use crate::console::Unprinted;
+use crate::exit::Exit;
 use crate::guard::InternalError;
 use crate::serve::ServeError;
 use crate::settings::SettingsError;
 use halfrow::result::codes::{self, CodeList, Coded};
 use halfrow::result::{Problem, examples};
-use halfrow::verdict::Exit;
+use halfrow::run::{RECORDING_LOST, REPORT_LOST};
 use halfrow_lab::paper::{FolderError, PaperError, PhotographError};
 use halfrow_lab::training::TrainingError;
 

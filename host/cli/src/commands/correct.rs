@@ -16,13 +16,14 @@ use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments};
-use super::optics::{self, Chosen, LensArguments};
+use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure};
+use super::{Context, Failure, wrong_call};
+use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
+use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
-use halfrow::verdict::Exit;
 use places::{Places, Wanted};
 
 /// Correct frames with the reference model, or with a board, unjudged
@@ -70,14 +71,14 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     if !arguments.model && !arguments.board.is_named(settings) {
-        return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
+        return Err(wrong_call!("nobody is named to correct; give --model or --board TARGET"));
     }
-    let inputs = FrameName::all(&arguments.inputs)?;
+    let inputs = FrameName::all(&arguments.inputs).map_err(Failure::call)?;
     if inputs.iter().all(|input| input.file().is_none()) {
-        arguments.given.refuse_void(Decider::NoFrameFile, &[])?;
+        arguments.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
     }
     if arguments.model {
-        arguments.given.refuse_void(Decider::Model, &settings.keys())?;
+        arguments.given.refuse_void(Decider::Model, &settings.keys()).map_err(Failure::call)?;
     }
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
     let files = Files::new(arguments.overwrite)
@@ -95,9 +96,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,
     };
-    job.check()?;
-    let places = Places::of(&job.inputs, &arguments.wanted())?;
-    places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file))).check()?;
+    job.check().map_err(Failure::call)?;
+    let places = Places::of(&job.inputs, &arguments.wanted()).map_err(Failure::call)?;
+    places
+        .add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)))
+        .check()
+        .map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet || context.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {

@@ -3,10 +3,10 @@
 use clap::error::ErrorKind;
 use serde::Serialize;
 
-use super::{Failure, codes, json_text, print};
-use crate::console;
+use super::{Failure, codes, print};
+use crate::exit::Exit;
+use crate::{console, json};
 use halfrow::result::{BoardReport, Document, Problem, Schema};
-use halfrow::verdict::Exit;
 
 /// What a document has beside what all have, when a command came to no result.
 #[derive(Serialize)]
@@ -19,7 +19,8 @@ pub(super) fn result_text(
     board: Option<&BoardReport>,
     rest: impl Serialize,
 ) -> Result<String, Failure> {
-    json_text(&Document { schema: Schema, command, verdict: None, exit_code, board, error: None, rest })
+    let document = Document { schema: Schema, command, verdict: None, board, error: None, rest };
+    json::document(&document, exit_code).map_err(Failure::error)
 }
 
 /// Prints the result of a command that judges nothing, which is its only one.
@@ -71,6 +72,6 @@ pub fn usage(error: &clap::Error, arguments: &[String]) -> Option<String> {
 
 fn without_result(command: &str, exit_code: Exit, problem: &Problem) -> String {
     let (verdict, error, rest) = (exit_code.verdict(), Some(problem), Nothing {});
-    let document = Document { schema: Schema, command, verdict, exit_code, board: None, error, rest };
-    serde_json::to_string_pretty(&document).unwrap_or_default()
+    let document = Document { schema: Schema, command, verdict, board: None, error, rest };
+    json::document(&document, exit_code).unwrap_or_default()
 }

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::document::print_result;
 use super::{Context, Failure, print};
-use halfrow::verdict::Exit;
+use crate::exit::Exit;
 
 /// List the faults that the mock board can have
 ///

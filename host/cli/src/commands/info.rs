@@ -6,9 +6,9 @@ use serde_json::json;
 use super::board::BoardArguments;
 use super::document::print_result;
 use super::{Context, Failure, print};
+use crate::exit::Exit;
 use halfrow::board::{Board, Status};
 use halfrow::result::{BoardReport, Identity};
-use halfrow::verdict::Exit;
 
 /// Say what a board is, what it can do, and what it has counted
 #[derive(Debug, Args)]
@@ -20,10 +20,9 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings, None)?;
-    let failed = |error: halfrow::board::BoardError| Failure { exit: error.exit(), error: error.into() };
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
-    let status = board.status(false).map_err(failed)?;
-    board.close().map_err(failed)?;
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
+    let status = board.status(false)?;
+    board.close()?;
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);
     let report = BoardReport { kind, target: candidate.target, identity: Some(identity) };

@@ -13,12 +13,12 @@ use super::document::{print_result, tell_result};
 use super::files::Files;
 use super::inputs::file_hash;
 use super::{Context, Failure, optics, print};
+use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::frames;
 use halfrow::frames::lying;
 use halfrow::frames::preview::RgbImage;
 use halfrow::tables::KernelFile;
-use halfrow::verdict::Exit;
 use halfrow_lab::training;
 use halfrow_lab::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
 
@@ -125,14 +125,15 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 }
 
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
-    let paths = paths(&arguments.images)?;
+    let paths = paths(&arguments.images).map_err(Failure::call)?;
     // Training takes minutes, after which a refusal comes too late.
     Files::new(arguments.overwrite)
         .reads(&context.settings_file)
         .reads(&paths)
         .writes("--output", [&arguments.output])
-        .check()?;
-    let (origins, images) = photographs(&paths)?;
+        .check()
+        .map_err(Failure::call)?;
+    let (origins, images) = photographs(&paths).map_err(Failure::call)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,
         TapCount::Seven => Taps::Seven,
@@ -142,7 +143,10 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
     let trained = trained.map_err(failed)?;
-    let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
+    let file = KernelFile {
+        about: Some(about(&origins, &trained).map_err(Failure::call)?),
+        kernel: trained.kernel.clone(),
+    };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
     if context.json {
@@ -187,7 +191,7 @@ fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Va
 }
 
 fn failed(error: TrainingError) -> Failure {
-    Failure { exit: error.exit(), error: error.into() }
+    Failure { exit: error.class().into(), error: error.into() }
 }
 
 fn rounded(figure: f64) -> f64 {
@@ -204,7 +208,8 @@ fn rows(images: &[RgbImage]) -> u64 {
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let kernel = optics::kernel(&arguments.kernel)?;
-    let (_, images) = photographs(&paths(&arguments.images)?)?;
+    let (_, images) =
+        photographs(&paths(&arguments.images).map_err(Failure::call)?).map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet);
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());

@@ -8,10 +8,10 @@ use serde_json::json;
 use super::board::BoardArguments;
 use super::document::result_text;
 use super::{Context, Failure, conclude};
-use halfrow::board::{Board, BoardError};
+use crate::exit::Exit;
+use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
 use halfrow::result::{BoardReport, Identity};
-use halfrow::verdict::Exit;
 
 /// Test the link to a board: error rate, round trips, throughput each way and together
 ///
@@ -37,8 +37,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings, None)?;
-    let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
     let tested = link_test::run(&mut board, arguments.seconds, arguments.seed);
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);
@@ -46,7 +45,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         tracing::debug!("the session was not closed: {error}");
     }
     let figures = tested.map_err(|error| match error {
-        LinkTestError::Board(error) => failed(error),
+        LinkTestError::Board(error) => error.into(),
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
     let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };

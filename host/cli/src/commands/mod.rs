@@ -29,9 +29,12 @@ use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use halfrow_model::ModelPath;
 
 use crate::console;
+use crate::exit::Exit;
 use crate::settings::Settings;
+use halfrow::board::BoardError;
+use halfrow::link::OpenError;
 use halfrow::reference;
-use halfrow::verdict::Exit;
+use halfrow::run::Misfit;
 
 pub use document::{failure, usage};
 
@@ -102,16 +105,43 @@ pub struct Failure {
 }
 
 impl Failure {
+    /// A failure of the call or of its input.
+    pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Usage, error: error.into() }
+    }
+
     /// A failure that is not the caller's.
     pub fn error(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Error, error: error.into() }
     }
+
+    /// An input that is refused, as a board of another datapath is.
+    pub(crate) fn refused(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Refused, error: error.into() }
+    }
 }
 
-/// What goes wrong before a board is opened is a usage error unless it is said otherwise.
-impl<E: Into<anyhow::Error>> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self { exit: Exit::Usage, error: error.into() }
+/// A call that cannot be carried out, for a reason in words.
+macro_rules! wrong_call {
+    ($($words:tt)*) => { $crate::commands::Failure::call(anyhow::anyhow!($($words)*)) };
+}
+use wrong_call;
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        Self { exit: error.class().into(), error: error.into() }
+    }
+}
+
+impl From<BoardError> for Failure {
+    fn from(error: BoardError) -> Self {
+        Self { exit: error.cause().into(), error: error.into() }
+    }
+}
+
+impl From<Misfit> for Failure {
+    fn from(error: Misfit) -> Self {
+        Self::call(error)
     }
 }
 
@@ -156,8 +186,8 @@ impl Cli {
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
-        let settings = Settings::load(self.settings.as_deref())?;
-        let path = reference::choose(self.model_path)?;
+        let settings = Settings::load(self.settings.as_deref()).map_err(Failure::call)?;
+        let path = reference::choose(self.model_path).map_err(Failure::call)?;
         tracing::info!("the model takes the path {path}");
         let settings_file = Settings::file(self.settings.as_deref());
         let context = Context { settings, settings_file, quiet: self.quiet, json: self.json };
@@ -165,7 +195,7 @@ impl Cli {
             && matches!(self.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
         {
             let command = self.command_name();
-            return Err(anyhow::anyhow!("`halfrow {command}` has no result in JSON; leave --json out").into());
+            return Err(wrong_call!("`halfrow {command}` has no result in JSON; leave --json out"));
         }
         match &self.command {
             Command::Verify(arguments) => verify::run(arguments, &context),

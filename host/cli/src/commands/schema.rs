@@ -5,7 +5,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Failure, codes, print_json};
-use halfrow::verdict::Exit;
+use crate::exit::Exit;
 
 /// What the program prints as JSON; the codes come from the program.
 const SCHEMA: &str = include_str!("../../../schema/halfrow-1.json");
@@ -24,9 +24,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         let commands = schema["properties"]["command"]["enum"].as_array().cloned().unwrap_or_default();
         let known = commands.iter().filter_map(Value::as_str).collect::<Vec<_>>();
         let is_known = known.contains(&command.as_str());
-        is_known.then_some(()).with_context(|| {
-            format!("`{command}` is no command with a document of its own; name one of {}", known.join(", "))
-        })?;
+        is_known
+            .then_some(())
+            .with_context(|| {
+                format!(
+                    "`{command}` is no command with a document of its own; name one of {}",
+                    known.join(", ")
+                )
+            })
+            .map_err(Failure::call)?;
         schema["properties"]["command"] = json!({ "const": command });
     }
     schema["$defs"]["code"]["enum"] = codes::all().iter().map(|entry| entry["code"].clone()).collect();

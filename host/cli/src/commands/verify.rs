@@ -1,7 +1,5 @@
 //! `halfrow verify`
 
-mod recorded;
-
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,24 +7,25 @@ use std::time::Duration;
 use clap::Args;
 use clap::builder::FalseyValueParser;
 use serde::Serialize;
-use serde_json::json;
 
 use super::board::BoardArguments;
 use super::document::print_result;
 use super::files::Files;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, file_hash, frame_sources};
-use super::optics::{self, Chosen, LensArguments};
+use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, print};
+use super::{Context, Failure, print, wrong_call};
+use crate::exit::Exit;
 use crate::settings::Settings;
-use crate::{console, progress};
+use crate::{console, flags, json, progress, text};
 use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{Candidate, Lost, Recorder, Recording, RecordingFile};
-use halfrow::report::{self, ReportError, ReportFolder};
-use halfrow::result::{Problem, Report};
-use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
-use halfrow::verdict::{Exit, Verdict};
+use halfrow::optics::Chosen;
+use halfrow::report::ReportFolder;
+use halfrow::run::{
+    self, Circumstances, Finished, FrameSource, Lack, Plan, RecordedRun, RestoreError, RunOptions, Timing,
+};
 
 /// Judge a board: stream frames through it and compare every sample with the reference
 ///
@@ -80,15 +79,10 @@ pub(super) struct Arguments {
     lens: LensArguments,
 }
 
-/// A recording that was asked for and is not there.
-pub(super) const RECORDING_LOST: &str = "recording-lost";
-/// A report that was asked for and is not there.
-pub(super) const REPORT_LOST: &str = "report-lost";
-
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
-    let (plan, circumstances) = arguments.planned(recording.as_ref(), settings)?;
+    let (plan, options) = arguments.planned(recording.as_ref(), settings)?;
     if arguments.list {
         arguments.board.candidate_of(settings, recording)?;
         return list(&plan, context.json);
@@ -97,36 +91,32 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let mut candidate = arguments.board.candidate_of(settings, recording)?;
     let mut lost = Lost::default();
     if let Some(file) = outputs.recording {
-        let run = recorded::RecordedRun::of(&plan, &circumstances);
+        let run = RecordedRun::of(&plan, &options);
         let link = Recorder::begin(candidate.link, file, &run).map_err(Failure::error)?;
         lost = link.lost();
         candidate = Candidate { link: Box::new(link), ..candidate };
     }
-    let stop = arguments.board.stop(settings, plan.timeout)?;
     let watched = progress::for_stderr(context.quiet || context.json);
-    let mut finished = run::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
-    if finished.report.exit_code == Exit::Usage {
-        // The call does not fit the board: there is no verdict, and so nothing to report on.
-        return Err(finished.report.finding.as_problem().into());
-    }
+    let mut finished = run::verify(&plan, candidate, &options, watched.as_ref())?;
     if let Some(error) = lost.get() {
-        let what = Problem::new(RECORDING_LOST, "the recording could not be written");
-        // Its sentence says what its own causes do.
-        let causes = vec![Problem { causes: Vec::new(), ..Problem::of(error) }];
-        lose(&mut finished.report, Problem { causes, ..what }, ANOTHER_RECORDING);
+        tell(&finished.lose_recording(error));
     }
-    if let Some(folder) = outputs.report {
-        write_report(folder, &mut finished);
+    if let Some(Err(lack)) = outputs.report.map(|folder| finished.commit(folder)) {
+        tell(&lack);
     }
     conclude(&finished, context.json)
 }
 
-fn write_report(folder: ReportFolder, finished: &mut Finished) {
-    if let Err(error) = folder.commit(&finished.report, &finished.evidence) {
-        let remedy = if matches!(error, ReportError::Exists { .. }) { ANOTHER_REPORT } else { ROOM };
-        let what = Problem::new(REPORT_LOST, "the report could not be written");
-        let causes = Problem::of(&error).chain();
-        lose(&mut finished.report, Problem { causes, ..what }, remedy);
+/// Says what a verdict that stands lacks.
+fn tell(lack: &Lack) {
+    if !lack.is_told {
+        console::error(&flags::named(&lack.to_string()));
+    }
+}
+
+impl From<RestoreError> for Failure {
+    fn from(error: RestoreError) -> Self {
+        if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
     }
 }
 
@@ -136,29 +126,14 @@ struct Outputs {
     recording: Option<RecordingFile>,
 }
 
-const ROOM: &str = "Free some space or choose another place with --report, then run again.";
-const ANOTHER_REPORT: &str = "Name another folder with --report, or give --overwrite, then run again.";
-const ANOTHER_RECORDING: &str = "Free some space or choose another place with --record, then run again.";
-
-/// A PASS whose files could not be written is none. Any other verdict stands, and stderr says what it lacks.
-fn lose(report: &mut Report, what: Problem, remedy: &str) {
-    if report.verdict != Verdict::Pass {
-        console::error(&what);
-        return;
-    }
-    report.finding = Problem { remedy: Some(remedy.to_owned()), ..what }.into();
-    report.verdict = Verdict::Error;
-    report.exit_code = Exit::Error;
-}
-
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
     let report = &finished.report;
     if as_json {
-        console::tell(&report::json(report).map_err(Failure::error)?);
+        console::tell(&json::report(report).map_err(Failure::error)?);
     } else {
-        console::tell(report::text(report).trim_end());
+        console::tell(text::render(report).trim_end());
     }
-    Ok(report.exit_code)
+    Ok(report.cause.into())
 }
 
 /// A frame that would be streamed.
@@ -174,7 +149,7 @@ struct Listed {
 fn list(plan: &Plan, as_json: bool) -> Result<Exit, Failure> {
     let listed = listing(plan);
     if as_json {
-        print_result("verify", Exit::Pass, None, json!({ "listed": listed }))?;
+        print_result("verify", Exit::Pass, None, serde_json::json!({ "listed": listed }))?;
         return Ok(Exit::Pass);
     }
     let line = |Listed { number, name, tables, timing }: &Listed| {
@@ -206,25 +181,27 @@ impl Arguments {
         &self,
         recording: Option<&Recording>,
         settings: &Settings,
-    ) -> Result<(Plan, Circumstances), Failure> {
-        let (plan, circumstances) = match recording {
+    ) -> Result<(Plan, RunOptions), Failure> {
+        let (plan, options) = match recording {
             Some(recording) => {
-                self.given.refuse_void(Decider::Recording, &settings.keys())?;
-                recorded::restore(recording, self.requires_hardware(settings), self.has_report(settings))?
+                self.given.refuse_void(Decider::Recording, &settings.keys()).map_err(Failure::call)?;
+                let (plan, options) = RecordedRun::restore(recording)?;
+                let require_hardware = self.requires_hardware(settings);
+                (plan, RunOptions { require_hardware, stop: self.board.stop(settings)?, ..options })
             }
             None => self.plan(settings)?,
         };
         self.board.check_fault(settings, &plan)?;
-        plan.check_length()?;
-        Ok((plan, circumstances))
+        plan.check_length().map_err(Failure::call)?;
+        Ok((plan, options))
     }
 
     /// What the options say is to be streamed, and where it comes from.
-    fn plan(&self, settings: &Settings) -> Result<(Plan, Circumstances), Failure> {
-        let frames = FrameName::all(&self.frame_names(settings))?;
+    fn plan(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
+        let frames = FrameName::all(&self.frame_names(settings)).map_err(Failure::call)?;
         let files: Vec<_> = frames.iter().filter_map(FrameName::file).map(PathBuf::from).collect();
         if files.is_empty() {
-            self.given.refuse_void(Decider::NoFrameFile, &[])?;
+            self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
         }
         let lens = self.lens.file().map(PathBuf::from);
         // Each file is hashed, too.
@@ -232,48 +209,51 @@ impl Arguments {
             .iter()
             .chain(&lens)
             .chain(self.tables.path(settings))
-            .try_for_each(|path| check_regular(path))?;
+            .try_for_each(|path| check_regular(path))
+            .map_err(Failure::call)?;
         let tables = self.tables.read(&self.given, &self.lens, settings)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
+        let table_file = tables.as_ref().map(|tables| tables.path.clone());
         let chosen = optics::choose(tables, &self.lens, kernel)?;
-        let table_file = chosen.file.clone();
         let plan = self.plan_of(chosen, frames, settings)?;
         let files = table_file.iter().chain(&lens).chain(&files);
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
-            files: files.map(|path| file_hash(path)).collect::<Result<_, _>>()?,
+            files: files.map(|path| file_hash(path)).collect::<Result<_, _>>().map_err(Failure::call)?,
             draws: run::Draws::draw(),
         };
-        Ok((plan, circumstances))
+        Ok((plan, self.options(circumstances, settings)?))
     }
 
     fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, settings: &Settings) -> Result<Plan, Failure> {
         let geometry = chosen.tables.geometry();
-        chosen.tables.check_ring(geometry.width().next_power_of_two())?;
+        chosen.tables.check_ring(geometry.width().next_power_of_two()).map_err(Failure::call)?;
         let how = self.input.read_options(geometry, self.lens.phase);
         let frames = if frames.is_empty() {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
-            frame_sources(frames, &how, geometry)?
+            frame_sources(frames, &how, geometry).map_err(Failure::call)?
         };
         Ok(Plan {
-            lens: chosen.optics.lens,
-            centre_y: chosen.optics.centre_y,
-            phase: self.lens.phase,
-            tables: chosen.tables,
-            kernel: chosen.kernel,
-            tables_source: chosen.source,
-            rows_outside_circle: chosen.rows_outside_circle,
             frames,
             repeat: self.repeat,
             fail_fast: self.fail_fast,
-            require_hardware: self.requires_hardware(settings),
-            take_over: self.board.take_over,
             seed: self.seed.or(settings.seed).unwrap_or(1),
+            ..chosen.plan(self.lens.phase)
+        })
+    }
+
+    fn options(&self, circumstances: Circumstances, settings: &Settings) -> Result<RunOptions, Failure> {
+        Ok(RunOptions {
             timeout: self.board.timeout(settings)?,
+            stop: self.board.stop(settings)?,
             retry_limit: self.board.retry_limit(settings),
             reconnect: self.patience(settings)?,
-            keep_pictures: self.has_report(settings),
+            take_over: self.board.take_over,
+            require_hardware: self.requires_hardware(settings),
+            keep_equal: self.has_report(settings),
+            circumstances,
+            ..RunOptions::default()
         })
     }
 
@@ -281,7 +261,7 @@ impl Arguments {
     fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.reconnect.or(settings.reconnect).filter(|_| self.record.is_none());
         let patience = seconds.map(Duration::try_from_secs_f64).transpose();
-        patience.map_err(|_| anyhow::anyhow!("--reconnect takes a number of seconds, 0 or more").into())
+        patience.map_err(|_| wrong_call!("--reconnect takes a number of seconds, 0 or more"))
     }
 
     /// Looks at all that is read and written, and takes the places of what is written.
@@ -296,20 +276,26 @@ impl Arguments {
             .reads(self.board.replayed(settings)?)
             .writes("--record", &self.record)
             .writes_report("--report", report)
-            .check()?;
+            .check()
+            .map_err(Failure::call)?;
         Ok(Outputs {
-            report: report.map(|path| ReportFolder::prepare(path, overwrite)).transpose()?,
+            report: report
+                .map(|path| ReportFolder::prepare(path, overwrite))
+                .transpose()
+                .map_err(Failure::call)?
+                .map(|folder| folder.with_json(json::report)),
             recording: self
                 .record
                 .as_ref()
                 .map(|path| RecordingFile::prepare(path, overwrite))
-                .transpose()?,
+                .transpose()
+                .map_err(Failure::call)?,
         })
     }
 
     /// Tables, lens and frames that are files.
     fn input_files(&self, settings: &Settings) -> Result<Vec<PathBuf>, Failure> {
-        let frames = FrameName::all(&self.frame_names(settings))?;
+        let frames = FrameName::all(&self.frame_names(settings)).map_err(Failure::call)?;
         let frames = frames.iter().filter_map(FrameName::file).map(PathBuf::from);
         let tables = self.tables.path(settings).map(PathBuf::from);
         Ok(tables.into_iter().chain(self.lens.file().map(PathBuf::from)).chain(frames).collect())

@@ -10,7 +10,6 @@ use quick_junit::{
     TestSuite,
 };
 
-use super::text;
 use super::wording::{self, plain};
 use crate::result::{Check, FrameReport, Outcome, Report, Suspect};
 use crate::verdict::Verdict;
@@ -29,7 +28,7 @@ pub fn render(report: &Report) -> Result<String, SerializeError> {
     for (name, value) in properties(report) {
         suite.add_property(Property::new(name, plain(&value)));
     }
-    suite.set_system_out(text::render(report));
+    suite.set_system_out(wording::summary(report));
     suite.add_test_case(verdict_case(report));
     suite.add_test_cases(report.checks.iter().map(check_case));
     suite.add_test_cases(report.frames.iter().map(|frame| frame_case(report, frame)));
@@ -54,7 +53,7 @@ fn without_skipped(document: &str) -> String {
 fn properties(report: &Report) -> Vec<(&'static str, String)> {
     let mut list = vec![
         ("verdict", report.verdict.to_string()),
-        ("exit_code", report.exit_code.code().to_string()),
+        ("cause", report.cause.to_string()),
         ("board.kind", report.board.kind.to_string()),
         ("board.target", report.board.target.clone()),
         ("halfrow.version", report.run.version.clone()),

@@ -5,13 +5,11 @@ mod html;
 mod json;
 mod junit;
 mod pictures;
-mod text;
-mod wording;
+pub mod wording;
 
 pub use folder::check as check_folder;
-pub use folder::{ReportError, ReportFolder};
+pub use folder::{JsonView, ReportError, ReportFolder};
 pub use html::document;
 pub use html::render as html;
 pub use json::render as json;
 pub use junit::render as junit;
-pub use text::render as text;

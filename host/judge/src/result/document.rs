@@ -1,9 +1,9 @@
-//! What every JSON document of the program begins with.
+//! What every JSON document begins with.
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 use super::{BoardReport, Problem};
-use crate::verdict::{Exit, Verdict};
+use crate::verdict::Verdict;
 
 /// The number of the present shape of all documents. It rises when a key goes or changes its meaning; keys may come.
 pub const SCHEMA: u32 = 1;
@@ -38,8 +38,6 @@ pub struct Document<'a, T> {
     pub command: &'a str,
     /// The judgement; none where nothing was to be judged.
     pub verdict: Option<Verdict>,
-    /// The exit code.
-    pub exit_code: Exit,
     /// The board, if one was used.
     pub board: Option<&'a BoardReport>,
     /// Why there is no result; none where there is one.

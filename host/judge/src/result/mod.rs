@@ -29,14 +29,14 @@ pub mod wording;
 use serde::{Deserialize, Serialize};
 
 use crate::frames::street::EdgeDeviation;
-use crate::verdict::{Exit, Verdict};
+use crate::verdict::{Cause, Verdict};
 
 pub use crate::target::BoardKind;
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use defect::{ClampEnd, Counting, Defect, Extent, MadeWith, Memory, Reading, RowSource, StaleFrames};
 pub use document::{Document, SCHEMA, Schema};
-pub use evidence::Evidence;
+pub use evidence::{Evidence, EvidenceReport};
 pub use finding::{Doubt, Finding};
 pub use frames::{FrameReport, FrameTiming, LatencyReport};
 pub use identity::Identity;
@@ -52,10 +52,10 @@ pub struct Report {
     pub schema: Schema,
     /// The judgement.
     pub verdict: Verdict,
-    /// The exit code that goes with it.
-    pub exit_code: Exit,
     /// The board.
     pub board: BoardReport,
+    /// Why the verdict is what it is.
+    pub cause: Cause,
     /// The result.
     pub finding: Finding,
     /// The parts that the pattern of differences points at, the likeliest first.
@@ -68,6 +68,8 @@ pub struct Report {
     pub latency: Option<LatencyReport>,
     /// How façade edges of the built-in street stand before and after.
     pub street: Option<StreetReport>,
+    /// What was kept for diagnosis and pictures.
+    pub evidence: EvidenceReport,
     /// The link.
     pub link: LinkReport,
     /// What was uploaded.
@@ -108,6 +110,7 @@ impl Serialize for Report {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         #[derive(Serialize)]
         struct Rest<'a> {
+            cause: Cause,
             headline: String,
             remedy: Option<String>,
             finding: &'a Finding,
@@ -116,11 +119,13 @@ impl Serialize for Report {
             frames: &'a [FrameReport],
             latency: &'a Option<LatencyReport>,
             street: &'a Option<StreetReport>,
+            evidence: &'a EvidenceReport,
             link: &'a LinkReport,
             tables: &'a TablesReport,
             run: &'a RunReport,
         }
         let rest = Rest {
+            cause: self.cause,
             headline: self.headline(),
             remedy: self.remedy(),
             finding: &self.finding,
@@ -129,6 +134,7 @@ impl Serialize for Report {
             frames: &self.frames,
             latency: &self.latency,
             street: &self.street,
+            evidence: &self.evidence,
             link: &self.link,
             tables: &self.tables,
             run: &self.run,
@@ -137,7 +143,6 @@ impl Serialize for Report {
             schema: self.schema,
             command: "verify",
             verdict: Some(self.verdict),
-            exit_code: self.exit_code,
             board: Some(&self.board),
             error: self.error().as_ref(),
             rest,

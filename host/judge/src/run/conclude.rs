@@ -4,17 +4,17 @@ use jiff::Timestamp;
 
 use super::findings::{End, Findings};
 use super::judge::{STREET, Seen};
-use super::{Circumstances, Finished, Plan};
+use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::frames::street;
 use crate::result::{
     Check, CheckName, Finding, LinkReport, Outcome, Report, RunReport, Schema, StreetReport, Suspect,
     TablesReport,
 };
-use crate::verdict::{Exit, Verdict};
+use crate::verdict::Cause;
 
 /// How the run ended.
 struct Ending {
-    exit: Exit,
+    cause: Cause,
     finding: Finding,
     suspects: Vec<Suspect>,
 }
@@ -23,18 +23,17 @@ pub(super) fn conclude(
     plan: &Plan,
     mut findings: Findings,
     end: Option<End>,
-    circumstances: &Circumstances,
+    options: &RunOptions,
     started: Timestamp,
 ) -> Finished {
     let ending = ending(&mut findings, end);
     skip_the_rest(&mut findings.checks);
     let street = street(plan, &findings.seen);
-    let ended = Timestamp::now();
-    let verdict = ending.exit.verdict().unwrap_or(Verdict::Error);
+    let (evidence, evidence_report) = findings.seen.evidence.finish();
     let report = Report {
         schema: Schema,
-        verdict,
-        exit_code: ending.exit,
+        verdict: ending.cause.verdict(),
+        cause: ending.cause,
         board: findings.board,
         finding: ending.finding,
         suspects: ending.suspects,
@@ -42,6 +41,7 @@ pub(super) fn conclude(
         frames: findings.seen.frames,
         latency: findings.seen.latency,
         street,
+        evidence: evidence_report,
         link: LinkReport {
             bytes_out: findings.tally.bytes_out,
             bytes_in: findings.tally.bytes_in,
@@ -55,19 +55,24 @@ pub(super) fn conclude(
             ..findings.link
         },
         tables: tables(plan),
-        run: RunReport {
-            version: env!("CARGO_PKG_VERSION").to_owned(),
-            commit: crate::COMMIT.to_owned(),
-            arguments: circumstances.arguments.clone(),
-            seed: plan.seed,
-            started: format!("{started:.0}"),
-            ended: format!("{ended:.0}"),
-            seconds: ended.duration_since(started).as_secs_f64(),
-            host: host_name(),
-            files: circumstances.files.clone(),
-        },
+        run: run(plan, &options.circumstances, started),
     };
-    Finished { report, evidence: findings.seen.evidence }
+    Finished { report, evidence }
+}
+
+fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunReport {
+    let ended = Timestamp::now();
+    RunReport {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: crate::COMMIT.to_owned(),
+        arguments: circumstances.arguments.clone(),
+        seed: plan.seed,
+        started: format!("{started:.0}"),
+        ended: format!("{ended:.0}"),
+        seconds: ended.duration_since(started).as_secs_f64(),
+        host: host_name(),
+        files: circumstances.files.clone(),
+    }
 }
 
 fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
@@ -76,11 +81,11 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
     }
     match end {
         None if findings.seen.samples() == 0 => {
-            Ending { exit: Exit::NothingJudged, finding: Finding::NothingJudged {}, suspects: Vec::new() }
+            Ending { cause: Cause::NothingJudged, finding: Finding::NothingJudged {}, suspects: Vec::new() }
         }
-        None => Ending { exit: Exit::Pass, finding: pass(findings), suspects: Vec::new() },
-        Some(End::Failed { finding, suspects, .. }) => Ending { exit: Exit::Fail, finding, suspects },
-        Some(End::Error { exit, finding, .. }) => Ending { exit, finding, suspects: Vec::new() },
+        None => Ending { cause: Cause::Equal, finding: pass(findings), suspects: Vec::new() },
+        Some(End::Failed { finding, suspects, .. }) => Ending { cause: Cause::Different, finding, suspects },
+        Some(End::Error { cause, finding, .. }) => Ending { cause, finding, suspects: Vec::new() },
     }
 }
 

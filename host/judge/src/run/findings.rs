@@ -4,12 +4,12 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use super::judge::Seen;
-use super::{Candidate, Plan};
+use super::{Candidate, Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
     BoardReport, Check, CheckName, Finding, Identity, LinkReport, Outcome, Problem, Suspect,
 };
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// Why a run ended before its last step, or with a board that is wrong.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub(super) enum End {
     /// The board is wrong.
     Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
     /// It could not be judged.
-    Error { check: CheckName, exit: Exit, finding: Finding, unreachable: bool, outage: bool },
+    Error { check: CheckName, cause: Cause, finding: Finding, unreachable: bool, outage: bool },
 }
 
 impl End {
@@ -25,12 +25,12 @@ impl End {
     pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
         let unreachable =
             matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
-        let (exit, finding, outage) = (error.exit(), Problem::of(error).into(), error.is_outage());
-        Self::Error { check, exit, finding, unreachable, outage }
+        let (cause, finding, outage) = (error.cause(), Problem::of(error).into(), error.is_outage());
+        Self::Error { check, cause, finding, unreachable, outage }
     }
 
-    pub(super) fn error(check: CheckName, exit: Exit, finding: impl Into<Finding>) -> Self {
-        Self::Error { check, exit, finding: finding.into(), unreachable: false, outage: false }
+    pub(super) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
+        Self::Error { check, cause, finding: finding.into(), unreachable: false, outage: false }
     }
 
     pub(super) fn failed(check: CheckName, finding: Finding) -> Self {
@@ -75,13 +75,15 @@ pub(super) struct Findings {
     pub(super) earlier: Earlier,
     /// Rows that the board should have counted since it was greeted.
     pub(super) rows_counted: usize,
+    /// Why the board cannot have what the plan uploads.
+    pub(super) misfit: Option<Misfit>,
 }
 
 impl Findings {
-    pub(super) fn new(plan: &Plan, candidate: &Candidate) -> Self {
+    pub(super) fn new(options: &RunOptions, candidate: &Candidate) -> Self {
         let link = LinkReport {
             name: candidate.link.name(),
-            retry_limit: plan.retry_limit.of(0),
+            retry_limit: options.retry_limit.of(0),
             ..LinkReport::default()
         };
         Self {
@@ -94,6 +96,7 @@ impl Findings {
             link,
             earlier: Earlier::default(),
             rows_counted: 0,
+            misfit: None,
         }
     }
 

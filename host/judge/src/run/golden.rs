@@ -47,11 +47,11 @@ const FRAME_CRCS: [(Interpolant, u32); 2] =
 /// This computer cannot judge.
 #[derive(Debug, thiserror::Error)]
 #[error("this computer cannot judge; rebuild halfrow, and if that does not help, test the computer's memory")]
-pub struct CannotJudge(#[from] pub GoldenError);
+pub(crate) struct CannotJudge(#[from] pub GoldenError);
 
 /// A golden value that was missed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum GoldenError {
+pub(crate) enum GoldenError {
     /// What they are compared with cannot be made.
     #[error("the golden {what} cannot be made")]
     Unmade {
@@ -110,7 +110,7 @@ fn frame(width: usize, height: usize) -> Option<Frame> {
 ///
 /// # Errors
 /// [`GoldenError`], which says which golden value was missed.
-pub fn judge_the_judge() -> Result<usize, GoldenError> {
+pub(crate) fn judge_the_judge() -> Result<usize, GoldenError> {
     let mut samples = 0;
     for golden in &ROWS {
         samples += judge_row(golden)?;

@@ -8,6 +8,7 @@ use std::time::Instant;
 
 use halfrow_model::Frame;
 
+use super::kept::Kept;
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
@@ -18,7 +19,7 @@ use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LatencyReport};
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) frames: Vec<FrameReport>,
-    pub(super) evidence: Vec<Evidence>,
+    pub(super) evidence: Kept,
     pub(super) latency: Option<LatencyReport>,
     /// The first row that names other tables than it should.
     pub(super) wrong_generation: Option<Finding>,
@@ -55,7 +56,7 @@ impl Seen {
     }
 }
 
-/// Always kept: the report measures its façades.
+/// Kept even if it is equal: the report measures its façades.
 pub(super) const STREET: &str = "builtin:street";
 
 /// How strict, and what to keep.
@@ -63,10 +64,10 @@ pub(super) struct Manner {
     pub(super) claimed_latency: u32,
     pub(super) latency_limit: u32,
     pub(super) fail_fast: bool,
-    /// Frames kept for pictures although they are equal.
-    pub(super) pictures: usize,
-    /// Frames that differ kept for diagnosis.
-    pub(super) differing: usize,
+    /// Keep frames for pictures although they are equal.
+    pub(super) keep_equal: bool,
+    /// Bytes of frames that are kept, at most.
+    pub(super) evidence_bytes: usize,
     /// Board clocks that gaps keep each row of a frame waiting.
     pub(super) pauses: Vec<u16>,
 }
@@ -181,20 +182,18 @@ impl<'a> Judge<'a> {
     fn conclude(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
-        let differs = comparison.differences > 0;
-        let kept = self.seen.evidence.len();
-        let differing =
-            self.seen.evidence.iter().filter(|evidence| evidence.found != evidence.expected).count();
-        let wanted = match differs {
-            true => differing < self.manner.differing,
-            false => kept < self.manner.pictures || name == STREET,
-        };
-        if wanted && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found) {
+        let (differs, height) = (comparison.differences > 0, expected.height());
+        let (is_street, budget) = (name == STREET, self.manner.evidence_bytes);
+        let is_wanted = differs || self.manner.keep_equal || is_street;
+        if is_wanted
+            && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found)
+        {
             let index = self.seen.frames.len();
             let (input, expected) = ((*input).clone(), (*expected).clone());
-            self.seen.evidence.push(Evidence { index, input, found, expected });
+            self.seen.evidence.offer(Evidence { index, input, found, expected }, is_street, budget);
         }
         let now = Instant::now();
+        let comparison = self.seen.evidence.shorten(comparison, rows >= height, budget);
         self.seen.frames.push(FrameReport {
             name,
             number,
@@ -309,8 +308,8 @@ mod tests {
             claimed_latency: 44,
             latency_limit: 64,
             fail_fast: false,
-            pictures: 0,
-            differing: 0,
+            keep_equal: false,
+            evidence_bytes: 0,
             pauses: vec![0; HEIGHT],
         };
         let mut judge =

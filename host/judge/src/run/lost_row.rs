@@ -14,7 +14,7 @@ use super::plan::ScheduledFrame;
 use super::steps::Run;
 use crate::board::{BoardError, NumberedFrame, Status, Tally, Unjudged, Unreturned};
 use crate::result::{CheckName, Finding};
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// How often a frame is played again until nothing else is amiss.
 const REPLAYS: usize = 4;
@@ -37,7 +37,7 @@ impl Run<'_> {
     /// Why the run ends when the row at `place` of `frame` did not come back however often it was asked for.
     pub(super) fn row_lost(&mut self, frame: &ScheduledFrame, place: RowPlace) -> End {
         let RowPlace { frame: number, row: lost, .. } = place;
-        let unclear = |finding| End::error(CheckName::Frames, Exit::Error, finding);
+        let unclear = |finding| End::error(CheckName::Frames, Cause::Station, finding);
         for _ in 0..REPLAYS {
             match self.replay(frame) {
                 Err(error) => return End::board(CheckName::Frames, &error),

@@ -40,7 +40,9 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
     generations: Vec<Generation>,
 ) -> Receiver<Result<Prepared, PrepareError>> {
     let (sender, receiver) = sync_channel(1);
+    let span = tracing::Span::current();
     scope.spawn(move || {
+        let _entered = span.entered();
         let mut frames = schedule.iter().flat_map(|segment| &segment.frames);
         // Behind a frame that cannot be made no other is sent.
         let _ = frames.try_for_each(|frame| {

@@ -7,10 +7,10 @@ use super::findings::{End, Findings};
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{Board, BoardError, NumberedFrame, OpenOptions, Unjudged};
-use crate::link::{self, Link};
+use crate::link::{Link, Reopener};
+use crate::progress::Step;
 use crate::result::{CheckName, Finding, Problem, Reconnection};
-use crate::target::Target;
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// More often than this it is a loose contact, and waiting does not mend it.
 const MOST: usize = 16;
@@ -19,7 +19,8 @@ const TICK: Duration = Duration::from_millis(100);
 
 /// How a board is opened, for the first time and again.
 pub(super) struct WayBack {
-    pub(super) target: String,
+    /// Opens the link again; none if it cannot be.
+    pub(super) reopen: Option<Reopener>,
     /// How long a board may stay away; none if the run ends when it goes.
     pub(super) patience: Option<Duration>,
     pub(super) options: OpenOptions,
@@ -27,14 +28,14 @@ pub(super) struct WayBack {
 
 impl WayBack {
     /// Opens the board behind `link`, or behind the next one if that breaks.
-    pub(super) fn open(&self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
+    pub(super) fn open(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
         let (error, tally) = match Board::open(link, &self.options) {
             Ok(board) => return Ok(board),
             Err(failed) => failed,
         };
         findings.tally = tally;
         let end = End::board(CheckName::Identity, &error);
-        match (&error, self.patience) {
+        match (&error, self.patience()) {
             (BoardError::Link { .. }, Some(patience)) if end.is_outage() => {
                 self.open_again(patience, &end, findings)
             }
@@ -43,8 +44,8 @@ impl WayBack {
     }
 
     /// Waits for the board, which was lost with `end`, and opens it.
-    fn open_again(&self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
-        let End::Error { check, exit, finding, .. } = end else { return Err(end.clone()) };
+    fn open_again(&mut self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
+        let End::Error { check, cause, finding, .. } = end else { return Err(end.clone()) };
         let reason = finding.as_problem();
         tracing::warn!(
             "{}; waiting {} s for the board to come back",
@@ -65,7 +66,7 @@ impl WayBack {
                 let seconds = patience.as_secs_f64();
                 return Err(End::error(
                     *check,
-                    *exit,
+                    *cause,
                     Finding::BoardStayedAway { reason: Box::new(reason), seconds },
                 ));
             }
@@ -73,9 +74,14 @@ impl WayBack {
         }
     }
 
-    fn try_open(&self, spent: Duration, times: usize) -> Option<Board> {
-        let candidate = self.target.parse().ok().map(|target: Target| link::open(&target))?;
-        let link = candidate.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?.link;
+    /// How long a board may stay away that can be opened again.
+    fn patience(&self) -> Option<Duration> {
+        self.patience.filter(|_| self.reopen.is_some())
+    }
+
+    fn try_open(&mut self, spent: Duration, times: usize) -> Option<Board> {
+        let link = self.reopen.as_mut()?();
+        let link = link.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?;
         // A board that never lost power must not take this for the greeting that it has answered.
         let nonce = self.options.nonce.wrapping_add(1 + times as u32);
         let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
@@ -107,10 +113,10 @@ impl Run<'_> {
 
     fn come_back(&mut self, end: End) -> Result<(), End> {
         let again = self.findings.link.reconnections.len() < MOST;
-        let Some(patience) = self.way_back.patience.filter(|_| end.is_outage() && again) else {
+        let Some(patience) = self.way_back.patience().filter(|_| end.is_outage() && again) else {
             return Err(end);
         };
-        self.progress.step("waiting for the board to come back");
+        self.progress.step(Step::WaitForTheBoard);
         self.findings.keep_counts(self.board);
         // What is left of the old link would keep the new one from being opened.
         self.board.hang_up();
@@ -122,7 +128,7 @@ impl Run<'_> {
         if is_same {
             return Ok(());
         }
-        Err(End::error(CheckName::Identity, Exit::Refused, Finding::BoardExchanged {}))
+        Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}))
     }
 
     /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
@@ -137,8 +143,8 @@ impl Run<'_> {
         if next.is_none() || later.is_some() {
             // Tables become the active ones when a frame enters.
             let rendered = self.plan.render(frame);
-            let rendered =
-                rendered.map_err(|error| End::error(CheckName::Frames, Exit::Error, Problem::of(&error)))?;
+            let rendered = rendered
+                .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
             self.findings.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
             let played = self.board.stream(&mut Unjudged(iter::once(played)));

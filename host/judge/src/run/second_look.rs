@@ -7,8 +7,9 @@ use super::findings::End;
 use super::judge::Seen;
 use super::steps::Run;
 use crate::board::OpenOptions;
+use crate::progress::Step;
 use crate::result::{CheckName, Doubt, Finding};
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// How often it is all done again until no request comes to the board twice.
 const LOOKS: u32 = 3;
@@ -23,7 +24,7 @@ impl Run<'_> {
             let Some(doubt) = self.doubt(&failed) else { return Err(failed) };
             let (_, _, found) = failed.check();
             tracing::warn!("{}; looking again, since {}", found.sentence(), doubt.sentence());
-            self.progress.step("looking again, in a session of its own");
+            self.progress.step(Step::LookAgain);
             let nonce = self.way_back.options.nonce.wrapping_add(NONCE + look);
             let options = OpenOptions { nonce, ..self.way_back.options.clone() };
             self.board.greet_again(&options).map_err(|error| End::board(CheckName::Link, &error))?;
@@ -34,7 +35,7 @@ impl Run<'_> {
                 Ok(()) => {
                     let (check, _, found) = failed.check();
                     let finding = Finding::RightInAnotherSession { found: Box::new(found.clone()), doubt };
-                    return Err(End::error(check, Exit::Error, finding));
+                    return Err(End::error(check, Cause::Station, finding));
                 }
             }
         }
@@ -43,7 +44,7 @@ impl Run<'_> {
             Some(doubt) => {
                 let (check, _, found) = failed.check();
                 let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found.clone()), doubt };
-                Err(End::error(check, Exit::Error, finding))
+                Err(End::error(check, Cause::Station, finding))
             }
         }
     }

@@ -3,23 +3,22 @@
 use std::sync::mpsc::Receiver;
 use std::thread;
 
-use halfrow_model::{Kernel, TableError, TableSet, Taps};
-use halfrow_protocol::message::BoardNature;
-
 use super::findings::{End, Findings};
 use super::golden::{self, CannotJudge};
 use super::legal::impossible;
+use super::misfit::misfit;
+use super::options::RunOptions;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
-use crate::board::{Board, Capabilities};
-use crate::progress::Progress;
+use crate::board::Board;
+use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, Problem};
 use crate::tables::DATAPATH;
 use crate::target::BoardKind;
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// The largest L that a board may have.
 pub(super) const MAX_LATENCY: u8 = 32;
@@ -29,7 +28,8 @@ pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
     pub(super) board: &'a mut Board,
     pub(super) generations: Vec<Generation>,
-    pub(super) way_back: &'a WayBack,
+    pub(super) options: &'a RunOptions,
+    pub(super) way_back: &'a mut WayBack,
     pub(super) progress: &'a dyn Progress,
     pub(super) findings: &'a mut Findings,
 }
@@ -41,7 +41,7 @@ pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
             findings.passed(CheckName::Judge, Finding::GoldenSamplesFound { samples, path });
             Ok(())
         }
-        Err(what) => Err(End::error(CheckName::Judge, Exit::Error, Problem::of(&CannotJudge(what)))),
+        Err(what) => Err(End::error(CheckName::Judge, Cause::Station, Problem::of(&CannotJudge(what)))),
     }
 }
 
@@ -62,7 +62,7 @@ impl Run<'_> {
         let (plan, generations) = (self.plan, self.generations.clone());
         thread::scope(|scope| {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
-            self.progress.step("testing the link");
+            self.progress.step(Step::TestTheLink);
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.conclude(last)
@@ -101,19 +101,24 @@ impl Run<'_> {
     }
 
     fn identity(&mut self) -> Result<(), End> {
-        let error = |exit, finding: Finding| Err(End::error(CheckName::Identity, exit, finding));
+        let error = |cause, finding: Finding| Err(End::error(CheckName::Identity, cause, finding));
         let datapath = self.board.capabilities.datapath;
         if datapath != DATAPATH {
-            return error(Exit::Refused, Finding::DatapathUnknown { datapath, known: DATAPATH });
+            return error(Cause::Refused, Finding::DatapathUnknown { datapath, known: DATAPATH });
         }
         if let Some(impossible) = impossible(&self.board.capabilities) {
-            return error(Exit::Refused, impossible);
+            return error(Cause::Refused, impossible);
         }
-        if self.plan.require_hardware && self.findings.board.kind != BoardKind::Hardware {
-            return error(Exit::NothingJudged, Finding::HardwareRequired { board: self.findings.board.kind });
+        if self.options.require_hardware && self.findings.board.kind != BoardKind::Hardware {
+            return error(
+                Cause::NothingJudged,
+                Finding::HardwareRequired { board: self.findings.board.kind },
+            );
         }
         if let Some(misfit) = misfit(&self.plan.tables, &self.plan.kernel, &self.board.capabilities) {
-            return error(Exit::Usage, Problem::of(&misfit).into());
+            let end = error(Cause::Refused, Problem::of(&misfit).into());
+            self.findings.misfit = Some(misfit);
+            return end;
         }
         let (name, wire) = (self.board.capabilities.name.clone(), self.board.welcome.version);
         self.findings.passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath });
@@ -136,63 +141,4 @@ impl Run<'_> {
         self.findings.passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });
         Ok(())
     }
-}
-
-/// Why a board cannot have tables or a kernel.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum Misfit {
-    /// The frames are too large.
-    #[error(
-        "frames of {width} x {height} do not fit the board, which takes {most_width} x {most_height} at most; {remedy}"
-    )]
-    Size {
-        /// Columns of the frames.
-        width: usize,
-        /// Rows.
-        height: usize,
-        /// The board's most columns.
-        most_width: usize,
-        /// And rows.
-        most_height: usize,
-        /// What to do.
-        remedy: String,
-    },
-    /// The board has no samples of this depth.
-    #[error("the board has no {bits}-bit samples; use tables of another depth")]
-    Depth {
-        /// Bits a sample.
-        bits: u32,
-    },
-    /// The kernel needs more taps than the board has.
-    #[error("the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite")]
-    Taps,
-    /// A row reads ahead of what the board's line memory holds.
-    #[error(transparent)]
-    Ring(#[from] TableError),
-}
-
-/// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
-#[must_use]
-pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<Misfit> {
-    let geometry = tables.geometry();
-    let (width, height) = (geometry.width(), geometry.height());
-    let (most_width, most_height) = (capabilities.max_width.into(), capabilities.max_height.into());
-    if width > most_width || height > most_height {
-        let mut remedy = "use smaller frames and tables".to_owned();
-        if capabilities.nature == BoardNature::Mock {
-            remedy = format!("{remedy}, or a mock that takes these: --board mock,max-width={width}");
-            if height > most_height {
-                remedy = format!("{remedy},max-height={height}");
-            }
-        }
-        return Some(Misfit::Size { width, height, most_width, most_height, remedy });
-    }
-    let bits = geometry.depth().bits();
-    if !capabilities.sample_depths().has(bits as u8) {
-        return Some(Misfit::Depth { bits });
-    }
-    if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
-        return Some(Misfit::Taps);
-    }
-    tables.check_ring(usize::from(capabilities.ring)).err().map(Misfit::Ring)
 }

@@ -12,10 +12,7 @@ use super::prepared::{PrepareError, Prepared};
 use super::steps::{MAX_LATENCY, Run};
 use crate::board::{BoardError, Misconduct};
 use crate::result::{CheckName, Finding, FrameTiming, Problem};
-use crate::verdict::Exit;
-
-/// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
-const KEPT: usize = 16;
+use crate::verdict::Cause;
 
 impl Run<'_> {
     /// Streams a segment, whose frames are the next ones of `source`, and judges what comes back.
@@ -34,7 +31,7 @@ impl Run<'_> {
         self.findings.seen = seen;
         streamed?;
         self.findings.begin_lap();
-        prepared.map_err(|error| End::error(CheckName::Frames, Exit::Error, Problem::of(&error)))?;
+        prepared.map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
         if self.plan.fail_fast && self.findings.seen.differences() > 0 {
             self.board.drop_rows().map_err(|error| End::board(CheckName::Frames, &error))?;
         }
@@ -62,8 +59,8 @@ impl Run<'_> {
             claimed_latency: half + u32::from(self.board.capabilities.latency),
             latency_limit: half + u32::from(MAX_LATENCY),
             fail_fast: self.plan.fail_fast,
-            pictures: if self.plan.keep_pictures { KEPT } else { 0 },
-            differing: KEPT,
+            keep_equal: self.options.keep_equal,
+            evidence_bytes: self.options.evidence_bytes,
             pauses: pauses(gap_seed, geometry.width(), geometry.height()),
         }
     }

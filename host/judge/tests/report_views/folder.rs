@@ -36,10 +36,10 @@ fn a_report_is_three_files_and_nothing_is_left_beside_it() {
 }
 
 #[test]
-fn programs_find_verdict_exit_code_and_board_kind_at_the_top() {
+fn programs_find_verdict_cause_and_board_kind_at_the_top() {
     let (report, _) = made::fail();
     let json: serde_json::Value = serde_json::from_str(&report::json(&report).unwrap()).unwrap();
-    assert_eq!((&json["verdict"], &json["exit_code"]), (&"FAIL".into(), &1.into()));
+    assert_eq!((&json["verdict"], &json["cause"]), (&"FAIL".into(), &"different".into()));
     assert_eq!(json["board"]["kind"], "mock");
     assert_eq!(json["frames"][1]["comparison"]["first"]["found"], 209);
 }

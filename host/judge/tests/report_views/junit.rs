@@ -48,7 +48,7 @@ fn the_suite_says_which_kind_of_board_it_was() {
     };
     assert_eq!(value("board.kind"), Some("mock"));
     assert_eq!(value("board.target"), Some("mock,fault=flip"));
-    assert_eq!(value("exit_code"), Some("0"));
+    assert_eq!(value("cause"), Some("equal"));
 }
 
 #[test]

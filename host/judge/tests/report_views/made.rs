@@ -3,11 +3,11 @@
 use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
 use halfrow::result::{
-    Account, BoardKind, BoardReport, Check, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming,
-    Identity, LatencyReport, LinkReport, Outcome, Problem, Reading, Report, RunReport, Schema, StreetReport,
-    Suspect, TablesReport,
+    Account, BoardKind, BoardReport, Check, CheckName, Defect, Evidence, EvidenceReport, Finding,
+    FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, Outcome, Problem, Reading, Report,
+    RunReport, Schema, StreetReport, Suspect, TablesReport,
 };
-use halfrow::verdict::{Exit, Verdict};
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
 
 /// Two equal frames of 1920 × 1080 on the mock board.
@@ -16,7 +16,7 @@ pub(crate) fn pass() -> Report {
     Report {
         schema: Schema,
         verdict: Verdict::Pass,
-        exit_code: Exit::Pass,
+        cause: Cause::Equal,
         board: board(),
         finding: Finding::AllRight {
             frames: 2,
@@ -32,6 +32,7 @@ pub(crate) fn pass() -> Report {
         ],
         latency: Some(latency(2160)),
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
+        evidence: EvidenceReport::default(),
         link: link(),
         tables: tables(),
         run: run(),
@@ -59,7 +60,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
     };
     let report = Report {
         verdict: Verdict::Fail,
-        exit_code: Exit::Fail,
+        cause: Cause::Different,
         finding: finding.clone(),
         suspects: vec![Suspect { defect, account, explained: 1.0 }],
         checks: vec![
@@ -77,7 +78,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
 pub(crate) fn error() -> Report {
     Report {
         verdict: Verdict::Error,
-        exit_code: Exit::Error,
+        cause: Cause::Station,
         board: BoardReport {
             kind: BoardKind::Hardware,
             target: "serial:/dev/ttyUSB1".to_owned(),

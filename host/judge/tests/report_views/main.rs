@@ -9,4 +9,3 @@ mod json;
 mod junit;
 mod made;
 mod pictures;
-mod text;

@@ -134,7 +134,7 @@ pub(super) fn run(report: &Report) -> Markup {
             pre { (plain(&command.join(" "))) }
             dl {
                 (pair("Program", format!("halfrow {} ({})", run.version, run.commit)))
-                (pair("Exit code", report.exit_code.code().to_string()))
+                (pair("Cause", report.cause.to_string()))
                 (pair("Seed", run.seed.to_string()))
                 (pair("Began", &run.started))
                 (pair("Ended", &run.ended))

@@ -12,6 +12,7 @@ use crate::frames::{
 };
 use crate::kernels::{DamagedKernel, UnknownKernel};
 use crate::lenses::{LensContentError, LensFileError, WrongShape};
+use crate::optics::OpticsError;
 use crate::report::ReportError;
 use crate::tables::{ContentError, MemError, TableFileError, WrongDatapath};
 use halfrow_frames::written_aside::{Unfinished, WriteAsideError};
@@ -105,6 +106,18 @@ codes! {
         = Geometry,
         = Tables,
         = Kernel,
+    }
+    OpticsError {
+        Kernel [name] => "kernel-not-found",
+        Shape [path] => "lens-file-of-other-shape",
+        OutsideCircle [outside, rows, radius, centre] => "image-circle-misses-frame",
+        = Damaged,
+        = File,
+        = LensFile,
+        = Geometry,
+        = Lens,
+        = Camera,
+        = Tables,
     }
     LensFileError {
         Io [path] => "lens-file-unreadable",

@@ -6,7 +6,7 @@ use super::codes;
 use crate::board::BoardError;
 use crate::link::{LinkError, OpenError, RecordingError, SerialError, TcpError, UsbError, UsbFailure};
 use crate::link_test::LinkTestError;
-use crate::run::{CannotJudge, GoldenError, Misfit, PrepareError, TooManyFrames};
+use crate::run::{CannotJudge, GoldenError, Misfit, PrepareError, RestoreError, TooManyFrames};
 use crate::target::TargetError;
 
 #[cfg(feature = "sim")]
@@ -29,7 +29,7 @@ codes! {
         RowMissing [place, attempts] => "row-missing",
         WrongPlace [place] => "row-place-unknown",
         Timeout [limit] => "run-too-long",
-        Stopped (exit_code) => "stopped-by-signal",
+        Stopped (by) => "stopped-by-signal",
     }
     LinkError {
         Closed [link, at] => "link-closed",
@@ -99,6 +99,12 @@ codes! {
         Head [path] => "recording-head-damaged",
         = Create,
     }
+    RestoreError {
+        Tables => "recorded-tables-wrong",
+        Value => "recorded-run-impossible",
+        Frame [name] => "recorded-frame-wrong",
+        = Recording,
+    }
     LinkTestError {
         NoFrame => "link-test-frame-not-made",
         = Board,
@@ -112,6 +118,7 @@ codes! {
         Depth [bits] => "depth-not-of-board",
         Taps => "kernel-has-too-many-taps",
         = Ring,
+        = TooManyFrames,
     }
     GoldenError {
         Unmade [what] => "golden-values-not-made",

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::frames::RawLayout;
 use crate::link::{Holder, UsbBoard};
 use crate::tables::Place;
-use crate::verdict::Exit;
+use crate::verdict::StoppedBy;
 
 /// A figure or a name of an error.
 pub trait Parameter {
@@ -87,8 +87,8 @@ impl Parameter for BitDepth {
     }
 }
 
-impl Parameter for Exit {
+impl Parameter for StoppedBy {
     fn parameter(&self) -> Value {
-        self.code().into()
+        self.to_string().into()
     }
 }

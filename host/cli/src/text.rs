@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{CellAlignment, Table, presets};
 
-use super::wording::{self, grouped, mark, plain};
-use crate::result::{Outcome, Report, Suspect};
-use crate::verdict::Verdict;
+use halfrow::report::wording::{self, grouped, mark, plain};
+use halfrow::result::{Outcome, Report, Suspect};
+use halfrow::verdict::Verdict;
+
+use crate::flags;
 
 /// Columns that every line but the verdict's keeps to.
 const WIDTH: usize = 80;
@@ -152,7 +154,9 @@ fn label(style: Style, word: &str) -> String {
 
 /// Appends `words`, wrapped at [`WIDTH`], to the right of `head`, which takes `indent` columns.
 fn push_after(text: &mut String, head: &str, indent: usize, words: &str) {
-    for (place, line) in wrapped(&plain(words), WIDTH.saturating_sub(indent)).iter().enumerate() {
+    for (place, line) in
+        wrapped(&flags::named(&plain(words)), WIDTH.saturating_sub(indent)).iter().enumerate()
+    {
         let _ = match place {
             0 => writeln!(text, "{head}{line}"),
             _ => writeln!(text, "{:indent$}{line}", ""),

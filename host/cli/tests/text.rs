@@ -1,13 +1,20 @@
+//! The report for a terminal, on reports made by hand.
+
+// clippy.toml allows these inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use halfrow::compare::{Comparison, Difference};
 use halfrow::report;
+use halfrow::report::{BoardKind, FrameReport, Report};
 use halfrow::result::{BoardKind, Defect, FrameReport, MadeWith, Problem, Report, StaleFrames};
 use halfrow::verdict::Verdict;
 
-use crate::made;
+#[path = "../../judge/tests/report_views/made.rs"]
+mod made;
 
 /// The text as a pipe gets it.
 fn plain(report: &Report) -> String {
-    anstream::adapter::strip_str(&report::text(report)).to_string()
+    anstream::adapter::strip_str(&halfrow_cli::text::render(report)).to_string()
 }
 
 /// The result of [`made::fail`].
@@ -129,7 +136,7 @@ fn nothing_but_the_verdict_is_wider_than_80_columns() {
 fn what_a_board_calls_itself_cannot_drive_the_terminal() {
     let mut report = made::error();
     report.finding = Problem::new("odd", "the board says \u{1b}[2J\u{7}").into();
-    assert!(report::text(&report).contains("the board says \\u{1b}[2J\\u{7}\n"));
+    assert!(halfrow_cli::text::render(&report).contains("the board says \\u{1b}[2J\\u{7}\n"));
 }
 
 #[test]
