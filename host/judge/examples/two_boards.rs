@@ -28,7 +28,7 @@ fn main() -> Result<(), Failure> {
         let folder = ReportFolder::prepare(&results.path().join(name), false)?;
         let mut finished = halfrow::verify(&plan, board, &RunOptions::default(), &told)?;
         finished.commit(folder)?;
-        println!("{name}: {}", finished.report.headline);
+        println!("{name}: {}", finished.report.headline());
         Ok(finished.report.verdict)
     };
     let verdicts = thread::scope(|scope| {

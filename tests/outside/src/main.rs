@@ -84,6 +84,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let finished = halfrow::verify(&plan, candidate, &options, &halfrow::progress::Silent)?;
     let report = &finished.report;
     println!("{} {} {}", report.verdict, report.cause, report.link.reconnections.len());
-    eprintln!("{}; {} tries to open the link again", report.headline, opened.load(Ordering::Relaxed));
+    eprintln!("{}; {} tries to open the link again", report.headline(), opened.load(Ordering::Relaxed));
     Ok(())
 }

@@ -2,7 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-use halfrow::report::Report;
 use halfrow::result::Report;
 use halfrow::verdict::Cause;
 use halfrow_tests::dice::Dice;

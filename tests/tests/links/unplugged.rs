@@ -1,12 +1,10 @@
 //! Boards that are unplugged: at every packet, and in the middle of one.
 
-use halfrow::report;
 use halfrow::result::CheckName;
 use halfrow::result::Outcome::{Error, Skipped};
 use halfrow::verdict::Cause;
 use std::time::{Duration, Instant};
 
-use halfrow::report::{Outcome::Error, Outcome::Skipped};
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
 use halfrow_tests::patience::come_to_an_end;
