@@ -81,12 +81,14 @@ fn withheld(change: fn(&mut Status)) -> Report {
     })
 }
 
+type Denial = fn(&mut Status);
+
 /// Each takes one of the board's words away that FAIL needs.
 #[test]
 fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
     let admitted = withheld(|_| {});
     assert_eq!(admitted.verdict, Verdict::Fail, "{}", admitted.headline);
-    let denials: [(&str, fn(&mut Status)); 7] = [
+    let denials: [(&str, Denial); 7] = [
         ("it did not take it", |status| status.rows_in = status.rows_in.saturating_sub(1)),
         ("it waits for it", |status| status.next_row_in = status.next_row_out),
         ("it sent it again", |status| status.rows_repeated += 1),
