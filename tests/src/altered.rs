@@ -6,9 +6,10 @@ use std::fmt;
 use std::time::Duration;
 
 use halfrow::link::{Candidate, WireLink};
-use halfrow::report::Report;
+use halfrow::result::Report;
 use halfrow::target::BoardKind;
-use halfrow_mock::{Board, Endpoint, Options, Wire, WireOptions};
+use halfrow_mock::{Board, Options};
+use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_protocol::message::Capabilities;
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply};
 
@@ -85,8 +86,8 @@ impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Altered<F> {
     where
         F: 'static,
     {
-        let wire = Wire::new(self, WireOptions::default(), None);
-        let link = Box::new(WireLink::new(wire, "an altered board", false));
+        let pipe = Pipe::new(self, PipeOptions::default(), None);
+        let link = Box::new(WireLink::new(pipe, "an altered board", false));
         Candidate { target: "altered".to_owned(), kind: BoardKind::Mock, link }
     }
 

@@ -84,17 +84,17 @@ fn a_campaign_goes_on_where_it_stopped() {
     let folder = Folder::new();
     let file = folder.path().join("kept").join("runs.jsonl");
     let cases = poor_links::draw(SEED, 0..6, poor_links::virtual_);
-    let half = poor_links::run(&cases[..3], SOON, &Kept::in_file(file.clone()));
+    let half = poor_links::run(&cases[..3], SOON, &Kept::in_file(&file));
     // Killed in the middle of a line.
     let mut text = std::fs::read_to_string(&file).unwrap();
     text.push_str("{\"index\": 3, \"came\": \"FA");
     std::fs::write(&file, &text).unwrap();
-    let kept = Kept::in_file(file.clone());
+    let kept = Kept::in_file(&file);
     assert_eq!((kept.len(), half.0.len()), (3, 3));
     // What is known is not judged again: with no time at all only the others come to nothing.
     let rest = poor_links::run(&cases, Duration::ZERO, &kept);
     assert_eq!(rest.hangs().map(|run| run.case.index).collect::<Vec<_>>(), [3, 4, 5]);
-    assert_eq!(Kept::in_file(file).len(), 6);
+    assert_eq!(Kept::in_file(&file).len(), 6);
 }
 
 #[test]

@@ -5,7 +5,8 @@ use std::path::Path;
 use halfrow_pipe::PipeSetup;
 use halfrow_sim::{Board, Front};
 
-use super::open::{OpenError, pace, wrong_options};
+use super::OpenError;
+use super::open::{pace, wrong_options};
 use super::{Link, WireLink};
 use crate::target::Target;
 

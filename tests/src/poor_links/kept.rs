@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::hash::{DefaultHasher, Hash as _, Hasher as _};
 use std::io::Write as _;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::Mutex;
 
 use halfrow::verdict::Verdict;
@@ -37,7 +37,7 @@ impl Kept {
         fs::read(&program).unwrap().hash(&mut fingerprint);
         // target/PROFILE/deps/TEST
         let folder = program.ancestors().nth(3).unwrap().join("poor-links");
-        Self::in_file(folder.join(format!("{name}-{seed}-{:016x}.jsonl", fingerprint.finish())))
+        Self::in_file(&folder.join(format!("{name}-{seed}-{:016x}.jsonl", fingerprint.finish())))
     }
 
     /// What stands in the file at `path`, which is made if need be.
@@ -45,12 +45,12 @@ impl Kept {
     /// # Panics
     /// If the file cannot be used.
     #[must_use]
-    pub fn in_file(path: PathBuf) -> Self {
+    pub fn in_file(path: &Path) -> Self {
         fs::create_dir_all(path.parent().unwrap()).unwrap();
         // The last line may have been cut off.
-        let text = fs::read_to_string(&path).unwrap_or_default();
-        let known = text.lines().filter_map(|line| read(line)).collect();
-        let mut file = File::options().append(true).create(true).open(&path).unwrap();
+        let text = fs::read_to_string(path).unwrap_or_default();
+        let known = text.lines().filter_map(read).collect();
+        let mut file = File::options().append(true).create(true).open(path).unwrap();
         if !text.is_empty() && !text.ends_with('\n') {
             writeln!(file).unwrap();
         }

@@ -96,7 +96,7 @@ fn backwards() -> Candidate {
 #[test]
 fn a_clock_that_goes_back_costs_nothing_but_the_time() {
     let report = System::TINY.judge_candidate(backwards());
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline);
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
 }
 
 #[test]

@@ -18,6 +18,8 @@ const COMMANDS: [(&str, &str); 14] = [
     ("link", "Test the link"),
     ("serve", "Serve a mock or simulated board"),
     ("faults", "List the faults"),
+    ("codes", "List the codes"),
+    ("schema", "Print the JSON Schema"),
     ("completions", "Print a completion script"),
     ("manual", "Write the manual pages"),
 ];

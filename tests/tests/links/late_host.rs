@@ -15,7 +15,7 @@ fn it_does_not_find_the_board_late() {
     let reports =
         parallel::map(&every, |&every| System::TINY.judge_late(",speed=1200000,delay=0.001", every, PAUSE));
     for (every, report) in every.iter().zip(reports) {
-        assert_eq!(report.cause, Cause::Equal, "every {every}: {}", report.headline);
+        assert_eq!(report.cause, Cause::Equal, "every {every}: {}", report.headline());
         assert_eq!(report.link.retries, 0, "every {every}");
     }
 }

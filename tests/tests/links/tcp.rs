@@ -1,6 +1,5 @@
 //! TCP, without anything between.
 
-use std::io::Write as _;
 use std::io::{Read as _, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};

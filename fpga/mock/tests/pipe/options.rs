@@ -159,7 +159,7 @@ fn a_wire_to_another_board_takes_what_the_wire_takes_alone() {
     let fine = [("speed", "5"), ("fault", "flip"), ("rate", "0.1")];
     PipeSetup::from_options(&fine).unwrap();
     let (name, known) =
-        ("late".to_owned(), "flip, drop, duplicate, reorder, stall, truncate, disconnect".to_owned());
+        ("late".to_owned(), "flip, drop, duplicate, reorder, stall, lose, truncate, disconnect".to_owned());
     assert_eq!(PipeSetup::from_options(&[("fault", "late")]), Err(TargetError::UnknownFault { name, known }));
     let error = PipeSetup::from_options(&[("latency", "12")]).unwrap_err();
     assert!(matches!(&error, TargetError::UnknownKey { known, .. } if !known.contains("latency")), "{error}");

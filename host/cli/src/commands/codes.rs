@@ -83,7 +83,7 @@ codes::codes! {
         Duplicate [key] => "board-option-repeated",
     }
     FaultError {
-        Unknown [name] => "fault-not-known",
+        Unknown [name] => "fault-name-unknown",
         Parameter [fault] => "fault-parameter-wrong",
     }
     ValueError {
@@ -214,7 +214,7 @@ fn page() -> String {
         text += &format!("  *Designer:* {}\n  *Technician:* {}\n", suspect.designer(), suspect.technician());
     }
     text += "\n## Errors\n\nTheir sentence is in `message`, and what to do in `remedy` and at its end.\n";
-    for list in error_lists() {
+    for list in error_lists().filter(|list| !list.codes.is_empty()) {
         text += &format!("\n{}:\n\n", list.error);
         for (code, names) in list.codes {
             text += &format!("* `{code}`{}\n", parameters(names.iter()));

@@ -159,7 +159,7 @@ fn a_header_cannot_ask_for_more_than_its_bytes_can_hold() {
 #[test]
 fn tiffs_that_are_no_plain_picture_are_refused_with_a_remedy() {
     let remedies = [
-        (2, 43, "save it as a classic TIFF"),
+        (2, 43, "copy or export the file again"),
         (58, 12, "save it with 8 or 16 bits"),
         (70, 7, "save it uncompressed, or with LZW or deflate"),
         (82, 3, "save it as grey (black is zero) or RGB"),

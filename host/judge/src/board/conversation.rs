@@ -9,7 +9,7 @@ use super::asked::{LastAsked, Stray};
 use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
-use crate::link::{LineErrors, Link, Severed};
+use crate::link::{LineErrors, Link, LinkError, Severed};
 
 /// The most that an exchange counts as a wait that moved something, and so did not wait to the end: all the rest may be that
 /// the host was kept from running, and then there is more to be read.
@@ -226,6 +226,22 @@ impl Conversation {
         self.slowest = self.slowest.max(took);
     }
 
+    /// Moves bytes both ways, for `wait` at most, and counts them and the time.
+    fn move_bytes(&mut self, wait: Duration) -> Result<(), LinkError> {
+        self.incoming.clear();
+        let begun = self.link.now();
+        let moved = self.link.exchange(&self.outgoing, &mut self.incoming, wait);
+        let is_idle = self.incoming.is_empty() && matches!(moved, Ok(0));
+        let counts = if is_idle { wait } else { wait.min(BRIEF) };
+        self.waited += self.since(begun).min(counts);
+        self.tally.line_errors = self.link.line_errors();
+        let taken = moved?;
+        self.outgoing.drain(..taken);
+        self.tally.bytes_out += taken as u64;
+        self.tally.bytes_in += self.incoming.len() as u64;
+        Ok(())
+    }
+
     /// Moves bytes both ways, for `wait` at most, and hands every whole packet of this session to `take`.
     pub(super) fn exchange(
         &mut self,
@@ -234,17 +250,8 @@ impl Conversation {
         mut take: impl FnMut(&Packet<'_>),
     ) -> Result<(), BoardError> {
         self.stop.check(self.link.now())?;
-        self.incoming.clear();
-        let begun = self.link.now();
-        let moved = self.link.exchange(&self.outgoing, &mut self.incoming, wait);
-        let is_idle = self.incoming.is_empty() && matches!(moved, Ok(0));
-        let counts = if is_idle { wait } else { wait.min(BRIEF) };
-        self.waited += self.since(begun).min(counts);
-        self.tally.line_errors = self.link.line_errors();
-        let taken = moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
-        self.outgoing.drain(..taken);
-        self.tally.bytes_out += taken as u64;
-        self.tally.bytes_in += self.incoming.len() as u64;
+        let moved = self.move_bytes(wait);
+        moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         let now = self.link.now();
         let mut strays = Vec::new();
         let mut bytes = self.incoming.as_slice();

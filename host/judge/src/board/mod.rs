@@ -75,7 +75,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`]: nobody answers, no halfrow board, another version, held by another host. What the link did up to
     /// then comes with it.
-    pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Tally)> {
+    pub fn open(link: Box<dyn Link>, options: &OpenOptions) -> Result<Self, (BoardError, Box<Tally>)> {
         let mut conversation = Conversation::new(link, options.retry_limit, options.stop.clone());
         let mut open = || {
             let welcome = greet_or_take_over(&mut conversation, options)?;
@@ -91,7 +91,7 @@ impl Board {
             Ok((welcome, capabilities, counted_from)) => {
                 Ok(Self { conversation, counted_from, welcome, capabilities })
             }
-            Err(error) => Err((error, conversation.tally)),
+            Err(error) => Err((error, Box::new(conversation.tally))),
         }
     }
 

@@ -5,6 +5,7 @@ use jiff::Timestamp;
 use super::findings::{End, Findings};
 use super::judge::{STREET, Seen};
 use super::{Circumstances, Finished, Plan, RunOptions};
+use crate::board::Tally;
 use crate::frames::street;
 use crate::result::{
     Check, CheckName, Finding, LinkReport, Outcome, Report, RunReport, Schema, StreetReport, Suspect,
@@ -42,18 +43,7 @@ pub(super) fn conclude(
         latency: findings.seen.latency,
         street,
         evidence: evidence_report,
-        link: LinkReport {
-            bytes_out: findings.tally.bytes_out,
-            bytes_in: findings.tally.bytes_in,
-            packets_out: findings.tally.packets_out,
-            packets_in: findings.tally.packets_in,
-            damaged_in: findings.tally.damaged_in,
-            retries: findings.tally.retries,
-            late: findings.tally.late,
-            strays: findings.tally.strays,
-            line_errors: findings.tally.line_errors,
-            ..findings.link
-        },
+        link: link(findings.link, &findings.tally),
         tables: tables(plan),
         run: run(plan, &options.circumstances, started),
     };
@@ -72,6 +62,21 @@ fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunRep
         seconds: ended.duration_since(started).as_secs_f64(),
         host: host_name(),
         files: circumstances.files.clone(),
+    }
+}
+
+fn link(known: LinkReport, tally: &Tally) -> LinkReport {
+    LinkReport {
+        bytes_out: tally.bytes_out,
+        bytes_in: tally.bytes_in,
+        packets_out: tally.packets_out,
+        packets_in: tally.packets_in,
+        damaged_in: tally.damaged_in,
+        retries: tally.retries,
+        late: tally.late,
+        strays: tally.strays,
+        line_errors: tally.line_errors,
+        ..known
     }
 }
 

@@ -33,7 +33,7 @@ impl WayBack {
             Ok(board) => return Ok(board),
             Err(failed) => failed,
         };
-        findings.tally = tally;
+        findings.tally = *tally;
         let end = End::board(CheckName::Identity, &error);
         match (&error, self.patience()) {
             (BoardError::Link { .. }, Some(patience)) if end.is_outage() => {

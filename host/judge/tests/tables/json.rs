@@ -136,10 +136,10 @@ fn a_file_that_is_no_text_is_refused_with_the_place() {
 fn a_file_longer_than_any_table_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("t.json");
-    fs::File::create(&path).unwrap().set_len((16 << 20) + 1).unwrap();
+    fs::File::create(&path).unwrap().set_len((1 << 20) + 1).unwrap();
     let refused = TableFile::read(&path);
     let Err(TableFileError::Io { source, .. }) = refused else { panic!("{refused:?}") };
-    assert!(source.to_string().contains("longer than 16777216 bytes"), "{source}");
+    assert!(source.to_string().contains("longer than 1048576 bytes"), "{source}");
 }
 
 #[test]

@@ -151,7 +151,7 @@ codes! {
     ;
     PackingError [group, width] => "raw-width-does-not-pack"
     ;
-    Unfinished => "file-not-finished"
+    Unfinished [kept] => "file-not-finished"
     ;
     UnknownBuiltin [name] => "builtin-frame-unknown"
     ;

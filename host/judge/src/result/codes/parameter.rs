@@ -57,6 +57,12 @@ impl<T: Parameter> Parameter for Vec<T> {
     }
 }
 
+impl<T: Parameter> Parameter for Option<T> {
+    fn parameter(&self) -> Value {
+        self.as_ref().map_or(Value::Null, Parameter::parameter)
+    }
+}
+
 impl Parameter for UsbBoard {
     fn parameter(&self) -> Value {
         json!(self)
