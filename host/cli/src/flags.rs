@@ -1,10 +1,9 @@
 //! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
 
 /// What sentences of the libraries say, and the flag for it. None of them is part of another.
-pub const FLAGS: [(&str, &str); 15] = [
+pub const FLAGS: [(&str, &str); 16] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
-    ("another name for the recording", "--record"),
     ("another place for the report", "--report"),
     ("record a run with `halfrow verify`", "--record"),
     ("take the board over", "--take-over"),
@@ -14,6 +13,8 @@ pub const FLAGS: [(&str, &str); 15] = [
     ("repeat them less often", "--repeat"),
     ("Name at least one frame", "--frame"),
     ("Make a report", "--report"),
+    ("Name a real board", "--board"),
+    ("name the layout", "--raw"),
     ("name the phase", "--phase"),
     ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
     ("Cargo's feature `sim`", "cargo run --release --features sim"),

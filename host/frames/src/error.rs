@@ -51,8 +51,8 @@ pub enum DecodeError {
     Empty,
     /// No format known here begins like this.
     #[error(
-        "it begins like no format known here (PGM P5, PNG, TIFF, DNG); convert it, or for samples without a header \
-         give their layout with --raw"
+        "it begins like no format known here (PGM P5, PNG, TIFF, DNG); convert it, or name the layout of \
+         samples without a header"
     )]
     UnknownFormat,
     /// A kind of file that is understood but not taken.

@@ -145,7 +145,11 @@ fn what_is_no_recording_is_refused() {
 fn a_recording_that_is_there_is_kept() {
     let folder = Folder::new();
     folder.write("run.rec", "precious");
-    refused(&folder, &small("verify", &["--record", "run.rec"]), "run.rec exists; give --overwrite");
+    refused(
+        &folder,
+        &small("verify", &["--record", "run.rec"]),
+        "run.rec exists; allow it to be overwritten (--overwrite)",
+    );
     assert_eq!(folder.text("run.rec"), "precious");
     assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec", "--overwrite"])).code, Some(0));
     assert!(folder.read("run.rec").starts_with(b"halfrow recording 1\n"));

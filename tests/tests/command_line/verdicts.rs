@@ -143,7 +143,11 @@ fn the_time_limit_is_also_this_computer_s() {
     let replay = folder.halfrow(["verify", "--board", "replay:run.rec", "--timeout", "0"]);
     for ended in [mock, replay] {
         assert_eq!(ended.code, Some(3), "{}", ended.stdout);
-        assert!(ended.stdout.contains("the run took longer than the 0 s of --timeout"), "{}", ended.stdout);
+        assert!(
+            ended.stdout.contains("the run took longer than the 0 s of its time limit"),
+            "{}",
+            ended.stdout
+        );
     }
 }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::{Failure, codes, print};
 use crate::exit::Exit;
-use crate::{console, json};
+use crate::{console, flags, json};
 use halfrow::result::{BoardReport, Document, Problem, Schema};
 
 /// What a document has beside what all have, when a command came to no result.
@@ -48,7 +48,7 @@ pub(super) fn tell_result(
 #[must_use]
 pub fn failure(command: &str, failure: &Failure) -> String {
     let Failure { exit, error } = failure;
-    without_result(command, *exit, &codes::problem(*exit, error))
+    without_result(command, *exit, &named(codes::problem(*exit, error)))
 }
 
 /// The document of a call that could not be read, if `arguments` ask for JSON.
@@ -68,6 +68,16 @@ pub fn usage(error: &clap::Error, arguments: &[String]) -> Option<String> {
         problem.remedy = Some("See `halfrow help` and `halfrow COMMAND --help`.".to_owned());
     }
     Some(without_result(command, Exit::Usage, &problem))
+}
+
+/// A problem with the flags of the settings that its words name.
+fn named(problem: Problem) -> Problem {
+    Problem {
+        message: flags::named(&problem.message),
+        remedy: problem.remedy.as_deref().map(flags::named),
+        causes: problem.causes.into_iter().map(named).collect(),
+        ..problem
+    }
 }
 
 fn without_result(command: &str, exit_code: Exit, problem: &Problem) -> String {

@@ -25,7 +25,7 @@ pub enum ReportError {
         path: PathBuf,
     },
     /// Something is there and may not be replaced.
-    #[error("{} exists; name another folder, or allow it to be overwritten", path.display())]
+    #[error("{} exists; allow it to be overwritten, or name another folder", path.display())]
     Exists {
         /// The path.
         path: PathBuf,

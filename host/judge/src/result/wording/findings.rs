@@ -207,8 +207,7 @@ fn unjudged(finding: &Finding) -> String {
              {known}, or install a halfrow that knows {datapath}"
         ),
         Finding::HardwareRequired { .. } => {
-            "hardware is required and this is none, so nothing was judged; name a real board with --board"
-                .to_owned()
+            "hardware is required and this is none, so nothing was judged; name a real board".to_owned()
         }
         Finding::BoardExchanged {} => {
             "another board, or another bitstream, came back than went away; run again".to_owned()
@@ -230,9 +229,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::TableReadsWrong { defect, .. } => return Some(designer(defect)),
         Finding::TablesChanged { found } => return remedy(found),
         Finding::SamplesDiffer { suspect: Some(suspect), .. } => return Some(designer(suspect)),
-        Finding::SamplesDiffer { suspect: None, .. } => {
-            "Make a report with --report and look at the difference maps."
-        }
+        Finding::SamplesDiffer { suspect: None, .. } => "Make a report and look at the difference maps.",
         Finding::EchoWrong {} => "Check the board's packet buffers: the link carried what the board sent.",
         Finding::TableCrcWrong {} => {
             "Check the board's CRC unit, and whether the tables change on their own."
@@ -280,12 +277,12 @@ fn asked_of_conduct(finding: &Finding) -> Option<String> {
 fn asked_of_caller(finding: &Finding) -> Option<String> {
     Some(match finding {
         Finding::NothingJudged {} => {
-            "Name at least one frame, or leave --frame out for the built-in ones.".to_owned()
+            "Name at least one frame, or none for the built-in ones.".to_owned()
         }
         Finding::DatapathUnknown { datapath, known } => {
             format!("Load a bitstream of datapath {known}, or install a halfrow that knows {datapath}.")
         }
-        Finding::HardwareRequired { .. } => "Name a real board with --board.".to_owned(),
+        Finding::HardwareRequired { .. } => "Name a real board.".to_owned(),
         Finding::BoardExchanged {} => "Run again.".to_owned(),
         Finding::CapabilityImpossible { .. } => {
             "Correct what the board says of itself (CAPABILITIES in protocol/WIRE.md), or load another bitstream.".to_owned()

@@ -127,7 +127,7 @@ fn unknown(defect: &Defect) -> Words {
         part: "unknown",
         place: "no single part".to_owned(),
         defect: format!("no known defect explains most of the differences: {}", clauses(defect).join(", ")),
-        designer: "Make a report with --report and look at the difference maps.".to_owned(),
+        designer: "Make a report and look at the difference maps.".to_owned(),
         technician: REPORT,
     }
 }
