@@ -84,11 +84,10 @@ impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Altered<F> {
     /// The board as one that is about to be opened.
     pub fn candidate(self) -> Candidate
     where
-        F: 'static,
+        F: Send + 'static,
     {
         let pipe = Pipe::new(self, PipeOptions::default(), None);
-        let link = Box::new(WireLink::new(pipe, "an altered board", false));
-        Candidate { target: "altered".to_owned(), kind: BoardKind::Mock, link }
+        Candidate::new("altered", BoardKind::Mock, WireLink::new(pipe, "an altered board", false))
     }
 
     fn passed(&mut self, toward: Toward, bytes: &[u8]) -> Vec<u8> {

@@ -4,8 +4,6 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use halfrow::compare::{Comparison, Difference};
-use halfrow::report;
-use halfrow::report::{BoardKind, FrameReport, Report};
 use halfrow::result::{BoardKind, Defect, FrameReport, MadeWith, Problem, Report, StaleFrames};
 use halfrow::verdict::Verdict;
 

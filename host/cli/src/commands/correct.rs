@@ -98,10 +98,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     };
     job.check().map_err(Failure::call)?;
     let places = Places::of(&job.inputs, &arguments.wanted()).map_err(Failure::call)?;
-    places
-        .add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)))
-        .check()
-        .map_err(Failure::call)?;
+    let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
+    files.check().map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet || context.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {

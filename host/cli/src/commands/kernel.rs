@@ -127,12 +127,8 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let paths = paths(&arguments.images).map_err(Failure::call)?;
     // Training takes minutes, after which a refusal comes too late.
-    Files::new(arguments.overwrite)
-        .reads(&context.settings_file)
-        .reads(&paths)
-        .writes("--output", [&arguments.output])
-        .check()
-        .map_err(Failure::call)?;
+    let files = Files::new(arguments.overwrite).reads(&context.settings_file).reads(&paths);
+    files.writes("--output", [&arguments.output]).check().map_err(Failure::call)?;
     let (origins, images) = photographs(&paths).map_err(Failure::call)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,
@@ -143,10 +139,8 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
     let trained = trained.map_err(failed)?;
-    let file = KernelFile {
-        about: Some(about(&origins, &trained).map_err(Failure::call)?),
-        kernel: trained.kernel.clone(),
-    };
+    let about = about(&origins, &trained).map_err(Failure::call)?;
+    let file = KernelFile { about: Some(about), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
     if context.json {

@@ -254,8 +254,8 @@ pub(super) fn choose(
     lens: &LensArguments,
     kernel_name: Option<&OsStr>,
 ) -> Result<Chosen, Failure> {
-    let file = named.as_ref().map(|NamedTables { path, file }| (path.as_path(), file.clone()));
-    Ok(optics::choose(file, lens.optics()?, kernel_name)?)
+    let (path, file) = named.map(|NamedTables { path, file }| (path, file)).unzip();
+    Ok(optics::choose(path.as_deref().zip(file), lens.optics()?, kernel_name)?)
 }
 
 /// A file of another datapath is refused like a board of another datapath.

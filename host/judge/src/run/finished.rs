@@ -50,11 +50,11 @@ impl Finished {
     /// for it must not be lost as well.
     pub fn lose(&mut self, what: Problem, remedy: &str) -> Lack {
         let report = &mut self.report;
-        let what = Problem { remedy: Some(remedy.to_owned()), ..what };
+        let what = Box::new(Problem { remedy: Some(remedy.to_owned()), ..what });
         if report.verdict != Verdict::Pass {
             return Lack { what, is_told: false };
         }
-        report.finding = what.clone().into();
+        report.finding = Problem::clone(&what).into();
         report.verdict = Verdict::Error;
         report.cause = Cause::Station;
         Lack { what, is_told: true }
@@ -66,7 +66,7 @@ impl Finished {
 #[error("{what}")]
 pub struct Lack {
     /// What, and why.
-    pub what: Problem,
+    pub what: Box<Problem>,
     /// Whether the report tells it, as its finding; otherwise its verdict stands, and somebody must be told.
     pub is_told: bool,
 }
