@@ -130,19 +130,22 @@ impl<F> fmt::Debug for Altered<F> {
 
 /// The report on the mock board of `system` whose packets `alter` rewrites.
 #[must_use]
-pub fn judge(system: &System, alter: impl FnMut(Toward, Passing) -> Vec<Passing> + 'static) -> Report {
+pub fn judge(system: &System, alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
     system.judge_candidate(Altered::new(&Options::default(), alter).candidate())
 }
 
 /// The same where every packet becomes one.
 #[must_use]
-pub fn judge_each(system: &System, mut alter: impl FnMut(Toward, Passing) -> Passing + 'static) -> Report {
+pub fn judge_each(
+    system: &System,
+    mut alter: impl FnMut(Toward, Passing) -> Passing + Send + 'static,
+) -> Report {
     judge(system, move |toward, packet| vec![alter(toward, packet)])
 }
 
 /// The report on a board that is sound but for what it says of itself.
 #[must_use]
-pub fn judge_claims(system: &System, change: impl Fn(&mut Capabilities) + 'static) -> Report {
+pub fn judge_claims(system: &System, change: impl Fn(&mut Capabilities) + Send + 'static) -> Report {
     judge_each(system, move |_, packet| match packet.reply() {
         Some(Reply::Capabilities(mut capabilities)) => {
             change(&mut capabilities);

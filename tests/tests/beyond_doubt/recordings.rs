@@ -89,8 +89,9 @@ impl Link for Backwards {
 
 fn backwards() -> Candidate {
     let target: Target = "mock".parse().unwrap();
-    let Candidate { target, kind, link } = halfrow::link::open(&target).unwrap();
-    Candidate { target, kind, link: Box::new(Backwards { link, looks: Cell::new(0) }) }
+    let candidate = halfrow::link::open(&target).unwrap();
+    let link = Box::new(Backwards { link: candidate.link, looks: Cell::new(0) });
+    Candidate { link, ..candidate }
 }
 
 #[test]

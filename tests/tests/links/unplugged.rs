@@ -3,7 +3,6 @@
 use halfrow::result::CheckName;
 use halfrow::result::Outcome::{Error, Skipped};
 use halfrow::verdict::Cause;
-use std::time::{Duration, Instant};
 
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
