@@ -47,8 +47,10 @@ def expected(page):
 
 def alone(page):
     """Numbers that stand in the page's sentences."""
+    flat = " ".join(page.split())
+
     def said(pattern, base=10):
-        found = re.search(pattern, page)
+        found = re.search(pattern, flat)
         if not found:
             sys.exit(f"wire: {PAGE.name} does not say {pattern!r}")
         return int(found[1].replace(" ", ""), base)

@@ -67,7 +67,7 @@ fn a_place_that_cannot_be_written_is_refused_before_the_training() {
     let folder = folder_of_pictures();
     let refused = train(&folder, &["-o", "none/mine.json"]);
     assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
-    assert!(refused.stderr.contains("check that its folder exists"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("check that it exists and is writable"), "{}", refused.stderr);
 }
 
 /// Two pictures with detail of every size in the folder `photos`, and a file that is none.

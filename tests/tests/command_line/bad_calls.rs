@@ -62,7 +62,7 @@ fn an_address_that_is_none_is_a_wrong_call() {
         refused(
             &folder,
             &["serve", "--tcp", address],
-            "is no TCP port to listen on; give a PORT of this computer",
+            "give PORT or ADDRESS:PORT, with a port of 0 to 65535",
         );
     }
     let busy = std::net::TcpListener::bind("127.0.0.1:0").unwrap();

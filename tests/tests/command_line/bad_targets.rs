@@ -43,7 +43,7 @@ fn a_build_that_cannot_exist_is_refused() {
 
 #[test]
 fn a_fault_that_does_not_exist_is_refused() {
-    no_such_board("mock,fault=moon", "no fault is called moon; choose from flip, drop");
+    no_such_board("mock,fault=moon", "no fault of this board is called moon; choose from flip, drop");
     no_such_board(
         "mock,fault=late,fault=no-rounding",
         "fault=late and fault=no-rounding cannot be had together",

@@ -104,5 +104,7 @@ fn a_second_host_is_turned_away_while_a_first_is_connected() {
         drop(stop);
     });
     drop(first);
-    passes(&served);
+    // The first one greeted the board, so it is its for another ten seconds.
+    let second = verify(&served.target(), &["--take-over"]);
+    assert_eq!(second.code, Some(0), "{}{}", second.stdout, second.stderr);
 }
