@@ -176,6 +176,6 @@ fn a_recording_cannot_be_written_nowhere() {
     refused(
         &Folder::new(),
         &small("verify", &["--record", "missing/run.rec"]),
-        "choose another place for the recording (--record)",
+        "name another place with --record",
     );
 }

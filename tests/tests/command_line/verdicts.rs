@@ -177,11 +177,11 @@ fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
     refused(
         &Folder::new(),
         &call("mock").collect::<Vec<_>>(),
-        "or a mock that takes these: --board mock,max-width=2592",
+        "or a mock that takes these: mock,max-width=2592",
     );
     assert_eq!(halfrow(call("mock,max-width=2592")).code, Some(0));
     let high = ["verify", "-q", "--board", "mock,max-height=8", "--width", "64", "--height", "9"];
-    refused(&Folder::new(), &high, "--board mock,max-width=64,max-height=9");
+    refused(&Folder::new(), &high, "takes these: mock,max-width=64,max-height=9");
 }
 
 /// A wire without a speed takes no time at all by its own clock.
