@@ -11,6 +11,8 @@ use halfrow::{Event, FrameSource, Plan, ReportFolder, RunOptions, Verdict};
 
 type Failure = Box<dyn Error + Send + Sync>;
 
+// A program of its own writes where it likes.
+#[allow(clippy::print_stdout)]
 fn main() -> Result<(), Failure> {
     let lens = Equidistant::from_radius(147.56)?;
     let geometry = Geometry::centred(256, 144, BitDepth::Twelve)?;

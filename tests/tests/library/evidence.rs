@@ -33,6 +33,7 @@ fn bytes(finished: &Finished) -> (usize, usize) {
 
 #[test]
 fn a_run_of_many_frames_that_differ_keeps_within_its_budget_and_says_what_it_left_out() {
+    let _alone = crate::RUNS.lock();
     const BUDGET: usize = 64 << 10;
     let whole = run(usize::MAX);
     let differing = whole.report.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
@@ -46,7 +47,7 @@ fn a_run_of_many_frames_that_differ_keeps_within_its_budget_and_says_what_it_lef
     let said = kept.report.evidence;
     assert_eq!((said.kept, said.bytes), (kept.evidence.len(), frames as u64));
     assert_eq!(said.kept + said.left_out, differing);
-    let found = |finished: &Finished| finished.report.suspects.first().map(|first| first.place());
+    let found = |finished: &Finished| finished.report.suspects.first().map(halfrow::result::Suspect::place);
     assert!(found(&kept).is_some_and(|place| place.contains("bit 5")), "{:?}", kept.report.headline());
     assert_eq!(found(&kept), found(&whole));
 }

@@ -24,6 +24,7 @@ impl Write for Log {
 
 #[test]
 fn every_line_of_two_runs_at_once_says_which_board_it_is_about() {
+    let _alone = crate::RUNS.lock();
     let (log, boards) = (Log::default(), ["mock,fault=flip,packet=20", "mock,speed=1000000"]);
     thread::scope(|scope| {
         for board in boards {

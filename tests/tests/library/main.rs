@@ -8,3 +8,9 @@ mod logs;
 mod outside;
 mod tree;
 mod words;
+
+use std::sync::Mutex;
+
+/// Held by tests that run in this process: one without a log of its own must not be the first at a place that logs while
+/// another begins to listen.
+static RUNS: Mutex<()> = Mutex::new(());
