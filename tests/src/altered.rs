@@ -6,7 +6,7 @@ use std::fmt;
 use std::time::Duration;
 
 use halfrow::link::{Candidate, WireLink};
-use halfrow::report::Report;
+use halfrow::result::Report;
 use halfrow::target::BoardKind;
 use halfrow_mock::{Board, Options};
 use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
@@ -84,11 +84,10 @@ impl<F: FnMut(Toward, Passing) -> Vec<Passing>> Altered<F> {
     /// The board as one that is about to be opened.
     pub fn candidate(self) -> Candidate
     where
-        F: 'static,
+        F: Send + 'static,
     {
         let pipe = Pipe::new(self, PipeOptions::default(), None);
-        let link = Box::new(WireLink::new(pipe, "an altered board", false));
-        Candidate { target: "altered".to_owned(), kind: BoardKind::Mock, link }
+        Candidate::new("altered", BoardKind::Mock, WireLink::new(pipe, "an altered board", false))
     }
 
     fn passed(&mut self, toward: Toward, bytes: &[u8]) -> Vec<u8> {
@@ -131,19 +130,22 @@ impl<F> fmt::Debug for Altered<F> {
 
 /// The report on the mock board of `system` whose packets `alter` rewrites.
 #[must_use]
-pub fn judge(system: &System, alter: impl FnMut(Toward, Passing) -> Vec<Passing> + 'static) -> Report {
+pub fn judge(system: &System, alter: impl FnMut(Toward, Passing) -> Vec<Passing> + Send + 'static) -> Report {
     system.judge_candidate(Altered::new(&Options::default(), alter).candidate())
 }
 
 /// The same where every packet becomes one.
 #[must_use]
-pub fn judge_each(system: &System, mut alter: impl FnMut(Toward, Passing) -> Passing + 'static) -> Report {
+pub fn judge_each(
+    system: &System,
+    mut alter: impl FnMut(Toward, Passing) -> Passing + Send + 'static,
+) -> Report {
     judge(system, move |toward, packet| vec![alter(toward, packet)])
 }
 
 /// The report on a board that is sound but for what it says of itself.
 #[must_use]
-pub fn judge_claims(system: &System, change: impl Fn(&mut Capabilities) + 'static) -> Report {
+pub fn judge_claims(system: &System, change: impl Fn(&mut Capabilities) + Send + 'static) -> Report {
     judge_each(system, move |_, packet| match packet.reply() {
         Some(Reply::Capabilities(mut capabilities)) => {
             change(&mut capabilities);

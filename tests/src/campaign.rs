@@ -6,8 +6,12 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use halfrow::verdict::Verdict;
+
 use crate::dice::Dice;
 use crate::parallel;
+use halfrow::result::CheckName;
+
 use crate::system::{System, failed_check};
 
 /// The kinds of faults, and their share in a campaign, in tenths.
@@ -120,13 +124,13 @@ impl Kind {
         let is_in_table = matches!(self, Self::RowFactor | Self::KernelWord);
         let hidden = if is_in_table { ",hidden=true" } else { "" };
         match check_of(system, &format!("{options}{hidden}")) {
-            Some("frames") => return Found::BySamples,
+            Some(CheckName::Frames) => return Found::BySamples,
             Some(other) => panic!("{options}: the check {other} failed, which looks at no samples"),
             None if !is_in_table => return Found::ByNothing,
             None => {}
         }
         match check_of(system, options) {
-            Some("read-back") => Found::ByReadBack,
+            Some(CheckName::ReadBack) => Found::ByReadBack,
             Some(other) => panic!("{options}: {other} failed, and it should have been read-back"),
             None => Found::ByNothing,
         }
@@ -143,12 +147,11 @@ impl Kind {
     }
 }
 
-fn check_of(system: &System, options: &str) -> Option<&'static str> {
+fn check_of(system: &System, options: &str) -> Option<CheckName> {
     let report = system.judge(options);
-    let code = report.exit_code.code();
-    assert!(code <= 1, "{options}: {}", report.headline);
+    assert_ne!(report.verdict, Verdict::Error, "{options}: {}", report.headline());
     let check = failed_check(&report);
-    assert_eq!(check.is_some(), code == 1, "{options}: {}", report.headline);
+    assert_eq!(check.is_some(), report.verdict == Verdict::Fail, "{options}: {}", report.headline());
     check
 }
 

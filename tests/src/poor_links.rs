@@ -124,7 +124,7 @@ impl Case {
                 system.judge_at(proxy.target())
             }
         };
-        (report.verdict, report.headline)
+        (report.verdict, report.headline())
     }
 }
 

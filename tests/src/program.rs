@@ -1,6 +1,7 @@
 //! The `halfrow` program, started as a user starts it.
 
 mod built;
+pub mod documents;
 mod running;
 
 use std::fs;
@@ -11,6 +12,7 @@ use std::sync::OnceLock;
 use serde_json::Value;
 use tempfile::TempDir;
 
+pub use documents::error_sentence;
 pub use running::Running;
 
 /// How a started program ended.
@@ -26,9 +28,16 @@ pub struct Ended {
 
 impl Ended {
     /// The JSON document on stdout; null if there is none.
+    ///
+    /// # Panics
+    /// If it is not as the schema says, or if it is a report and not equal when it is read back.
     #[must_use]
     pub fn json(&self) -> Value {
-        serde_json::from_str(&self.stdout).unwrap_or(Value::Null)
+        let said = serde_json::from_str(&self.stdout).unwrap_or(Value::Null);
+        if !said.is_null() {
+            documents::assert_valid(&said);
+        }
+        said
     }
 }
 

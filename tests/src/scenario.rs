@@ -5,7 +5,7 @@ use std::fmt;
 use serde_json::Value;
 
 use crate::parallel;
-use crate::program::{Ended, halfrow};
+use crate::program::{Ended, error_sentence, halfrow};
 use crate::served::Served;
 
 /// The boards that a scenario makes sense on.
@@ -55,7 +55,7 @@ impl fmt::Display for Surprise {
         writeln!(f, "{name}: expected {verdict} with {exit_code} and `{sentence}` of")?;
         writeln!(f, "  halfrow verify --json --board {board}{options} {}", arguments.join(" "))?;
         let said = ended.json();
-        let what = if said.is_null() { &Value::Null } else { headline(&said) };
+        let what = headline(&said);
         writeln!(f, "  and it ended with {:?}, {} {what}", ended.code, said["verdict"])?;
         writeln!(f, "  suspects: {}", said["suspects"])?;
         write!(f, "  stderr: {}", ended.stderr)
@@ -184,12 +184,13 @@ pub fn boards() -> Vec<String> {
 }
 
 /// The result in one sentence: of a run, or of a call that was refused.
-fn headline(said: &Value) -> &Value {
-    if said["headline"].is_null() { &said["error"] } else { &said["headline"] }
+fn headline(said: &Value) -> String {
+    said["headline"].as_str().map_or_else(|| error_sentence(said), str::to_owned)
 }
 
 /// The headline, and where and why the first suspect is suspected.
-fn sentences(said: &Value) -> impl Iterator<Item = &str> {
+fn sentences(said: &Value) -> impl Iterator<Item = String> {
     let suspect = &said["suspects"][0];
-    [headline(said), &suspect["place"], &suspect["evidence"]].into_iter().filter_map(Value::as_str)
+    let of_suspect = ["place", "evidence"].into_iter().filter_map(|key| suspect[key].as_str());
+    std::iter::once(headline(said)).chain(of_suspect.map(str::to_owned))
 }

@@ -2,15 +2,12 @@
 
 use std::time::Duration;
 
-use halfrow::board::Stop;
-use halfrow::board::deadlines::RetryLimit;
-use halfrow::frames::Builtin;
 use halfrow::link::{self, Candidate};
 use halfrow::progress::Silent;
-use halfrow::report::{Outcome, Report};
-use halfrow::run::{Circumstances, FrameSource, Plan, verify};
+use halfrow::result::{CheckName, Outcome, Report};
+use halfrow::run::{Circumstances, Plan, RunOptions, verify};
 use halfrow::target::Target;
-use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, Phase, TableSet};
+use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, Kernel, TableSet};
 
 use crate::late_host::LateHost;
 
@@ -73,7 +70,7 @@ impl System {
     /// If there is no such board.
     #[must_use]
     pub fn judge_patiently(&self, target: &str, patience: Option<Duration>) -> Report {
-        judge_by(&Plan { reconnect: patience, ..self.plan() }, open(target))
+        self.judge_by(patience, open(target))
     }
 
     /// The report on this system's board with `options`, for a host that stands still for `pause` at every `every`-th look
@@ -90,45 +87,32 @@ impl System {
     }
 
     /// The report on a board whose link is there.
-    #[must_use]
-    pub fn judge_candidate(&self, candidate: Candidate) -> Report {
-        judge_by(&self.plan(), candidate)
-    }
-
-    /// What a run of this system does.
     ///
     /// # Panics
-    /// Never.
+    /// If the board cannot have what the plan uploads.
+    #[must_use]
+    pub fn judge_candidate(&self, candidate: Candidate) -> Report {
+        self.judge_by(None, candidate)
+    }
+
+    fn judge_by(&self, reconnect: Option<Duration>, candidate: Candidate) -> Report {
+        let circumstances = Circumstances::default();
+        let options = RunOptions { reconnect, circumstances, ..RunOptions::default() };
+        verify(&self.plan(), candidate, &options, &Silent).unwrap().report
+    }
+
+    /// The built-in frames, up to the first that differs.
+    ///
+    /// # Panics
+    /// If there is no such lens.
     #[must_use]
     pub fn plan(&self) -> Plan {
         let lens = Equidistant::from_radius(self.radius).unwrap();
         let geometry = Geometry::centred(self.width, self.height, BitDepth::Twelve).unwrap();
-        Plan {
-            tables: TableSet::from_lens(geometry, &lens, None).unwrap(),
-            kernel: Kernel::from(Interpolant::Hermite),
-            tables_source: String::new(),
-            rows_outside_circle: None,
-            lens,
-            centre_y: None,
-            phase: Phase::Grbg,
-            frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
-            repeat: 1,
-            fail_fast: true,
-            require_hardware: false,
-            take_over: false,
-            seed: 1,
-            timeout: None,
-            retry_limit: RetryLimit::default(),
-            reconnect: None,
-            keep_pictures: false,
-        }
+        let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
+        let plan = Plan::new(tables, Kernel::from(Interpolant::Hermite)).seen_through(lens);
+        Plan { fail_fast: true, ..plan }
     }
-}
-
-/// The report on a board by a plan of the test's own.
-#[must_use]
-pub fn judge_by(plan: &Plan, candidate: Candidate) -> Report {
-    verify(plan, candidate, &Circumstances::default(), &Stop::default(), &Silent).report
 }
 
 fn open(target: &str) -> Candidate {
@@ -138,6 +122,6 @@ fn open(target: &str) -> Candidate {
 
 /// The check that found the board wrong, if one did.
 #[must_use]
-pub fn failed_check(report: &Report) -> Option<&'static str> {
+pub fn failed_check(report: &Report) -> Option<CheckName> {
     report.checks.iter().find(|check| check.outcome == Outcome::Failed).map(|check| check.name)
 }

@@ -14,7 +14,7 @@ use halfrow_mock::Board;
 use halfrow_pipe::Pipe;
 
 use crate::patience::wait_until;
-use crate::program::{Ended, halfrow};
+use crate::program::{Ended, error_sentence, halfrow};
 use crate::scenario::Scenario;
 use crate::scenarios::{BROKEN_BOARDS, MISFITS, SOUND_BOARDS};
 
@@ -153,8 +153,7 @@ pub fn verify(target: &str) -> Ended {
 #[must_use]
 pub fn sentence(ended: &Ended) -> String {
     let said = ended.json();
-    let sentence = if said["headline"].is_null() { &said["error"] } else { &said["headline"] };
-    sentence.as_str().unwrap_or_default().to_owned()
+    said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned)
 }
 
 /// Whether a scenario comes out the same in 128 x 72 pixels.

@@ -10,7 +10,7 @@ use std::process::Command;
 use halfrow::frames::preview::RgbImage;
 use halfrow::frames::write_rgb;
 use halfrow_tests::photographs;
-use halfrow_tests::program::{Ended, Folder};
+use halfrow_tests::program::{Ended, Folder, error_sentence};
 use serde_json::Value;
 
 /// Gains in dB under Table 1's warp and under a band-limited one, each mean, least and most, found with NumPy 2.
@@ -57,7 +57,7 @@ fn a_photograph_that_is_too_small_is_refused_by_its_name() {
         write_rgb(&folder.path().join(name).join("tiny.png"), &image, false).unwrap();
         let ended = folder.halfrow(["kernel", "measure", "--json", "--kernel", "sharp5", "--images", name]);
         assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
-        let said = ended.json()["error"].as_str().unwrap_or_default().to_owned();
+        let said = error_sentence(&ended.json());
         assert!(said.contains("tiny.png cannot be used") && said.contains(remedy), "{said}");
     }
 }
@@ -115,7 +115,7 @@ fn a_trained_kernel_tells_where_it_comes_from_and_is_the_same_every_time() {
 
     let refused = train(&folder, &["-o", "mine.json"]);
     assert_eq!(refused.code, Some(2), "{}{}", refused.stdout, refused.stderr);
-    assert!(refused.stderr.contains("give --overwrite"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("allow it to be overwritten (--overwrite)"), "{}", refused.stderr);
     assert_eq!(train(&folder, &["-o", "mine.json", "--overwrite"]).code, Some(0));
     assert!(folder.read("mine.json") == mine, "the same photographs gave another kernel");
     assert_eq!(train(&folder, &["-o", "wide.json", "--taps", "7"]).code, Some(0));

@@ -146,7 +146,7 @@ fn it_can_be_corrected_again() {
     assert_eq!(again("frame.pgm", "expected.pgm", "gbrg", "10").code, Some(0));
     assert!(folder.read("twice.pgm") == folder.read("expected.pgm"));
     for (phase, bits, remedy) in [
-        ("grbg", "10", "its colours lie as gbrg, not as grbg; give --phase gbrg"),
+        ("grbg", "10", "its colours lie as gbrg, not as grbg; name the phase (--phase) gbrg"),
         ("gbrg", "12", "its samples have 10 bits, not 12"),
     ] {
         let refused = again("frame.dng", "none.pgm", phase, bits);

@@ -86,7 +86,7 @@ fn the_host_waits_as_long_as_the_page_of_the_wire_says() {
 fn every_fault_that_the_program_lists_has_a_scenario() {
     let listed = halfrow(["faults", "--json"]).json();
     let listed: Vec<_> =
-        listed.as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
+        listed["faults"].as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
     let names: Vec<_> = halfrow_mock::catalogue().map(|fault| fault.name).collect();
     assert_eq!(listed, names);
     let has_scenario = |name: &&&str| {

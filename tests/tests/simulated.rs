@@ -38,7 +38,7 @@ fn cores_agree(cases: u64) {
     println!("model, mock and Verilog agree; cases, rows, samples: {counts:?}");
 }
 
-fn link<B: Endpoint<Failure: Send + Sync> + 'static>(board: B) -> Box<dyn Link> {
+fn link<B: Endpoint<Failure: Send + Sync> + Send + 'static>(board: B) -> Box<dyn Link> {
     Box::new(WireLink::new(Pipe::new(board, PipeOptions::default(), None), "the board", false))
 }
 

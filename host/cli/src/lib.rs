@@ -2,8 +2,12 @@
 
 pub mod commands;
 pub mod console;
+pub mod exit;
+pub mod flags;
 pub mod guard;
+pub mod json;
 mod progress;
 pub mod serve;
 pub mod settings;
 pub mod signals;
+pub mod text;

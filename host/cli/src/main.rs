@@ -3,12 +3,11 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use serde_json::json;
 use tracing::level_filters::LevelFilter;
 
-use halfrow::verdict::Exit;
-use halfrow_cli::commands::{Cli, Failure};
-use halfrow_cli::{console, guard, signals};
+use halfrow_cli::commands::{self, Cli, Failure};
+use halfrow_cli::exit::Exit;
+use halfrow_cli::{console, flags, guard, signals};
 
 fn main() -> ExitCode {
     let exit = guard::guarded(program).unwrap_or_else(|fault| {
@@ -29,19 +28,25 @@ fn program() -> Exit {
         cli.run()
     });
     let ended = ended.unwrap_or_else(|fault| Err(Failure { exit: Exit::Error, error: fault.into() }));
-    ended.unwrap_or_else(|failure| explain(&failure, cli.wants_json()))
+    ended.unwrap_or_else(|failure| explain(&failure, cli.wants_json().then(|| cli.command_name())))
 }
 
-/// Tells what the command line's reader has to tell: help and version on stdout, what is wrong with a call on stderr.
+/// Tells what the command line's reader has to tell: help and version on stdout, what is wrong with a call on stderr, and
+/// as JSON as well where that is asked for.
 fn tell(told: &clap::Error) -> Exit {
     let text = told.render().ansi().to_string();
     if told.use_stderr() {
         console::diagnose_raw(&text);
+        let arguments: Vec<_> =
+            std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
+        if let Some(document) = commands::usage(told, &arguments) {
+            console::tell(&document);
+        }
         return Exit::Usage;
     }
     match console::print_raw(&text) {
         Ok(()) => Exit::Pass,
-        Err(unprinted) => explain(&Failure::error(unprinted), false),
+        Err(unprinted) => explain(&Failure::error(unprinted), None),
     }
 }
 
@@ -62,17 +67,11 @@ fn log(verbosity: u8) {
 }
 
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
-fn explain(failure: &Failure, as_json: bool) -> Exit {
+fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
     let Failure { exit, error } = failure;
-    console::error(&format_args!("{error:#}"));
-    if as_json {
-        let result = json!({
-            "verdict": exit.verdict(),
-            "exit_code": exit.code(),
-            "board": { "kind": null },
-            "error": format!("{error:#}"),
-        });
-        console::tell(&format!("{result:#}"));
+    console::error(&flags::named(&format!("{error:#}")));
+    if let Some(command) = as_json_of {
+        console::tell(&commands::failure(command, failure));
     }
     *exit
 }

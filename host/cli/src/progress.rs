@@ -5,7 +5,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
-use halfrow::progress::{Progress, Silent};
+use halfrow::progress::{Event, Progress, Silent};
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use crate::console;
@@ -49,12 +49,22 @@ impl Bar {
 }
 
 impl Progress for Bar {
-    fn step(&self, what: &str) {
-        self.0.set_message(what.to_owned());
-        self.0.tick();
+    fn event(&self, event: Event) {
+        match event {
+            Event::Step(step) => {
+                self.0.set_message(step.to_string());
+                self.0.tick();
+            }
+            Event::RowsExpected(rows) => self.expect(rows),
+            Event::Frame(name) => self.0.set_message(name),
+            Event::Rows(count) => self.0.inc(count),
+            Event::Done => self.0.finish_and_clear(),
+        }
     }
+}
 
-    fn rows_expected(&self, rows: u64) {
+impl Bar {
+    fn expect(&self, rows: u64) {
         let template = "{bar:30} {pos}/{len} rows  {rate}{left}  {msg}";
         if let Ok(style) = ProgressStyle::with_template(template) {
             let rate = |state: &ProgressState, text: &mut dyn Write| {
@@ -70,18 +80,6 @@ impl Progress for Bar {
             self.0.set_style(style.with_key("rate", rate).with_key("left", left));
         }
         self.0.set_length(rows);
-    }
-
-    fn frame(&self, name: &str) {
-        self.0.set_message(name.to_owned());
-    }
-
-    fn rows(&self, count: u64) {
-        self.0.inc(count);
-    }
-
-    fn done(&self) {
-        self.0.finish_and_clear();
     }
 }
 
@@ -105,11 +103,17 @@ impl Lines {
 }
 
 impl Progress for Lines {
-    fn rows_expected(&self, rows: u64) {
-        self.expected.store(rows, Ordering::Relaxed);
+    fn event(&self, event: Event) {
+        match event {
+            Event::RowsExpected(rows) => self.expected.store(rows, Ordering::Relaxed),
+            Event::Rows(count) => self.count(count),
+            _ => {}
+        }
     }
+}
 
-    fn rows(&self, count: u64) {
+impl Lines {
+    fn count(&self, count: u64) {
         let rows = self.rows.fetch_add(count, Ordering::Relaxed) + count;
         let Ok(mut last) = self.last.try_lock() else { return };
         if last.elapsed() < Self::EVERY {

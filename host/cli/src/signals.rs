@@ -12,7 +12,7 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 use crate::console;
-use halfrow::verdict::Exit;
+use crate::exit::Exit;
 use halfrow_frames::written_aside;
 
 /// Holds the exit code of the first signal, and 0 before.

@@ -51,8 +51,8 @@ pub enum DecodeError {
     Empty,
     /// No format known here begins like this.
     #[error(
-        "it begins like no format known here (PGM P5, PNG, TIFF, DNG); convert it, or for samples without a header \
-         give their layout with --raw"
+        "it begins like no format known here (PGM P5, PNG, TIFF, DNG); convert it, or name the layout of \
+         samples without a header"
     )]
     UnknownFormat,
     /// A kind of file that is understood but not taken.
@@ -143,7 +143,7 @@ pub enum DecodeError {
     #[error("the TIFF is damaged: {}; copy or export it again", tiff_damage(.0))]
     Tiff(tiff::TiffError),
     /// The file tells another arrangement of the colours than was asked for.
-    #[error("it says that its colours lie as {found}, not as {asked}; give --phase {found}")]
+    #[error("it says that its colours lie as {found}, not as {asked}; name the phase {found}")]
     OtherPhase {
         /// The file's.
         found: Phase,

@@ -11,7 +11,7 @@ pub(super) fn note(full: u16, depth: BitDepth) {
     if full < max {
         SAID.call_once(|| {
             tracing::warn!(
-                "samples of 0 to {full} are taken as they are, of 0 to {max}, and so are dark; give --bits if the \
+                "samples of 0 to {full} are taken as they are, of 0 to {max}, and so are dark; name the bits if the \
                  frames have fewer bits, or scale them"
             );
         });

@@ -31,7 +31,7 @@ const STREAM_BUFFER: usize = 1 << 13;
 #[derive(Debug, thiserror::Error)]
 pub enum WriteAsideError {
     /// The file is there and may not be replaced.
-    #[error("{} exists; give --overwrite to replace it, or name another file", path.display())]
+    #[error("{} exists; allow it to be overwritten, or name another file", path.display())]
     Exists {
         /// The file.
         path: PathBuf,
@@ -263,7 +263,7 @@ mod tests {
         write(&path, false, "first").unwrap();
         let refused = write(&path, false, "second").unwrap_err();
         assert!(matches!(&refused, WriteAsideError::Exists { path: named } if *named == path));
-        assert!(refused.to_string().contains("--overwrite"));
+        assert!(refused.to_string().contains("allow it to be overwritten"));
         assert_eq!(fs::read_to_string(&path).unwrap(), "first");
         write(&path, true, "second").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "second");

@@ -1,10 +1,10 @@
 //! Sample by sample: what the board gave against what the reference gives.
 
 use halfrow_model::Frame;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A sample that is not the reference's.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Difference {
     /// Its row.
     pub row: usize,
@@ -17,7 +17,7 @@ pub struct Difference {
 }
 
 /// How one corrected frame compares with the reference's.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Samples compared.
     pub samples: usize,
@@ -30,10 +30,10 @@ pub struct Comparison {
     /// The most negative and the most positive difference, found − expected; none without differences.
     pub extremes: Option<(i32, i32)>,
     /// Differences in each row.
-    #[serde(skip)]
+    #[serde(with = "crate::result::comparison")]
     pub by_row: Vec<u32>,
     /// Differences in each column.
-    #[serde(skip)]
+    #[serde(with = "crate::result::comparison")]
     pub by_column: Vec<u32>,
 }
 
@@ -95,7 +95,7 @@ impl Comparison {
 
     /// The rows that have differences, from the top.
     #[must_use]
-    pub fn differing_rows(&self) -> Vec<usize> {
+    pub(crate) fn differing_rows(&self) -> Vec<usize> {
         (0..self.by_row.len()).filter(|&row| self.by_row[row] > 0).collect()
     }
 }

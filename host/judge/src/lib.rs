@@ -6,10 +6,27 @@
 //!  halfrow_model ──────────────┘                  └─► diagnosis
 //! ```
 //!
+//! A program says what is to be judged in a [`Plan`], opens a link to a board or brings a [`Candidate`] with one of its own,
+//! and calls [`verify`] with [`RunOptions`]. What comes back, [`Finished`], holds a [`Report`] with a [`Verdict`] and its
+//! [`Cause`]; [`Finished::commit`] writes it down. A run takes one thread, and tells what it does to a [`Progress`] on the
+//! way. What it keeps of the frames has a budget, [`RunOptions::evidence_bytes`], so that its memory does not grow with
+//! their number but for some hundred bytes each in the report.
+//!
+//! This library prints nothing, knows no option of a command line, and ends no process: whoever calls it does. Its log
+//! goes to `tracing`; every line of a run stands in a span `run` with the target as `board`.
+//!
+//! # Two boards at once
+//!
+//! ```
+#![doc = include_str!("../examples/two_boards.rs")]
+//! ```
+//!
+//! # Inside
+//!
 //! Only [`link`] touches a device, only [`board`] speaks the protocol, and [`run`] is the one that knows the order of
 //! things. [`probe`] asks a device whether it is a board, [`link_test`] measures what a link can do, [`correction`] uses a
-//! board to correct frames, and [`lenses`] reads what calibrations leave.
-//! [`compare`], [`diagnosis`] and [`report`] see samples and counts, never a link.
+//! board to correct frames, [`lenses`] reads what calibrations leave, and [`optics`] makes a plan of it.
+//! [`compare`], [`diagnosis`], [`result`] and [`report`] see samples and counts, never a link.
 
 pub mod board;
 pub mod compare;
@@ -18,10 +35,12 @@ pub mod diagnosis;
 pub mod kernels;
 pub mod lenses;
 pub mod link_test;
+pub mod optics;
 mod probe;
 pub mod progress;
 pub mod reference;
 pub mod report;
+pub mod result;
 pub mod run;
 pub mod tables;
 pub mod verdict;
@@ -29,7 +48,16 @@ pub mod verdict;
 pub use halfrow_frames as frames;
 pub use halfrow_link as link;
 pub use halfrow_link::target;
+pub use halfrow_model as model;
+
+pub use board::Stop;
+pub use link::{Candidate, Link, LinkError, Reopener};
 pub use probe::probe;
+pub use progress::{Event, Progress, Step};
+pub use report::ReportFolder;
+pub use result::Report;
+pub use run::{Finished, FrameSource, Misfit, Plan, RunOptions, verify};
+pub use verdict::{Cause, StoppedBy, Verdict};
 
 /// The commit that this library was built from, abbreviated; `unknown` without git.
 pub const COMMIT: &str = env!("HALFROW_COMMIT");

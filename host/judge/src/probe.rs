@@ -5,7 +5,7 @@ use crate::link::discovery::Answer;
 use crate::link::{self, Class, OpenError};
 use crate::run::Draws;
 use crate::target::Target;
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// Opens `target` and greets what is there, as often as a run does. Takes some two seconds if nothing answers, beside the
 /// time to connect.
@@ -30,8 +30,8 @@ pub fn probe(target: &Target) -> Answer {
         Err((error @ (BoardError::NotABoard | BoardError::Version { .. }), _)) => {
             Answer::Foreign { reason: error.to_string() }
         }
-        Err((error, _)) if error.exit() == Exit::Busy => Answer::Busy,
-        Err((error, _)) => Answer::Failed { reason: crate::run::chain(&error) },
+        Err((error, _)) if error.cause() == Cause::Busy => Answer::Busy,
+        Err((error, _)) => Answer::Failed { reason: crate::result::Problem::of(&error).sentence() },
     }
 }
 

@@ -1,25 +1,110 @@
 //! Progress of a long run, for whoever watches.
+//!
+//! A run tells its [`Event`]s to a [`Progress`], on the thread that it runs on. Any closure that takes an event is one, so
+//! that another thread watches by a channel:
+//!
+//! ```
+//! use halfrow::progress::{Event, Progress};
+//!
+//! let (sender, events) = std::sync::mpsc::channel();
+//! let watched = move |event: Event| {
+//!     // Nobody needs to listen to the end.
+//!     let _ = sender.send(event);
+//! };
+//! watched.row();
+//! assert_eq!(events.recv(), Ok(Event::Rows(1)));
+//! ```
 
-/// Told what a run does.
-pub trait Progress: Sync {
+use std::fmt;
+
+/// What a run does, as it does it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
     /// A step begins that moves no rows.
-    fn step(&self, _what: &str) {}
+    Step(Step),
     /// This many rows will come back in all.
-    fn rows_expected(&self, _rows: u64) {}
+    RowsExpected(u64),
+    /// The frame with this name is being sent.
+    Frame(String),
+    /// As many rows came back, or were computed, since the last event of this kind.
+    Rows(u64),
+    /// The run is over.
+    Done,
+}
+
+/// A step of a run that moves no rows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// The reference computes what another program has computed before.
+    JudgeTheJudge,
+    /// The session with the board is opened.
+    OpenTheBoard,
+    /// Bytes go to the board and come back.
+    TestTheLink,
+    /// Everything is done again, since an old copy of a request may have spoilt it.
+    LookAgain,
+    /// The board went away, and the run waits for it.
+    WaitForTheBoard,
+}
+
+impl fmt::Display for Step {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::JudgeTheJudge => "judging the judge",
+            Self::OpenTheBoard => "opening the board",
+            Self::TestTheLink => "testing the link",
+            Self::LookAgain => "looking again, in a session of its own",
+            Self::WaitForTheBoard => "waiting for the board to come back",
+        })
+    }
+}
+
+/// Told what a run does. It must not block, for the board waits meanwhile.
+pub trait Progress: Sync {
+    /// Something happened.
+    fn event(&self, event: Event);
+
+    /// A step begins that moves no rows.
+    fn step(&self, step: Step) {
+        self.event(Event::Step(step));
+    }
+
+    /// This many rows will come back in all.
+    fn rows_expected(&self, rows: u64) {
+        self.event(Event::RowsExpected(rows));
+    }
+
     /// A frame is being sent.
-    fn frame(&self, _name: &str) {}
+    fn frame(&self, name: &str) {
+        self.event(Event::Frame(name.to_owned()));
+    }
+
     /// A row came back.
     fn row(&self) {
         self.rows(1);
     }
+
     /// As many rows came back, or were computed, at once.
-    fn rows(&self, _count: u64) {}
+    fn rows(&self, count: u64) {
+        self.event(Event::Rows(count));
+    }
+
     /// The run is over.
-    fn done(&self) {}
+    fn done(&self) {
+        self.event(Event::Done);
+    }
+}
+
+impl<F: Fn(Event) + Sync> Progress for F {
+    fn event(&self, event: Event) {
+        self(event);
+    }
 }
 
 /// Says nothing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Silent;
 
-impl Progress for Silent {}
+impl Progress for Silent {
+    fn event(&self, _: Event) {}
+}

@@ -1,12 +1,11 @@
-//! What a run came to, and the exit code that says so to scripts.
+//! What a run came to, and why.
 
 use std::fmt;
 
-use halfrow_link::Class;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 /// The judgement on a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
 pub enum Verdict {
     /// Everything was judged and all was equal.
@@ -27,70 +26,127 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// How a command ended. Scripts rely on the codes.
+/// Why a run ended as it did, in classes that call for different acts. In JSON its [`Cause::name`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[repr(u8)]
-pub enum Exit {
-    /// PASS, or the command did what it was asked.
-    Pass = 0,
-    /// FAIL.
-    Fail = 1,
-    /// The call or its input was wrong; there is no verdict.
-    Usage = 2,
-    /// ERROR.
-    Error = 3,
-    /// ERROR: another host holds the board.
-    Busy = 4,
-    /// ERROR: nothing was judged.
-    NothingJudged = 5,
+pub enum Cause {
+    /// PASS: all that was judged is equal.
+    Equal,
+    /// FAIL: the board is wrong.
+    Different,
+    /// ERROR: the link, the station or this computer.
+    Station,
+    /// ERROR: somebody else has the board, or the link to it.
+    Busy,
     /// ERROR: the board's identity, datapath or protocol version was refused.
-    Refused = 6,
-    /// ERROR: stopped because the terminal or connection was gone (SIGHUP).
-    HungUp = 129,
-    /// ERROR: stopped by Ctrl-C.
-    Interrupted = 130,
-    /// ERROR: stopped by SIGTERM.
-    Terminated = 143,
+    Refused,
+    /// ERROR: nothing was judged.
+    NothingJudged,
+    /// ERROR: somebody ended the run.
+    Stopped(StoppedBy),
 }
 
-impl Exit {
-    /// The process's exit code.
-    #[must_use]
-    pub const fn code(self) -> u8 {
-        self as u8
-    }
+/// Who ended a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StoppedBy {
+    /// The person who watches it.
+    Person,
+    /// The system, or whatever supervises the program.
+    System,
+    /// Nobody: the terminal or connection that it was watched from is gone.
+    Disconnection,
+    /// The program that calls this library.
+    Caller,
+}
 
-    /// The exit of a run that a signal with this code stopped; none if none did.
-    #[must_use]
-    pub fn of_signal(code: usize) -> Option<Self> {
-        let stops = [Self::HungUp, Self::Interrupted, Self::Terminated];
-        stops.into_iter().find(|exit| usize::from(exit.code()) == code)
-    }
+impl Cause {
+    /// All of them.
+    pub const ALL: [Self; 10] = [
+        Self::Equal,
+        Self::Different,
+        Self::Station,
+        Self::Busy,
+        Self::Refused,
+        Self::NothingJudged,
+        Self::Stopped(StoppedBy::Person),
+        Self::Stopped(StoppedBy::System),
+        Self::Stopped(StoppedBy::Disconnection),
+        Self::Stopped(StoppedBy::Caller),
+    ];
 
-    /// The verdict that the code carries; none after a usage error.
+    /// The verdict that it stands behind.
     #[must_use]
-    pub const fn verdict(self) -> Option<Verdict> {
+    pub const fn verdict(self) -> Verdict {
         match self {
-            Self::Pass => Some(Verdict::Pass),
-            Self::Fail => Some(Verdict::Fail),
-            Self::Usage => None,
-            _ => Some(Verdict::Error),
+            Self::Equal => Verdict::Pass,
+            Self::Different => Verdict::Fail,
+            _ => Verdict::Error,
+        }
+    }
+
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Equal => "equal",
+            Self::Different => "different",
+            Self::Station => "station",
+            Self::Busy => "busy",
+            Self::Refused => "refused",
+            Self::NothingJudged => "nothing-judged",
+            Self::Stopped(StoppedBy::Person) => "stopped-by-person",
+            Self::Stopped(StoppedBy::System) => "stopped-by-system",
+            Self::Stopped(StoppedBy::Disconnection) => "stopped-by-disconnection",
+            Self::Stopped(StoppedBy::Caller) => "stopped-by-caller",
         }
     }
 }
 
-impl From<Class> for Exit {
-    fn from(class: Class) -> Self {
-        match class {
-            Class::Call => Self::Usage,
-            Class::Station => Self::Error,
-            Class::Busy => Self::Busy,
-        }
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
     }
 }
 
-impl Serialize for Exit {
-    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.serialize_u8(self.code())
+impl fmt::Display for StoppedBy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Person => "stopped by hand",
+            Self::System => "stopped by the system",
+            Self::Disconnection => "stopped since the terminal or connection is gone",
+            Self::Caller => "stopped by the program that began it",
+        })
+    }
+}
+
+impl Serialize for Cause {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Cause {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        let known = Self::ALL.into_iter().find(|cause| cause.name() == name);
+        known.ok_or_else(|| de::Error::custom(format!("`{name}` is no cause; take one of {}", names())))
+    }
+}
+
+fn names() -> String {
+    Cause::ALL.map(Cause::name).join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cause_is_read_back_from_its_name_and_nothing_else_is() {
+        for cause in Cause::ALL {
+            let written = serde_json::to_string(&cause).unwrap();
+            assert_eq!(serde_json::from_str::<Cause>(&written).unwrap(), cause);
+        }
+        let refused = serde_json::from_str::<Cause>("\"dunno\"").unwrap_err().to_string();
+        assert!(refused.contains("`dunno` is no cause") && refused.contains("nothing-judged"), "{refused}");
     }
 }

@@ -69,8 +69,8 @@ pub enum OpenError {
     UnknownFront(String),
     /// This program was built without the simulation.
     #[error(
-        "this program was built without the simulated board, which needs Verilator; with it, from the project's folder: \
-         `apt-get install verilator g++`, then `cargo run --release --features sim -- verify --board {0}`"
+        "this program was built without the simulated board, which needs Verilator; for `{0}`, install it with \
+         `apt-get install verilator g++`, and build with Cargo's feature `sim`"
     )]
     NoSimulation(String),
     /// The waveform cannot be written.

@@ -46,7 +46,7 @@ pub static KINDS: [Kind; 6] = [
             Form {
                 target: "sim",
                 summary: "the board's Verilog under simulation; sim,KEY=VALUE sets its wire and that wire's fault, \
-                          trace=FILE writes a waveform (in programs built with --features sim)",
+                          trace=FILE writes a waveform (in programs built with Cargo's feature `sim`)",
             },
             Form { target: "sim:uart", summary: "the same behind the pins of its UART" },
             Form { target: "sim:fifo", summary: "the same behind the pins of its FT2232H" },
@@ -87,10 +87,7 @@ pub static KINDS: [Kind; 6] = [
     },
     Kind {
         name: "replay",
-        forms: &[Form {
-            target: "replay:FILE",
-            summary: "the board that answered when FILE was written with --record",
-        }],
+        forms: &[Form { target: "replay:FILE", summary: "the board that answered when FILE was recorded" }],
         board: BoardKind::Replay,
         open: open_replay,
         find: Vec::new,

@@ -1,6 +1,7 @@
 //! A link: a pipe that carries bytes to a board and back, with deadlines. [`open`] opens the one that a [`Target`] names, and
 //! [`discovery`] finds what could be a board.
 
+mod candidate;
 mod class;
 pub mod descriptor;
 pub mod discovery;
@@ -24,25 +25,33 @@ mod wire;
 
 use std::time::Duration;
 
+pub use candidate::{Candidate, Reopener};
 pub use class::Class;
 pub use error::OpenError;
 pub use line_errors::LineErrors;
-pub use open::{Candidate, fault, open, recording, replay};
+pub use open::{fault, open, recording, replay};
 pub use recording::{Lost, Recorder, Recording, RecordingError, RecordingFile};
-pub use replay::ReplayLink;
-pub use serial::{Holder, SerialError, SerialLink, holders, how_to_get_access};
+pub(crate) use replay::ReplayLink;
+pub use serial::{Holder, SerialError, holders};
+pub(crate) use serial::{SerialLink, how_to_get_access};
 pub use severed::Severed;
-pub use sysfs::{UsbDevice, usb_device};
+pub use sysfs::UsbDevice;
+pub(crate) use sysfs::usb_device;
 pub use target::{BoardKind, Target, TargetError};
-pub use tcp::{TcpError, TcpLink};
-pub use usb::{Transport, UsbBoard, UsbError, UsbFailure, UsbLink, usb_boards};
+pub use tcp::TcpError;
+pub(crate) use tcp::TcpLink;
+pub use usb::{UsbBoard, UsbError, UsbFailure};
+pub(crate) use usb::{UsbLink, usb_boards};
 pub use wire::WireLink;
 
-/// A byte pipe to a board.
+#[cfg(feature = "sim")]
+pub use halfrow_sim::TraceError;
+
+/// A byte pipe to a board. It can be sent to another thread, so that each of several boards can be judged on its own.
 ///
 /// Both directions move in one call, so a host that uses it cannot deadlock with a board that waits to be read: whatever
 /// the board sends is taken while the host sends.
-pub trait Link {
+pub trait Link: Send {
     /// Writes what the pipe takes of `outgoing`, appends to `incoming` what has arrived, and returns the number of bytes
     /// taken. Returns as soon as a byte has moved either way, and without one when `wait` has passed.
     ///
@@ -149,6 +158,6 @@ pub enum LinkError {
         byte: u64,
     },
     /// The recording could not be written.
-    #[error("the recording could not be written; free some space or choose another place with --record")]
+    #[error("the recording could not be written; free some space or choose another place for the recording")]
     Record(#[source] std::io::Error),
 }

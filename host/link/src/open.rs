@@ -7,20 +7,10 @@ use halfrow_mock::BoardFault;
 
 #[cfg(feature = "sim")]
 pub(crate) use super::simulated::open_simulated;
-use super::{Link, OpenError, Recording, ReplayLink, WireLink, kinds};
+use super::{Candidate, Link, OpenError, Recording, ReplayLink, WireLink, kinds};
 use crate::target::{BoardKind, Target};
 
 const MOCK: &str = "the mock board";
-
-/// A board that is about to be opened.
-pub struct Candidate {
-    /// The target string.
-    pub target: String,
-    /// What the target's kind says that it is. A link to the outside may still lead to a mock, and then the board says so.
-    pub kind: BoardKind,
-    /// The link to it.
-    pub link: Box<dyn Link>,
-}
 
 /// Opens the link that `target` names; nothing is said over it yet.
 ///
@@ -28,7 +18,10 @@ pub struct Candidate {
 /// [`OpenError`] when the target is none of ours, or its options are not.
 pub fn open(target: &Target) -> Result<Candidate, OpenError> {
     let kind = kinds::of(target).ok_or_else(|| OpenError::UnknownKind(target.kind.clone()))?;
-    Ok(Candidate { target: target.to_string(), kind: kind.board, link: (kind.open)(target)? })
+    let link = (kind.open)(target)?;
+    let again = target.clone();
+    let reopen = Box::new(move || Ok(open(&again)?.link));
+    Ok(Candidate { target: target.to_string(), kind: kind.board, link, reopen: Some(reopen) })
 }
 
 /// What is broken in the board of a `mock` target, on purpose; none when nothing is, or the target is another.
@@ -101,7 +94,7 @@ pub fn recording(target: &Target) -> Result<Option<Recording>, OpenError> {
 /// [`OpenError::Recording`] when its head is damaged.
 pub fn replay(target: &Target, recording: Recording) -> Result<Candidate, OpenError> {
     let link = Box::new(ReplayLink::new(recording)?);
-    Ok(Candidate { target: target.to_string(), kind: BoardKind::Replay, link })
+    Ok(Candidate { target: target.to_string(), kind: BoardKind::Replay, link, reopen: None })
 }
 
 fn read_replay(target: &Target) -> Result<Recording, OpenError> {

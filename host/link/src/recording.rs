@@ -36,7 +36,7 @@ pub enum RecordingError {
         source: std::io::Error,
     },
     /// It is something else.
-    #[error("{0} is no recording of this version; make one with `halfrow verify --record FILE`")]
+    #[error("{0} is no recording of this version; record a run with `halfrow verify`")]
     Foreign(PathBuf),
     /// Its head does not parse.
     #[error("the head of the recording {path} is damaged; make the recording again")]

@@ -6,7 +6,7 @@ use super::{Link, LinkError, Recording, RecordingError};
 
 /// A pipe to a board that answered once.
 #[derive(Debug)]
-pub struct ReplayLink {
+pub(crate) struct ReplayLink {
     name: String,
     bytes_per_second: Option<f64>,
     exclusive: bool,
@@ -22,7 +22,7 @@ impl ReplayLink {
     ///
     /// # Errors
     /// [`RecordingError::Head`] when the recording's head does not parse.
-    pub fn new(recording: Recording) -> Result<Self, RecordingError> {
+    pub(crate) fn new(recording: Recording) -> Result<Self, RecordingError> {
         let name = format!("the recording {}", recording.path().display());
         let bytes_per_second = recording.bytes_per_second()?;
         let exclusive = recording.is_exclusive()?;

@@ -24,7 +24,7 @@ pub struct UsbDevice {
 
 /// The USB device behind the serial port `port`, a path that may be a link; none if there is none.
 #[must_use]
-pub fn usb_device(port: &Path) -> Option<UsbDevice> {
+pub(crate) fn usb_device(port: &Path) -> Option<UsbDevice> {
     let device = fs::canonicalize(port).ok()?;
     usb_device_in(&Path::new("/sys/class/tty").join(device.file_name()?))
 }

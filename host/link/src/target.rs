@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use halfrow_protocol::message::BoardNature;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A board's name, taken apart but not yet looked up.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct Target {
 }
 
 /// What stands behind a target.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum BoardKind {
     /// The mock board.

@@ -70,7 +70,7 @@ impl TcpError {
 
 /// A pipe to a board behind a TCP connection.
 #[derive(Debug)]
-pub struct TcpLink {
+pub(crate) struct TcpLink {
     stream: TcpStream,
     pump: Pump,
     address: String,
@@ -86,7 +86,7 @@ impl TcpLink {
     ///
     /// # Errors
     /// [`OpenError`] when the target is none, or no connection comes about.
-    pub fn open(target: &Target) -> Result<Self, OpenError> {
+    pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let address = target.address.clone().ok_or_else(|| OpenError::address_missing(target))?;
         let mut baud = None;
         read(target, "baud=RATE, that of the serial line at the far end", |key, value| {

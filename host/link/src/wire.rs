@@ -22,7 +22,7 @@ impl<B: Endpoint> WireLink<B> {
     }
 }
 
-impl<B: Endpoint> Link for WireLink<B>
+impl<B: Endpoint + Send> Link for WireLink<B>
 where
     B::Failure: Send + Sync + 'static,
 {

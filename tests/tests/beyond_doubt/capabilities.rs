@@ -1,6 +1,6 @@
 //! Boards that say of themselves what no board can be: refused, by name, and never judged.
 
-use halfrow::verdict::Exit;
+use halfrow::verdict::Cause;
 use halfrow_protocol::message::Capabilities;
 use halfrow_tests::altered::judge_claims;
 use halfrow_tests::system::System;
@@ -48,8 +48,12 @@ const UNUSUAL: &[Claim] = &[
 fn a_board_that_cannot_be_is_refused_by_the_capability_s_name() {
     for &(claim, change) in IMPOSSIBLE {
         let report = judge_claims(&System::TINY, change);
-        assert_eq!(report.exit_code, Exit::Refused, "{claim}: {}", report.headline);
-        assert!(report.headline.contains(&format!("the board says {claim}, and ")), "{}", report.headline);
+        assert_eq!(report.cause, Cause::Refused, "{claim}: {}", report.headline());
+        assert!(
+            report.headline().contains(&format!("the board says {claim}, and ")),
+            "{}",
+            report.headline()
+        );
         assert!(report.frames.is_empty());
     }
 }
@@ -58,6 +62,6 @@ fn a_board_that_cannot_be_is_refused_by_the_capability_s_name() {
 fn a_board_that_is_only_unusual_is_judged() {
     for &(claim, change) in UNUSUAL {
         let report = judge_claims(&System::TINY, change);
-        assert_eq!(report.exit_code, Exit::Pass, "{claim}: {}", report.headline);
+        assert_eq!(report.cause, Cause::Equal, "{claim}: {}", report.headline());
     }
 }

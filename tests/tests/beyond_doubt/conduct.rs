@@ -1,6 +1,6 @@
 //! What boards do over rows that no link can do, and what links do that is no fault of a board.
 
-use halfrow::report::Report;
+use halfrow::result::{CheckName, Report};
 use halfrow::verdict::Verdict;
 use halfrow_protocol::message::{RowOut, RowPlace};
 use halfrow_protocol::{Kind, Reply};
@@ -8,15 +8,15 @@ use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
 use halfrow_tests::system::{System, failed_check};
 
 #[track_caller]
-fn fails(report: &Report, check: &str, sentence: &str) {
-    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline);
-    assert_eq!(failed_check(report), Some(check), "{}", report.headline);
-    assert!(report.headline.contains(sentence), "{}", report.headline);
+fn fails(report: &Report, check: CheckName, sentence: &str) {
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    assert_eq!(failed_check(report), Some(check), "{}", report.headline());
+    assert!(report.headline().contains(sentence), "{}", report.headline());
 }
 
 #[track_caller]
 fn passes(report: &Report) {
-    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline);
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
 }
 
 /// The place of a returned row.
@@ -81,7 +81,7 @@ fn a_second_copy_that_differs_is_the_board_s_fault() {
         });
         vec![packet, copy]
     });
-    fails(&report, "frames", "row 3 of frame 0 came twice, and not the same both times");
+    fails(&report, CheckName::Frames, "row 3 of frame 0 came twice, and not the same both times");
 }
 
 #[test]
@@ -106,7 +106,7 @@ fn rows_that_nobody_sent_are_the_board_s_fault() {
         let invented = changed(&packet, number, |row, _| row.place.row_sequence += 1_000_000);
         vec![packet, invented]
     });
-    fails(&report, "frames", "which it was never given");
+    fails(&report, CheckName::Frames, "which it was never given");
 }
 
 #[test]
@@ -119,7 +119,7 @@ fn a_number_of_packets_that_does_not_count_is_the_board_s_fault() {
     });
     fails(
         &report,
-        "frames",
+        CheckName::Frames,
         "the board numbers its ROW_OUT packets wrongly: row 1 of frame 0 has the number 0",
     );
 }
@@ -146,7 +146,11 @@ fn reorders(honest: bool) -> Report {
 
 #[test]
 fn a_board_that_reorders_rows_is_told_from_a_link_that_does() {
-    fails(&reorders(true), "frames", "the board reorders rows: row 4 of frame 0 left it behind a later row");
+    fails(
+        &reorders(true),
+        CheckName::Frames,
+        "the board reorders rows: row 4 of frame 0 left it behind a later row",
+    );
     passes(&reorders(false));
 }
 
@@ -174,7 +178,7 @@ fn counters_are_compared_with_what_the_host_saw() {
         ("1 refusals, and it is 0", |status| status.refusals = 1),
         ("packets of another session, and it is 0", |status| status.foreign_packets = 2),
     ] {
-        fails(&with_counter(change), "counters", sentence);
+        fails(&with_counter(change), CheckName::Counters, sentence);
     }
 }
 
@@ -182,8 +186,8 @@ fn counters_are_compared_with_what_the_host_saw() {
 fn damaged_packets_that_nobody_missed_are_only_noted() {
     let report = with_counter(|status| status.crc_errors = 5);
     passes(&report);
-    let counters = report.checks.iter().find(|check| check.name == "counters").unwrap();
-    assert!(counters.detail.contains("it counts 5 damaged packets, and nothing had to be sent again"));
+    let counters = report.checks.iter().find(|check| check.name == CheckName::Counters).unwrap();
+    assert!(counters.detail().contains("it counts 5 damaged packets, and nothing had to be sent again"));
 }
 
 #[test]
@@ -192,7 +196,7 @@ fn gaps_are_compared_with_their_seed() {
         Some(at) if at.row == 5 => changed(&packet, packet.header.sequence, |row, _| row.pauses += 1),
         _ => packet,
     });
-    fails(&report, "counters", "was kept waiting by gaps for 1 board clocks");
+    fails(&report, CheckName::Counters, "was kept waiting by gaps for 1 board clocks");
 }
 
 /// The comparisons hold for the Verilog as for the mock, over sound links and poor ones.

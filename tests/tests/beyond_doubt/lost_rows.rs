@@ -1,6 +1,6 @@
 //! Rows that do not come back: the board's fault only when the board says so itself.
 
-use halfrow::report::Report;
+use halfrow::result::Report;
 use halfrow::verdict::Verdict;
 use halfrow_protocol::message::Status;
 use halfrow_protocol::{Kind, Reply};
@@ -21,9 +21,9 @@ fn row_of_request(packet: &Passing) -> Option<u16> {
 fn a_board_that_swallows_rows_fails() {
     for row in [0, 3, 7] {
         let report = System::TINY.judge(&format!(",fault=lost-row,row={row}"));
-        assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline);
+        assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
         let sentence = format!("row {row} of frame 0 went into the board and never came out");
-        assert!(report.headline.contains(&sentence), "{}", report.headline);
+        assert!(report.headline().contains(&sentence), "{}", report.headline());
     }
 }
 
@@ -35,8 +35,8 @@ fn rows_that_the_board_says_it_sent_are_lost_behind_it() {
             let lost = toward == Toward::Host && is_row_out(&packet, row);
             if lost { Vec::new() } else { vec![packet] }
         });
-        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline);
-        assert!(report.headline.contains(&format!("row {row} of frame 0")), "{}", report.headline);
+        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+        assert!(report.headline().contains(&format!("row {row} of frame 0")), "{}", report.headline());
     }
 }
 
@@ -47,7 +47,7 @@ fn rows_that_never_reach_the_board_are_lost_in_front_of_it() {
             let lost = toward == Toward::Board && row_of_request(&packet) == Some(row);
             if lost { Vec::new() } else { vec![packet] }
         });
-        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline);
+        assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
     }
 }
 
@@ -64,7 +64,7 @@ fn a_row_that_waits_for_its_successor_is_not_swallowed() {
         }
         _ => vec![packet],
     });
-    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline);
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
 }
 
 /// What a sound board's row 3 comes to that never leaves its front end, when `change` is made to its counters: as a
@@ -87,7 +87,7 @@ type Denial = fn(&mut Status);
 #[test]
 fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
     let admitted = withheld(|_| {});
-    assert_eq!(admitted.verdict, Verdict::Fail, "{}", admitted.headline);
+    assert_eq!(admitted.verdict, Verdict::Fail, "{}", admitted.headline());
     let denials: [(&str, Denial); 7] = [
         ("it did not take it", |status| status.rows_in = status.rows_in.saturating_sub(1)),
         ("it waits for it", |status| status.next_row_in = status.next_row_out),
@@ -99,6 +99,6 @@ fn a_row_that_the_board_does_not_admit_to_is_no_fail() {
     ];
     for (what, denial) in denials {
         let report = withheld(denial);
-        assert_eq!(report.verdict, Verdict::Error, "{what}: {}", report.headline);
+        assert_eq!(report.verdict, Verdict::Error, "{what}: {}", report.headline());
     }
 }

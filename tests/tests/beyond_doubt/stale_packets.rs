@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use halfrow::report::Report;
+use halfrow::result::Report;
 use halfrow::verdict::Verdict;
 use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward};
@@ -51,7 +51,8 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
         for before in others.into_iter().flat_map(|kind| [0, 3, 40].map(|number| (kind, number))) {
             for answered in [true, false] {
                 let report = late_copy(which, before, answered);
-                let what = format!("{which:?} before {before:?}, answered: {answered}: {}", report.headline);
+                let what =
+                    format!("{which:?} before {before:?}, answered: {answered}: {}", report.headline());
                 assert_ne!(report.verdict, Verdict::Fail, "{what}");
                 ends.push(report.verdict);
             }

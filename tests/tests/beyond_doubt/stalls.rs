@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow::report::Report;
+use halfrow::result::Report;
 use halfrow::verdict::Verdict;
 use halfrow_tests::proxy::{Proxy, Suffers};
 use halfrow_tests::served::Served;
@@ -15,7 +15,7 @@ const STALL: Duration = Duration::from_secs(3);
 
 #[track_caller]
 fn passes(report: &Report, what: &str) {
-    assert_eq!(report.verdict, Verdict::Pass, "{what}: {}", report.headline);
+    assert_eq!(report.verdict, Verdict::Pass, "{what}: {}", report.headline());
 }
 
 /// Judges a served board behind a proxy whose both directions stand still behind every 12,000 bytes from the host.

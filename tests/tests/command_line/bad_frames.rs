@@ -120,7 +120,7 @@ fn formats_that_people_have_are_refused_by_their_names() {
         (b"GIF89a", "a GIF cannot be used; convert it to PNG or TIFF"),
         (b"P7\nWIDTH 2\n", "a PAM cannot be used; convert it to PGM (P5), PNG or TIFF"),
         (b"P4\n8 1\n\0", "a PBM, black and white, cannot be used"),
-        (b"\0\x01\x02\x03", "for samples without a header give their layout with --raw"),
+        (b"\0\x01\x02\x03", "or name the layout (--raw) of samples without a header"),
     ] {
         folder.write("frame", bytes);
         bad_frame(&folder, "frame", &[], sentence);
@@ -168,7 +168,7 @@ fn samples_of_few_bits_in_deep_frames_are_told_once() {
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
         ended.stderr
     };
-    let note = "samples of 0 to 255 are taken as they are, of 0 to 4095, and so are dark; give --bits";
+    let note = "samples of 0 to 255 are taken as they are, of 0 to 4095, and so are dark; name the bits";
     let both = said(&["-q", "a.pgm", "b.pgm", "--model", "-o", "out"]);
     assert!(both.contains(note) && both.lines().count() == 1 && both.contains(".pgm"), "{both}");
     let raw = said(&["-q", "c.raw", "--raw", "u8", "--model", "-o", "c.pgm"]);

@@ -130,7 +130,7 @@ fn json_names_the_outputs_and_the_kind_of_board_and_judges_nothing() {
         let call = small("correct", &["builtin:black", "-o", "out.pgm", "--overwrite", how[0], how[1]]);
         let said = folder.halfrow(call).json();
         assert!(said["verdict"].is_null() && said["exit_code"] == 0);
-        assert_eq!(said["board"]["kind"], kind);
+        assert_eq!(said["corrected_by"], kind);
         assert_eq!(said["outputs"], serde_json::json!(["out.pgm"]));
     }
 }
@@ -150,7 +150,11 @@ fn what_does_not_fit_the_board_is_refused() {
 fn a_file_that_is_there_is_replaced_only_when_that_is_allowed() {
     let folder = Folder::new();
     folder.write("out.pgm", "precious");
-    refused(&folder, &small("correct", &["builtin:black", "--model", "-o", "out.pgm"]), "give --overwrite");
+    refused(
+        &folder,
+        &small("correct", &["builtin:black", "--model", "-o", "out.pgm"]),
+        "allow it to be overwritten (--overwrite)",
+    );
     assert_eq!(folder.text("out.pgm"), "precious");
     let call = small("correct", &["builtin:black", "--model", "-o", "out.pgm", "--overwrite"]);
     assert_eq!(folder.halfrow(call).code, Some(0));

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 14] = [
+const COMMANDS: [(&str, &str); 16] = [
     ("verify", "Judge a board"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
@@ -18,6 +18,8 @@ const COMMANDS: [(&str, &str); 14] = [
     ("link", "Test the link"),
     ("serve", "Serve a mock or simulated board"),
     ("faults", "List the faults"),
+    ("codes", "List the codes"),
+    ("schema", "Print the JSON Schema"),
     ("completions", "Print a completion script"),
     ("manual", "Write the manual pages"),
 ];

@@ -10,6 +10,7 @@ mod bad_tables;
 mod bad_targets;
 mod contradictions;
 mod corrected;
+mod documents;
 mod help;
 mod lenses;
 mod made_files;

@@ -47,7 +47,7 @@ fn folder_with(place: &str, make: impl Fn(&Path)) -> Folder {
 fn a_file_that_is_there_is_replaced_by_request_alone() {
     for (call, place) in calls() {
         let folder = folder_with(place, |path| fs::write(path, "precious").unwrap());
-        refused(&folder, &call, &format!("{place} exists; give --overwrite"));
+        refused(&folder, &call, &format!("{place} exists; allow it to be overwritten (--overwrite)"));
         assert_eq!(folder.text(place), "precious", "{call:?}");
         // A folder is named where the call named one.
         let named = if place.contains('/') || call.contains(&"frames") { "folder" } else { "file" };
@@ -199,7 +199,7 @@ fn manual_pages_are_written_into_a_folder_as_other_files_are() {
     refused(
         &folder,
         &["manual", "a/man"],
-        ".1 exists; give --overwrite to replace it, or name another folder",
+        ".1 exists; allow it to be overwritten (--overwrite), or name another folder",
     );
     assert_eq!(folder.text("a/man/halfrow.1"), "precious");
     assert_eq!(folder.halfrow(["manual", "a/man", "--overwrite"]).code, Some(0));

@@ -143,9 +143,16 @@ fn json_is_what_the_folder_holds_and_the_exit_code_stays() {
     let folder = Folder::new();
     for (code, item) in [(0, ["fig8", "fig5"]), (5, ["resources", "resources"])] {
         let (report, said) = made(&folder, code, &[item[0], item[1], "--json", "--overwrite"]);
-        assert_eq!(serde_json::from_str::<Value>(&said).unwrap(), report);
+        let said: Value = serde_json::from_str(&said).unwrap();
+        for key in ["schema", "command", "halfrow", "items"] {
+            assert_eq!(said[key], report[key], "{key}");
+        }
     }
     let refused = folder.halfrow(["paper", "table1", "--json", "-o", "none"]);
     assert_eq!((refused.code, &refused.json()["exit_code"]), (Some(2), &2.into()));
-    assert!(refused.json()["error"].as_str().unwrap().contains("give --images"), "{}", refused.stdout);
+    assert!(
+        refused.json()["error"]["message"].as_str().unwrap().contains("give --images"),
+        "{}",
+        refused.stdout
+    );
 }

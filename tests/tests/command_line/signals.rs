@@ -16,19 +16,18 @@ fn interrupted(folder: &Folder, signal: &str, arguments: &[&str]) -> Ended {
 
 /// Signals, and the codes of commands that they end.
 const SIGNALS: [(&str, i32); 3] = [("HUP", 129), ("INT", 130), ("TERM", 143)];
+/// Who stopped them, in the order of [`SIGNALS`].
+const STOPPED: [&str; 3] =
+    ["stopped since the terminal or connection is gone", "stopped by hand", "stopped by the system"];
 
 #[test]
 fn a_signal_ends_a_run_with_its_code() {
-    for (signal, code) in SIGNALS {
+    for ((signal, code), said_of) in SIGNALS.into_iter().zip(STOPPED) {
         let ended = interrupted(&Folder::new(), signal, &[]);
         assert_eq!(ended.code, Some(code), "{signal}: {}", ended.stderr);
         let said = ended.json();
         assert_eq!((&said["verdict"], &said["exit_code"]), (&"ERROR".into(), &code.into()));
-        assert!(
-            said["headline"].as_str().unwrap().starts_with("stopped by a signal"),
-            "{}",
-            said["headline"]
-        );
+        assert!(said["headline"].as_str().unwrap().starts_with(said_of), "{}", said["headline"]);
     }
 }
 

@@ -9,10 +9,9 @@ use crate::{refused, small};
 const ESCAPE: char = '\u{1b}';
 
 #[test]
-fn json_begins_with_verdict_exit_code_and_kind_of_board() {
+fn json_begins_with_schema_command_verdict_exit_code_and_kind_of_board() {
     let ended = halfrow(small("verify", &["--json"]));
-    let beginning =
-        "{\n  \"verdict\": \"PASS\",\n  \"exit_code\": 0,\n  \"board\": {\n    \"kind\": \"mock\",";
+    let beginning = "{\n  \"schema\": 1,\n  \"command\": \"verify\",\n  \"verdict\": \"PASS\",\n  \"exit_code\": 0,\n  \"board\": {\n    \"kind\": \"mock\",";
     assert!(ended.stdout.starts_with(beginning), "{}", ended.stdout);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
     assert!(ended.json().is_object());
@@ -23,9 +22,9 @@ fn json_of_a_refused_call_has_no_verdict() {
     let ended = halfrow(["verify", "--json", "--width", "63"]);
     assert_eq!(ended.code, Some(2));
     let said = ended.json();
-    assert!(said["verdict"].is_null() && said["board"]["kind"].is_null());
+    assert!(said["verdict"].is_null() && said["board"].is_null());
     assert_eq!(said["exit_code"], 2);
-    assert!(ended.stderr.contains(said["error"].as_str().unwrap()));
+    assert!(ended.stderr.contains(said["error"]["message"].as_str().unwrap()));
 }
 
 #[test]
@@ -111,7 +110,7 @@ fn a_run_ends_at_its_time_limit() {
     let ended = halfrow(arguments);
     assert_eq!(ended.code, Some(3));
     let headline = ended.json()["headline"].as_str().unwrap().to_owned();
-    assert!(headline.contains("the run took longer than the 20 s of --timeout"), "{headline}");
+    assert!(headline.contains("the run took longer than the 20 s of its time limit"), "{headline}");
 }
 
 #[test]
@@ -144,7 +143,11 @@ fn the_time_limit_is_also_this_computer_s() {
     let replay = folder.halfrow(["verify", "--board", "replay:run.rec", "--timeout", "0"]);
     for ended in [mock, replay] {
         assert_eq!(ended.code, Some(3), "{}", ended.stdout);
-        assert!(ended.stdout.contains("the run took longer than the 0 s of --timeout"), "{}", ended.stdout);
+        assert!(
+            ended.stdout.contains("the run took longer than the 0 s of its time limit"),
+            "{}",
+            ended.stdout
+        );
     }
 }
 
@@ -174,11 +177,11 @@ fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
     refused(
         &Folder::new(),
         &call("mock").collect::<Vec<_>>(),
-        "or a mock that takes these: --board mock,max-width=2592",
+        "or a mock that takes these: mock,max-width=2592",
     );
     assert_eq!(halfrow(call("mock,max-width=2592")).code, Some(0));
     let high = ["verify", "-q", "--board", "mock,max-height=8", "--width", "64", "--height", "9"];
-    refused(&Folder::new(), &high, "--board mock,max-width=64,max-height=9");
+    refused(&Folder::new(), &high, "takes these: mock,max-width=64,max-height=9");
 }
 
 /// A wire without a speed takes no time at all by its own clock.

@@ -50,7 +50,7 @@ fn a_port_that_one_may_not_open_is_told_from_one_that_is_not_there() {
     ends(&info_as_nobody(&program, &target), 3, "you may not open /dev/pts/");
     ends(&info_as_nobody(&program, &target), 3, "install scripts/70-halfrow.rules");
     let looked = as_nobody(&program, &["boards", "--json", "--ask", &target]).json();
-    assert_eq!(looked[0]["access"]["state"], "denied", "{looked}");
+    assert_eq!(looked["boards"][0]["access"]["state"], "denied", "{looked}");
     fs::set_permissions(pty.path(), Permissions::from_mode(0o660)).unwrap();
     if is_root() {
         chown(pty.path(), None, Some(20)).unwrap();

@@ -11,13 +11,13 @@ use serde_json::{Value, json};
 fn look_at(target: &str, more: &[&str]) -> Value {
     let ended = halfrow(["boards", "--json", target].into_iter().chain(more.iter().copied()));
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    ended.json()[0].clone()
+    ended.json()["boards"][0].clone()
 }
 
 #[test]
 fn a_search_lists_devices_and_the_boards_that_need_none() {
     let listed = halfrow(["boards", "--json"]).json();
-    let entries = listed.as_array().unwrap();
+    let entries = listed["boards"].as_array().unwrap();
     let mock = entries.iter().find(|entry| entry["target"] == "mock").unwrap();
     assert_eq!(mock["kind"], "mock");
     // A pseudo-terminal is no device that a board could be behind.

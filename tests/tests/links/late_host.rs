@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow::verdict::Exit;
+use halfrow::verdict::Cause;
 use halfrow_tests::parallel;
 use halfrow_tests::system::System;
 
@@ -15,7 +15,7 @@ fn it_does_not_find_the_board_late() {
     let reports =
         parallel::map(&every, |&every| System::TINY.judge_late(",speed=1200000,delay=0.001", every, PAUSE));
     for (every, report) in every.iter().zip(reports) {
-        assert_eq!(report.exit_code, Exit::Pass, "every {every}: {}", report.headline);
+        assert_eq!(report.cause, Cause::Equal, "every {every}: {}", report.headline());
         assert_eq!(report.link.retries, 0, "every {every}");
     }
 }

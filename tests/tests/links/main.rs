@@ -15,7 +15,7 @@ mod served;
 mod tcp;
 mod unplugged;
 
-use halfrow_tests::program::{Ended, halfrow};
+use halfrow_tests::program::{Ended, error_sentence, halfrow};
 use halfrow_tests::served::Served;
 
 /// The options of a frame so small that a whole run takes a moment.
@@ -43,7 +43,7 @@ fn passes(served: &Served) {
 fn ends(ended: &Ended, code: i32, sentence: &str) {
     assert_eq!(ended.code, Some(code), "{}{}", ended.stdout, ended.stderr);
     let said = ended.json();
-    let headline = said["headline"].as_str().or(said["error"].as_str()).unwrap_or_default();
+    let headline = said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned);
     assert!(headline.contains(sentence), "{headline}");
     assert_eq!(said["exit_code"], code);
 }

@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use halfrow::report::Report;
-use halfrow::verdict::Exit;
+use halfrow::result::Report;
+use halfrow::verdict::Cause;
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
 use halfrow_tests::patience::{LIMIT, come_to_an_end};
@@ -23,7 +23,7 @@ const HOW: [fn(String) -> Replug; 3] = [|_| Replug::Powered, Replug::Switched, R
 fn undisturbed() -> (u64, usize) {
     let served = Served::on_a_serial_port("mock");
     let report = System::TINY.judge_at(&served.target());
-    assert_eq!(report.exit_code, Exit::Pass, "{}", report.headline);
+    assert_eq!(report.cause, Cause::Equal, "{}", report.headline());
     (report.link.bytes_in, rows(&report))
 }
 
@@ -51,10 +51,14 @@ fn goes_on_after(count: usize) {
     let cuts: Vec<_> = (0..count).map(draw).zip(HOW.into_iter().cycle()).collect();
     let reports = parallel::map(&cuts, |&(byte, how)| interrupted(byte as u64, how("mock".to_owned())));
     for (cut, report) in cuts.iter().zip(&reports) {
-        let away: Vec<_> = report.link.reconnections.iter().map(|away| away.reason.as_str()).collect();
-        assert_eq!(report.exit_code, Exit::Pass, "{cut:?}: {}; {away:?}", report.headline);
+        let away: Vec<_> = report.link.reconnections.iter().map(|away| away.reason.sentence()).collect();
+        assert_eq!(report.cause, Cause::Equal, "{cut:?}: {}; {away:?}", report.headline());
         assert_eq!((rows(report), away.len()), (all_rows, 1), "{cut:?}: {away:?}");
-        assert!(report.headline.ends_with("the board went away and came back, 1 x"), "{}", report.headline);
+        assert!(
+            report.headline().ends_with("the board went away and came back, 1 x"),
+            "{}",
+            report.headline()
+        );
     }
 }
 
@@ -76,18 +80,18 @@ fn a_broken_board_is_found_although_it_was_away() {
     let board = "mock,fault=no-rounding";
     let served = Served::unplugged_once(board, &path, 3000, Some(Replug::Switched(board.to_owned())));
     let report = System::TINY.judge_patiently(&served.target(), Some(PATIENCE));
-    assert_eq!(report.exit_code, Exit::Fail, "{}", report.headline);
+    assert_eq!(report.cause, Cause::Different, "{}", report.headline());
     assert_eq!(report.link.reconnections.len(), 1);
 }
 
 #[test]
 fn another_board_is_not_taken_for_the_one_that_went_away() {
     let report = interrupted(3000, Replug::Switched("mock,taps=five".to_owned()));
-    assert_eq!(report.exit_code, Exit::Refused, "{}", report.headline);
+    assert_eq!(report.cause, Cause::Refused, "{}", report.headline());
     assert!(
-        report.headline.contains("another board, or another bitstream, came back"),
+        report.headline().contains("another board, or another bitstream, came back"),
         "{}",
-        report.headline
+        report.headline()
     );
 }
 

@@ -1,7 +1,9 @@
 //! Boards that are unplugged: at every packet, and in the middle of one.
 
-use halfrow::report::{self, Outcome::Error, Outcome::Skipped};
-use halfrow::verdict::Exit;
+use halfrow::result::CheckName;
+use halfrow::result::Outcome::{Error, Skipped};
+use halfrow::verdict::Cause;
+
 use halfrow_tests::dice::Dice;
 use halfrow_tests::parallel;
 use halfrow_tests::patience::come_to_an_end;
@@ -13,11 +15,11 @@ fn is_unplugged(options: &str) -> bool {
     let served = Served::on_a_serial_port(&format!("mock,fault=disconnect,{options}"));
     let target = served.target();
     let report = come_to_an_end(move || System::TINIEST.judge_at(&target));
-    if report.exit_code == Exit::Pass {
+    if report.cause == Cause::Equal {
         return false;
     }
-    let said = &report.headline;
-    assert_eq!(report.exit_code, Exit::Error, "{options}: {said}");
+    let said = &report.headline();
+    assert_eq!(report.cause, Cause::Station, "{options}: {said}");
     assert!(said.contains("the link broke while waiting for"), "{options}: {said}");
     assert!(said.contains("went away at"), "{options}: {said}");
     true
@@ -39,7 +41,7 @@ fn at_every_packet_it_is_an_error_that_names_the_place() {
 #[track_caller]
 fn is_unplugged_after(count: usize) {
     let whole = System::TINIEST.judge_at(&Served::on_a_serial_port("mock").target());
-    assert_eq!(whole.exit_code, Exit::Pass, "{}", whole.headline);
+    assert_eq!(whole.cause, Cause::Equal, "{}", whole.headline());
     let mut dice = Dice::new(7);
     let ends = [("board", whole.link.bytes_out), ("host", whole.link.bytes_in)];
     let cuts: Vec<_> = (0..count)
@@ -74,11 +76,14 @@ fn what_came_before_is_not_taken_for_a_whole_run() {
     });
     let mut partial = 0;
     for report in reports {
-        assert_eq!(report.exit_code, Exit::Error, "{}", report.headline);
+        assert_eq!(report.cause, Cause::Station, "{}", report.headline());
         let of = |name| report.checks.iter().find(|check| check.name == name).unwrap().outcome;
-        assert_eq!((of("frames"), of("latency"), of("counters")), (Error, Skipped, Skipped));
+        assert_eq!(
+            (of(CheckName::Frames), of(CheckName::Latency), of(CheckName::Counters)),
+            (Error, Skipped, Skipped)
+        );
         let torn = report.frames.iter().filter(|frame| frame.rows < System::TINY.height).count();
-        let text = report::text(&report);
+        let text = halfrow_cli::text::render(&report);
         assert_eq!(text.matches("not whole").count(), torn, "{text}");
         assert!(text.contains("ERROR") && !text.contains("PASS"), "{text}");
         partial += torn;

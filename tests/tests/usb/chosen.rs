@@ -71,7 +71,7 @@ fn the_list_of_boards_says_what_is_there_and_what_answers() {
     let listed = |arguments: &[&str]| {
         let list = halfrow(["boards", "--json"].into_iter().chain(arguments.iter().copied())).json();
         let is_it = |entry: &&Value| entry["target"] == "usb:HR000001";
-        list.as_array().unwrap().iter().find(is_it).cloned().unwrap()
+        list["boards"].as_array().unwrap().iter().find(is_it).cloned().unwrap()
     };
     let seen = listed(&[]);
     assert_eq!((&seen["access"]["state"], &seen["answer"]), (&"free".into(), &Value::Null), "{seen}");

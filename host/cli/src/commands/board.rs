@@ -1,6 +1,7 @@
 //! The options of the board and its link, which several commands share.
 
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use clap::Args;
@@ -8,12 +9,13 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use halfrow_mock::Streamed;
 
-use super::Failure;
+use super::{Failure, wrong_call};
+use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
-use halfrow::link::{self, Candidate, OpenError, Recording, kinds};
+use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::{Draws, JUDGED, Plan};
 use halfrow::target::{Target, TargetError};
 
@@ -66,7 +68,7 @@ impl BoardArguments {
     fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
-            (None, Some(text)) => Ok(text.parse()?),
+            (None, Some(text)) => text.parse().map_err(Failure::call),
             (None, None) => Ok(Target::mock()),
         }
     }
@@ -74,19 +76,19 @@ impl BoardArguments {
     /// Refuses a fault of the mock board that a run of `plan` never comes upon.
     pub(super) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
         let target = self.target(settings)?;
-        let fault = link::fault(&target).map_err(unopened)?;
+        let fault = link::fault(&target)?;
         let judged = plan.schedule(2).into_iter().flat_map(|segment| segment.frames);
         let frames = judged.filter(|frame| frame.generation == JUDGED).count();
         let streamed = Streamed { height: plan.tables.geometry().height(), frames };
         match fault.and_then(|fault| fault.without_effect(&streamed)) {
             None => Ok(()),
-            Some(why) => Err(anyhow::anyhow!("the fault of {target} would change nothing: {why}").into()),
+            Some(why) => Err(wrong_call!("the fault of {target} would change nothing: {why}")),
         }
     }
 
     /// The link to the board that is named; by default the mock, never a guess.
     pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
-        link::open(&self.target(settings)?).map_err(unopened)
+        Ok(link::open(&self.target(settings)?)?)
     }
 
     /// The link to the board that is named, which is the one in `recording` if there is one.
@@ -97,13 +99,13 @@ impl BoardArguments {
     ) -> Result<Candidate, Failure> {
         match recording {
             None => self.candidate(settings),
-            Some(recording) => link::replay(&self.target(settings)?, recording).map_err(unopened),
+            Some(recording) => Ok(link::replay(&self.target(settings)?, recording)?),
         }
     }
 
     /// The recording, if the target is one.
     pub(super) fn recording(&self, settings: &Settings) -> Result<Option<Recording>, Failure> {
-        link::recording(&self.target(settings)?).map_err(unopened)
+        Ok(link::recording(&self.target(settings)?)?)
     }
 
     pub(super) fn open_options(
@@ -118,19 +120,21 @@ impl BoardArguments {
             take_over: self.take_over,
             polite: false,
             retry_limit: self.retry_limit(settings),
-            stop: self.stop(settings, self.timeout(settings)?)?,
+            stop: self.stop(settings)?.limited(self.timeout(settings)?),
         })
     }
 
-    /// What ends the run early: a signal, `limit` on the link's clock, or the call's own on this computer's.
-    pub(super) fn stop(&self, settings: &Settings, limit: Option<Duration>) -> Result<Stop, Failure> {
-        Ok(Stop::new(signals::stop(), limit).within(self.timeout(settings)?))
+    /// What ends the run early: a signal, or the call's limit on this computer's clock.
+    pub(super) fn stop(&self, settings: &Settings) -> Result<Stop, Failure> {
+        let signal = signals::stop();
+        let stop = Stop::when(move || Exit::stopped_by(signal.load(Ordering::Relaxed)));
+        Ok(stop.within(self.timeout(settings)?))
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.timeout.or(settings.timeout);
         let limit = seconds.map(Duration::try_from_secs_f64).transpose();
-        limit.map_err(|_| anyhow::anyhow!("--timeout takes a number of seconds, 0 or more").into())
+        limit.map_err(|_| wrong_call!("--timeout takes a number of seconds, 0 or more"))
     }
 
     pub(super) fn retry_limit(&self, settings: &Settings) -> RetryLimit {
@@ -140,8 +144,4 @@ impl BoardArguments {
             None => limit,
         }
     }
-}
-
-fn unopened(error: OpenError) -> Failure {
-    Failure { exit: error.class().into(), error: error.into() }
 }

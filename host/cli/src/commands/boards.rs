@@ -3,9 +3,10 @@
 use clap::Args;
 use serde::Serialize;
 
-use super::{Failure, print, print_json};
+use super::document::print_result;
+use super::{Context, Failure, print};
+use crate::exit::Exit;
 use halfrow::target::{BoardKind, Target};
-use halfrow::verdict::Exit;
 use halfrow_link::discovery::{self, Access, Answer, Found};
 use halfrow_link::kinds::{Form, KINDS};
 
@@ -21,9 +22,6 @@ pub(super) struct Arguments {
     /// Greet what is free: some ten bytes are written to it, whatever it is
     #[arg(long)]
     ask: bool,
-    /// Print a JSON list
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 /// A kind of board that is no device, by one of the ways to name it.
@@ -47,7 +45,13 @@ enum Entry<'a> {
     BuiltIn(BuiltIn),
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+/// The whole list.
+#[derive(Serialize)]
+struct Boards<'a> {
+    boards: &'a [Entry<'a>],
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let mut devices: Vec<Found> = if arguments.targets.is_empty() {
         discovery::find()
     } else {
@@ -55,15 +59,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     };
     if arguments.ask {
         for device in devices.iter_mut().filter(|device| device.is_open_to_us()) {
-            device.answer = Some(halfrow::probe(&device.target.parse()?));
+            device.answer = Some(halfrow::probe(&device.target.parse().map_err(Failure::call)?));
         }
     }
     let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();
     if arguments.targets.is_empty() {
         entries.extend(built_in().into_iter().map(Entry::BuiltIn));
     }
-    if arguments.json {
-        print_json(&entries)?;
+    if context.json {
+        print_result("boards", Exit::Pass, None, Boards { boards: &entries })?;
     } else {
         print(&entries.iter().map(text).collect::<Vec<_>>().join("\n"))?;
     }

@@ -10,7 +10,7 @@ use clap_mangen::Man;
 
 use super::files::Files;
 use super::{Context, Failure};
-use halfrow::verdict::Exit;
+use crate::exit::Exit;
 use halfrow_frames::written_aside::write_aside;
 
 /// Print a completion script for a shell
@@ -48,7 +48,11 @@ pub(super) fn manual(arguments: &Manual, command: clap::Command, context: &Conte
     let mut pages = Vec::new();
     collect(command, &mut pages);
     let places: Vec<_> = pages.iter().map(|page| folder.join(page.man.get_filename())).collect();
-    Files::new(arguments.overwrite).reads(&context.settings_file).writes_into("FOLDER", &places).check()?;
+    Files::new(arguments.overwrite)
+        .reads(&context.settings_file)
+        .writes_into("FOLDER", &places)
+        .check()
+        .map_err(Failure::call)?;
     std::fs::create_dir_all(folder)
         .with_context(|| format!("{} cannot be made; name another folder", folder.display()))
         .map_err(Failure::error)?;

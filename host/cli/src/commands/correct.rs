@@ -12,16 +12,18 @@ use halfrow_model::Frame;
 use serde_json::json;
 
 use super::board::BoardArguments;
+use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments};
-use super::optics::{self, Chosen, LensArguments};
+use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, json_text};
+use super::{Context, Failure, wrong_call};
+use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
+use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
-use halfrow::verdict::Exit;
 use places::{Places, Wanted};
 
 /// Correct frames with the reference model, or with a board, unjudged
@@ -60,9 +62,6 @@ pub(super) struct Arguments {
     /// Replace files that are there
     #[arg(long)]
     overwrite: bool,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
     #[command(flatten)]
     input: InputArguments,
     #[command(flatten)]
@@ -72,14 +71,14 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     if !arguments.model && !arguments.board.is_named(settings) {
-        return Err(anyhow::anyhow!("nobody is named to correct; give --model or --board TARGET").into());
+        return Err(wrong_call!("nobody is named to correct; give --model or --board TARGET"));
     }
-    let inputs = FrameName::all(&arguments.inputs)?;
+    let inputs = FrameName::all(&arguments.inputs).map_err(Failure::call)?;
     if inputs.iter().all(|input| input.file().is_none()) {
-        arguments.given.refuse_void(Decider::NoFrameFile, &[])?;
+        arguments.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
     }
     if arguments.model {
-        arguments.given.refuse_void(Decider::Model, &settings.keys())?;
+        arguments.given.refuse_void(Decider::Model, &settings.keys()).map_err(Failure::call)?;
     }
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
     let files = Files::new(arguments.overwrite)
@@ -97,10 +96,11 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,
     };
-    job.check()?;
-    let places = Places::of(&job.inputs, &arguments.wanted())?;
-    places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file))).check()?;
-    let watched = progress::for_stderr(context.quiet || arguments.json);
+    job.check().map_err(Failure::call)?;
+    let places = Places::of(&job.inputs, &arguments.wanted()).map_err(Failure::call)?;
+    let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
+    files.check().map_err(Failure::call)?;
+    let watched = progress::for_stderr(context.quiet || context.json);
     watched.rows_expected((job.inputs.len() * geometry.height()) as u64);
     let board = if arguments.model {
         job.by_model(&places, watched.as_ref()).map(|()| None)
@@ -108,7 +108,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         job.by_board(&places, context, watched.as_ref()).map(Some)
     };
     watched.done();
-    report(arguments.json, board?, &places)
+    report(context.json, board?, &places)
 }
 
 /// What is to be corrected, and how.
@@ -148,10 +148,8 @@ fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Ex
         let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
         let [outputs, previews] = [&places.frames, &places.previews]
             .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-        let result = json!({
-            "verdict": null, "exit_code": 0, "board": { "kind": kind }, "outputs": outputs, "previews": previews,
-        });
-        console::tell(&json_text(&result)?);
+        let rest = json!({ "corrected_by": kind, "outputs": outputs, "previews": previews });
+        tell_result("correct", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
     let whom = board.map_or_else(|| "model".to_owned(), |kind| format!("{kind} board"));

@@ -3,19 +3,17 @@
 use clap::Args;
 use halfrow_pipe::FaultInfo;
 use serde::Serialize;
+use serde_json::json;
 
-use super::{Failure, print, print_json};
-use halfrow::verdict::Exit;
+use super::document::print_result;
+use super::{Context, Failure, print};
+use crate::exit::Exit;
 
 /// List the faults that the mock board can have
 ///
 /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
 #[derive(Debug, Args)]
-pub(super) struct Arguments {
-    /// Print a JSON list of objects with name, where (wire or board), summary and parameters
-    #[arg(long)]
-    json: bool,
-}
+pub(super) struct Arguments {}
 
 #[derive(Serialize)]
 struct Fault {
@@ -51,10 +49,10 @@ impl From<FaultInfo> for Fault {
     }
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+pub(super) fn run(_: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let faults: Vec<Fault> = halfrow_mock::catalogue().map(Fault::from).collect();
-    if arguments.json {
-        print_json(&faults)?;
+    if context.json {
+        print_result("faults", Exit::Pass, None, json!({ "faults": faults }))?;
     } else {
         let lines: Vec<String> = faults
             .iter()

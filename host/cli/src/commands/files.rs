@@ -164,9 +164,7 @@ impl Output {
             Shape::File => Ok(written_aside::check(&self.path, overwrite)?),
             Shape::InFolder => match written_aside::check(&self.path, overwrite) {
                 Err(WriteAsideError::Exists { .. }) => {
-                    bail!(
-                        "{path} exists; give --overwrite to replace it, or name another folder with {option}"
-                    )
+                    bail!("{path} exists; allow it to be overwritten, or name another folder with {option}")
                 }
                 Err(WriteAsideError::NotAFile { .. }) => {
                     bail!(

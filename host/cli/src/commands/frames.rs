@@ -4,13 +4,15 @@ use std::path::PathBuf;
 
 use anyhow::Context as _;
 use clap::Args;
+use serde_json::json;
 
+use super::document::tell_result;
 use super::files::Files;
 use super::optics::LensArguments;
-use super::{Context, Failure};
+use super::{Context, Failure, wrong_call};
 use crate::console;
+use crate::exit::Exit;
 use halfrow::frames::{self, Builtin};
-use halfrow::verdict::Exit;
 
 /// Write the built-in frames as PGM files
 #[derive(Debug, Args)]
@@ -33,7 +35,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     if arguments.lens.has_rows() {
-        return Err(anyhow::anyhow!("a frame has no row factors; leave --rows out").into());
+        return Err(wrong_call!("a frame has no row factors; leave --rows out"));
     }
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let chosen = if arguments.only.is_empty() { &Builtin::ALL[..] } else { &arguments.only };
@@ -43,13 +45,24 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         .reads(&context.settings_file)
         .reads(arguments.lens.file())
         .writes_into("--output", &places)
-        .check()?;
+        .check()
+        .map_err(Failure::call)?;
     std::fs::create_dir_all(folder)
         .with_context(|| format!("{} cannot be made; choose another folder", folder.display()))
         .map_err(Failure::error)?;
+    let mut written = Vec::new();
     for (builtin, path) in chosen.iter().zip(places) {
-        frames::write(&path, &builtin.render(&scene)?, arguments.overwrite).map_err(Failure::error)?;
-        console::tell(&format!("{:<28} {}", path.display(), builtin.description()));
+        frames::write(&path, &builtin.render(&scene).map_err(Failure::call)?, arguments.overwrite)
+            .map_err(Failure::error)?;
+        let (place, description) = (path.display().to_string(), builtin.description());
+        if context.json {
+            written.push(json!({ "path": place, "name": builtin.name(), "description": description }));
+        } else {
+            console::tell(&format!("{place:<28} {description}"));
+        }
+    }
+    if context.json {
+        tell_result("frames", Exit::Pass, None, json!({ "files": written }))?;
     }
     Ok(Exit::Pass)
 }

@@ -4,35 +4,32 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::BoardArguments;
-use super::{Context, Failure, print, print_json};
+use super::document::print_result;
+use super::{Context, Failure, print};
+use crate::exit::Exit;
 use halfrow::board::{Board, Status};
-use halfrow::report::{BoardReport, Identity};
-use halfrow::verdict::Exit;
+use halfrow::result::{BoardReport, Identity};
 
 /// Say what a board is, what it can do, and what it has counted
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     board: BoardArguments,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings, None)?;
-    let failed = |error: halfrow::board::BoardError| Failure { exit: error.exit(), error: error.into() };
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
-    let status = board.status(false).map_err(failed)?;
-    board.close().map_err(failed)?;
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
+    let status = board.status(false)?;
+    board.close()?;
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);
     let report = BoardReport { kind, target: candidate.target, identity: Some(identity) };
-    if arguments.json {
+    if context.json {
         let counters: serde_json::Map<_, _> =
             status.counters().into_iter().map(|(name, count)| (name.to_owned(), count.into())).collect();
-        print_json(&json!({ "verdict": null, "exit_code": 0, "board": report, "counters": counters }))?;
+        print_result("info", Exit::Pass, Some(&report), json!({ "counters": counters }))?;
     } else {
         print(&text(&report, &status))?;
     }

@@ -10,7 +10,7 @@ use clap::Args;
 use halfrow_model::{Frame, Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, Phase};
 
 use halfrow::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions, RowReader, Scene};
-use halfrow::report::{FileHash, sha256};
+use halfrow::result::{FileHash, sha256};
 use halfrow::run::FrameSource;
 
 /// How frame files are read.

@@ -9,15 +9,16 @@ use halfrow_model::{Kernel, Taps};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
+use super::document::{print_result, tell_result};
 use super::files::Files;
 use super::inputs::file_hash;
-use super::{Context, Failure, optics, print, print_json};
+use super::{Context, Failure, optics, print};
+use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::frames;
 use halfrow::frames::lying;
 use halfrow::frames::preview::RgbImage;
 use halfrow::tables::KernelFile;
-use halfrow::verdict::Exit;
 use halfrow_lab::training;
 use halfrow_lab::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
 
@@ -65,9 +66,6 @@ struct Measure {
     /// nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
     #[arg(long, value_name = "NAME|FILE")]
     kernel: OsString,
-    /// Print the figures as JSON
-    #[arg(long)]
-    json: bool,
 }
 
 #[derive(Clone, Copy, Debug, ValueEnum)]
@@ -76,13 +74,6 @@ enum TapCount {
     Five,
     #[value(name = "7")]
     Seven,
-}
-
-impl Arguments {
-    /// Whether the result is wanted as JSON.
-    pub(super) fn wants_json(&self) -> bool {
-        matches!(&self.command, Command::Measure(Measure { json: true, .. }))
-    }
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
@@ -134,14 +125,11 @@ fn pictures(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
 }
 
 fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
-    let paths = paths(&arguments.images)?;
+    let paths = paths(&arguments.images).map_err(Failure::call)?;
     // Training takes minutes, after which a refusal comes too late.
-    Files::new(arguments.overwrite)
-        .reads(&context.settings_file)
-        .reads(&paths)
-        .writes("--output", [&arguments.output])
-        .check()?;
-    let (origins, images) = photographs(&paths)?;
+    let files = Files::new(arguments.overwrite).reads(&context.settings_file).reads(&paths);
+    files.writes("--output", [&arguments.output]).check().map_err(Failure::call)?;
+    let (origins, images) = photographs(&paths).map_err(Failure::call)?;
     let taps = match arguments.taps {
         TapCount::Five => Taps::Five,
         TapCount::Seven => Taps::Seven,
@@ -151,9 +139,18 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
     let trained = trained.map_err(failed)?;
-    let file = KernelFile { about: Some(about(&origins, &trained)?), kernel: trained.kernel.clone() };
+    let about = about(&origins, &trained).map_err(Failure::call)?;
+    let file = KernelFile { about: Some(about), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);
+    if context.json {
+        let rest = json!({
+            "file": arguments.output.display().to_string(), "photographs": images.len(), "gain_db": trained.gain,
+            "held_out_db": held_out, "mean_noise_gain": mean_noise_gain(&trained.kernel),
+        });
+        tell_result("kernel", Exit::Pass, None, rest)?;
+        return Ok(Exit::Pass);
+    }
     console::tell(&format!(
         "{} photographs: {:+.2} dB over Hermite on them; each by the kernel of the others {:+.2} dB \
          ({:+.2} to {:+.2}); noise gain {:.3}",
@@ -188,7 +185,7 @@ fn about(origins: &[Origin], trained: &Trained) -> anyhow::Result<Map<String, Va
 }
 
 fn failed(error: TrainingError) -> Failure {
-    Failure { exit: error.exit(), error: error.into() }
+    Failure { exit: error.class().into(), error: error.into() }
 }
 
 fn rounded(figure: f64) -> f64 {
@@ -205,15 +202,17 @@ fn rows(images: &[RgbImage]) -> u64 {
 
 fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
     let kernel = optics::kernel(&arguments.kernel)?;
-    let (_, images) = photographs(&paths(&arguments.images)?)?;
+    let (_, images) =
+        photographs(&paths(&arguments.images).map_err(Failure::call)?).map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet);
     watched.rows_expected(rows(&images));
     let measured = measure(&images, &kernel, watched.as_ref());
     watched.done();
     let (measured, noise) = (measured.map_err(failed)?, Spread::of(&noise_gain(&kernel)));
     let name = arguments.kernel.to_string_lossy();
-    if arguments.json {
-        print_json(&json!({"kernel": name, "gains_db": measured, "noise_gain": noise}))?;
+    if context.json {
+        let rest = json!({ "kernel": name, "gains_db": measured, "noise_gain": noise });
+        print_result("kernel", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
     let mut lines = vec![format!("{} on {} photographs, over Hermite in dB", name, images.len())];

@@ -3,15 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use halfrow_model::TableError;
 use serde_json::{Value, json};
 
+use super::document::print_result;
 use super::files::Files;
-use super::optics::{LensArguments, Optics, Rows};
-use super::{Context, Failure, print, print_json};
+use super::optics::LensArguments;
+use super::{Context, Failure, print};
 use crate::console;
+use crate::exit::Exit;
 use halfrow::frames::{self, HeatMap};
-use halfrow::verdict::Exit;
+use halfrow::optics::{Optics, OpticsError, RowsBy};
 use halfrow_lab::{Residuals, Spread};
 
 /// Tell a lens's figures, and the error that row factors leave of it
@@ -29,27 +30,25 @@ pub(super) struct Arguments {
     /// Replace a picture that is there
     #[arg(long)]
     overwrite: bool,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    arguments.map.as_deref().map_or(Ok(()), frames::check_png)?;
+    arguments.map.as_deref().map_or(Ok(()), frames::check_png).map_err(Failure::call)?;
     Files::new(arguments.overwrite)
         .reads(&context.settings_file)
         .reads(arguments.lens.file())
         .writes("--map", &arguments.map)
-        .check()?;
+        .check()
+        .map_err(Failure::call)?;
     let optics = arguments.lens.optics()?;
-    let figures = Figures::of(&optics)?;
+    let figures = Figures::of(&optics).map_err(Failure::call)?;
     let most = match &arguments.map {
         None => None,
         Some(path) => Some(write_map(path, figures.used(), arguments.overwrite)?),
     };
-    if arguments.json {
-        let map = most.map(|most| json!({ "file": arguments.map, "brightest_px": most }));
-        print_json(&figures.json(map.as_ref()))?;
+    if context.json {
+        let map = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
+        print_result("lens", Exit::Pass, None, figures.json(map.as_ref()))?;
         return Ok(Exit::Pass);
     }
     print(&figures.text())?;
@@ -65,13 +64,13 @@ struct Figures<'a> {
     equation_9: Residuals,
     fitted: Residuals,
     /// Why a board would not take the row factors that are asked for.
-    illegal: Option<TableError>,
+    illegal: Option<halfrow_model::TableError>,
 }
 
 impl<'a> Figures<'a> {
-    fn of(optics: &'a Optics) -> anyhow::Result<Self> {
-        let (equation_9, fitted) = (optics.tables_by(Rows::Equation9)?, optics.tables_by(Rows::Fitted)?);
-        let used = if optics.rows == Rows::Fitted { &fitted } else { &equation_9 };
+    fn of(optics: &'a Optics) -> Result<Self, OpticsError> {
+        let (equation_9, fitted) = (optics.tables_by(RowsBy::Equation9)?, optics.tables_by(RowsBy::Fitting)?);
+        let used = if optics.rows == RowsBy::Fitting { &fitted } else { &equation_9 };
         optics.check_circle(used)?;
         let illegal = used.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
         let residuals = |tables| Residuals::of(&optics.camera, tables);
@@ -80,7 +79,7 @@ impl<'a> Figures<'a> {
 
     /// What the row factors leave that are asked for.
     fn used(&self) -> &Residuals {
-        if self.optics.rows == Rows::Fitted { &self.fitted } else { &self.equation_9 }
+        if self.optics.rows == RowsBy::Fitting { &self.fitted } else { &self.equation_9 }
     }
 
     fn text(&self) -> String {

@@ -6,11 +6,12 @@ use clap::Args;
 use serde_json::json;
 
 use super::board::BoardArguments;
-use super::{Context, Failure, conclude, json_text};
-use halfrow::board::{Board, BoardError};
+use super::document::result_text;
+use super::{Context, Failure, conclude};
+use crate::exit::Exit;
+use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
-use halfrow::report::{BoardReport, Identity};
-use halfrow::verdict::Exit;
+use halfrow::result::{BoardReport, Identity};
 
 /// Test the link to a board: error rate, round trips, throughput each way and together
 ///
@@ -26,9 +27,6 @@ pub(super) struct Arguments {
     /// Seed of what is sent
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Print JSON
-    #[arg(long)]
-    pub(super) json: bool,
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -39,8 +37,7 @@ fn seconds(text: &str) -> Result<Duration, String> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings, None)?;
-    let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
-    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
     let tested = link_test::run(&mut board, arguments.seconds, arguments.seed);
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);
@@ -48,14 +45,13 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         tracing::debug!("the session was not closed: {error}");
     }
     let figures = tested.map_err(|error| match error {
-        LinkTestError::Board(error) => failed(error),
+        LinkTestError::Board(error) => error.into(),
         error @ LinkTestError::NoFrame(_) => Failure::error(error),
     })?;
     let exit = if figures.errors.wrong > 0 { Exit::Fail } else { Exit::Pass };
-    if arguments.json {
+    if context.json {
         let board = BoardReport { kind, target: candidate.target, identity: Some(identity) };
-        let result = json!({ "verdict": null, "exit_code": exit, "board": board, "link": figures });
-        return conclude(exit, &json_text(&result)?);
+        return conclude(exit, &result_text("link", exit, Some(&board), json!({ "link": figures }))?);
     }
     conclude(exit, &format!("{:<12} {} ({kind})\n{}", "board", candidate.target, text(&figures)))
 }

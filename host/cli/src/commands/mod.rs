@@ -2,8 +2,10 @@
 
 mod board;
 mod boards;
+mod codes;
 mod completions;
 mod correct;
+mod document;
 mod faults;
 mod files;
 mod frames;
@@ -15,6 +17,7 @@ mod lens;
 mod link;
 mod optics;
 mod paper;
+mod schema;
 mod serve;
 mod table_file;
 mod tables;
@@ -26,9 +29,14 @@ use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use halfrow_model::ModelPath;
 
 use crate::console;
+use crate::exit::Exit;
 use crate::settings::Settings;
+use halfrow::board::BoardError;
+use halfrow::link::OpenError;
 use halfrow::reference;
-use halfrow::verdict::Exit;
+use halfrow::run::Misfit;
+
+pub use document::{failure, usage};
 
 /// What every command is given beside its own arguments.
 pub struct Context {
@@ -38,6 +46,8 @@ pub struct Context {
     pub settings_file: Option<PathBuf>,
     /// No progress.
     pub quiet: bool,
+    /// The result is wanted as JSON.
+    pub json: bool,
 }
 
 /// Validates a board that straightens fisheye Bayer video, bit for bit.
@@ -58,6 +68,9 @@ pub struct Cli {
     /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
     #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
     model_path: Option<ModelPath>,
+    /// Print the result, or why there is none, as JSON; `halfrow schema` tells its shape
+    #[arg(long, global = true)]
+    json: bool,
     #[command(subcommand)]
     command: Command,
 }
@@ -76,6 +89,8 @@ enum Command {
     Link(link::Arguments),
     Serve(serve::Arguments),
     Faults(faults::Arguments),
+    Codes(codes::Arguments),
+    Schema(schema::Arguments),
     Completions(completions::Completions),
     Manual(completions::Manual),
 }
@@ -90,16 +105,43 @@ pub struct Failure {
 }
 
 impl Failure {
+    /// A failure of the call or of its input.
+    pub(crate) fn call(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Usage, error: error.into() }
+    }
+
     /// A failure that is not the caller's.
     pub fn error(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Error, error: error.into() }
     }
+
+    /// An input that is refused, as a board of another datapath is.
+    pub(crate) fn refused(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Refused, error: error.into() }
+    }
 }
 
-/// What goes wrong before a board is opened is a usage error unless it is said otherwise.
-impl<E: Into<anyhow::Error>> From<E> for Failure {
-    fn from(error: E) -> Self {
-        Self { exit: Exit::Usage, error: error.into() }
+/// A call that cannot be carried out, for a reason in words.
+macro_rules! wrong_call {
+    ($($words:tt)*) => { $crate::commands::Failure::call(anyhow::anyhow!($($words)*)) };
+}
+use wrong_call;
+
+impl From<OpenError> for Failure {
+    fn from(error: OpenError) -> Self {
+        Self { exit: error.class().into(), error: error.into() }
+    }
+}
+
+impl From<BoardError> for Failure {
+    fn from(error: BoardError) -> Self {
+        Self { exit: error.cause().into(), error: error.into() }
+    }
+}
+
+impl From<Misfit> for Failure {
+    fn from(error: Misfit) -> Self {
+        Self::call(error)
     }
 }
 
@@ -113,16 +155,29 @@ impl Cli {
     /// Whether the result is wanted as JSON.
     #[must_use]
     pub fn wants_json(&self) -> bool {
+        self.json
+    }
+
+    /// The command that was given.
+    #[must_use]
+    pub fn command_name(&self) -> &'static str {
         match &self.command {
-            Command::Verify(arguments) => arguments.json,
-            Command::Correct(arguments) => arguments.json,
-            Command::Paper(arguments) => arguments.json,
-            Command::Kernel(arguments) => arguments.wants_json(),
-            Command::Lens(arguments) => arguments.json,
-            Command::Boards(arguments) => arguments.json,
-            Command::Info(arguments) => arguments.json,
-            Command::Link(arguments) => arguments.json,
-            _ => false,
+            Command::Verify(_) => "verify",
+            Command::Correct(_) => "correct",
+            Command::Tables(_) => "tables",
+            Command::Lens(_) => "lens",
+            Command::Kernel(_) => "kernel",
+            Command::Paper(_) => "paper",
+            Command::Frames(_) => "frames",
+            Command::Boards(_) => "boards",
+            Command::Info(_) => "info",
+            Command::Link(_) => "link",
+            Command::Serve(_) => "serve",
+            Command::Faults(_) => "faults",
+            Command::Codes(_) => "codes",
+            Command::Schema(_) => "schema",
+            Command::Completions(_) => "completions",
+            Command::Manual(_) => "manual",
         }
     }
 
@@ -131,11 +186,17 @@ impl Cli {
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
-        let settings = Settings::load(self.settings.as_deref())?;
-        let path = reference::choose(self.model_path)?;
+        let settings = Settings::load(self.settings.as_deref()).map_err(Failure::call)?;
+        let path = reference::choose(self.model_path).map_err(Failure::call)?;
         tracing::info!("the model takes the path {path}");
         let settings_file = Settings::file(self.settings.as_deref());
-        let context = Context { settings, settings_file, quiet: self.quiet };
+        let context = Context { settings, settings_file, quiet: self.quiet, json: self.json };
+        if context.json
+            && matches!(self.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
+        {
+            let command = self.command_name();
+            return Err(wrong_call!("`halfrow {command}` has no result in JSON; leave --json out"));
+        }
         match &self.command {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
@@ -144,11 +205,13 @@ impl Cli {
             Command::Kernel(arguments) => kernel::run(arguments, &context),
             Command::Paper(arguments) => paper::run(arguments, &context),
             Command::Frames(arguments) => frames::run(arguments, &context),
-            Command::Boards(arguments) => boards::run(arguments),
+            Command::Boards(arguments) => boards::run(arguments, &context),
             Command::Info(arguments) => info::run(arguments, &context),
             Command::Link(arguments) => link::run(arguments, &context),
             Command::Serve(arguments) => serve::run(arguments),
-            Command::Faults(arguments) => faults::run(arguments),
+            Command::Faults(arguments) => faults::run(arguments, &context),
+            Command::Codes(arguments) => codes::run(arguments, &context),
+            Command::Schema(arguments) => schema::run(arguments),
             Command::Completions(arguments) => completions::complete(arguments, &mut Self::command()),
             Command::Manual(arguments) => completions::manual(arguments, Self::command(), &context),
         }

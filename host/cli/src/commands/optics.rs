@@ -3,27 +3,22 @@
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{Context as _, bail};
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
 use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
-    LensError, Phase, STEP_ONE, TableSet,
+    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Kernel, LensError,
+    Phase,
 };
 
-use halfrow::frames::Scene;
-use halfrow::kernels::NamedKernel;
+use super::Failure;
 use halfrow::lenses::LensFile;
-use halfrow::tables::{KernelFile, TableFileError};
 
 use super::table_file::NamedTables;
+use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, RowsBy};
 
-/// The paper's frame.
-const DEFAULT_SIZE: (usize, usize) = (1920, 1080);
 /// The pixels of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
-/// The paper's image circle, in degrees.
-const DEFAULT_FIELD: f64 = 180.0;
 
 /// The size and depth of frames, the lens, and the optical centre. The defaults are the paper's system.
 #[derive(Clone, Debug, Args)]
@@ -93,7 +88,7 @@ impl LensName {
 
 /// How row factors are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Rows {
+enum Rows {
     /// For every row the factor with the smallest largest error
     Fitted,
     /// The paper's formula
@@ -101,12 +96,11 @@ pub(super) enum Rows {
     Equation9,
 }
 
-impl Rows {
-    /// The name in the spelling of the command line.
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Fitted => "fitted",
-            Self::Equation9 => "equation-9",
+impl From<Rows> for RowsBy {
+    fn from(rows: Rows) -> Self {
+        match rows {
+            Rows::Fitted => Self::Fitting,
+            Rows::Equation9 => Self::Equation9,
         }
     }
 }
@@ -140,12 +134,13 @@ impl LensArguments {
     }
 
     /// The frame and the lens before it.
-    pub(super) fn optics(&self) -> anyhow::Result<Optics> {
-        self.check()?;
+    pub(super) fn optics(&self) -> Result<Optics, Failure> {
+        self.check().map_err(Failure::call)?;
         match self.file() {
             Some(path) => self.calibrated(path),
             None => self.equidistant(),
         }
+        .map_err(Failure::call)
     }
 
     /// Refuses options that say nothing beside the lens, or something else than it.
@@ -175,7 +170,7 @@ impl LensArguments {
     }
 
     fn field_of_view(&self) -> f64 {
-        self.field_of_view.unwrap_or(DEFAULT_FIELD)
+        self.field_of_view.unwrap_or(PAPER_FIELD)
     }
 
     fn equidistant(&self) -> anyhow::Result<Optics> {
@@ -189,11 +184,10 @@ impl LensArguments {
                 Equidistant::from_focal_length(self.focal_length, self.pixel_pitch(), self.field_of_view())?
             }
         };
-        let geometry = self.geometry(DEFAULT_SIZE)?;
+        let geometry = self.geometry(PAPER_SIZE)?;
         let camera = self.camera(geometry, lens.into(), middle(&geometry))?;
         let rows = self.rows.unwrap_or(Rows::Equation9);
-        let name = "equidistant lens".to_owned();
-        Ok(Optics { camera, lens, is_calibrated: false, centre_y: self.centre_y, rows, name })
+        Ok(Optics::equidistant(camera, lens, self.centre_y, rows.into()))
     }
 
     fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
@@ -204,7 +198,7 @@ impl LensArguments {
                 "the lens file {} does not say how large its pictures are; give --width and --height",
                 path.display()
             ),
-            _ => DEFAULT_SIZE,
+            _ => PAPER_SIZE,
         };
         let geometry = self.geometry(pictures)?;
         let (lens, centre) = match self.lens_pitch {
@@ -215,14 +209,7 @@ impl LensArguments {
         };
         let camera = self.camera(geometry, lens, centre)?;
         let (name, rows) = (format!("{} {}", file.model, path.display()), self.rows.unwrap_or(Rows::Fitted));
-        Ok(Optics {
-            lens: Equidistant::from_radius(camera.radius())?,
-            is_calibrated: true,
-            centre_y: Some(camera.centre().1),
-            camera,
-            rows,
-            name,
-        })
+        Ok(Optics::calibrated(camera, name, rows.into())?)
     }
 
     /// Pixels of the frame for each of a camera with pixels of `pitch`.
@@ -255,100 +242,9 @@ fn middle(geometry: &Geometry) -> (f64, f64) {
     ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0)
 }
 
-/// A frame and the lens before it, as the command line describes them.
-pub(super) struct Optics {
-    pub(super) camera: Camera,
-    /// The equidistant lens of the same R, which built-in frames are rendered through.
-    pub(super) lens: Equidistant,
-    /// Whether the lens is not that one itself.
-    is_calibrated: bool,
-    /// The row of the axis; none for the middle.
-    pub(super) centre_y: Option<f64>,
-    pub(super) rows: Rows,
-    /// What the lens is, for people.
-    pub(super) name: String,
-}
-
-impl Optics {
-    /// What built-in frames are made for.
-    pub(super) fn scene(&self, phase: Phase, seed: u64) -> Scene {
-        let (geometry, centre_y, lens) = (*self.camera.geometry(), self.centre_y, self.lens);
-        Scene { geometry, centre_y, phase, lens, seed }
-    }
-
-    /// The row factors that are asked for.
-    pub(super) fn tables(&self) -> anyhow::Result<TableSet> {
-        self.tables_by(self.rows)
-    }
-
-    /// The row factors that are found so.
-    pub(super) fn tables_by(&self, rows: Rows) -> anyhow::Result<TableSet> {
-        Ok(match rows {
-            Rows::Fitted => self.camera.fitted(),
-            Rows::Equation9 if self.is_calibrated => self.camera.equation_9(),
-            // From R as it was given, which the camera has from f.
-            Rows::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
-        })
-    }
-
-    /// Refuses `tables` of this lens that stretch nothing, as its image circle misses the rows, and warns when it
-    /// misses most.
-    pub(super) fn check_circle(&self, tables: &TableSet) -> anyhow::Result<()> {
-        let (rows, outside) = (self.camera.geometry().height(), self.camera.rows_outside_circle());
-        let circle = || {
-            format!(
-                "{outside} of {rows} rows lie outside the image circle, whose radius is {:.3} pixels around row {:.1}",
-                self.camera.radius(),
-                self.camera.centre().1
-            )
-        };
-        let stretches = tables.steps().iter().any(|&step| step != STEP_ONE);
-        ensure!(
-            outside == 0 || stretches,
-            "{}, so nothing would be stretched; check the lens, its centre and the size of the frames",
-            circle()
-        );
-        if 2 * outside > rows {
-            tracing::warn!(
-                "{}, and are not stretched; check the lens, its centre and the size of the frames",
-                circle()
-            );
-        }
-        Ok(())
-    }
-
-    /// A sentence on where the row factors come from.
-    pub(super) fn source(&self) -> String {
-        let how = match self.rows {
-            Rows::Fitted => "fitted rows",
-            Rows::Equation9 => "Eq. 9",
-        };
-        format!("{}, R = {:.3} pixels ({how})", self.name, self.camera.radius())
-    }
-}
-
 /// A kernel by name, or from a kernel file.
-pub(super) fn kernel(name: &OsStr) -> Result<Kernel, super::Failure> {
-    match name.to_string_lossy().parse::<NamedKernel>() {
-        Ok(named) => named.kernel().map_err(super::Failure::error),
-        Err(unknown) if !Path::new(name).exists() => {
-            let name = name.display();
-            Err(anyhow::anyhow!("there is no file {name}, and {unknown}, or a kernel file").into())
-        }
-        Err(_) => Ok(KernelFile::read(Path::new(name)).map_err(table_failure)?.kernel),
-    }
-}
-
-/// Tables, kernel, and where they come from: a table file, or the lens options and a kernel.
-pub(super) struct Chosen {
-    pub(super) optics: Optics,
-    pub(super) tables: TableSet,
-    pub(super) kernel: Kernel,
-    pub(super) source: String,
-    /// The table file, if the tables are of one.
-    pub(super) file: Option<PathBuf>,
-    /// Rows outside of the lens's image circle; none for a file, which does not say.
-    pub(super) rows_outside_circle: Option<usize>,
+pub(super) fn kernel(name: &OsStr) -> Result<Kernel, Failure> {
+    Ok(optics::kernel(name)?)
 }
 
 /// Takes the tables `named` if there are some, and those of the lens otherwise; `kernel_name` replaces the file's
@@ -357,40 +253,18 @@ pub(super) fn choose(
     named: Option<NamedTables>,
     lens: &LensArguments,
     kernel_name: Option<&OsStr>,
-) -> Result<Chosen, super::Failure> {
-    let kernel = kernel_name.map(kernel).transpose()?;
-    let kernel_name = kernel_name.map(OsStr::to_string_lossy);
-    let optics = lens.optics()?;
-    let Some(NamedTables { path, file }) = named else {
-        return by_lens(optics, kernel, kernel_name.as_deref());
-    };
-    let mut source = path.display().to_string();
-    if let Some(name) = kernel_name {
-        source = format!("{source}, {name} kernel");
+) -> Result<Chosen, Failure> {
+    let (path, file) = named.map(|NamedTables { path, file }| (path, file)).unzip();
+    Ok(optics::choose(path.as_deref().zip(file), lens.optics()?, kernel_name)?)
+}
+
+/// A file of another datapath is refused like a board of another datapath.
+impl From<OpticsError> for Failure {
+    fn from(error: OpticsError) -> Self {
+        match error {
+            OpticsError::Damaged(_) => Self::error(error),
+            error if error.is_other_datapath() => Self::refused(error),
+            error => Self::call(error),
+        }
     }
-    let kernel = kernel.unwrap_or(file.kernel);
-    Ok(Chosen { optics, tables: file.tables, kernel, source, file: Some(path), rows_outside_circle: None })
-}
-
-fn by_lens(
-    optics: Optics,
-    kernel: Option<Kernel>,
-    kernel_name: Option<&str>,
-) -> Result<Chosen, super::Failure> {
-    let tables = optics.tables()?;
-    optics.check_circle(&tables)?;
-    let name = kernel_name.unwrap_or(Interpolant::Hermite.name());
-    let source = format!("{}, {name} kernel", optics.source());
-    let rows_outside_circle = Some(optics.camera.rows_outside_circle());
-    let kernel = kernel.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
-    Ok(Chosen { optics, tables, kernel, source, file: None, rows_outside_circle })
-}
-
-/// A table file of another datapath is refused like a board of another datapath.
-pub(super) fn table_failure(error: TableFileError) -> super::Failure {
-    let exit = match error {
-        TableFileError::Datapath { .. } => halfrow::verdict::Exit::Refused,
-        _ => halfrow::verdict::Exit::Usage,
-    };
-    super::Failure { exit, error: error.into() }
 }

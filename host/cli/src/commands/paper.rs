@@ -7,15 +7,16 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
 use super::board::BoardArguments;
+use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
-use super::{Context, Failure, json_text};
+use super::{Context, Failure, wrong_call};
+use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, progress};
-use halfrow::board::{Board, BoardError};
+use halfrow::board::Board;
 use halfrow::frames::preview::RgbImage;
 use halfrow::target::BoardKind;
-use halfrow::verdict::Exit;
 use halfrow_lab::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperError, TestedBoard};
 
 /// Reproduce the paper's figures and tables
@@ -42,9 +43,6 @@ pub(super) struct Arguments {
     /// Replace an earlier page
     #[arg(long)]
     overwrite: bool,
-    /// Print every number as JSON, as paper.json in the folder holds them
-    #[arg(long)]
-    pub(super) json: bool,
     #[command(flatten)]
     board: BoardArguments,
 }
@@ -58,15 +56,16 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let begun = Instant::now();
     let items = arguments.items();
     if !items.iter().any(|item| item.goes_through_boards()) {
-        arguments.given.refuse_void(Decider::NoBoardItem, &context.settings.keys())?;
+        arguments.given.refuse_void(Decider::NoBoardItem, &context.settings.keys()).map_err(Failure::call)?;
     }
     Files::new(arguments.overwrite)
         .reads(&context.settings_file)
         .reads([&arguments.synthesis])
         .writes_into("--output", Folder::fixed_files(&arguments.output))
-        .check()?;
-    let photographs = arguments.photographs(&items)?;
-    let folder = Folder::prepare(&arguments.output, arguments.overwrite)?;
+        .check()
+        .map_err(Failure::call)?;
+    let photographs = arguments.photographs(&items).map_err(Failure::call)?;
+    let folder = Folder::prepare(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
     let through_board = arguments.board.is_named(&context.settings);
     let mut material =
         Material { photographs: &photographs, board: None, through_board, synthesis: &arguments.synthesis };
@@ -76,12 +75,13 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let exhibits = make(&items, &mut material, context.quiet);
     // Whatever happened, the next run must find the board free.
     let closed = material.board.as_mut().map_or(Ok(()), TestedBoard::close);
-    let exhibits = exhibits.map_err(failed)?;
-    closed.map_err(failed)?;
+    let exhibits = exhibits?;
+    closed?;
     let page = folder.write(&exhibits).map_err(Failure::error)?;
-    if arguments.json {
-        console::tell(&json_text(&paper::numbers(&exhibits))?);
-        return Ok(exit(&exhibits));
+    if context.json {
+        let exit = exit(&exhibits);
+        tell_result("paper", exit, None, paper::numbers(&exhibits))?;
+        return Ok(exit);
     }
     conclude(&exhibits);
     console::tell(&format!("wrote {} in {:.1} s", page.display(), begun.elapsed().as_secs_f64()));
@@ -100,13 +100,14 @@ fn make(items: &[Item], material: &mut Material<'_>, quiet: bool) -> Result<Vec<
     made
 }
 
-fn failed(error: PaperError) -> Failure {
-    let exit = match &error {
-        PaperError::Board(error) => error.exit(),
-        PaperError::Misfit(_) | PaperError::Synthesis { .. } => Exit::Usage,
-        _ => Exit::Error,
-    };
-    Failure { exit, error: error.into() }
+impl From<PaperError> for Failure {
+    fn from(error: PaperError) -> Self {
+        match &error {
+            PaperError::Board(of_board) => Self { exit: of_board.cause().into(), error: error.into() },
+            PaperError::Misfit(_) | PaperError::Synthesis { .. } => Self::call(error),
+            _ => Self::error(error),
+        }
+    }
 }
 
 /// Every claim in a line.
@@ -179,11 +180,10 @@ impl Arguments {
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {
         let candidate = self.board.candidate(settings)?;
         if candidate.kind == BoardKind::Replay {
-            return Err(anyhow::anyhow!("a recording corrects no new frames; name another board").into());
+            return Err(wrong_call!("a recording corrects no new frames; name another board"));
         }
         let options = self.board.open_options(settings, None)?;
-        let failed = |error: BoardError| Failure { exit: error.exit(), error: error.into() };
-        let board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+        let board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
         Ok(TestedBoard::new(board, candidate.kind))
     }
 }

@@ -6,11 +6,11 @@ use std::sync::atomic::Ordering;
 use clap::Args;
 
 use super::{Failure, print};
+use crate::exit::Exit;
 use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 use crate::signals;
 use halfrow::link;
 use halfrow::target::Target;
-use halfrow::verdict::Exit;
 
 /// Serve a mock or simulated board to other programs
 ///
@@ -40,9 +40,7 @@ fn door(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let opened = link::open(&arguments.board);
-    let candidate = opened.map_err(|error| Failure { exit: error.class().into(), error: error.into() })?;
-    let mut board = Hosted::new(candidate.link);
+    let mut board = Hosted::new(link::open(&arguments.board)?.link);
     let signal = signals::stop();
     let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
     let served = match &arguments.tcp {
@@ -69,7 +67,7 @@ fn serve_pty(
 ) -> Result<Result<(), ServeError>, Failure> {
     let pty = Pty::open().map_err(failed)?;
     let name = arguments.link.as_ref().map(|path| Name::link(path, pty.path())).transpose();
-    let name = name.map_err(|error| Failure { exit: Exit::Usage, error: error.into() })?;
+    let name = name.map_err(Failure::call)?;
     let path = arguments.link.as_deref().filter(|_| name.is_some()).unwrap_or(pty.path());
     print(&format!("serial:{}", path.display()))?;
     Ok(pty.serve(board, ended))

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::Failure;
 use super::given::{Decider, Given, IN_TABLE_FILES, written};
-use super::optics::{LensArguments, table_failure};
+use super::optics::LensArguments;
+use super::{Failure, wrong_call};
 use crate::settings::Settings;
+use halfrow::optics::OpticsError;
 use halfrow::tables::TableFile;
 
 /// The table file that the command line or the environment names.
@@ -44,12 +45,12 @@ impl TableArgument {
         let Some(path) = self.path(settings) else { return Ok(None) };
         let is_flag = given.is_flag("tables");
         if is_flag {
-            given.refuse_void(Decider::Tables, &[])?;
+            given.refuse_void(Decider::Tables, &[]).map_err(Failure::call)?;
         } else if let Some(option) = given.void_flag(Decider::Tables) {
             tracing::info!("the table file {} is passed over, since {option} makes tables", path.display());
             return Ok(None);
         }
-        let file = TableFile::read(path).map_err(table_failure)?;
+        let file = TableFile::read(path).map_err(OpticsError::from)?;
         let geometry = file.tables.geometry();
         let flags = IN_TABLE_FILES.into_iter().filter(|id| given.is_flag(id));
         let mut others = flags.filter(|id| !lens.agrees(id, geometry)).map(written);
@@ -78,5 +79,5 @@ fn refuse<T>(option: &str, path: &Path, file: &TableFile) -> Result<T, Failure> 
         geometry.depth().bits(),
         f64::from(geometry.centre2()) / 2.0,
     );
-    Err(anyhow::anyhow!(refused).into())
+    Err(wrong_call!("{refused}"))
 }

@@ -5,13 +5,15 @@ use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use clap::Args;
+use serde_json::json;
 
+use super::document::tell_result;
 use super::files::Files;
 use super::optics::{self, LensArguments};
 use super::{Context, Failure};
 use crate::console;
+use crate::exit::Exit;
 use halfrow::tables::{TableFile, mem};
-use halfrow::verdict::Exit;
 use halfrow_frames::written_aside::WriteAsideError;
 
 /// Make a table file: a row factor for every row, and a kernel
@@ -31,19 +33,27 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    let format = Format::of(&arguments.output)?;
+    let format = Format::of(&arguments.output).map_err(Failure::call)?;
     Files::new(arguments.overwrite)
         .reads(&context.settings_file)
         .reads(arguments.lens.file())
         .reads_kernel(Some(&arguments.kernel))
         .writes("--output", format.places(&arguments.output))
-        .check()?;
+        .check()
+        .map_err(Failure::call)?;
     let chosen = optics::choose(None, &arguments.lens, Some(&arguments.kernel))?;
     let geometry = *chosen.tables.geometry();
-    chosen.tables.check_ring(geometry.width().next_power_of_two())?;
+    chosen.tables.check_ring(geometry.width().next_power_of_two()).map_err(Failure::call)?;
     let outside = chosen.optics.camera.rows_outside_circle();
     let file = TableFile { tables: chosen.tables, kernel: chosen.kernel, about: about(&chosen.source) };
     format.write(&file, &arguments.output, arguments.overwrite).map_err(Failure::error)?;
+    if context.json {
+        let places = format.places(&arguments.output);
+        let names: Vec<_> = places.iter().map(|path| path.display().to_string()).collect();
+        let rest = json!({ "files": names, "source": chosen.source, "rows_outside_circle": outside });
+        tell_result("tables", Exit::Pass, None, rest)?;
+        return Ok(Exit::Pass);
+    }
     for path in format.places(&arguments.output) {
         console::tell(&format!("wrote {}: {}", path.display(), chosen.source));
     }

@@ -1,28 +1,31 @@
 //! `halfrow verify`
 
-mod recorded;
-
 use std::ffi::{OsStr, OsString};
 use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
 use clap::builder::FalseyValueParser;
+use serde::Serialize;
 
 use super::board::BoardArguments;
+use super::document::print_result;
 use super::files::Files;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, file_hash, frame_sources};
-use super::optics::{self, Chosen, LensArguments};
+use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, print};
+use super::{Context, Failure, print, wrong_call};
+use crate::exit::Exit;
 use crate::settings::Settings;
-use crate::{console, progress};
+use crate::{console, flags, json, progress, text};
 use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{Candidate, Lost, Recorder, Recording, RecordingFile};
-use halfrow::report::{self, Report, ReportError, ReportFolder};
-use halfrow::run::{self, Circumstances, Finished, FrameSource, Plan, Timing};
-use halfrow::verdict::{Exit, Verdict};
+use halfrow::optics::Chosen;
+use halfrow::report::ReportFolder;
+use halfrow::run::{
+    self, Circumstances, Finished, FrameSource, Lack, Plan, RecordedRun, RestoreError, RunOptions, Timing,
+};
 
 /// Judge a board: stream frames through it and compare every sample with the reference
 ///
@@ -42,9 +45,6 @@ pub(super) struct Arguments {
     /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
     #[arg(long, value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
     kernel: Option<OsString>,
-    /// Print the result as JSON
-    #[arg(long)]
-    pub(super) json: bool,
     /// Write a report (JSON, JUnit, HTML) into this folder
     #[arg(long, value_name = "FOLDER", env = "HALFROW_REPORT")]
     report: Option<PathBuf>,
@@ -82,43 +82,41 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
-    let (plan, circumstances) = arguments.planned(recording.as_ref(), settings)?;
+    let (plan, options) = arguments.planned(recording.as_ref(), settings)?;
     if arguments.list {
         arguments.board.candidate_of(settings, recording)?;
-        print(&listing(&plan))?;
-        return Ok(Exit::Pass);
+        return list(&plan, context.json);
     }
     let outputs = arguments.outputs(context)?;
     let mut candidate = arguments.board.candidate_of(settings, recording)?;
     let mut lost = Lost::default();
     if let Some(file) = outputs.recording {
-        let run = recorded::RecordedRun::of(&plan, &circumstances);
+        let run = RecordedRun::of(&plan, &options);
         let link = Recorder::begin(candidate.link, file, &run).map_err(Failure::error)?;
         lost = link.lost();
         candidate = Candidate { link: Box::new(link), ..candidate };
     }
-    let stop = arguments.board.stop(settings, plan.timeout)?;
-    let watched = progress::for_stderr(context.quiet || arguments.json);
-    let mut finished = run::verify(&plan, candidate, &circumstances, &stop, watched.as_ref());
-    if finished.report.exit_code == Exit::Usage {
-        // The call does not fit the board: there is no verdict, and so nothing to report on.
-        return Err(anyhow::anyhow!(finished.report.headline).into());
-    }
+    let watched = progress::for_stderr(context.quiet || context.json);
+    let mut finished = run::verify(&plan, candidate, &options, watched.as_ref())?;
     if let Some(error) = lost.get() {
-        let what = format!("the recording could not be written: {error}");
-        lose(&mut finished.report, &what, ANOTHER_RECORDING);
+        tell(&finished.lose_recording(error));
     }
-    if let Some(folder) = outputs.report {
-        write_report(folder, &mut finished);
+    if let Some(Err(lack)) = outputs.report.map(|folder| finished.commit(folder)) {
+        tell(&lack);
     }
-    conclude(&finished, arguments.json)
+    conclude(&finished, context.json)
 }
 
-fn write_report(folder: ReportFolder, finished: &mut Finished) {
-    if let Err(error) = folder.commit(&finished.report, &finished.evidence) {
-        let remedy = if matches!(error, ReportError::Exists { .. }) { ANOTHER_REPORT } else { ROOM };
-        let error = anyhow::Error::from(error);
-        lose(&mut finished.report, &format!("the report could not be written: {error:#}"), remedy);
+/// Says what a verdict that stands lacks.
+fn tell(lack: &Lack) {
+    if !lack.is_told {
+        console::error(&flags::named(&lack.to_string()));
+    }
+}
+
+impl From<RestoreError> for Failure {
+    fn from(error: RestoreError) -> Self {
+        if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
     }
 }
 
@@ -128,46 +126,53 @@ struct Outputs {
     recording: Option<RecordingFile>,
 }
 
-const ROOM: &str = "Free some space or choose another place with --report, then run again.";
-const ANOTHER_REPORT: &str = "Name another folder with --report, or give --overwrite, then run again.";
-const ANOTHER_RECORDING: &str = "Free some space or choose another place with --record, then run again.";
-
-/// A PASS whose files could not be written is none. Any other verdict stands, and stderr says what it lacks.
-fn lose(report: &mut Report, what: &str, remedy: &str) {
-    if report.verdict != Verdict::Pass {
-        console::error(&what);
-        return;
-    }
-    report.headline = what.to_owned();
-    report.verdict = Verdict::Error;
-    report.exit_code = Exit::Error;
-    report.remedy = Some(remedy.to_owned());
-}
-
 fn conclude(finished: &Finished, as_json: bool) -> Result<Exit, Failure> {
     let report = &finished.report;
     if as_json {
-        console::tell(&report::json(report).map_err(Failure::error)?);
+        console::tell(&json::report(report).map_err(Failure::error)?);
     } else {
-        console::tell(report::text(report).trim_end());
+        console::tell(text::render(report).trim_end());
     }
-    Ok(report.exit_code)
+    Ok(report.cause.into())
 }
 
-fn listing(plan: &Plan) -> String {
-    let mut lines = Vec::new();
+/// A frame that would be streamed.
+#[derive(Serialize)]
+struct Listed {
+    number: u16,
+    name: String,
+    tables: &'static str,
+    timing: &'static str,
+}
+
+/// Prints what would be streamed.
+fn list(plan: &Plan, as_json: bool) -> Result<Exit, Failure> {
+    let listed = listing(plan);
+    if as_json {
+        print_result("verify", Exit::Pass, None, serde_json::json!({ "listed": listed }))?;
+        return Ok(Exit::Pass);
+    }
+    let line = |Listed { number, name, tables, timing }: &Listed| {
+        format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}")
+    };
+    print(&listed.iter().map(line).collect::<Vec<_>>().join("\n"))?;
+    Ok(Exit::Pass)
+}
+
+fn listing(plan: &Plan) -> Vec<Listed> {
+    let mut listed = Vec::new();
     for segment in plan.schedule(2) {
         let timing = match segment.timing {
             Timing::Least => "least blanking",
             Timing::Sensor => "sensor blanking",
             Timing::Gaps(_) => "gaps",
         };
-        lines.extend(segment.frames.iter().map(|frame| {
+        listed.extend(segment.frames.iter().map(|frame| {
             let tables = if frame.generation == run::DECOY { "decoy" } else { "judged" };
-            format!("{:>4}  {:<24} {tables:<6} tables, {timing}", frame.number, frame.source.name())
+            Listed { number: frame.number, name: frame.source.name(), tables, timing }
         }));
     }
-    lines.join("\n")
+    listed
 }
 
 impl Arguments {
@@ -176,25 +181,27 @@ impl Arguments {
         &self,
         recording: Option<&Recording>,
         settings: &Settings,
-    ) -> Result<(Plan, Circumstances), Failure> {
-        let (plan, circumstances) = match recording {
+    ) -> Result<(Plan, RunOptions), Failure> {
+        let (plan, options) = match recording {
             Some(recording) => {
-                self.given.refuse_void(Decider::Recording, &settings.keys())?;
-                recorded::restore(recording, self.requires_hardware(settings), self.has_report(settings))?
+                self.given.refuse_void(Decider::Recording, &settings.keys()).map_err(Failure::call)?;
+                let (plan, options) = RecordedRun::restore(recording)?;
+                let require_hardware = self.requires_hardware(settings);
+                (plan, RunOptions { require_hardware, stop: self.board.stop(settings)?, ..options })
             }
             None => self.plan(settings)?,
         };
         self.board.check_fault(settings, &plan)?;
-        plan.check_length()?;
-        Ok((plan, circumstances))
+        plan.check_length().map_err(Failure::call)?;
+        Ok((plan, options))
     }
 
     /// What the options say is to be streamed, and where it comes from.
-    fn plan(&self, settings: &Settings) -> Result<(Plan, Circumstances), Failure> {
-        let frames = FrameName::all(&self.frame_names(settings))?;
+    fn plan(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
+        let frames = FrameName::all(&self.frame_names(settings)).map_err(Failure::call)?;
         let files: Vec<_> = frames.iter().filter_map(FrameName::file).map(PathBuf::from).collect();
         if files.is_empty() {
-            self.given.refuse_void(Decider::NoFrameFile, &[])?;
+            self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
         }
         let lens = self.lens.file().map(PathBuf::from);
         // Each file is hashed, too.
@@ -202,48 +209,51 @@ impl Arguments {
             .iter()
             .chain(&lens)
             .chain(self.tables.path(settings))
-            .try_for_each(|path| check_regular(path))?;
+            .try_for_each(|path| check_regular(path))
+            .map_err(Failure::call)?;
         let tables = self.tables.read(&self.given, &self.lens, settings)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
+        let table_file = tables.as_ref().map(|tables| tables.path.clone());
         let chosen = optics::choose(tables, &self.lens, kernel)?;
-        let table_file = chosen.file.clone();
         let plan = self.plan_of(chosen, frames, settings)?;
         let files = table_file.iter().chain(&lens).chain(&files);
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
-            files: files.map(|path| file_hash(path)).collect::<Result<_, _>>()?,
+            files: files.map(|path| file_hash(path)).collect::<Result<_, _>>().map_err(Failure::call)?,
             draws: run::Draws::draw(),
         };
-        Ok((plan, circumstances))
+        Ok((plan, self.options(circumstances, settings)?))
     }
 
     fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, settings: &Settings) -> Result<Plan, Failure> {
         let geometry = chosen.tables.geometry();
-        chosen.tables.check_ring(geometry.width().next_power_of_two())?;
+        chosen.tables.check_ring(geometry.width().next_power_of_two()).map_err(Failure::call)?;
         let how = self.input.read_options(geometry, self.lens.phase);
         let frames = if frames.is_empty() {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
-            frame_sources(frames, &how, geometry)?
+            frame_sources(frames, &how, geometry).map_err(Failure::call)?
         };
         Ok(Plan {
-            lens: chosen.optics.lens,
-            centre_y: chosen.optics.centre_y,
-            phase: self.lens.phase,
-            tables: chosen.tables,
-            kernel: chosen.kernel,
-            tables_source: chosen.source,
-            rows_outside_circle: chosen.rows_outside_circle,
             frames,
             repeat: self.repeat,
             fail_fast: self.fail_fast,
-            require_hardware: self.requires_hardware(settings),
-            take_over: self.board.take_over,
             seed: self.seed.or(settings.seed).unwrap_or(1),
+            ..chosen.plan(self.lens.phase)
+        })
+    }
+
+    fn options(&self, circumstances: Circumstances, settings: &Settings) -> Result<RunOptions, Failure> {
+        Ok(RunOptions {
             timeout: self.board.timeout(settings)?,
+            stop: self.board.stop(settings)?,
             retry_limit: self.board.retry_limit(settings),
             reconnect: self.patience(settings)?,
-            keep_pictures: self.has_report(settings),
+            take_over: self.board.take_over,
+            require_hardware: self.requires_hardware(settings),
+            keep_equal: self.has_report(settings),
+            circumstances,
+            ..RunOptions::default()
         })
     }
 
@@ -251,7 +261,7 @@ impl Arguments {
     fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.reconnect.or(settings.reconnect).filter(|_| self.record.is_none());
         let patience = seconds.map(Duration::try_from_secs_f64).transpose();
-        patience.map_err(|_| anyhow::anyhow!("--reconnect takes a number of seconds, 0 or more").into())
+        patience.map_err(|_| wrong_call!("--reconnect takes a number of seconds, 0 or more"))
     }
 
     /// Looks at all that is read and written, and takes the places of what is written.
@@ -266,20 +276,26 @@ impl Arguments {
             .reads(self.board.replayed(settings)?)
             .writes("--record", &self.record)
             .writes_report("--report", report)
-            .check()?;
+            .check()
+            .map_err(Failure::call)?;
         Ok(Outputs {
-            report: report.map(|path| ReportFolder::prepare(path, overwrite)).transpose()?,
+            report: report
+                .map(|path| ReportFolder::prepare(path, overwrite))
+                .transpose()
+                .map_err(Failure::call)?
+                .map(|folder| folder.with_json(json::report)),
             recording: self
                 .record
                 .as_ref()
                 .map(|path| RecordingFile::prepare(path, overwrite))
-                .transpose()?,
+                .transpose()
+                .map_err(Failure::call)?,
         })
     }
 
     /// Tables, lens and frames that are files.
     fn input_files(&self, settings: &Settings) -> Result<Vec<PathBuf>, Failure> {
-        let frames = FrameName::all(&self.frame_names(settings))?;
+        let frames = FrameName::all(&self.frame_names(settings)).map_err(Failure::call)?;
         let frames = frames.iter().filter_map(FrameName::file).map(PathBuf::from);
         let tables = self.tables.path(settings).map(PathBuf::from);
         Ok(tables.into_iter().chain(self.lens.file().map(PathBuf::from)).chain(frames).collect())

@@ -14,9 +14,9 @@ mod tests;
 use std::os::fd::AsRawFd;
 use std::time::{Duration, Instant};
 
+use crate::exit::Exit;
 use halfrow::link::descriptor::{Gone, Pump, is_ready, send};
 use halfrow::link::{Link, LinkError};
-use halfrow::verdict::Exit;
 use halfrow_protocol::Decoder;
 
 pub use pty::{Name, Pty};

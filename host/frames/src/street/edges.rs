@@ -6,7 +6,7 @@
 //! images, as the correction keeps the rows (Eq. 7).
 
 use halfrow_model::{Frame, exact_inverse};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::super::scene::Scene;
 use super::facade::MARGIN;
@@ -22,7 +22,7 @@ const STEP: f64 = 1.0 / 32.0;
 const LEAST_ROWS: usize = 32;
 
 /// How far upright edges are from straight columns.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct EdgeDeviation {
     /// Edges that were measured.
     pub edges: usize,

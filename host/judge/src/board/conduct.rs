@@ -1,7 +1,6 @@
 //! What a board did over rows that no link can do to it: every packet has a CRC, a session and a number of its own.
 
 use std::collections::{BTreeMap, VecDeque};
-use std::fmt;
 
 use halfrow_protocol::message::{RowOut, RowPlace};
 use halfrow_protocol::{Kind, Packet, Reply};
@@ -36,39 +35,6 @@ pub enum Misconduct {
         /// The row that came too late.
         place: RowPlace,
     },
-}
-
-impl fmt::Display for Misconduct {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (Self::CopyDiffers { place }
-        | Self::NeverSent { place }
-        | Self::NumberedTwice { place, .. }
-        | Self::OutOfOrder { place }) = self;
-        let RowPlace { row_sequence, frame, row, .. } = place;
-        match self {
-            Self::CopyDiffers { .. } => {
-                write!(
-                    f,
-                    "row {row} of frame {frame} came twice, and not the same both times, each under a CRC that is right"
-                )
-            }
-            Self::NeverSent { .. } => write!(
-                f,
-                "the board returned row {row} of frame {frame}, number {row_sequence} of the session, which it was never \
-                 given"
-            ),
-            Self::NumberedTwice { number, .. } => write!(
-                f,
-                "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and so \
-                 has another one shortly before it"
-            ),
-            Self::OutOfOrder { .. } => write!(
-                f,
-                "the board reorders rows: row {row} of frame {frame} left it behind a later row, by the board's own numbers \
-                 of its packets"
-            ),
-        }
-    }
 }
 
 /// A ROW_OUT packet that came.

@@ -6,7 +6,7 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Malformed, Refusal, RowPlace};
 
 use crate::link::LinkError;
-use crate::verdict::Exit;
+use crate::verdict::{Cause, StoppedBy};
 
 /// Why a board could not be driven.
 #[derive(Debug, thiserror::Error)]
@@ -55,7 +55,7 @@ pub enum BoardError {
     /// Another host holds the board.
     #[error(
         "another host holds the board; wait until it is done (silent for 10 s; {seconds:.1} s are left), or take the \
-         board over with --take-over"
+         board over"
     )]
     Held {
         /// What is left of the ten seconds.
@@ -92,7 +92,7 @@ pub enum BoardError {
     /// Too many retries.
     #[error(
         "the link is too poor to judge a board over: {retries} of {packets} packets had to be sent again, and {limit} \
-         are allowed; check cable, connectors and rate, or raise --retry-limit"
+         are allowed; check cable, connectors and rate, or raise the retry limit"
     )]
     TooPoor {
         /// Packets sent again.
@@ -120,14 +120,14 @@ pub enum BoardError {
         place: RowPlace,
     },
     /// The run's own time limit.
-    #[error("the run took longer than the {:.0} s of --timeout; give it more, or use a faster link", limit.as_secs_f64())]
+    #[error("the run took longer than the {:.0} s of its time limit; give it more, or use a faster link", limit.as_secs_f64())]
     Timeout {
         /// The limit.
         limit: Duration,
     },
-    /// Ctrl-C or SIGTERM.
-    #[error("stopped by a signal; nothing is wrong with the board as far as it was tested")]
-    Stopped(Exit),
+    /// Somebody ended the run.
+    #[error("{0}; nothing is wrong with the board as far as it was tested")]
+    Stopped(StoppedBy),
 }
 
 /// Who is to blame for silence: the board if nothing was ever heard of it, and the way to it otherwise.
@@ -152,7 +152,7 @@ fn suspect(answered: bool, damaged: u64) -> String {
 impl BoardError {
     /// Whether the board is gone, as one is that was unplugged or lost power, and may come back.
     #[must_use]
-    pub fn is_outage(&self) -> bool {
+    pub(crate) fn is_outage(&self) -> bool {
         use LinkError::{Closed, Failed, Unplugged};
         match self {
             Self::Link { source, .. } => {
@@ -163,15 +163,15 @@ impl BoardError {
         }
     }
 
-    /// The exit code of a run that ends with this error.
+    /// Why a run ends as it does that ends with this error.
     #[must_use]
-    pub fn exit(&self) -> Exit {
+    pub fn cause(&self) -> Cause {
         match self {
-            Self::Held { .. } => Exit::Busy,
-            Self::Link { source, .. } if matches!(**source, LinkError::InUse { .. }) => Exit::Busy,
-            Self::NotABoard | Self::Version { .. } => Exit::Refused,
-            Self::Stopped(exit) => *exit,
-            _ => Exit::Error,
+            Self::Held { .. } => Cause::Busy,
+            Self::Link { source, .. } if matches!(**source, LinkError::InUse { .. }) => Cause::Busy,
+            Self::NotABoard | Self::Version { .. } => Cause::Refused,
+            Self::Stopped(by) => Cause::Stopped(*by),
+            _ => Cause::Station,
         }
     }
 }

@@ -151,12 +151,12 @@ impl Board {
 
     /// The link, for people.
     #[must_use]
-    pub fn link_name(&self) -> String {
+    pub(crate) fn link_name(&self) -> String {
         self.conversation.link_name()
     }
 
     /// Closes the link without a word, as when the board is gone. All that follows fails.
-    pub fn hang_up(&mut self) {
+    pub(crate) fn hang_up(&mut self) {
         self.conversation.hang_up();
     }
 
@@ -164,7 +164,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
-    pub fn echo(&mut self, bytes: &[u8]) -> Result<(bool, Duration), BoardError> {
+    pub(crate) fn echo(&mut self, bytes: &[u8]) -> Result<(bool, Duration), BoardError> {
         let begun = self.now();
         let same = self.conversation.request(&Request::Echo(bytes), Step::Request, |reply| match reply {
             Reply::Echo(back) => Some(back == bytes),
@@ -200,7 +200,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
-    pub fn start_afresh(&mut self) -> Result<(), BoardError> {
+    pub(crate) fn start_afresh(&mut self) -> Result<(), BoardError> {
         if self.status(true)?.generation != 0 {
             self.reset(ResetLevel::Tables, Step::Request)?;
         }
@@ -250,7 +250,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board does not answer.
-    pub fn drop_rows(&mut self) -> Result<(), BoardError> {
+    pub(crate) fn drop_rows(&mut self) -> Result<(), BoardError> {
         self.reset(ResetLevel::Rows, Step::Request)
     }
 

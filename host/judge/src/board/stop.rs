@@ -1,16 +1,16 @@
-//! What ends a run early: a signal, or the run's own time limit.
+//! What ends a run early: whoever began it, or the run's own time limit.
 
+use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 use super::BoardError;
-use crate::verdict::Exit;
+use crate::verdict::StoppedBy;
 
 /// Asked between any two exchanges whether to go on.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Default)]
 pub struct Stop {
-    signal: Arc<AtomicUsize>,
+    asked: Option<Arc<Asked>>,
     limit: Option<Duration>,
     /// Of the limit, what had passed when the link's clock began.
     spent: Duration,
@@ -18,11 +18,19 @@ pub struct Stop {
     wall: Option<(Instant, Duration)>,
 }
 
+type Asked = dyn Fn() -> Option<StoppedBy> + Send + Sync;
+
 impl Stop {
-    /// Stops when `signal` holds an exit code other than 0, or when the link's clock has passed `limit`.
+    /// Stops as soon as `asked` says who wants it to. It is asked often, and so must be quick, as a look at an atomic is.
     #[must_use]
-    pub fn new(signal: Arc<AtomicUsize>, limit: Option<Duration>) -> Self {
-        Self { signal, limit, spent: Duration::ZERO, wall: None }
+    pub fn when(asked: impl Fn() -> Option<StoppedBy> + Send + Sync + 'static) -> Self {
+        Self { asked: Some(Arc::new(asked)), ..Self::default() }
+    }
+
+    /// Stops as well when the link's clock has passed `limit`, if there is one.
+    #[must_use]
+    pub fn limited(self, limit: Option<Duration>) -> Self {
+        Self { limit, ..self }
     }
 
     /// Stops also when `limit` from here on has passed on this computer's clock, which a board in this program or a
@@ -38,9 +46,8 @@ impl Stop {
     }
 
     pub(crate) fn check(&self, now: Duration) -> Result<(), BoardError> {
-        match self.signal.load(Ordering::Relaxed) {
-            0 => {}
-            code => return Err(BoardError::Stopped(Exit::of_signal(code).unwrap_or(Exit::Interrupted))),
+        if let Some(by) = self.asked.as_ref().and_then(|asked| asked()) {
+            return Err(BoardError::Stopped(by));
         }
         if let Some((_, limit)) = self.wall.filter(|(begun, limit)| begun.elapsed() > *limit) {
             return Err(BoardError::Timeout { limit });
@@ -49,5 +56,17 @@ impl Stop {
             Some(limit) if self.spent + now > limit => Err(BoardError::Timeout { limit }),
             _ => Ok(()),
         }
+    }
+}
+
+impl fmt::Debug for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { asked, limit, spent, wall } = self;
+        f.debug_struct("Stop")
+            .field("is_asked", &asked.is_some())
+            .field("limit", limit)
+            .field("spent", spent)
+            .field("wall", wall)
+            .finish()
     }
 }

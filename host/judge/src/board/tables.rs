@@ -56,7 +56,7 @@ impl Board {
 
     /// Entries of a table that fit into one packet.
     #[must_use]
-    pub const fn entries_at_once(table: Table) -> usize {
+    pub(crate) const fn entries_at_once(table: Table) -> usize {
         (MAX_PAYLOAD - Span::BYTES) / table.entry_bytes()
     }
 
@@ -119,7 +119,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
-    pub fn read_entries(
+    pub(crate) fn read_entries(
         &mut self,
         bank: Bank,
         port: TablePort,

@@ -3,24 +3,12 @@
 use std::ops::Range;
 
 use super::witnesses::Witness;
+use crate::result::Defect;
 
 /// Rows that must speak for or against a defect before it can be given up.
 const PATIENCE: usize = 8;
 /// The share below which it is given up then.
 const HOPELESS: f64 = 0.1;
-
-/// A defect in words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) struct Cause {
-    /// The kind of part: stable, lower case.
-    pub(super) part: &'static str,
-    /// Where: row, node and weight, bit.
-    pub(super) place: String,
-    /// What is wrong there, so that "… gives these samples" makes a sentence.
-    pub(super) defect: String,
-    /// What to do next, one sentence.
-    pub(super) next_step: String,
-}
 
 /// What a board with a defect would have given for a row.
 #[derive(Clone, Debug)]
@@ -53,15 +41,15 @@ type Predict<'a> = dyn Fn(&Witness<'_>) -> Option<Prediction> + 'a;
 
 /// A single defect that may be the board's.
 pub(super) struct Hypothesis<'a> {
-    /// It in words.
-    pub(super) cause: Cause,
+    /// Which.
+    pub(super) defect: Defect,
     predict: Box<Predict<'a>>,
 }
 
 impl<'a> Hypothesis<'a> {
-    /// The defect `cause`, which makes of a row what `predict` gives, or leaves it as it should be.
-    pub(super) fn new(cause: Cause, predict: impl Fn(&Witness<'_>) -> Option<Prediction> + 'a) -> Self {
-        Self { cause, predict: Box::new(predict) }
+    /// The defect, which makes of a row what `predict` gives, or leaves it as it should be.
+    pub(super) fn new(defect: Defect, predict: impl Fn(&Witness<'_>) -> Option<Prediction> + 'a) -> Self {
+        Self { defect, predict: Box::new(predict) }
     }
 
     /// How much of `rows` it explains. One that explains next to nothing of the rows that it touches is not tried on all.

@@ -19,7 +19,7 @@ mod witnesses;
 
 use halfrow_model::{Kernel, TableSet};
 
-use crate::report::{Evidence, FrameReport, Suspect};
+use crate::result::{Evidence, FrameReport, Suspect};
 use witnesses::Witnesses;
 
 pub use read_back::read_back;

@@ -1,10 +1,11 @@
-//! Which defects explain the differences best, and in which words.
+//! Which defects explain the differences best.
 
 use std::cmp::Ordering;
+use std::collections::BTreeSet;
 
-use super::hypothesis::{Cause, Hypothesis, Score};
+use super::hypothesis::{Hypothesis, Score};
 use super::witnesses::Witnesses;
-use crate::report::Suspect;
+use crate::result::{Account, Defect, Suspect, wording};
 
 /// Differing rows that every hypothesis is tried on.
 const SCREENED: usize = 48;
@@ -24,7 +25,7 @@ const CONVINCING: f64 = 0.5;
 /// A defect and how well it does.
 pub(super) struct Ranked {
     /// The defect.
-    pub(super) cause: Cause,
+    pub(super) defect: Defect,
     /// How well it does from the first difference of the run on.
     pub(super) score: Score,
     /// Samples before that which it would have changed: if there are any, it set in during the run.
@@ -45,7 +46,7 @@ pub(super) fn rank(witnesses: &Witnesses<'_>, hypotheses: Vec<Hypothesis<'_>>) -
     let finals = screened.into_iter().take(finalists).map(|(_, hypothesis)| {
         let score = hypothesis.score(witnesses.sample(EXAMINED));
         let before = hypothesis.score(witnesses.sample_before(EXAMINED)).contradicted;
-        Ranked { cause: hypothesis.cause, score, before }
+        Ranked { defect: hypothesis.defect, score, before }
     });
     merge(finals.collect(), Vec::new())
 }
@@ -54,13 +55,9 @@ pub(super) fn rank(witnesses: &Witnesses<'_>, hypotheses: Vec<Hypothesis<'_>>) -
 pub(super) fn merge(mut ranked: Vec<Ranked>, more: Vec<Ranked>) -> Vec<Ranked> {
     ranked.extend(more);
     ranked.sort_by(|a, b| by_share(&a.score, &b.score).then((a.before > 0).cmp(&(b.before > 0))));
-    let mut merged: Vec<Ranked> = Vec::new();
-    for candidate in ranked {
-        if merged.iter().all(|known| known.cause.place != candidate.cause.place) {
-            merged.push(candidate);
-        }
-    }
-    merged
+    let mut places = BTreeSet::new();
+    ranked.retain(|candidate| places.insert(wording::place(&candidate.defect)));
+    ranked
 }
 
 fn by_share(a: &Score, b: &Score) -> Ordering {
@@ -92,32 +89,8 @@ impl Ranked {
     }
 }
 
-fn suspect(Ranked { cause, score, before }: &Ranked, others: usize) -> Suspect {
-    let Cause { part, place, defect, next_step } = cause.clone();
-    let onset =
-        if *before > 0 { "; it set in during the run, since rows before came back right" } else { "" };
-    let evidence = format!("{defect} {}{onset}", account(score, others));
-    Suspect { part, place, evidence, next_step, explained: score.share() }
-}
-
-/// What the defect gives, as the rest of a sentence. `others` explain everything as well.
-fn account(score: &Score, others: usize) -> String {
+fn suspect(Ranked { defect, score, before }: &Ranked, others: usize) -> Suspect {
     let &Score { differing, explained, contradicted } = score;
-    if !score.is_exact() {
-        let rest = match contradicted {
-            0 => String::new(),
-            1 => ", but would change one that is right".to_owned(),
-            more => format!(", but would change {more} that are right"),
-        };
-        return format!("gives {explained} of the {differing} differing samples examined{rest}");
-    }
-    let all = match differing {
-        1 => "gives the one differing sample examined, and changes no other".to_owned(),
-        _ => format!("gives all {differing} differing samples examined, to the bit, and changes no other"),
-    };
-    match others {
-        0 => all,
-        1 => format!("{all}; so does one other defect, so this is not certain"),
-        _ => format!("{all}; so do {others} other defects, so this is not certain"),
-    }
+    let account = Account::Samples { differing, explained, contradicted, others, set_in: *before > 0 };
+    Suspect { defect: defect.clone(), account, explained: score.share() }
 }

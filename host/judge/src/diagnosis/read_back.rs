@@ -5,7 +5,7 @@ mod lines;
 use halfrow_model::TAP_NAMES;
 
 use crate::board::Table;
-use crate::report::Suspect;
+use crate::result::{Account, Defect, Memory, Suspect};
 
 /// A table as words: row factors, or the weights of nodes one after the other.
 #[derive(Clone, Copy, Debug)]
@@ -81,17 +81,6 @@ impl<'a> Words<'a> {
         Some(bytes.iter().rev().fold(0, |word, &byte| word << 8 | u32::from(byte)))
     }
 
-    /// "row 5's factor"
-    fn name(self, index: usize) -> String {
-        match self.table {
-            Table::Steps => format!("row {index}'s factor"),
-            Table::Kernel => {
-                let weight = TAP_NAMES.get(index % self.per_entry()).copied().unwrap_or_default();
-                format!("kernel node {}, weight {weight}", index / self.per_entry())
-            }
-        }
-    }
-
     /// A word as people write it.
     fn value(self, word: u32) -> i64 {
         match self.table {
@@ -100,54 +89,41 @@ impl<'a> Words<'a> {
         }
     }
 
-    fn part(self) -> &'static str {
+    fn memory(self) -> Memory {
         match self.table {
-            Table::Steps => "row factor",
-            Table::Kernel => "kernel word",
+            Table::Steps => Memory::Rows,
+            Table::Kernel => Memory::Kernel,
         }
     }
 
-    fn next_step(self) -> String {
-        let memory = match self.table {
-            Table::Steps => "row table's memory",
-            Table::Kernel => "kernel's memory",
-        };
-        format!("Check the {memory}, its write path and its supply; then upload again.")
+    /// The tap that the word at `index` weighs, in a kernel.
+    fn weight(self, index: usize) -> Option<String> {
+        match self.table {
+            Table::Steps => None,
+            Table::Kernel => TAP_NAMES.get(index % self.per_entry()).map(|&weight| weight.to_owned()),
+        }
     }
 }
 
 fn wrong_length(expected: Words<'_>, found: Words<'_>) -> Suspect {
     let entry = expected.table.entry_bytes();
-    Suspect {
-        part: expected.part(),
-        place: "the table's length".to_owned(),
-        evidence: format!(
-            "{} entries were uploaded and {} came back",
-            expected.bytes.len() / entry,
-            found.bytes.len() / entry
-        ),
-        next_step: "Check how the board counts entries when it reads a table back.".to_owned(),
-        explained: 0.0,
-    }
+    let (uploaded, read) = (expected.bytes.len() / entry, found.bytes.len() / entry);
+    let defect = Defect::TableLengthWrong { table: expected.memory(), uploaded, read };
+    Suspect { defect, account: Account::Nothing, explained: 0.0 }
 }
 
 /// The word `word`, the first of `count` that are wrong.
 fn one_word(words: Words<'_>, word: WrongWord, count: usize) -> Suspect {
     let differing = word.expected ^ word.found;
-    let bits: Vec<_> =
-        (0..u32::BITS).filter(|bit| differing >> bit & 1 == 1).map(|bit| bit.to_string()).collect();
-    let label = if bits.len() == 1 { "bit" } else { "bits" };
-    let (expected, found) = (words.value(word.expected), words.value(word.found));
-    let first = if count == 1 {
-        String::new()
-    } else {
-        format!("; it is the first of {count} wrong words, which no single line explains")
+    let defect = Defect::TableWordWrong {
+        table: words.memory(),
+        entry: word.index / words.per_entry(),
+        weight: words.weight(word.index),
+        bits: (0..u32::BITS).filter(|bit| differing >> bit & 1 == 1).collect(),
+        uploaded: words.value(word.expected),
+        read: words.value(word.found),
+        wrong: count,
     };
-    Suspect {
-        part: words.part(),
-        place: format!("{}, {label} {}", words.name(word.index), bits.join(", ")),
-        evidence: format!("{found} was read where {expected} was uploaded{first}"),
-        next_step: words.next_step(),
-        explained: 1.0 / count as f64,
-    }
+    let account = Account::Words { wrong: count, explained: 1, others: 0 };
+    Suspect { defect, account, explained: 1.0 / count as f64 }
 }

@@ -6,7 +6,7 @@ use halfrow_model::{Frame, Geometry};
 
 use super::datapath::RowTables;
 use super::{Case, Uploaded};
-use crate::report::Evidence;
+use crate::result::Evidence;
 
 /// 2^64 / golden ratio: its multiples, taken modulo 2^64, fall evenly everywhere.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;

@@ -177,7 +177,7 @@ pub enum LensContentError {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
     "it was calibrated with pictures of {columns} x {rows}, and frames of {width} x {height} have another shape; calibrate \
-     with such frames, or give --lens-pitch, and --centre-x and --centre-y, for the same lens on another or a cropped sensor"
+     with such frames, or give the lens pitch and the optical centre for the same lens on another or a cropped sensor"
 )]
 pub struct WrongShape {
     /// Columns of the pictures.

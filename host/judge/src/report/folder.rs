@@ -7,7 +7,8 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::{Evidence, Report, html, json, junit};
+use super::{html, json, junit};
+use crate::result::{Evidence, Report};
 use halfrow_frames::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
 
 const JSON: &str = "report.json";
@@ -24,7 +25,7 @@ pub enum ReportError {
         path: PathBuf,
     },
     /// Something is there and may not be replaced.
-    #[error("{} exists; give --overwrite to replace it, or name another folder", path.display())]
+    #[error("{} exists; allow it to be overwritten, or name another folder", path.display())]
     Exists {
         /// The path.
         path: PathBuf,
@@ -97,7 +98,11 @@ pub struct ReportFolder {
     aside: AsideFolder,
     /// Until the report is in its place, so that two that may not overwrite cannot both begin.
     _claim: Option<Claim>,
+    json: JsonView,
 }
+
+/// What makes the JSON of a report.
+pub type JsonView = fn(&Report) -> Result<String, serde_json::Error>;
 
 impl ReportFolder {
     /// Makes sure that a report can be written to `path`, before a board is opened for it.
@@ -112,7 +117,13 @@ impl ReportFolder {
         check(path, overwrite)?;
         let failed = |source| ReportError::Prepare { path: path.to_owned(), source };
         let aside = AsideFolder::new(path).map_err(failed)?;
-        Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim })
+        Ok(Self { path: path.to_owned(), overwrite, aside, _claim: claim, json: json::render })
+    }
+
+    /// The same with JSON that `view` makes, as a program does that adds to it. It begins with `verdict` and holds `board`.
+    #[must_use]
+    pub fn with_json(self, view: JsonView) -> Self {
+        Self { json: view, ..self }
     }
 
     /// Writes the report and puts it in its place. When that fails, an earlier report stays as it was.
@@ -120,7 +131,7 @@ impl ReportFolder {
     /// # Errors
     /// [`ReportError`] when a view cannot be encoded, a file cannot be written, or something came to be in the way.
     pub fn commit(self, report: &Report, evidence: &[Evidence]) -> Result<(), ReportError> {
-        self.write(JSON, &json::render(report)?)?;
+        self.write(JSON, &(self.json)(report)?)?;
         self.write(JUNIT, &junit::render(report)?)?;
         self.write(HTML, &html::render(report, evidence)?)?;
         let Self { path, overwrite, aside, .. } = self;
@@ -192,8 +203,8 @@ fn is_report(path: &Path) -> bool {
     struct Head {
         #[serde(rename = "verdict")]
         _verdict: IgnoredAny,
-        #[serde(rename = "exit_code")]
-        _exit_code: IgnoredAny,
+        #[serde(rename = "board")]
+        _board: IgnoredAny,
     }
     File::open(path).is_ok_and(|file| serde_json::from_reader::<_, Head>(BufReader::new(file)).is_ok())
 }

@@ -8,7 +8,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use png::EncodingError;
 
 use super::wording::{self, plain};
-use super::{Check, Evidence, Report, Suspect};
+use crate::result::{Check, Evidence, Report, Suspect};
 use crate::verdict::Verdict;
 
 const STYLE: &str = include_str!("style.css");
@@ -71,7 +71,7 @@ fn banner(report: &Report) -> Markup {
                 h1 { (facts) }
                 p.facts { (started) }
             } @else {
-                h1 { (plain(&report.headline)) }
+                h1 { (plain(&report.headline())) }
                 p.facts { (facts) " · " (started) }
             }
         }
@@ -87,7 +87,7 @@ fn next(report: &Report) -> Markup {
     html! {
         section {
             h2 { "What to do" }
-            @if let Some(remedy) = remedy { p.remedy { (plain(remedy)) } }
+            @if let Some(remedy) = remedy { p.remedy { (plain(&remedy)) } }
             @if !report.suspects.is_empty() { ol.suspects { @for it in &report.suspects { (suspect(it)) } } }
         }
     }
@@ -97,11 +97,12 @@ fn suspect(suspect: &Suspect) -> Markup {
     html! {
         li {
             h3 {
-                (plain(suspect.part)) ", " (plain(&suspect.place))
+                (plain(suspect.part())) ", " (plain(&suspect.place()))
                 span.share { " explains " (wording::percent(suspect.explained)) " of the differences" }
             }
-            p { (plain(&suspect.evidence)) }
-            p { strong { "Next: " } (plain(&suspect.next_step)) }
+            p { (plain(&suspect.evidence())) }
+            p { strong { "Next: " } (plain(&suspect.designer())) }
+            p { strong { "At the bench: " } (plain(&suspect.technician())) }
         }
     }
 }
@@ -113,7 +114,7 @@ fn checks(checks: &[Check]) -> Markup {
                 tr {
                     td { (facts::mark(check.outcome)) }
                     th scope="row" { (check.name) }
-                    td { (plain(&check.detail)) }
+                    td { (plain(&check.detail())) }
                 }
             }
         }

@@ -1,8 +1,8 @@
 //! The report as JSON, for programs.
 
-use crate::report::Report;
+use crate::result::Report;
 
-/// The report, indented, ending in a line feed. `verdict`, `exit_code` and `board.kind` come first.
+/// The report, indented, ending in a line feed. `schema`, `command`, `verdict` and `board.kind` come first.
 ///
 /// # Errors
 /// The encoder's. No value that a [`Report`] can hold brings one about.

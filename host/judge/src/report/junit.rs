@@ -11,7 +11,7 @@ use quick_junit::{
 };
 
 use super::wording::{self, plain};
-use super::{Check, FrameReport, Outcome, Report, Suspect, text};
+use crate::result::{Check, FrameReport, Outcome, Report, Suspect};
 use crate::verdict::Verdict;
 
 /// The name of the suite and the head of all class names.
@@ -28,25 +28,36 @@ pub fn render(report: &Report) -> Result<String, SerializeError> {
     for (name, value) in properties(report) {
         suite.add_property(Property::new(name, plain(&value)));
     }
-    suite.set_system_out(text::render(report));
+    suite.set_system_out(wording::summary(report));
     suite.add_test_case(verdict_case(report));
     suite.add_test_cases(report.checks.iter().map(check_case));
     suite.add_test_cases(report.frames.iter().map(|frame| frame_case(report, frame)));
     let mut document = Document::new(SUITE);
-    (document.timestamp, document.time) = (suite.timestamp, suite.time);
+    document.time = suite.time;
     document.add_test_suite(suite);
-    document.to_string()
+    Ok(without_skipped(&document.to_string()?))
+}
+
+/// The document without the count of skipped cases in its root, where Jenkins' schema has none; the suite has it.
+fn without_skipped(document: &str) -> String {
+    let Some((head, rest)) = document.split_once("<testsuites ") else { return document.to_owned() };
+    let (root, rest) = rest.split_once('>').unwrap_or((rest, ""));
+    let kept: Vec<_> = match root.split_once(" skipped=\"") {
+        Some((before, after)) => vec![before, after.split_once('"').map_or("", |(_, after)| after)],
+        None => vec![root],
+    };
+    format!("{head}<testsuites {}>{rest}", kept.concat())
 }
 
 /// What the run was, by name.
 fn properties(report: &Report) -> Vec<(&'static str, String)> {
     let mut list = vec![
         ("verdict", report.verdict.to_string()),
-        ("exit_code", report.exit_code.code().to_string()),
+        ("cause", report.cause.to_string()),
         ("board.kind", report.board.kind.to_string()),
         ("board.target", report.board.target.clone()),
-        ("halfrow.version", report.run.version.to_owned()),
-        ("halfrow.commit", report.run.commit.to_owned()),
+        ("halfrow.version", report.run.version.clone()),
+        ("halfrow.commit", report.run.commit.clone()),
         ("seed", report.run.seed.to_string()),
     ];
     if let Some(identity) = &report.board.identity {
@@ -64,16 +75,20 @@ fn verdict_case(report: &Report) -> TestCase {
         Verdict::Error => Outcome::Error,
     };
     let said = |suspect: &Suspect| {
-        let (part, place) = (suspect.part, &suspect.place);
-        [format!("{part}, {place}: {}", suspect.evidence), format!("Next: {}", suspect.next_step)]
+        let (part, place) = (suspect.part(), suspect.place());
+        [
+            format!("{part}, {place}: {}", suspect.evidence()),
+            format!("Next: {}", suspect.designer()),
+            format!("At the bench: {}", suspect.technician()),
+        ]
     };
-    let details = report.suspects.iter().flat_map(said).chain(wording::remedy(report).map(str::to_owned));
+    let details = report.suspects.iter().flat_map(said).chain(wording::remedy(report));
     let details: Vec<_> = details.map(|line| plain(&line).into_owned()).collect();
-    case("verify", "verdict", status(outcome, &report.headline, &details.join("\n")))
+    case("verify", "verdict", 0.0, status(outcome, &report.headline(), &details.join("\n")))
 }
 
 fn check_case(check: &Check) -> TestCase {
-    case("check", check.name, status(check.outcome, &check.detail, ""))
+    case("check", check.name.name(), check.seconds, status(check.outcome, &check.detail(), ""))
 }
 
 fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
@@ -90,11 +105,13 @@ fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
     });
     // The number keeps apart two frames of one name.
     let name = format!("{} (frame {}, {}, {})", frame.name, frame.number, frame.phase, frame.timing);
-    case("frame", &name, status(wording::frame_outcome(report, frame), &message, &first))
+    case("frame", &name, frame.seconds, status(wording::frame_outcome(report, frame), &message, &first))
 }
 
-fn case(class: &str, name: &str, status: Status) -> TestCase {
+/// A case that took so many seconds.
+fn case(class: &str, name: &str, seconds: f64, status: Status) -> TestCase {
     let mut case = TestCase::new(plain(name), status);
+    case.time = Duration::try_from_secs_f64(seconds).ok();
     case.set_classname(format!("halfrow.{class}"));
     case
 }

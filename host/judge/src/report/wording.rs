@@ -1,14 +1,15 @@
-//! The words and figures that the views share, so that all of them say the same.
+//! The words and figures that the views share, here and in programs, so that all of them say the same.
 
 use std::borrow::Cow;
 
-use crate::report::{
+use crate::result::{
     BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, Outcome, Report, StreetReport,
 };
 use crate::verdict::Verdict;
 
 /// What a check's outcome is called. The loud ones are those to act on.
-pub(super) const fn mark(outcome: Outcome) -> &'static str {
+#[must_use]
+pub const fn mark(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Passed => "ok",
         Outcome::Failed => "FAIL",
@@ -18,7 +19,8 @@ pub(super) const fn mark(outcome: Outcome) -> &'static str {
 }
 
 /// What a board's kind is called.
-pub(super) const fn kind(kind: BoardKind) -> &'static str {
+#[must_use]
+pub const fn kind(kind: BoardKind) -> &'static str {
     match kind {
         BoardKind::Mock => "mock board",
         BoardKind::Sim => "simulated board",
@@ -28,7 +30,8 @@ pub(super) const fn kind(kind: BoardKind) -> &'static str {
 }
 
 /// What a result on this board is worth: only hardware is a test of hardware.
-pub(super) fn remark(board: &BoardReport) -> String {
+#[must_use]
+pub fn remark(board: &BoardReport) -> String {
     match (board.kind, &board.identity) {
         (BoardKind::Hardware, Some(identity)) => {
             format!("hardware {}, serial {}", plain(&identity.name), plain(&identity.serial))
@@ -39,21 +42,37 @@ pub(super) fn remark(board: &BoardReport) -> String {
 }
 
 /// The verdict in one line, for people and for `tail -1`.
-pub(super) fn verdict_line(report: &Report) -> String {
+#[must_use]
+pub fn verdict_line(report: &Report) -> String {
     match report.verdict {
         Verdict::Pass => format!("PASS ({})  {}", remark(&report.board), facts(report)),
-        verdict => format!("{verdict}: {}", plain(&report.headline)),
+        verdict => format!("{verdict}: {}", plain(&report.headline())),
     }
 }
 
-/// What to do, unless a suspect already says so.
-pub(super) fn remedy(report: &Report) -> Option<&str> {
-    let said = |remedy: &&str| report.suspects.iter().any(|suspect| suspect.next_step == *remedy);
-    report.remedy.as_deref().filter(|remedy| !said(remedy))
+/// The verdict with every check and what to do, a line each: for views without a table.
+#[must_use]
+pub fn summary(report: &Report) -> String {
+    let mut lines = vec![verdict_line(report)];
+    lines.extend(report.checks.iter().map(|check| {
+        format!("{:<8} {:<13} {}", mark(check.outcome), check.name, plain(&check.finding.sentence()))
+    }));
+    lines.extend(remedy(report).map(|remedy| plain(&remedy).into_owned()));
+    lines.join("\n")
+}
+
+/// What to do, unless a suspect or the headline already says so.
+#[must_use]
+pub fn remedy(report: &Report) -> Option<String> {
+    let headline = report.headline().to_lowercase();
+    let in_headline = |remedy: &str| headline.contains(remedy.trim_end_matches('.').to_lowercase().as_str());
+    let said = |remedy: &String| report.suspects.iter().any(|suspect| suspect.designer() == *remedy);
+    report.remedy().filter(|remedy| !said(remedy) && !in_headline(remedy))
 }
 
 /// What was judged, in figures.
-pub(super) fn facts(report: &Report) -> String {
+#[must_use]
+pub fn facts(report: &Report) -> String {
     let samples: usize = report.frames.iter().map(|frame| frame.comparison.samples).sum();
     let differences: usize = report.frames.iter().map(|frame| frame.comparison.differences).sum();
     let mut facts = vec![count(report.frames.len(), "frame")];
@@ -68,7 +87,8 @@ pub(super) fn facts(report: &Report) -> String {
 }
 
 /// The latency of all rows in one sentence, without a full stop.
-pub(super) fn latency(latency: &LatencyReport) -> String {
+#[must_use]
+pub fn latency(latency: &LatencyReport) -> String {
     let rows = count(latency.rows, "row");
     let allowed = format!("at most {} allowed", latency.limit);
     match latency.wrong_rows {
@@ -94,7 +114,8 @@ fn measured(latency: &LatencyReport) -> String {
 }
 
 /// How straight the street's façade edges are, without a full stop.
-pub(super) fn street(street: &StreetReport) -> String {
+#[must_use]
+pub fn street(street: &StreetReport) -> String {
     let (before, after) = (&street.before, &street.after);
     format!(
         "{} {:.2} px off straight before, {:.2} px after (at most {:.2}, {:.2})",
@@ -107,7 +128,8 @@ pub(super) fn street(street: &StreetReport) -> String {
 }
 
 /// What the link did in one sentence, without a full stop. Trouble is named only when there was some.
-pub(super) fn link(link: &LinkReport) -> String {
+#[must_use]
+pub fn link(link: &LinkReport) -> String {
     let mut parts = vec![
         format!("{} out, {} in", bytes(link.bytes_out), bytes(link.bytes_in)),
         format!("{} packets", grouped(link.packets_out.saturating_add(link.packets_in))),
@@ -135,7 +157,8 @@ pub(super) fn link(link: &LinkReport) -> String {
 }
 
 /// How a frame came out. Under the verdict ERROR nothing is the board's fault.
-pub(super) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
+#[must_use]
+pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
     let judged = frame.rows >= frame.comparison.by_row.len() && frame.comparison.samples > 0;
     match (report.verdict, frame.comparison.differences) {
         (_, 0) if judged => Outcome::Passed,
@@ -145,7 +168,8 @@ pub(super) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
 }
 
 /// How many samples of a frame differ. None is only said of a frame that came back whole.
-pub(super) fn differences(report: &Report, frame: &FrameReport) -> String {
+#[must_use]
+pub fn differences(report: &Report, frame: &FrameReport) -> String {
     match (frame.comparison.differences, frame_outcome(report, frame)) {
         (0, Outcome::Error) => "not whole".to_owned(),
         (some, _) => grouped(some),
@@ -154,7 +178,8 @@ pub(super) fn differences(report: &Report, frame: &FrameReport) -> String {
 
 /// The frames to list when there is room for `most`: all, or else those that are not equal, in order. The number left
 /// out comes with them.
-pub(super) fn worth_listing(report: &Report, most: usize) -> (Vec<&FrameReport>, usize) {
+#[must_use]
+pub fn worth_listing(report: &Report, most: usize) -> (Vec<&FrameReport>, usize) {
     let all = report.frames.len();
     let wanted = |frame: &&FrameReport| all <= most || frame_outcome(report, frame) != Outcome::Passed;
     let listed: Vec<_> = report.frames.iter().filter(wanted).take(most).collect();
@@ -163,13 +188,15 @@ pub(super) fn worth_listing(report: &Report, most: usize) -> (Vec<&FrameReport>,
 }
 
 /// `1 frame`, `16 frames`, `17,280 rows`.
-pub(super) fn count(number: usize, what: &str) -> String {
+#[must_use]
+pub fn count(number: usize, what: &str) -> String {
     let ending = if number == 1 { "" } else { "s" };
     format!("{} {what}{ending}", grouped(number))
 }
 
 /// A number with a comma before every third digit from the right.
-pub(super) fn grouped(number: impl Copy + ToString) -> String {
+#[must_use]
+pub fn grouped(number: impl Copy + ToString) -> String {
     let digits = number.to_string();
     let mut text = String::with_capacity(digits.len() * 4 / 3);
     for (place, digit) in digits.char_indices() {
@@ -182,7 +209,8 @@ pub(super) fn grouped(number: impl Copy + ToString) -> String {
 }
 
 /// Bytes in the largest decimal unit that leaves a whole digit.
-pub(super) fn bytes(number: u64) -> String {
+#[must_use]
+pub fn bytes(number: u64) -> String {
     match number {
         0..1_000 => format!("{number} B"),
         1_000..1_000_000 => format!("{:.1} kB", number as f64 / 1e3),
@@ -192,7 +220,8 @@ pub(super) fn bytes(number: u64) -> String {
 }
 
 /// A share of 0 to 1 in percent; only the whole is called 100 %.
-pub(super) fn percent(share: f64) -> String {
+#[must_use]
+pub fn percent(share: f64) -> String {
     match share * 100.0 {
         all if all >= 100.0 => "100 %".to_owned(),
         none if none <= 0.0 => "0 %".to_owned(),
@@ -204,7 +233,8 @@ pub(super) fn percent(share: f64) -> String {
 
 /// Text from outside with its control characters spelt out, since boards and file names can hold any, and terminals
 /// obey some.
-pub(super) fn plain(text: &str) -> Cow<'_, str> {
+#[must_use]
+pub fn plain(text: &str) -> Cow<'_, str> {
     let unfit = |letter: char| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}');
     if !text.contains(unfit) {
         return Cow::Borrowed(text);

@@ -6,27 +6,35 @@ use super::plan::{Generation, JUDGED};
 use super::steps::Run;
 use crate::board::{Bank, Status};
 use crate::diagnosis::{self, Case, Uploaded};
-use crate::report::Suspect;
+use crate::result::{CheckName, Counter, Finding, LatencyReport, Suspect};
 
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
     /// stands among the checks.
     pub(super) fn judge(&mut self) -> Result<(), End> {
         let after = self.tables_after();
-        let status = self.board.status(false).map_err(|error| End::board("counters", &error))?;
+        self.findings.lap(CheckName::TablesAfter);
+        let status = self.board.status(false).map_err(|error| End::board(CheckName::Counters, &error))?;
         self.findings.note_status(&status);
+        self.findings.lap(CheckName::Counters);
         if let Some(misconduct) = self.misconduct() {
             return Err(misconduct);
         }
         let frames = self.frames(after.as_ref().err());
+        self.findings.lap(CheckName::Frames);
         // Counters are of rows that came back as they should; a run that ends early leaves rows inside.
         let counters = frames.is_ok().then(|| self.counters(&status));
         let latency = latency(&self.findings.seen);
         let mut ends = Vec::new();
-        let results = [("frames", Some(frames)), ("latency", Some(latency)), ("tables after", Some(after))];
-        for (check, result) in results.into_iter().chain([("counters", counters)]) {
+        let results = [
+            (CheckName::Frames, Some(frames)),
+            (CheckName::Latency, Some(latency)),
+            (CheckName::TablesAfter, Some(after)),
+            (CheckName::Counters, counters),
+        ];
+        for (check, result) in results {
             match result {
-                Some(Ok(detail)) => self.findings.passed(check, detail),
+                Some(Ok(finding)) => self.findings.passed(check, finding),
                 Some(Err(end)) => ends.push(end),
                 None => {}
             }
@@ -38,16 +46,16 @@ impl Run<'_> {
     }
 
     /// The tables must still be what was uploaded.
-    fn tables_after(&mut self) -> Result<String, End> {
+    fn tables_after(&mut self) -> Result<Finding, End> {
         let judged = self.generations.iter().find(|generation| generation.number == JUDGED).cloned();
         let Some(judged) = judged.filter(|_| self.streamed_judged()) else {
-            return Ok("no frame came to use them".to_owned());
+            return Ok(Finding::TablesUnused {});
         };
-        let checked = self.check_read_back("tables after", Bank::Active, &judged);
-        checked.map(|_| "the tables are still what was uploaded".to_owned()).map_err(|end| match end {
-            End::Failed { check, headline, remedy, suspects } => {
-                let headline = format!("the tables changed during the run: {headline}");
-                End::Failed { check, headline, remedy, suspects }
+        let checked = self.check_read_back(CheckName::TablesAfter, Bank::Active, &judged);
+        checked.map(|_| Finding::TablesUnchanged {}).map_err(|end| match end {
+            End::Failed { check, finding, suspects } => {
+                let finding = Finding::TablesChanged { found: Box::new(finding) };
+                End::Failed { check, finding, suspects }
             }
             end => end,
         })
@@ -58,39 +66,35 @@ impl Run<'_> {
         self.findings.seen.frames.iter().any(|frame| frame.generation == JUDGED)
     }
 
-    fn frames(&self, tables_after: Option<&End>) -> Result<String, End> {
+    fn frames(&self, tables_after: Option<&End>) -> Result<Finding, End> {
         let seen = &self.findings.seen;
-        if let Some(sentence) = &seen.wrong_generation {
-            let remedy = "The board uses stale tables: check when its bank switch takes effect.";
-            return Err(End::failed("frames", sentence.clone(), remedy));
+        if let Some(finding) = &seen.wrong_generation {
+            return Err(End::failed(CheckName::Frames, finding.clone()));
         }
         let differing = seen.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
         let (samples, frames) = (seen.samples(), seen.frames.len());
         if differing == 0 {
-            return Ok(format!("{frames} frames, {samples} samples, all equal"));
+            return Ok(Finding::FramesEqual { frames, samples });
         }
         // Tables that changed explain the differences better than their pattern does.
-        if let Some(End::Failed { headline, remedy, suspects, .. }) = tables_after {
-            let (headline, remedy, suspects) = (headline.clone(), remedy.clone(), suspects.clone());
-            return Err(End::Failed { check: "frames", headline, remedy, suspects });
+        if let Some(End::Failed { finding, suspects, .. }) = tables_after {
+            let (finding, suspects) = (finding.clone(), suspects.clone());
+            return Err(End::Failed { check: CheckName::Frames, finding, suspects });
         }
         let suspects = self.diagnose();
-        let wrong = seen.differences();
-        let found = format!("{wrong} of {samples} samples differ, in {differing} of {frames} frames");
-        let (suspicion, remedy) = match suspects.first() {
-            Some(suspect) => (format!("the suspect is {}", suspect.place), suspect.next_step.clone()),
-            None => (
-                "no single defect that is known explains them".to_owned(),
-                "Make a report with --report and look at the difference maps.".to_owned(),
-            ),
+        let finding = Finding::SamplesDiffer {
+            differences: seen.differences(),
+            samples,
+            differing_frames: differing,
+            frames,
+            suspect: suspects.first().map(|suspect| Box::new(suspect.defect.clone())),
         };
-        let headline = format!("{found}; {suspicion}");
-        Err(End::Failed { check: "frames", headline, remedy, suspects })
+        Err(End::Failed { check: CheckName::Frames, finding, suspects })
     }
 
     /// Compares what the board counts with what the host saw. What is compared over any link must agree however poor that
     /// is; the rest only where nothing was lost or late.
-    fn counters(&self, status: &Status) -> Result<String, End> {
+    fn counters(&self, status: &Status) -> Result<Finding, End> {
         let (seen, rows) = (&self.findings.seen, self.findings.rows_counted);
         let expected = u32::try_from(rows).unwrap_or(u32::MAX);
         let generation = seen.frames.last().map_or(0, |frame| frame.generation.into());
@@ -100,32 +104,27 @@ impl Run<'_> {
         let is_calm = tally.retries + tally.strays + tally.damaged_in + u64::from(damaged) == 0
             && u64::from(status.packets) == self.board.packets_since_clear();
         let pairs = [
-            ("rows in", status.rows_in, expected, true),
-            ("rows out", status.rows_out, expected, true),
-            ("samples above the depth", status.samples_over, 0, true),
-            ("as the first row that has not arrived", status.next_row_in, next_row, true),
-            ("as the first row that is not acknowledged", status.next_row_out, next_row, true),
-            ("as the tables' generation", status.generation, generation, true),
-            ("rows sent again", status.rows_repeated, 0, is_calm),
-            ("rows that were not needed", status.rows_unneeded, 0, is_calm),
-            ("refusals", status.refusals, 0, is_calm),
-            ("packets of another session", status.foreign_packets, 0, is_calm),
+            (Counter::RowsIn, status.rows_in, expected, true),
+            (Counter::RowsOut, status.rows_out, expected, true),
+            (Counter::SamplesOver, status.samples_over, 0, true),
+            (Counter::NextRowIn, status.next_row_in, next_row, true),
+            (Counter::NextRowOut, status.next_row_out, next_row, true),
+            (Counter::Generation, status.generation, generation, true),
+            (Counter::RowsRepeated, status.rows_repeated, 0, is_calm),
+            (Counter::RowsUnneeded, status.rows_unneeded, 0, is_calm),
+            (Counter::Refusals, status.refusals, 0, is_calm),
+            (Counter::ForeignPackets, status.foreign_packets, 0, is_calm),
         ];
         let wrong = pairs.into_iter().find(|(_, counted, right, compared)| *compared && counted != right);
-        if let Some((what, counted, right, _)) = wrong {
-            return Err(wrong_counters(format!("the board counts {counted} {what}, and it is {right}")));
+        if let Some((counter, counted, right, _)) = wrong {
+            return Err(miscounted(Finding::CounterWrong { counter, counted, right }));
         }
         latencies_counted(status, seen)?;
-        if let Some(sentence) = &seen.wrong_pauses {
-            return Err(wrong_counters(sentence.clone()));
+        if let Some(finding) = &seen.wrong_pauses {
+            return Err(miscounted(finding.clone()));
         }
-        let unseen = match damaged {
-            1.. if tally.retries == 0 => {
-                format!("; it counts {damaged} damaged packets, and nothing had to be sent again")
-            }
-            _ => String::new(),
-        };
-        Ok(format!("{rows} rows in, {rows} rows out{unseen}"))
+        let damaged_unseen = if tally.retries == 0 { damaged } else { 0 };
+        Ok(Finding::CountersRight { rows, damaged_unseen })
     }
 
     fn diagnose(&self) -> Vec<Suspect> {
@@ -143,32 +142,25 @@ impl Run<'_> {
     }
 }
 
-fn latency(seen: &Seen) -> Result<String, End> {
-    let Some(sentence) = &seen.wrong_latency else {
+fn latency(seen: &Seen) -> Result<Finding, End> {
+    let Some(first) = &seen.wrong_latency else {
         let clocks = seen.latency.map_or(0, |latency| latency.claimed);
-        return Ok(format!("every row takes {clocks} pixel clocks, first and last sample"));
+        return Ok(Finding::LatencyRight { clocks });
     };
-    let wrong = seen.latency.map_or(0, |latency| latency.wrong_rows);
-    Err(End::failed(
-        "latency",
-        format!("{wrong} rows have another latency than the board claims: {sentence}"),
-        "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise.",
-    ))
+    let rows = seen.latency.map_or(0, |latency| latency.wrong_rows);
+    Err(End::failed(CheckName::Latency, first.finding(rows)))
 }
 
 fn latencies_counted(status: &Status, seen: &Seen) -> Result<(), End> {
+    let (counted_least, counted_most) = (status.least_latency, status.most_latency);
     match seen.latency {
-        Some(latency) if (status.least_latency, status.most_latency) != (latency.least, latency.most) => {
-            Err(wrong_counters(format!(
-                "the rows name latencies of {} to {} pixel clocks, and the board's counters {} to {}",
-                latency.least, latency.most, status.least_latency, status.most_latency
-            )))
+        Some(LatencyReport { least, most, .. }) if (counted_least, counted_most) != (least, most) => {
+            Err(miscounted(Finding::LatencyMiscounted { least, most, counted_least, counted_most }))
         }
         _ => Ok(()),
     }
 }
 
-fn wrong_counters(what: String) -> End {
-    let remedy = "Check the board's counters and its row player; the samples themselves were right.";
-    End::failed("counters", what, remedy)
+fn miscounted(finding: Finding) -> End {
+    End::failed(CheckName::Counters, finding)
 }

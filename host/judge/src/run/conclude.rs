@@ -2,20 +2,21 @@
 
 use jiff::Timestamp;
 
-use super::findings::{CHECKS, End, Findings};
+use super::findings::{End, Findings};
 use super::judge::{STREET, Seen};
-use super::{Circumstances, Finished, Plan};
+use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::board::Tally;
 use crate::frames::street;
-use crate::report::{Check, LinkReport, Outcome, Report, RunReport, StreetReport, Suspect, TablesReport};
-use crate::target::BoardKind;
-use crate::verdict::{Exit, Verdict};
+use crate::result::{
+    Check, CheckName, Finding, LinkReport, Outcome, Report, RunReport, Schema, StreetReport, Suspect,
+    TablesReport,
+};
+use crate::verdict::Cause;
 
-/// How the run ended, in words.
+/// How the run ended.
 struct Ending {
-    exit: Exit,
-    headline: String,
-    remedy: Option<String>,
+    cause: Cause,
+    finding: Finding,
     suspects: Vec<Suspect>,
 }
 
@@ -23,40 +24,45 @@ pub(super) fn conclude(
     plan: &Plan,
     mut findings: Findings,
     end: Option<End>,
-    circumstances: &Circumstances,
+    options: &RunOptions,
     started: Timestamp,
 ) -> Finished {
     let ending = ending(&mut findings, end);
     skip_the_rest(&mut findings.checks);
     let street = street(plan, &findings.seen);
-    let ended = Timestamp::now();
-    let verdict = ending.exit.verdict().unwrap_or(Verdict::Error);
+    let (evidence, evidence_report) = findings.seen.evidence.finish();
     let report = Report {
-        verdict,
-        exit_code: ending.exit,
+        schema: Schema,
+        verdict: ending.cause.verdict(),
+        cause: ending.cause,
         board: findings.board,
-        headline: ending.headline,
-        remedy: ending.remedy,
+        finding: ending.finding,
         suspects: ending.suspects,
         checks: findings.checks,
         frames: findings.seen.frames,
         latency: findings.seen.latency,
         street,
+        evidence: evidence_report,
         link: link(findings.link, &findings.tally),
         tables: tables(plan),
-        run: RunReport {
-            version: env!("CARGO_PKG_VERSION"),
-            commit: crate::COMMIT,
-            arguments: circumstances.arguments.clone(),
-            seed: plan.seed,
-            started: format!("{started:.0}"),
-            ended: format!("{ended:.0}"),
-            seconds: ended.duration_since(started).as_secs_f64(),
-            host: host_name(),
-            files: circumstances.files.clone(),
-        },
+        run: run(plan, &options.circumstances, started),
     };
-    Finished { report, evidence: findings.seen.evidence }
+    Finished { report, evidence }
+}
+
+fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunReport {
+    let ended = Timestamp::now();
+    RunReport {
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        commit: crate::COMMIT.to_owned(),
+        arguments: circumstances.arguments.clone(),
+        seed: plan.seed,
+        started: format!("{started:.0}"),
+        ended: format!("{ended:.0}"),
+        seconds: ended.duration_since(started).as_secs_f64(),
+        host: host_name(),
+        files: circumstances.files.clone(),
+    }
 }
 
 fn link(known: LinkReport, tally: &Tally) -> LinkReport {
@@ -76,52 +82,37 @@ fn link(known: LinkReport, tally: &Tally) -> LinkReport {
 
 fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
     if let Some(end) = &end {
-        findings.note(end.check());
+        findings.note_end(end);
     }
     match end {
-        None if findings.seen.samples() == 0 => Ending {
-            exit: Exit::NothingJudged,
-            headline: "nothing was judged: no frame came back".to_owned(),
-            remedy: Some("Name at least one frame, or leave --frame out for the built-in ones.".to_owned()),
-            suspects: Vec::new(),
-        },
-        None => Ending { exit: Exit::Pass, headline: pass(findings), remedy: None, suspects: Vec::new() },
-        Some(End::Failed { headline, remedy, suspects, .. }) => {
-            Ending { exit: Exit::Fail, headline, remedy: Some(remedy), suspects }
+        None if findings.seen.samples() == 0 => {
+            Ending { cause: Cause::NothingJudged, finding: Finding::NothingJudged {}, suspects: Vec::new() }
         }
-        Some(End::Error { exit, headline, remedy, .. }) => {
-            let remedy = remedy.or_else(|| findings.tally.line_errors.advice().map(str::to_owned));
-            Ending { exit, headline, remedy, suspects: Vec::new() }
-        }
+        None => Ending { cause: Cause::Equal, finding: pass(findings), suspects: Vec::new() },
+        Some(End::Failed { finding, suspects, .. }) => Ending { cause: Cause::Different, finding, suspects },
+        Some(End::Error { cause, finding, .. }) => Ending { cause, finding, suspects: Vec::new() },
     }
 }
 
-fn pass(findings: &Findings) -> String {
+fn pass(findings: &Findings) -> Finding {
     let seen = &findings.seen;
-    let latency = seen.latency.map_or(0, |latency| latency.claimed);
-    let untested = match findings.board.kind {
-        BoardKind::Hardware => "",
-        BoardKind::Mock => " (mock board: no hardware was tested)",
-        BoardKind::Sim => " (simulated board: no hardware was tested)",
-        BoardKind::Replay => " (recording: no hardware was tested now)",
-    };
-    format!(
-        "{} frames, {} samples, all equal to the reference; every row takes {latency} pixel clocks{untested}",
-        seen.frames.len(),
-        seen.samples()
-    ) + &match findings.link.reconnections.len() {
-        0 => String::new(),
-        times => format!("; the board went away and came back, {times} x"),
+    Finding::AllRight {
+        frames: seen.frames.len(),
+        samples: seen.samples(),
+        latency: seen.latency.map_or(0, |latency| latency.claimed),
+        board: findings.board.kind,
+        reconnections: findings.link.reconnections.len(),
     }
 }
 
 fn skip_the_rest(checks: &mut Vec<Check>) {
-    for name in CHECKS {
+    for name in CheckName::ALL {
         if !checks.iter().any(|check| check.name == name) {
-            checks.push(Check { name, outcome: Outcome::Skipped, detail: "not reached".to_owned() });
+            let finding = Finding::NotReached {};
+            checks.push(Check { name, outcome: Outcome::Skipped, finding, seconds: 0.0 });
         }
     }
-    checks.sort_by_key(|check| CHECKS.iter().position(|&name| name == check.name));
+    checks.sort_by_key(|check| check.name);
 }
 
 /// The built-in street, when it came back whole and was kept.

@@ -1,57 +1,48 @@
 //! What a run has found so far, and why it ended where it did.
 
-use std::time::Duration;
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
 
 use super::judge::Seen;
-use super::{Candidate, Plan};
+use super::{Candidate, Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
-use crate::report::{BoardReport, Check, Identity, LinkReport, Outcome, Suspect};
-use crate::verdict::Exit;
-
-/// Every check, in the order of the run.
-pub(super) const CHECKS: [&str; 9] =
-    ["judge", "identity", "link", "upload", "read-back", "frames", "latency", "tables after", "counters"];
+use crate::result::{
+    BoardReport, Check, CheckName, Finding, Identity, LinkReport, Outcome, Problem, Suspect,
+};
+use crate::verdict::Cause;
 
 /// Why a run ended before its last step, or with a board that is wrong.
 #[derive(Clone, Debug)]
 pub(super) enum End {
     /// The board is wrong.
-    Failed { check: &'static str, headline: String, remedy: String, suspects: Vec<Suspect> },
+    Failed { check: CheckName, finding: Finding, suspects: Vec<Suspect> },
     /// It could not be judged.
-    Error {
-        check: &'static str,
-        exit: Exit,
-        headline: String,
-        remedy: Option<String>,
-        unreachable: bool,
-        outage: bool,
-    },
+    Error { check: CheckName, cause: Cause, finding: Finding, unreachable: bool, outage: bool },
 }
 
 impl End {
     /// The run could not go on since the board could not be driven.
-    pub(super) fn board(check: &'static str, error: &BoardError) -> Self {
+    pub(super) fn board(check: CheckName, error: &BoardError) -> Self {
         let unreachable =
             matches!(error, BoardError::Link { .. } | BoardError::NoAnswer { .. } | BoardError::SessionLost);
-        let (exit, headline, outage) = (error.exit(), chain(error), error.is_outage());
-        Self::Error { check, exit, headline, remedy: None, unreachable, outage }
+        let (cause, finding, outage) = (error.cause(), Problem::of(error).into(), error.is_outage());
+        Self::Error { check, cause, finding, unreachable, outage }
     }
 
-    pub(super) fn error(check: &'static str, exit: Exit, headline: String) -> Self {
-        Self::Error { check, exit, headline, remedy: None, unreachable: false, outage: false }
+    pub(super) fn error(check: CheckName, cause: Cause, finding: impl Into<Finding>) -> Self {
+        Self::Error { check, cause, finding: finding.into(), unreachable: false, outage: false }
     }
 
-    pub(super) fn failed(check: &'static str, headline: String, remedy: &str) -> Self {
-        Self::Failed { check, headline, remedy: remedy.to_owned(), suspects: Vec::new() }
+    pub(super) fn failed(check: CheckName, finding: Finding) -> Self {
+        Self::Failed { check, finding, suspects: Vec::new() }
     }
 
     /// The check that ended the run.
-    pub(super) fn check(&self) -> Check {
-        let (name, outcome, detail) = match self {
-            Self::Failed { check, headline, .. } => (check, Outcome::Failed, headline),
-            Self::Error { check, headline, .. } => (check, Outcome::Error, headline),
-        };
-        Check { name, outcome, detail: detail.clone() }
+    pub(super) fn check(&self) -> (CheckName, Outcome, &Finding) {
+        match self {
+            Self::Failed { check, finding, .. } => (*check, Outcome::Failed, finding),
+            Self::Error { check, finding, .. } => (*check, Outcome::Error, finding),
+        }
     }
 
     pub(super) fn is_unreachable(&self) -> bool {
@@ -62,17 +53,6 @@ impl End {
     pub(super) fn is_outage(&self) -> bool {
         matches!(self, Self::Error { outage: true, .. })
     }
-}
-
-/// An error with its causes, in one line.
-pub(crate) fn chain(error: &dyn std::error::Error) -> String {
-    let mut text = error.to_string();
-    let mut cause = error.source();
-    while let Some(error) = cause {
-        text = format!("{text}: {error}");
-        cause = error.source();
-    }
-    text
 }
 
 /// What went over links that broke.
@@ -86,45 +66,73 @@ pub(super) struct Earlier {
 pub(super) struct Findings {
     pub(super) board: BoardReport,
     pub(super) checks: Vec<Check>,
+    /// What every check has taken so far, and since when the next one counts.
+    spent: BTreeMap<CheckName, Duration>,
+    since: Instant,
     pub(super) seen: Seen,
     pub(super) tally: Tally,
     pub(super) link: LinkReport,
     pub(super) earlier: Earlier,
     /// Rows that the board should have counted since it was greeted.
     pub(super) rows_counted: usize,
+    /// Why the board cannot have what the plan uploads.
+    pub(super) misfit: Option<Misfit>,
 }
 
 impl Findings {
-    pub(super) fn new(plan: &Plan, candidate: &Candidate) -> Self {
+    pub(super) fn new(options: &RunOptions, candidate: &Candidate) -> Self {
         let link = LinkReport {
             name: candidate.link.name(),
-            retry_limit: plan.retry_limit.of(0),
+            retry_limit: options.retry_limit.of(0),
             ..LinkReport::default()
         };
         Self {
             board: BoardReport { kind: candidate.kind, target: candidate.target.clone(), identity: None },
             checks: Vec::new(),
+            spent: BTreeMap::new(),
+            since: Instant::now(),
             seen: Seen::default(),
             tally: Tally::default(),
             link,
             earlier: Earlier::default(),
             rows_counted: 0,
+            misfit: None,
         }
     }
 
-    pub(super) fn passed(&mut self, name: &'static str, detail: String) {
-        self.note(Check { name, outcome: Outcome::Passed, detail });
+    pub(super) fn passed(&mut self, name: CheckName, finding: Finding) {
+        self.note(name, Outcome::Passed, finding);
     }
 
-    /// Takes the outcome of a check; of one that is made again the last word stands.
-    pub(super) fn note(&mut self, check: Check) {
-        self.checks.retain(|earlier| earlier.name != check.name);
-        self.checks.push(check);
+    /// Takes the outcome of a check; of one that is made again the last word stands, and the times add up.
+    pub(super) fn note(&mut self, name: CheckName, outcome: Outcome, finding: Finding) {
+        self.lap(name);
+        let seconds = self.spent.get(&name).map_or(0.0, Duration::as_secs_f64);
+        self.checks.retain(|earlier| earlier.name != name);
+        self.checks.push(Check { name, outcome, finding, seconds });
+    }
+
+    /// Counts the time since the last lap to a check.
+    pub(super) fn lap(&mut self, name: CheckName) {
+        let now = Instant::now();
+        *self.spent.entry(name).or_default() += now.duration_since(self.since);
+        self.since = now;
+    }
+
+    /// Leaves out the time since the last lap: it is told elsewhere.
+    pub(super) fn begin_lap(&mut self) {
+        self.since = Instant::now();
+    }
+
+    /// Takes the check that ended the run.
+    pub(super) fn note_end(&mut self, end: &End) {
+        let (name, outcome, finding) = end.check();
+        self.note(name, outcome, finding.clone());
     }
 
     /// What is wrong beside that which ends the run.
     pub(super) fn also_wrong(&mut self, ends: impl Iterator<Item = End>) {
-        ends.for_each(|end| self.note(end.check()));
+        ends.for_each(|end| self.note_end(&end));
     }
 
     /// Takes what the board says of itself.

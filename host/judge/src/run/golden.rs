@@ -1,8 +1,10 @@
 //! The judge is judged first: values from a program outside this project, through the very path that judges boards.
 
-use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet};
+use halfrow_model::{
+    BitDepth, CorrectError, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet,
+};
 
-use crate::compare::Comparison;
+use crate::compare::{Comparison, Difference};
 use crate::reference::correct;
 
 /// A corrected row that another program computed: W = 64, H = 1, B = 12, C = 63.
@@ -42,6 +44,57 @@ const RADIUS: f64 = 1106.697;
 const FRAME_CRCS: [(Interpolant, u32); 2] =
     [(Interpolant::Hermite, 0x3ecf_6d03), (Interpolant::Keys, 0xd55e_261f)];
 
+/// This computer cannot judge.
+#[derive(Debug, thiserror::Error)]
+#[error("this computer cannot judge; rebuild halfrow, and if that does not help, test the computer's memory")]
+pub(crate) struct CannotJudge(#[from] pub GoldenError);
+
+/// A golden value that was missed.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(crate) enum GoldenError {
+    /// What they are compared with cannot be made.
+    #[error("the golden {what} cannot be made")]
+    Unmade {
+        /// What.
+        what: &'static str,
+    },
+    /// The reference refuses the golden frame.
+    #[error(transparent)]
+    Correct(#[from] CorrectError),
+    /// A whole frame comes out otherwise.
+    #[error(
+        "the golden frame's CRC-32 with {interpolant} is {expected:08x}, and this computer finds {found:08x}"
+    )]
+    Frame {
+        /// The kernel.
+        interpolant: Interpolant,
+        /// The golden CRC.
+        expected: u32,
+        /// This computer's.
+        found: u32,
+    },
+    /// A row comes out otherwise.
+    #[error(
+        "the golden {} row has {expected} at column {column}, and this computer finds {found}", interpolant.name()
+    )]
+    Row {
+        /// The kernel.
+        interpolant: Interpolant,
+        /// The first column that differs.
+        column: usize,
+        /// The golden sample.
+        expected: u16,
+        /// This computer's.
+        found: u16,
+    },
+    /// A wrong sample is taken for right.
+    #[error("a single wrong bit in the golden {} row went unseen", interpolant.name())]
+    Unseen {
+        /// The kernel.
+        interpolant: Interpolant,
+    },
+}
+
 /// The sample at `place`, counted row after row, of the frame that the other program corrected.
 fn sample(place: usize) -> u16 {
     ((place as u32).wrapping_mul(2_654_435_761) >> 20) as u16
@@ -56,8 +109,8 @@ fn frame(width: usize, height: usize) -> Option<Frame> {
 /// or what is wrong with this computer or this build.
 ///
 /// # Errors
-/// A sentence that says which golden value was missed.
-pub fn judge_the_judge() -> Result<usize, String> {
+/// [`GoldenError`], which says which golden value was missed.
+pub(crate) fn judge_the_judge() -> Result<usize, GoldenError> {
     let mut samples = 0;
     for golden in &ROWS {
         samples += judge_row(golden)?;
@@ -65,7 +118,7 @@ pub fn judge_the_judge() -> Result<usize, String> {
     let tables = Equidistant::from_radius(RADIUS)
         .ok()
         .and_then(|lens| TableSet::from_lens(Geometry::default(), &lens, None).ok());
-    let (frame, tables) = frame(1920, 1080).zip(tables).ok_or("the golden frame cannot be made")?;
+    let (frame, tables) = frame(1920, 1080).zip(tables).ok_or(GoldenError::Unmade { what: "frame" })?;
     for (interpolant, crc) in FRAME_CRCS {
         samples += judge_frame(&tables, &frame, interpolant, crc)?;
     }
@@ -77,32 +130,27 @@ fn judge_frame(
     frame: &Frame,
     interpolant: Interpolant,
     expected: u32,
-) -> Result<usize, String> {
-    let corrected = correct(tables, &Kernel::from(interpolant), frame).map_err(|error| error.to_string())?;
+) -> Result<usize, GoldenError> {
+    let corrected = correct(tables, &Kernel::from(interpolant), frame)?;
     let bytes: Vec<u8> = corrected.samples().iter().flat_map(|sample| sample.to_le_bytes()).collect();
     match crc32fast::hash(&bytes) {
         crc if crc == expected => Ok(corrected.samples().len()),
-        crc => Err(format!(
-            "the golden frame's CRC-32 with {interpolant} is {expected:08x}, and this computer finds {crc:08x}"
-        )),
+        found => Err(GoldenError::Frame { interpolant, expected, found }),
     }
 }
 
-fn judge_row(golden: &GoldenRow) -> Result<usize, String> {
-    let name = golden.interpolant.name();
+fn judge_row(golden: &GoldenRow) -> Result<usize, GoldenError> {
+    let interpolant = golden.interpolant;
     let found = Geometry::new(64, 1, BitDepth::Twelve, 63)
         .ok()
         .and_then(|geometry| TableSet::new(geometry, vec![STEP]).ok())
         .zip(frame(64, 1))
         .and_then(|(tables, frame)| correct(&tables, &Kernel::from(golden.interpolant), &frame).ok())
-        .ok_or("the golden row cannot be made")?;
+        .ok_or(GoldenError::Unmade { what: "row" })?;
     let mut comparison = Comparison::new(64, 1);
     comparison.row(0, &golden.corrected, found.samples());
-    if let Some(first) = comparison.first {
-        return Err(format!(
-            "the golden {name} row has {} at column {}, and this computer finds {}",
-            first.expected, first.column, first.found
-        ));
+    if let Some(Difference { column, expected, found, .. }) = comparison.first {
+        return Err(GoldenError::Row { interpolant, column, expected, found });
     }
     let mut spoilt = golden.corrected;
     spoilt[40] ^= 1;
@@ -110,7 +158,7 @@ fn judge_row(golden: &GoldenRow) -> Result<usize, String> {
     comparison.row(0, &spoilt, found.samples());
     match comparison.differences {
         1 => Ok(golden.corrected.len()),
-        _ => Err(format!("a single wrong bit in the golden {name} row went unseen")),
+        _ => Err(GoldenError::Unseen { interpolant }),
     }
 }
 
@@ -127,7 +175,8 @@ mod tests {
     fn a_computer_that_computes_otherwise_cannot() {
         let mut corrected = ROWS[0].corrected;
         corrected[5] += 1;
-        let error = judge_row(&GoldenRow { interpolant: Interpolant::Hermite, corrected }).unwrap_err();
+        let error =
+            judge_row(&GoldenRow { interpolant: Interpolant::Hermite, corrected }).unwrap_err().to_string();
         assert!(error.contains("has 2601 at column 5") && error.contains("finds 2600"), "{error}");
     }
 }

@@ -4,27 +4,46 @@ use std::collections::VecDeque;
 use std::iter::Take;
 use std::ops::ControlFlow;
 use std::sync::mpsc;
+use std::time::Instant;
 
 use halfrow_model::Frame;
 
+use super::kept::Kept;
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
 use crate::progress::Progress;
-use crate::report::{Evidence, FrameReport, LatencyReport};
+use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LatencyReport};
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) frames: Vec<FrameReport>,
-    pub(super) evidence: Vec<Evidence>,
+    pub(super) evidence: Kept,
     pub(super) latency: Option<LatencyReport>,
-    /// Sentence about the first row that names other tables than it should.
-    pub(super) wrong_generation: Option<String>,
-    /// Sentence about the first row with a wrong latency.
-    pub(super) wrong_latency: Option<String>,
-    /// Sentence about the first row whose gaps are not those of the seed.
-    pub(super) wrong_pauses: Option<String>,
+    /// The first row that names other tables than it should.
+    pub(super) wrong_generation: Option<Finding>,
+    /// The first row with a wrong latency.
+    pub(super) wrong_latency: Option<WrongLatency>,
+    /// The first row whose gaps are not those of the seed.
+    pub(super) wrong_pauses: Option<Finding>,
+}
+
+/// A row with another latency than the board claims, in pixel clocks.
+pub(super) struct WrongLatency {
+    row: usize,
+    frame: u16,
+    first: u32,
+    last: u32,
+    claimed: u32,
+}
+
+impl WrongLatency {
+    /// It as the first of so many `rows`.
+    pub(super) fn finding(&self, rows: usize) -> Finding {
+        let &Self { row, frame, first, last, claimed } = self;
+        Finding::LatencyWrong { rows, row, frame, first, last, claimed }
+    }
 }
 
 impl Seen {
@@ -37,7 +56,7 @@ impl Seen {
     }
 }
 
-/// Always kept: the report measures its façades.
+/// Kept even if it is equal: the report measures its façades.
 pub(super) const STREET: &str = "builtin:street";
 
 /// How strict, and what to keep.
@@ -45,10 +64,10 @@ pub(super) struct Manner {
     pub(super) claimed_latency: u32,
     pub(super) latency_limit: u32,
     pub(super) fail_fast: bool,
-    /// Frames kept for pictures although they are equal.
-    pub(super) pictures: usize,
-    /// Frames that differ kept for diagnosis.
-    pub(super) differing: usize,
+    /// Keep frames for pictures although they are equal.
+    pub(super) keep_equal: bool,
+    /// Bytes of frames that are kept, at most.
+    pub(super) evidence_bytes: usize,
     /// Board clocks that gaps keep each row of a frame waiting.
     pub(super) pauses: Vec<u16>,
 }
@@ -70,9 +89,11 @@ pub(super) struct Judge<'a> {
     source: Source<'a>,
     seen: &'a mut Seen,
     manner: Manner,
-    timing: String,
+    timing: FrameTiming,
     progress: &'a dyn Progress,
     unprepared: Option<PrepareError>,
+    /// When the last frame had come back.
+    since: Instant,
     in_flight: VecDeque<InFlight>,
     /// Frames in flight that are to be sent once more.
     again: VecDeque<NumberedFrame>,
@@ -87,7 +108,7 @@ impl<'a> Judge<'a> {
         source: Source<'a>,
         seen: &'a mut Seen,
         manner: Manner,
-        timing: String,
+        timing: FrameTiming,
         progress: &'a dyn Progress,
     ) -> Self {
         Self {
@@ -97,6 +118,7 @@ impl<'a> Judge<'a> {
             timing,
             progress,
             unprepared: None,
+            since: Instant::now(),
             in_flight: VecDeque::new(),
             again: VecDeque::new(),
             frames_done: 0,
@@ -144,55 +166,46 @@ impl<'a> Judge<'a> {
         seen.rows += 1;
         if (first, last) != (claimed, claimed) || claimed > limit {
             seen.wrong_rows += 1;
-            self.seen.wrong_latency.get_or_insert_with(|| {
-                format!(
-                    "row {} of frame {} took {first} pixel clocks from first in to first out and {last} from last in \
-                     to last out; the board claims {claimed}",
-                    row.row, row.frame
-                )
-            });
+            let (row, frame) = (row.row, row.frame);
+            self.seen.wrong_latency.get_or_insert(WrongLatency { row, frame, first, last, claimed });
         }
     }
 
     fn check_pauses(&mut self, row: &ReturnedRow<'_>) {
         let expected = self.manner.pauses.get(row.row).copied().unwrap_or_default();
         if row.pauses != expected {
-            self.seen.wrong_pauses.get_or_insert_with(|| {
-                let (row, frame, pauses) = (row.row, row.frame, row.pauses);
-                format!(
-                    "row {row} of frame {frame} was kept waiting by gaps for {pauses} board clocks by the board's count, \
-                     and the gaps of its seed are {expected}"
-                )
-            });
+            let (row, frame, counted) = (row.row, row.frame, row.pauses);
+            self.seen.wrong_pauses.get_or_insert(Finding::GapsMiscounted { row, frame, counted, expected });
         }
     }
 
     fn conclude(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
-        let differs = comparison.differences > 0;
-        let kept = self.seen.evidence.len();
-        let differing =
-            self.seen.evidence.iter().filter(|evidence| evidence.found != evidence.expected).count();
-        let wanted = match differs {
-            true => differing < self.manner.differing,
-            false => kept < self.manner.pictures || name == STREET,
-        };
-        if wanted && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found) {
+        let (differs, height) = (comparison.differences > 0, expected.height());
+        let (is_street, budget) = (name == STREET, self.manner.evidence_bytes);
+        let is_wanted = differs || self.manner.keep_equal || is_street;
+        if is_wanted
+            && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found)
+        {
             let index = self.seen.frames.len();
             let (input, expected) = ((*input).clone(), (*expected).clone());
-            self.seen.evidence.push(Evidence { index, input, found, expected });
+            self.seen.evidence.offer(Evidence { index, input, found, expected }, is_street, budget);
         }
+        let now = Instant::now();
+        let comparison = self.seen.evidence.shorten(comparison, rows >= height, budget);
         self.seen.frames.push(FrameReport {
             name,
             number,
             sha256,
-            phase: input.phase().to_string(),
+            phase: input.phase(),
             generation,
-            timing: self.timing.clone(),
+            timing: self.timing,
             comparison,
             rows,
+            seconds: now.duration_since(self.since).as_secs_f64(),
         });
+        self.since = now;
     }
 }
 
@@ -233,11 +246,12 @@ impl RowTraffic for Judge<'_> {
         let frame = &mut self.in_flight[place];
         frame.returned[row.row] = true;
         if row.generation != frame.prepared.generation {
-            self.seen.wrong_generation.get_or_insert_with(|| {
-                format!(
-                    "row {} of frame {} names the tables of generation {}, and generation {} was committed for it",
-                    row.row, row.frame, row.generation, frame.prepared.generation
-                )
+            let committed = frame.prepared.generation;
+            self.seen.wrong_generation.get_or_insert(Finding::GenerationWrong {
+                row: row.row,
+                frame: row.frame,
+                named: row.generation,
+                committed,
             });
         }
         frame.comparison.row(row.row, frame.prepared.expected.row(row.row), row.samples);
@@ -294,11 +308,12 @@ mod tests {
             claimed_latency: 44,
             latency_limit: 64,
             fail_fast: false,
-            pictures: 0,
-            differing: 0,
+            keep_equal: false,
+            evidence_bytes: 0,
             pauses: vec![0; HEIGHT],
         };
-        let mut judge = Judge::new(source.iter().take(2), &mut seen, manner, String::new(), &Silent);
+        let mut judge =
+            Judge::new(source.iter().take(2), &mut seen, manner, FrameTiming::Gaps { seed: 0 }, &Silent);
         let sent = |judge: &mut Judge<'_>| judge.next_frame().map(|frame| frame.number);
         assert_eq!((sent(&mut judge), sent(&mut judge)), (Some(7), Some(8)));
         [0, 1].into_iter().for_each(|row| give(&mut judge, 7, row, 7));

@@ -1,6 +1,7 @@
 //! What a board may say of itself: `protocol/WIRE.md` section 3 and `fpga/DATAPATH.md`.
 
 use crate::board::Capabilities;
+use crate::result::Finding;
 
 /// What a capability may be.
 struct Rule {
@@ -90,11 +91,9 @@ const RULES: [Rule; 11] = [
 ];
 
 /// Why no board can have these capabilities, if none can.
-pub(super) fn impossible(capabilities: &Capabilities) -> Option<String> {
+pub(super) fn impossible(capabilities: &Capabilities) -> Option<Finding> {
     let broken = RULES.iter().find(|rule| !(rule.holds)(capabilities))?;
     let (Rule { name, legal, .. }, value) = (broken, (broken.value)(capabilities));
-    Some(format!(
-        "the board says {name} = {value}, and {legal}; correct what it says of itself (CAPABILITIES in \
-         protocol/WIRE.md), or load another bitstream"
-    ))
+    let (capability, legal) = ((*name).to_owned(), (*legal).to_owned());
+    Some(Finding::CapabilityImpossible { capability, value, legal })
 }

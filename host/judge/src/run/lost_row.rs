@@ -13,6 +13,8 @@ use super::findings::End;
 use super::plan::ScheduledFrame;
 use super::steps::Run;
 use crate::board::{BoardError, NumberedFrame, Status, Tally, Unjudged, Unreturned};
+use crate::result::{CheckName, Finding};
+use crate::verdict::Cause;
 
 /// How often a frame is played again until nothing else is amiss.
 const REPLAYS: usize = 4;
@@ -35,32 +37,21 @@ impl Run<'_> {
     /// Why the run ends when the row at `place` of `frame` did not come back however often it was asked for.
     pub(super) fn row_lost(&mut self, frame: &ScheduledFrame, place: RowPlace) -> End {
         let RowPlace { frame: number, row: lost, .. } = place;
-        let once = format!("row {lost} of frame {number} did not come back however often it was asked for");
-        let unclear = |why: &str| End::error("frames", crate::verdict::Exit::Error, format!("{once}; {why}"));
+        let unclear = |finding| End::error(CheckName::Frames, Cause::Station, finding);
         for _ in 0..REPLAYS {
             match self.replay(frame) {
-                Err(error) => return End::board("frames", &error),
+                Err(error) => return End::board(CheckName::Frames, &error),
                 Ok(Replay::Swallowed { row }) => {
-                    return End::failed(
-                        "frames",
-                        format!(
-                            "row {lost} of frame {number} went into the board and never came out; played again, with \
-                             nothing else lost or late, row {row} was lost, and the board counts it as taken"
-                        ),
-                        "Check the row banks and the row player: the board took the row and lost it inside.",
-                    );
+                    let swallowed = Finding::RowSwallowed { row: lost, frame: number, again: row };
+                    return End::failed(CheckName::Frames, swallowed);
                 }
                 Ok(Replay::Complete) => {
-                    return unclear(
-                        "played again, the frame came back whole; check cable and connectors, and run again",
-                    );
+                    return unclear(Finding::RowLostOnce { row: lost, frame: number });
                 }
                 Ok(Replay::Troubled) => {}
             }
         }
-        unclear(
-            "played again, other packets were lost or late as well, so it may be the link; check cable, connectors and rate",
-        )
+        unclear(Finding::RowLostAmongOthers { row: lost, frame: number })
     }
 
     fn replay(&mut self, frame: &ScheduledFrame) -> Result<Replay, BoardError> {

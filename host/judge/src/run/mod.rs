@@ -5,36 +5,45 @@
 mod after;
 mod conclude;
 mod findings;
+mod finished;
 mod golden;
 mod judge;
+mod kept;
 mod legal;
 mod lost_row;
+mod misfit;
+mod options;
 mod patterns;
 mod pauses;
 mod plan;
 mod prepared;
 mod reconnect;
+mod recorded;
 mod second_look;
 mod steps;
 mod streaming;
 mod upload;
 
-use crate::board::{OpenOptions, Stop};
-use crate::link::{Candidate, Link};
-use crate::progress::Progress;
-use crate::report::{Evidence, FileHash, Report};
+use tracing::error_span;
 
-pub(crate) use findings::chain;
+use crate::board::OpenOptions;
+use crate::link::{Candidate, Link};
+use crate::progress::{Progress, Step};
+use crate::result::FileHash;
+
 use findings::{End, Findings};
 use reconnect::WayBack;
 use steps::{MAX_LATENCY, Run};
 
-pub use golden::judge_the_judge;
+pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
+pub(crate) use golden::{CannotJudge, GoldenError};
+pub use misfit::{Misfit, misfit};
+pub use options::RunOptions;
 pub use plan::{
-    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, SENSOR_BLANKING, ScheduledFrame, Segment,
-    Timing, TooManyFrames,
+    DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing, TooManyFrames,
 };
-pub use steps::misfit;
+pub(crate) use prepared::PrepareError;
+pub use recorded::{RecordedRun, RestoreError};
 
 /// What the report says of the run beside its findings.
 #[derive(Clone, Debug, Default)]
@@ -67,54 +76,69 @@ impl Draws {
     }
 }
 
-/// A run that is over.
-pub struct Finished {
-    /// What it found.
-    pub report: Report,
-    /// Frames for pictures.
-    pub evidence: Vec<Evidence>,
-}
-
-/// Judges a board by `plan`.
-#[must_use]
+/// Judges the board behind `candidate` by `plan`, and tells `progress` what it does. What is logged meanwhile carries the
+/// target, so that the lines of two runs on two threads can be told apart.
+///
+/// # Errors
+/// [`Misfit`] when the board cannot have what `plan` uploads: there is no verdict then, and nothing to report on. Whatever else
+/// goes wrong stands in the report.
 pub fn verify(
     plan: &Plan,
     candidate: Candidate,
-    circumstances: &Circumstances,
-    stop: &Stop,
+    options: &RunOptions,
     progress: &dyn Progress,
-) -> Finished {
+) -> Result<Finished, Misfit> {
+    let span = error_span!("run", board = %candidate.target);
+    span.in_scope(|| judge(plan, candidate, options, progress))
+}
+
+fn judge(
+    plan: &Plan,
+    candidate: Candidate,
+    options: &RunOptions,
+    progress: &dyn Progress,
+) -> Result<Finished, Misfit> {
+    plan.check_length()?;
     let started = jiff::Timestamp::now();
-    let mut findings = Findings::new(plan, &candidate);
-    let Draws { nonce, host } = circumstances.draws;
-    let options = OpenOptions {
+    let mut findings = Findings::new(options, &candidate);
+    let way_back =
+        WayBack { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
+    let end = run(plan, candidate.link, options, way_back, progress, &mut findings).err();
+    progress.done();
+    match findings.misfit.take() {
+        Some(misfit) => Err(misfit),
+        None => Ok(conclude::conclude(plan, findings, end, options, started)),
+    }
+}
+
+fn open_options(options: &RunOptions) -> OpenOptions {
+    let Draws { nonce, host } = options.circumstances.draws;
+    OpenOptions {
         nonce,
         host,
-        take_over: plan.take_over,
+        take_over: options.take_over,
         polite: false,
-        retry_limit: plan.retry_limit,
-        stop: stop.clone(),
-    };
-    let way_back = WayBack { target: candidate.target, patience: plan.reconnect, options };
-    let end = run(plan, candidate.link, &way_back, progress, &mut findings).err();
-    progress.done();
-    conclude::conclude(plan, findings, end, circumstances, started)
+        retry_limit: options.retry_limit,
+        stop: options.stop.clone().limited(options.timeout),
+    }
 }
 
 fn run(
     plan: &Plan,
     link: Box<dyn Link>,
-    way_back: &WayBack,
+    options: &RunOptions,
+    mut way_back: WayBack,
     progress: &dyn Progress,
     findings: &mut Findings,
 ) -> Result<(), End> {
-    progress.step("judging the judge");
+    progress.step(Step::JudgeTheJudge);
     steps::judge_the_judge(findings)?;
-    progress.step("opening the board");
+    progress.step(Step::OpenTheBoard);
     let mut board = way_back.open(link, findings)?;
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
     let generations = plan.generations(board.capabilities.taps);
-    let end = Run { plan, board: &mut board, generations, way_back, progress, findings }.all_steps();
+    let way_back = &mut way_back;
+    let end = Run { plan, board: &mut board, generations, options, way_back, progress, findings }.all_steps();
     findings.note_link(&board);
     // Whatever happened, the next run must find the board free; a board that is gone need not be asked again.
     let reachable = !matches!(&end, Err(end) if end.is_unreachable());

@@ -2,15 +2,13 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Duration;
 
 use halfrow_model::{Equidistant, Frame, FrameError, Interpolant, Kernel, Phase, STEP_ONE, TableSet};
 
-use crate::board::deadlines::RetryLimit;
 use crate::frames::{Builtin, Scene};
 
 /// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
-pub const SENSOR_BLANKING: u16 = 900;
+pub(crate) const SENSOR_BLANKING: u16 = 900;
 
 /// Tables and kernel under one generation.
 #[derive(Clone, Debug)]
@@ -30,7 +28,7 @@ pub const MOST_FRAMES: usize = (1 << 16) - 4;
 /// A plan of more frames than can be numbered.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{frames} frames are more than the {MOST_FRAMES} that a run can number; name fewer, or lower --repeat"
+    "{frames} frames are more than the {MOST_FRAMES} that a run can number; name fewer, or repeat them less often"
 )]
 pub struct TooManyFrames {
     /// Frames, all repetitions counted.
@@ -73,7 +71,7 @@ pub enum Timing {
     Gaps(u32),
 }
 
-/// What a run will do.
+/// What a run will do. How it is done stands in [`RunOptions`](super::RunOptions).
 #[derive(Clone, Debug)]
 pub struct Plan {
     /// The tables to judge with.
@@ -96,20 +94,8 @@ pub struct Plan {
     pub repeat: u32,
     /// End with the first frame that differs.
     pub fail_fast: bool,
-    /// Refuse anything but hardware.
-    pub require_hardware: bool,
-    /// Take the board from whoever holds it.
-    pub take_over: bool,
     /// The seed of nonces, link test and noise.
     pub seed: u64,
-    /// The longest that the run may take on the link's clock.
-    pub timeout: Option<Duration>,
-    /// The retries that it may have.
-    pub retry_limit: RetryLimit,
-    /// How long a board that goes away may stay away; none if the run ends then.
-    pub reconnect: Option<Duration>,
-    /// Keep every frame for pictures, not only those that differ.
-    pub keep_pictures: bool,
 }
 
 /// Frames that follow each other without the core running empty, and what is set before them.
@@ -140,6 +126,36 @@ pub const DECOY: u8 = 1;
 pub const JUDGED: u8 = 2;
 
 impl Plan {
+    /// To judge with `tables` and `kernel`, once each, the built-in frames as the paper's lens sees them.
+    #[must_use]
+    pub fn new(tables: TableSet, kernel: Kernel) -> Self {
+        Self {
+            tables,
+            kernel,
+            tables_source: "tables of the calling program".to_owned(),
+            rows_outside_circle: None,
+            lens: Equidistant::default(),
+            centre_y: None,
+            phase: Phase::Grbg,
+            frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
+            repeat: 1,
+            fail_fast: false,
+            seed: 1,
+        }
+    }
+
+    /// The same with these frames.
+    #[must_use]
+    pub fn frames(self, frames: impl IntoIterator<Item = FrameSource>) -> Self {
+        Self { frames: frames.into_iter().collect(), ..self }
+    }
+
+    /// The same with built-in frames as `lens` sees them.
+    #[must_use]
+    pub fn seen_through(self, lens: Equidistant) -> Self {
+        Self { lens, ..self }
+    }
+
     /// Whether all frames can be numbered.
     ///
     /// # Errors

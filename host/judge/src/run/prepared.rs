@@ -9,7 +9,7 @@ use halfrow_model::{CorrectError, Frame, FrameError};
 use super::plan::{Generation, Plan, ScheduledFrame, Segment};
 use crate::board::NumberedFrame;
 use crate::reference::correct;
-use crate::report::sha256;
+use crate::result::sha256;
 
 /// A frame that is ready to be sent, with what must come back.
 pub(super) struct Prepared {
@@ -24,7 +24,7 @@ pub(super) struct Prepared {
 
 /// A frame that could not be made ready.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum PrepareError {
+pub(crate) enum PrepareError {
     #[error("the frame {name} cannot be made; leave it out")]
     Render { name: String, source: FrameError },
     #[error("the reference cannot correct the frame {name}; use a frame of the tables' size and depth")]
@@ -40,7 +40,9 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
     generations: Vec<Generation>,
 ) -> Receiver<Result<Prepared, PrepareError>> {
     let (sender, receiver) = sync_channel(1);
+    let span = tracing::Span::current();
     scope.spawn(move || {
+        let _entered = span.entered();
         let mut frames = schedule.iter().flat_map(|segment| &segment.frames);
         // Behind a frame that cannot be made no other is sent.
         let _ = frames.try_for_each(|frame| {

@@ -7,10 +7,10 @@ use super::findings::{End, Findings};
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{Board, BoardError, NumberedFrame, OpenOptions, Unjudged};
-use crate::link::{self, Link};
-use crate::report::Reconnection;
-use crate::target::Target;
-use crate::verdict::Exit;
+use crate::link::{Link, Reopener};
+use crate::progress::Step;
+use crate::result::{CheckName, Finding, Problem, Reconnection};
+use crate::verdict::Cause;
 
 /// More often than this it is a loose contact, and waiting does not mend it.
 const MOST: usize = 16;
@@ -19,7 +19,8 @@ const TICK: Duration = Duration::from_millis(100);
 
 /// How a board is opened, for the first time and again.
 pub(super) struct WayBack {
-    pub(super) target: String,
+    /// Opens the link again; none if it cannot be.
+    pub(super) reopen: Option<Reopener>,
     /// How long a board may stay away; none if the run ends when it goes.
     pub(super) patience: Option<Duration>,
     pub(super) options: OpenOptions,
@@ -27,14 +28,14 @@ pub(super) struct WayBack {
 
 impl WayBack {
     /// Opens the board behind `link`, or behind the next one if that breaks.
-    pub(super) fn open(&self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
+    pub(super) fn open(&mut self, link: Box<dyn Link>, findings: &mut Findings) -> Result<Board, End> {
         let (error, tally) = match Board::open(link, &self.options) {
             Ok(board) => return Ok(board),
             Err(failed) => failed,
         };
         findings.tally = *tally;
-        let end = End::board("identity", &error);
-        match (&error, self.patience) {
+        let end = End::board(CheckName::Identity, &error);
+        match (&error, self.patience()) {
             (BoardError::Link { .. }, Some(patience)) if end.is_outage() => {
                 self.open_again(patience, &end, findings)
             }
@@ -43,32 +44,44 @@ impl WayBack {
     }
 
     /// Waits for the board, which was lost with `end`, and opens it.
-    fn open_again(&self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
-        let End::Error { check, exit, headline, .. } = end else { return Err(end.clone()) };
-        tracing::warn!("{headline}; waiting {} s for the board to come back", patience.as_secs_f64());
+    fn open_again(&mut self, patience: Duration, end: &End, findings: &mut Findings) -> Result<Board, End> {
+        let End::Error { check, cause, finding, .. } = end else { return Err(end.clone()) };
+        let reason = finding.as_problem();
+        tracing::warn!(
+            "{}; waiting {} s for the board to come back",
+            reason.sentence(),
+            patience.as_secs_f64()
+        );
         let left = Instant::now();
         loop {
             let spent = findings.earlier.seconds + left.elapsed();
-            self.options.stop.check(spent).map_err(|error| End::board(check, &error))?;
+            self.options.stop.check(spent).map_err(|error| End::board(*check, &error))?;
             if let Some(board) = self.try_open(spent, findings.link.reconnections.len()) {
                 let away = left.elapsed();
                 findings.earlier.seconds += away;
-                let (reason, seconds_away) = (headline.clone(), away.as_secs_f64());
-                findings.link.reconnections.push(Reconnection { reason, seconds_away });
+                findings.link.reconnections.push(Reconnection { reason, seconds_away: away.as_secs_f64() });
                 return Ok(board);
             }
             if left.elapsed() > patience {
-                let waited =
-                    format!("{headline}; the board did not come back in {} s", patience.as_secs_f64());
-                return Err(End::error(check, *exit, waited));
+                let seconds = patience.as_secs_f64();
+                return Err(End::error(
+                    *check,
+                    *cause,
+                    Finding::BoardStayedAway { reason: Box::new(reason), seconds },
+                ));
             }
             std::thread::sleep(TICK);
         }
     }
 
-    fn try_open(&self, spent: Duration, times: usize) -> Option<Board> {
-        let candidate = self.target.parse().ok().map(|target: Target| link::open(&target))?;
-        let link = candidate.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?.link;
+    /// How long a board may stay away that can be opened again.
+    fn patience(&self) -> Option<Duration> {
+        self.patience.filter(|_| self.reopen.is_some())
+    }
+
+    fn try_open(&mut self, spent: Duration, times: usize) -> Option<Board> {
+        let link = self.reopen.as_mut()?();
+        let link = link.inspect_err(|error| tracing::debug!("not there yet: {error}")).ok()?;
         // A board that never lost power must not take this for the greeting that it has answered.
         let nonce = self.options.nonce.wrapping_add(1 + times as u32);
         let options = OpenOptions { nonce, stop: self.options.stop.after(spent), ..self.options.clone() };
@@ -100,10 +113,10 @@ impl Run<'_> {
 
     fn come_back(&mut self, end: End) -> Result<(), End> {
         let again = self.findings.link.reconnections.len() < MOST;
-        let Some(patience) = self.way_back.patience.filter(|_| end.is_outage() && again) else {
+        let Some(patience) = self.way_back.patience().filter(|_| end.is_outage() && again) else {
             return Err(end);
         };
-        self.progress.step("waiting for the board to come back");
+        self.progress.step(Step::WaitForTheBoard);
         self.findings.keep_counts(self.board);
         // What is left of the old link would keep the new one from being opened.
         self.board.hang_up();
@@ -115,14 +128,13 @@ impl Run<'_> {
         if is_same {
             return Ok(());
         }
-        let headline = "another board, or another bitstream, came back than went away; run again".to_owned();
-        Err(End::error("identity", Exit::Refused, headline))
+        Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}))
     }
 
     /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
     /// behind a greeting.
     fn restore(&mut self, segment: &Segment, at: usize) -> Result<(), End> {
-        self.board.start_afresh().map_err(|error| End::board("link", &error))?;
+        self.board.start_afresh().map_err(|error| End::board(CheckName::Link, &error))?;
         self.configure(segment)?;
         let next = segment.frames.get(at);
         let Some(frame) = next.or(segment.frames.last()) else { return Ok(()) };
@@ -131,11 +143,12 @@ impl Run<'_> {
         if next.is_none() || later.is_some() {
             // Tables become the active ones when a frame enters.
             let rendered = self.plan.render(frame);
-            let rendered = rendered.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+            let rendered = rendered
+                .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
             self.findings.rows_counted += rendered.height();
             let played = NumberedFrame { number: frame.number, frame: rendered };
             let played = self.board.stream(&mut Unjudged(iter::once(played)));
-            played.map_err(|error| End::board("frames", &error))?;
+            played.map_err(|error| End::board(CheckName::Frames, &error))?;
         }
         later.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame))
     }

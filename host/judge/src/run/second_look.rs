@@ -7,7 +7,9 @@ use super::findings::End;
 use super::judge::Seen;
 use super::steps::Run;
 use crate::board::OpenOptions;
-use crate::verdict::Exit;
+use crate::progress::Step;
+use crate::result::{CheckName, Doubt, Finding};
+use crate::verdict::Cause;
 
 /// How often it is all done again until no request comes to the board twice.
 const LOOKS: u32 = 3;
@@ -20,47 +22,43 @@ impl Run<'_> {
         let mut failed = failed;
         for look in 1..=LOOKS {
             let Some(doubt) = self.doubt(&failed) else { return Err(failed) };
-            tracing::warn!("{}; looking again, since {doubt}", failed.check().detail);
-            self.progress.step("looking again, in a session of its own");
+            let (_, _, found) = failed.check();
+            tracing::warn!("{}; looking again, since {}", found.sentence(), doubt.sentence());
+            self.progress.step(Step::LookAgain);
             let nonce = self.way_back.options.nonce.wrapping_add(NONCE + look);
             let options = OpenOptions { nonce, ..self.way_back.options.clone() };
-            self.board.greet_again(&options).map_err(|error| End::board("link", &error))?;
+            self.board.greet_again(&options).map_err(|error| End::board(CheckName::Link, &error))?;
             (self.findings.seen, self.findings.rows_counted) = (Seen::default(), 0);
             match self.all_but_identity() {
                 Err(again @ End::Failed { .. }) => failed = again,
                 Err(error) => return Err(error),
                 Ok(()) => {
-                    return Err(unclear(
-                        &failed,
-                        &format!(
-                            "that may have come from the link, since {doubt}: done again in a session of its own, everything was right"
-                        ),
-                    ));
+                    let (check, _, found) = failed.check();
+                    let finding = Finding::RightInAnotherSession { found: Box::new(found.clone()), doubt };
+                    return Err(End::error(check, Cause::Station, finding));
                 }
             }
         }
         match self.doubt(&failed) {
             None => Err(failed),
-            Some(doubt) => Err(unclear(&failed, &format!("and {doubt}, so that it may come from the link"))),
+            Some(doubt) => {
+                let (check, _, found) = failed.check();
+                let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found.clone()), doubt };
+                Err(End::error(check, Cause::Station, finding))
+            }
         }
     }
 
     /// Why the board may not be as the host made it in this session, although it is sound.
-    fn doubt(&mut self, failed: &End) -> Option<String> {
+    fn doubt(&mut self, failed: &End) -> Option<Doubt> {
         let repeated = self.board.repeated_changes();
         if repeated > 0 {
-            return Some(format!("{repeated} requests that change the board may have come to it twice"));
+            return Some(Doubt::RequestsTwice { requests: repeated });
         }
         let status = self.board.status(false).ok()?;
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
-        let counters_alone = failed.check().name == "counters";
+        let counters_alone = failed.check().0 == CheckName::Counters;
         let is_doubtful = counted > sent || counters_alone && counted != sent;
-        is_doubtful.then(|| format!("the board counts {counted} packets, and {sent} were sent to it"))
+        is_doubtful.then_some(Doubt::PacketsMiscounted { counted, sent })
     }
-}
-
-fn unclear(failed: &End, why: &str) -> End {
-    let check = failed.check();
-    let headline = format!("{}; {why}; check the link, and run again", check.detail);
-    End::error(check.name, Exit::Error, headline)
 }

@@ -3,22 +3,22 @@
 use std::sync::mpsc::Receiver;
 use std::thread;
 
-use halfrow_model::{Kernel, TableSet, Taps};
-use halfrow_protocol::message::BoardNature;
-
 use super::findings::{End, Findings};
-use super::golden;
+use super::golden::{self, CannotJudge};
 use super::legal::impossible;
+use super::misfit::misfit;
+use super::options::RunOptions;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
-use crate::board::{Board, Capabilities};
-use crate::progress::Progress;
+use crate::board::Board;
+use crate::progress::{Progress, Step};
 use crate::reference;
+use crate::result::{CheckName, Finding, Problem};
 use crate::tables::DATAPATH;
 use crate::target::BoardKind;
-use crate::verdict::Exit;
+use crate::verdict::Cause;
 
 /// The largest L that a board may have.
 pub(super) const MAX_LATENCY: u8 = 32;
@@ -28,7 +28,8 @@ pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
     pub(super) board: &'a mut Board,
     pub(super) generations: Vec<Generation>,
-    pub(super) way_back: &'a WayBack,
+    pub(super) options: &'a RunOptions,
+    pub(super) way_back: &'a mut WayBack,
     pub(super) progress: &'a dyn Progress,
     pub(super) findings: &'a mut Findings,
 }
@@ -36,17 +37,11 @@ pub(super) struct Run<'a> {
 pub(super) fn judge_the_judge(findings: &mut Findings) -> Result<(), End> {
     match golden::judge_the_judge() {
         Ok(samples) => {
-            let detail = format!("this computer finds all {samples} golden samples ({})", reference::path());
-            findings.passed("judge", detail);
+            let path = reference::path().to_string();
+            findings.passed(CheckName::Judge, Finding::GoldenSamplesFound { samples, path });
             Ok(())
         }
-        Err(what) => {
-            let headline = format!(
-                "this computer cannot judge: {what}; rebuild halfrow, and if that does not help, test the \
-                 computer's memory"
-            );
-            Err(End::error("judge", Exit::Error, headline))
-        }
+        Err(what) => Err(End::error(CheckName::Judge, Cause::Station, Problem::of(&CannotJudge(what)))),
     }
 }
 
@@ -67,7 +62,7 @@ impl Run<'_> {
         let (plan, generations) = (self.plan, self.generations.clone());
         thread::scope(|scope| {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
-            self.progress.step("testing the link");
+            self.progress.step(Step::TestTheLink);
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.conclude(last)
@@ -106,40 +101,32 @@ impl Run<'_> {
     }
 
     fn identity(&mut self) -> Result<(), End> {
-        let error = |exit, what| Err(End::error("identity", exit, what));
+        let error = |cause, finding: Finding| Err(End::error(CheckName::Identity, cause, finding));
         let datapath = self.board.capabilities.datapath;
         if datapath != DATAPATH {
-            return error(
-                Exit::Refused,
-                format!(
-                    "the board computes datapath {datapath}, and this program judges datapath {DATAPATH}; load a \
-                     bitstream of datapath {DATAPATH}, or install a halfrow that knows {datapath}"
-                ),
-            );
+            return error(Cause::Refused, Finding::DatapathUnknown { datapath, known: DATAPATH });
         }
         if let Some(impossible) = impossible(&self.board.capabilities) {
-            return error(Exit::Refused, impossible);
+            return error(Cause::Refused, impossible);
         }
-        if self.plan.require_hardware && self.findings.board.kind != BoardKind::Hardware {
+        if self.options.require_hardware && self.findings.board.kind != BoardKind::Hardware {
             return error(
-                Exit::NothingJudged,
-                "hardware is required and this is none, so nothing was judged; name a real board with --board"
-                    .to_owned(),
+                Cause::NothingJudged,
+                Finding::HardwareRequired { board: self.findings.board.kind },
             );
         }
         if let Some(misfit) = misfit(&self.plan.tables, &self.plan.kernel, &self.board.capabilities) {
-            return error(Exit::Usage, misfit);
+            let end = error(Cause::Refused, Problem::of(&misfit).into());
+            self.findings.misfit = Some(misfit);
+            return end;
         }
-        let detail = format!(
-            "{}, wire {}, datapath {DATAPATH}",
-            self.board.capabilities.name, self.board.welcome.version
-        );
-        self.findings.passed("identity", detail);
+        let (name, wire) = (self.board.capabilities.name.clone(), self.board.welcome.version);
+        self.findings.passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath });
         Ok(())
     }
 
     fn link(&mut self) -> Result<(), End> {
-        let board_error = |error| End::board("link", &error);
+        let board_error = |error| End::board(CheckName::Link, &error);
         let (_, round_trip) = self.board.echo(&[]).map_err(board_error)?;
         self.findings.link.round_trip_us = Some(round_trip.as_micros() as u64);
         let patterns = patterns(self.plan.seed);
@@ -147,48 +134,11 @@ impl Run<'_> {
         for pattern in &patterns {
             let (same, _) = self.board.echo(pattern).map_err(board_error)?;
             if !same {
-                return Err(End::failed(
-                    "link",
-                    "the board returns other bytes than it was sent, under a CRC that it computed itself"
-                        .to_owned(),
-                    "Check the board's packet buffers: the link carried what the board sent.",
-                ));
+                return Err(End::failed(CheckName::Link, Finding::EchoWrong {}));
             }
         }
         self.board.start_afresh().map_err(board_error)?;
-        let detail = format!("{bytes} bytes in {} echoes came back as they went", patterns.len());
-        self.findings.passed("link", detail);
+        self.findings.passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });
         Ok(())
     }
-}
-
-/// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
-#[must_use]
-pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<String> {
-    let geometry = tables.geometry();
-    let (width, height) = (usize::from(capabilities.max_width), usize::from(capabilities.max_height));
-    if geometry.width() > width || geometry.height() > height {
-        let (columns, rows) = (geometry.width(), geometry.height());
-        let mut remedy = "use smaller frames and tables".to_owned();
-        if capabilities.nature == BoardNature::Mock {
-            remedy = format!("{remedy}, or a mock that takes these: --board mock,max-width={columns}");
-            if rows > height {
-                remedy = format!("{remedy},max-height={rows}");
-            }
-        }
-        return Some(format!(
-            "frames of {columns} x {rows} do not fit the board, which takes {width} x {height} at most; {remedy}"
-        ));
-    }
-    let bits = geometry.depth().bits();
-    if !capabilities.sample_depths().has(bits as u8) {
-        return Some(format!("the board has no {bits}-bit samples; use tables of another depth"));
-    }
-    if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
-        return Some(
-            "the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite"
-                .to_owned(),
-        );
-    }
-    tables.check_ring(usize::from(capabilities.ring)).err().map(|error| error.to_string())
 }

@@ -2,6 +2,8 @@
 
 use std::sync::mpsc::Receiver;
 
+use halfrow_protocol::message::RowPlace;
+
 use super::findings::End;
 use super::judge::{Judge, Manner};
 use super::pauses::pauses;
@@ -9,10 +11,8 @@ use super::plan::{SENSOR_BLANKING, Segment, Timing};
 use super::prepared::{PrepareError, Prepared};
 use super::steps::{MAX_LATENCY, Run};
 use crate::board::{BoardError, Misconduct};
-use crate::verdict::Exit;
-
-/// Frames that differ kept for diagnosis, and frames kept for pictures, at most.
-const KEPT: usize = 16;
+use crate::result::{CheckName, Finding, FrameTiming, Problem};
+use crate::verdict::Cause;
 
 impl Run<'_> {
     /// Streams a segment, whose frames are the next ones of `source`, and judges what comes back.
@@ -30,9 +30,10 @@ impl Run<'_> {
         let prepared = judge.finish();
         self.findings.seen = seen;
         streamed?;
-        prepared.map_err(|error| End::error("frames", Exit::Error, error.to_string()))?;
+        self.findings.begin_lap();
+        prepared.map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
         if self.plan.fail_fast && self.findings.seen.differences() > 0 {
-            self.board.drop_rows().map_err(|error| End::board("frames", &error))?;
+            self.board.drop_rows().map_err(|error| End::board(CheckName::Frames, &error))?;
         }
         Ok(())
     }
@@ -58,17 +59,17 @@ impl Run<'_> {
             claimed_latency: half + u32::from(self.board.capabilities.latency),
             latency_limit: half + u32::from(MAX_LATENCY),
             fail_fast: self.plan.fail_fast,
-            pictures: if self.plan.keep_pictures { KEPT } else { 0 },
-            differing: KEPT,
+            keep_equal: self.options.keep_equal,
+            evidence_bytes: self.options.evidence_bytes,
             pauses: pauses(gap_seed, geometry.width(), geometry.height()),
         }
     }
 
-    fn timing(&self, timing: Timing) -> String {
+    fn timing(&self, timing: Timing) -> FrameTiming {
         match timing {
-            Timing::Least => format!("least blanking ({} clocks)", self.board.capabilities.least_blanking),
-            Timing::Sensor => format!("{SENSOR_BLANKING} clocks of blanking"),
-            Timing::Gaps(seed) => format!("gaps, seed {seed}"),
+            Timing::Least => FrameTiming::LeastBlanking { clocks: self.board.capabilities.least_blanking },
+            Timing::Sensor => FrameTiming::Blanking { clocks: SENSOR_BLANKING },
+            Timing::Gaps(seed) => FrameTiming::Gaps { seed },
         }
     }
 
@@ -80,31 +81,33 @@ impl Run<'_> {
         match error {
             BoardError::RowMissing { place, .. } => {
                 let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
-                frame.map_or_else(|| End::board("frames", &error), |frame| self.row_lost(frame, place))
+                let of_board = || End::board(CheckName::Frames, &error);
+                frame.map_or_else(of_board, |frame| self.row_lost(frame, place))
             }
-            BoardError::WrongPlace { .. } => {
-                let remedy = "Check how the board keeps a row's place with its samples.";
-                End::failed("frames", error.to_string(), remedy)
+            BoardError::WrongPlace { place } => {
+                let finding = Finding::RowMisplaced { row: place.row, frame: place.frame };
+                End::failed(CheckName::Frames, finding)
             }
-            other => End::board("frames", &other),
+            other => End::board(CheckName::Frames, &other),
         }
     }
 
     /// What the board did with rows that no link can do, if it did.
     pub(super) fn misconduct(&self) -> Option<End> {
         let misconduct = self.board.misconduct()?;
-        let remedy = match misconduct {
-            Misconduct::CopyDiffers { .. } => {
-                "Check what else writes to the output banks while the board waits for the acknowledgement of a row."
+        let finding = match misconduct {
+            Misconduct::CopyDiffers { place } => {
+                Finding::RowCopyDiffers { row: place.row, frame: place.frame }
             }
-            Misconduct::NeverSent { .. } => "Check how the board keeps a row's place with its samples.",
-            Misconduct::NumberedTwice { .. } => {
-                "Check the board's count of ROW_OUT packets, the sequence in their headers."
+            Misconduct::NeverSent { place } => {
+                let RowPlace { row, frame, row_sequence: sequence, .. } = place;
+                Finding::RowNeverSent { row, frame, sequence }
             }
-            Misconduct::OutOfOrder { .. } => {
-                "Check in which order the board plays its input banks and sends its output banks."
+            Misconduct::NumberedTwice { place, number } => {
+                Finding::RowNumberedTwice { row: place.row, frame: place.frame, number }
             }
+            Misconduct::OutOfOrder { place } => Finding::RowOutOfOrder { row: place.row, frame: place.frame },
         };
-        Some(End::failed("frames", misconduct.to_string(), remedy))
+        Some(End::failed(CheckName::Frames, finding))
     }
 }

@@ -5,6 +5,7 @@ use super::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
 use super::steps::Run;
 use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
 use crate::diagnosis;
+use crate::result::{CheckName, Finding, Suspect};
 
 impl Run<'_> {
     /// Sets the board for a segment, its tables included.
@@ -20,7 +21,7 @@ impl Run<'_> {
             Timing::Gaps(gap_seed) => RowTiming { gap_seed, ..RowTiming::default() },
         };
         let configured = self.board.configure(self.plan.tables.geometry(), timing);
-        configured.map_err(|error| End::board("upload", &error))
+        configured.map_err(|error| End::board(CheckName::Upload, &error))
     }
 
     /// Uploads a generation, to be used from `first_frame` on.
@@ -31,20 +32,17 @@ impl Run<'_> {
 
     fn upload(&mut self, generation: &Generation, first_frame: u16) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
-        self.board.upload(tables, kernel).map_err(|error| End::board("upload", &error))?;
+        self.board.upload(tables, kernel).map_err(|error| End::board(CheckName::Upload, &error))?;
         let (rows, nodes) = (tables.steps().len(), kernel.nodes().len());
-        let detail = format!("{rows} row factors and {nodes} kernel nodes, as generation {number}");
-        self.findings.passed("upload", detail);
-        let ports = self.check_read_back("read-back", Bank::Shadow, generation)?;
+        self.findings.passed(CheckName::Upload, Finding::TablesUploaded { rows, nodes, generation: *number });
+        let ports = self.check_read_back(CheckName::ReadBack, Bank::Shadow, generation)?;
         self.board.commit(tables, kernel, first_frame, *number).map_err(|error| match error {
-            BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::TableCrc => End::failed(
-                "read-back",
-                "the tables read back right, and the board finds another CRC when it commits them".to_owned(),
-                "Check the board's CRC unit and whether the tables change on their own.",
-            ),
-            error => End::board("upload", &error),
+            BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::TableCrc => {
+                End::failed(CheckName::ReadBack, Finding::CommitCrcWrong {})
+            }
+            error => End::board(CheckName::Upload, &error),
         })?;
-        self.findings.passed("read-back", format!("{ports} datapath ports read what was uploaded"));
+        self.findings.passed(CheckName::ReadBack, Finding::TablesReadBack { ports });
         Ok(())
     }
 
@@ -52,7 +50,7 @@ impl Run<'_> {
     /// otherwise is read entry by entry, to name the entry.
     pub(super) fn check_read_back(
         &mut self,
-        check: &'static str,
+        check: CheckName,
         bank: Bank,
         generation: &Generation,
     ) -> Result<usize, End> {
@@ -66,7 +64,7 @@ impl Run<'_> {
 
     fn wrong_entries(
         &mut self,
-        check: &'static str,
+        check: CheckName,
         bank: Bank,
         generation: &Generation,
         wrong: &ReadBack,
@@ -81,13 +79,12 @@ impl Run<'_> {
             Err(error) => return End::board(check, &error),
         };
         let suspects = diagnosis::read_back(wrong.port.table, &expected, &found);
-        let (headline, remedy) = match suspects.first() {
-            Some(suspect) => (format!("{}: {}", suspect.place, suspect.evidence), suspect.next_step.clone()),
-            None => (
-                "a table's CRC is wrong although every entry reads back right".to_owned(),
-                "Check the board's CRC unit, and whether the tables change on their own.".to_owned(),
-            ),
+        let finding = match suspects.first().cloned() {
+            Some(Suspect { defect, account, .. }) => {
+                Finding::TableReadsWrong { defect: Box::new(defect), account }
+            }
+            None => Finding::TableCrcWrong {},
         };
-        End::Failed { check, headline, remedy, suspects }
+        End::Failed { check, finding, suspects }
     }
 }

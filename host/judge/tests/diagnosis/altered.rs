@@ -1,6 +1,6 @@
 //! Frames that were altered by hand, for defects that the mock does not make.
 
-use halfrow::report::Suspect;
+use halfrow::result::Suspect;
 use halfrow_model::{Frame, Kernel, TableSet, correct, correct_row, source};
 
 use crate::bench::{Bench, Generation, Seen, WHITE, fault, narrow, off_centre, wide};
@@ -27,10 +27,10 @@ fn by_row(frame: &Frame, row: impl Fn(usize) -> Vec<u16>) -> Vec<u16> {
 }
 
 /// The only suspect, which must explain everything.
-fn certain(suspects: &[Suspect]) -> (&str, &str) {
+fn certain(suspects: &[Suspect]) -> (&str, String) {
     let [only] = suspects else { panic!("{suspects:#?}") };
     assert_eq!(only.explained, 1.0, "{only:#?}");
-    (only.part, &only.place)
+    (only.part(), only.place())
 }
 
 /// The reference's frame with other tables.
@@ -49,7 +49,7 @@ fn generation(frame: usize) -> usize {
 #[test]
 fn a_stuck_line_behind_the_datapath_is_named() {
     let suspects = diagnose(&narrow(), |_, _, expected| expected.samples().iter().map(|s| s | 64).collect());
-    assert_eq!(certain(&suspects), ("output bit", "corrected samples, bit 6, stuck at 1"));
+    assert_eq!(certain(&suspects), ("output bit", "corrected samples, bit 6, stuck at 1".to_owned()));
 }
 
 #[test]
@@ -57,8 +57,8 @@ fn rows_of_the_bank_before_are_named() {
     let suspects = diagnose(&wide(), |_, _, expected| {
         by_row(expected, |row| expected.row(if row % 4 == 2 { row - 1 } else { row }).to_vec())
     });
-    assert_eq!(certain(&suspects), ("row bank", "the row banks"));
-    assert!(suspects[0].evidence.contains("holding the row above"), "{}", suspects[0].evidence);
+    assert_eq!(certain(&suspects), ("row bank", "the row banks".to_owned()));
+    assert!(suspects[0].evidence().contains("holding the row above"), "{}", suspects[0].evidence());
 }
 
 #[test]
@@ -74,7 +74,11 @@ fn rows_that_went_in_at_another_place_are_named() {
         })
     });
     assert_eq!(certain(&suspects).0, "row bank");
-    assert!(suspects[0].evidence.contains("2 below, made with their own factor"), "{}", suspects[0].evidence);
+    assert!(
+        suspects[0].evidence().contains("2 below, made with their own factor"),
+        "{}",
+        suspects[0].evidence()
+    );
 }
 
 /// What enters at the row's end is not known, so the last samples are not held against the suspect.
@@ -87,7 +91,10 @@ fn rows_shifted_along_themselves_are_named() {
             samples
         })
     });
-    assert_eq!(certain(&suspects), ("row shift", "the corrected row's first sample, 2 to the left"));
+    assert_eq!(
+        certain(&suspects),
+        ("row shift", "the corrected row's first sample, 2 to the left".to_owned())
+    );
 }
 
 #[test]
@@ -95,7 +102,7 @@ fn exchanged_columns_are_named() {
     let suspects = diagnose(&narrow(), |_, _, expected| {
         expected.samples().chunks(2).flat_map(|pair| [pair[1], pair[0]]).collect()
     });
-    assert_eq!(certain(&suspects), ("colour", "the pairs of columns"));
+    assert_eq!(certain(&suspects), ("colour", "the pairs of columns".to_owned()));
 }
 
 /// The sum by hand, from the samples around the source (DATAPATH.md, "Output sample"), without its clamp.
@@ -127,9 +134,12 @@ fn a_missing_clamp_is_named_with_its_end() {
             })
         })
     };
-    assert_eq!(certain(&wrapped(|sum| sum < 0)), ("clamp", "the output's clamp, below 0"));
-    assert_eq!(certain(&wrapped(|sum| sum > 0)), ("clamp", "the output's clamp, above the largest sample"));
-    assert_eq!(certain(&wrapped(|_| true)), ("clamp", "the output's clamp, beyond either end"));
+    assert_eq!(certain(&wrapped(|sum| sum < 0)), ("clamp", "the output's clamp, below 0".to_owned()));
+    assert_eq!(
+        certain(&wrapped(|sum| sum > 0)),
+        ("clamp", "the output's clamp, above the largest sample".to_owned())
+    );
+    assert_eq!(certain(&wrapped(|_| true)), ("clamp", "the output's clamp, beyond either end".to_owned()));
 }
 
 #[test]
@@ -137,7 +147,7 @@ fn a_stuck_address_line_of_the_row_table_is_named() {
     let bench = wide();
     let suspects =
         diagnose(&bench, |frame, input, _| remade(&bench, input, |row| row & !4, generation(frame)));
-    assert_eq!(certain(&suspects), ("row table address", "row table, address bit 2, stuck at 0"));
+    assert_eq!(certain(&suspects), ("row table address", "row table, address bit 2, stuck at 0".to_owned()));
 }
 
 #[test]
@@ -145,7 +155,10 @@ fn a_row_counter_that_is_ahead_is_named() {
     let bench = wide();
     let suspects =
         diagnose(&bench, |frame, input, _| remade(&bench, input, |row| (row + 1).min(23), generation(frame)));
-    assert_eq!(certain(&suspects), ("row table address", "the row table's address, one entry ahead"));
+    assert_eq!(
+        certain(&suspects),
+        ("row table address", "the row table's address, one entry ahead".to_owned())
+    );
 }
 
 #[test]
@@ -161,10 +174,10 @@ fn a_factor_of_any_value_is_found() {
         }
         samples
     });
-    assert_eq!(certain(&suspects), ("row factor", "row 4's factor"));
+    assert_eq!(certain(&suspects), ("row factor", "row 4's factor".to_owned()));
     let figures: Vec<u32> =
-        suspects[0].evidence.split(|c: char| !c.is_ascii_digit()).filter_map(|w| w.parse().ok()).collect();
-    assert!(figures[0].abs_diff(wrong) < 4096, "{}", suspects[0].evidence);
+        suspects[0].evidence().split(|c: char| !c.is_ascii_digit()).filter_map(|w| w.parse().ok()).collect();
+    assert!(figures[0].abs_diff(wrong) < 4096, "{}", suspects[0].evidence());
 }
 
 #[test]
@@ -178,8 +191,8 @@ fn a_weight_of_any_value_is_found() {
         }
         correct(tables, &Kernel::from_nodes(nodes).unwrap(), input).unwrap().samples().to_vec()
     });
-    assert_eq!(certain(&suspects), ("kernel word", "kernel node 16, weight g4"));
-    assert!(suspects[0].evidence.starts_with("reading -1234 for 2560"), "{}", suspects[0].evidence);
+    assert_eq!(certain(&suspects), ("kernel word", "kernel node 16, weight g4".to_owned()));
+    assert!(suspects[0].evidence().starts_with("reading -1234 for 2560"), "{}", suspects[0].evidence());
 }
 
 #[test]
@@ -191,9 +204,9 @@ fn a_kernel_that_is_stale_while_the_factors_are_not_is_named() {
     });
     assert_eq!(certain(&suspects).0, "stale tables");
     assert!(
-        suspects[0].evidence.contains("with the kernel of generation 1 instead of 2"),
+        suspects[0].evidence().contains("with the kernel of generation 1 instead of 2"),
         "{}",
-        suspects[0].evidence
+        suspects[0].evidence()
     );
 }
 
@@ -216,7 +229,7 @@ fn two_defects_are_both_named_and_neither_for_certain() {
         }
         samples
     });
-    let mut places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+    let mut places: Vec<_> = suspects.iter().map(Suspect::place).collect();
     places.retain(|place| place.starts_with("row"));
     places.sort_unstable();
     assert_eq!(places, ["row 21's factor, bit 22", "row 3's factor, bit 20"]);
@@ -231,9 +244,9 @@ fn what_nothing_explains_is_described() {
         expected.samples().iter().enumerate().map(brighter).collect()
     });
     let first = &suspects[0];
-    assert_eq!((first.part, first.explained), ("unknown", 0.0));
+    assert_eq!((first.part(), first.explained), ("unknown", 0.0));
     for clause in ["in every row", "all in column 44", "all off by +1", "in 8 of 9 frames"] {
-        assert!(first.evidence.contains(clause), "{}", first.evidence);
+        assert!(first.evidence().contains(clause), "{}", first.evidence());
     }
 }
 
@@ -243,7 +256,7 @@ fn differences_of_which_no_frame_was_kept_are_described() {
     let mut seen = seen(&bench, |_, _, expected| expected.samples().iter().map(|s| s ^ 1).collect());
     seen.evidence.clear();
     let suspects = bench.judge(&seen);
-    assert_eq!((suspects.len(), suspects[0].part), (1, "unknown"));
+    assert_eq!((suspects.len(), suspects[0].part()), (1, "unknown"));
 }
 
 /// A white frame does not tell whether its samples lost a bit before the datapath or behind it.
@@ -253,13 +266,13 @@ fn defects_that_cannot_be_told_apart_are_all_named() {
     let mut seen = bench.play(Some(fault("stuck-data,bit=5,value=0")));
     seen.evidence.retain(|evidence| evidence.index == WHITE);
     let suspects = bench.judge(&seen);
-    let places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+    let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
     assert_eq!(places, ["line memory, data bit 5, stuck at 0", "corrected samples, bit 5, stuck at 0"]);
     assert!(suspects.iter().all(|suspect| suspect.explained == 1.0));
     assert!(
         suspects
             .iter()
-            .all(|suspect| suspect.evidence.ends_with("so does one other defect, so this is not certain"))
+            .all(|suspect| suspect.evidence().ends_with("so does one other defect, so this is not certain"))
     );
 }
 
@@ -268,11 +281,11 @@ fn defects_that_cannot_be_told_apart_are_all_named() {
 fn evidence_of_another_size_is_left_aside() {
     let (narrow, wide) = (narrow(), wide());
     let mut seen = seen(&narrow, |_, _, expected| expected.samples().iter().map(|s| s ^ 1).collect());
-    assert_eq!(wide.judge(&seen)[0].part, "unknown");
+    assert_eq!(wide.judge(&seen)[0].part(), "unknown");
     for evidence in &mut seen.evidence {
         evidence.index += 100;
     }
-    assert_eq!(narrow.judge(&seen)[0].part, "unknown");
+    assert_eq!(narrow.judge(&seen)[0].part(), "unknown");
 }
 
 #[test]
@@ -284,5 +297,5 @@ fn a_narrower_depth_and_a_shifted_centre_are_no_obstacle() {
         nodes[20][2] ^= 1 << 12;
         correct(tables, &Kernel::from_nodes(nodes).unwrap(), input).unwrap().samples().to_vec()
     });
-    assert_eq!(certain(&suspects), ("kernel word", "kernel node 20, weight g4, bit 12"));
+    assert_eq!(certain(&suspects), ("kernel word", "kernel node 20, weight g4, bit 12".to_owned()));
 }

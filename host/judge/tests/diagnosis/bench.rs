@@ -5,7 +5,7 @@ use std::iter;
 
 use halfrow::compare::Comparison;
 use halfrow::diagnosis::{Case, Uploaded, diagnose};
-use halfrow::report::{Evidence, FrameReport, Suspect};
+use halfrow::result::{Evidence, FrameReport, FrameTiming, Suspect};
 use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
 use halfrow_model::{
     BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, STEP_ONE, TableSet, correct,
@@ -201,9 +201,10 @@ impl Seen {
             name: "scene".to_owned(),
             number: self.frames.len() as u16,
             sha256: String::new(),
-            phase: input.phase().to_string(),
+            phase: input.phase(),
             generation,
-            timing: String::new(),
+            timing: FrameTiming::LeastBlanking { clocks: 0 },
+            seconds: 0.0,
             rows: input.height(),
             comparison,
         });
@@ -278,7 +279,7 @@ pub(crate) fn off_centre() -> Bench {
 /// A fault must be explained by the part at `place`, wholly and by nothing else.
 pub(crate) fn assert_named(bench: &Bench, text: &str, place: &str) {
     let suspects = bench.diagnose(fault(text));
-    let places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+    let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
     assert_eq!(places, [place], "{text}: {suspects:#?}");
     assert_eq!(suspects[0].explained, 1.0, "{text}: {suspects:#?}");
 }

@@ -51,7 +51,7 @@ fn an_address_line_is_named_although_the_ring_did_not_begin_with_the_run() {
     for bit in [0, 3, 5, 6, 7] {
         let bench = Bench { rows_before: 1, ..wide() };
         let suspects = bench.diagnose(fault(&format!("stuck-address,bit={bit}")));
-        assert_eq!(suspects[0].place, format!("line memory, address bit {bit}"), "{suspects:#?}");
+        assert_eq!(suspects[0].place(), format!("line memory, address bit {bit}"), "{suspects:#?}");
         assert_eq!((suspects.len(), suspects[0].explained), (1, 1.0), "{suspects:#?}");
     }
 }
@@ -62,5 +62,5 @@ fn an_address_line_is_named_although_later_frames_were_not_kept() {
     let mut seen = bench.play(Some(fault("stuck-address,bit=6")));
     seen.evidence.retain(|evidence| evidence.index % 2 == 0);
     let suspects = bench.judge(&seen);
-    assert_eq!((suspects[0].part, suspects.len()), ("address bit", 1), "{suspects:#?}");
+    assert_eq!((suspects[0].part(), suspects.len()), ("address bit", 1), "{suspects:#?}");
 }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use halfrow::report::Evidence;
+use halfrow::result::{Evidence, Suspect};
 use halfrow_model::{Frame, Interpolant};
 
 use crate::bench::{Bench, Seen, fault, narrow, off_centre, wide};
@@ -62,7 +62,7 @@ fn tally(faults: u64) -> Tally {
         let bench: &Bench = &benches[(seed % 3) as usize];
         let (text, place) = random_fault(&mut Random::new(seed), bench.geometry.height() as u64);
         let suspects = bench.diagnose(fault(&text));
-        let places: Vec<_> = suspects.iter().map(|suspect| suspect.place.as_str()).collect();
+        let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
         let certain = suspects.len() == 1 && suspects[0].explained == 1.0;
         let count = match places.iter().position(|named| *named == place) {
             _ if suspects.is_empty() => &mut tally.invisible,
@@ -119,7 +119,7 @@ fn judge_in_time(bench: &Bench, text: &str, seen: &Seen) {
     let begun = Instant::now();
     let suspects = bench.judge(seen);
     let (seconds, first) = (begun.elapsed().as_secs_f64(), &suspects[0]);
-    println!("{text}: {seconds:.2} s, {}: {}", first.place, first.evidence);
+    println!("{text}: {seconds:.2} s, {}: {}", first.place(), first.evidence());
     assert!(seconds < 2.0, "{text} took {seconds} s");
 }
 

@@ -25,7 +25,7 @@ fn a_bit_of_a_rows_factor_is_named_in_wider_frames() {
 fn the_highest_bit_of_a_rows_factor_is_named_first() {
     for (bench, row) in [(narrow(), 2), (narrow(), 14), (wide(), 5)] {
         let suspects = bench.diagnose(fault(&format!("row-factor,row={row},bit=24")));
-        assert_eq!(suspects[0].place, format!("row {row}'s factor, bit 24"), "{suspects:#?}");
+        assert_eq!(suspects[0].place(), format!("row {row}'s factor, bit 24"), "{suspects:#?}");
     }
 }
 
@@ -61,8 +61,8 @@ fn low_bits_of_a_rows_factor_are_among_the_suspects_or_invisible() {
         assert_eq!(seen.differences() == 0, suspects.is_empty(), "{bit}");
         if let [first, others @ ..] = &suspects[..] {
             assert_eq!(first.explained, 1.0);
-            let unsure = !others.is_empty() && first.evidence.contains("not certain");
-            assert!(first.place == place && others.is_empty() || unsure, "bit {bit}: {suspects:#?}");
+            let unsure = !others.is_empty() && first.evidence().contains("not certain");
+            assert!(first.place() == place && others.is_empty() || unsure, "bit {bit}: {suspects:#?}");
         }
     }
 }

@@ -2,6 +2,7 @@ use std::fs;
 use std::path::Path;
 
 use halfrow::report::{self, ReportError, ReportFolder};
+use halfrow::result::Report;
 use tempfile::TempDir;
 
 use crate::made;
@@ -15,7 +16,7 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
-fn write(path: &Path, overwrite: bool, report: &report::Report) {
+fn write(path: &Path, overwrite: bool, report: &Report) {
     ReportFolder::prepare(path, overwrite).unwrap().commit(report, &[]).unwrap();
 }
 
@@ -35,10 +36,10 @@ fn a_report_is_three_files_and_nothing_is_left_beside_it() {
 }
 
 #[test]
-fn programs_find_verdict_exit_code_and_board_kind_at_the_top() {
+fn programs_find_verdict_cause_and_board_kind_at_the_top() {
     let (report, _) = made::fail();
     let json: serde_json::Value = serde_json::from_str(&report::json(&report).unwrap()).unwrap();
-    assert_eq!((&json["verdict"], &json["exit_code"]), (&"FAIL".into(), &1.into()));
+    assert_eq!((&json["verdict"], &json["cause"]), (&"FAIL".into(), &"different".into()));
     assert_eq!(json["board"]["kind"], "mock");
     assert_eq!(json["frames"][1]["comparison"]["first"]["found"], 209);
 }
@@ -112,7 +113,7 @@ fn an_earlier_report_stays_when_the_new_one_cannot_be_put_in_its_place() {
     // The folder that was to be renamed is gone, as when someone cleans up during the run.
     fs::remove_dir_all(station.path().join(aside)).unwrap();
     assert!(matches!(folder.commit(&made::error(), &[]), Err(ReportError::Write { .. })));
-    assert_eq!(headline(&path), made::pass().headline);
+    assert_eq!(headline(&path), made::pass().headline());
     assert_eq!(names(station.path()), ["today"]);
 }
 
@@ -124,7 +125,7 @@ fn what_came_into_the_way_during_the_run_is_not_replaced() {
     assert!(matches!(ReportFolder::prepare(&path, false), Err(ReportError::Claimed { .. })));
     write(&path, true, &made::pass());
     assert!(matches!(folder.commit(&made::error(), &[]), Err(ReportError::Exists { .. })));
-    assert_eq!(headline(&path), made::pass().headline);
+    assert_eq!(headline(&path), made::pass().headline());
     assert_eq!(names(station.path()), ["today"]);
 }
 

@@ -1,5 +1,6 @@
 use halfrow::compare::Comparison;
-use halfrow::report::{self, Evidence, Report};
+use halfrow::report;
+use halfrow::result::{Evidence, Report};
 
 use crate::made;
 
@@ -60,7 +61,7 @@ fn a_fail_shows_suspects_and_what_to_do() {
     let (report, evidence) = made::fail();
     let page = page(&report, &evidence);
     for words in
-        ["row factor, row 3, bit 4", "Check the table memory's data line 4.", "Read the tables back."]
+        ["row factor, row 3's factor, bit 4", "Check entry 3 of the row table", "Reload the bitstream"]
     {
         assert!(page.contains(words), "{words}");
     }

@@ -1,9 +1,13 @@
+use std::io::Write as _;
+use std::process::{Command, Stdio};
+
 use halfrow::report;
+use halfrow::result::{Problem, Report};
 use quick_junit::{NonSuccessKind, Report as Document, TestCase, TestCaseStatus, TestSuite};
 
 use crate::made;
 
-fn suite(report: &report::Report) -> TestSuite {
+fn suite(report: &Report) -> TestSuite {
     let text = report::junit(report).unwrap();
     let document = Document::deserialize_from_str(&text).unwrap();
     let [suite] = document.test_suites.try_into().unwrap();
@@ -29,7 +33,7 @@ fn a_pass_has_a_case_for_the_verdict_each_check_and_each_frame() {
     let suite = suite(&made::pass());
     assert_eq!(suite.name.as_str(), "halfrow verify");
     assert_eq!((suite.tests, suite.failures, suite.errors, suite.skipped), (5, 0, 0, 0));
-    case(&suite, "halfrow.frame", "builtin:noise (frame 2, grbg, least blanking (0))");
+    case(&suite, "halfrow.frame", "builtin:noise (frame 2, grbg, least blanking (0 clocks))");
 }
 
 #[test]
@@ -44,14 +48,14 @@ fn the_suite_says_which_kind_of_board_it_was() {
     };
     assert_eq!(value("board.kind"), Some("mock"));
     assert_eq!(value("board.target"), Some("mock,fault=flip"));
-    assert_eq!(value("exit_code"), Some("0"));
+    assert_eq!(value("cause"), Some("equal"));
 }
 
 #[test]
 fn a_wrong_frame_is_a_failure_and_what_was_not_reached_is_skipped() {
     let suite = suite(&made::fail().0);
     assert_eq!((suite.failures, suite.errors, suite.skipped), (3, 0, 1));
-    let wrong = "frames/<script>alert(1)</script>&.pgm (frame 2, grbg, least blanking (0))";
+    let wrong = "frames/<script>alert(1)</script>&.pgm (frame 2, grbg, least blanking (0 clocks))";
     let wrong = case(&suite, "halfrow.frame", wrong);
     let TestCaseStatus::NonSuccess { kind, message, description, .. } = &wrong.status else { panic!() };
     assert_eq!(*kind, NonSuccessKind::Failure);
@@ -83,15 +87,61 @@ fn a_frame_that_did_not_come_back_whole_is_no_success() {
     let mut report = made::pass();
     report.frames[0].rows = 1079;
     let suite = suite(&report);
-    let cut = case(&suite, "halfrow.frame", "builtin:street (frame 1, grbg, least blanking (0))");
+    let cut = case(&suite, "halfrow.frame", "builtin:street (frame 1, grbg, least blanking (0 clocks))");
     assert_eq!(kind(cut), Some(NonSuccessKind::Error));
 }
 
 #[test]
 fn characters_that_xml_forbids_are_spelt_out() {
     let mut report = made::error();
-    report.headline = "\u{0}\u{1b}[1m\u{ffff}]]>".to_owned();
+    report.finding = Problem::new("odd", "\u{0}\u{1b}[1m\u{ffff}]]>").into();
     let text = report::junit(&report).unwrap();
     assert!(text.contains("\\u{0}\\u{1b}[1m\\u{ffff}]]&gt;"), "{text}");
     assert!(!text.contains(['\u{0}', '\u{1b}', '\u{ffff}']));
+}
+
+/// Whether xmllint finds a document to be as the schema says, and else what it says.
+fn lint(document: &str) -> Result<(), String> {
+    let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/report_views/junit.xsd");
+    let mut lint = Command::new("xmllint");
+    lint.args(["--noout", "--nonet", "--schema", schema, "-"]).stdin(Stdio::piped()).stderr(Stdio::piped());
+    let mut lint =
+        lint.spawn().unwrap_or_else(|error| panic!("xmllint: {error}; apt-get install libxml2-utils"));
+    lint.stdin.take().unwrap().write_all(document.as_bytes()).unwrap();
+    let output = lint.wait_with_output().unwrap();
+    if output.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&output.stderr).into_owned()) }
+}
+
+#[test]
+fn every_document_is_one_that_jenkins_takes() {
+    for report in [made::pass(), made::fail().0, made::error()] {
+        assert_eq!(lint(&report::junit(&report).unwrap()), Ok(()));
+    }
+}
+
+/// What quick-junit writes by itself, and what Jenkins refuses.
+#[test]
+fn the_schema_refuses_what_jenkins_does() {
+    let document = report::junit(&made::fail().0).unwrap();
+    for (ours, theirs) in [
+        ("<testsuites ", "<testsuites skipped=\"1\" "),
+        ("<testsuites ", "<testsuites timestamp=\"2026-11-21T02:03:04.000+00:00\" "),
+        ("<testcase ", "<testcase timestamp=\"2026-11-21T02:03:04.000+00:00\" "),
+        (" time=\"0.125\"", ""),
+        ("<failure ", "<fault "),
+    ] {
+        assert!(document.contains(ours), "{document}");
+        assert!(lint(&document.replacen(ours, theirs, 1)).is_err(), "{theirs}");
+    }
+}
+
+#[test]
+fn every_case_has_its_time_and_all_of_them_fit_into_the_run() {
+    let mut report = made::pass();
+    report.run.seconds = 2.0;
+    let suite = suite(&report);
+    let times: Vec<_> = suite.test_cases.iter().map(|case| case.time.unwrap().as_secs_f64()).collect();
+    assert_eq!(times, [0.0, 0.125, 0.125, 0.75, 0.75]);
+    assert!(times.iter().sum::<f64>() <= suite.time.unwrap().as_secs_f64());
+    assert!(suite.timestamp.is_some());
 }

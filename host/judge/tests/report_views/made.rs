@@ -2,29 +2,37 @@
 
 use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
-use halfrow::report::{
-    BoardKind, BoardReport, Check, Evidence, FrameReport, Identity, LatencyReport, LinkReport, Outcome,
-    Report, RunReport, StreetReport, Suspect, TablesReport,
+use halfrow::result::{
+    Account, BoardKind, BoardReport, Check, CheckName, Defect, Evidence, EvidenceReport, Finding,
+    FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, Outcome, Problem, Reading, Report,
+    RunReport, Schema, StreetReport, Suspect, TablesReport,
 };
-use halfrow::verdict::{Exit, Verdict};
+use halfrow::verdict::{Cause, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
 
 /// Two equal frames of 1920 × 1080 on the mock board.
 pub(crate) fn pass() -> Report {
     let frames: Vec<_> = [(1, "builtin:street"), (2, "builtin:noise")].map(equal_frame).into();
     Report {
+        schema: Schema,
         verdict: Verdict::Pass,
-        exit_code: Exit::Pass,
+        cause: Cause::Equal,
         board: board(),
-        headline: "2 frames, all equal to the reference".to_owned(),
-        remedy: None,
+        finding: Finding::AllRight {
+            frames: 2,
+            samples: 4_147_200,
+            latency: 972,
+            board: BoardKind::Mock,
+            reconnections: 0,
+        },
         suspects: Vec::new(),
         checks: vec![
-            check("judge", Outcome::Passed, "the golden values agree"),
-            check("frames", Outcome::Passed, "all equal"),
+            check(CheckName::Judge, Outcome::Passed, judged()),
+            check(CheckName::Frames, Outcome::Passed, Finding::FramesEqual { frames: 2, samples: 4_147_200 }),
         ],
         latency: Some(latency(2160)),
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
+        evidence: EvidenceReport::default(),
         link: link(),
         tables: tables(),
         run: run(),
@@ -40,22 +48,25 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
     let mut second = equal_frame((2, "frames/<script>alert(1)</script>&.pgm"));
     second.comparison = Comparison::of_frames(&expected, &found);
     second.rows = 40;
+    let reading = Reading { uploaded: 16_000_000, read: 16_000_016, generation: 2, only: false };
+    let defect = Defect::RowFactorBitWrong { row: 3, bit: 4, reading, above_one: false };
+    let account = Account::Samples { differing: 5, explained: 5, contradicted: 0, others: 0, set_in: false };
+    let finding = Finding::SamplesDiffer {
+        differences: 5,
+        samples: 2_076_160,
+        differing_frames: 1,
+        frames: 2,
+        suspect: Some(Box::new(defect.clone())),
+    };
     let report = Report {
         verdict: Verdict::Fail,
-        exit_code: Exit::Fail,
-        headline: "5 samples of row 3 differ".to_owned(),
-        remedy: Some("Read the tables back.".to_owned()),
-        suspects: vec![Suspect {
-            part: "row factor",
-            place: "row 3, bit 4".to_owned(),
-            evidence: "With that bit the other way round the reference gives the same samples.".to_owned(),
-            next_step: "Check the table memory's data line 4.".to_owned(),
-            explained: 1.0,
-        }],
+        cause: Cause::Different,
+        finding: finding.clone(),
+        suspects: vec![Suspect { defect, account, explained: 1.0 }],
         checks: vec![
-            check("judge", Outcome::Passed, "the golden values agree"),
-            check("frames", Outcome::Failed, "5 samples of row 3 differ"),
-            check("counters", Outcome::Skipped, "not reached"),
+            check(CheckName::Judge, Outcome::Passed, judged()),
+            check(CheckName::Frames, Outcome::Failed, finding),
+            check(CheckName::Counters, Outcome::Skipped, Finding::NotReached {}),
         ],
         frames: vec![equal_frame((1, "builtin:street")), second],
         ..pass()
@@ -67,17 +78,16 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
 pub(crate) fn error() -> Report {
     Report {
         verdict: Verdict::Error,
-        exit_code: Exit::Error,
+        cause: Cause::Station,
         board: BoardReport {
             kind: BoardKind::Hardware,
             target: "serial:/dev/ttyUSB1".to_owned(),
             identity: None,
         },
-        headline: "no answer within 2 s".to_owned(),
-        remedy: Some("Check cable and power.".to_owned()),
+        finding: silent(),
         checks: vec![
-            check("identity", Outcome::Error, "no answer within 2 s"),
-            check("frames", Outcome::Skipped, "not reached"),
+            check(CheckName::Identity, Outcome::Error, silent()),
+            check(CheckName::Frames, Outcome::Skipped, Finding::NotReached {}),
         ],
         frames: Vec::new(),
         latency: None,
@@ -96,8 +106,17 @@ pub(crate) fn sized_frame(width: usize, height: usize, sample: impl Fn(usize, us
     Frame::new(width, BitDepth::Twelve, Phase::Grbg, samples.collect()).unwrap()
 }
 
-pub(crate) fn check(name: &'static str, outcome: Outcome, detail: &str) -> Check {
-    Check { name, outcome, detail: detail.to_owned() }
+fn silent() -> Finding {
+    let problem = Problem::new("no-answer", "no answer within 2 s");
+    Problem { remedy: Some("Check cable and power.".to_owned()), ..problem }.into()
+}
+
+fn judged() -> Finding {
+    Finding::GoldenSamplesFound { samples: 4_147_328, path: "scalar".to_owned() }
+}
+
+fn check(name: CheckName, outcome: Outcome, finding: Finding) -> Check {
+    Check { name, outcome, finding, seconds: 0.125 }
 }
 
 pub(crate) fn equal_frame((number, name): (u16, &str)) -> FrameReport {
@@ -105,11 +124,12 @@ pub(crate) fn equal_frame((number, name): (u16, &str)) -> FrameReport {
         name: name.to_owned(),
         number,
         sha256: "9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".to_owned(),
-        phase: "grbg".to_owned(),
+        phase: Phase::Grbg,
         generation: 2,
-        timing: "least blanking (0)".to_owned(),
+        timing: FrameTiming::LeastBlanking { clocks: 0 },
         comparison: Comparison { samples: 1920 * 1080, ..Comparison::new(1920, 1080) },
         rows: 1080,
+        seconds: 0.75,
     }
 }
 
@@ -173,8 +193,8 @@ fn tables() -> TablesReport {
 
 fn run() -> RunReport {
     RunReport {
-        version: "0.1.0",
-        commit: "252ffed",
+        version: "0.1.0".to_owned(),
+        commit: "252ffed".to_owned(),
         arguments: ["halfrow", "verify", "--frame", "my frames/a.pgm"].map(str::to_owned).into(),
         seed: 7,
         started: "2026-11-21T02:03:04Z".to_owned(),

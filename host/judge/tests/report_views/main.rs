@@ -5,7 +5,7 @@
 
 mod folder;
 mod html;
+mod json;
 mod junit;
 mod made;
 mod pictures;
-mod text;

@@ -16,7 +16,7 @@ pub fn distorted(image: &RgbImage, lens: &Equidistant) -> RgbImage {
 
 /// As [`distorted`], with what `sample` finds in a row of bytes at a place, 0 to its last column.
 #[must_use]
-pub fn distorted_by(
+pub(crate) fn distorted_by(
     image: &RgbImage,
     lens: &Equidistant,
     sample: impl Fn(&[u8], f64) -> [u8; 3],

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use halfrow_model::{CorrectError, FrameError, GeometryError, LensError, TableError};
 
 use halfrow::board::BoardError;
+use halfrow::run::Misfit;
 
 /// An item that could not be made.
 #[derive(Debug, thiserror::Error)]
@@ -14,8 +15,8 @@ pub enum PaperError {
     #[error("the board could not be tried")]
     Board(#[from] BoardError),
     /// The board cannot take the item's frames or kernels; the sentence says why and what to do.
-    #[error("{0}")]
-    Misfit(String),
+    #[error(transparent)]
+    Misfit(#[from] Misfit),
     /// An item that is tried on a board was given none.
     #[error("no board was opened for this item; this is a fault of halfrow, so report it")]
     NoBoard,

@@ -16,7 +16,7 @@ use halfrow::reference;
 
 /// What all photographs share: the lens whose image circle is as wide as the picture, R = W/2 = 384, its axis in the middle.
 #[derive(Clone, Debug)]
-pub struct Experiment {
+pub(crate) struct Experiment {
     geometry: Geometry,
     lens: Equidistant,
     tables: TableSet,
@@ -24,11 +24,11 @@ pub struct Experiment {
 
 /// One photograph, ready to be corrected.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub(crate) struct Trial {
     /// What a sensor would see without distortion.
-    pub reference: Frame,
+    pub(crate) reference: Frame,
     /// What it sees with distortion.
-    pub distorted: Arc<Frame>,
+    pub(crate) distorted: Arc<Frame>,
 }
 
 impl Experiment {
@@ -36,7 +36,7 @@ impl Experiment {
     ///
     /// # Errors
     /// None: its figures are legal.
-    pub fn new() -> Result<Self, PaperError> {
+    pub(crate) fn new() -> Result<Self, PaperError> {
         let geometry = Geometry::centred(WIDTH, HEIGHT, BitDepth::Eight)?;
         let lens = Equidistant::from_radius(WIDTH as f64 / 2.0)?;
         let tables = TableSet::from_lens(geometry, &lens, None)?;
@@ -45,7 +45,7 @@ impl Experiment {
 
     /// The row factors.
     #[must_use]
-    pub fn tables(&self) -> &TableSet {
+    pub(crate) fn tables(&self) -> &TableSet {
         &self.tables
     }
 
@@ -53,7 +53,7 @@ impl Experiment {
     ///
     /// # Errors
     /// [`PaperError::Frame`] when it has an odd width.
-    pub fn trial(&self, photograph: &RgbImage) -> Result<Trial, PaperError> {
+    pub(crate) fn trial(&self, photograph: &RgbImage) -> Result<Trial, PaperError> {
         let reference = mosaic(photograph, Phase::Grbg)?;
         let distorted = mosaic(&distorted(photograph, &self.lens), Phase::Grbg)?;
         Ok(Trial { reference, distorted: Arc::new(distorted) })
@@ -63,7 +63,7 @@ impl Experiment {
     ///
     /// # Errors
     /// [`PaperError::Correct`] when the trial has another size.
-    pub fn by_reals(&self, interpolant: Interpolant, trial: &Trial) -> Result<Frame, PaperError> {
+    pub(crate) fn by_reals(&self, interpolant: Interpolant, trial: &Trial) -> Result<Frame, PaperError> {
         let samples = correct_real(&self.geometry, &self.lens, None, interpolant, &trial.distorted)?;
         Ok(round_to_frame(&samples, &trial.distorted)?)
     }
@@ -72,7 +72,7 @@ impl Experiment {
     ///
     /// # Errors
     /// [`PaperError::Correct`] when the trial has another size.
-    pub fn by_integers(&self, interpolant: Interpolant, trial: &Trial) -> Result<Frame, PaperError> {
+    pub(crate) fn by_integers(&self, interpolant: Interpolant, trial: &Trial) -> Result<Frame, PaperError> {
         Ok(reference::correct(&self.tables, &Kernel::from(interpolant), &trial.distorted)?)
     }
 }
@@ -80,7 +80,7 @@ impl Experiment {
 impl Trial {
     /// The PSNR of corrected samples against the reference, in dB: the whole frame, no border left out.
     #[must_use]
-    pub fn score(&self, corrected: &[u16]) -> f64 {
+    pub(crate) fn score(&self, corrected: &[u16]) -> f64 {
         psnr(self.reference.samples(), corrected)
     }
 }

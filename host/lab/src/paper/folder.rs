@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 use super::exhibit::{Drawing, Exhibit, Picture};
 use super::page;
 use halfrow::frames::preview;
+use halfrow::result::SCHEMA;
 use halfrow_frames::written_aside::{Claim, WriteAsideError, check, write_aside};
 
 /// The page's name.
@@ -78,7 +79,7 @@ impl Folder {
                 self.file(&file_name(picture), &encoded(picture)?)?;
             }
         }
-        self.file(NUMBERS, format!("{}\n", numbers(exhibits)).as_bytes())?;
+        self.file(NUMBERS, format!("{}\n", document(exhibits)).as_bytes())?;
         self.file(PAGE, page::render(exhibits)?.as_bytes())?;
         Ok(self.path.join(PAGE))
     }
@@ -88,7 +89,16 @@ impl Folder {
     }
 }
 
-/// Every number of every exhibit, as the folder's JSON file holds them.
+/// The numbers under the head that all documents of the program have in common.
+fn document(exhibits: &[Exhibit]) -> Value {
+    let mut document = json!({ "schema": SCHEMA, "command": "paper" });
+    if let (Some(head), Value::Object(numbers)) = (document.as_object_mut(), numbers(exhibits)) {
+        head.extend(numbers);
+    }
+    document
+}
+
+/// Every number of every exhibit.
 #[must_use]
 pub fn numbers(exhibits: &[Exhibit]) -> Value {
     let exhibits = exhibits.iter().map(|exhibit| {

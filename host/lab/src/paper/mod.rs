@@ -11,7 +11,7 @@ mod error;
 mod error_map;
 mod exhibit;
 mod expected;
-pub mod experiment;
+mod experiment;
 mod folder;
 mod graticule;
 mod interpolants;
@@ -26,13 +26,14 @@ mod table_1;
 mod tested_board;
 mod views;
 
-pub use distortion::{distorted, distorted_by};
+pub use distortion::distorted;
+pub(crate) use distortion::distorted_by;
 pub use error::PaperError;
 pub use exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
 pub use folder::{Folder, FolderError, numbers};
 pub use item::Item;
 pub use photographs::{PhotographError, read as read_photographs};
-pub use psnr::psnr;
+pub(crate) use psnr::psnr;
 pub use tested_board::TestedBoard;
 pub use views::{View, ray};
 

@@ -2,7 +2,7 @@
 
 /// PSNR = 10 log10(255² / MSE) in dB (Eq. 19), over all samples of two frames of one size; infinite when they are equal.
 #[must_use]
-pub fn psnr(reference: &[u16], found: &[u16]) -> f64 {
+pub(crate) fn psnr(reference: &[u16], found: &[u16]) -> f64 {
     let squared = |(a, b): (&u16, &u16)| u64::from(a.abs_diff(*b)).pow(2);
     let sum: u64 = reference.iter().zip(found).map(squared).sum();
     let mean = sum as f64 / reference.len() as f64;

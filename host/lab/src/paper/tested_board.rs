@@ -22,11 +22,11 @@ pub struct TestedBoard {
 
 /// What came back.
 #[derive(Clone, Debug)]
-pub struct Corrected {
+pub(crate) struct Corrected {
     /// The samples of each frame, row after row, in the order of the inputs. A broken board can exceed the depth.
-    pub samples: Vec<Vec<u16>>,
+    pub(crate) samples: Vec<Vec<u16>>,
     /// The least and the most pixel clocks that a row's first and last sample took.
-    pub latency: RangeInclusive<u16>,
+    pub(crate) latency: RangeInclusive<u16>,
 }
 
 impl TestedBoard {
@@ -48,7 +48,7 @@ impl TestedBoard {
 
     /// L: the pixel clocks beyond half a row that the board says it takes.
     #[must_use]
-    pub fn advertised_latency(&self) -> u16 {
+    pub(crate) fn advertised_latency(&self) -> u16 {
         self.board.capabilities.latency.into()
     }
 
@@ -56,16 +56,15 @@ impl TestedBoard {
     ///
     /// # Errors
     /// [`PaperError::Misfit`] when it does not.
-    pub fn fits(&self, tables: &TableSet, kernel: &Kernel) -> Result<(), PaperError> {
-        misfit(tables, kernel, &self.board.capabilities)
-            .map_or(Ok(()), |misfit| Err(PaperError::Misfit(misfit)))
+    pub(crate) fn fits(&self, tables: &TableSet, kernel: &Kernel) -> Result<(), PaperError> {
+        misfit(tables, kernel, &self.board.capabilities).map_or(Ok(()), |misfit| Err(misfit.into()))
     }
 
     /// Corrects `inputs` with tables and kernel of their own.
     ///
     /// # Errors
     /// [`PaperError::Misfit`] when the board cannot take them, [`PaperError::Board`] when it refuses or does not answer.
-    pub fn correct(
+    pub(crate) fn correct(
         &mut self,
         tables: &TableSet,
         kernel: &Kernel,

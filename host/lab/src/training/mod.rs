@@ -21,8 +21,8 @@ use halfrow_model::{
 };
 
 use halfrow::frames::preview::RgbImage;
+use halfrow::link::Class;
 use halfrow::progress::Progress;
-use halfrow::verdict::Exit;
 
 /// A kernel and how good it is.
 #[derive(Clone, Debug)]
@@ -62,12 +62,12 @@ pub enum TrainingError {
 }
 
 impl TrainingError {
-    /// The exit code of a command that ends with it: photographs are the caller's, and the rest is this program's.
+    /// Whose error it is: photographs are the caller's, and the rest is this program's.
     #[must_use]
-    pub fn exit(&self) -> Exit {
+    pub fn class(&self) -> Class {
         match self {
-            Self::Table(_) | Self::Frame(_) | Self::Correct(_) => Exit::Error,
-            _ => Exit::Usage,
+            Self::Table(_) | Self::Frame(_) | Self::Correct(_) => Class::Station,
+            _ => Class::Call,
         }
     }
 }

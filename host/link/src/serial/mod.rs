@@ -30,7 +30,7 @@ const LONGEST_DRAIN: Duration = Duration::from_millis(200);
 
 /// A pipe to a board behind a serial port.
 #[derive(Debug)]
-pub struct SerialLink {
+pub(crate) struct SerialLink {
     port: TTYPort,
     pump: Pump,
     path: PathBuf,
@@ -43,7 +43,7 @@ impl SerialLink {
     ///
     /// # Errors
     /// [`OpenError`] when there is no such port, or it is another's, or cannot be set as the target says.
-    pub fn open(target: &Target) -> Result<Self, OpenError> {
+    pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let options = SerialOptions::parse(target)?;
         let path = PathBuf::from(
             target
@@ -186,7 +186,7 @@ fn failed(path: &Path, error: io::Error) -> SerialError {
 
 /// What to do about a port that this user may not open.
 #[must_use]
-pub fn how_to_get_access(port: &Path) -> String {
+pub(crate) fn how_to_get_access(port: &Path) -> String {
     const RULES: &str = "install scripts/70-halfrow.rules as the README says";
     let group = fs::metadata(port).ok().filter(|port| port.mode() & 0o060 == 0o060).map(|port| port.gid());
     match group.and_then(|id| nix::unistd::Group::from_gid(id.into()).ok().flatten()) {

@@ -66,7 +66,7 @@ pub(super) struct Found {
 ///
 /// # Errors
 /// [`UsbError::NoUsb`]
-pub fn usb_boards() -> Result<Vec<UsbBoard>, UsbError> {
+pub(crate) fn usb_boards() -> Result<Vec<UsbBoard>, UsbError> {
     Ok(all()?.into_iter().map(|found| found.board).collect())
 }
 

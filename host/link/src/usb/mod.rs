@@ -35,8 +35,9 @@ use crate::target::Target;
 use crate::{LineErrors, OpenError};
 
 pub use error::UsbError;
-pub use find::{UsbBoard, usb_boards};
-pub use transport::{Failure as UsbFailure, Transport};
+pub use find::UsbBoard;
+pub(crate) use find::usb_boards;
+pub use transport::Failure as UsbFailure;
 
 /// What an FPGA with two synchronisers gets through a FIFO that is not synchronous: some 5 MB/s; its data sheet says 8.
 const FIFO_BYTES_PER_SECOND: f64 = 5e6;
@@ -45,7 +46,7 @@ const FIFO_BYTES_PER_SECOND: f64 = 5e6;
 const BITS_PER_BYTE: f64 = 10.0;
 
 /// A pipe through a channel of a chip.
-pub struct UsbLink {
+pub(crate) struct UsbLink {
     pump: Pump,
     name: String,
     bytes_per_second: f64,
@@ -57,7 +58,7 @@ impl UsbLink {
     ///
     /// # Errors
     /// [`OpenError`] when the target is none, or no such chip can be had.
-    pub fn open(target: &Target) -> Result<Self, OpenError> {
+    pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
         let options = UsbOptions::of(target)?;
         let found = choose(target.address.as_deref())?;
         let (chip, name) = (found.chip, found.board.target());

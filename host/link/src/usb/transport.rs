@@ -23,7 +23,7 @@ pub enum Failure {
 }
 
 /// What the bytes go through. Several threads may call it at once.
-pub trait Transport: Send + Sync {
+pub(crate) trait Transport: Send + Sync {
     /// A vendor's request to the device.
     ///
     /// # Errors

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use anyhow::Context as _;
 use halfrow_model::Frame;
 
+use super::super::wrong_call;
 use super::places::Places;
 use super::{Context, Failure, Job};
-use halfrow::board::{Board, BoardError};
+use halfrow::board::Board;
 use halfrow::correction::Correction;
 use halfrow::frames;
 use halfrow::progress::Progress;
@@ -26,20 +27,18 @@ impl Job<'_> {
     ) -> Result<BoardKind, Failure> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
         if candidate.kind == BoardKind::Replay {
-            return Err(
-                anyhow::anyhow!("a recording corrects no new frames; use it with `halfrow verify`").into()
-            );
+            return Err(wrong_call!("a recording corrects no new frames; use it with `halfrow verify`"));
         }
         let options = self.arguments.board.open_options(&context.settings, None)?;
-        let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| failed(error))?;
+        let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
         let corrected = match run::misfit(&self.chosen.tables, &self.chosen.kernel, &board.capabilities) {
             None => self.stream(&mut board, places, progress),
-            Some(misfit) => Err(anyhow::anyhow!(misfit).into()),
+            Some(misfit) => Err(misfit.into()),
         };
         // Whatever happened, the next run must find the board free.
         let closed = board.close();
         corrected?;
-        closed.map_err(failed)?;
+        closed?;
         Ok(candidate.kind.confirmed_by(board.capabilities.nature))
     }
 
@@ -70,8 +69,8 @@ impl Job<'_> {
         let streamed = correction.run(board, inputs, take, progress);
         match (unwritten, unread) {
             (Some(error), _) => Err(error),
-            (None, Some(error)) => Err(error.into()),
-            (None, None) => streamed.map(drop).map_err(failed),
+            (None, Some(error)) => Err(Failure::call(error)),
+            (None, None) => Ok(streamed.map(drop)?),
         }
     }
 
@@ -83,8 +82,4 @@ impl Job<'_> {
         frames::write(&places.frames[index], &frame, self.arguments.overwrite).map_err(Failure::error)?;
         self.write_preview(places, index, &frame).map_err(Failure::error)
     }
-}
-
-fn failed(error: BoardError) -> Failure {
-    Failure { exit: error.exit(), error: error.into() }
 }

@@ -23,7 +23,7 @@ impl Job<'_> {
 
     fn correct_one(&self, places: &Places, index: usize, corrector: &mut Corrector) -> Result<(), Failure> {
         let geometry = self.chosen.tables.geometry();
-        let mut rows = self.inputs[index].rows(&self.how, &self.scene)?;
+        let mut rows = self.inputs[index].rows(&self.how, &self.scene).map_err(Failure::call)?;
         let mut entering = vec![0; geometry.width()];
         let mut steps = self.chosen.tables.steps().iter();
         let mut kept = Vec::new();
@@ -57,5 +57,5 @@ impl Job<'_> {
 
 /// What is wrong with an input is the caller's to mend, unlike an output that cannot be written.
 fn unwritten(error: anyhow::Error) -> Failure {
-    if error.is::<WriteError>() { Failure::error(error) } else { error.into() }
+    if error.is::<WriteError>() { Failure::error(error) } else { Failure::call(error) }
 }

@@ -5,10 +5,11 @@ use std::ops::RangeInclusive;
 use halfrow_model::{STEP_ONE, source};
 
 use super::first_where;
-use super::row_factor::{BITS, FEW_ROWS, cause, with_step};
+use super::row_factor::{BITS, FEW_ROWS, with_step};
 use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
+use crate::result::Defect;
 
 /// Outputs that may be simulated for one row before the search is given up.
 const BUDGET: usize = 1_000_000;
@@ -34,9 +35,8 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
         return None;
     }
     let (&least, &most) = (steps.first()?.start(), steps.last()?.end());
-    let others = if least == most { String::new() } else { format!(" (or another up to {most})") };
-    let defect = format!("reading {least}{others} for {uploaded} in the tables of generation {generation}");
-    Some(Hypothesis::new(cause(row, format!("row {row}'s factor"), defect), move |witness| {
+    let defect = Defect::RowFactorWrong { row, generation, least, most, uploaded };
+    Some(Hypothesis::new(defect, move |witness| {
         let mine = witness.row == row && witness.uploaded.generation == generation;
         mine.then(|| with_step(witness, least))
     }))

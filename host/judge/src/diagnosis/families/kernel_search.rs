@@ -10,6 +10,7 @@ use crate::diagnosis::Uploaded;
 use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
+use crate::result::Defect;
 
 /// Differing rows that must agree, and as many that do not differ.
 const ROWS: usize = 192;
@@ -41,11 +42,11 @@ fn any_value<'a>(
         }
     }
     let (least, most) = (values.start, values.end - 1);
-    let others = if least == most { String::new() } else { format!(" (or another up to {most})") };
     let (generation, old) = (uploaded.generation, word.of(uploaded.kernel)?);
-    let defect = format!("reading {least}{others} for {old} in the tables of generation {generation}");
+    let (node, weight) = (word.node, word.weight());
+    let defect = Defect::KernelWordWrong { node, weight, generation, least, most, uploaded: old };
     let kernel = word.replaced(uploaded.kernel, least as i16)?;
-    Some(super::with_kernels(word.cause("", defect), [(generation, kernel)].into()))
+    Some(super::with_kernels(defect, [(generation, kernel)].into()))
 }
 
 /// Those of the values that give the sample that was found; none if none does. An output moves one way with a weight.

@@ -4,8 +4,9 @@ use halfrow_model::{Kernel, NODES, TAP_NAMES, source};
 
 use super::table_word::{Word, changed, inversions, reading};
 use crate::diagnosis::Uploaded;
-use crate::diagnosis::hypothesis::{Cause, Hypothesis};
+use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
+use crate::result::Defect;
 
 /// Bits of a word.
 const BITS: u32 = 16;
@@ -63,18 +64,9 @@ impl KernelWord {
         Kernel::from_nodes(nodes).ok()
     }
 
-    /// The word as a suspect; `bit` names the bit, if it is one.
-    pub(super) fn cause(self, bit: &str, defect: String) -> Cause {
-        let Self { node, tap } = self;
-        let weight = TAP_NAMES.get(tap).copied().unwrap_or_default();
-        Cause {
-            part: "kernel word",
-            place: format!("kernel node {node}, weight {weight}{bit}"),
-            defect,
-            next_step: format!(
-                "Check node {node} of the kernel as the datapath reads it, and the memory that holds weight {weight}."
-            ),
-        }
+    /// The name of the tap that it weighs.
+    pub(super) fn weight(self) -> String {
+        TAP_NAMES.get(self.tap).copied().unwrap_or_default().to_owned()
     }
 
     /// The word with each of its bits broken.
@@ -85,11 +77,12 @@ impl KernelWord {
         let words: Vec<Word> = generations.iter().filter_map(word).collect();
         let signed = |word: u32| word as u16 as i16;
         let broken = |bit, read: &[Word]| {
-            let defect = reading(&words, read, |word| signed(word).into());
+            let reading = reading(&words, read, |word| signed(word).into());
+            let defect = Defect::KernelWordBitWrong { node: self.node, weight: self.weight(), bit, reading };
             let kernels = super::kernels(generations, |uploaded| {
                 self.replaced(uploaded.kernel, signed(changed(read, uploaded)?))
             });
-            super::with_kernels(self.cause(&format!(", bit {bit}"), defect), kernels)
+            super::with_kernels(defect, kernels)
         };
         let of_bit = |bit| inversions(&words, bit).iter().map(|read| broken(bit, read)).collect::<Vec<_>>();
         (0..BITS).flat_map(of_bit).collect()

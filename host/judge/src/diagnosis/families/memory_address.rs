@@ -7,15 +7,12 @@
 use std::ops::Range;
 
 use crate::diagnosis::datapath::Wiring;
-use crate::diagnosis::hypothesis::{Cause, Hypothesis, Prediction};
+use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
+use crate::result::{Counting, Defect};
 
 /// Columns that the newest sample is ahead of the middle of the row when the first output is read.
 const LOOK_AHEAD: usize = 3;
-
-/// On what conditions other ways of counting explain what was seen.
-const FRAME: &str = " if addresses are counted from each frame's start,";
-const ROW: &str = " if addresses are counted from each row's start,";
 
 /// From where the ring's addresses are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,9 +48,10 @@ pub(super) struct BrokenRing {
 
 /// Every address line, for each way to count addresses that a board may have.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
-    let origins = [(Origin::Run(0), ""), (Origin::Frame, FRAME), (Origin::Row, ROW)];
+    let origins =
+        [(Origin::Run(0), Counting::Run), (Origin::Frame, Counting::Frame), (Origin::Row, Counting::Row)];
     rings(witnesses)
-        .flat_map(|ring| origins.map(|(origin, counted)| hypothesis(ring, origin, counted)))
+        .flat_map(|ring| origins.map(|(origin, counting)| hypothesis(ring, origin, counting)))
         .collect()
 }
 
@@ -64,16 +62,10 @@ pub(super) fn rings(witnesses: &Witnesses<'_>) -> impl Iterator<Item = BrokenRin
     (0..lines).map(move |bit| BrokenRing { size, bit })
 }
 
-/// Line `ring.bit` as a suspect; `counted` says on what condition.
-pub(super) fn hypothesis<'a>(ring: BrokenRing, origin: Origin, counted: &str) -> Hypothesis<'a> {
-    let bit = ring.bit;
-    let cause = Cause {
-        part: "address bit",
-        place: format!("line memory, address bit {bit}"),
-        defect: format!("this line stuck, at either level,{counted}"),
-        next_step: format!("Check address line {bit} of the line memory, and the counters that drive it."),
-    };
-    Hypothesis::new(cause, move |witness| Some(ring.corrected(witness, origin.base(witness))))
+/// Line `ring.bit` as a suspect; `counting` says on what condition.
+pub(super) fn hypothesis<'a>(ring: BrokenRing, origin: Origin, counting: Counting) -> Hypothesis<'a> {
+    let defect = Defect::LineMemoryAddressStuck { bit: ring.bit, counting };
+    Hypothesis::new(defect, move |witness| Some(ring.corrected(witness, origin.base(witness))))
 }
 
 impl BrokenRing {

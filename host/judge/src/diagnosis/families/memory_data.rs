@@ -1,8 +1,9 @@
 //! A data line stuck: of the line memory, or behind the datapath.
 
 use super::StuckLine;
-use crate::diagnosis::hypothesis::{Cause, Hypothesis};
+use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
+use crate::result::Defect;
 
 /// Data lines of the line memory, whatever the depth.
 const LINES: u32 = 12;
@@ -13,27 +14,15 @@ pub(super) fn propose<'a>(_: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 }
 
 fn memory<'a>(line: StuckLine) -> Hypothesis<'a> {
-    let bit = line.bit;
-    let cause = Cause {
-        part: "data bit",
-        place: format!("line memory, data bit {bit}, {}", line.describe()),
-        defect: format!("bit {bit} of every stored sample at {}", u8::from(line.high)),
-        next_step: format!("Check data line {bit} of the line memory, and the samples' way into it."),
-    };
-    Hypothesis::new(cause, move |witness| {
+    let defect = Defect::LineMemoryDataStuck { bit: line.bit, value: line.value() };
+    Hypothesis::new(defect, move |witness| {
         Some(witness.tables().corrected(&carried(line, witness.samples())).into())
     })
 }
 
 fn output<'a>(line: StuckLine) -> Hypothesis<'a> {
-    let bit = line.bit;
-    let cause = Cause {
-        part: "output bit",
-        place: format!("corrected samples, bit {bit}, {}", line.describe()),
-        defect: format!("bit {bit} of every output at {}", u8::from(line.high)),
-        next_step: format!("Check data line {bit} from the datapath's output to the bank of corrected rows."),
-    };
-    Hypothesis::new(cause, move |witness| Some(carried(line, witness.expected).into()))
+    let defect = Defect::OutputDataStuck { bit: line.bit, value: line.value() };
+    Hypothesis::new(defect, move |witness| Some(carried(line, witness.expected).into()))
 }
 
 fn carried(line: StuckLine, samples: &[u16]) -> Vec<u16> {

@@ -21,8 +21,9 @@ use halfrow_model::Kernel;
 
 use super::Uploaded;
 use super::datapath::RowTables;
-use super::hypothesis::{Cause, Hypothesis};
+use super::hypothesis::Hypothesis;
 use super::witnesses::Witnesses;
+use crate::result::Defect;
 
 /// The defects that the pattern of differences leaves possible, those of the smallest parts first.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
@@ -59,8 +60,8 @@ fn kernels(
 }
 
 /// Rows made with these kernels, by generation; other generations are as they should be.
-fn with_kernels<'a>(cause: Cause, kernels: BTreeMap<u8, Kernel>) -> Hypothesis<'a> {
-    Hypothesis::new(cause, move |witness| {
+fn with_kernels<'a>(defect: Defect, kernels: BTreeMap<u8, Kernel>) -> Hypothesis<'a> {
+    Hypothesis::new(defect, move |witness| {
         let kernel = kernels.get(&witness.uploaded.generation)?;
         Some(RowTables { kernel, ..witness.tables() }.corrected(witness.samples()).into())
     })
@@ -96,8 +97,8 @@ impl StuckLine {
         if self.high { word | line } else { word & !line }
     }
 
-    /// "stuck at 1"
-    fn describe(self) -> String {
-        format!("stuck at {}", u8::from(self.high))
+    /// The level that it is stuck at.
+    fn value(self) -> u8 {
+        self.high.into()
     }
 }

@@ -3,18 +3,17 @@
 use super::memory_address::{self, BrokenRing, Origin};
 use crate::diagnosis::hypothesis::{Hypothesis, Score};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
+use crate::result::Counting;
 
 /// The share of a row that the right count must explain.
 const ENOUGH: f64 = 0.95;
-
-const COUNTED: &str = " if the ring's count did not begin with this run,";
 
 /// The address line and the count that explain the row that differs most, when there are such.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let Some(row) = witnesses.differing.iter().max_by_key(|row| row.differences) else { return Vec::new() };
     memory_address::rings(witnesses)
         .filter_map(|ring| {
-            Some(memory_address::hypothesis(ring, Origin::Run(best_count(ring, row)?), COUNTED))
+            Some(memory_address::hypothesis(ring, Origin::Run(best_count(ring, row)?), Counting::Before))
         })
         .collect()
 }

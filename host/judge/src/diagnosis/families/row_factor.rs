@@ -4,8 +4,9 @@ use halfrow_model::STEP_ONE;
 
 use super::table_word::{Word, changed, inversions, reading};
 use crate::diagnosis::datapath::RowTables;
-use crate::diagnosis::hypothesis::{Cause, Hypothesis, Prediction};
+use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
+use crate::result::Defect;
 
 /// More rows than this are not one table entry each.
 pub(super) const FEW_ROWS: usize = 8;
@@ -26,9 +27,8 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
         .collect();
     let bits = (0..BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
     bits.map(|(bit, read)| {
-        let defect = format!("{}{}", reading(&words, &read, i64::from), illegal(&read));
-        let cause = cause(row, format!("row {row}'s factor, bit {bit}"), defect);
-        Hypothesis::new(cause, move |witness| {
+        let (above_one, reading) = (is_illegal(&read), reading(&words, &read, i64::from));
+        Hypothesis::new(Defect::RowFactorBitWrong { row, bit, reading, above_one }, move |witness| {
             let read = changed(&read, &witness.uploaded).filter(|_| witness.row == row);
             read.map(|step| with_step(witness, step))
         })
@@ -37,16 +37,8 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
 }
 
 /// A factor above 1 reads ahead of what the ring holds, where the simulation ends.
-fn illegal(read: &[Word]) -> &'static str {
-    let is_illegal = read.iter().any(|word| word.1 > STEP_ONE);
-    if is_illegal { ", above 1, where only part of the row can be foretold," } else { "" }
-}
-
-/// The entry of `row` as a suspect.
-pub(super) fn cause(row: usize, place: String, defect: String) -> Cause {
-    let next_step =
-        format!("Check entry {row} of the row table as the datapath reads it, and the memory that holds it.");
-    Cause { part: "row factor", place, defect, next_step }
+fn is_illegal(read: &[Word]) -> bool {
+    read.iter().any(|word| word.1 > STEP_ONE)
 }
 
 /// The witness's row made with another factor.

@@ -1,6 +1,7 @@
 //! A word of a table, as each generation has it, and what one broken cell makes of it.
 
 use crate::diagnosis::Uploaded;
+use crate::result::Reading;
 
 /// A word under the number of its generation.
 pub(super) type Word = (u8, u32);
@@ -30,14 +31,9 @@ pub(super) fn changed(words: &[Word], uploaded: &Uploaded<'_>) -> Option<u32> {
     words.iter().find(|word| word.0 == uploaded.generation).map(|word| word.1)
 }
 
-/// "reading 5 for 7", with the generation when others are right. `show` gives a word as people write it.
-pub(super) fn reading(before: &[Word], after: &[Word], show: impl Fn(u32) -> i64) -> String {
-    let Some(&(generation, new)) = after.last() else { return "reading what was uploaded".to_owned() };
-    let old = before.iter().find(|word| word.0 == generation).map_or(new, |word| word.1);
-    let only = if after.len() < before.len() {
-        format!(" in the tables of generation {generation} only")
-    } else {
-        String::new()
-    };
-    format!("reading {} for {}{only}", show(new), show(old))
+/// What is read where. `value` gives a word as people write it.
+pub(super) fn reading(before: &[Word], after: &[Word], value: impl Fn(u32) -> i64) -> Reading {
+    let (generation, read) = after.last().copied().unwrap_or_default();
+    let uploaded = before.iter().find(|word| word.0 == generation).map_or(read, |word| word.1);
+    Reading { uploaded: value(uploaded), read: value(read), generation, only: after.len() < before.len() }
 }

@@ -7,7 +7,7 @@ use super::charts;
 use super::facts::{mark, pair};
 use crate::report::pictures::{self, BOX, Picture, Window};
 use crate::report::wording::{self, count, grouped, plain};
-use crate::report::{Evidence, FrameReport, Report};
+use crate::result::{Evidence, FrameReport, Report};
 
 /// Bytes of all pictures together. Base 64 makes 8.8 MB of them, which leaves over 1 MB of 10 MB to text and charts.
 const MOST_BYTES: usize = 6_600_000;
@@ -93,8 +93,8 @@ fn summary(frame: &FrameReport) -> Markup {
             } @else {
                 (pair("Differences", format!("none in {}", count(comparison.samples, "sample"))))
             }
-            (pair("Timing", &frame.timing))
-            (pair("Phase", &frame.phase))
+            (pair("Timing", frame.timing.to_string()))
+            (pair("Phase", frame.phase.to_string()))
             (pair("Table generation", frame.generation.to_string()))
             (pair("SHA-256 of the samples", &frame.sha256))
         }

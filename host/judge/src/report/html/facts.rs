@@ -3,7 +3,7 @@
 use maud::{Markup, html};
 
 use crate::report::wording::{self, grouped, plain};
-use crate::report::{FrameReport, LinkReport, Outcome, Report, TablesReport};
+use crate::result::{FrameReport, LinkReport, Outcome, Report, TablesReport};
 
 /// Rows of the table of frames.
 const MOST_FRAMES: usize = 400;
@@ -43,7 +43,7 @@ fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
             td { (mark(wording::frame_outcome(report, frame))) }
             td.number { (frame.number) }
             td { (plain(&frame.name)) }
-            td { (plain(&frame.timing)) }
+            td { (frame.timing) }
             td.number { (grouped(frame.rows)) }
             td.number { (wording::differences(report, frame)) }
             @if let Some(first) = comparison.first {
@@ -134,7 +134,7 @@ pub(super) fn run(report: &Report) -> Markup {
             pre { (plain(&command.join(" "))) }
             dl {
                 (pair("Program", format!("halfrow {} ({})", run.version, run.commit)))
-                (pair("Exit code", report.exit_code.code().to_string()))
+                (pair("Cause", report.cause.to_string()))
                 (pair("Seed", run.seed.to_string()))
                 (pair("Began", &run.started))
                 (pair("Ended", &run.ended))

@@ -7,7 +7,7 @@ use super::Picture;
 use super::scale::colour;
 use crate::compare::Difference;
 use crate::frames::preview::RgbImage;
-use crate::report::Evidence;
+use crate::result::Evidence;
 
 /// A part of a frame, around a difference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,9 +5,11 @@ use std::fmt::Write as _;
 use anstyle::{AnsiColor, Style};
 use comfy_table::{CellAlignment, Table, presets};
 
-use super::wording::{self, grouped, mark, plain};
-use super::{Outcome, Report, Suspect};
-use crate::verdict::Verdict;
+use halfrow::report::wording::{self, grouped, mark, plain};
+use halfrow::result::{Outcome, Report, Suspect};
+use halfrow::verdict::Verdict;
+
+use crate::flags;
 
 /// Columns that every line but the verdict's keeps to.
 const WIDTH: usize = 80;
@@ -56,12 +58,12 @@ fn head(report: &Report) -> String {
 
 /// A line for each check. The verdict's own is the last of the text, so it is not said twice.
 fn checks(report: &Report) -> String {
-    let widest = report.checks.iter().map(|check| check.name.len()).max().unwrap_or(0);
+    let widest = report.checks.iter().map(|check| check.name.name().len()).max().unwrap_or(0);
     let mut text = String::new();
     for check in &report.checks {
-        let detail = if check.detail == report.headline { "see below" } else { &check.detail };
+        let detail = if check.finding == report.finding { "see below".to_owned() } else { check.detail() };
         let name = format!("{}{:widest$}  ", label(colour(check.outcome), mark(check.outcome)), check.name);
-        push_after(&mut text, &name, LABEL + widest + 2, detail);
+        push_after(&mut text, &name, LABEL + widest + 2, &detail);
     }
     text
 }
@@ -113,7 +115,7 @@ fn advice(report: &Report) -> String {
         push_suspect(&mut text, suspect);
     }
     if let Some(remedy) = wording::remedy(report) {
-        push(&mut text, "do", BOLD, remedy);
+        push(&mut text, "do", BOLD, &remedy);
     }
     text
 }
@@ -133,10 +135,11 @@ fn verdict(report: &Report) -> String {
 
 fn push_suspect(text: &mut String, suspect: &Suspect) {
     let share = wording::percent(suspect.explained);
-    let who = format!("{}, {} (explains {share} of the differences)", suspect.part, suspect.place);
+    let who = format!("{}, {} (explains {share} of the differences)", suspect.part(), suspect.place());
     push(text, "suspect", BOLD, &who);
-    push(text, "", BOLD, &suspect.evidence);
-    push(text, "", BOLD, &format!("Next: {}", suspect.next_step));
+    push(text, "", BOLD, &suspect.evidence());
+    push(text, "", BOLD, &format!("Next: {}", suspect.designer()));
+    push(text, "", BOLD, &format!("At the bench: {}", suspect.technician()));
 }
 
 /// Appends `words` with a label to their left.
@@ -151,7 +154,9 @@ fn label(style: Style, word: &str) -> String {
 
 /// Appends `words`, wrapped at [`WIDTH`], to the right of `head`, which takes `indent` columns.
 fn push_after(text: &mut String, head: &str, indent: usize, words: &str) {
-    for (place, line) in wrapped(&plain(words), WIDTH.saturating_sub(indent)).iter().enumerate() {
+    for (place, line) in
+        wrapped(&flags::named(&plain(words)), WIDTH.saturating_sub(indent)).iter().enumerate()
+    {
         let _ = match place {
             0 => writeln!(text, "{head}{line}"),
             _ => writeln!(text, "{:indent$}{line}", ""),

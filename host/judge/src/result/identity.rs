@@ -1,11 +1,11 @@
 //! What a board says of itself, as reports carry it.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::board::{Capabilities, Welcome};
 
 /// What a board says of itself.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// Its name.
     pub name: String,

@@ -1,0 +1,238 @@
+//! `halfrow codes`, and the codes of the program's own errors.
+
+use std::error::Error;
+
+use clap::Args;
+use clap::error::ErrorKind;
+use halfrow_mock::{ConnectError, OptionError};
+use halfrow_pipe::{FaultError, TargetError as BoardTargetError, ValueError};
+use serde_json::{Value, json};
+
+use super::document::print_result;
+use super::{Context, Failure, print};
+use crate::console::Unprinted;
+use crate::exit::Exit;
+use crate::guard::InternalError;
+use crate::serve::ServeError;
+use crate::settings::SettingsError;
+use halfrow::result::codes::{self, CodeList, Coded};
+use halfrow::result::{Problem, examples};
+use halfrow::run::{RECORDING_LOST, REPORT_LOST};
+use halfrow_lab::paper::{FolderError, PaperError, PhotographError};
+use halfrow_lab::training::TrainingError;
+
+/// List the codes of all findings, defects and errors, as they stand in JSON
+///
+/// Prints the page docs/CODES.md.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {}
+
+codes::codes! {
+    SettingsError {
+        Io [path] => "settings-file-unreadable",
+        UnknownKey [path, line, key] => "settings-key-unknown",
+        Value [path, line, reason] => "settings-value-wrong",
+    }
+    ServeError {
+        Door [what] => "serving-place-not-opened",
+        Address (address) => "serving-address-malformed",
+        Exists (path) => "serving-link-exists",
+        Board => "served-board-failed",
+    }
+    PaperError {
+        Board => "paper-board-failed",
+        NoBoard => "paper-board-missing",
+        Synthesis [path] => "synthesis-report-unreadable",
+        Frame => "paper-frame-not-made",
+        Correct => "paper-frame-not-corrected",
+        Geometry => "paper-geometry-refused",
+        Lens => "paper-lens-refused",
+        Tables => "paper-tables-refused",
+        = Misfit,
+    }
+    PhotographError {
+        Read [number] => "photograph-unreadable",
+        Size [path, width, height] => "photograph-of-other-size",
+    }
+    FolderError {
+        Make [path] => "paper-folder-not-made",
+        Picture => "paper-picture-not-encoded",
+        = Write,
+    }
+    TrainingError {
+        Geometry => "photograph-too-small",
+        Singular => "photographs-say-too-little",
+        Kernel => "trained-kernel-impossible",
+        Lens => "training-lens-refused",
+        Table => "training-tables-refused",
+        Frame => "training-frame-not-made",
+        Correct => "training-frame-not-corrected",
+    }
+    ConnectError {
+        = Target,
+        = Build,
+    }
+    BoardTargetError {
+        Board => "board-option-wrong",
+        Pipe => "wire-option-wrong",
+        Fault => "fault-not-made",
+        UnknownFault [name, known] => "fault-unknown",
+        TwoFaults [first, second] => "faults-exclude-each-other",
+        UnknownKey [key, known] => "board-option-unknown",
+        Ambiguous [key, pipe, board] => "fault-option-ambiguous",
+        Duplicate [key] => "board-option-repeated",
+    }
+    FaultError {
+        Unknown [name] => "fault-name-unknown",
+        Parameter [fault] => "fault-parameter-wrong",
+    }
+    ValueError {
+        NotANumber [key, value, least, most] => "option-is-no-whole-number",
+        OutOfRange [key, value, least, most] => "option-out-of-range",
+        NotAWord [key, value, known] => "option-word-unknown",
+        Decimal [key, value, least, most] => "option-is-no-number",
+        TwoPlaces [first, second] => "fault-strikes-in-two-places",
+        Missing [key] => "option-without-value",
+    }
+    OptionError {
+        RingNotPowerOfTwo [ring] => "board-ring-not-power-of-two",
+        RingTooShort [ring, max_width] => "board-ring-too-short",
+        OddWidth [max_width] => "board-width-odd",
+        NoDepth => "board-without-depth",
+        = Value,
+    }
+    ;
+    Unprinted => "result-not-printed"
+    ;
+    InternalError => "program-failed"
+}
+
+/// Of a call that contradicts itself or its input, in a sentence that says how.
+const REFUSED: &str = "call-refused";
+/// Of a command that could not be carried out, in a sentence that says why.
+const FAILED: &str = "command-failed";
+/// Of command lines that cannot be read.
+const USAGE: [&str; 6] = [
+    "usage-argument-unknown",
+    "usage-value-wrong",
+    "usage-argument-missing",
+    "usage-arguments-conflict",
+    "usage-command-unknown",
+    "usage-wrong",
+];
+
+fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
+    // Those of other crates hold errors of the library, which it knows.
+    lookup(error).filter(|coded| coded.code != codes::FOREIGN).or_else(|| codes::lookup(error))
+}
+
+/// Why a command came to no result.
+pub(super) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
+    let problem = Problem::by(error.as_ref(), known);
+    if problem.code != codes::FOREIGN {
+        return problem;
+    }
+    Problem { code: if exit == Exit::Usage { REFUSED } else { FAILED }.to_owned(), ..problem }
+}
+
+/// The code of a command line that cannot be read.
+pub(super) fn of_usage(kind: ErrorKind) -> &'static str {
+    USAGE[match kind {
+        ErrorKind::UnknownArgument => 0,
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation | ErrorKind::InvalidUtf8 => 1,
+        ErrorKind::MissingRequiredArgument
+        | ErrorKind::NoEquals
+        | ErrorKind::TooFewValues
+        | ErrorKind::WrongNumberOfValues => 2,
+        ErrorKind::ArgumentConflict | ErrorKind::TooManyValues => 3,
+        ErrorKind::InvalidSubcommand | ErrorKind::MissingSubcommand => 4,
+        _ => 5,
+    }]
+}
+
+pub(super) fn run(_: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    if context.json {
+        print_result("codes", Exit::Pass, None, json!({ "codes": all() }))?;
+    } else {
+        print(page().trim_end())?;
+    }
+    Ok(Exit::Pass)
+}
+
+fn error_lists() -> impl Iterator<Item = &'static CodeList> {
+    codes::LISTS.into_iter().chain([LISTS]).flatten()
+}
+
+/// Codes of errors that have no type of their own.
+fn other_codes() -> impl Iterator<Item = &'static str> {
+    codes::IO_CODES.into_iter().chain(USAGE).chain([
+        RECORDING_LOST,
+        REPORT_LOST,
+        REFUSED,
+        FAILED,
+        codes::FOREIGN,
+    ])
+}
+
+/// Every code with the names of its parameters.
+pub(super) fn all() -> Vec<Value> {
+    let entry = |of: &str, code: &str, parameters: Vec<String>| json!({ "of": of, "code": code, "parameters": parameters });
+    let names = |problem: &Problem| problem.parameters.keys().cloned().collect::<Vec<_>>();
+    let findings = examples::findings().into_iter().map(|finding| {
+        let problem = finding.as_problem();
+        entry("finding", &problem.code, names(&problem))
+    });
+    let defects = examples::suspects().into_iter().map(|suspect| {
+        let (code, parameters) = suspect.defect.tagged();
+        entry("defect", &code, parameters.keys().cloned().collect())
+    });
+    let errors = error_lists().flat_map(|list| list.codes).map(|(code, parameters)| {
+        entry("error", code, parameters.iter().map(|&name| name.to_owned()).collect())
+    });
+    let others = other_codes().map(|code| {
+        let parameters = if code.starts_with("io-") { vec!["os_error".to_owned()] } else { Vec::new() };
+        entry("error", code, parameters)
+    });
+    findings.chain(defects).chain(errors).chain(others).collect()
+}
+
+/// The page of all codes, in Markdown.
+fn page() -> String {
+    let mut text = HEAD.to_owned();
+    text += "\n## Findings of checks and runs\n\n";
+    for finding in examples::findings() {
+        let problem = finding.as_problem();
+        text +=
+            &format!("* `{}`{}: {}\n", problem.code, parameters(problem.parameters.keys()), problem.message);
+        text += &problem.remedy.map_or_else(String::new, |remedy| format!("  *Do:* {remedy}\n"));
+    }
+    text += "\n## Defects that suspects have\n\n";
+    for suspect in examples::suspects() {
+        let (code, names) = suspect.defect.tagged();
+        let (place, evidence) = (suspect.place(), suspect.evidence());
+        text += &format!("* `{code}`{}: {place}: {evidence}\n", parameters(names.keys()));
+        text += &format!("  *Designer:* {}\n  *Technician:* {}\n", suspect.designer(), suspect.technician());
+    }
+    text += "\n## Errors\n\nTheir sentence is in `message`, and what to do in `remedy` and at its end.\n";
+    for list in error_lists().filter(|list| !list.codes.is_empty()) {
+        text += &format!("\n{}:\n\n", list.error);
+        for (code, names) in list.codes {
+            text += &format!("* `{code}`{}\n", parameters(names.iter()));
+        }
+    }
+    text += "\nOf the system (`os_error` is its own number), of command lines, and of what has no code of its own:\n\n";
+    other_codes().for_each(|code| text += &format!("* `{code}`\n"));
+    text
+}
+
+const HEAD: &str = "# Codes
+
+Every finding, defect and error in JSON has a code and parameters. Codes are stable: none changes its meaning or its
+parameters' names within a schema number, and new ones may come. The sentences are made from them and may change.
+`halfrow codes` prints this page; a test holds the two equal. Sentences are those of an example.
+";
+
+fn parameters(names: impl Iterator<Item = impl AsRef<str>>) -> String {
+    let names: Vec<_> = names.map(|name| format!("`{}`", name.as_ref())).collect();
+    if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
+}

@@ -1,0 +1,41 @@
+//! `halfrow schema`
+
+use anyhow::Context as _;
+use clap::Args;
+use serde_json::{Value, json};
+
+use super::{Failure, codes, print_json};
+use crate::exit::Exit;
+
+/// What the program prints as JSON; the codes come from the program.
+const SCHEMA: &str = include_str!("../../../schema/halfrow-1.json");
+
+/// Print the JSON Schema of what --json prints and of report.json
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The command whose documents alone are wanted, as `verify` [default: all]
+    #[arg(value_name = "COMMAND")]
+    command: Option<String>,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut schema: Value = serde_json::from_str(SCHEMA).map_err(Failure::error)?;
+    if let Some(command) = &arguments.command {
+        let commands = schema["properties"]["command"]["enum"].as_array().cloned().unwrap_or_default();
+        let known = commands.iter().filter_map(Value::as_str).collect::<Vec<_>>();
+        let is_known = known.contains(&command.as_str());
+        is_known
+            .then_some(())
+            .with_context(|| {
+                format!(
+                    "`{command}` is no command with a document of its own; name one of {}",
+                    known.join(", ")
+                )
+            })
+            .map_err(Failure::call)?;
+        schema["properties"]["command"] = json!({ "const": command });
+    }
+    schema["$defs"]["code"]["enum"] = codes::all().iter().map(|entry| entry["code"].clone()).collect();
+    print_json(&schema)?;
+    Ok(Exit::Pass)
+}

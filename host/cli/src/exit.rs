@@ -1,0 +1,104 @@
+//! Exit codes, which scripts rely on: the one place where the classes of errors and the causes of results become numbers.
+
+use halfrow::link::Class;
+use halfrow::verdict::{Cause, StoppedBy, Verdict};
+use serde::Serialize;
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Exit {
+    /// PASS, or the command did what it was asked.
+    Pass = 0,
+    /// FAIL.
+    Fail = 1,
+    /// The call or its input was wrong; there is no verdict.
+    Usage = 2,
+    /// ERROR.
+    Error = 3,
+    /// ERROR: another host holds the board.
+    Busy = 4,
+    /// ERROR: nothing was judged.
+    NothingJudged = 5,
+    /// ERROR: the board's identity, datapath or protocol version was refused.
+    Refused = 6,
+    /// ERROR: stopped since the terminal or connection was gone (SIGHUP).
+    HungUp = 129,
+    /// ERROR: stopped by Ctrl-C.
+    Interrupted = 130,
+    /// ERROR: stopped by SIGTERM.
+    Terminated = 143,
+}
+
+impl Exit {
+    /// The process's exit code.
+    #[must_use]
+    pub const fn code(self) -> u8 {
+        self as u8
+    }
+
+    /// The verdict that the code carries; none after a usage error.
+    #[must_use]
+    pub const fn verdict(self) -> Option<Verdict> {
+        match self {
+            Self::Pass => Some(Verdict::Pass),
+            Self::Fail => Some(Verdict::Fail),
+            Self::Usage => None,
+            _ => Some(Verdict::Error),
+        }
+    }
+
+    /// Whom a signal with this exit code stands for, if it is one.
+    #[must_use]
+    pub fn stopped_by(code: usize) -> Option<StoppedBy> {
+        let all = [StoppedBy::Person, StoppedBy::System, StoppedBy::Disconnection];
+        all.into_iter().find(|&by| usize::from(Self::from(Cause::Stopped(by)).code()) == code)
+    }
+}
+
+impl From<Class> for Exit {
+    fn from(class: Class) -> Self {
+        match class {
+            Class::Call => Self::Usage,
+            Class::Station => Self::Error,
+            Class::Busy => Self::Busy,
+        }
+    }
+}
+
+impl From<Cause> for Exit {
+    fn from(cause: Cause) -> Self {
+        match cause {
+            Cause::Equal => Self::Pass,
+            Cause::Different => Self::Fail,
+            Cause::Station => Self::Error,
+            Cause::Busy => Self::Busy,
+            Cause::Refused => Self::Refused,
+            Cause::NothingJudged => Self::NothingJudged,
+            Cause::Stopped(StoppedBy::Person | StoppedBy::Caller) => Self::Interrupted,
+            Cause::Stopped(StoppedBy::System) => Self::Terminated,
+            Cause::Stopped(StoppedBy::Disconnection) => Self::HungUp,
+        }
+    }
+}
+
+impl Serialize for Exit {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_u8(self.code())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_code_carries_the_verdict_of_its_cause_and_a_signal_is_known_by_it() {
+        for cause in Cause::ALL {
+            assert_eq!(Exit::from(cause).verdict(), Some(cause.verdict()), "{cause}");
+        }
+        let signals = [129, 130, 143, 0, 3].map(Exit::stopped_by);
+        let (gone, person, system) = (StoppedBy::Disconnection, StoppedBy::Person, StoppedBy::System);
+        assert_eq!(signals, [Some(gone), Some(person), Some(system), None, None]);
+    }
+}

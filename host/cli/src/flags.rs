@@ -1,0 +1,45 @@
+//! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
+
+/// What sentences of the libraries say, and the flag for it. None of them is part of another.
+pub const FLAGS: [(&str, &str); 16] = [
+    ("allow it to be overwritten", "--overwrite"),
+    ("another place for the recording", "--record"),
+    ("another place for the report", "--report"),
+    ("record a run with `halfrow verify`", "--record"),
+    ("take the board over", "--take-over"),
+    ("raise the retry limit", "--retry-limit"),
+    ("of its time limit", "--timeout"),
+    ("name a real board", "--board"),
+    ("repeat them less often", "--repeat"),
+    ("Name at least one frame", "--frame"),
+    ("Make a report", "--report"),
+    ("Name a real board", "--board"),
+    ("name the layout", "--raw"),
+    ("name the phase", "--phase"),
+    ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
+    ("Cargo's feature `sim`", "cargo run --release --features sim"),
+];
+
+/// `text` with the flag behind each setting that it names, as in `take the board over (--take-over)`.
+#[must_use]
+pub fn named(text: &str) -> String {
+    let mut text = text.to_owned();
+    for (setting, flag) in FLAGS {
+        text = text.replace(setting, &format!("{setting} ({flag})"));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_remedy_gets_its_flag() {
+        assert_eq!(
+            named("wait until it is done, or take the board over"),
+            "wait until it is done, or take the board over (--take-over)"
+        );
+        assert_eq!(named("check the cable"), "check the cable");
+    }
+}

@@ -1,0 +1,55 @@
+//! Judges two mock boards at once, one of them broken, and keeps the results in a place of its own.
+
+use std::error::Error;
+use std::sync::mpsc;
+use std::thread;
+
+use halfrow::frames::Builtin;
+use halfrow::link;
+use halfrow::model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
+use halfrow::{Event, FrameSource, Plan, ReportFolder, RunOptions, Verdict};
+
+type Failure = Box<dyn Error + Send + Sync>;
+
+// A program of its own writes where it likes.
+#[allow(clippy::print_stdout)]
+fn main() -> Result<(), Failure> {
+    let lens = Equidistant::from_radius(147.56)?;
+    let geometry = Geometry::centred(256, 144, BitDepth::Twelve)?;
+    let tables = TableSet::from_lens(geometry, &lens, None)?;
+    let plan = Plan::new(tables, Interpolant::Hermite.into())
+        .seen_through(lens)
+        .frames([FrameSource::Builtin(Builtin::Street)]);
+    let results = tempfile::tempdir()?;
+
+    let (sender, events) = mpsc::channel();
+    let judge = |name: &'static str, target: &str| -> Result<Verdict, Failure> {
+        let watch = sender.clone();
+        let told = move |event| _ = watch.send((name, event));
+        let board = link::open(&target.parse()?)?;
+        let folder = ReportFolder::prepare(&results.path().join(name), false)?;
+        let mut finished = halfrow::verify(&plan, board, &RunOptions::default(), &told)?;
+        finished.commit(folder)?;
+        println!("{name}: {}", finished.report.headline());
+        Ok(finished.report.verdict)
+    };
+    let verdicts = thread::scope(|scope| {
+        let sound = scope.spawn(|| judge("left", "mock"));
+        let broken = scope.spawn(|| judge("right", "mock,fault=stuck-data"));
+        let mut running = 2;
+        while running > 0 {
+            match events.recv() {
+                Ok((name, Event::Step(step))) => println!("{name}: {step}"),
+                Ok((name, Event::Frame(frame))) => println!("{name}: {frame}"),
+                Ok((_, Event::Done)) => running -= 1,
+                Ok(_) => {}
+                Err(_) => break,
+            }
+        }
+        [sound.join(), broken.join()].map(|joined| joined.map_err(|_| "a run panicked")?)
+    });
+    let [sound, broken] = verdicts;
+    assert_eq!((sound?, broken?), (Verdict::Pass, Verdict::Fail));
+    assert!(results.path().join("right/report.html").is_file());
+    Ok(())
+}

@@ -1,0 +1,306 @@
+//! From a lens, or a file of tables, to what a board is judged with.
+//!
+//! ```text
+//!  lens file ──► Optics ──► row factors ─┐
+//!  table file ───────────────────────────┼─► Chosen ─► Plan
+//!  kernel's name or file ────────────────┘
+//! ```
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+use halfrow_model::{
+    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
+    LensError, Phase, STEP_ONE, TableError, TableSet,
+};
+
+use crate::frames::Scene;
+use crate::kernels::{DamagedKernel, NamedKernel, UnknownKernel};
+use crate::lenses::{LensContentError, LensFile, LensFileError};
+use crate::run::Plan;
+use crate::tables::{KernelFile, TableFile, TableFileError};
+
+/// The paper's frame, columns and rows.
+pub const PAPER_SIZE: (usize, usize) = (1920, 1080);
+/// The paper's image circle, in degrees.
+pub const PAPER_FIELD: f64 = 180.0;
+
+/// How row factors are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RowsBy {
+    /// For every row the factor with the smallest largest error.
+    Fitting,
+    /// The paper's formula.
+    Equation9,
+}
+
+impl RowsBy {
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fitting => "fitted",
+            Self::Equation9 => "equation-9",
+        }
+    }
+}
+
+/// A lens, tables or a kernel that cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum OpticsError {
+    /// There is neither a kernel of this name nor a file.
+    #[error("there is no file {name}, and {unknown}, or a kernel file")]
+    Kernel {
+        /// The name.
+        name: String,
+        /// Which names there are.
+        unknown: UnknownKernel,
+    },
+    /// A named kernel is damaged.
+    #[error(transparent)]
+    Damaged(#[from] DamagedKernel),
+    /// A file of tables or of a kernel cannot be used.
+    #[error(transparent)]
+    File(#[from] TableFileError),
+    /// A lens file cannot be used.
+    #[error(transparent)]
+    LensFile(#[from] LensFileError),
+    /// The lens file was made with frames of another shape.
+    #[error("the lens file {} does not fit", path.display())]
+    Shape {
+        /// The file.
+        path: PathBuf,
+        /// Which shapes.
+        #[source]
+        source: LensContentError,
+    },
+    /// The frames have a size that no board takes.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// The lens is none.
+    #[error(transparent)]
+    Lens(#[from] LensError),
+    /// The lens does not fit the frames.
+    #[error(transparent)]
+    Camera(#[from] CameraError),
+    /// The row factors are none that a board can have.
+    #[error(transparent)]
+    Tables(#[from] TableError),
+    /// The image circle misses the frame's rows.
+    #[error(
+        "{}, so nothing would be stretched; check the lens, its centre and the size of the frames",
+        circle(*.outside, *.rows, *.radius, *.centre)
+    )]
+    OutsideCircle {
+        /// Rows outside of the circle.
+        outside: usize,
+        /// All rows.
+        rows: usize,
+        /// The circle's radius, in pixels.
+        radius: f64,
+        /// The row of its middle.
+        centre: f64,
+    },
+}
+
+impl OpticsError {
+    /// Whether it is a file of another datapath, which is refused like a board of one.
+    #[must_use]
+    pub fn is_other_datapath(&self) -> bool {
+        matches!(self, Self::File(TableFileError::Datapath { .. }))
+    }
+}
+
+fn circle(outside: usize, rows: usize, radius: f64, centre: f64) -> String {
+    format!(
+        "{outside} of {rows} rows lie outside the image circle, whose radius is {radius:.3} pixels around row {centre:.1}"
+    )
+}
+
+/// A frame and the lens before it.
+#[derive(Clone, Debug)]
+pub struct Optics {
+    /// Both, with where the axis is.
+    pub camera: Camera,
+    /// The equidistant lens of the same R, which built-in frames are rendered through.
+    pub lens: Equidistant,
+    /// Whether the lens is not that one itself.
+    is_calibrated: bool,
+    /// The row of the axis; none for the middle.
+    pub centre_y: Option<f64>,
+    /// How its row factors are found.
+    pub rows: RowsBy,
+    /// What the lens is, for people.
+    pub name: String,
+}
+
+impl Optics {
+    /// An equidistant lens, with its axis in row `centre_y`, or the middle, of the frames of `camera`.
+    #[must_use]
+    pub fn equidistant(camera: Camera, lens: Equidistant, centre_y: Option<f64>, rows: RowsBy) -> Self {
+        Self { camera, lens, is_calibrated: false, centre_y, rows, name: "equidistant lens".to_owned() }
+    }
+
+    /// The lens of `camera`, which was calibrated and is called `name`.
+    ///
+    /// # Errors
+    /// [`LensError`] when its radius is none that built-in frames can be rendered through.
+    pub fn calibrated(camera: Camera, name: String, rows: RowsBy) -> Result<Self, LensError> {
+        Ok(Self {
+            lens: Equidistant::from_radius(camera.radius())?,
+            is_calibrated: true,
+            centre_y: Some(camera.centre().1),
+            camera,
+            rows,
+            name,
+        })
+    }
+
+    /// The lens in the file `path`, before frames of the size and the axis that it was calibrated with, or else of the
+    /// paper's size; with fitted row factors.
+    ///
+    /// # Errors
+    /// [`OpticsError`] when the file cannot be read, holds no lens, or one that such frames cannot have.
+    pub fn of_file(path: &Path, depth: BitDepth) -> Result<Self, OpticsError> {
+        let file = LensFile::read(path)?;
+        let (width, height) = file.size.unwrap_or(PAPER_SIZE);
+        let geometry = Geometry::centred(width, height, depth)?;
+        let (lens, centre): (CalibratedLens, _) = file
+            .for_frame(width, height)
+            .map_err(|source| OpticsError::Shape { path: path.to_owned(), source })?;
+        let camera = Camera::new(geometry, lens, centre, PAPER_FIELD)?;
+        Ok(Self::calibrated(camera, format!("{} {}", file.model, path.display()), RowsBy::Fitting)?)
+    }
+
+    /// What built-in frames are made for.
+    #[must_use]
+    pub fn scene(&self, phase: Phase, seed: u64) -> Scene {
+        let (geometry, centre_y, lens) = (*self.camera.geometry(), self.centre_y, self.lens);
+        Scene { geometry, centre_y, phase, lens, seed }
+    }
+
+    /// The row factors that are asked for.
+    ///
+    /// # Errors
+    /// [`TableError`] as of [`Self::tables_by`].
+    pub fn tables(&self) -> Result<TableSet, TableError> {
+        self.tables_by(self.rows)
+    }
+
+    /// The row factors that are found so.
+    ///
+    /// # Errors
+    /// [`TableError`] when a factor is none that a board can have.
+    pub fn tables_by(&self, rows: RowsBy) -> Result<TableSet, TableError> {
+        Ok(match rows {
+            RowsBy::Fitting => self.camera.fitted(),
+            RowsBy::Equation9 if self.is_calibrated => self.camera.equation_9(),
+            // From R as it was given, which the camera has from f.
+            RowsBy::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
+        })
+    }
+
+    /// Refuses `tables` of this lens that stretch nothing, as its image circle misses the rows, and warns when it
+    /// misses most.
+    ///
+    /// # Errors
+    /// [`OpticsError::OutsideCircle`]
+    pub fn check_circle(&self, tables: &TableSet) -> Result<(), OpticsError> {
+        let (rows, outside) = (self.camera.geometry().height(), self.camera.rows_outside_circle());
+        let (radius, centre) = (self.camera.radius(), self.camera.centre().1);
+        let stretches = tables.steps().iter().any(|&step| step != STEP_ONE);
+        if outside > 0 && !stretches {
+            return Err(OpticsError::OutsideCircle { outside, rows, radius, centre });
+        }
+        if 2 * outside > rows {
+            tracing::warn!(
+                "{}, and are not stretched; check the lens, its centre and the size of the frames",
+                circle(outside, rows, radius, centre)
+            );
+        }
+        Ok(())
+    }
+
+    /// A sentence on where the row factors come from.
+    #[must_use]
+    pub fn source(&self) -> String {
+        let how = match self.rows {
+            RowsBy::Fitting => "fitted rows",
+            RowsBy::Equation9 => "Eq. 9",
+        };
+        format!("{}, R = {:.3} pixels ({how})", self.name, self.camera.radius())
+    }
+}
+
+/// A kernel by name, or from a kernel file.
+///
+/// # Errors
+/// [`OpticsError`] when it is neither, or a file that cannot be used.
+pub fn kernel(name: &OsStr) -> Result<Kernel, OpticsError> {
+    match name.to_string_lossy().parse::<NamedKernel>() {
+        Ok(named) => Ok(named.kernel()?),
+        Err(unknown) if !Path::new(name).exists() => {
+            Err(OpticsError::Kernel { name: name.display().to_string(), unknown })
+        }
+        Err(_) => Ok(KernelFile::read(Path::new(name))?.kernel),
+    }
+}
+
+/// Tables, kernel, and where they come from.
+#[derive(Clone, Debug)]
+pub struct Chosen {
+    /// The lens that built-in frames are rendered through, whether the tables are its own or not.
+    pub optics: Optics,
+    /// The row factors.
+    pub tables: TableSet,
+    /// The kernel.
+    pub kernel: Kernel,
+    /// Where both come from, for people.
+    pub source: String,
+    /// Rows outside of the lens's image circle; none for a file, which does not say.
+    pub rows_outside_circle: Option<usize>,
+}
+
+impl Chosen {
+    /// To judge with these, once each, the built-in frames of Bayer `phase` as the lens sees them.
+    #[must_use]
+    pub fn plan(self, phase: Phase) -> Plan {
+        Plan {
+            lens: self.optics.lens,
+            centre_y: self.optics.centre_y,
+            phase,
+            tables_source: self.source,
+            rows_outside_circle: self.rows_outside_circle,
+            ..Plan::new(self.tables, self.kernel)
+        }
+    }
+}
+
+/// Takes the tables of `file` if there is one, and those of the lens otherwise; `kernel_name` replaces the file's kernel, or
+/// Hermite's.
+///
+/// # Errors
+/// [`OpticsError`] when a kernel or row factors cannot be had.
+pub fn choose(
+    file: Option<(&Path, TableFile)>,
+    optics: Optics,
+    kernel_name: Option<&OsStr>,
+) -> Result<Chosen, OpticsError> {
+    let named = kernel_name.map(kernel).transpose()?;
+    let kernel_name = kernel_name.map(OsStr::to_string_lossy);
+    let Some((path, file)) = file else {
+        let (tables, from) = (optics.tables()?, optics.source());
+        optics.check_circle(&tables)?;
+        let name = kernel_name.as_deref().unwrap_or(Interpolant::Hermite.name());
+        let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));
+        let rows_outside_circle = Some(optics.camera.rows_outside_circle());
+        let source = format!("{from}, {name} kernel");
+        return Ok(Chosen { optics, tables, kernel, source, rows_outside_circle });
+    };
+    let mut source = path.display().to_string();
+    if let Some(name) = kernel_name {
+        source = format!("{source}, {name} kernel");
+    }
+    let kernel = named.unwrap_or(file.kernel);
+    Ok(Chosen { optics, tables: file.tables, kernel, source, rows_outside_circle: None })
+}

@@ -1,0 +1,116 @@
+//! What was checked, and how it came out.
+
+use std::fmt;
+
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize, Serializer};
+
+use super::Finding;
+
+/// Every check of a run, in its order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CheckName {
+    /// This computer and this build against golden values.
+    Judge,
+    /// What the board says it is.
+    Identity,
+    /// Bytes there and back.
+    Link,
+    /// Geometry and tables on their way to the board.
+    Upload,
+    /// The tables through the datapath's own ports.
+    ReadBack,
+    /// Every sample of every frame.
+    Frames,
+    /// The latency of every row.
+    Latency,
+    /// The tables once more when all frames are through.
+    TablesAfter,
+    /// The board's own counters.
+    Counters,
+}
+
+impl CheckName {
+    /// All of them, in the order of a run.
+    pub const ALL: [Self; 9] = [
+        Self::Judge,
+        Self::Identity,
+        Self::Link,
+        Self::Upload,
+        Self::ReadBack,
+        Self::Frames,
+        Self::Latency,
+        Self::TablesAfter,
+        Self::Counters,
+    ];
+
+    /// As people and JSON write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Judge => "judge",
+            Self::Identity => "identity",
+            Self::Link => "link",
+            Self::Upload => "upload",
+            Self::ReadBack => "read-back",
+            Self::Frames => "frames",
+            Self::Latency => "latency",
+            Self::TablesAfter => "tables-after",
+            Self::Counters => "counters",
+        }
+    }
+}
+
+impl fmt::Display for CheckName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+/// One thing that was checked.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Check {
+    /// Which.
+    pub name: CheckName,
+    /// How it came out.
+    pub outcome: Outcome,
+    /// What was seen.
+    pub finding: Finding,
+    /// How long it took by the wall's clock, in seconds, the frames' own time not counted.
+    pub seconds: f64,
+}
+
+impl Check {
+    /// What was seen, in one sentence.
+    #[must_use]
+    pub fn detail(&self) -> String {
+        self.finding.sentence()
+    }
+}
+
+impl Serialize for Check {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut check = serializer.serialize_struct("Check", 5)?;
+        check.serialize_field("name", &self.name)?;
+        check.serialize_field("outcome", &self.outcome)?;
+        check.serialize_field("detail", &self.detail())?;
+        check.serialize_field("finding", &self.finding)?;
+        check.serialize_field("seconds", &self.seconds)?;
+        check.end()
+    }
+}
+
+/// How a check came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Outcome {
+    /// As it should be.
+    Passed,
+    /// The board is wrong.
+    Failed,
+    /// It could not be checked.
+    Error,
+    /// It was not reached.
+    Skipped,
+}

@@ -1,0 +1,140 @@
+//! The codes of errors of boards, links and targets.
+
+use halfrow_protocol::message::Malformed;
+
+use super::codes;
+use crate::board::BoardError;
+use crate::link::{LinkError, OpenError, RecordingError, SerialError, TcpError, UsbError, UsbFailure};
+use crate::link_test::LinkTestError;
+use crate::run::{CannotJudge, GoldenError, Misfit, PrepareError, RestoreError, TooManyFrames};
+use crate::target::TargetError;
+
+#[cfg(feature = "sim")]
+use crate::link::TraceError;
+#[cfg(not(feature = "sim"))]
+use std::convert::Infallible as TraceError;
+
+codes! {
+    BoardError {
+        Link [doing] => "link-broke",
+        NoAnswer [kind, attempts, waited] => "no-answer",
+        NotABoard => "not-a-board",
+        Version [board, ours] => "wire-version-unknown",
+        Held [seconds] => "board-held",
+        SessionLost => "session-lost",
+        Refused [kind, refusal] => "request-refused",
+        Malformed [kind] => "answer-malformed",
+        Unexpected [kind] => "answer-of-other-kind",
+        TooPoor [retries, packets, limit] => "link-too-poor",
+        RowMissing [place, attempts] => "row-missing",
+        WrongPlace [place] => "row-place-unknown",
+        Timeout [limit] => "run-too-long",
+        Stopped (by) => "stopped-by-signal",
+    }
+    LinkError {
+        Closed [link, at] => "link-closed",
+        Stopped [board, at] => "board-process-stopped",
+        Unplugged [link, at] => "board-unplugged",
+        InUse [link, text] => "link-in-use",
+        NoBoardThere [link, text] => "link-without-board",
+        Failed [link, at] => "link-failed",
+        OtherConversation [byte] => "recording-of-other-run",
+        Record => "recording-not-written",
+    }
+    OpenError {
+        UnknownKind (kind) => "target-kind-unknown",
+        NoAddress [kind, address] => "target-takes-no-address",
+        AddressMissing [kind, form] => "target-address-missing",
+        Option [kind, option, known] => "target-option-unknown",
+        NoOption [kind, option] => "target-takes-no-option",
+        Options [board, target] => "target-options-wrong",
+        Pace [key, value] => "target-pace-wrong",
+        UnknownFront (front) => "simulation-unknown",
+        NoSimulation (target) => "simulation-not-built",
+        = Serial,
+        = Tcp,
+        = Usb,
+        = Recording,
+        #[cfg(feature = "sim")]
+        = Trace,
+    }
+    TargetError {
+        Empty => "target-empty",
+        Option [option, target] => "target-option-malformed",
+    }
+    SerialError {
+        Missing (path) => "serial-port-missing",
+        NotAPort (path) => "serial-port-is-none",
+        NotAllowed [path, remedy] => "serial-port-not-permitted",
+        InUse [path, holders] => "serial-port-in-use",
+        Rate [path, chip, baud, nearest] => "serial-rate-not-made",
+        OtherRate [path, baud, taken] => "serial-rate-not-taken",
+        Other [path] => "serial-port-not-opened",
+    }
+    TcpError {
+        Address (address) => "tcp-address-malformed",
+        UnknownHost [address] => "tcp-host-unknown",
+        Refused (address) => "tcp-refused",
+        Silent [address, seconds] => "tcp-silent",
+        Unreachable [address] => "tcp-unreachable",
+    }
+    UsbError {
+        NoUsb => "usb-not-there",
+        NoneFound => "usb-no-board",
+        OthersOnly (found) => "usb-other-devices-only",
+        NotFound [wanted, found] => "usb-board-missing",
+        Several (found) => "usb-several-boards",
+        NoChannel [chip, name, channel, channels] => "usb-channel-missing",
+        NotPermitted [name] => "usb-not-permitted",
+        Busy [what, holders] => "usb-in-use",
+        OtherMode [name, channel, found, wanted] => "usb-channel-in-other-mode",
+        NoMode [name, channel, found] => "usb-channel-mode-unknown",
+        BaudOfFifo => "usb-fifo-has-no-rate",
+        Rate [chip, baud, nearest] => "usb-rate-not-made",
+        Transfer [name, doing] => "usb-transfer-failed",
+    }
+    RecordingError {
+        Read [path] => "recording-unreadable",
+        Foreign (path) => "recording-is-none",
+        Head [path] => "recording-head-damaged",
+        = Create,
+    }
+    RestoreError {
+        Tables => "recorded-tables-wrong",
+        Value => "recorded-run-impossible",
+        Frame [name] => "recorded-frame-wrong",
+        = Recording,
+    }
+    LinkTestError {
+        NoFrame => "link-test-frame-not-made",
+        = Board,
+    }
+    PrepareError {
+        Render [name] => "frame-not-made",
+        Correct [name] => "frame-not-corrected",
+    }
+    Misfit {
+        Size [width, height, most_width, most_height] => "frames-too-large-for-board",
+        Depth [bits] => "depth-not-of-board",
+        Taps => "kernel-has-too-many-taps",
+        = Ring,
+        = TooManyFrames,
+    }
+    GoldenError {
+        Unmade [what] => "golden-values-not-made",
+        Frame [interpolant, expected, found] => "golden-frame-wrong",
+        Row [interpolant, column, expected, found] => "golden-row-wrong",
+        Unseen [interpolant] => "golden-error-unseen",
+        = Correct,
+    }
+    ;
+    CannotJudge => "computer-cannot-judge"
+    ;
+    TooManyFrames [frames] => "too-many-frames"
+    ;
+    UsbFailure => "usb-device-failed"
+    ;
+    TraceError => "waveform-not-written"
+    ;
+    Malformed => "message-malformed"
+}

@@ -1,0 +1,148 @@
+//! The codes of all errors of the library. A code is never changed and never given to another error; a new error gets a
+//! new one. [`lookup`] finds the code of an error, [`LISTS`] has them all.
+
+mod files;
+mod links;
+mod parameter;
+
+use std::error::Error;
+use std::io;
+
+use super::{Parameters, Problem};
+
+pub use parameter::Parameter;
+
+/// The code of a cause that no part of the program has a code for: another library's error.
+pub const FOREIGN: &str = "foreign-cause";
+
+/// The code of an error, and its figures and names.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coded {
+    /// The code.
+    pub code: String,
+    /// The parameters.
+    pub parameters: Parameters,
+}
+
+impl Coded {
+    /// Of an error that nobody knows.
+    #[must_use]
+    pub fn foreign() -> Self {
+        Self { code: FOREIGN.to_owned(), parameters: Parameters::new() }
+    }
+}
+
+/// Finds the code of an error.
+pub type Lookup = fn(&(dyn Error + 'static)) -> Option<Coded>;
+
+/// The codes of one type of error.
+#[derive(Clone, Copy, Debug)]
+pub struct CodeList {
+    /// The type.
+    pub error: &'static str,
+    /// Each code with the names of its parameters.
+    pub codes: &'static [(&'static str, &'static [&'static str])],
+}
+
+/// Every code of the library's own errors.
+pub const LISTS: [&[CodeList]; 2] = [links::LISTS, files::LISTS];
+
+/// The code of an error of this library or of the system.
+#[must_use]
+pub fn lookup(error: &(dyn Error + 'static)) -> Option<Coded> {
+    if let Some(Problem { code, parameters, .. }) = error.downcast_ref() {
+        return Some(Coded { code: code.clone(), parameters: parameters.clone() });
+    }
+    links::lookup(error).or_else(|| files::lookup(error)).or_else(|| {
+        let error = error.downcast_ref::<io::Error>()?;
+        let mut parameters = Parameters::new();
+        parameters.insert("os_error".to_owned(), error.raw_os_error().into());
+        Some(Coded { code: io_code(error.kind()).to_owned(), parameters })
+    })
+}
+
+/// The codes of what the system refuses; all have the parameter `os_error`, the system's number if there is one.
+pub const IO_CODES: [&str; 9] = [
+    "io-not-found",
+    "io-not-permitted",
+    "io-already-there",
+    "io-no-space",
+    "io-pipe-closed",
+    "io-too-late",
+    "io-ends-early",
+    "io-wrong-data",
+    "io-failed",
+];
+
+const fn io_code(kind: io::ErrorKind) -> &'static str {
+    let place = match kind {
+        io::ErrorKind::NotFound => 0,
+        io::ErrorKind::PermissionDenied => 1,
+        io::ErrorKind::AlreadyExists => 2,
+        io::ErrorKind::StorageFull | io::ErrorKind::FileTooLarge => 3,
+        io::ErrorKind::BrokenPipe => 4,
+        io::ErrorKind::TimedOut => 5,
+        io::ErrorKind::UnexpectedEof => 6,
+        io::ErrorKind::InvalidData => 7,
+        _ => 8,
+    };
+    IO_CODES[place]
+}
+
+/// Makes `LISTS` and `lookup` from the codes of types of errors:
+/// `Type { Variant [field, …] => "code", Variant (name) => "code", = Variant }`, where `=` stands before variants that say
+/// no more than the error that they hold, and `Type [field, …] => "code"` for one code whatever the error says.
+#[macro_export]
+macro_rules! codes {
+    (
+        $( $error:ident {
+            $( $variant:ident $( [ $($field:ident),+ ] )? $( ( $name:ident ) )? => $code:literal, )*
+            $( $( #[$attribute:meta] )* = $inner:ident, )*
+        } )*
+        $( ; $whole:ident $( [ $($member:ident),+ ] )? => $one:literal )*
+    ) => {
+        /// The codes by type.
+        pub(crate) const LISTS: &[$crate::result::codes::CodeList] = &[
+            $( $crate::result::codes::CodeList {
+                error: stringify!($error),
+                codes: &[ $( ($code, &[ $($(stringify!($field)),+)? $(stringify!($name))? ]), )* ],
+            }, )*
+            $( $crate::result::codes::CodeList {
+                error: stringify!($whole),
+                codes: &[ ($one, &[ $($(stringify!($member)),+)? ]) ],
+            }, )*
+        ];
+
+        /// The code of an error of these types.
+        #[allow(unused_mut, reason = "codes without parameters")]
+        pub(crate) fn lookup(
+            error: &(dyn std::error::Error + 'static),
+        ) -> Option<$crate::result::codes::Coded> {
+            #[allow(unused_imports, reason = "codes without parameters")]
+            use $crate::result::codes::Parameter as _;
+            // A source that is boxed is the box.
+            $( let boxed = || error.downcast_ref::<Box<$error>>().map(|error| &**error);
+            if let Some(error) = error.downcast_ref::<$error>().or_else(boxed) {
+                return match error {
+                    $( #[allow(unused_variables, reason = "codes without parameters")]
+                    $error::$variant { $($($field,)+)? $(0: $name,)? .. } => {
+                        let mut parameters = $crate::result::Parameters::new();
+                        $( $( parameters.insert(stringify!($field).to_owned(), $field.parameter()); )+ )?
+                        $( parameters.insert(stringify!($name).to_owned(), $name.parameter()); )?
+                        Some($crate::result::codes::Coded { code: $code.to_owned(), parameters })
+                    } )*
+                    $( $( #[$attribute] )* $error::$inner(inner) => lookup(inner), )*
+                };
+            } )*
+            $( let boxed = || error.downcast_ref::<Box<$whole>>().map(|error| &**error);
+            if let Some(error) = error.downcast_ref::<$whole>().or_else(boxed) {
+                let mut parameters = $crate::result::Parameters::new();
+                let _ = error;
+                $( $( parameters.insert(stringify!($member).to_owned(), error.$member.parameter()); )+ )?
+                return Some($crate::result::codes::Coded { code: $one.to_owned(), parameters });
+            } )*
+            None
+        }
+    };
+}
+pub use crate::codes;

@@ -1,0 +1,48 @@
+//! Counters of a board, by name.
+
+use serde::{Deserialize, Serialize};
+
+/// What a board counts and the host knows as well: STATUS in `protocol/WIRE.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Counter {
+    /// Rows that went in.
+    RowsIn,
+    /// Rows that came out.
+    RowsOut,
+    /// Samples above the depth.
+    SamplesOver,
+    /// The number of the first row that has not arrived.
+    NextRowIn,
+    /// The number of the first row that is not acknowledged.
+    NextRowOut,
+    /// The generation of the tables in use.
+    Generation,
+    /// Rows sent again.
+    RowsRepeated,
+    /// Rows that came although they were not needed.
+    RowsUnneeded,
+    /// Requests that were refused.
+    Refusals,
+    /// Packets of another session.
+    ForeignPackets,
+}
+
+impl Counter {
+    /// What stands behind its figure in a sentence.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::RowsIn => "rows in",
+            Self::RowsOut => "rows out",
+            Self::SamplesOver => "samples above the depth",
+            Self::NextRowIn => "as the first row that has not arrived",
+            Self::NextRowOut => "as the first row that is not acknowledged",
+            Self::Generation => "as the tables' generation",
+            Self::RowsRepeated => "rows sent again",
+            Self::RowsUnneeded => "rows that were not needed",
+            Self::Refusals => "refusals",
+            Self::ForeignPackets => "packets of another session",
+        }
+    }
+}

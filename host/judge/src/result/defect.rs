@@ -1,0 +1,386 @@
+//! The single defects that a diagnosis knows, as codes with parameters.
+
+use serde::{Deserialize, Serialize};
+
+/// A single defect of a board.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
+pub enum Defect {
+    /// One bit of one row's factor.
+    RowFactorBitWrong {
+        /// The row.
+        row: usize,
+        /// The bit.
+        bit: u32,
+        /// What is read.
+        reading: Reading,
+        /// Whether a factor above 1 is read, which no simulation follows to the row's end.
+        above_one: bool,
+    },
+    /// One row's factor.
+    RowFactorWrong {
+        /// The row.
+        row: usize,
+        /// The tables in which it is wrong.
+        generation: u8,
+        /// The least factor that gives what was seen.
+        least: u32,
+        /// The greatest.
+        most: u32,
+        /// What was uploaded.
+        uploaded: u32,
+    },
+    /// One bit of one word of the kernel.
+    KernelWordBitWrong {
+        /// The node, 0 to 64.
+        node: usize,
+        /// The tap that the word weighs.
+        weight: String,
+        /// The bit.
+        bit: u32,
+        /// What is read.
+        reading: Reading,
+    },
+    /// One word of the kernel.
+    KernelWordWrong {
+        /// The node, 0 to 64.
+        node: usize,
+        /// The tap that the word weighs.
+        weight: String,
+        /// The tables in which it is wrong.
+        generation: u8,
+        /// The least value that gives what was seen, in units of 2^-14.
+        least: i64,
+        /// The greatest.
+        most: i64,
+        /// What was uploaded.
+        uploaded: i16,
+    },
+    /// A data line of the line memory.
+    LineMemoryDataStuck {
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// A data line behind the datapath.
+    OutputDataStuck {
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// An address line of the line memory, at either level.
+    LineMemoryAddressStuck {
+        /// The line.
+        bit: u32,
+        /// How addresses must be counted for it.
+        counting: Counting,
+    },
+    /// The window reads the columns beside those that it should.
+    TapOffset {
+        /// How far to the right.
+        columns: i64,
+    },
+    /// A tap that does not carry its own sample.
+    TapDead {
+        /// Which.
+        tap: String,
+        /// The tap whose sample it carries; none for zero.
+        reads: Option<String>,
+    },
+    /// The base column has the row's other colour.
+    BaseColourWrong {},
+    /// The weighted sum is not rounded.
+    OutputRoundingMissing {},
+    /// The weights between two nodes are not rounded.
+    WeightRoundingMissing {},
+    /// Neither is rounded.
+    RoundingMissing {},
+    /// Outputs wrap instead of being clamped.
+    ClampMissing {
+        /// Where.
+        end: ClampEnd,
+    },
+    /// A data line of the row table, as the datapath reads it.
+    RowTableDataStuck {
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// An address line of the row table.
+    RowTableAddressStuck {
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// The row table is read beside the row's entry.
+    RowTableAddressOff {
+        /// How many entries ahead.
+        entries: isize,
+    },
+    /// An address line of the kernel's memory.
+    KernelAddressStuck {
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// A data line of the memory of one weight.
+    KernelDataStuck {
+        /// The tap that it weighs.
+        weight: String,
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// Rows are made with other tables than were committed for them.
+    StaleTables {
+        /// The rows, when they are few; none for all.
+        rows: Vec<usize>,
+        /// The frames.
+        frames: Vec<StaleFrames>,
+    },
+    /// Rows hold the samples of others.
+    RowsExchanged {
+        /// Which others.
+        source: RowSource,
+        /// Whether some hold still others.
+        mostly: bool,
+    },
+    /// Every row is moved along itself.
+    RowShifted {
+        /// How far to the right.
+        columns: isize,
+    },
+    /// The two outputs of every pair of columns are exchanged.
+    ColumnPairsExchanged {},
+    /// Whole rows stay black.
+    RowsLost {
+        /// How many.
+        rows: usize,
+        /// The first.
+        first: usize,
+    },
+    /// None that is known explains most of the differences: where they lie.
+    NoneKnown {
+        /// Their rows.
+        rows: Option<Extent>,
+        /// Their columns.
+        columns: Option<Extent>,
+        /// The most negative difference, found − expected.
+        least: Option<i32>,
+        /// The most positive.
+        most: Option<i32>,
+        /// Whether only samples of half the range and above differ, or only those below; none for both.
+        bright: Option<bool>,
+        /// In so many frames.
+        frames: usize,
+        /// Of so many.
+        of_frames: usize,
+    },
+    /// Another number of entries reads back than was uploaded.
+    TableLengthWrong {
+        /// The table.
+        table: Memory,
+        /// Entries uploaded.
+        uploaded: usize,
+        /// Entries read.
+        read: usize,
+    },
+    /// A word of a table reads back as another.
+    TableWordWrong {
+        /// The table.
+        table: Memory,
+        /// The row or the node.
+        entry: usize,
+        /// The tap that the word weighs, in a kernel.
+        weight: Option<String>,
+        /// The bits that differ.
+        bits: Vec<u32>,
+        /// What was uploaded.
+        uploaded: i64,
+        /// What was read.
+        read: i64,
+        /// Words that are wrong in all.
+        wrong: usize,
+    },
+    /// A data line of a table, as it reads back.
+    TableDataStuck {
+        /// The table.
+        table: Memory,
+        /// The tap whose weights alone it carries, if it is the line of one.
+        weight: Option<String>,
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// An address line of a table, as it reads back.
+    TableAddressStuck {
+        /// The table.
+        table: Memory,
+        /// The line.
+        bit: u32,
+        /// Its level.
+        value: u8,
+    },
+    /// Every entry of a table reads back as its neighbour.
+    TableAddressOff {
+        /// The table.
+        table: Memory,
+        /// How many entries ahead.
+        entries: isize,
+    },
+    /// A table reads back as nothing but one level.
+    TableLevelStuck {
+        /// The table.
+        table: Memory,
+        /// The level.
+        value: u8,
+    },
+}
+
+impl Defect {
+    /// Its code and its parameters.
+    #[must_use]
+    pub fn tagged(&self) -> (String, super::Parameters) {
+        super::finding::tagged(self)
+    }
+}
+
+/// What a broken bit makes of a word.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Reading {
+    /// What was uploaded, in the tables of `generation`.
+    pub uploaded: i64,
+    /// What is read instead.
+    pub read: i64,
+    /// The tables.
+    pub generation: u8,
+    /// Whether the other tables are read right.
+    pub only: bool,
+}
+
+/// From where the addresses of the line memory are counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Counting {
+    /// From the run's first sample.
+    Run,
+    /// From each frame's.
+    Frame,
+    /// From each row's.
+    Row,
+    /// From before the run.
+    Before,
+}
+
+/// Where outputs are not clamped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ClampEnd {
+    /// Below 0.
+    Low,
+    /// Above the largest sample.
+    High,
+    /// Beyond either end.
+    Both,
+}
+
+/// Which memory holds a table.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Memory {
+    /// The row factors'.
+    Rows,
+    /// The kernel's.
+    Kernel,
+}
+
+/// A frame that was made with other tables than it should.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct StaleFrames {
+    /// Its number.
+    pub frame: u16,
+    /// The generation that was committed for it.
+    pub committed: u8,
+    /// What its rows were made with.
+    pub made_with: Vec<MadeWith>,
+}
+
+/// Generations that a row was made with, or none for what a board holds when it was just switched on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct MadeWith {
+    /// That of the row factors.
+    pub factors: Option<u8>,
+    /// That of the kernel.
+    pub kernel: Option<u8>,
+}
+
+/// Where a row's samples come from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum RowSource {
+    /// The corrected row so many rows below, in the frame so many later.
+    Output {
+        /// Frames later.
+        frames: isize,
+        /// Rows below.
+        rows: isize,
+    },
+    /// The row that went in so many rows below, made with this row's factor.
+    Input {
+        /// Rows below.
+        rows: isize,
+    },
+}
+
+/// Which rows or columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Extent {
+    /// A single one.
+    One {
+        /// Which.
+        at: usize,
+    },
+    /// All.
+    Every {},
+    /// All from one on.
+    From {
+        /// That one.
+        first: usize,
+    },
+    /// All between two, these included.
+    Between {
+        /// The first.
+        first: usize,
+        /// The last.
+        last: usize,
+    },
+    /// Only even ones.
+    Even {
+        /// How many.
+        count: usize,
+    },
+    /// Only odd ones.
+    Odd {
+        /// How many.
+        count: usize,
+    },
+    /// Some.
+    Some {
+        /// How many.
+        count: usize,
+        /// Of so many.
+        total: usize,
+        /// The first.
+        first: usize,
+        /// The last.
+        last: usize,
+    },
+}

@@ -1,0 +1,197 @@
+//! One of every finding and of every defect, for the page of codes and for tests.
+
+use super::{
+    Account, BoardKind, ClampEnd, Counter, Counting, Defect, Doubt, Extent, Finding, MadeWith, Memory,
+    Problem, Reading, RowSource, StaleFrames, Suspect,
+};
+
+/// One of every finding that is no error.
+#[must_use]
+pub fn findings() -> Vec<Finding> {
+    let passed = [
+        Finding::GoldenSamplesFound { samples: 4_147_328, path: "avx2".to_owned() },
+        Finding::BoardIdentified { name: "halfrow mock".to_owned(), wire: 1, datapath: 1 },
+        Finding::EchoesReturned { bytes: 8192, echoes: 5 },
+        Finding::TablesUploaded { rows: 1080, nodes: 65, generation: 2 },
+        Finding::TablesReadBack { ports: 3 },
+        Finding::FramesEqual { frames: 16, samples: 33_177_600 },
+        Finding::LatencyRight { clocks: 972 },
+        Finding::TablesUnchanged {},
+        Finding::TablesUnused {},
+        Finding::CountersRight { rows: 17_280, damaged_unseen: 0 },
+        Finding::NotReached {},
+        Finding::AllRight {
+            frames: 16,
+            samples: 33_177_600,
+            latency: 972,
+            board: BoardKind::Hardware,
+            reconnections: 0,
+        },
+    ];
+    passed.into_iter().chain(of_the_board()).chain(unjudged()).collect()
+}
+
+fn of_the_board() -> [Finding; 18] {
+    let defect = || Box::new(Defect::LineMemoryDataStuck { bit: 5, value: 1 });
+    let account = Account::Words { wrong: 40, explained: 40, others: 0 };
+    let of_table = Box::new(Defect::TableDataStuck { table: Memory::Rows, weight: None, bit: 7, value: 1 });
+    [
+        Finding::CapabilityImpossible {
+            capability: "latency".to_owned(),
+            value: 40,
+            legal: "L is 3 to 32".to_owned(),
+        },
+        Finding::EchoWrong {},
+        Finding::TableReadsWrong { defect: of_table, account },
+        Finding::TableCrcWrong {},
+        Finding::CommitCrcWrong {},
+        Finding::TablesChanged { found: Box::new(Finding::TableCrcWrong {}) },
+        Finding::GenerationWrong { row: 3, frame: 2, named: 1, committed: 2 },
+        Finding::SamplesDiffer {
+            differences: 1234,
+            samples: 33_177_600,
+            differing_frames: 2,
+            frames: 16,
+            suspect: Some(defect()),
+        },
+        Finding::LatencyWrong { rows: 9, row: 3, frame: 2, first: 973, last: 973, claimed: 972 },
+        Finding::CounterWrong { counter: Counter::RowsOut, counted: 17_279, right: 17_280 },
+        Finding::GapsMiscounted { row: 3, frame: 2, counted: 11, expected: 12 },
+        Finding::LatencyMiscounted { least: 972, most: 972, counted_least: 971, counted_most: 972 },
+        Finding::RowMisplaced { row: 3, frame: 2 },
+        Finding::RowSwallowed { row: 3, frame: 2, again: 3 },
+        Finding::RowCopyDiffers { row: 3, frame: 2 },
+        Finding::RowNeverSent { row: 3, frame: 2, sequence: 1083 },
+        Finding::RowNumberedTwice { row: 3, frame: 2, number: 513 },
+        Finding::RowOutOfOrder { row: 3, frame: 2 },
+    ]
+}
+
+fn unjudged() -> [Finding; 9] {
+    let reason = Problem::new("no-answer", "no answer to Echo in 8 tries; check that the board is powered");
+    [
+        Finding::RowLostOnce { row: 3, frame: 2 },
+        Finding::RowLostAmongOthers { row: 3, frame: 2 },
+        Finding::RightInAnotherSession {
+            found: Box::new(Finding::TableCrcWrong {}),
+            doubt: Doubt::RequestsTwice { requests: 2 },
+        },
+        Finding::WrongOverDoubtfulLink {
+            found: Box::new(Finding::CommitCrcWrong {}),
+            doubt: Doubt::PacketsMiscounted { counted: 513, sent: 512 },
+        },
+        Finding::NothingJudged {},
+        Finding::DatapathUnknown { datapath: 2, known: 1 },
+        Finding::HardwareRequired { board: BoardKind::Mock },
+        Finding::BoardExchanged {},
+        Finding::BoardStayedAway { reason: Box::new(reason), seconds: 30.0 },
+    ]
+}
+
+/// One suspect of every defect.
+#[must_use]
+pub fn suspects() -> Vec<Suspect> {
+    let samples =
+        Account::Samples { differing: 960, explained: 960, contradicted: 0, others: 0, set_in: false };
+    let words = Account::Words { wrong: 40, explained: 40, others: 0 };
+    let seen = in_tables().into_iter().chain(of_lines()).chain(of_logic());
+    let seen = seen.map(|defect| Suspect { defect, account: samples.clone(), explained: 1.0 });
+    let read = read_back().map(|defect| Suspect { defect, account: words.clone(), explained: 1.0 });
+    let unknown = Suspect { defect: none_known(), account: Account::Nothing, explained: 0.0 };
+    seen.chain(read).chain([unknown]).collect()
+}
+
+fn in_tables() -> Vec<Defect> {
+    let reading = |read, uploaded| Reading { uploaded, read, generation: 2, only: true };
+    let made = MadeWith { factors: Some(1), kernel: Some(1) };
+    vec![
+        Defect::RowFactorBitWrong {
+            row: 3,
+            bit: 4,
+            reading: reading(16_000_016, 16_000_000),
+            above_one: false,
+        },
+        Defect::RowFactorWrong {
+            row: 3,
+            generation: 2,
+            least: 15_999_999,
+            most: 16_000_001,
+            uploaded: 16_000_100,
+        },
+        Defect::KernelWordBitWrong { node: 7, weight: "G4".to_owned(), bit: 3, reading: reading(-120, -128) },
+        Defect::KernelWordWrong {
+            node: 7,
+            weight: "G4".to_owned(),
+            generation: 2,
+            least: -120,
+            most: -120,
+            uploaded: -128,
+        },
+        Defect::StaleTables {
+            rows: Vec::new(),
+            frames: vec![StaleFrames { frame: 2, committed: 2, made_with: vec![made] }],
+        },
+    ]
+}
+
+fn of_lines() -> Vec<Defect> {
+    vec![
+        Defect::LineMemoryDataStuck { bit: 5, value: 1 },
+        Defect::OutputDataStuck { bit: 5, value: 0 },
+        Defect::LineMemoryAddressStuck { bit: 10, counting: Counting::Run },
+        Defect::RowTableDataStuck { bit: 7, value: 1 },
+        Defect::RowTableAddressStuck { bit: 2, value: 0 },
+        Defect::RowTableAddressOff { entries: -1 },
+        Defect::KernelAddressStuck { bit: 3, value: 0 },
+        Defect::KernelDataStuck { weight: "G0".to_owned(), bit: 3, value: 0 },
+    ]
+}
+
+fn of_logic() -> Vec<Defect> {
+    vec![
+        Defect::TapOffset { columns: 1 },
+        Defect::TapDead { tap: "G4".to_owned(), reads: None },
+        Defect::BaseColourWrong {},
+        Defect::OutputRoundingMissing {},
+        Defect::WeightRoundingMissing {},
+        Defect::RoundingMissing {},
+        Defect::ClampMissing { end: ClampEnd::High },
+        Defect::RowsExchanged { source: RowSource::Output { frames: 0, rows: -1 }, mostly: false },
+        Defect::RowShifted { columns: 1 },
+        Defect::ColumnPairsExchanged {},
+        Defect::RowsLost { rows: 2, first: 3 },
+    ]
+}
+
+fn read_back() -> impl Iterator<Item = Defect> {
+    let table = Memory::Rows;
+    [
+        Defect::TableLengthWrong { table, uploaded: 1080, read: 1079 },
+        Defect::TableWordWrong {
+            table: Memory::Kernel,
+            entry: 7,
+            weight: Some("G4".to_owned()),
+            bits: vec![3],
+            uploaded: -128,
+            read: -120,
+            wrong: 1,
+        },
+        Defect::TableDataStuck { table, weight: None, bit: 7, value: 1 },
+        Defect::TableAddressStuck { table, bit: 2, value: 0 },
+        Defect::TableAddressOff { table, entries: 1 },
+        Defect::TableLevelStuck { table, value: 0 },
+    ]
+    .into_iter()
+}
+
+fn none_known() -> Defect {
+    Defect::NoneKnown {
+        rows: Some(Extent::From { first: 512 }),
+        columns: Some(Extent::Every {}),
+        least: Some(-1),
+        most: Some(1),
+        bright: None,
+        frames: 2,
+        of_frames: 16,
+    }
+}

@@ -1,0 +1,357 @@
+//! What a run found, as a code with parameters.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Account, BoardKind, Counter, Defect, Parameters, Problem, wording};
+
+/// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
+pub enum Finding {
+    /// This computer finds the golden samples.
+    GoldenSamplesFound {
+        /// How many.
+        samples: usize,
+        /// The path of the model that found them.
+        path: String,
+    },
+    /// The board is one that can be judged.
+    BoardIdentified {
+        /// Its name.
+        name: String,
+        /// The wire's version.
+        wire: u8,
+        /// Its datapath.
+        datapath: u16,
+    },
+    /// What was echoed came back as it went.
+    EchoesReturned {
+        /// Bytes in all.
+        bytes: usize,
+        /// In so many echoes.
+        echoes: usize,
+    },
+    /// Tables were uploaded.
+    TablesUploaded {
+        /// Row factors.
+        rows: usize,
+        /// Nodes of the kernel.
+        nodes: usize,
+        /// As this generation.
+        generation: u8,
+    },
+    /// The datapath's ports read what was uploaded.
+    TablesReadBack {
+        /// How many ports.
+        ports: usize,
+    },
+    /// All samples are the reference's.
+    FramesEqual {
+        /// Frames.
+        frames: usize,
+        /// Samples.
+        samples: usize,
+    },
+    /// Every row takes the claimed latency.
+    LatencyRight {
+        /// It, in pixel clocks.
+        clocks: u32,
+    },
+    /// The tables are still what was uploaded.
+    TablesUnchanged {},
+    /// No frame came to use the judged tables.
+    TablesUnused {},
+    /// The board counts what went through it.
+    CountersRight {
+        /// Rows each way.
+        rows: usize,
+        /// Damaged packets that the board counts although nothing had to be sent again.
+        damaged_unseen: u32,
+    },
+    /// The run ended before.
+    NotReached {},
+    /// Everything was judged, and all of it is right.
+    AllRight {
+        /// Frames.
+        frames: usize,
+        /// Samples.
+        samples: usize,
+        /// The latency of every row, in pixel clocks.
+        latency: u32,
+        /// What stood behind the target.
+        board: BoardKind,
+        /// How often the board went away and came back.
+        reconnections: usize,
+    },
+    /// The board says of itself what no board can be.
+    CapabilityImpossible {
+        /// The capability, by its name in `protocol/WIRE.md`.
+        capability: String,
+        /// What the board says.
+        value: u16,
+        /// What is legal, as the end of a sentence.
+        legal: String,
+    },
+    /// Echoed bytes came back as others, under a CRC of the board's.
+    EchoWrong {},
+    /// A table reads back otherwise than it was uploaded.
+    TableReadsWrong {
+        /// What is wrong with it.
+        defect: Box<Defect>,
+        /// How well that explains what was read.
+        account: Account,
+    },
+    /// A table's CRC is wrong although all entries are right.
+    TableCrcWrong {},
+    /// The board finds another CRC when it commits tables that read back right.
+    CommitCrcWrong {},
+    /// A table is no longer what it was when it was committed.
+    TablesChanged {
+        /// How.
+        found: Box<Finding>,
+    },
+    /// A row names other tables than were committed for it.
+    GenerationWrong {
+        /// The row.
+        row: usize,
+        /// Its frame.
+        frame: u16,
+        /// The generation that it names.
+        named: u8,
+        /// The one that was committed.
+        committed: u8,
+    },
+    /// Samples are not the reference's.
+    SamplesDiffer {
+        /// How many.
+        differences: usize,
+        /// Of so many.
+        samples: usize,
+        /// In so many frames.
+        differing_frames: usize,
+        /// Of so many.
+        frames: usize,
+        /// The likeliest cause.
+        suspect: Option<Box<Defect>>,
+    },
+    /// Rows take another latency than the board claims.
+    LatencyWrong {
+        /// How many.
+        rows: usize,
+        /// The first of them.
+        row: usize,
+        /// Its frame.
+        frame: u16,
+        /// From first sample in to first sample out, in pixel clocks.
+        first: u32,
+        /// From last to last.
+        last: u32,
+        /// What the board claims.
+        claimed: u32,
+    },
+    /// A counter of the board's is not what it should be.
+    CounterWrong {
+        /// Which.
+        counter: Counter,
+        /// What the board counts.
+        counted: u32,
+        /// What it should.
+        right: u32,
+    },
+    /// The board counts other pauses for a row than the gaps of its seed are.
+    GapsMiscounted {
+        /// The row, the first of them.
+        row: usize,
+        /// Its frame.
+        frame: u16,
+        /// Board clocks by the board's count.
+        counted: u16,
+        /// And by the seed.
+        expected: u16,
+    },
+    /// The board's extremes of latency are not those of its rows.
+    LatencyMiscounted {
+        /// The least that a row names.
+        least: u32,
+        /// The most.
+        most: u32,
+        /// The least by the counters.
+        counted_least: u32,
+        /// The most by them.
+        counted_most: u32,
+    },
+    /// A row came back under a place that was never sent.
+    RowMisplaced {
+        /// The row that it names.
+        row: u16,
+        /// The frame.
+        frame: u16,
+    },
+    /// A row went into the board and never came out, twice.
+    RowSwallowed {
+        /// The row.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+        /// The row that was lost when the frame was played again.
+        again: u16,
+    },
+    /// A row came twice, and not the same both times.
+    RowCopyDiffers {
+        /// The row.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+    },
+    /// A row came that the board was never given.
+    RowNeverSent {
+        /// The row.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+        /// The row's number in the session.
+        sequence: u32,
+    },
+    /// Two different `ROW_OUT` packets have the same number.
+    RowNumberedTwice {
+        /// The row of the second one.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+        /// The number in both headers.
+        number: u16,
+    },
+    /// A row left the board behind a later one.
+    RowOutOfOrder {
+        /// The row that came too late.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+    },
+    /// A row did not come back, and the frame did when it was played again.
+    RowLostOnce {
+        /// The row.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+    },
+    /// A row did not come back, and neither did other packets.
+    RowLostAmongOthers {
+        /// The row.
+        row: u16,
+        /// Its frame.
+        frame: u16,
+    },
+    /// What was wrong may come from the link, and was right in another session.
+    RightInAnotherSession {
+        /// What was wrong.
+        found: Box<Finding>,
+        /// Why it may come from the link.
+        doubt: Doubt,
+    },
+    /// What is wrong may come from the link, in every session.
+    WrongOverDoubtfulLink {
+        /// What is wrong.
+        found: Box<Finding>,
+        /// Why it may come from the link.
+        doubt: Doubt,
+    },
+    /// No frame came back.
+    NothingJudged {},
+    /// The board computes another datapath than this program judges.
+    DatapathUnknown {
+        /// The board's.
+        datapath: u16,
+        /// The one that is judged.
+        known: u16,
+    },
+    /// Hardware is required, and this is none.
+    HardwareRequired {
+        /// What it is.
+        board: BoardKind,
+    },
+    /// Another board came back than went away.
+    BoardExchanged {},
+    /// The board went away and did not come back.
+    BoardStayedAway {
+        /// How it went.
+        reason: Box<Problem>,
+        /// How long it was waited for, in seconds.
+        seconds: f64,
+    },
+    /// An error of the station, the link or the call.
+    #[serde(untagged)]
+    Problem(Box<Problem>),
+}
+
+/// Why a board may not be as the host made it, although it is sound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum Doubt {
+    /// Requests that change the board may have come to it twice.
+    RequestsTwice {
+        /// How many.
+        requests: u64,
+    },
+    /// The board counts other packets than were sent to it.
+    PacketsMiscounted {
+        /// What it counts.
+        counted: u64,
+        /// What was sent.
+        sent: u64,
+    },
+}
+
+impl Doubt {
+    /// It as a part of a sentence.
+    #[must_use]
+    pub fn sentence(self) -> String {
+        wording::because(self)
+    }
+}
+
+impl Finding {
+    /// It in one sentence, without a full stop.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        wording::sentence(self)
+    }
+
+    /// What to do about it, if there is something to do.
+    #[must_use]
+    pub fn remedy(&self) -> Option<String> {
+        wording::remedy(self)
+    }
+
+    /// Its code.
+    #[must_use]
+    pub fn code(&self) -> String {
+        tagged(self).0
+    }
+
+    /// It as the reason why there is no result.
+    #[must_use]
+    pub fn as_problem(&self) -> Problem {
+        if let Self::Problem(problem) = self {
+            return (**problem).clone();
+        }
+        let (code, parameters) = tagged(self);
+        let (message, remedy) = (self.sentence(), self.remedy());
+        Problem { code, parameters, message, remedy, causes: Vec::new() }
+    }
+}
+
+impl From<Problem> for Finding {
+    fn from(problem: Problem) -> Self {
+        Self::Problem(Box::new(problem))
+    }
+}
+
+/// The code and the parameters of a finding or a defect.
+pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
+    let value = serde_json::to_value(value).unwrap_or_default();
+    let code = value.get("code").and_then(serde_json::Value::as_str).unwrap_or_default().to_owned();
+    let parameters =
+        value.get("parameters").and_then(serde_json::Value::as_object).cloned().unwrap_or_default();
+    (code, parameters)
+}

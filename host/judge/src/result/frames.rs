@@ -1,0 +1,81 @@
+//! What is told of frames and rows.
+
+use std::fmt;
+
+use halfrow_model::Phase;
+use serde::{Deserialize, Serialize};
+
+use super::as_text;
+use crate::compare::Comparison;
+
+/// One streamed frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FrameReport {
+    /// `builtin:NAME`, or the file's path.
+    pub name: String,
+    /// The frame's number on the wire.
+    pub number: u16,
+    /// SHA-256 of the samples, 16 bits little endian.
+    pub sha256: String,
+    /// Bayer phase.
+    #[serde(with = "as_text")]
+    pub phase: Phase,
+    /// Which tables made it: a generation.
+    pub generation: u8,
+    /// How its rows were played.
+    pub timing: FrameTiming,
+    /// How it compares.
+    pub comparison: Comparison,
+    /// Rows that came back.
+    pub rows: usize,
+    /// From when the frame before it had come back until it had, by the wall's clock, in seconds.
+    pub seconds: f64,
+}
+
+/// How the rows of a frame were played.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum FrameTiming {
+    /// The fewest pixel clocks between rows that the board can do.
+    LeastBlanking {
+        /// How many those are.
+        clocks: u16,
+    },
+    /// So many pixel clocks between rows.
+    Blanking {
+        /// How many.
+        clocks: u16,
+    },
+    /// Gaps in and between rows.
+    Gaps {
+        /// Their seed.
+        seed: u32,
+    },
+}
+
+impl fmt::Display for FrameTiming {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::LeastBlanking { clocks } => write!(f, "least blanking ({clocks} clocks)"),
+            Self::Blanking { clocks } => write!(f, "{clocks} clocks of blanking"),
+            Self::Gaps { seed } => write!(f, "gaps, seed {seed}"),
+        }
+    }
+}
+
+/// The latency of every row, in pixel clocks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LatencyReport {
+    /// D = W/2 + L by the board's own L.
+    pub claimed: u32,
+    /// The most that any board may take, W/2 + 32.
+    pub limit: u32,
+    /// The smallest that was measured.
+    pub least: u32,
+    /// The largest.
+    pub most: u32,
+    /// Rows measured.
+    pub rows: usize,
+    /// Rows whose first or last latency is not the claimed one.
+    pub wrong_rows: usize,
+}

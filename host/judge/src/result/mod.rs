@@ -1,0 +1,225 @@
+//! What a run came to, as data: a [`Report`] that can be stored, read back and compared.
+//!
+//! ```text
+//! Report ─► checks ─► Finding  ─┐
+//!        ─► suspects ► Defect  ─┴─► wording ─► sentences, which the views print and the JSON carries
+//! ```
+//!
+//! A finding is a code with parameters. Its sentence is made from them in [`wording`] and nowhere else; what is read back
+//! is the code and its parameters, never the sentence.
+
+mod as_text;
+mod check;
+pub mod codes;
+pub(crate) mod comparison;
+mod counter;
+mod defect;
+mod document;
+mod evidence;
+pub mod examples;
+mod finding;
+mod frames;
+mod identity;
+mod link;
+mod problem;
+mod sha256;
+mod suspect;
+pub mod wording;
+
+use serde::{Deserialize, Serialize};
+
+use crate::frames::street::EdgeDeviation;
+use crate::verdict::{Cause, Verdict};
+
+pub use crate::target::BoardKind;
+pub use check::{Check, CheckName, Outcome};
+pub use counter::Counter;
+pub use defect::{ClampEnd, Counting, Defect, Extent, MadeWith, Memory, Reading, RowSource, StaleFrames};
+pub use document::{Document, SCHEMA, Schema};
+pub use evidence::{Evidence, EvidenceReport};
+pub use finding::{Doubt, Finding};
+pub use frames::{FrameReport, FrameTiming, LatencyReport};
+pub use identity::Identity;
+pub use link::{LinkReport, Reconnection};
+pub use problem::{Parameters, Problem};
+pub use sha256::sha256;
+pub use suspect::{Account, Suspect};
+
+/// A finished run of `verify`.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+pub struct Report {
+    /// Which shape of JSON it has.
+    pub schema: Schema,
+    /// The judgement.
+    pub verdict: Verdict,
+    /// The board.
+    pub board: BoardReport,
+    /// Why the verdict is what it is.
+    pub cause: Cause,
+    /// The result.
+    pub finding: Finding,
+    /// The parts that the pattern of differences points at, the likeliest first.
+    pub suspects: Vec<Suspect>,
+    /// Every check, in the order of the run.
+    pub checks: Vec<Check>,
+    /// Every frame that was streamed, in order.
+    pub frames: Vec<FrameReport>,
+    /// The latency of all rows.
+    pub latency: Option<LatencyReport>,
+    /// How façade edges of the built-in street stand before and after.
+    pub street: Option<StreetReport>,
+    /// What was kept for diagnosis and pictures.
+    pub evidence: EvidenceReport,
+    /// The link.
+    pub link: LinkReport,
+    /// What was uploaded.
+    pub tables: TablesReport,
+    /// The run itself: enough to repeat it.
+    pub run: RunReport,
+}
+
+impl Report {
+    /// The result in one sentence.
+    #[must_use]
+    pub fn headline(&self) -> String {
+        self.finding.sentence()
+    }
+
+    /// What to do next, when there is something to do: what the likeliest suspect asks for, or else the finding.
+    #[must_use]
+    pub fn remedy(&self) -> Option<String> {
+        let of_suspect = || self.suspects.first().map(Suspect::designer);
+        let of_line = || self.link.line_errors.advice().map(str::to_owned);
+        match self.verdict {
+            Verdict::Pass => None,
+            Verdict::Fail => of_suspect().or_else(|| self.finding.remedy()),
+            Verdict::Error => of_line().or_else(|| self.finding.remedy()),
+        }
+    }
+
+    /// Why there is no judgement; none under PASS and FAIL.
+    #[must_use]
+    pub fn error(&self) -> Option<Problem> {
+        (self.verdict == Verdict::Error)
+            .then(|| Problem { remedy: self.remedy(), ..self.finding.as_problem() })
+    }
+}
+
+/// With its sentences, and what every document of the program begins with.
+impl Serialize for Report {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Rest<'a> {
+            cause: Cause,
+            headline: String,
+            remedy: Option<String>,
+            finding: &'a Finding,
+            suspects: &'a [Suspect],
+            checks: &'a [Check],
+            frames: &'a [FrameReport],
+            latency: &'a Option<LatencyReport>,
+            street: &'a Option<StreetReport>,
+            evidence: &'a EvidenceReport,
+            link: &'a LinkReport,
+            tables: &'a TablesReport,
+            run: &'a RunReport,
+        }
+        let rest = Rest {
+            cause: self.cause,
+            headline: self.headline(),
+            remedy: self.remedy(),
+            finding: &self.finding,
+            suspects: &self.suspects,
+            checks: &self.checks,
+            frames: &self.frames,
+            latency: &self.latency,
+            street: &self.street,
+            evidence: &self.evidence,
+            link: &self.link,
+            tables: &self.tables,
+            run: &self.run,
+        };
+        Document {
+            schema: self.schema,
+            command: "verify",
+            verdict: Some(self.verdict),
+            board: Some(&self.board),
+            error: self.error().as_ref(),
+            rest,
+        }
+        .serialize(serializer)
+    }
+}
+
+/// Which board it was.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BoardReport {
+    /// `mock`, `sim`, `replay` or `hardware`.
+    pub kind: BoardKind,
+    /// The target string.
+    pub target: String,
+    /// What the board says of itself; none when it never answered.
+    pub identity: Option<Identity>,
+}
+
+/// Façade edges of the built-in street.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StreetReport {
+    /// As the lens bends them.
+    pub before: EdgeDeviation,
+    /// As the board's correction leaves them.
+    pub after: EdgeDeviation,
+}
+
+/// What was uploaded.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TablesReport {
+    /// Where they came from: a file, or the lens and kernel in words.
+    pub source: String,
+    /// Columns.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// Bits a sample.
+    pub bits: u32,
+    /// C, twice the optical centre's column.
+    pub centre2: u32,
+    /// Rows outside the image circle, which are not stretched; none when the tables are a file, which does not say.
+    pub rows_outside_circle: Option<usize>,
+    /// CRC-32 of the row factors, as on the wire.
+    pub steps_crc32: String,
+    /// CRC-32 of the kernel's nodes, as on the wire.
+    pub kernel_crc32: String,
+}
+
+/// The run itself.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunReport {
+    /// halfrow's version.
+    pub version: String,
+    /// The commit that it was built from.
+    pub commit: String,
+    /// The command line.
+    pub arguments: Vec<String>,
+    /// Seed of the run's nonces and link test.
+    pub seed: u64,
+    /// When it began, RFC 3339, UTC.
+    pub started: String,
+    /// When it ended.
+    pub ended: String,
+    /// How long it took by the wall's clock, in seconds.
+    pub seconds: f64,
+    /// The host it ran on.
+    pub host: String,
+    /// Files that were read, with their SHA-256.
+    pub files: Vec<FileHash>,
+}
+
+/// A file that was read.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FileHash {
+    /// Its path, as given.
+    pub path: String,
+    /// SHA-256 of its bytes.
+    pub sha256: String,
+}

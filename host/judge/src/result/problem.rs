@@ -1,0 +1,97 @@
+//! An error as data: its code, its parameters, and its causes.
+
+use std::error::Error;
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value};
+
+use super::codes::{self, Coded};
+
+/// Parameters by name.
+pub type Parameters = Map<String, Value>;
+
+/// Why something could not be done.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Problem {
+    /// What it is: stable, for programs.
+    pub code: String,
+    /// Its figures and names.
+    pub parameters: Parameters,
+    /// It in one sentence.
+    pub message: String,
+    /// What to do about it, if that is known.
+    pub remedy: Option<String>,
+    /// What led to it, the nearest first; these have no causes of their own.
+    #[serde(default)]
+    pub causes: Vec<Problem>,
+}
+
+impl Problem {
+    /// A problem without parameters and causes.
+    #[must_use]
+    pub fn new(code: &str, message: impl Into<String>) -> Self {
+        let message = message.into();
+        let remedy = remedy(&message);
+        Self { code: code.to_owned(), parameters: Parameters::new(), message, remedy, causes: Vec::new() }
+    }
+
+    /// An error of this library with its causes.
+    #[must_use]
+    pub fn of(error: &(dyn Error + 'static)) -> Self {
+        Self::by(error, codes::lookup)
+    }
+
+    /// An error with its causes, whose codes `lookup` knows. What wraps a known error without a code of its own has its
+    /// code; what nobody knows is a [`codes::FOREIGN`] cause.
+    #[must_use]
+    pub fn by(error: &(dyn Error + 'static), lookup: codes::Lookup) -> Self {
+        let mut chain: Vec<_> = std::iter::successors(Some(error), |&error| error.source())
+            .map(|error| one(error, lookup))
+            .collect();
+        if let Some(known) = chain.iter().find(|problem| problem.code != codes::FOREIGN).cloned()
+            && let Some(first) = chain.first_mut().filter(|first| first.code == codes::FOREIGN)
+        {
+            (first.code, first.parameters) = (known.code, known.parameters);
+        }
+        let remedy = chain.iter().find_map(|problem| problem.remedy.clone());
+        let mut chain = chain.into_iter();
+        let first = chain.next().unwrap_or_else(|| Self::new(codes::FOREIGN, ""));
+        Self { remedy, causes: chain.collect(), ..first }
+    }
+
+    /// It and its causes, none of which has causes of its own.
+    #[must_use]
+    pub fn chain(mut self) -> Vec<Self> {
+        let causes = std::mem::take(&mut self.causes);
+        std::iter::once(self).chain(causes).collect()
+    }
+
+    /// It and its causes in one sentence.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let causes = self.causes.iter().map(|cause| cause.message.as_str());
+        std::iter::once(self.message.as_str()).chain(causes).collect::<Vec<_>>().join(": ")
+    }
+}
+
+fn one(error: &(dyn Error + 'static), lookup: codes::Lookup) -> Problem {
+    let Coded { code, parameters } = lookup(error).unwrap_or_else(Coded::foreign);
+    Problem { parameters, ..Problem::new(&code, error.to_string()) }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence())
+    }
+}
+
+impl Error for Problem {}
+
+/// What a message asks for: messages of this program say what is wrong and, behind the last semicolon, what to do.
+fn remedy(message: &str) -> Option<String> {
+    let asked = message.rsplit_once("; ")?.1.trim();
+    let mut letters = asked.trim_end_matches('.').chars();
+    let first = letters.next()?;
+    Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}

@@ -1,0 +1,60 @@
+//! Why a defect is suspected.
+
+use super::words;
+use crate::result::{Account, Defect};
+
+/// What speaks for a defect, in one sentence without a full stop.
+#[must_use]
+pub fn evidence(defect: &Defect, account: &Account) -> String {
+    match defect {
+        Defect::TableLengthWrong { uploaded, read, .. } => {
+            return format!("{uploaded} entries were uploaded and {read} came back");
+        }
+        Defect::TableWordWrong { uploaded, read, wrong, .. } => return word(*read, *uploaded, *wrong),
+        _ => {}
+    }
+    let defect = words(defect).defect;
+    match *account {
+        Account::Samples { differing, explained, contradicted, others, set_in } => {
+            let onset =
+                if set_in { "; it set in during the run, since rows before came back right" } else { "" };
+            format!("{defect} {}{onset}", samples(differing, explained, contradicted, others))
+        }
+        Account::Words { wrong, explained, others } => {
+            let unsure =
+                if others > 0 { "; other lines would read alike, so this is not certain" } else { "" };
+            format!("{defect} gives {explained} of the {wrong} wrong words, and changes no other{unsure}")
+        }
+        Account::Nothing => defect,
+    }
+}
+
+fn word(read: i64, uploaded: i64, wrong: usize) -> String {
+    let first = if wrong == 1 {
+        String::new()
+    } else {
+        format!("; it is the first of {wrong} wrong words, which no single line explains")
+    };
+    format!("{read} was read where {uploaded} was uploaded{first}")
+}
+
+/// What the defect gives, as the rest of a sentence. `others` explain everything as well.
+fn samples(differing: usize, explained: usize, contradicted: usize, others: usize) -> String {
+    if explained < differing || contradicted > 0 {
+        let rest = match contradicted {
+            0 => String::new(),
+            1 => ", but would change one that is right".to_owned(),
+            more => format!(", but would change {more} that are right"),
+        };
+        return format!("gives {explained} of the {differing} differing samples examined{rest}");
+    }
+    let all = match differing {
+        1 => "gives the one differing sample examined, and changes no other".to_owned(),
+        _ => format!("gives all {differing} differing samples examined, to the bit, and changes no other"),
+    };
+    match others {
+        0 => all,
+        1 => format!("{all}; so does one other defect, so this is not certain"),
+        _ => format!("{all}; so do {others} other defects, so this is not certain"),
+    }
+}

@@ -1,0 +1,297 @@
+//! What a finding says, and what it asks for.
+
+use super::{designer, evidence, place};
+use crate::result::{Account, BoardKind, Defect, Doubt, Finding};
+
+/// A finding in one sentence, without a full stop.
+#[must_use]
+pub fn sentence(finding: &Finding) -> String {
+    match finding {
+        Finding::GoldenSamplesFound { samples, path } => {
+            format!("this computer finds all {samples} golden samples ({path})")
+        }
+        Finding::BoardIdentified { name, wire, datapath } => {
+            format!("{name}, wire {wire}, datapath {datapath}")
+        }
+        Finding::EchoesReturned { bytes, echoes } => {
+            format!("{bytes} bytes in {echoes} echoes came back as they went")
+        }
+        Finding::TablesUploaded { rows, nodes, generation } => {
+            format!("{rows} row factors and {nodes} kernel nodes, as generation {generation}")
+        }
+        Finding::TablesReadBack { ports } => format!("{ports} datapath ports read what was uploaded"),
+        Finding::FramesEqual { frames, samples } => format!("{frames} frames, {samples} samples, all equal"),
+        Finding::LatencyRight { clocks } => {
+            format!("every row takes {clocks} pixel clocks, first and last sample")
+        }
+        Finding::TablesUnchanged {} => "the tables are still what was uploaded".to_owned(),
+        Finding::TablesUnused {} => "no frame came to use them".to_owned(),
+        Finding::CountersRight { rows, damaged_unseen } => counters_right(*rows, *damaged_unseen),
+        Finding::NotReached {} => "not reached".to_owned(),
+        Finding::AllRight { frames, samples, latency, board, reconnections } => {
+            all_right((*frames, *samples), *latency, *board, *reconnections)
+        }
+        Finding::Problem(problem) => problem.sentence(),
+        wrong => of_board(wrong),
+    }
+}
+
+fn all_right(
+    (frames, samples): (usize, usize),
+    latency: u32,
+    board: BoardKind,
+    reconnections: usize,
+) -> String {
+    let untested = match board {
+        BoardKind::Hardware => "",
+        BoardKind::Mock => " (mock board: no hardware was tested)",
+        BoardKind::Sim => " (simulated board: no hardware was tested)",
+        BoardKind::Replay => " (recording: no hardware was tested now)",
+    };
+    let away = match reconnections {
+        0 => String::new(),
+        times => format!("; the board went away and came back, {times} x"),
+    };
+    format!(
+        "{frames} frames, {samples} samples, all equal to the reference; every row takes {latency} pixel \
+         clocks{untested}{away}"
+    )
+}
+
+fn counters_right(rows: usize, damaged: u32) -> String {
+    let unseen = match damaged {
+        0 => String::new(),
+        _ => format!("; it counts {damaged} damaged packets, and nothing had to be sent again"),
+    };
+    format!("{rows} rows in, {rows} rows out{unseen}")
+}
+
+/// What is wrong with a board.
+fn of_board(finding: &Finding) -> String {
+    match finding {
+        Finding::CapabilityImpossible { capability, value, legal } => format!(
+            "the board says {capability} = {value}, and {legal}; correct what it says of itself (CAPABILITIES in \
+             protocol/WIRE.md), or load another bitstream"
+        ),
+        Finding::EchoWrong {} => {
+            "the board returns other bytes than it was sent, under a CRC that it computed itself".to_owned()
+        }
+        Finding::TableReadsWrong { defect, account } => table(defect, account),
+        Finding::TableCrcWrong {} => {
+            "a table's CRC is wrong although every entry reads back right".to_owned()
+        }
+        Finding::CommitCrcWrong {} => {
+            "the tables read back right, and the board finds another CRC when it commits them".to_owned()
+        }
+        Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
+        Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect } => {
+            let suspicion = match suspect {
+                Some(suspect) => format!("the suspect is {}", place(suspect)),
+                None => "no single defect that is known explains them".to_owned(),
+            };
+            format!(
+                "{differences} of {samples} samples differ, in {differing_frames} of {frames} frames; {suspicion}"
+            )
+        }
+        Finding::CounterWrong { counter, counted, right } => {
+            format!("the board counts {counted} {}, and it is {right}", counter.words())
+        }
+        Finding::GapsMiscounted { row, frame, counted, expected } => format!(
+            "row {row} of frame {frame} was kept waiting by gaps for {counted} board clocks by the board's count, and the gaps \
+             of its seed are {expected}"
+        ),
+        Finding::LatencyMiscounted { least, most, counted_least, counted_most } => format!(
+            "the rows name latencies of {least} to {most} pixel clocks, and the board's counters {counted_least} to \
+             {counted_most}"
+        ),
+        other => of_rows(other),
+    }
+}
+
+fn table(defect: &Defect, account: &Account) -> String {
+    format!("{}: {}", place(defect), evidence(defect, account))
+}
+
+/// What is wrong with single rows.
+fn of_rows(finding: &Finding) -> String {
+    match finding {
+        Finding::GenerationWrong { row, frame, named, committed } => format!(
+            "row {row} of frame {frame} names the tables of generation {named}, and generation {committed} was committed \
+             for it"
+        ),
+        Finding::LatencyWrong { rows, row, frame, first, last, claimed } => format!(
+            "{rows} rows have another latency than the board claims: row {row} of frame {frame} took {first} pixel clocks \
+             from first in to first out and {last} from last in to last out; the board claims {claimed}"
+        ),
+        Finding::RowMisplaced { row, frame } => format!(
+            "the board returned row {row} of frame {frame} under a place that was never sent; its bitstream and this halfrow \
+             do not match"
+        ),
+        Finding::RowSwallowed { row, frame, again } => format!(
+            "row {row} of frame {frame} went into the board and never came out; played again, with nothing else lost or late, \
+             row {again} was lost, and the board counts it as taken"
+        ),
+        other => of_conduct(other),
+    }
+}
+
+/// What no link does to rows.
+fn of_conduct(finding: &Finding) -> String {
+    match finding {
+        Finding::RowCopyDiffers { row, frame } => format!(
+            "row {row} of frame {frame} came twice, and not the same both times, each under a CRC that is right"
+        ),
+        Finding::RowNeverSent { row, frame, sequence } => format!(
+            "the board returned row {row} of frame {frame}, number {sequence} of the session, which it was never given"
+        ),
+        Finding::RowNumberedTwice { row, frame, number } => format!(
+            "the board numbers its ROW_OUT packets wrongly: row {row} of frame {frame} has the number {number}, and so has \
+             another one shortly before it"
+        ),
+        Finding::RowOutOfOrder { row, frame } => format!(
+            "the board reorders rows: row {row} of frame {frame} left it behind a later row, by the board's own numbers of \
+             its packets"
+        ),
+        other => perhaps_of_link(other),
+    }
+}
+
+/// What may be the board's or the link's.
+fn perhaps_of_link(finding: &Finding) -> String {
+    let missing = |row: &u16, frame: &u16| {
+        format!("row {row} of frame {frame} did not come back however often it was asked for")
+    };
+    match finding {
+        Finding::RowLostOnce { row, frame } => format!(
+            "{}; played again, the frame came back whole; check cable and connectors, and run again",
+            missing(row, frame)
+        ),
+        Finding::RowLostAmongOthers { row, frame } => format!(
+            "{}; played again, other packets were lost or late as well, so it may be the link; check cable, connectors and \
+             rate",
+            missing(row, frame)
+        ),
+        Finding::RightInAnotherSession { found, doubt } => format!(
+            "{}; that may have come from the link, since {}: done again in a session of its own, everything was right; check \
+             the link, and run again",
+            sentence(found),
+            because(*doubt)
+        ),
+        Finding::WrongOverDoubtfulLink { found, doubt } => format!(
+            "{}; and {}, so that it may come from the link; check the link, and run again",
+            sentence(found),
+            because(*doubt)
+        ),
+        other => unjudged(other),
+    }
+}
+
+/// Why what is wrong may come from the link, as a part of a sentence.
+pub(crate) fn because(doubt: Doubt) -> String {
+    match doubt {
+        Doubt::RequestsTwice { requests } => {
+            format!("{requests} requests that change the board may have come to it twice")
+        }
+        Doubt::PacketsMiscounted { counted, sent } => {
+            format!("the board counts {counted} packets, and {sent} were sent to it")
+        }
+    }
+}
+
+/// Why there is no judgement, where that is no error.
+fn unjudged(finding: &Finding) -> String {
+    match finding {
+        Finding::NothingJudged {} => "nothing was judged: no frame came back".to_owned(),
+        Finding::DatapathUnknown { datapath, known } => format!(
+            "the board computes datapath {datapath}, and this program judges datapath {known}; load a bitstream of datapath \
+             {known}, or install a halfrow that knows {datapath}"
+        ),
+        Finding::HardwareRequired { .. } => {
+            "hardware is required and this is none, so nothing was judged; name a real board".to_owned()
+        }
+        Finding::BoardExchanged {} => {
+            "another board, or another bitstream, came back than went away; run again".to_owned()
+        }
+        Finding::BoardStayedAway { reason, seconds } => {
+            format!("{}; the board did not come back in {seconds} s", reason.sentence())
+        }
+        _ => String::new(),
+    }
+}
+
+/// What to do about a finding, if there is something to do.
+#[must_use]
+pub fn remedy(finding: &Finding) -> Option<String> {
+    let asked = match finding {
+        Finding::Problem(problem) | Finding::BoardStayedAway { reason: problem, .. } => {
+            return problem.remedy.clone();
+        }
+        Finding::TableReadsWrong { defect, .. } => return Some(designer(defect)),
+        Finding::TablesChanged { found } => return remedy(found),
+        Finding::SamplesDiffer { suspect: Some(suspect), .. } => return Some(designer(suspect)),
+        Finding::SamplesDiffer { suspect: None, .. } => "Make a report and look at the difference maps.",
+        Finding::EchoWrong {} => "Check the board's packet buffers: the link carried what the board sent.",
+        Finding::TableCrcWrong {} => {
+            "Check the board's CRC unit, and whether the tables change on their own."
+        }
+        Finding::CommitCrcWrong {} => {
+            "Check the board's CRC unit and whether the tables change on their own."
+        }
+        Finding::GenerationWrong { .. } => {
+            "The board uses stale tables: check when its bank switch takes effect."
+        }
+        Finding::LatencyWrong { .. } => {
+            "Check the depth of the pipeline behind the line memory, and the L that the capabilities advertise."
+        }
+        Finding::CounterWrong { .. } | Finding::GapsMiscounted { .. } | Finding::LatencyMiscounted { .. } => {
+            "Check the board's counters and its row player; the samples themselves were right."
+        }
+        Finding::RowMisplaced { .. } | Finding::RowNeverSent { .. } => {
+            "Check how the board keeps a row's place with its samples."
+        }
+        Finding::RowSwallowed { .. } => {
+            "Check the row banks and the row player: the board took the row and lost it inside."
+        }
+        other => return asked_of_conduct(other),
+    };
+    Some(asked.to_owned())
+}
+
+fn asked_of_conduct(finding: &Finding) -> Option<String> {
+    let asked = match finding {
+        Finding::RowCopyDiffers { .. } => {
+            "Check what else writes to the output banks while the board waits for the acknowledgement of a row."
+        }
+        Finding::RowNumberedTwice { .. } => {
+            "Check the board's count of ROW_OUT packets, the sequence in their headers."
+        }
+        Finding::RowOutOfOrder { .. } => {
+            "Check in which order the board plays its input banks and sends its output banks."
+        }
+        other => return asked_of_caller(other),
+    };
+    Some(asked.to_owned())
+}
+
+/// What the caller can do where nothing was judged.
+fn asked_of_caller(finding: &Finding) -> Option<String> {
+    Some(match finding {
+        Finding::NothingJudged {} => {
+            "Name at least one frame, or none for the built-in ones.".to_owned()
+        }
+        Finding::DatapathUnknown { datapath, known } => {
+            format!("Load a bitstream of datapath {known}, or install a halfrow that knows {datapath}.")
+        }
+        Finding::HardwareRequired { .. } => "Name a real board.".to_owned(),
+        Finding::BoardExchanged {} => "Run again.".to_owned(),
+        Finding::CapabilityImpossible { .. } => {
+            "Correct what the board says of itself (CAPABILITIES in protocol/WIRE.md), or load another bitstream.".to_owned()
+        }
+        Finding::RowLostOnce { .. } => "Check cable and connectors, and run again.".to_owned(),
+        Finding::RowLostAmongOthers { .. } => "Check cable, connectors and rate.".to_owned(),
+        Finding::RightInAnotherSession { .. } | Finding::WrongOverDoubtfulLink { .. } => {
+            "Check the link, and run again.".to_owned()
+        }
+        _ => return None,
+    })
+}

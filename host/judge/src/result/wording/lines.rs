@@ -1,0 +1,91 @@
+//! Lines that are stuck, as the samples show it.
+
+use super::{LOGIC, MEMORY, Words, stuck};
+use crate::result::Counting;
+
+pub(super) fn line_memory_data(bit: u32, value: u8) -> Words {
+    Words {
+        part: "data bit",
+        place: format!("line memory, data bit {bit}, {}", stuck(value)),
+        defect: format!("bit {bit} of every stored sample at {value}"),
+        designer: format!("Check data line {bit} of the line memory, and the samples' way into it."),
+        technician: MEMORY,
+    }
+}
+
+pub(super) fn output_data(bit: u32, value: u8) -> Words {
+    Words {
+        part: "output bit",
+        place: format!("corrected samples, bit {bit}, {}", stuck(value)),
+        defect: format!("bit {bit} of every output at {value}"),
+        designer: format!("Check data line {bit} from the datapath's output to the bank of corrected rows."),
+        technician: MEMORY,
+    }
+}
+
+pub(super) fn line_memory_address(bit: u32, counting: Counting) -> Words {
+    let counted = match counting {
+        Counting::Run => "",
+        Counting::Frame => " if addresses are counted from each frame's start,",
+        Counting::Row => " if addresses are counted from each row's start,",
+        Counting::Before => " if the ring's count did not begin with this run,",
+    };
+    Words {
+        part: "address bit",
+        place: format!("line memory, address bit {bit}"),
+        defect: format!("this line stuck, at either level,{counted}"),
+        designer: format!("Check address line {bit} of the line memory, and the counters that drive it."),
+        technician: MEMORY,
+    }
+}
+
+pub(super) fn row_table_data(bit: u32, value: u8) -> Words {
+    Words {
+        part: "row table data",
+        place: format!("row table, data bit {bit}, {}", stuck(value)),
+        defect: format!("bit {bit} of every factor at {value}"),
+        designer: format!("Check data line {bit} of the row table's memory."),
+        technician: MEMORY,
+    }
+}
+
+pub(super) fn row_table_address(bit: u32, value: u8) -> Words {
+    Words {
+        part: "row table address",
+        place: format!("row table, address bit {bit}, {}", stuck(value)),
+        defect: format!("every row with another bit {bit} made with another row's factor"),
+        designer: format!("Check address line {bit} of the row table's memory."),
+        technician: MEMORY,
+    }
+}
+
+pub(super) fn row_table_off(entries: isize) -> Words {
+    let (side, way) = if entries < 0 { ("before", "behind") } else { ("after", "ahead") };
+    Words {
+        part: "row table address",
+        place: format!("the row table's address, one entry {way}"),
+        defect: format!("every row made with the factor of the row {side} it"),
+        designer: "Check when the row counter that addresses the row table moves on.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn kernel_address(bit: u32, value: u8) -> Words {
+    Words {
+        part: "kernel address",
+        place: format!("kernel memory, address bit {bit}, {}", stuck(value)),
+        defect: format!("every node with another bit {bit} read as another node"),
+        designer: format!("Check address line {bit} of the kernel's memory."),
+        technician: MEMORY,
+    }
+}
+
+pub(super) fn kernel_data(weight: &str, bit: u32, value: u8) -> Words {
+    Words {
+        part: "kernel data",
+        place: format!("kernel memory, weight {weight}, data bit {bit}, {}", stuck(value)),
+        defect: format!("bit {bit} of {weight} at {value} in every node"),
+        designer: format!("Check data line {bit} of the memory that holds weight {weight}."),
+        technician: MEMORY,
+    }
+}

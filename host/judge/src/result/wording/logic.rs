@@ -1,0 +1,96 @@
+//! Logic that computes something else.
+
+use super::{LOGIC, Words};
+use crate::result::ClampEnd;
+
+pub(super) fn tap_offset(columns: i64) -> Words {
+    let side = if columns < 0 { "left" } else { "right" };
+    let distance = match columns.unsigned_abs() {
+        1 => "one column".to_owned(),
+        more => format!("{more} columns"),
+    };
+    Words {
+        part: "tap offset",
+        place: format!("the window's read address, {distance} to the {side}"),
+        defect: "every tap taken from there".to_owned(),
+        designer: "Check the offset between the source column and the line memory's read address.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn tap_dead(tap: &str, reads: Option<&str>) -> Words {
+    let reads = reads.map_or_else(|| "stuck at 0".to_owned(), |other| format!("reading {other}"));
+    Words {
+        part: "dead tap",
+        place: format!("tap {tap}, {reads}"),
+        defect: "this tap alone".to_owned(),
+        designer: format!("Check the window's register of tap {tap}, and its way to the multipliers."),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn base_colour() -> Words {
+    Words {
+        part: "colour",
+        place: "the base column's colour".to_owned(),
+        defect: "taking samples of the row's other colour".to_owned(),
+        designer: "Check the parity that chooses between the base columns n and n - 1.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn output_rounding() -> Words {
+    Words {
+        part: "rounding",
+        place: "the output's rounding".to_owned(),
+        defect: "dropping the fraction of the sum without adding a half, 2^13,".to_owned(),
+        designer: "Check the constant that is added to the weighted sum.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn weight_rounding() -> Words {
+    Words {
+        part: "weight rounding",
+        place: "the rounding of interpolated weights".to_owned(),
+        defect: "dropping their fraction without adding a half, 2^7,".to_owned(),
+        designer: "Check the constant that is added between two kernel nodes.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn rounding() -> Words {
+    Words {
+        part: "rounding",
+        place: "the rounding of outputs and of interpolated weights".to_owned(),
+        defect: "dropping the fractions of both without adding a half".to_owned(),
+        designer: "Check the constants that are added to the weighted sum and between two kernel nodes."
+            .to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn clamp(end: ClampEnd) -> Words {
+    let beyond = match end {
+        ClampEnd::Low => "below 0",
+        ClampEnd::High => "above the largest sample",
+        ClampEnd::Both => "beyond either end",
+    };
+    Words {
+        part: "clamp",
+        place: format!("the output's clamp, {beyond}"),
+        defect: "letting such sums wrap".to_owned(),
+        designer: "Check the comparison that clamps the output to 0 and 2^B - 1.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn pairs_exchanged() -> Words {
+    Words {
+        part: "colour",
+        place: "the pairs of columns".to_owned(),
+        defect: "the two outputs of every pair of columns exchanged".to_owned(),
+        designer: "Check the order in which samples are packed and unpacked.".to_owned(),
+        technician: LOGIC,
+    }
+}

@@ -1,0 +1,111 @@
+//! The sentences of all findings and defects, made here from their codes and parameters, and nowhere else.
+
+mod evidence;
+mod findings;
+mod lines;
+mod logic;
+mod places;
+mod tables;
+
+use super::{Defect, Memory};
+
+pub use evidence::evidence;
+pub(super) use findings::because;
+pub use findings::{remedy, sentence};
+
+/// What there is to say of a defect.
+pub(super) struct Words {
+    /// The kind of part, in lower case.
+    part: &'static str,
+    /// Where.
+    place: String,
+    /// What is wrong there, so that "… gives these samples" makes a sentence.
+    defect: String,
+    /// Where the designer looks next.
+    designer: String,
+    /// What a technician does.
+    technician: &'static str,
+}
+
+/// Memory may be upset once, or be broken.
+const MEMORY: &str = "Reload the bitstream and run again; if it returns, set the board aside: a memory or a line of its FPGA is broken.";
+/// Wrong logic is wrong on every board that it is loaded into.
+const LOGIC: &str = "Make sure that the right bitstream is loaded and run again; if it returns, try another board: if that one \
+                     does the same, the design is wrong, and else set this board aside.";
+/// What depends on when things happen may come and go with supply and temperature.
+const TIMING: &str = "Switch the board off and on, reload the bitstream and run three times; if it ever returns, set the board \
+                      aside with its reports.";
+/// Nothing is known.
+const REPORT: &str = "Reload the bitstream and run again with a report; if it returns, set the board aside, and hand the report \
+                      to the designer.";
+
+/// The kind of part, in lower case.
+#[must_use]
+pub fn part(defect: &Defect) -> &'static str {
+    words(defect).part
+}
+
+/// Where it is: row, node and weight, bit, as far as it can be told.
+#[must_use]
+pub fn place(defect: &Defect) -> String {
+    words(defect).place
+}
+
+/// Where the designer of the board looks next, in one sentence.
+#[must_use]
+pub fn designer(defect: &Defect) -> String {
+    words(defect).designer
+}
+
+/// What a technician does with this board, in one sentence.
+#[must_use]
+pub fn technician(defect: &Defect) -> String {
+    words(defect).technician.to_owned()
+}
+
+fn words(defect: &Defect) -> Words {
+    match defect {
+        Defect::RowFactorBitWrong { row, bit, reading, above_one } => {
+            tables::row_bit(*row, *bit, reading, *above_one)
+        }
+        Defect::RowFactorWrong { row, generation, least, most, uploaded } => {
+            tables::row_value(*row, *generation, (*least, *most), *uploaded)
+        }
+        Defect::KernelWordBitWrong { node, weight, bit, reading } => {
+            tables::word_bit(*node, weight, *bit, reading)
+        }
+        Defect::KernelWordWrong { node, weight, generation, least, most, uploaded } => {
+            tables::word_value((*node, weight), *generation, (*least, *most), *uploaded)
+        }
+        Defect::LineMemoryDataStuck { bit, value } => lines::line_memory_data(*bit, *value),
+        Defect::OutputDataStuck { bit, value } => lines::output_data(*bit, *value),
+        Defect::LineMemoryAddressStuck { bit, counting } => lines::line_memory_address(*bit, *counting),
+        Defect::RowTableDataStuck { bit, value } => lines::row_table_data(*bit, *value),
+        Defect::RowTableAddressStuck { bit, value } => lines::row_table_address(*bit, *value),
+        Defect::RowTableAddressOff { entries } => lines::row_table_off(*entries),
+        Defect::KernelAddressStuck { bit, value } => lines::kernel_address(*bit, *value),
+        Defect::KernelDataStuck { weight, bit, value } => lines::kernel_data(weight, *bit, *value),
+        Defect::TapOffset { columns } => logic::tap_offset(*columns),
+        Defect::TapDead { tap, reads } => logic::tap_dead(tap, reads.as_deref()),
+        Defect::BaseColourWrong {} => logic::base_colour(),
+        Defect::OutputRoundingMissing {} => logic::output_rounding(),
+        Defect::WeightRoundingMissing {} => logic::weight_rounding(),
+        Defect::RoundingMissing {} => logic::rounding(),
+        Defect::ClampMissing { end } => logic::clamp(*end),
+        Defect::ColumnPairsExchanged {} => logic::pairs_exchanged(),
+        other => places::words(other),
+    }
+}
+
+/// What people call the memory of a table.
+const fn memory(table: Memory) -> &'static str {
+    match table {
+        Memory::Rows => "row table",
+        Memory::Kernel => "kernel memory",
+    }
+}
+
+/// `stuck at 1`
+fn stuck(value: u8) -> String {
+    format!("stuck at {value}")
+}

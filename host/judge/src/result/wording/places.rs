@@ -1,0 +1,172 @@
+//! Rows in other places than their own, rows of other tables, and what no known defect explains.
+
+use std::collections::BTreeMap;
+
+use super::{LOGIC, REPORT, TIMING, Words, tables};
+use crate::result::{Defect, Extent, MadeWith, RowSource, StaleFrames};
+
+pub(super) fn words(defect: &Defect) -> Words {
+    match defect {
+        Defect::StaleTables { rows, frames } => stale(rows, frames),
+        Defect::RowsExchanged { source, mostly } => exchanged(*source, *mostly),
+        Defect::RowShifted { columns } => shifted(*columns),
+        Defect::RowsLost { rows, first } => lost(*rows, *first),
+        other => tables::read_back(other).unwrap_or_else(|| unknown(other)),
+    }
+}
+
+fn stale(rows: &[usize], frames: &[StaleFrames]) -> Words {
+    let rows = if rows.is_empty() { String::new() } else { format!("row {} of ", list(rows)) };
+    let mut alike: BTreeMap<String, Vec<usize>> = BTreeMap::new();
+    for StaleFrames { frame, committed, made_with } in frames {
+        let manner: Vec<_> = made_with.iter().map(|made| made_with_words(*made, *committed)).collect();
+        alike.entry(manner.join(" or ")).or_default().push(usize::from(*frame));
+    }
+    let clauses: Vec<_> = alike
+        .iter()
+        .map(|(manner, numbers)| format!("making {rows}frame {} {manner}", list(numbers)))
+        .collect();
+    Words {
+        part: "stale tables",
+        place: "the choice of the table bank".to_owned(),
+        defect: clauses.join(", and "),
+        designer: "Check when the switch of table banks takes effect, and which bank the datapath reads."
+            .to_owned(),
+        technician: TIMING,
+    }
+}
+
+/// "with the tables of generation 1 instead of 2"
+fn made_with_words(made: MadeWith, own: u8) -> String {
+    match (made.factors, made.kernel) {
+        (None, None) => "as it went in".to_owned(),
+        (None, _) => "without stretching it".to_owned(),
+        (Some(factors), None) if factors == own => "without a kernel".to_owned(),
+        (Some(factors), None) => {
+            format!("with the factors of generation {factors} instead of {own} and without a kernel")
+        }
+        (Some(factors), Some(kernel)) if factors == kernel => {
+            format!("with the tables of generation {factors} instead of {own}")
+        }
+        (Some(factors), Some(kernel)) if factors == own => {
+            format!("with the kernel of generation {kernel} instead of {own}")
+        }
+        (Some(factors), Some(kernel)) if kernel == own => {
+            format!("with the factors of generation {factors} instead of {own}")
+        }
+        (Some(factors), Some(kernel)) => {
+            format!("with the factors of generation {factors} and the kernel of {kernel} instead of {own}")
+        }
+    }
+}
+
+/// "2, 4 to 8" for ascending numbers.
+fn list(numbers: &[usize]) -> String {
+    let runs = numbers.chunk_by(|a, b| a + 1 == *b);
+    let words: Vec<_> = runs
+        .map(|run| match run {
+            [first, .., last] => format!("{first} to {last}"),
+            one => one.iter().map(usize::to_string).collect(),
+        })
+        .collect();
+    words.join(", ")
+}
+
+fn exchanged(source: RowSource, mostly: bool) -> Words {
+    let name = |rows: isize| match rows {
+        0 => "the same row".to_owned(),
+        -1 => "the row above".to_owned(),
+        1 => "the row below".to_owned(),
+        rows if rows < 0 => format!("the row {} above", -rows),
+        rows => format!("the row {rows} below"),
+    };
+    let most = if mostly { "rows holding other rows, mostly" } else { "rows holding" };
+    let defect = match source {
+        RowSource::Output { frames: 0, rows } => format!("{most} {},", name(rows)),
+        RowSource::Output { frames, rows } => {
+            let when = if frames < 0 { "earlier" } else { "later" };
+            format!("{most} {} of the frame {} {when},", name(rows), frames.abs())
+        }
+        RowSource::Input { rows } => format!("{most} {}, made with their own factor,", name(rows)),
+    };
+    Words {
+        part: "row bank",
+        place: "the row banks".to_owned(),
+        defect,
+        designer: "Check the numbers of the row banks that are filled, played and fetched.".to_owned(),
+        technician: TIMING,
+    }
+}
+
+fn shifted(columns: isize) -> Words {
+    let side = if columns < 0 { "left" } else { "right" };
+    Words {
+        part: "row shift",
+        place: format!("the corrected row's first sample, {} to the {side}", columns.unsigned_abs()),
+        defect: "every row moved by as many columns".to_owned(),
+        designer: "Check on which pixel clock the capture of a corrected row begins.".to_owned(),
+        technician: LOGIC,
+    }
+}
+
+fn lost(rows: usize, first: usize) -> Words {
+    Words {
+        part: "lost rows",
+        place: match rows {
+            1 => format!("row {first} on its way out"),
+            count => format!("{count} rows on their way out, the first row {first}"),
+        },
+        defect: "losing whole rows, which stay black,".to_owned(),
+        designer: "Check that every row's samples reach their bank before it is fetched.".to_owned(),
+        technician: TIMING,
+    }
+}
+
+fn unknown(defect: &Defect) -> Words {
+    Words {
+        part: "unknown",
+        place: "no single part".to_owned(),
+        defect: format!("no known defect explains most of the differences: {}", clauses(defect).join(", ")),
+        designer: "Make a report and look at the difference maps.".to_owned(),
+        technician: REPORT,
+    }
+}
+
+fn clauses(defect: &Defect) -> Vec<String> {
+    let Defect::NoneKnown { rows, columns, least, most, bright, frames, of_frames } = defect else {
+        return Vec::new();
+    };
+    let sizes = least.zip(*most).map(|(least, most)| match (least, most) {
+        (-1, 1) => "off by one either way".to_owned(),
+        _ if least == most => format!("all off by {least:+}"),
+        _ => format!("off by {least:+} to {most:+}"),
+    });
+    let bright = bright.map(|bright| {
+        let which = if bright { "of half the range and above" } else { "below half the range" };
+        format!("only in samples {which}")
+    });
+    [
+        rows.map(|rows| extent("row", rows)),
+        columns.map(|columns| extent("column", columns)),
+        sizes,
+        bright,
+        Some(format!("in {frames} of {of_frames} frames")),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn extent(name: &str, extent: Extent) -> String {
+    match extent {
+        Extent::One { at } => format!("all in {name} {at}"),
+        Extent::Every {} => format!("in every {name}"),
+        Extent::From { first } => format!("in every {name} from {first} on"),
+        Extent::Between { first, last } => format!("in {name}s {first} to {last}"),
+        Extent::Even { count } => format!("in {count} {name}s, all even"),
+        Extent::Odd { count } => format!("in {count} {name}s, all odd"),
+        Extent::Some { count, total, first, last } => {
+            format!("in {count} of {total} {name}s, {first} to {last}")
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Words of tables that are wrong: as the samples show it, and as they read back.
+
+use super::{LOGIC, MEMORY, Words, memory};
+use crate::result::{Defect, Memory, Reading};
+
+pub(super) fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
+    let illegal = if above_one { ", above 1, where only part of the row can be foretold," } else { "" };
+    row_factor(row, format!("row {row}'s factor, bit {bit}"), format!("{}{illegal}", read(reading)))
+}
+
+pub(super) fn row_value(row: usize, generation: u8, values: (u32, u32), uploaded: u32) -> Words {
+    let values = (i64::from(values.0), i64::from(values.1));
+    row_factor(row, format!("row {row}'s factor"), read_value(values, uploaded.into(), generation))
+}
+
+fn row_factor(row: usize, place: String, defect: String) -> Words {
+    Words {
+        part: "row factor",
+        place,
+        defect,
+        designer: format!(
+            "Check entry {row} of the row table as the datapath reads it, and the memory that holds it."
+        ),
+        technician: MEMORY,
+    }
+}
+
+pub(super) fn word_bit(node: usize, weight: &str, bit: u32, reading: &Reading) -> Words {
+    kernel_word(node, weight, &format!(", bit {bit}"), read(reading))
+}
+
+pub(super) fn word_value(word: (usize, &str), generation: u8, values: (i64, i64), uploaded: i16) -> Words {
+    kernel_word(word.0, word.1, "", read_value(values, uploaded.into(), generation))
+}
+
+fn kernel_word(node: usize, weight: &str, bit: &str, defect: String) -> Words {
+    Words {
+        part: "kernel word",
+        place: format!("kernel node {node}, weight {weight}{bit}"),
+        defect,
+        designer: format!(
+            "Check node {node} of the kernel as the datapath reads it, and the memory that holds weight {weight}."
+        ),
+        technician: MEMORY,
+    }
+}
+
+/// "reading 5 for 7", with the generation when others are right.
+fn read(reading: &Reading) -> String {
+    let Reading { uploaded, read, generation, only } = reading;
+    let only = if *only { format!(" in the tables of generation {generation} only") } else { String::new() };
+    format!("reading {read} for {uploaded}{only}")
+}
+
+fn read_value((least, most): (i64, i64), uploaded: i64, generation: u8) -> String {
+    let others = if least == most { String::new() } else { format!(" (or another up to {most})") };
+    format!("reading {least}{others} for {uploaded} in the tables of generation {generation}")
+}
+
+/// The words of what was seen when a table was read back.
+pub(super) fn read_back(defect: &Defect) -> Option<Words> {
+    let (table, place, defect) = match defect {
+        Defect::TableLengthWrong { table, .. } => {
+            let words = of_table(*table, "the table's length".to_owned(), String::new());
+            let designer = "Check how the board counts entries when it reads a table back.".to_owned();
+            return Some(Words { designer, technician: LOGIC, ..words });
+        }
+        Defect::TableWordWrong { table, entry, weight, bits, .. } => {
+            (table, word(*entry, weight.as_deref(), bits), String::new())
+        }
+        Defect::TableDataStuck { table, weight, bit, value } => {
+            let weight = weight.as_ref().map_or_else(String::new, |weight| format!(", weight {weight}"));
+            let place = format!("{}{weight}, data bit {bit}", memory(*table));
+            (table, place, format!("this bit stuck at {value}"))
+        }
+        Defect::TableAddressStuck { table, bit, value } => {
+            let stuck = match value {
+                0 => "this bit stuck at 0 for reading",
+                _ => "this bit stuck at 1, or at either level for writing too,",
+            };
+            (table, format!("{}, address bit {bit}", memory(*table)), stuck.to_owned())
+        }
+        Defect::TableAddressOff { table, entries } => {
+            let side = if *entries < 0 { "before" } else { "after" };
+            let place = format!("{}, its address", memory(*table));
+            (table, place, format!("every entry read as the one {side} it"))
+        }
+        Defect::TableLevelStuck { table, value } => {
+            (table, memory(*table).to_owned(), format!("every bit read as {value}"))
+        }
+        _ => return None,
+    };
+    Some(of_table(*table, place, defect))
+}
+
+fn of_table(table: Memory, place: String, defect: String) -> Words {
+    let (part, memory) = match table {
+        Memory::Rows => ("row factor", "row table's memory"),
+        Memory::Kernel => ("kernel word", "kernel's memory"),
+    };
+    let designer = format!("Check the {memory}, its write path and its supply; then upload again.");
+    Words { part, place, defect, designer, technician: MEMORY }
+}
+
+fn word(entry: usize, weight: Option<&str>, bits: &[u32]) -> String {
+    let name = match weight {
+        None => format!("row {entry}'s factor"),
+        Some(weight) => format!("kernel node {entry}, weight {weight}"),
+    };
+    let label = if bits.len() == 1 { "bit" } else { "bits" };
+    let bits: Vec<_> = bits.iter().map(u32::to_string).collect();
+    format!("{name}, {label} {}", bits.join(", "))
+}

@@ -1,0 +1,72 @@
+//! The last word on a run: its verdict, once what was asked for is written.
+
+use std::error::Error;
+
+use crate::report::{ReportError, ReportFolder};
+use crate::result::{Evidence, Problem, Report};
+use crate::verdict::{Cause, Verdict};
+
+/// The code of a recording that was asked for and is not there.
+pub const RECORDING_LOST: &str = "recording-lost";
+/// The code of a report that was asked for and is not there.
+pub const REPORT_LOST: &str = "report-lost";
+
+/// A run that is over.
+#[derive(Debug)]
+pub struct Finished {
+    /// What it found.
+    pub report: Report,
+    /// Frames for pictures.
+    pub evidence: Vec<Evidence>,
+}
+
+impl Finished {
+    /// Writes the report into its folder.
+    ///
+    /// # Errors
+    /// [`Lack`], when it cannot be written: the report is lost then, as by [`Self::lose`].
+    pub fn commit(&mut self, folder: ReportFolder) -> Result<(), Lack> {
+        let Err(error) = folder.commit(&self.report, &self.evidence) else { return Ok(()) };
+        let remedy = match error {
+            ReportError::Exists { .. } => {
+                "Name another place for the report, or allow it to be overwritten, then run again."
+            }
+            _ => "Free some space or choose another place for the report, then run again.",
+        };
+        let what = Problem::new(REPORT_LOST, "the report could not be written");
+        Err(self.lose(Problem { causes: Problem::of(&error).chain(), ..what }, remedy))
+    }
+
+    /// Takes note that the recording of the run could not be finished, as by [`Self::lose`].
+    pub fn lose_recording(&mut self, why: &(dyn Error + 'static)) -> Lack {
+        let what = Problem::new(RECORDING_LOST, "the recording could not be written");
+        // Its sentence says what its own causes do.
+        let causes = vec![Problem { causes: Vec::new(), ..Problem::of(why) }];
+        let remedy = "Free some space or choose another place for the recording, then run again.";
+        self.lose(Problem { causes, ..what }, remedy)
+    }
+
+    /// Takes note that something which was asked for is not there. A PASS that lacks it is ERROR. Any other verdict stands,
+    /// for it must not be lost as well.
+    pub fn lose(&mut self, what: Problem, remedy: &str) -> Lack {
+        let report = &mut self.report;
+        let what = Box::new(Problem { remedy: Some(remedy.to_owned()), ..what });
+        if report.verdict != Verdict::Pass {
+            return Lack { what, is_told: false };
+        }
+        report.finding = Problem::clone(&what).into();
+        report.verdict = Verdict::Error;
+        report.cause = Cause::Station;
+        Lack { what, is_told: true }
+    }
+}
+
+/// What a run lacks that was asked for.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{what}")]
+pub struct Lack {
+    /// What, and why.
+    pub what: Box<Problem>,
+    /// Whether the report tells it, as its finding; otherwise its verdict stands, and somebody must be told.
+    pub is_told: bool,
+}

@@ -1,0 +1,133 @@
+//! Frames that are kept as evidence, within a budget of bytes.
+
+use std::ops::Deref;
+
+use crate::compare::Comparison;
+use crate::result::{Evidence, EvidenceReport};
+
+/// The share of the budget that counts by row and column have; frames have the rest.
+const SHARE_OF_COUNTS: usize = 16;
+
+/// What was kept of the frames that were streamed, in their order.
+#[derive(Default)]
+pub(super) struct Kept {
+    evidence: Vec<Evidence>,
+    bytes: usize,
+    bytes_of_counts: usize,
+    left_out: usize,
+    /// The frame that never makes way, by its index.
+    pinned: Option<usize>,
+}
+
+impl Kept {
+    /// Keeps a frame if it fits into `budget` bytes beside the others. One that differs takes the place of equal ones, the
+    /// latest first, but not of one that is pinned; one that is equal is kept only where there is room.
+    pub(super) fn offer(&mut self, evidence: Evidence, is_pinned: bool, budget: usize) {
+        let (bytes, budget) = (bytes(&evidence), budget - budget / SHARE_OF_COUNTS);
+        if differs(&evidence) {
+            while self.bytes + bytes > budget
+                && let Some(equal) = self.evidence.iter().rposition(|kept| self.makes_way(kept))
+            {
+                let removed = self.evidence.remove(equal);
+                self.bytes -= self::bytes(&removed);
+                self.left_out += 1;
+            }
+        }
+        if self.bytes + bytes > budget {
+            self.left_out += 1;
+            return;
+        }
+        if is_pinned {
+            self.pinned = Some(evidence.index);
+        }
+        self.bytes += bytes;
+        self.evidence.push(evidence);
+    }
+
+    fn makes_way(&self, kept: &Evidence) -> bool {
+        !differs(kept) && self.pinned != Some(kept.index)
+    }
+
+    /// The comparison without its counts by row and column where these say nothing, since all `is_whole` frame is equal, or
+    /// where `budget` has no room for them.
+    pub(super) fn shorten(&mut self, comparison: Comparison, is_whole: bool, budget: usize) -> Comparison {
+        let bytes = size_of_val(&*comparison.by_row) + size_of_val(&*comparison.by_column);
+        let says_nothing = comparison.differences == 0 && is_whole;
+        if says_nothing || self.bytes_of_counts + bytes > budget / SHARE_OF_COUNTS {
+            return Comparison { by_row: Vec::new(), by_column: Vec::new(), ..comparison };
+        }
+        self.bytes_of_counts += bytes;
+        comparison
+    }
+
+    /// Takes the frames themselves, and what is to be said of them.
+    pub(super) fn finish(self) -> (Vec<Evidence>, EvidenceReport) {
+        let (kept, bytes, left_out) = (self.evidence.len(), self.bytes as u64, self.left_out);
+        (self.evidence, EvidenceReport { kept, bytes, left_out })
+    }
+}
+
+impl Deref for Kept {
+    type Target = [Evidence];
+
+    fn deref(&self) -> &[Evidence] {
+        &self.evidence
+    }
+}
+
+fn differs(evidence: &Evidence) -> bool {
+    evidence.found != evidence.expected
+}
+
+fn bytes(evidence: &Evidence) -> usize {
+    let frames = [&evidence.input, &evidence.found, &evidence.expected];
+    frames.into_iter().map(|frame| size_of_val(frame.samples())).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Frame, Phase};
+
+    use super::*;
+
+    /// Three frames of 64 x 2 samples, 16 bits each.
+    const ONE: usize = 3 * 64 * 2 * 2;
+
+    fn evidence(index: usize, differs: bool) -> Evidence {
+        let frame = |sample| Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![sample; 2 * 64]).unwrap();
+        Evidence { index, input: frame(1), found: frame(2 + u16::from(differs)), expected: frame(2) }
+    }
+
+    /// What is kept of frames that differ or not, where there is room for `room` of them; the one at `pinned` is pinned.
+    fn kept(room: usize, pinned: usize, differing: &[bool]) -> (Vec<usize>, usize) {
+        let budget = room * ONE * SHARE_OF_COUNTS / (SHARE_OF_COUNTS - 1);
+        let mut kept = Kept::default();
+        for (index, &differs) in differing.iter().enumerate() {
+            kept.offer(evidence(index, differs), index == pinned, budget);
+        }
+        let (evidence, report) = kept.finish();
+        assert_eq!((report.kept, report.bytes as usize), (evidence.len(), evidence.len() * ONE));
+        (evidence.iter().map(|evidence| evidence.index).collect(), report.left_out)
+    }
+
+    #[test]
+    fn what_differs_takes_the_place_of_what_is_equal_and_the_budget_holds() {
+        let none = usize::MAX;
+        assert_eq!(kept(3, none, &[false, false, false, false]), (vec![0, 1, 2], 1));
+        assert_eq!(kept(3, none, &[false, true, false, true]), (vec![0, 1, 3], 1));
+        assert_eq!(kept(2, none, &[false, true, true, true, false]), (vec![1, 2], 3));
+        assert_eq!(kept(2, 0, &[false, true, true, true, false]), (vec![0, 1], 3));
+        assert_eq!(kept(0, none, &[true]), (vec![], 1));
+    }
+
+    #[test]
+    fn counts_stay_where_they_say_something_and_have_room() {
+        let (mut kept, one) = (Kept::default(), 4 * (64 + 2));
+        let mut comparison = Comparison::new(64, 2);
+        assert!(kept.shorten(comparison.clone(), true, usize::MAX).by_row.is_empty());
+        comparison.row(1, &[0; 64], &[1; 64]);
+        let mut counted =
+            |_| !kept.shorten(comparison.clone(), true, 2 * one * SHARE_OF_COUNTS).by_row.is_empty();
+        assert_eq!([0, 1, 2].map(&mut counted), [true, true, false]);
+    }
+}

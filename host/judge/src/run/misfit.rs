@@ -1,0 +1,69 @@
+//! Whether a board can have what a plan uploads.
+
+use halfrow_model::{Kernel, TableError, TableSet, Taps};
+use halfrow_protocol::message::BoardNature;
+
+use super::plan::TooManyFrames;
+use crate::board::Capabilities;
+
+/// Why a board cannot have tables, a kernel or frames: the call does not fit the board, so that there is nothing to judge.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Misfit {
+    /// The frames are too large.
+    #[error(
+        "frames of {width} x {height} do not fit the board, which takes {most_width} x {most_height} at most; {remedy}"
+    )]
+    Size {
+        /// Columns of the frames.
+        width: usize,
+        /// Rows.
+        height: usize,
+        /// The board's most columns.
+        most_width: usize,
+        /// And rows.
+        most_height: usize,
+        /// What to do.
+        remedy: String,
+    },
+    /// The board has no samples of this depth.
+    #[error("the board has no {bits}-bit samples; use tables of another depth")]
+    Depth {
+        /// Bits a sample.
+        bits: u32,
+    },
+    /// The kernel needs more taps than the board has.
+    #[error("the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite")]
+    Taps,
+    /// A row reads ahead of what the board's line memory holds.
+    #[error(transparent)]
+    Ring(#[from] TableError),
+    /// More frames than any run can have.
+    #[error(transparent)]
+    TooManyFrames(#[from] TooManyFrames),
+}
+
+/// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
+#[must_use]
+pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<Misfit> {
+    let geometry = tables.geometry();
+    let (width, height) = (geometry.width(), geometry.height());
+    let (most_width, most_height) = (capabilities.max_width.into(), capabilities.max_height.into());
+    if width > most_width || height > most_height {
+        let mut remedy = "use smaller frames and tables".to_owned();
+        if capabilities.nature == BoardNature::Mock {
+            remedy = format!("{remedy}, or a mock that takes these: mock,max-width={width}");
+            if height > most_height {
+                remedy = format!("{remedy},max-height={height}");
+            }
+        }
+        return Some(Misfit::Size { width, height, most_width, most_height, remedy });
+    }
+    let bits = geometry.depth().bits();
+    if !capabilities.sample_depths().has(bits as u8) {
+        return Some(Misfit::Depth { bits });
+    }
+    if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
+        return Some(Misfit::Taps);
+    }
+    tables.check_ring(usize::from(capabilities.ring)).err().map(Misfit::Ring)
+}

@@ -1,0 +1,161 @@
+//! What a recording says of its run, so that the same conversation can be held again: the frames come from the rows
+//! that were sent, since their files may be elsewhere.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use halfrow_model::{Equidistant, Frame, FrameError, Geometry, LensError, Phase, UnknownPhase};
+use serde::{Deserialize, Serialize};
+
+use super::{Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions};
+use crate::board::Sent;
+use crate::board::deadlines::RetryLimit;
+use crate::frames::UnknownBuiltin;
+use crate::link::{Recording, RecordingError};
+use crate::tables::{ContentError, TableFile};
+
+/// The plan of a recorded run.
+#[derive(Serialize, Deserialize)]
+pub struct RecordedRun {
+    version: String,
+    arguments: Vec<String>,
+    draws: Draws,
+    tables: String,
+    tables_source: String,
+    rows_outside_circle: Option<usize>,
+    lens_radius: f64,
+    centre_y: Option<f64>,
+    phase: String,
+    frames: Vec<String>,
+    repeat: u32,
+    fail_fast: bool,
+    take_over: bool,
+    seed: u64,
+    timeout: Option<Duration>,
+    retries: u64,
+    retry_share: f64,
+}
+
+/// A recording whose run cannot be made again.
+#[derive(Debug, thiserror::Error)]
+pub enum RestoreError {
+    /// Its head cannot be read.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// The tables in it are none.
+    #[error("the tables in the recording cannot be used; make the recording again")]
+    Tables(#[source] ContentError),
+    /// Its head names a frame, a Bayer phase or a lens that there is not.
+    #[error("the recording's head says what no run can have; make the recording again with this halfrow")]
+    Value(#[source] Box<dyn std::error::Error + Send + Sync>),
+    /// What was sent is no frame.
+    #[error(
+        "what the recorded run sent as {name} is no frame of its tables' size and depth; make the recording again"
+    )]
+    Frame {
+        /// The frame.
+        name: String,
+        /// Why.
+        #[source]
+        source: FrameError,
+    },
+}
+
+impl RestoreError {
+    /// Whether the recording is of another datapath, so that it is refused like a board of one.
+    #[must_use]
+    pub fn is_other_datapath(&self) -> bool {
+        matches!(self, Self::Tables(ContentError::Datapath(_)))
+    }
+}
+
+impl RecordedRun {
+    /// Of a run that is about to begin.
+    #[must_use]
+    pub fn of(plan: &Plan, options: &RunOptions) -> Self {
+        let file = TableFile { tables: plan.tables.clone(), kernel: plan.kernel.clone(), about: None };
+        Self {
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            arguments: options.circumstances.arguments.clone(),
+            draws: options.circumstances.draws,
+            tables: file.to_json(),
+            tables_source: plan.tables_source.clone(),
+            rows_outside_circle: plan.rows_outside_circle,
+            lens_radius: plan.lens.radius(),
+            centre_y: plan.centre_y,
+            phase: plan.phase.to_string(),
+            frames: plan.frames.iter().map(FrameSource::name).collect(),
+            repeat: plan.repeat,
+            fail_fast: plan.fail_fast,
+            take_over: options.take_over,
+            seed: plan.seed,
+            timeout: options.timeout,
+            retries: options.retry_limit.fixed,
+            retry_share: options.retry_limit.share,
+        }
+    }
+
+    /// The plan of the run that `recording` holds, and how it was made. The files that it read are not named again; all its
+    /// frames are kept for pictures as far as there is room.
+    ///
+    /// # Errors
+    /// [`RestoreError`] when the recording does not hold what it takes.
+    pub fn restore(recording: &Recording) -> Result<(Plan, RunOptions), RestoreError> {
+        let run: Self = recording.run()?;
+        let file = TableFile::parse(&run.tables).map_err(RestoreError::Tables)?;
+        let phase = run.phase.parse().map_err(value::<UnknownPhase>)?;
+        let plan = Plan {
+            tables_source: run.tables_source.clone(),
+            rows_outside_circle: run.rows_outside_circle,
+            lens: Equidistant::from_radius(run.lens_radius).map_err(value::<LensError>)?,
+            centre_y: run.centre_y,
+            phase,
+            repeat: run.repeat,
+            fail_fast: run.fail_fast,
+            seed: run.seed,
+            frames: run.frames(recording, file.tables.geometry(), phase)?,
+            ..Plan::new(file.tables, file.kernel)
+        };
+        let options = RunOptions {
+            timeout: run.timeout,
+            retry_limit: RetryLimit { fixed: run.retries, share: run.retry_share },
+            take_over: run.take_over,
+            keep_equal: true,
+            circumstances: Circumstances { arguments: run.arguments, files: Vec::new(), draws: run.draws },
+            ..RunOptions::default()
+        };
+        Ok((plan, options))
+    }
+
+    fn frames(
+        &self,
+        recording: &Recording,
+        geometry: &Geometry,
+        phase: Phase,
+    ) -> Result<Vec<FrameSource>, RestoreError> {
+        let is_file = |name: &&String| !name.starts_with("builtin:");
+        let files: Vec<u16> =
+            (0..).zip(&self.frames).filter(|(_, name)| is_file(name)).map(|(index, _)| index).collect();
+        let commits = Sent::find(recording.sent(), |_| false);
+        let first = commits.first_frames.get(&JUDGED).copied().unwrap_or_default();
+        let is_of_file = |number: u16| number.checked_sub(first).is_some_and(|index| files.contains(&index));
+        let sent = Sent::find(recording.sent(), is_of_file);
+        let sources = self.frames.iter().zip(first..);
+        sources
+            .map(|(name, number)| {
+                if let Some(builtin) = name.strip_prefix("builtin:") {
+                    return Ok(FrameSource::Builtin(builtin.parse().map_err(value::<UnknownBuiltin>)?));
+                }
+                let samples = sent.frame(number, geometry.width(), geometry.height());
+                let frame = Frame::new(geometry.width(), geometry.depth(), phase, samples)
+                    .map_err(|source| RestoreError::Frame { name: name.clone(), source })?;
+                Ok(FrameSource::File { path: PathBuf::from(name), frame: Arc::new(frame) })
+            })
+            .collect()
+    }
+}
+
+fn value<E: std::error::Error + Send + Sync + 'static>(error: E) -> RestoreError {
+    RestoreError::Value(Box::new(error))
+}

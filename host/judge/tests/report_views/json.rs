@@ -1,0 +1,106 @@
+use std::collections::BTreeSet;
+
+use halfrow::report;
+use halfrow::result::{CheckName, Finding, Problem, Reconnection, Report, Suspect, examples};
+use serde_json::{Value, json};
+
+use crate::made;
+
+fn json(report: &Report) -> Value {
+    serde_json::from_str(&report::json(report).unwrap()).unwrap()
+}
+
+/// A report that is equal to the other when it is read back.
+#[track_caller]
+fn assert_same_when_read_back(report: &Report) {
+    let again: Report = serde_json::from_str(&report::json(report).unwrap()).unwrap();
+    assert_eq!(again, *report);
+}
+
+#[test]
+fn a_report_reads_back_equal() {
+    let mut away = made::error();
+    let reason = Problem::of(&std::io::Error::from_raw_os_error(5));
+    away.link.reconnections = vec![Reconnection { reason, seconds_away: 0.1 + 0.2 }];
+    let [pass, fail, error] = [made::pass(), made::fail().0, made::error()];
+    for report in [pass, fail, error, away] {
+        assert_same_when_read_back(&report);
+    }
+}
+
+#[test]
+fn every_finding_and_every_suspect_reads_back_equal_with_a_sentence_of_its_own() {
+    let mut said = BTreeSet::new();
+    for finding in examples::findings() {
+        let report = Report { finding: finding.clone(), ..made::fail().0 };
+        assert_same_when_read_back(&report);
+        assert_eq!(json(&report)["headline"], finding.sentence());
+        assert!(!finding.sentence().is_empty() && said.insert(finding.sentence()), "{finding:?}");
+    }
+    for suspect in examples::suspects() {
+        let report = Report { suspects: vec![suspect.clone()], ..made::fail().0 };
+        assert_same_when_read_back(&report);
+        let said = json(&report)["suspects"][0].clone();
+        assert_eq!(
+            (&said["place"], &said["evidence"]),
+            (&suspect.place().into(), &suspect.evidence().into())
+        );
+        for sentence in [suspect.designer(), suspect.technician(), suspect.place(), suspect.evidence()] {
+            assert!(!sentence.is_empty(), "{suspect:?}");
+        }
+    }
+}
+
+/// What serde says of a code that does not exist names all that do.
+fn codes_known<T: serde::de::DeserializeOwned + std::fmt::Debug>() -> BTreeSet<String> {
+    let refused = serde_json::from_value::<T>(json!({ "code": "none", "parameters": {} })).unwrap_err();
+    let refused = refused.to_string();
+    let (_, known) = refused.split_once("expected one of ").unwrap();
+    known.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+#[test]
+fn no_defect_is_without_an_example() {
+    let examples: Vec<_> = examples::suspects().iter().map(|suspect| suspect.defect.tagged().0).collect();
+    assert_eq!(examples.iter().cloned().collect::<BTreeSet<_>>(), codes_known::<halfrow::result::Defect>());
+    assert_eq!(examples.iter().collect::<BTreeSet<_>>().len(), examples.len());
+}
+
+#[test]
+fn a_check_that_does_not_exist_and_another_schema_are_not_read() {
+    let mut other = json(&made::pass());
+    other["checks"][0]["name"] = "jugde".into();
+    assert!(serde_json::from_value::<Report>(other).unwrap_err().to_string().contains("jugde"));
+    let mut other = json(&made::pass());
+    other["schema"] = 2.into();
+    let refused = serde_json::from_value::<Report>(other).unwrap_err().to_string();
+    assert!(refused.contains("schema 2 is not the one that this program reads, 1"), "{refused}");
+}
+
+#[test]
+fn checks_have_the_names_that_their_json_has() {
+    for check in CheckName::ALL {
+        assert_eq!(json!(check), check.name());
+    }
+}
+
+#[test]
+fn a_code_and_its_parameters_are_what_is_read_and_sentences_are_made() {
+    let mut told = json(&made::fail().0);
+    told["suspects"][0]["place"] = "somewhere else".into();
+    told["suspects"][0]["defect"]["parameters"]["bit"] = 5.into();
+    let report: Report = serde_json::from_value(told).unwrap();
+    let [Suspect { .. }] = &report.suspects[..] else { panic!() };
+    assert_eq!(report.suspects[0].place(), "row 3's factor, bit 5");
+}
+
+#[test]
+fn an_error_has_one_shape_wherever_it_stands() {
+    let told = json(&made::error());
+    assert_eq!(told["error"]["code"], "no-answer");
+    assert_eq!(told["error"]["remedy"], "Check cable and power.");
+    assert_eq!(told["error"], told["finding"]);
+    let unjudged = Report { finding: Finding::NothingJudged {}, ..made::error() };
+    assert_eq!(json(&unjudged)["error"]["code"], "nothing-judged");
+    assert!(json(&made::fail().0)["error"].is_null());
+}

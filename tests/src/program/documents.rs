@@ -1,0 +1,41 @@
+//! The JSON documents that the program prints.
+
+use std::sync::OnceLock;
+
+use halfrow::result::Report;
+use jsonschema::Validator;
+use serde_json::Value;
+
+/// The schema in the repository.
+pub const SCHEMA: &str = include_str!("../../../host/schema/halfrow-1.json");
+
+/// Holds a document against the schema, and a report against itself, read back.
+///
+/// # Panics
+/// If it is not as it should be.
+pub fn assert_valid(document: &Value) {
+    static VALIDATOR: OnceLock<Validator> = OnceLock::new();
+    let validator = VALIDATOR.get_or_init(|| {
+        let schema = serde_json::from_str(SCHEMA).unwrap();
+        jsonschema::validator_for(&schema).unwrap()
+    });
+    let wrong: Vec<_> = validator
+        .iter_errors(document)
+        .map(|error| format!("{error} at {}", error.instance_path()))
+        .collect();
+    assert!(wrong.is_empty(), "not as the schema says: {wrong:#?}");
+    if !document["run"].is_null() {
+        let report: Report = serde_json::from_value(document.clone()).unwrap();
+        let again: Value = serde_json::from_str(&halfrow_cli::json::report(&report).unwrap()).unwrap();
+        assert_eq!(&again, document);
+    }
+}
+
+/// Why a document has no result, with the causes; empty if it has one.
+#[must_use]
+pub fn error_sentence(document: &Value) -> String {
+    let error = &document["error"];
+    let causes = error["causes"].as_array().into_iter().flatten();
+    let messages = std::iter::once(error).chain(causes).filter_map(|problem| problem["message"].as_str());
+    messages.collect::<Vec<_>>().join(": ")
+}

@@ -1,0 +1,53 @@
+//! What a run keeps of its frames.
+
+use halfrow::frames::Builtin;
+use halfrow::link;
+use halfrow::progress::Silent;
+use halfrow::run::{Finished, FrameSource, Plan, RunOptions, verify};
+use halfrow_tests::system::System;
+
+/// Frames that all differ, beside the run's own.
+const FRAMES: u32 = 200;
+
+/// What is left of a run over many frames of a broken board.
+fn run(evidence_bytes: usize) -> Finished {
+    let plan = System::TINY.plan().frames([FrameSource::Builtin(Builtin::Noise)]);
+    let plan = Plan { repeat: FRAMES, fail_fast: false, ..plan };
+    let board = link::open(&"mock,fault=stuck-data".parse().unwrap()).unwrap();
+    let options = RunOptions { evidence_bytes, ..RunOptions::default() };
+    verify(&plan, board, &options, &Silent).unwrap()
+}
+
+/// Bytes of the frames that were kept, and of the counts by row and column.
+fn bytes(finished: &Finished) -> (usize, usize) {
+    let frames = finished.evidence.iter().flat_map(|kept| [&kept.input, &kept.found, &kept.expected]);
+    let counts = finished.report.frames.iter().flat_map(|frame| {
+        let comparison = &frame.comparison;
+        [&comparison.by_row, &comparison.by_column]
+    });
+    (
+        frames.map(|frame| size_of_val(frame.samples())).sum(),
+        counts.map(|counts| size_of_val(counts.as_slice())).sum(),
+    )
+}
+
+#[test]
+fn a_run_of_many_frames_that_differ_keeps_within_its_budget_and_says_what_it_left_out() {
+    let _alone = crate::RUNS.lock();
+    const BUDGET: usize = 64 << 10;
+    let whole = run(usize::MAX);
+    let differing = whole.report.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
+    assert!(differing >= FRAMES as usize, "{differing}");
+    assert_eq!((whole.evidence.len(), whole.report.evidence.left_out), (differing, 0));
+    assert!(bytes(&whole).0 > 4 * BUDGET, "the budget is none: {:?}", bytes(&whole));
+
+    let kept = run(BUDGET);
+    let (frames, counts) = bytes(&kept);
+    assert!(frames + counts <= BUDGET && frames > BUDGET / 2, "{frames} {counts}");
+    let said = kept.report.evidence;
+    assert_eq!((said.kept, said.bytes), (kept.evidence.len(), frames as u64));
+    assert_eq!(said.kept + said.left_out, differing);
+    let found = |finished: &Finished| finished.report.suspects.first().map(halfrow::result::Suspect::place);
+    assert!(found(&kept).is_some_and(|place| place.contains("bit 5")), "{:?}", kept.report.headline());
+    assert_eq!(found(&kept), found(&whole));
+}

@@ -1,0 +1,16 @@
+//! The library as a program other than `halfrow` calls it.
+
+// clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
+#![allow(clippy::unwrap_used)]
+
+mod evidence;
+mod logs;
+mod outside;
+mod tree;
+mod words;
+
+use std::sync::Mutex;
+
+/// Held by tests that run in this process: one without a log of its own must not be the first at a place that logs while
+/// another begins to listen.
+static RUNS: Mutex<()> = Mutex::new(());
