@@ -205,12 +205,8 @@ impl Arguments {
         }
         let lens = self.lens.file().map(PathBuf::from);
         // Each file is hashed, too.
-        files
-            .iter()
-            .chain(&lens)
-            .chain(self.tables.path(settings))
-            .try_for_each(|path| check_regular(path))
-            .map_err(Failure::call)?;
+        let inputs = self.input_files(settings)?;
+        inputs.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
         let tables = self.tables.read(&self.given, &self.lens, settings)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
         let table_file = tables.as_ref().map(|tables| tables.path.clone());
@@ -293,12 +289,12 @@ impl Arguments {
         })
     }
 
-    /// Tables, lens and frames that are files.
+    /// Frames, lens and tables that are files.
     fn input_files(&self, settings: &Settings) -> Result<Vec<PathBuf>, Failure> {
         let frames = FrameName::all(&self.frame_names(settings)).map_err(Failure::call)?;
         let frames = frames.iter().filter_map(FrameName::file).map(PathBuf::from);
-        let tables = self.tables.path(settings).map(PathBuf::from);
-        Ok(tables.into_iter().chain(self.lens.file().map(PathBuf::from)).chain(frames).collect())
+        let lens = self.lens.file().map(PathBuf::from);
+        Ok(frames.chain(lens).chain(self.tables.path(settings).cloned()).collect())
     }
 
     fn frame_names(&self, settings: &Settings) -> Vec<OsString> {
