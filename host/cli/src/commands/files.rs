@@ -32,6 +32,8 @@ struct Output {
 enum Shape {
     /// A file that the call names.
     File,
+    /// A file that the call names and that is claimed before the board is opened, which is when one that is there is refused.
+    Claimed,
     /// A file in a folder that the call names, which is made if need be.
     InFolder,
     /// A folder that is replaced as a whole.
@@ -64,6 +66,11 @@ impl Files {
         paths: impl IntoIterator<Item = P>,
     ) -> Self {
         self.adds(option, Shape::File, paths)
+    }
+
+    /// Adds a file that `option` names and that is claimed behind this.
+    pub(super) fn writes_claimed(self, option: &'static str, path: Option<&Path>) -> Self {
+        self.adds(option, Shape::Claimed, path)
     }
 
     /// Adds files in a folder that `option` names.
@@ -135,7 +142,7 @@ impl Files {
             let checked = written_aside::check_folder(folder, shape == Shape::InFolder);
             checked.with_context(|| match shape {
                 Shape::InFolder => format!("cannot write into the folder {}; name another with {option}", folder.display()),
-                Shape::File | Shape::Report => format!(
+                Shape::File | Shape::Claimed | Shape::Report => format!(
                     "nothing can be written into the folder {}; check that it exists and is writable, or name another place \
                      with {option}",
                     folder.display()
@@ -162,6 +169,7 @@ impl Output {
         match self.shape {
             Shape::Report => Ok(report::check_folder(&self.path, overwrite)?),
             Shape::File => Ok(written_aside::check(&self.path, overwrite)?),
+            Shape::Claimed => Ok(written_aside::check(&self.path, true)?),
             Shape::InFolder => match written_aside::check(&self.path, overwrite) {
                 Err(WriteAsideError::Exists { .. }) => {
                     bail!("{path} exists; allow it to be overwritten, or name another folder with {option}")

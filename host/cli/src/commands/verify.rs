@@ -270,7 +270,7 @@ impl Arguments {
             .reads(self.input_files(settings)?)
             .reads_kernel(self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new)))
             .reads(self.board.replayed(settings)?)
-            .writes("--record", &self.record)
+            .writes_claimed("--record", self.record.as_deref())
             .writes_report("--report", report)
             .check()
             .map_err(Failure::call)?;
