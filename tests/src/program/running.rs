@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 
 use super::Ended;
-use crate::patience::{LIMIT, end_of};
+use crate::patience::{LIMIT, end_of, wait_until};
 
 /// A program that was started. It is killed when this is dropped.
 #[derive(Debug)]
@@ -93,6 +93,20 @@ impl Running {
     pub fn send(&self, signal: &str) {
         let kill = Command::new("sh").args(["-c", &format!("kill -{signal} {}", self.child.id())]).status();
         assert!(kill.unwrap().success());
+    }
+
+    /// Stops it, and waits until it stands still.
+    ///
+    /// # Panics
+    /// If it has ended already.
+    #[cfg(unix)]
+    pub fn stop(&self) {
+        self.send("STOP");
+        wait_until("a program to stand still", || {
+            let stat = std::fs::read_to_string(format!("/proc/{}/stat", self.child.id())).unwrap();
+            // The state stands behind the name, which may have any letter in it.
+            stat.rsplit(')').next().is_some_and(|rest| rest.trim_start().starts_with(['T', 'Z']))
+        });
     }
 
     /// Waits for its end.

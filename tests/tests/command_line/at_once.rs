@@ -5,7 +5,7 @@ use std::fs;
 use halfrow_tests::parallel;
 use halfrow_tests::program::{Ended, Folder};
 
-use crate::running::Running;
+use crate::running::{started, stop_amid, streaming};
 use crate::signals::LARGE;
 use crate::small;
 
@@ -88,7 +88,7 @@ fn memory_images_that_replace_one_another_are_of_one_run() {
 fn a_name_is_taken_before_the_board_is_opened() {
     for option in ["--report", "--record"] {
         let folder = Folder::new();
-        let first = Running::streaming(&folder, [option, "name"]);
+        let first = streaming(&folder, [option, "name"]);
         let second =
             folder.halfrow(small("verify", &[option, "name", "--board", "mock,fault=disconnect,byte=0"]));
         assert_eq!(second.code, Some(2), "{}", second.stderr);
@@ -98,7 +98,7 @@ fn a_name_is_taken_before_the_board_is_opened() {
             second.stderr
         );
         first.send("INT");
-        assert_eq!(first.ended().code, Some(130));
+        assert_eq!(first.end().code, Some(130));
         assert_eq!(folder.names("."), ["name"]);
     }
 }
@@ -106,12 +106,12 @@ fn a_name_is_taken_before_the_board_is_opened() {
 #[test]
 fn a_place_that_is_taken_during_the_run_is_left_alone() {
     let folder = Folder::new();
-    let first = Running::streaming(&folder, ["--report", "out", "--record", "run.rec"]);
+    let first = streaming(&folder, ["--report", "out", "--record", "run.rec"]);
     folder.write("run.rec", "precious");
     folder.write("run.rec.partial", "evidence of yesterday");
     fs::create_dir(folder.path().join("out")).unwrap();
     first.send("INT");
-    let ended = first.ended();
+    let ended = first.end();
     assert_eq!(ended.code, Some(130), "{}", ended.stderr);
     assert!(ended.stderr.contains("what there is of it is kept in run.rec.partial-2"), "{}", ended.stderr);
     assert!(ended.stderr.contains("the report could not be written: out exists"), "{}", ended.stderr);
@@ -129,13 +129,13 @@ fn under_way(folder: &Folder) -> Vec<String> {
 #[test]
 fn what_killed_runs_left_is_cleared_and_what_running_ones_write_is_not() {
     let folder = Folder::new();
-    Running::streaming(&folder, ["--report", "out", "--record", "run.rec"]).killed();
+    drop(streaming(&folder, ["--report", "out", "--record", "run.rec"]));
     let dead = under_way(&folder);
     // Two claims, the report's folder, the recording.
     assert_eq!(dead.len(), 4, "{dead:?}");
     folder.write(".halfrow-notes", "somebody's own");
     // One that runs clears what is dead, and nobody clears what it has.
-    let alive = Running::streaming(&folder, ["--report", "alive", "--record", "alive.rec"]);
+    let alive = streaming(&folder, ["--report", "alive", "--record", "alive.rec"]);
     assert_eq!(folder.halfrow(small("tables", &["-o", "t.json"])).code, Some(0));
     let left = under_way(&folder);
     assert!(dead.iter().all(|name| !left.contains(name)), "{left:?}");
@@ -143,7 +143,7 @@ fn what_killed_runs_left_is_cleared_and_what_running_ones_write_is_not() {
     assert!(folder.read("run.rec.partial").starts_with(b"halfrow recording 1\n"));
     assert_eq!(run(&folder, 1, &[]).code, Some(0));
     alive.send("INT");
-    assert_eq!(alive.ended().code, Some(130));
+    assert_eq!(alive.end().code, Some(130));
     let names = [".halfrow-notes", "alive", "alive.rec", "out", "run.rec", "run.rec.partial", "t.json"];
     assert_eq!(folder.names("."), names);
     assert_eq!(folder.names("alive").len(), 3);
@@ -152,9 +152,9 @@ fn what_killed_runs_left_is_cleared_and_what_running_ones_write_is_not() {
 #[test]
 fn a_frame_that_a_killed_program_left_is_cleared() {
     let folder = Folder::new();
-    let running = Running::start(&folder, LARGE);
-    running.stop_amid(&folder.path().join("out"));
-    running.killed();
+    let running = started(&folder, LARGE);
+    stop_amid(&running, &folder.path().join("out"));
+    drop(running);
     let half = |name: &&String| name.starts_with('.');
     assert!(folder.names("out").iter().any(|name| half(&name)));
     let call = small("correct", &["builtin:black", "--model", "-o", "out"]);

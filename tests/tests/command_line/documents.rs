@@ -60,8 +60,8 @@ fn what_is_wrong_with_a_call_has_a_code_and_the_same_shape() {
         ("verify", "frame-file-unreadable", &["verify", "--frame", "none.pgm"]),
         ("verify", "geometry-impossible", &["verify", "--width", "63"]),
         ("info", "target-kind-unknown", &["info", "--board", "moon"]),
-        ("correct", "call-refused", &["correct", "builtin:black", "-o", "out.pgm"]),
-        ("serve", "call-refused", &["serve"]),
+        ("correct", "corrector-missing", &["correct", "builtin:black", "-o", "out.pgm"]),
+        ("serve", "command-without-json", &["serve"]),
     ];
     for (command, code, call) in cases {
         let said = told(&folder, 2, call);

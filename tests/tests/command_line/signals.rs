@@ -2,16 +2,16 @@
 
 use std::fs::OpenOptions;
 
-use halfrow_tests::program::{Ended, Folder};
+use halfrow_tests::program::{Ended, Folder, Running};
 
-use crate::running::{Running, until_there_is};
+use crate::running::{SLOW, started, stop_amid, streaming, until_there_is};
 use crate::small;
 
 /// Starts a slow run, sends it `signal` while it streams, and waits for its end.
 fn interrupted(folder: &Folder, signal: &str, arguments: &[&str]) -> Ended {
-    let running = Running::streaming(folder, arguments.iter().copied());
+    let running = streaming(folder, arguments.iter().copied());
     running.send(signal);
-    running.ended()
+    running.end()
 }
 
 /// Signals, and the codes of commands that they end.
@@ -50,13 +50,13 @@ fn an_interrupted_run_leaves_a_whole_report_that_says_so_and_a_recording() {
 #[test]
 fn a_run_that_is_to_outlive_its_terminal_does() {
     let folder = Folder::new();
-    let call = ["verify", "-vv", "--json", "--board", crate::running::SLOW];
+    let call = ["verify", "-vv", "--json", "--board", SLOW];
     let line = "trap '' HUP; exec env --default-signal=INT,TERM \"$@\"";
-    let mut running = Running::start_by(&folder, line, call);
-    running.until_it_says("session ");
+    let mut running = Running::start(&mut folder.by_shell(line, call));
+    running.wait_for("session ");
     running.send("HUP");
     running.send("INT");
-    assert_eq!(running.ended().code, Some(130));
+    assert_eq!(running.end().code, Some(130));
 }
 
 /// Frames of the paper's size, which take a while to write.
@@ -76,11 +76,11 @@ pub(crate) const LARGE: [&str; 9] = [
 fn frames_that_are_half_written_go_with_the_program() {
     for (signal, code) in SIGNALS {
         let folder = Folder::new();
-        let running = Running::start(&folder, LARGE);
-        running.stop_amid(&folder.path().join("out"));
+        let running = started(&folder, LARGE);
+        stop_amid(&running, &folder.path().join("out"));
         running.send(signal);
         running.send("CONT");
-        let ended = running.ended();
+        let ended = running.end();
         assert_eq!(ended.code, Some(code), "{signal}: {}", ended.stderr);
         let written = folder.names("out");
         assert!(written.iter().all(|name| !name.starts_with('.')), "{signal}: {written:?}");
@@ -99,12 +99,12 @@ fn a_second_signal_ends_at_once_what_the_first_could_not() {
     nix::unistd::mkfifo(&pipe, nix::sys::stat::Mode::from_bits_truncate(0o600)).unwrap();
     let _pipe = OpenOptions::new().read(true).write(true).open(pipe).unwrap();
     let call = small("correct", &["in.pgm", "-o", "out", "--board", "mock"]);
-    let running = Running::start(&folder, call);
+    let running = started(&folder, call);
     // It makes the folder when it has its board, and then waits for a frame that does not come.
     until_there_is(folder.path(), |name| name == "out");
     running.send("INT");
     running.send("TERM");
-    let ended = running.ended();
+    let ended = running.end();
     assert!([Some(130), Some(143)].contains(&ended.code), "{ended:?}");
     assert_eq!(folder.names("out"), [""; 0]);
 }

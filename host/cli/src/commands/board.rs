@@ -9,7 +9,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use halfrow_mock::Streamed;
 
-use super::{Failure, wrong_call};
+use super::{CallError, Failure};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::signals;
@@ -82,7 +82,10 @@ impl BoardArguments {
         let streamed = Streamed { height: plan.tables.geometry().height(), frames };
         match fault.and_then(|fault| fault.without_effect(&streamed)) {
             None => Ok(()),
-            Some(why) => Err(wrong_call!("the fault of {target} would change nothing: {why}")),
+            Some(why) => Err(Failure::call(CallError::FaultWithoutEffect {
+                target: target.to_string(),
+                reason: why.to_string(),
+            })),
         }
     }
 
@@ -134,7 +137,7 @@ impl BoardArguments {
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.timeout.or(settings.timeout);
         let limit = seconds.map(Duration::try_from_secs_f64).transpose();
-        limit.map_err(|_| wrong_call!("--timeout takes a number of seconds, 0 or more"))
+        limit.map_err(|_| Failure::call(CallError::Seconds { option: "--timeout" }))
     }
 
     pub(super) fn retry_limit(&self, settings: &Settings) -> RetryLimit {

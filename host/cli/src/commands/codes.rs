@@ -8,6 +8,7 @@ use halfrow_mock::{ConnectError, OptionError};
 use halfrow_pipe::{FaultError, TargetError as BoardTargetError, ValueError};
 use serde_json::{Value, json};
 
+use super::call_error::CallError;
 use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::console::Unprinted;
@@ -28,6 +29,38 @@ use halfrow_lab::training::TrainingError;
 pub(super) struct Arguments {}
 
 codes::codes! {
+    CallError {
+        VoidOption [option] => "option-without-effect",
+        Seconds [option] => "option-is-no-time",
+        NoJson [command] => "command-without-json",
+        NoDocument [command] => "command-without-document",
+        NobodyCorrects => "corrector-missing",
+        RecordingCorrects => "recording-corrects-nothing",
+        FaultWithoutEffect [target, reason] => "fault-without-effect",
+        RowsOfFrame => "frame-without-row-factors",
+        OtherThanTables [option, path] => "option-contradicts-tables",
+        PitchAlone => "pixel-pitch-without-effect",
+        LensPitchWithoutFile => "lens-pitch-without-lens-file",
+        RadiusTwice => "radius-given-twice",
+        LensSizeMissing [path] => "lens-size-missing",
+        TablesFormat [path] => "tables-format-unknown",
+        OtherFormat [path] => "frame-format-contradicted",
+        OneFile [path, frames, option] => "one-file-for-several-frames",
+        Unnamed [path] => "input-without-name",
+        InputOverwritten [path, option] => "input-would-be-overwritten",
+        OutputsShare [first, second, path] => "outputs-share-a-file",
+        FramesShare [path] => "frames-share-a-file",
+        Exists [path, option] => "file-in-folder-exists",
+        NotAFile [path, option] => "file-in-folder-is-no-file",
+        FolderClosed [path, option] => "folder-takes-no-files",
+        FolderUnusable [path, option] => "folder-unusable",
+        FolderNotMade [path] => "folder-not-made",
+        FolderUnlisted [path] => "folder-not-listed",
+        NoPhotograph => "photographs-missing",
+        PhotographsMissing => "paper-photographs-missing",
+        Unreadable [path] => "input-unreadable",
+        OtherSize [path, width, height, columns, rows] => "frame-of-other-size",
+    }
     SettingsError {
         Io [path] => "settings-file-unreadable",
         UnknownKey [path, line, key] => "settings-key-unknown",

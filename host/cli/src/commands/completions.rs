@@ -3,12 +3,11 @@
 use std::io;
 use std::path::PathBuf;
 
-use anyhow::Context as _;
 use clap::Args;
 use clap_complete::Shell;
 use clap_mangen::Man;
 
-use super::files::Files;
+use super::files::{Files, make_folder};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use halfrow_frames::written_aside::write_aside;
@@ -53,9 +52,7 @@ pub(super) fn manual(arguments: &Manual, command: clap::Command, context: &Conte
         .writes_into("FOLDER", &places)
         .check()
         .map_err(Failure::call)?;
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("{} cannot be made; name another folder", folder.display()))
-        .map_err(Failure::error)?;
+    make_folder(folder).map_err(Failure::error)?;
     for (page, place) in pages.iter().zip(&places) {
         let text = text(page).map_err(Failure::error)?;
         write_aside(place, arguments.overwrite, |out| out.write_all(text.as_bytes()))

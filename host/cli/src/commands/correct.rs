@@ -18,7 +18,7 @@ use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments};
 use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, wrong_call};
+use super::{CallError, Context, Failure};
 use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
@@ -71,7 +71,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     if !arguments.model && !arguments.board.is_named(settings) {
-        return Err(wrong_call!("nobody is named to correct; give --model or --board TARGET"));
+        return Err(Failure::call(CallError::NobodyCorrects));
     }
     let inputs = FrameName::all(&arguments.inputs).map_err(Failure::call)?;
     if inputs.iter().all(|input| input.file().is_none()) {

@@ -4,8 +4,9 @@ use std::collections::{BTreeSet, HashMap};
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail};
+use anyhow::bail;
 
+use super::CallError;
 use crate::console;
 use halfrow::kernels::NamedKernel;
 use halfrow::report;
@@ -116,20 +117,13 @@ impl Files {
             let is_inside = |other: &Path| output.shape == Shape::Report && place.holds(other);
             let input = inputs.get(&place).copied();
             if let Some(input) = input.or_else(|| self.inputs.iter().find(|input| is_inside(input))) {
-                bail!(
-                    "{} is read by this call, and {} would write there; an input is never overwritten, so name another place \
-                     with {}",
-                    input.display(),
-                    output.option,
-                    output.option
-                );
+                bail!(CallError::InputOverwritten { path: input.clone(), option: output.option });
             }
             let other =
                 self.outputs.iter().find(|other| other.shape != Shape::Report && is_inside(&other.path));
-            if let Some(other) = seen.insert(place.clone(), output.option).or(other.map(|other| other.option))
+            if let Some(first) = seen.insert(place.clone(), output.option).or(other.map(|other| other.option))
             {
-                let path = output.path.display();
-                bail!("{other} and {} would both be written to {path}; part them", output.option);
+                bail!(CallError::OutputsShare { first, second: output.option, path: output.path.clone() });
             }
         }
         Ok(())
@@ -140,13 +134,12 @@ impl Files {
             self.outputs.iter().map(|output| (output.folder(), output.shape, output.option)).collect();
         for (folder, shape, option) in folders {
             let checked = written_aside::check_folder(folder, shape == Shape::InFolder);
-            checked.with_context(|| match shape {
-                Shape::InFolder => format!("cannot write into the folder {}; name another with {option}", folder.display()),
-                Shape::File | Shape::Claimed | Shape::Report => format!(
-                    "nothing can be written into the folder {}; check that it exists and is writable, or name another place \
-                     with {option}",
-                    folder.display()
-                ),
+            let path = folder.to_owned();
+            checked.map_err(|source| match shape {
+                Shape::InFolder => CallError::FolderClosed { path, option, source },
+                Shape::File | Shape::Claimed | Shape::Report => {
+                    CallError::FolderUnusable { path, option, source }
+                }
             })?;
             for kept in written_aside::clear(folder) {
                 console::diagnose(&format_args!(
@@ -159,26 +152,26 @@ impl Files {
     }
 }
 
+/// Makes a folder, and those that it lies in.
+pub(super) fn make_folder(folder: &Path) -> Result<(), CallError> {
+    std::fs::create_dir_all(folder)
+        .map_err(|source| CallError::FolderNotMade { path: folder.to_owned(), source })
+}
+
 impl Output {
     fn folder(&self) -> &Path {
         self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
     }
 
     fn check(&self, overwrite: bool) -> anyhow::Result<()> {
-        let (path, option) = (self.path.display(), self.option);
+        let (path, option) = (self.path.clone(), self.option);
         match self.shape {
             Shape::Report => Ok(report::check_folder(&self.path, overwrite)?),
             Shape::File => Ok(written_aside::check(&self.path, overwrite)?),
             Shape::Claimed => Ok(written_aside::check(&self.path, true)?),
             Shape::InFolder => match written_aside::check(&self.path, overwrite) {
-                Err(WriteAsideError::Exists { .. }) => {
-                    bail!("{path} exists; allow it to be overwritten, or name another folder with {option}")
-                }
-                Err(WriteAsideError::NotAFile { .. }) => {
-                    bail!(
-                        "{path} is no regular file, and so is not replaced; name another folder with {option}"
-                    )
-                }
+                Err(WriteAsideError::Exists { .. }) => bail!(CallError::Exists { path, option }),
+                Err(WriteAsideError::NotAFile { .. }) => bail!(CallError::NotAFile { path, option }),
                 checked => Ok(checked?),
             },
         }

@@ -2,14 +2,13 @@
 
 use std::path::PathBuf;
 
-use anyhow::Context as _;
 use clap::Args;
 use serde_json::json;
 
 use super::document::tell_result;
-use super::files::Files;
+use super::files::{Files, make_folder};
 use super::optics::LensArguments;
-use super::{Context, Failure, wrong_call};
+use super::{CallError, Context, Failure};
 use crate::console;
 use crate::exit::Exit;
 use halfrow::frames::{self, Builtin};
@@ -35,7 +34,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     if arguments.lens.has_rows() {
-        return Err(wrong_call!("a frame has no row factors; leave --rows out"));
+        return Err(Failure::call(CallError::RowsOfFrame));
     }
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
     let chosen = if arguments.only.is_empty() { &Builtin::ALL[..] } else { &arguments.only };
@@ -47,9 +46,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         .writes_into("--output", &places)
         .check()
         .map_err(Failure::call)?;
-    std::fs::create_dir_all(folder)
-        .with_context(|| format!("{} cannot be made; choose another folder", folder.display()))
-        .map_err(Failure::error)?;
+    make_folder(folder).map_err(Failure::error)?;
     let mut written = Vec::new();
     for (builtin, path) in chosen.iter().zip(places) {
         frames::write(&path, &builtin.render(&scene).map_err(Failure::call)?, arguments.overwrite)

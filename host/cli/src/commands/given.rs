@@ -3,9 +3,10 @@
 //! An option that does nothing beside another one is refused when it stands on the command line, since somebody wants
 //! what it says. From the environment or the settings, which are the same for every call, it is passed over.
 
-use anyhow::bail;
 use clap::parser::ValueSource;
 use clap::{ArgMatches, Args, Command, FromArgMatches};
+
+use super::CallError;
 
 /// The options of a call by their ids, which are those of clap, and where their values come from.
 ///
@@ -92,9 +93,9 @@ impl Given {
 
     /// Refuses a flag that is void beside `decider`. Of what the environment or the settings, which have the keys
     /// `settings`, say in vain is only told in the log.
-    pub(super) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> anyhow::Result<()> {
+    pub(super) fn refuse_void(&self, decider: Decider, settings: &[&str]) -> Result<(), CallError> {
         if let Some(option) = self.void_flag(decider) {
-            bail!("{option} {}", decider.reason());
+            return Err(CallError::VoidOption { option, reason: decider.reason() });
         }
         for id in decider.voids() {
             let of_variable = self.variables.iter().any(|variable| variable == id);

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use anyhow::{Context as _, ensure};
+use super::CallError;
+use anyhow::ensure;
 use clap::Args;
 use halfrow_model::{Frame, Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, Phase};
 
@@ -63,7 +64,7 @@ impl FrameName {
         match self {
             Self::Builtin(builtin) => Ok(builtin.name().to_owned()),
             Self::File(path) => {
-                let stem = path.file_stem().context("an input has no file name; name a file")?;
+                let stem = path.file_stem().ok_or_else(|| CallError::Unnamed { path: path.clone() })?;
                 Ok(stem.to_string_lossy().into_owned())
             }
         }
@@ -131,18 +132,16 @@ fn check_size(path: &Path, (width, height): (usize, usize), geometry: &Geometry)
              {MIN_WIDTH} to {MAX_WIDTH} and up to {MAX_HEIGHT} rows; scale or crop the picture"
         ),
     };
+    let (columns, rows) = (geometry.width(), geometry.height());
     ensure!(
-        (width, height) == (geometry.width(), geometry.height()),
-        "{} is {width} x {height}, and the tables are for {} x {}; {remedy}",
-        path.display(),
-        geometry.width(),
-        geometry.height(),
+        (width, height) == (columns, rows),
+        CallError::OtherSize { path: path.to_owned(), width, height, columns, rows, remedy }
     );
     Ok(())
 }
 
 /// The file's SHA-256.
 pub(super) fn file_hash(path: &Path) -> anyhow::Result<FileHash> {
-    let bytes = fs::read(path).with_context(|| format!("{} cannot be read", path.display()))?;
+    let bytes = fs::read(path).map_err(|source| CallError::Unreadable { path: path.to_owned(), source })?;
     Ok(FileHash { path: path.display().to_string(), sha256: sha256([bytes]) })
 }

@@ -12,7 +12,7 @@ use serde_json::{Map, Value, json};
 use super::document::{print_result, tell_result};
 use super::files::Files;
 use super::inputs::file_hash;
-use super::{Context, Failure, optics, print};
+use super::{CallError, Context, Failure, optics, print};
 use crate::exit::Exit;
 use crate::{console, progress};
 use halfrow::frames;
@@ -94,11 +94,10 @@ struct Origin {
 fn paths(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for folder in folders {
-        paths.extend(pictures(folder).map_err(|error| {
-            anyhow::Error::new(error).context(format!("{} cannot be listed; give a folder", folder.display()))
-        })?);
+        let unlisted = |source| CallError::FolderUnlisted { path: folder.clone(), source };
+        paths.extend(pictures(folder).map_err(unlisted)?);
     }
-    anyhow::ensure!(!paths.is_empty(), "there is no .png file in the folders of --images");
+    anyhow::ensure!(!paths.is_empty(), CallError::NoPhotograph);
     Ok(paths)
 }
 
@@ -139,7 +138,7 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
     let trained = train(&images, taps, watched.as_ref());
     watched.done();
     let trained = trained.map_err(failed)?;
-    let about = about(&origins, &trained).map_err(Failure::call)?;
+    let about = about(&origins, &trained).map_err(Failure::error)?;
     let file = KernelFile { about: Some(about), kernel: trained.kernel.clone() };
     file.write(&arguments.output, arguments.overwrite).map_err(Failure::error)?;
     let held_out = Spread::of(&trained.held_out);

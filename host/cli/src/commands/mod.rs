@@ -2,6 +2,7 @@
 
 mod board;
 mod boards;
+mod call_error;
 mod codes;
 mod completions;
 mod correct;
@@ -28,6 +29,7 @@ use std::path::PathBuf;
 use clap::{ArgAction, CommandFactory, Parser, Subcommand};
 use halfrow_model::ModelPath;
 
+use self::call_error::CallError;
 use crate::console;
 use crate::exit::Exit;
 use crate::settings::Settings;
@@ -121,12 +123,6 @@ impl Failure {
     }
 }
 
-/// A call that cannot be carried out, for a reason in words.
-macro_rules! wrong_call {
-    ($($words:tt)*) => { $crate::commands::Failure::call(anyhow::anyhow!($($words)*)) };
-}
-use wrong_call;
-
 impl From<OpenError> for Failure {
     fn from(error: OpenError) -> Self {
         Self { exit: error.class().into(), error: error.into() }
@@ -195,7 +191,7 @@ impl Cli {
             && matches!(self.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
         {
             let command = self.command_name();
-            return Err(wrong_call!("`halfrow {command}` has no result in JSON; leave --json out"));
+            return Err(Failure::call(CallError::NoJson { command }));
         }
         match &self.command {
             Command::Verify(arguments) => verify::run(arguments, &context),

@@ -11,7 +11,7 @@ use halfrow_model::{
     Phase,
 };
 
-use super::Failure;
+use super::{CallError, Failure};
 use halfrow::lenses::LensFile;
 
 use super::table_file::NamedTables;
@@ -148,18 +148,13 @@ impl LensArguments {
         let scales = self.lens_pitch.is_some();
         match self.lens {
             Some(LensName::File(_)) if self.pixel_pitch.is_some() && !scales => {
-                bail!(
-                    "--pixel-pitch does nothing with a lens file unless --lens-pitch is given; give both, or none"
-                )
+                bail!(CallError::PitchAlone)
             }
             Some(LensName::Equidistant(_)) if scales => {
-                bail!("--lens-pitch goes with a lens file; give its name to --lens")
+                bail!(CallError::LensPitchWithoutFile)
             }
             Some(LensName::Equidistant(_)) if self.pixel_pitch.is_some() || self.field_of_view.is_some() => {
-                bail!(
-                    "--lens equidistant:RADIUS cannot be used with --pixel-pitch or --field-of-view; give the radius alone, or \
-                 these and --focal-length without it"
-                )
+                bail!(CallError::RadiusTwice)
             }
             _ => Ok(()),
         }
@@ -194,10 +189,9 @@ impl LensArguments {
         let file = LensFile::read(path)?;
         let pictures = match file.size {
             Some(size) if self.lens_pitch.is_none() => size,
-            None if self.lens_pitch.is_none() && (self.width.is_none() || self.height.is_none()) => bail!(
-                "the lens file {} does not say how large its pictures are; give --width and --height",
-                path.display()
-            ),
+            None if self.lens_pitch.is_none() && (self.width.is_none() || self.height.is_none()) => {
+                bail!(CallError::LensSizeMissing { path: path.to_owned() })
+            }
             _ => PAPER_SIZE,
         };
         let geometry = self.geometry(pictures)?;

@@ -10,7 +10,7 @@ use super::board::BoardArguments;
 use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
-use super::{Context, Failure, wrong_call};
+use super::{CallError, Context, Failure};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, progress};
@@ -167,12 +167,8 @@ impl Arguments {
                 let chosen = Item::ALL.into_iter().filter(|item| item.needs_photographs() == wanted);
                 chosen.map(Item::name).collect::<Vec<_>>().join(" ")
             };
-            anyhow::bail!(
-                "{} need the 24 photographs; give --images FOLDER with kodim01.png to kodim24.png \
-                 (https://r0k.us/graphics/kodak), or name items that need none: {}",
-                names(true).replace(' ', " and "),
-                names(false)
-            );
+            let needing = names(true).replace(' ', " and ");
+            anyhow::bail!(CallError::PhotographsMissing { needing, others: names(false) });
         };
         Ok(paper::read_photographs(folder)?)
     }
@@ -180,7 +176,7 @@ impl Arguments {
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {
         let candidate = self.board.candidate(settings)?;
         if candidate.kind == BoardKind::Replay {
-            return Err(wrong_call!("a recording corrects no new frames; name another board"));
+            return Err(Failure::call(CallError::RecordingCorrects));
         }
         let options = self.board.open_options(settings, None)?;
         let board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;

@@ -1,10 +1,9 @@
 //! `halfrow schema`
 
-use anyhow::Context as _;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::{Failure, codes, print_json};
+use super::{CallError, Failure, codes, print_json};
 use crate::exit::Exit;
 
 /// What the program prints as JSON; the codes come from the program.
@@ -23,16 +22,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Some(command) = &arguments.command {
         let commands = schema["properties"]["command"]["enum"].as_array().cloned().unwrap_or_default();
         let known = commands.iter().filter_map(Value::as_str).collect::<Vec<_>>();
-        let is_known = known.contains(&command.as_str());
-        is_known
-            .then_some(())
-            .with_context(|| {
-                format!(
-                    "`{command}` is no command with a document of its own; name one of {}",
-                    known.join(", ")
-                )
-            })
-            .map_err(Failure::call)?;
+        if !known.contains(&command.as_str()) {
+            let (command, known) = (command.clone(), known.join(", "));
+            return Err(Failure::call(CallError::NoDocument { command, known }));
+        }
         schema["properties"]["command"] = json!({ "const": command });
     }
     schema["$defs"]["code"]["enum"] = codes::all().iter().map(|entry| entry["code"].clone()).collect();

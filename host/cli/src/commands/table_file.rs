@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::given::{Decider, Given, IN_TABLE_FILES, written};
 use super::optics::LensArguments;
-use super::{Failure, wrong_call};
+use super::{CallError, Failure};
 use crate::settings::Settings;
 use halfrow::optics::OpticsError;
 use halfrow::tables::TableFile;
@@ -70,14 +70,12 @@ impl TableArgument {
 
 fn refuse<T>(option: &str, path: &Path, file: &TableFile) -> Result<T, Failure> {
     let geometry = file.tables.geometry();
-    let refused = format!(
-        "{option} is not that of --tables {}, which is for {} x {}, {} bits, centre at column {}; leave {option} out, \
-         or make other tables",
-        path.display(),
-        geometry.width(),
-        geometry.height(),
-        geometry.depth().bits(),
-        f64::from(geometry.centre2()) / 2.0,
-    );
-    Err(wrong_call!("{refused}"))
+    Err(Failure::call(CallError::OtherThanTables {
+        option: option.to_owned(),
+        path: path.to_owned(),
+        width: geometry.width(),
+        height: geometry.height(),
+        bits: geometry.depth().bits(),
+        centre: f64::from(geometry.centre2()) / 2.0,
+    }))
 }

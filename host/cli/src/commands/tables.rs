@@ -3,14 +3,13 @@
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use anyhow::bail;
 use clap::Args;
 use serde_json::json;
 
 use super::document::tell_result;
 use super::files::Files;
 use super::optics::{self, LensArguments};
-use super::{Context, Failure};
+use super::{CallError, Context, Failure};
 use crate::console;
 use crate::exit::Exit;
 use halfrow::tables::{TableFile, mem};
@@ -79,14 +78,11 @@ enum Format {
 
 impl Format {
     /// The one that the name tells.
-    fn of(path: &Path) -> anyhow::Result<Self> {
+    fn of(path: &Path) -> Result<Self, CallError> {
         match path.extension().and_then(|extension| extension.to_str()) {
             Some("json") => Ok(Self::Json),
             Some("mem") => Ok(Self::Mem),
-            _ => bail!(
-                "{} names no format of tables; end it in .json, or in .mem for $readmemh",
-                path.display()
-            ),
+            _ => Err(CallError::TablesFormat { path: path.to_owned() }),
         }
     }
 

@@ -15,7 +15,7 @@ use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, file_hash, frame_sources};
 use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
-use super::{Context, Failure, print, wrong_call};
+use super::{CallError, Context, Failure, print};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, flags, json, progress, text};
@@ -257,7 +257,7 @@ impl Arguments {
     fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.reconnect.or(settings.reconnect).filter(|_| self.record.is_none());
         let patience = seconds.map(Duration::try_from_secs_f64).transpose();
-        patience.map_err(|_| wrong_call!("--reconnect takes a number of seconds, 0 or more"))
+        patience.map_err(|_| Failure::call(CallError::Seconds { option: "--reconnect" }))
     }
 
     /// Looks at all that is read and written, and takes the places of what is written.

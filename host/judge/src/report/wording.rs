@@ -143,6 +143,12 @@ pub fn link(link: &LinkReport) -> String {
             grouped(link.retry_limit)
         )),
     }
+    if link.late > 0 {
+        parts.push(format!("{} answered late", count(link.late, "request")));
+    }
+    if link.strays > 0 {
+        parts.push(format!("{} that nobody waited for", count(link.strays, "packet")));
+    }
     if link.line_errors.sum() > 0 {
         parts.push(format!("errors on the line: {}", link.line_errors));
     }
@@ -189,9 +195,10 @@ pub fn worth_listing(report: &Report, most: usize) -> (Vec<&FrameReport>, usize)
 
 /// `1 frame`, `16 frames`, `17,280 rows`.
 #[must_use]
-pub fn count(number: usize, what: &str) -> String {
-    let ending = if number == 1 { "" } else { "s" };
-    format!("{} {what}{ending}", grouped(number))
+pub fn count(number: impl Copy + ToString, what: &str) -> String {
+    let number = grouped(number);
+    let ending = if number == "1" { "" } else { "s" };
+    format!("{number} {what}{ending}")
 }
 
 /// A number with a comma before every third digit from the right.

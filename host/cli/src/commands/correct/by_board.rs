@@ -6,7 +6,7 @@ use std::sync::Arc;
 use anyhow::Context as _;
 use halfrow_model::Frame;
 
-use super::super::wrong_call;
+use super::super::CallError;
 use super::places::Places;
 use super::{Context, Failure, Job};
 use halfrow::board::Board;
@@ -27,7 +27,7 @@ impl Job<'_> {
     ) -> Result<BoardKind, Failure> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
         if candidate.kind == BoardKind::Replay {
-            return Err(wrong_call!("a recording corrects no new frames; use it with `halfrow verify`"));
+            return Err(Failure::call(CallError::RecordingCorrects));
         }
         let options = self.arguments.board.open_options(&context.settings, None)?;
         let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;

@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context as _, bail, ensure};
+use anyhow::{bail, ensure};
 
-use super::super::files::Files;
+use super::super::CallError;
+use super::super::files::{Files, make_folder};
 use super::super::inputs::FrameName;
 use halfrow::frames::{Format, check_png};
 use halfrow_frames::written_aside::Place;
@@ -41,7 +42,7 @@ impl Places {
         for path in &places.frames {
             let named = Format::of(path)?;
             if let Some(format) = wanted.format.filter(|&format| format != named) {
-                bail!("{} is no {format}; leave --format out, or name a folder with -o", path.display());
+                bail!(CallError::OtherFormat { path: path.clone(), format });
             }
         }
         places.previews.iter().try_for_each(|path| check_png(path))?;
@@ -54,12 +55,12 @@ impl Places {
         inputs: &[FrameName],
         place: &Path,
         format: Format,
-        option: &str,
+        option: &'static str,
     ) -> anyhow::Result<Vec<PathBuf>> {
         let is_file = place.extension().is_some() && !place.is_dir();
         if is_file {
-            let (place, frames) = (place.display(), inputs.len());
-            ensure!(frames == 1, "{place} is one file for {frames} frames; name a folder with {option}");
+            let frames = inputs.len();
+            ensure!(frames == 1, CallError::OneFile { path: place.to_owned(), frames, option });
         } else {
             self.folders.push(place.to_owned());
         }
@@ -75,8 +76,7 @@ impl Places {
         let mut seen = HashSet::new();
         for path in self.frames.iter().chain(&self.previews) {
             if !seen.insert(Place::of(path)) {
-                let shared = path.display();
-                bail!("two inputs would both be written to {shared}, or a frame and its preview; part them");
+                bail!(CallError::FramesShare { path: path.clone() });
             }
         }
         Ok(())
@@ -93,10 +93,9 @@ impl Places {
     }
 
     /// Makes the folders that are not there.
-    pub(super) fn make_folders(&self) -> anyhow::Result<()> {
+    pub(super) fn make_folders(&self) -> Result<(), CallError> {
         for folder in &self.folders {
-            std::fs::create_dir_all(folder)
-                .with_context(|| format!("{} cannot be made; name another folder", folder.display()))?;
+            make_folder(folder)?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use crate::report::wording::{self, grouped, plain};
+use crate::report::wording::{self, count, grouped, plain};
 use crate::result::{FrameReport, LinkReport, Outcome, Report, TablesReport};
 
 /// Rows of the table of frames.
@@ -81,6 +81,10 @@ pub(super) fn link(link: &LinkReport) -> Markup {
             (pair("Packets", format!("{} out, {} in", grouped(link.packets_out), grouped(link.packets_in))))
             (pair("Damaged", format!("{} out, {} in", grouped(link.damaged_out), grouped(link.damaged_in))))
             (pair("Sent again", format!("{}; too poor from {} on", grouped(link.retries), grouped(link.retry_limit))))
+            @if link.late.saturating_add(link.strays) > 0 {
+                (pair("Late", format!("{} answered late, {} that nobody waited for",
+                    count(link.late, "request"), count(link.strays, "packet"))))
+            }
             @if link.line_errors.sum() > 0 { (pair("Line errors", link.line_errors.to_string())) }
             @if let Some(time) = link.round_trip_us { (pair("Round trip", format!("{} µs", grouped(time)))) }
             (pair("Time", format!("{:.3} s on the link's clock", link.seconds)))

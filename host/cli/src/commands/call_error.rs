@@ -1,0 +1,120 @@
+//! What is wrong with a call, or with a place that it names, where no part of the library is the one to say it.
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use halfrow::frames::Format;
+
+/// A call that cannot be carried out as it stands. Options are named as they are written on the command line.
+#[derive(Debug, Error)]
+pub(super) enum CallError {
+    /// An option beside another thing that decides in its place.
+    #[error("{option} {reason}")]
+    VoidOption { option: String, reason: &'static str },
+    /// A number of seconds that is none.
+    #[error("{option} takes a number of seconds, 0 or more")]
+    Seconds { option: &'static str },
+    /// A command that prints nothing that could be JSON.
+    #[error("`halfrow {command}` has no result in JSON; leave --json out")]
+    NoJson { command: &'static str },
+    /// A command that is not among those with a document.
+    #[error("`{command}` is no command with a document of its own; name one of {known}")]
+    NoDocument { command: String, known: String },
+    /// `correct` without a board or the model.
+    #[error("nobody is named to correct; give --model or --board TARGET")]
+    NobodyCorrects,
+    /// New frames for a board that answers from a recording.
+    #[error(
+        "a recording corrects no new frames; name another board, or judge it again with `halfrow verify`"
+    )]
+    RecordingCorrects,
+    /// A fault of the mock that a run never comes upon.
+    #[error("the fault of {target} would change nothing: {reason}")]
+    FaultWithoutEffect { target: String, reason: String },
+    /// Ways of making row factors, where none are made.
+    #[error("a frame has no row factors; leave --rows out")]
+    RowsOfFrame,
+    /// An option that says something else than a table file.
+    #[error(
+        "{option} is not that of --tables {}, which is for {width} x {height}, {bits} bits, centre at column {centre}; \
+         leave {option} out, or make other tables", path.display()
+    )]
+    OtherThanTables { option: String, path: PathBuf, width: usize, height: usize, bits: u32, centre: f64 },
+    /// The pixels of the frame, where nothing is known of those of the lens's camera.
+    #[error("--pixel-pitch does nothing with a lens file unless --lens-pitch is given; give both, or none")]
+    PitchAlone,
+    /// The pixels of a lens's camera without a lens of a camera.
+    #[error("--lens-pitch goes with a lens file; give its name to --lens")]
+    LensPitchWithoutFile,
+    /// Two ways of saying how long the radius is.
+    #[error(
+        "--lens equidistant:RADIUS cannot be used with --pixel-pitch or --field-of-view; give the radius alone, or these \
+         and --focal-length without it"
+    )]
+    RadiusTwice,
+    /// A calibration without a size.
+    #[error("the lens file {} does not say how large its pictures are; give --width and --height", path.display())]
+    LensSizeMissing { path: PathBuf },
+    /// A name of tables that says nothing of their format.
+    #[error("{} names no format of tables; end it in .json, or in .mem for $readmemh", path.display())]
+    TablesFormat { path: PathBuf },
+    /// A file name that says another format than the call.
+    #[error("{} is no {format}; leave --format out, or name a folder with -o", path.display())]
+    OtherFormat { path: PathBuf, format: Format },
+    /// One file for several frames.
+    #[error("{} is one file for {frames} frames; name a folder with {option}", path.display())]
+    OneFile { path: PathBuf, frames: usize, option: &'static str },
+    /// An input whose output would have no name.
+    #[error("{} has no file name; name a file", path.display())]
+    Unnamed { path: PathBuf },
+    /// An input that would be overwritten.
+    #[error(
+        "{} is read by this call, and {option} would write there; an input is never overwritten, so name another place \
+         with {option}", path.display()
+    )]
+    InputOverwritten { path: PathBuf, option: &'static str },
+    /// Two outputs in one place.
+    #[error("{first} and {second} would both be written to {}; part them", path.display())]
+    OutputsShare { first: &'static str, second: &'static str, path: PathBuf },
+    /// Two frames in one place.
+    #[error("two inputs would both be written to {}, or a frame and its preview; part them", path.display())]
+    FramesShare { path: PathBuf },
+    /// A file of a folder that may not be replaced.
+    #[error("{} exists; allow it to be overwritten, or name another folder with {option}", path.display())]
+    Exists { path: PathBuf, option: &'static str },
+    /// What stands in the place of a file of a folder.
+    #[error("{} is no regular file, and so is not replaced; name another folder with {option}", path.display())]
+    NotAFile { path: PathBuf, option: &'static str },
+    /// A folder that takes no files.
+    #[error("cannot write into the folder {}; name another with {option}", path.display())]
+    FolderClosed { path: PathBuf, option: &'static str, source: io::Error },
+    /// A file's folder that is missing or takes no files.
+    #[error(
+        "nothing can be written into the folder {}; check that it exists and is writable, or name another place with \
+         {option}", path.display()
+    )]
+    FolderUnusable { path: PathBuf, option: &'static str, source: io::Error },
+    /// A folder that cannot be made.
+    #[error("the folder {} cannot be made; name another", path.display())]
+    FolderNotMade { path: PathBuf, source: io::Error },
+    /// A folder that cannot be looked into.
+    #[error("{} cannot be listed; give a folder", path.display())]
+    FolderUnlisted { path: PathBuf, source: io::Error },
+    /// Folders without a photograph.
+    #[error("there is no .png file in the folders of --images")]
+    NoPhotograph,
+    /// Items of the paper that need its photographs.
+    #[error(
+        "{needing} need the 24 photographs; give --images FOLDER with kodim01.png to kodim24.png \
+         (https://r0k.us/graphics/kodak), or name items that need none: {others}"
+    )]
+    PhotographsMissing { needing: String, others: String },
+    /// An input that cannot be read whole.
+    #[error("{} cannot be read; name a file that can be", path.display())]
+    Unreadable { path: PathBuf, source: io::Error },
+    /// A frame of another size than the tables.
+    #[error("{} is {width} x {height}, and the tables are for {columns} x {rows}; {remedy}", path.display())]
+    OtherSize { path: PathBuf, width: usize, height: usize, columns: usize, rows: usize, remedy: String },
+}
