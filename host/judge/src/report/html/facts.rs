@@ -31,7 +31,7 @@ pub(super) fn frames(report: &Report) -> Markup {
                 } }
                 tbody { @for frame in listed { (frame_row(report, frame)) } }
             } }
-            @if left_out > 0 { p { "And " (wording::count(left_out, "more frame")) "." } }
+            @if left_out > 0 { p { "And " (count(left_out, "more frame")) "." } }
         }
     }
 }
@@ -121,7 +121,7 @@ fn tables(tables: &TablesReport) -> Markup {
             (pair("Geometry", format!("{} x {}, {} bits", tables.width, tables.height, tables.bits)))
             (pair("Optical centre", format!("column {:.1}", f64::from(tables.centre2) / 2.0)))
             @if let Some(outside) = tables.rows_outside_circle {
-                (pair("Outside the image circle", wording::count(outside, "row")))
+                (pair("Outside the image circle", count(outside, "row")))
             }
             (pair("CRC-32", format!("row factors {}, kernel {}", tables.steps_crc32, tables.kernel_crc32)))
         }
