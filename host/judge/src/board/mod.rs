@@ -9,8 +9,6 @@ mod rows;
 mod sent;
 mod stop;
 mod tables;
-#[cfg(test)]
-mod unflagged;
 
 use std::time::Duration;
 
