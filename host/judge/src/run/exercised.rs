@@ -187,3 +187,128 @@ fn unused_depths(tables: &[&TableSet], board: &Identity) -> Vec<u32> {
     let used = |bits: &u32| tables.iter().any(|tables| tables.geometry().depth().bits() == *bits);
     board.depths.iter().copied().map(u32::from).filter(|bits| !used(bits)).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Interpolant, Kernel, Phase};
+
+    use super::*;
+
+    fn board(taps: u8) -> Identity {
+        Identity {
+            name: "made".to_owned(),
+            serial: String::new(),
+            build: String::new(),
+            protocol: 1,
+            datapath: 1,
+            max_width: 2048,
+            max_height: 1024,
+            depths: vec![8, 10, 12],
+            taps,
+            latency: 12,
+            ring: 2048,
+            least_blanking: 0,
+            table_banks: 2,
+            row_banks_in: 2,
+            row_banks_out: 2,
+            clock_hz: 0,
+        }
+    }
+
+    /// 128 x 16 around the middle, C = 127, unless told otherwise.
+    fn generation(centre2: u32, interpolant: Interpolant, step: impl Fn(u32) -> u32) -> Generation {
+        let geometry = Geometry::new(128, 16, BitDepth::Twelve, centre2).unwrap();
+        let tables = TableSet::new(geometry, (0..16).map(step).collect()).unwrap();
+        Generation { number: 2, tables, kernel: Kernel::from(interpolant) }
+    }
+
+    fn found(taps: u8, generations: &[&Generation]) -> Vec<NotExercised> {
+        let mut samples = SampleLevels::default();
+        // Both levels of every bit.
+        let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, [0, 4095].repeat(32)).unwrap();
+        samples.note(&frame, &frame);
+        not_exercised(&board(taps), generations, samples)
+    }
+
+    fn taps(names: &[&str]) -> NotExercised {
+        NotExercised::Taps { taps: names.iter().map(|&name| name.to_owned()).collect() }
+    }
+
+    /// Without stretching, every output is its own column: x = 0, so node 0 and G2 alone, and n = 127 at column 127, so that
+    /// a sample is needed while 63 more are stored, of which line 6 tells none apart. One factor for all rows tells no line
+    /// of the row table, and keeps all of its 25 bits.
+    #[test]
+    fn a_table_that_stretches_nothing_exercises_next_to_nothing() {
+        let generation = generation(127, Interpolant::Hermite, |_| 1 << 24);
+        assert_eq!(
+            found(7, &[&generation]),
+            [
+                NotExercised::ColumnAddress { lines: vec![7, 8, 9, 10] },
+                NotExercised::LineMemoryAddress { lines: vec![6, 7, 8, 9, 10] },
+                NotExercised::RowTableAddress { lines: (0..10).collect() },
+                NotExercised::RowFactorBits { bits: (0..25).collect() },
+                NotExercised::KernelNodes { nodes: (1..65).collect() },
+                taps(&["G0", "R1", "R3", "G4", "R5", "G6"]),
+                NotExercised::OneCentre { centre2: 127 },
+                NotExercised::Depths { bits: vec![8, 10] },
+            ]
+        );
+    }
+
+    /// At half the distances the sources lie at (127 + 2j)/4: a quarter or three of the way between two columns, at nodes 8,
+    /// 24, 40 and 56. That of column 127 is 95.25, so a sample is needed while 32 + 63 = 95 more are stored.
+    #[test]
+    fn half_the_distances_use_four_nodes() {
+        let half = |row| if row == 0 { 1 << 24 } else { 1 << 23 };
+        let (all, lines) = (|nodes: &[usize]| (1..65).filter(|node| !nodes.contains(node)).collect(), 4..10);
+        let linear = generation(127, Interpolant::Linear, half);
+        let found_linear = found(7, &[&linear]);
+        assert!(found_linear.contains(&NotExercised::LineMemoryAddress { lines: (7..11).collect() }));
+        assert!(found_linear.contains(&NotExercised::RowTableAddress { lines: lines.collect() }));
+        assert!(found_linear.contains(&NotExercised::KernelNodes { nodes: all(&[8, 24, 40, 56]) }));
+        assert!(found_linear.contains(&NotExercised::RowFactorBits { bits: (0..23).collect() }));
+        assert!(found_linear.contains(&taps(&["G0", "R1", "R3", "R5", "G6"])));
+    }
+
+    /// The kernel decides, and what the board has.
+    #[test]
+    fn five_taps_leave_the_outer_ones_of_seven_unused() {
+        let five = generation(127, Interpolant::Hermite, |_| 1 << 23);
+        let seven = generation(127, Interpolant::Keys, |_| 1 << 23);
+        let is_tap = |part: &NotExercised| matches!(part, NotExercised::Taps { .. });
+        let named = |board, generations: &[&Generation]| {
+            found(board, generations).into_iter().filter(is_tap).collect::<Vec<_>>()
+        };
+        assert_eq!(named(7, &[&five]), [taps(&["G0", "G6"])]);
+        assert_eq!(named(5, &[&five]), []);
+        // Keys' kernel weighs no R, as Hermite's does not weigh G0 and G6.
+        assert_eq!(named(7, &[&seven]), [taps(&["R1", "R3", "R5"])]);
+        assert_eq!(named(7, &[&five, &seven]), []);
+    }
+
+    /// 127 is 0000 0111 1111 and 0 is 0 in the 12 bits of C on a board of 2048 columns.
+    #[test]
+    fn of_two_centres_the_bits_that_are_the_same_are_told() {
+        let [here, there] = [127, 0].map(|centre2| generation(centre2, Interpolant::Linear, |_| 1 << 23));
+        let found = found(7, &[&here, &there]);
+        assert!(found.contains(&NotExercised::CentreBits { bits: (7..12).collect() }));
+    }
+
+    /// 0x0f5 and 0x005: bits 0 and 2 are always 1, 4 to 7 are both, all others always 0.
+    #[test]
+    fn bits_of_samples_count_on_either_side_of_the_board() {
+        let frame =
+            |samples: [u16; 2]| Frame::new(64, BitDepth::Twelve, Phase::Grbg, samples.repeat(32)).unwrap();
+        let mut samples = SampleLevels::default();
+        samples.note(&frame([0x0f5, 0x005]), &frame([0, 0xfff]));
+        let generation = generation(127, Interpolant::Linear, |_| 1 << 23);
+        let found = not_exercised(&board(7), &[&generation], samples);
+        assert_eq!(found[0], NotExercised::InputBits { bits: vec![0, 1, 2, 3, 8, 9, 10, 11] });
+        assert!(!found.iter().any(|part| matches!(part, NotExercised::OutputBits { .. })));
+        samples.note(&frame([0, 0xfff]), &frame([7, 7]));
+        assert!(!matches!(
+            not_exercised(&board(7), &[&generation], samples)[0],
+            NotExercised::InputBits { .. }
+        ));
+    }
+}
