@@ -11,8 +11,8 @@ use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::System;
 
-/// Few of the board's lines are used.
-const SYSTEM: System = System { width: 128, height: 16, radius: 17.0, board: "mock", ring: 2048 };
+/// Few of the board's lines are used. Eight lines have the columns, and seven tell samples of the line memory apart.
+const SYSTEM: System = System { width: 160, height: 16, radius: 17.0, board: "mock", ring: 2048 };
 
 fn judged(plan: &Plan, candidate: Candidate) -> Report {
     verify(plan, candidate, &RunOptions::default(), &Silent).unwrap().report
@@ -47,7 +47,7 @@ fn a_stuck_address_line_goes_unseen_exactly_where_the_pass_names_it() {
             assert_eq!(verdict, expected, "line {line} at {value}");
         }
     }
-    assert!(named(10) && !named(0), "{:?}", sound.not_exercised);
+    assert!(named(7) && !named(6), "{:?}", sound.not_exercised);
 }
 
 #[test]
@@ -93,7 +93,7 @@ fn ignoring_the_centre() -> Candidate {
     let alter = |toward, mut packet: Passing| {
         if toward == Toward::Board && packet.is(Kind::Configure) {
             // WIRE.md, CONFIGURE: width, height, centre2.
-            packet.payload[4..6].copy_from_slice(&127_u16.to_le_bytes());
+            packet.payload[4..6].copy_from_slice(&159_u16.to_le_bytes());
         }
         vec![packet]
     };
@@ -105,7 +105,7 @@ fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
     let plan = SYSTEM.plan();
     let unseen = judged(&plan, ignoring_the_centre());
     assert_eq!(unseen.verdict, Verdict::Pass);
-    assert!(unseen.not_exercised.contains(&NotExercised::OneCentre { centre2: 127 }));
+    assert!(unseen.not_exercised.contains(&NotExercised::OneCentre { centre2: 159 }));
     let varying = plan.varying(Vary { centre: true, depth: false });
     let seen = judged(&varying, ignoring_the_centre());
     assert_eq!(seen.verdict, Verdict::Fail, "{}", seen.headline());
