@@ -78,7 +78,7 @@ fn frames(report: &Report) -> String {
         let comparison = &frame.comparison;
         table.add_row([
             frame.number.to_string(),
-            shortened(&plain(&frame.name)),
+            shortened(&wording::frame_name(frame)),
             grouped(frame.rows),
             wording::differences(report, frame),
             comparison.first.map_or_else(String::new, |first| format!("{}, {}", first.row, first.column)),
@@ -105,6 +105,9 @@ fn figures(report: &Report) -> String {
         push(&mut text, "street", no_style, &wording::street(street));
     }
     push(&mut text, "link", no_style, &wording::link(&report.link));
+    if let Some(untouched) = wording::not_exercised(report) {
+        push(&mut text, "limits", no_style, &untouched);
+    }
     text
 }
 

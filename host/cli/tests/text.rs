@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 use halfrow::compare::{Comparison, Difference};
-use halfrow::result::{BoardKind, Defect, FrameReport, MadeWith, Problem, Report, StaleFrames};
+use halfrow::result::{BoardKind, Defect, FrameReport, MadeWith, Problem, Report, StaleFrames, Variation};
 use halfrow::verdict::Verdict;
 
 #[path = "../../judge/tests/report_views/made.rs"]
@@ -29,6 +29,22 @@ fn a_pass_ends_in_one_line_with_all_that_was_judged() {
         "PASS (mock board: no hardware was tested)  2 frames, 4,147,200 samples equal, latency 972 = 960 + 12 pixel \
          clocks, 1.9 s"
     );
+}
+
+#[test]
+fn a_pass_says_what_was_not_exercised_before_the_verdict() {
+    let text = plain(&made::pass());
+    assert!(text.contains("\nlimits   not exercised: samples of 8 or 10 bits\n\nPASS"), "{text}");
+    let mut whole = made::pass();
+    whole.not_exercised.clear();
+    assert!(!plain(&whole).contains("exercised"));
+}
+
+#[test]
+fn a_frame_of_its_own_says_what_it_is_for() {
+    let mut report = made::pass();
+    report.frames[1].variation = Some(Variation::Centre { centre2: 2176 });
+    assert!(plain(&report).contains("builtin:noise, centre 1088.0"), "{}", plain(&report));
 }
 
 #[test]

@@ -6,6 +6,7 @@
 
 mod capabilities;
 mod conduct;
+mod exercised;
 mod lost_rows;
 mod recordings;
 mod stale_packets;

@@ -25,6 +25,7 @@ mod signals;
 #[cfg(feature = "sim")]
 mod simulated;
 mod streams;
+mod varied;
 mod verdicts;
 
 use halfrow_tests::program::{Ended, Folder};

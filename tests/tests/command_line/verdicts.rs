@@ -32,7 +32,7 @@ fn the_text_ends_with_the_verdict_and_says_that_no_hardware_was_tested() {
     let ended = halfrow(small("verify", &[]));
     let last = ended.stdout.trim_end().lines().last().unwrap();
     assert!(
-        last.starts_with("PASS (mock board: no hardware was tested)  16 frames, 32,768 samples equal"),
+        last.starts_with("PASS (mock board: no hardware was tested)  19 frames, 38,912 samples equal"),
         "{last}"
     );
 }
@@ -65,7 +65,7 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
 fn the_list_names_every_frame_and_opens_no_board() {
     let ended = halfrow(small("verify", &["--list", "--board", "mock,fault=disconnect,byte=0"]));
     assert_eq!(ended.code, Some(0));
-    assert_eq!(ended.stdout.lines().count(), 16);
+    assert_eq!(ended.stdout.lines().count(), 19);
     assert!(ended.stdout.contains("builtin:zone-plate"), "{}", ended.stdout);
 }
 

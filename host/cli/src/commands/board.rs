@@ -16,7 +16,7 @@ use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Recording, kinds};
-use halfrow::run::{Draws, JUDGED, Plan};
+use halfrow::run::{Build, Draws, JUDGED, Plan};
 use halfrow::target::{Target, TargetError};
 
 /// Which board, and how patiently.
@@ -77,7 +77,10 @@ impl BoardArguments {
     pub(super) fn check_fault(&self, settings: &Settings, plan: &Plan) -> Result<(), Failure> {
         let target = self.target(settings)?;
         let fault = link::fault(&target)?;
-        let judged = plan.schedule(2).into_iter().flat_map(|segment| segment.frames);
+        let judged = plan
+            .schedule(&Build::full(plan.tables.geometry().width()))
+            .into_iter()
+            .flat_map(|segment| segment.frames);
         let frames = judged.filter(|frame| frame.generation == JUDGED).count();
         let streamed = Streamed { height: plan.tables.geometry().height(), frames };
         match fault.and_then(|fault| fault.without_effect(&streamed)) {

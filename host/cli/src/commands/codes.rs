@@ -219,6 +219,10 @@ pub(super) fn all() -> Vec<Value> {
         let (code, parameters) = suspect.defect.tagged();
         entry("defect", &code, parameters.keys().cloned().collect())
     });
+    let untouched = examples::not_exercised().into_iter().map(|part| {
+        let (code, parameters) = part.tagged();
+        entry("not-exercised", &code, parameters.keys().cloned().collect())
+    });
     let errors = error_lists().flat_map(|list| list.codes).map(|(code, parameters)| {
         entry("error", code, parameters.iter().map(|&name| name.to_owned()).collect())
     });
@@ -226,7 +230,7 @@ pub(super) fn all() -> Vec<Value> {
         let parameters = if code.starts_with("io-") { vec!["os_error".to_owned()] } else { Vec::new() };
         entry("error", code, parameters)
     });
-    findings.chain(defects).chain(errors).chain(others).collect()
+    findings.chain(defects).chain(untouched).chain(errors).chain(others).collect()
 }
 
 /// The page of all codes, in Markdown.
@@ -246,6 +250,11 @@ fn page() -> String {
         text += &format!("* `{code}`{}: {place}: {evidence}\n", parameters(names.keys()));
         text += &format!("  *Designer:* {}\n  *Technician:* {}\n", suspect.designer(), suspect.technician());
     }
+    text += "\n## What a PASS did not exercise\n\n";
+    for part in examples::not_exercised() {
+        let (code, names) = part.tagged();
+        text += &format!("* `{code}`{}: {}\n", parameters(names.keys()), part.words());
+    }
     text += "\n## Errors\n\nTheir sentence is in `message`, and what to do in `remedy` and at its end.\n";
     for list in error_lists().filter(|list| !list.codes.is_empty()) {
         text += &format!("\n{}:\n\n", list.error);
@@ -260,7 +269,7 @@ fn page() -> String {
 
 const HEAD: &str = "# Codes
 
-Every finding, defect and error in JSON has a code and parameters. Codes are stable: none changes its meaning or its
+Every finding, defect and error in JSON has a code and parameters, and so has what a PASS did not exercise. Codes are stable: none changes its meaning or its
 parameters' names within a schema number, and new ones may come. The sentences are made from them and may change.
 `halfrow codes` prints this page; a test holds the two equal. Sentences are those of an example.
 ";

@@ -23,13 +23,16 @@ use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{Candidate, Lost, Recorder, Recording, RecordingFile};
 use halfrow::optics::Chosen;
 use halfrow::report::ReportFolder;
+use halfrow::result::Variation;
 use halfrow::run::{
-    self, Circumstances, Finished, FrameSource, Lack, Plan, RecordedRun, RestoreError, RunOptions, Timing,
+    self, Build, Circumstances, Finished, FrameSource, Lack, Plan, RecordedRun, RestoreError, RunOptions,
+    Timing, Vary,
 };
 
 /// Judge a board: stream frames through it and compare every sample with the reference
 ///
-/// Without --board the built-in mock board is judged. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
+/// Without --board the built-in mock board is judged. Unless tables, frames, --centre-x or --bits say otherwise, the optical
+/// centre and the depth vary in frames of their own; a PASS names what no frame exercised. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
 /// 6 identity or version refused, 129, 130 or 143 interrupted.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -143,6 +146,8 @@ struct Listed {
     name: String,
     tables: &'static str,
     timing: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    variation: Option<Variation>,
 }
 
 /// Prints what would be streamed.
@@ -152,8 +157,9 @@ fn list(plan: &Plan, as_json: bool) -> Result<Exit, Failure> {
         print_result("verify", Exit::Pass, None, serde_json::json!({ "listed": listed }))?;
         return Ok(Exit::Pass);
     }
-    let line = |Listed { number, name, tables, timing }: &Listed| {
-        format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}")
+    let line = |Listed { number, name, tables, timing, variation }: &Listed| {
+        let variation = variation.map_or_else(String::new, |variation| format!(", {variation}"));
+        format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}{variation}")
     };
     print(&listed.iter().map(line).collect::<Vec<_>>().join("\n"))?;
     Ok(Exit::Pass)
@@ -161,15 +167,16 @@ fn list(plan: &Plan, as_json: bool) -> Result<Exit, Failure> {
 
 fn listing(plan: &Plan) -> Vec<Listed> {
     let mut listed = Vec::new();
-    for segment in plan.schedule(2) {
+    for segment in plan.schedule(&Build::full(plan.tables.geometry().width())) {
         let timing = match segment.timing {
             Timing::Least => "least blanking",
             Timing::Sensor => "sensor blanking",
             Timing::Gaps(_) => "gaps",
         };
+        let variation = plan.variation(&segment.geometry);
         listed.extend(segment.frames.iter().map(|frame| {
             let tables = if frame.generation == run::DECOY { "decoy" } else { "judged" };
-            Listed { number: frame.number, name: frame.source.name(), tables, timing }
+            Listed { number: frame.number, name: frame.source.name(), tables, timing, variation }
         }));
     }
     listed
@@ -211,7 +218,8 @@ impl Arguments {
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
         let table_file = tables.as_ref().map(|tables| tables.path.clone());
         let chosen = optics::choose(tables, &self.lens, kernel)?;
-        let plan = self.plan_of(chosen, frames, settings)?;
+        let is_free = table_file.is_none() && frames.is_empty();
+        let plan = Plan { vary: self.vary(is_free), ..self.plan_of(chosen, frames, settings)? };
         let files = table_file.iter().chain(&lens).chain(&files);
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
@@ -219,6 +227,12 @@ impl Arguments {
             draws: run::Draws::draw(),
         };
         Ok((plan, self.options(circumstances, settings)?))
+    }
+
+    /// What is varied in a run of which neither tables nor frames are named: what the call does not say.
+    fn vary(&self, is_free: bool) -> Vary {
+        let has_centre = self.given.is_flag("centre_x") || self.lens.file().is_some();
+        Vary { centre: is_free && !has_centre, depth: is_free && !self.given.is_flag("bits") }
     }
 
     fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, settings: &Settings) -> Result<Plan, Failure> {

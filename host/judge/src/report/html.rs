@@ -32,6 +32,7 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
             (facts::frames(report))
             (pictures)
             (facts::figures(report))
+            (facts::not_exercised(report))
             (facts::link(&report.link))
             (facts::board(report))
             (facts::run(report))

@@ -60,6 +60,7 @@ fn properties(report: &Report) -> Vec<(&'static str, String)> {
         ("halfrow.commit", report.run.commit.clone()),
         ("seed", report.run.seed.to_string()),
     ];
+    list.extend(wording::not_exercised(report).map(|parts| ("not_exercised", parts)));
     if let Some(identity) = &report.board.identity {
         list.push(("board.name", identity.name.clone()));
         list.push(("board.serial", identity.serial.clone()));
@@ -104,7 +105,8 @@ fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
         )
     });
     // The number keeps apart two frames of one name.
-    let name = format!("{} (frame {}, {}, {})", frame.name, frame.number, frame.phase, frame.timing);
+    let name =
+        format!("{} (frame {}, {}, {})", wording::frame_name(frame), frame.number, frame.phase, frame.timing);
     case("frame", &name, frame.seconds, status(wording::frame_outcome(report, frame), &message, &first))
 }
 

@@ -3,7 +3,8 @@
 use std::borrow::Cow;
 
 use crate::result::{
-    BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, Outcome, Report, StreetReport,
+    BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome, Report,
+    StreetReport,
 };
 use crate::verdict::Verdict;
 
@@ -57,6 +58,7 @@ pub fn summary(report: &Report) -> String {
     lines.extend(report.checks.iter().map(|check| {
         format!("{:<8} {:<13} {}", mark(check.outcome), check.name, plain(&check.finding.sentence()))
     }));
+    lines.extend(not_exercised(report));
     lines.extend(remedy(report).map(|remedy| plain(&remedy).into_owned()));
     lines.join("\n")
 }
@@ -68,6 +70,22 @@ pub fn remedy(report: &Report) -> Option<String> {
     let in_headline = |remedy: &str| headline.contains(remedy.trim_end_matches('.').to_lowercase().as_str());
     let said = |remedy: &String| report.suspects.iter().any(|suspect| suspect.designer() == *remedy);
     report.remedy().filter(|remedy| !said(remedy) && !in_headline(remedy))
+}
+
+/// A frame's name, with what is set otherwise for it.
+#[must_use]
+pub fn frame_name(frame: &FrameReport) -> Cow<'_, str> {
+    match frame.variation {
+        None => plain(&frame.name),
+        Some(variation) => format!("{}, {variation}", plain(&frame.name)).into(),
+    }
+}
+
+/// What a PASS says nothing about, in one sentence without a full stop; none where nothing of the kind is known.
+#[must_use]
+pub fn not_exercised(report: &Report) -> Option<String> {
+    let words: Vec<_> = report.not_exercised.iter().map(NotExercised::words).collect();
+    (!words.is_empty()).then(|| format!("not exercised: {}", words.join("; ")))
 }
 
 /// What was judged, in figures.

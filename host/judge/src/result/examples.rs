@@ -2,7 +2,7 @@
 
 use super::{
     Account, BoardKind, ClampEnd, Counter, Counting, Defect, Doubt, Extent, Finding, MadeWith, Memory,
-    Problem, Reading, RowSource, StaleFrames, Suspect,
+    NotExercised, Problem, Reading, RowSource, StaleFrames, Suspect,
 };
 
 /// One of every finding that is no error.
@@ -85,6 +85,24 @@ fn unjudged() -> [Finding; 9] {
         Finding::HardwareRequired { board: BoardKind::Mock },
         Finding::BoardExchanged {},
         Finding::BoardStayedAway { reason: Box::new(reason), seconds: 30.0 },
+    ]
+}
+
+/// One of everything that a run may leave untouched.
+#[must_use]
+pub fn not_exercised() -> Vec<NotExercised> {
+    vec![
+        NotExercised::InputBits { bits: vec![8, 9, 10, 11] },
+        NotExercised::OutputBits { bits: vec![11] },
+        NotExercised::ColumnAddress { lines: vec![7, 8, 9, 10] },
+        NotExercised::LineMemoryAddress { lines: vec![7, 8, 9, 10] },
+        NotExercised::RowTableAddress { lines: vec![4, 5, 6, 7, 8, 9, 10] },
+        NotExercised::RowFactorBits { bits: vec![22, 23, 24] },
+        NotExercised::KernelNodes { nodes: vec![0, 1, 2, 64] },
+        NotExercised::Taps { taps: vec!["G0".to_owned(), "G6".to_owned()] },
+        NotExercised::OneCentre { centre2: 1919 },
+        NotExercised::CentreBits { bits: vec![8, 9, 10, 11] },
+        NotExercised::Depths { bits: vec![8, 10] },
     ]
 }
 

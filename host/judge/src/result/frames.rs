@@ -24,12 +24,40 @@ pub struct FrameReport {
     pub generation: u8,
     /// How its rows were played.
     pub timing: FrameTiming,
+    /// What was set otherwise for it than the tables have it.
+    #[serde(default)]
+    pub variation: Option<Variation>,
     /// How it compares.
     pub comparison: Comparison,
     /// Rows that came back.
     pub rows: usize,
     /// From when the frame before it had come back until it had, by the wall's clock, in seconds.
     pub seconds: f64,
+}
+
+/// What a frame of its own is for: a setting that no other frame has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum Variation {
+    /// Another optical centre.
+    Centre {
+        /// C, twice its column.
+        centre2: u32,
+    },
+    /// Another depth.
+    Depth {
+        /// Bits of a sample.
+        bits: u32,
+    },
+}
+
+impl fmt::Display for Variation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Centre { centre2 } => write!(f, "centre {:.1}", f64::from(*centre2) / 2.0),
+            Self::Depth { bits } => write!(f, "{bits} bits"),
+        }
+    }
 }
 
 /// How the rows of a frame were played.

@@ -21,6 +21,7 @@ mod finding;
 mod frames;
 mod identity;
 mod link;
+mod not_exercised;
 mod problem;
 mod sha256;
 mod suspect;
@@ -30,6 +31,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::frames::street::EdgeDeviation;
 use crate::verdict::{Cause, Verdict};
+use not_exercised::InWords;
 
 pub use crate::target::BoardKind;
 pub use check::{Check, CheckName, Outcome};
@@ -38,9 +40,10 @@ pub use defect::{ClampEnd, Counting, Defect, Extent, MadeWith, Memory, Reading, 
 pub use document::{Document, SCHEMA, Schema};
 pub use evidence::{Evidence, EvidenceReport};
 pub use finding::{Doubt, Finding};
-pub use frames::{FrameReport, FrameTiming, LatencyReport};
+pub use frames::{FrameReport, FrameTiming, LatencyReport, Variation};
 pub use identity::Identity;
 pub use link::{LinkReport, Reconnection};
+pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};
 pub use sha256::sha256;
 pub use suspect::{Account, Suspect};
@@ -64,6 +67,9 @@ pub struct Report {
     pub checks: Vec<Check>,
     /// Every frame that was streamed, in order.
     pub frames: Vec<FrameReport>,
+    /// What the frames left untouched of the board, under PASS; empty under FAIL and ERROR.
+    #[serde(default)]
+    pub not_exercised: Vec<NotExercised>,
     /// The latency of all rows.
     pub latency: Option<LatencyReport>,
     /// How façade edges of the built-in street stand before and after.
@@ -117,6 +123,7 @@ impl Serialize for Report {
             suspects: &'a [Suspect],
             checks: &'a [Check],
             frames: &'a [FrameReport],
+            not_exercised: Vec<InWords<'a>>,
             latency: &'a Option<LatencyReport>,
             street: &'a Option<StreetReport>,
             evidence: &'a EvidenceReport,
@@ -132,6 +139,7 @@ impl Serialize for Report {
             suspects: &self.suspects,
             checks: &self.checks,
             frames: &self.frames,
+            not_exercised: self.not_exercised.iter().map(InWords::from).collect(),
             latency: &self.latency,
             street: &self.street,
             evidence: &self.evidence,

@@ -2,7 +2,7 @@
 
 use super::findings::End;
 use super::judge::Seen;
-use super::plan::{Generation, JUDGED};
+use super::plan::{DECOY, Generation};
 use super::steps::Run;
 use crate::board::{Bank, Status};
 use crate::diagnosis::{self, Case, Uploaded};
@@ -45,13 +45,15 @@ impl Run<'_> {
         first.map_or(Ok(()), Err)
     }
 
-    /// The tables must still be what was uploaded.
+    /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame does not come to
+    /// those that are judged.
     fn tables_after(&mut self) -> Result<Finding, End> {
-        let judged = self.generations.iter().find(|generation| generation.number == JUDGED).cloned();
-        let Some(judged) = judged.filter(|_| self.streamed_judged()) else {
+        let last = self.findings.seen.frames.last().map_or(DECOY, |frame| frame.generation);
+        let last = self.generations.iter().find(|generation| generation.number == last).cloned();
+        let Some(last) = last.filter(|generation| generation.number != DECOY) else {
             return Ok(Finding::TablesUnused {});
         };
-        let checked = self.check_read_back(CheckName::TablesAfter, Bank::Active, &judged);
+        let checked = self.check_read_back(CheckName::TablesAfter, Bank::Active, &last);
         checked.map(|_| Finding::TablesUnchanged {}).map_err(|end| match end {
             End::Failed { check, finding, suspects } => {
                 let finding = Finding::TablesChanged { found: Box::new(finding) };
@@ -59,11 +61,6 @@ impl Run<'_> {
             }
             end => end,
         })
-    }
-
-    /// Whether the judged tables were ever used; a run that ends with its first frame does not come to that.
-    fn streamed_judged(&self) -> bool {
-        self.findings.seen.frames.iter().any(|frame| frame.generation == JUDGED)
     }
 
     fn frames(&self, tables_after: Option<&End>) -> Result<Finding, End> {

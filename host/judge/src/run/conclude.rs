@@ -30,6 +30,8 @@ pub(super) fn conclude(
     let ending = ending(&mut findings, end);
     skip_the_rest(&mut findings.checks);
     let street = street(plan, &findings.seen);
+    let is_pass = ending.cause == Cause::Equal;
+    let not_exercised = if is_pass { findings.not_exercised } else { Vec::new() };
     let (evidence, evidence_report) = findings.seen.evidence.finish();
     let report = Report {
         schema: Schema,
@@ -39,6 +41,7 @@ pub(super) fn conclude(
         finding: ending.finding,
         suspects: ending.suspects,
         checks: findings.checks,
+        not_exercised,
         frames: findings.seen.frames,
         latency: findings.seen.latency,
         street,

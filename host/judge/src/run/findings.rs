@@ -7,7 +7,7 @@ use super::judge::Seen;
 use super::{Candidate, Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
-    BoardReport, Check, CheckName, Finding, Identity, LinkReport, Outcome, Problem, Suspect,
+    BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem, Suspect,
 };
 use crate::verdict::Cause;
 
@@ -75,6 +75,8 @@ pub(super) struct Findings {
     pub(super) earlier: Earlier,
     /// Rows that the board should have counted since it was greeted.
     pub(super) rows_counted: usize,
+    /// What was left untouched of a board that is right.
+    pub(super) not_exercised: Vec<NotExercised>,
     /// Why the board cannot have what the plan uploads.
     pub(super) misfit: Option<Misfit>,
 }
@@ -96,6 +98,7 @@ impl Findings {
             link,
             earlier: Earlier::default(),
             rows_counted: 0,
+            not_exercised: Vec::new(),
             misfit: None,
         }
     }

@@ -8,18 +8,20 @@ use std::time::Instant;
 
 use halfrow_model::Frame;
 
+use super::exercised::SampleLevels;
 use super::kept::Kept;
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::compare::Comparison;
 use crate::progress::Progress;
-use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LatencyReport};
+use crate::result::{Evidence, Finding, FrameReport, FrameTiming, LatencyReport, Variation};
 
 /// What the judge has seen of all frames so far.
 #[derive(Default)]
 pub(super) struct Seen {
     pub(super) frames: Vec<FrameReport>,
     pub(super) evidence: Kept,
+    pub(super) levels: SampleLevels,
     pub(super) latency: Option<LatencyReport>,
     /// The first row that names other tables than it should.
     pub(super) wrong_generation: Option<Finding>,
@@ -68,6 +70,8 @@ pub(super) struct Manner {
     pub(super) keep_equal: bool,
     /// Bytes of frames that are kept, at most.
     pub(super) evidence_bytes: usize,
+    /// What the segment's frames are for.
+    pub(super) variation: Option<Variation>,
     /// Board clocks that gaps keep each row of a frame waiting.
     pub(super) pauses: Vec<u16>,
 }
@@ -182,6 +186,7 @@ impl<'a> Judge<'a> {
     fn conclude(&mut self, frame: InFlight) {
         let InFlight { prepared, found, rows, comparison, .. } = frame;
         let Prepared { name, number, generation, sha256, input, expected } = prepared;
+        self.seen.levels.note(&input, &expected);
         let (differs, height) = (comparison.differences > 0, expected.height());
         let (is_street, budget) = (name == STREET, self.manner.evidence_bytes);
         let is_wanted = differs || self.manner.keep_equal || is_street;
@@ -201,6 +206,7 @@ impl<'a> Judge<'a> {
             phase: input.phase(),
             generation,
             timing: self.timing,
+            variation: self.manner.variation,
             comparison,
             rows,
             seconds: now.duration_since(self.since).as_secs_f64(),
@@ -310,6 +316,7 @@ mod tests {
             fail_fast: false,
             keep_equal: false,
             evidence_bytes: 0,
+            variation: None,
             pauses: vec![0; HEIGHT],
         };
         let mut judge =

@@ -6,6 +6,7 @@
 
 use std::iter;
 
+use halfrow_model::Geometry;
 use halfrow_protocol::MAX_PAYLOAD;
 use halfrow_protocol::message::RowPlace;
 
@@ -34,12 +35,12 @@ enum Replay {
 }
 
 impl Run<'_> {
-    /// Why the run ends when the row at `place` of `frame` did not come back however often it was asked for.
-    pub(super) fn row_lost(&mut self, frame: &ScheduledFrame, place: RowPlace) -> End {
+    /// Why the run ends when the row at `place` of `frame`, which has `geometry`, did not come back however often it was asked for.
+    pub(super) fn row_lost(&mut self, frame: &ScheduledFrame, geometry: &Geometry, place: RowPlace) -> End {
         let RowPlace { frame: number, row: lost, .. } = place;
         let unclear = |finding| End::error(CheckName::Frames, Cause::Station, finding);
         for _ in 0..REPLAYS {
-            match self.replay(frame) {
+            match self.replay(frame, geometry) {
                 Err(error) => return End::board(CheckName::Frames, &error),
                 Ok(Replay::Swallowed { row }) => {
                     let swallowed = Finding::RowSwallowed { row: lost, frame: number, again: row };
@@ -54,12 +55,12 @@ impl Run<'_> {
         unclear(Finding::RowLostAmongOthers { row: lost, frame: number })
     }
 
-    fn replay(&mut self, frame: &ScheduledFrame) -> Result<Replay, BoardError> {
+    fn replay(&mut self, frame: &ScheduledFrame, geometry: &Geometry) -> Result<Replay, BoardError> {
         let before = self.board.tally();
         self.board.drop_rows()?;
         self.board.status(true)?;
         let first_row = self.board.acknowledged();
-        let Ok(input) = self.plan.render(frame) else { return Ok(Replay::Troubled) };
+        let Ok(input) = self.plan.render(frame, geometry) else { return Ok(Replay::Troubled) };
         let frame = NumberedFrame { number: frame.number, frame: input };
         let Some(row) = self.board.stream_once(&mut Unjudged(iter::once(frame)))? else {
             return Ok(Replay::Complete);

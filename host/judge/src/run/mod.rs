@@ -4,6 +4,7 @@
 
 mod after;
 mod conclude;
+mod exercised;
 mod findings;
 mod finished;
 mod golden;
@@ -23,6 +24,7 @@ mod second_look;
 mod steps;
 mod streaming;
 mod upload;
+mod variations;
 
 use tracing::error_span;
 
@@ -44,6 +46,7 @@ pub use plan::{
 };
 pub(crate) use prepared::PrepareError;
 pub use recorded::{RecordedRun, RestoreError};
+pub use variations::{Build, Vary};
 
 /// What the report says of the run beside its findings.
 #[derive(Clone, Debug, Default)]
@@ -136,7 +139,7 @@ fn run(
     progress.step(Step::OpenTheBoard);
     let mut board = way_back.open(link, findings)?;
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
-    let generations = plan.generations(board.capabilities.taps);
+    let generations = plan.generations(&Build::of(&board.capabilities));
     let way_back = &mut way_back;
     let end = Run { plan, board: &mut board, generations, options, way_back, progress, findings }.all_steps();
     findings.note_link(&board);

@@ -3,9 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use halfrow_model::{Equidistant, Frame, FrameError, Interpolant, Kernel, Phase, STEP_ONE, TableSet};
+use halfrow_model::{
+    Equidistant, Frame, FrameError, Geometry, Interpolant, Kernel, Phase, STEP_ONE, TableSet,
+};
 
+use super::variations::{Build, Vary, varied};
 use crate::frames::{Builtin, Scene};
+use crate::result::Variation;
 
 /// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
 pub(crate) const SENSOR_BLANKING: u16 = 900;
@@ -21,9 +25,9 @@ pub struct Generation {
     pub kernel: Kernel,
 }
 
-/// The most frames that a plan can have, all repetitions counted: frame numbers have 16 bits, and four frames of noise
-/// are the run's own.
-pub const MOST_FRAMES: usize = (1 << 16) - 4;
+/// The most frames that a plan can have, all repetitions counted: frame numbers have 16 bits, and seven frames of noise
+/// can be the run's own.
+pub const MOST_FRAMES: usize = (1 << 16) - 7;
 
 /// A plan of more frames than can be numbered.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -92,6 +96,8 @@ pub struct Plan {
     pub frames: Vec<FrameSource>,
     /// How often.
     pub repeat: u32,
+    /// What is set otherwise than `tables` have it, in frames of noise of their own.
+    pub vary: Vary,
     /// End with the first frame that differs.
     pub fail_fast: bool,
     /// The seed of nonces, link test and noise.
@@ -101,6 +107,8 @@ pub struct Plan {
 /// Frames that follow each other without the core running empty, and what is set before them.
 #[derive(Clone, Debug)]
 pub struct Segment {
+    /// Size, depth and centre of them all.
+    pub geometry: Geometry,
     /// How their rows are played.
     pub timing: Timing,
     /// Tables that are committed before the first of them, for the frame with this number on.
@@ -124,6 +132,8 @@ pub struct ScheduledFrame {
 pub const DECOY: u8 = 1;
 /// The generation of the tables to judge with.
 pub const JUDGED: u8 = 2;
+/// The first generation of those tables with another centre or depth; the others follow.
+const VARIED: u8 = 3;
 
 impl Plan {
     /// To judge with `tables` and `kernel`, once each, the built-in frames as the paper's lens sees them.
@@ -139,6 +149,7 @@ impl Plan {
             phase: Phase::Grbg,
             frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
             repeat: 1,
+            vary: Vary::default(),
             fail_fast: false,
             seed: 1,
         }
@@ -156,6 +167,22 @@ impl Plan {
         Self { lens, ..self }
     }
 
+    /// The same with other centres and depths as well.
+    #[must_use]
+    pub fn varying(self, vary: Vary) -> Self {
+        Self { vary, ..self }
+    }
+
+    /// What frames of `geometry` have otherwise than those of the plan's tables.
+    #[must_use]
+    pub fn variation(&self, geometry: &Geometry) -> Option<Variation> {
+        let (own, centre2, depth) = (self.tables.geometry(), geometry.centre2(), geometry.depth());
+        if centre2 != own.centre2() {
+            return Some(Variation::Centre { centre2 });
+        }
+        (depth != own.depth()).then(|| Variation::Depth { bits: depth.bits() })
+    }
+
     /// Whether all frames can be numbered.
     ///
     /// # Errors
@@ -165,19 +192,24 @@ impl Plan {
         if frames <= MOST_FRAMES { Ok(()) } else { Err(TooManyFrames { frames }) }
     }
 
-    /// The tables that a run uploads, in order, to a board of `taps` taps. The first are a decoy, legal wherever the others
+    /// The tables that a run uploads, in order, to a board of this build, each with its geometry. The first are a decoy, legal wherever the others
     /// are and different in every row that is stretched: a board that goes on using them is caught.
     ///
     /// A row factor half way to 1 reaches half as far, so the ring's limits hold.
     #[must_use]
-    pub fn generations(&self, taps: u8) -> Vec<Generation> {
+    pub fn generations(&self, build: &Build) -> Vec<Generation> {
         let steps = self.tables.steps().iter().map(|&step| u32::midpoint(step, STEP_ONE)).collect();
-        let kernel = self.decoy_kernel(taps);
+        let kernel = self.decoy_kernel(build.taps);
+        let decoy = TableSet::new(*self.tables.geometry(), steps).ok();
+        let decoy = decoy.map(|tables| Generation { number: DECOY, tables, kernel });
         let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
-        match TableSet::new(*self.tables.geometry(), steps) {
-            Ok(tables) => vec![Generation { number: DECOY, tables, kernel }, judged],
-            Err(_) => vec![judged],
-        }
+        decoy.into_iter().chain([judged]).chain(self.varied(build)).collect()
+    }
+
+    /// The judged tables with another centre, and with other depths.
+    fn varied(&self, build: &Build) -> impl Iterator<Item = Generation> {
+        let tables = varied(&self.tables, self.vary, build).into_iter().zip(VARIED..);
+        tables.map(|(tables, number)| Generation { number, tables, kernel: self.kernel.clone() })
     }
 
     /// A kernel other than the one to judge with. It weighs every tap that the board has, since that one may leave some
@@ -197,10 +229,10 @@ impl Plan {
     }
 
     /// The run, segment by segment: a frame with the decoy; another one with the decoy and, close behind it, the frames to judge; then
-    /// noise with the sensor's blanking, and noise with gaps. A board with one bank of tables cannot change them between two
+    /// noise with the sensor's blanking, and noise with gaps; last a frame for each other centre or depth. A board with one bank of tables cannot change them between two
     /// frames that follow closely, so there the second segment begins with the frames to judge.
     #[must_use]
-    pub fn schedule(&self, table_banks: u8) -> Vec<Segment> {
+    pub fn schedule(&self, build: &Build) -> Vec<Segment> {
         let mut numbers = 0..=u16::MAX;
         let mut frame = |source: FrameSource, generation| ScheduledFrame {
             number: numbers.next().unwrap_or_default(),
@@ -210,7 +242,7 @@ impl Plan {
         let noise = || FrameSource::Builtin(Builtin::Noise);
         let first = vec![frame(noise(), DECOY)];
         let mut judged = Vec::new();
-        if table_banks > 1 {
+        if build.table_banks > 1 {
             judged.push(frame(noise(), DECOY));
         }
         let first_judged = 1 + judged.len() as u16;
@@ -219,24 +251,37 @@ impl Plan {
         }
         let sensor = vec![frame(noise(), JUDGED)];
         let gaps = vec![frame(noise(), JUDGED)];
-        let segment = |timing, commit, frames| Segment { timing, commit, frames };
-        vec![
+        let geometry = *self.tables.geometry();
+        let varied: Vec<_> = self
+            .varied(build)
+            .map(|generation| {
+                let frame = frame(noise(), generation.number);
+                let (geometry, commit) =
+                    (*generation.tables.geometry(), Some((frame.generation, frame.number)));
+                Segment { geometry, timing: Timing::Least, commit, frames: vec![frame] }
+            })
+            .collect();
+        let segment = |timing, commit, frames| Segment { geometry, timing, commit, frames };
+        let mut segments = vec![
             segment(Timing::Least, Some((DECOY, 0)), first),
             segment(Timing::Least, Some((JUDGED, first_judged)), judged),
             segment(Timing::Sensor, None, sensor),
             segment(Timing::Gaps((self.seed as u32) | 1), None, gaps),
-        ]
+        ];
+        segments.extend(varied);
+        segments
     }
 
-    /// The samples of a scheduled frame. Noise is drawn anew for every frame.
+    /// The samples of a scheduled frame of `geometry`, that of its segment. Noise is drawn anew for every frame.
     ///
     /// # Errors
     /// [`FrameError`] when a built-in frame cannot be made.
-    pub fn render(&self, scheduled: &ScheduledFrame) -> Result<Arc<Frame>, FrameError> {
+    pub fn render(&self, scheduled: &ScheduledFrame, geometry: &Geometry) -> Result<Arc<Frame>, FrameError> {
         match &scheduled.source {
             FrameSource::File { frame, .. } => Ok(Arc::clone(frame)),
             FrameSource::Builtin(builtin) => {
-                builtin.render(&self.scene(scheduled.number.into())).map(Arc::new)
+                let scene = Scene { geometry: *geometry, ..self.scene(scheduled.number.into()) };
+                builtin.render(&scene).map(Arc::new)
             }
         }
     }

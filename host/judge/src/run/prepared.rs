@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread::Scope;
 
-use halfrow_model::{CorrectError, Frame, FrameError};
+use halfrow_model::{CorrectError, Frame, FrameError, Geometry};
 
 use super::plan::{Generation, Plan, ScheduledFrame, Segment};
 use crate::board::NumberedFrame;
@@ -43,10 +43,11 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
     let span = tracing::Span::current();
     scope.spawn(move || {
         let _entered = span.entered();
-        let mut frames = schedule.iter().flat_map(|segment| &segment.frames);
+        let of_segment = |segment: &'run Segment| segment.frames.iter().map(move |frame| (frame, segment));
+        let mut frames = schedule.iter().flat_map(of_segment);
         // Behind a frame that cannot be made no other is sent.
-        let _ = frames.try_for_each(|frame| {
-            let prepared = Prepared::new(plan, frame, &generations);
+        let _ = frames.try_for_each(|(frame, segment)| {
+            let prepared = Prepared::new(plan, frame, &segment.geometry, &generations);
             let is_last = prepared.is_err();
             sender.send(prepared).ok().filter(|()| !is_last)
         });
@@ -55,13 +56,19 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
 }
 
 impl Prepared {
-    fn new(plan: &Plan, frame: &ScheduledFrame, generations: &[Generation]) -> Result<Self, PrepareError> {
+    fn new(
+        plan: &Plan,
+        frame: &ScheduledFrame,
+        geometry: &Geometry,
+        generations: &[Generation],
+    ) -> Result<Self, PrepareError> {
         let name = frame.source.name();
         let decoy = generations.iter().find(|generation| generation.number == frame.generation);
         let (tables, kernel) =
             decoy.map_or((&plan.tables, &plan.kernel), |found| (&found.tables, &found.kernel));
-        let input =
-            plan.render(frame).map_err(|source| PrepareError::Render { name: name.clone(), source })?;
+        let input = plan
+            .render(frame, geometry)
+            .map_err(|source| PrepareError::Render { name: name.clone(), source })?;
         let expected = correct(tables, kernel, &input)
             .map_err(|source| PrepareError::Correct { name: name.clone(), source })?;
         Ok(Self {

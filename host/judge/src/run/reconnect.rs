@@ -142,7 +142,7 @@ impl Run<'_> {
         let later = segment.commit.filter(|(number, _)| *number != frame.generation);
         if next.is_none() || later.is_some() {
             // Tables become the active ones when a frame enters.
-            let rendered = self.plan.render(frame);
+            let rendered = self.plan.render(frame, &segment.geometry);
             let rendered = rendered
                 .map_err(|error| End::error(CheckName::Frames, Cause::Station, Problem::of(&error)))?;
             self.findings.rows_counted += rendered.height();

@@ -8,7 +8,7 @@ use std::time::Duration;
 use halfrow_model::{Equidistant, Frame, FrameError, Geometry, LensError, Phase, UnknownPhase};
 use serde::{Deserialize, Serialize};
 
-use super::{Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions};
+use super::{Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions, Vary};
 use crate::board::Sent;
 use crate::board::deadlines::RetryLimit;
 use crate::frames::UnknownBuiltin;
@@ -29,6 +29,9 @@ pub struct RecordedRun {
     phase: String,
     frames: Vec<String>,
     repeat: u32,
+    /// A recording that does not say so holds no such frames.
+    #[serde(default)]
+    vary: Vary,
     fail_fast: bool,
     take_over: bool,
     seed: u64,
@@ -87,6 +90,7 @@ impl RecordedRun {
             phase: plan.phase.to_string(),
             frames: plan.frames.iter().map(FrameSource::name).collect(),
             repeat: plan.repeat,
+            vary: plan.vary,
             fail_fast: plan.fail_fast,
             take_over: options.take_over,
             seed: plan.seed,
@@ -112,6 +116,7 @@ impl RecordedRun {
             centre_y: run.centre_y,
             phase,
             repeat: run.repeat,
+            vary: run.vary,
             fail_fast: run.fail_fast,
             seed: run.seed,
             frames: run.frames(recording, file.tables.geometry(), phase)?,

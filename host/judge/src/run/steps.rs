@@ -3,6 +3,7 @@
 use std::sync::mpsc::Receiver;
 use std::thread;
 
+use super::exercised::not_exercised;
 use super::findings::{End, Findings};
 use super::golden::{self, CannotJudge};
 use super::legal::impossible;
@@ -12,6 +13,7 @@ use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
+use super::variations::Build;
 use crate::board::Board;
 use crate::progress::{Progress, Step};
 use crate::reference;
@@ -58,14 +60,16 @@ impl Run<'_> {
 
     /// From the link to the counters. Whatever the board held before is nothing to it.
     pub(super) fn all_but_identity(&mut self) -> Result<(), End> {
-        let schedule = self.plan.schedule(self.board.capabilities.table_banks);
+        let schedule = self.plan.schedule(&Build::of(&self.board.capabilities));
         let (plan, generations) = (self.plan, self.generations.clone());
         thread::scope(|scope| {
             let frames = prepared::ahead(scope, plan, &schedule, generations);
             self.progress.step(Step::TestTheLink);
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
-            self.conclude(last)
+            self.conclude(last)?;
+            self.note_not_exercised();
+            Ok(())
         })
     }
 
@@ -98,6 +102,18 @@ impl Run<'_> {
                 (judged, _) => return judged,
             }
         }
+    }
+
+    /// What the frames left untouched of the board, as far as that is known.
+    fn note_not_exercised(&mut self) {
+        let Findings { board, seen, .. } = &*self.findings;
+        let used =
+            |generation: &&Generation| seen.frames.iter().any(|frame| frame.generation == generation.number);
+        let generations: Vec<_> = self.generations.iter().filter(used).collect();
+        self.findings.not_exercised = board
+            .identity
+            .as_ref()
+            .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
     }
 
     fn identity(&mut self) -> Result<(), End> {

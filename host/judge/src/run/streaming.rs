@@ -21,7 +21,7 @@ impl Run<'_> {
         segment: &Segment,
         source: &Receiver<Result<Prepared, PrepareError>>,
     ) -> Result<(), End> {
-        let (manner, timing) = (self.manner(segment.timing), self.timing(segment.timing));
+        let (manner, timing) = (self.manner(segment), self.timing(segment.timing));
         // The judge has what is seen while the run has the board, and what it has to say of its link.
         let mut seen = std::mem::take(&mut self.findings.seen);
         let frames = source.iter().take(segment.frames.len());
@@ -51,16 +51,17 @@ impl Run<'_> {
         Ok(())
     }
 
-    fn manner(&self, timing: Timing) -> Manner {
-        let geometry = self.plan.tables.geometry();
+    fn manner(&self, segment: &Segment) -> Manner {
+        let Segment { geometry, timing, .. } = segment;
         let half = geometry.width() as u32 / 2;
-        let gap_seed = if let Timing::Gaps(seed) = timing { seed } else { 0 };
+        let gap_seed = if let Timing::Gaps(seed) = *timing { seed } else { 0 };
         Manner {
             claimed_latency: half + u32::from(self.board.capabilities.latency),
             latency_limit: half + u32::from(MAX_LATENCY),
             fail_fast: self.plan.fail_fast,
             keep_equal: self.options.keep_equal,
             evidence_bytes: self.options.evidence_bytes,
+            variation: self.plan.variation(geometry),
             pauses: pauses(gap_seed, geometry.width(), geometry.height()),
         }
     }
@@ -82,7 +83,7 @@ impl Run<'_> {
             BoardError::RowMissing { place, .. } => {
                 let frame = segment.frames.iter().find(|frame| frame.number == place.frame);
                 let of_board = || End::board(CheckName::Frames, &error);
-                frame.map_or_else(of_board, |frame| self.row_lost(frame, place))
+                frame.map_or_else(of_board, |frame| self.row_lost(frame, &segment.geometry, place))
             }
             BoardError::WrongPlace { place } => {
                 let finding = Finding::RowMisplaced { row: place.row, frame: place.frame };

@@ -20,7 +20,7 @@ impl Run<'_> {
             Timing::Sensor => RowTiming { blanking: SENSOR_BLANKING, ..RowTiming::default() },
             Timing::Gaps(gap_seed) => RowTiming { gap_seed, ..RowTiming::default() },
         };
-        let configured = self.board.configure(self.plan.tables.geometry(), timing);
+        let configured = self.board.configure(&segment.geometry, timing);
         configured.map_err(|error| End::board(CheckName::Upload, &error))
     }
 

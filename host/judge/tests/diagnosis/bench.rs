@@ -204,6 +204,7 @@ impl Seen {
             phase: input.phase(),
             generation,
             timing: FrameTiming::LeastBlanking { clocks: 0 },
+            variation: None,
             seconds: 0.0,
             rows: input.height(),
             comparison,

@@ -40,6 +40,12 @@ fn nothing_from_outside_becomes_markup() {
 }
 
 #[test]
+fn a_pass_lists_what_was_not_exercised() {
+    assert!(page(&made::pass(), &[]).contains("<li>samples of 8 or 10 bits</li>"));
+    assert!(!page(&made::fail().0, &[]).contains("Not exercised"));
+}
+
+#[test]
 fn nothing_is_loaded_from_anywhere() {
     let (report, evidence) = made::fail();
     let page = page(&report, &evidence);

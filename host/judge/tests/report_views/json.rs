@@ -1,7 +1,7 @@
 use std::collections::BTreeSet;
 
 use halfrow::report;
-use halfrow::result::{CheckName, Finding, Problem, Reconnection, Report, Suspect, examples};
+use halfrow::result::{CheckName, Finding, NotExercised, Problem, Reconnection, Report, Suspect, examples};
 use serde_json::{Value, json};
 
 use crate::made;
@@ -49,6 +49,31 @@ fn every_finding_and_every_suspect_reads_back_equal_with_a_sentence_of_its_own()
             assert!(!sentence.is_empty(), "{suspect:?}");
         }
     }
+}
+
+#[test]
+fn everything_that_may_not_be_exercised_reads_back_equal_with_words_of_its_own() {
+    let report = Report { not_exercised: examples::not_exercised(), ..made::pass() };
+    assert_same_when_read_back(&report);
+    let mut words = BTreeSet::new();
+    for (part, said) in report.not_exercised.iter().zip(json(&report)["not_exercised"].as_array().unwrap()) {
+        assert_eq!(said["words"], part.words());
+        assert!(words.insert(part.words()), "{part:?}");
+    }
+    let known = codes_known::<NotExercised>();
+    assert_eq!(known, examples::not_exercised().iter().map(|part| part.tagged().0).collect());
+}
+
+/// A report of before there were these keys.
+#[test]
+fn a_report_that_does_not_say_what_was_varied_is_read() {
+    let mut old = json(&made::pass());
+    old.as_object_mut().unwrap().remove("not_exercised").unwrap();
+    for frame in old["frames"].as_array_mut().unwrap() {
+        frame.as_object_mut().unwrap().remove("variation").unwrap();
+    }
+    let read: Report = serde_json::from_value(old).unwrap();
+    assert_eq!(read, Report { not_exercised: Vec::new(), ..made::pass() });
 }
 
 /// What serde says of a code that does not exist names all that do.

@@ -49,6 +49,7 @@ fn the_suite_says_which_kind_of_board_it_was() {
     assert_eq!(value("board.kind"), Some("mock"));
     assert_eq!(value("board.target"), Some("mock,fault=flip"));
     assert_eq!(value("cause"), Some("equal"));
+    assert_eq!(value("not_exercised"), Some("not exercised: samples of 8 or 10 bits"));
 }
 
 #[test]

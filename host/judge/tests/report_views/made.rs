@@ -4,8 +4,8 @@ use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
 use halfrow::result::{
     Account, BoardKind, BoardReport, Check, CheckName, Defect, Evidence, EvidenceReport, Finding,
-    FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, Outcome, Problem, Reading, Report,
-    RunReport, Schema, StreetReport, Suspect, TablesReport,
+    FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, NotExercised, Outcome, Problem, Reading,
+    Report, RunReport, Schema, StreetReport, Suspect, TablesReport,
 };
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
@@ -30,6 +30,7 @@ pub(crate) fn pass() -> Report {
             check(CheckName::Judge, Outcome::Passed, judged()),
             check(CheckName::Frames, Outcome::Passed, Finding::FramesEqual { frames: 2, samples: 4_147_200 }),
         ],
+        not_exercised: vec![NotExercised::Depths { bits: vec![8, 10] }],
         latency: Some(latency(2160)),
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
         evidence: EvidenceReport::default(),
@@ -69,6 +70,7 @@ pub(crate) fn fail() -> (Report, Vec<Evidence>) {
             check(CheckName::Counters, Outcome::Skipped, Finding::NotReached {}),
         ],
         frames: vec![equal_frame((1, "builtin:street")), second],
+        not_exercised: Vec::new(),
         ..pass()
     };
     (report, vec![Evidence { index: 1, input, found, expected }])
@@ -90,6 +92,7 @@ pub(crate) fn error() -> Report {
             check(CheckName::Frames, Outcome::Skipped, Finding::NotReached {}),
         ],
         frames: Vec::new(),
+        not_exercised: Vec::new(),
         latency: None,
         street: None,
         ..pass()
@@ -127,6 +130,7 @@ pub(crate) fn equal_frame((number, name): (u16, &str)) -> FrameReport {
         phase: Phase::Grbg,
         generation: 2,
         timing: FrameTiming::LeastBlanking { clocks: 0 },
+        variation: None,
         comparison: Comparison { samples: 1920 * 1080, ..Comparison::new(1920, 1080) },
         rows: 1080,
         seconds: 0.75,

@@ -6,7 +6,7 @@ use png::EncodingError;
 use super::charts;
 use super::facts::{mark, pair};
 use crate::report::pictures::{self, BOX, Picture, Window};
-use crate::report::wording::{self, count, grouped, plain};
+use crate::report::wording::{self, count, grouped};
 use crate::result::{Evidence, FrameReport, Report};
 
 /// Bytes of all pictures together. Base 64 makes 8.8 MB of them, which leaves over 1 MB of 10 MB to text and charts.
@@ -57,7 +57,7 @@ fn section(
         section.frame {
             h2 {
                 (mark(wording::frame_outcome(report, frame)))
-                " Frame " (frame.number) ": " (plain(&frame.name))
+                " Frame " (frame.number) ": " (wording::frame_name(frame))
             }
             (summary(frame))
             div.previews {

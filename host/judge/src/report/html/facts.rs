@@ -42,7 +42,7 @@ fn frame_row(report: &Report, frame: &FrameReport) -> Markup {
         tr {
             td { (mark(wording::frame_outcome(report, frame))) }
             td.number { (frame.number) }
-            td { (plain(&frame.name)) }
+            td { (wording::frame_name(frame)) }
             td { (frame.timing) }
             td.number { (grouped(frame.rows)) }
             td.number { (wording::differences(report, frame)) }
@@ -68,6 +68,20 @@ pub(super) fn figures(report: &Report) -> Markup {
                 @if let Some(latency) = &report.latency { (pair("Latency", wording::latency(latency))) }
                 @if let Some(street) = &report.street { (pair("Street", wording::street(street))) }
             }
+        }
+    }
+}
+
+/// What a PASS says nothing about.
+pub(super) fn not_exercised(report: &Report) -> Markup {
+    if report.not_exercised.is_empty() {
+        return Markup::default();
+    }
+    html! {
+        section {
+            h2 { "Not exercised" }
+            p { "A fault in one of these would have gone unseen:" }
+            ul { @for part in &report.not_exercised { li { (plain(&part.words())) } } }
         }
     }
 }

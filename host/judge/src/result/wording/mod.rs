@@ -4,6 +4,7 @@ mod evidence;
 mod findings;
 mod lines;
 mod logic;
+mod not_exercised;
 mod places;
 mod tables;
 
@@ -12,6 +13,7 @@ use super::{Defect, Memory};
 pub use evidence::evidence;
 pub(super) use findings::because;
 pub use findings::{remedy, sentence};
+pub use not_exercised::not_exercised;
 
 /// What there is to say of a defect.
 pub(super) struct Words {

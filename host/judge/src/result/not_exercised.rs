@@ -1,0 +1,95 @@
+//! What a PASS says nothing about, as codes with parameters.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Parameters, wording};
+
+/// A part of the board, or a setting, that no frame of the run put to the test: a fault there would have gone unseen.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
+pub enum NotExercised {
+    /// Bits of samples that were never both 0 and 1 on their way into the board.
+    InputBits {
+        /// The bits, from 0.
+        bits: Vec<usize>,
+    },
+    /// Bits of corrected samples that were never both 0 and 1.
+    OutputBits {
+        /// The bits, from 0.
+        bits: Vec<usize>,
+    },
+    /// Address lines of the columns of a row that are 0 at every column.
+    ColumnAddress {
+        /// The lines, from 0.
+        lines: Vec<usize>,
+    },
+    /// Address lines of the ring of one row: no sample is still needed when the one that differs from it in this line
+    /// alone has been stored.
+    LineMemoryAddress {
+        /// The lines, from 0.
+        lines: Vec<usize>,
+    },
+    /// Address lines of the row table that no two rows of different factors tell apart.
+    RowTableAddress {
+        /// The lines, from 0.
+        lines: Vec<usize>,
+    },
+    /// Bits of row factors that are the same in every row.
+    RowFactorBits {
+        /// The bits, from 0.
+        bits: Vec<usize>,
+    },
+    /// Nodes of the kernel that no output is made with.
+    KernelNodes {
+        /// The nodes, 0 to 64.
+        nodes: Vec<usize>,
+    },
+    /// Taps of the board that have no weight in any output.
+    Taps {
+        /// Their names, `G0` to `G6`.
+        taps: Vec<String>,
+    },
+    /// The optical centre was at one column alone.
+    OneCentre {
+        /// C, twice that column.
+        centre2: u32,
+    },
+    /// Bits of C, twice the column of the optical centre, that were the same in every frame.
+    CentreBits {
+        /// The bits, from 0.
+        bits: Vec<usize>,
+    },
+    /// Depths of the board that no frame had.
+    Depths {
+        /// Bits of a sample, each.
+        bits: Vec<u32>,
+    },
+}
+
+impl NotExercised {
+    /// It in words, without a full stop, so that "not exercised: …" makes a sentence.
+    #[must_use]
+    pub fn words(&self) -> String {
+        wording::not_exercised(self)
+    }
+
+    /// Its code and its parameters.
+    #[must_use]
+    pub fn tagged(&self) -> (String, Parameters) {
+        super::finding::tagged(self)
+    }
+}
+
+/// One in JSON, with its words.
+#[derive(Serialize)]
+pub(super) struct InWords<'a> {
+    #[serde(flatten)]
+    part: &'a NotExercised,
+    words: String,
+}
+
+impl<'a> From<&'a NotExercised> for InWords<'a> {
+    fn from(part: &'a NotExercised) -> Self {
+        Self { part, words: part.words() }
+    }
+}

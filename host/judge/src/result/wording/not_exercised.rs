@@ -1,0 +1,63 @@
+//! What no frame put to the test.
+
+use super::places::list;
+use crate::result::NotExercised;
+
+/// It in words, so that "not exercised: …" makes a sentence.
+#[must_use]
+pub fn not_exercised(part: &NotExercised) -> String {
+    match part {
+        NotExercised::InputBits { bits } => format!("{} of the samples going in", some("bit", bits)),
+        NotExercised::OutputBits { bits } => format!("{} of the corrected samples", some("bit", bits)),
+        NotExercised::ColumnAddress { lines } => format!("{} of columns", some("address line", lines)),
+        NotExercised::LineMemoryAddress { lines } => {
+            format!("{} of the line memory", some("address line", lines))
+        }
+        NotExercised::RowTableAddress { lines } => {
+            format!("{} of the row table", some("address line", lines))
+        }
+        NotExercised::RowFactorBits { bits } => format!("{} of the row factors", some("bit", bits)),
+        NotExercised::KernelNodes { nodes } => format!("kernel {}", some("node", nodes)),
+        NotExercised::Taps { taps } => {
+            let ending = if taps.len() == 1 { "" } else { "s" };
+            format!("tap{ending} {}", taps.join(", "))
+        }
+        NotExercised::OneCentre { centre2 } => {
+            format!("any optical centre but column {:.1}", f64::from(*centre2) / 2.0)
+        }
+        NotExercised::CentreBits { bits } => {
+            format!("{} of the optical centre's setting", some("bit", bits))
+        }
+        NotExercised::Depths { bits } => {
+            let depths: Vec<_> = bits.iter().map(u32::to_string).collect();
+            format!("samples of {} bits", depths.join(" or "))
+        }
+    }
+}
+
+/// `bit 7`, `bits 0 to 3, 7`
+fn some(what: &str, numbers: &[usize]) -> String {
+    let ending = if numbers.len() == 1 { "" } else { "s" };
+    format!("{what}{ending} {}", list(numbers))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_that_follow_each_other_are_drawn_together() {
+        let words = |lines: &[usize]| not_exercised(&NotExercised::RowTableAddress { lines: lines.into() });
+        assert_eq!(words(&[4]), "address line 4 of the row table");
+        assert_eq!(words(&[0, 4, 5, 6, 10]), "address lines 0, 4 to 6, 10 of the row table");
+    }
+
+    #[test]
+    fn a_depth_and_a_centre_are_said_in_their_units() {
+        let words = [
+            not_exercised(&NotExercised::Depths { bits: vec![8, 10] }),
+            not_exercised(&NotExercised::OneCentre { centre2: 1919 }),
+        ];
+        assert_eq!(words, ["samples of 8 or 10 bits", "any optical centre but column 959.5"]);
+    }
+}

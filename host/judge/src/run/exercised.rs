@@ -1,0 +1,314 @@
+//! What the frames of a run put to the test in a board, and what they left untouched, found on the reference's side: from
+//! what was uploaded, and from the samples that went in and should have come out.
+
+use std::collections::BTreeSet;
+
+use halfrow_model::{Frame, Geometry, NODES, Source, TableSet, source};
+
+use super::plan::Generation;
+use crate::result::{Identity, NotExercised};
+
+/// Bits of a row factor.
+const FACTOR_BITS: u32 = 25;
+/// The taps in the order of their columns.
+const TAPS: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
+
+/// The levels that bits have had.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Levels {
+    ones: u32,
+    zeros: u32,
+}
+
+impl Levels {
+    fn of(values: impl IntoIterator<Item = u32>) -> Self {
+        values.into_iter().fold(Self::default(), |levels, value| Self {
+            ones: levels.ones | value,
+            zeros: levels.zeros | !value,
+        })
+    }
+
+    /// Takes the samples of a frame, unless it could add nothing.
+    fn note(&mut self, frame: &Frame) {
+        if !self.constant(frame.depth().bits()).is_empty() {
+            let Self { ones, zeros } = Self::of(frame.samples().iter().copied().map(u32::from));
+            self.ones |= ones;
+            self.zeros |= zeros;
+        }
+    }
+
+    /// Those of the lowest `bits` that were never both 0 and 1.
+    fn constant(self, bits: u32) -> Vec<usize> {
+        (0..bits).filter(|bit| (self.ones & self.zeros) >> bit & 1 == 0).map(|bit| bit as usize).collect()
+    }
+}
+
+/// The levels that the bits of samples have had.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SampleLevels {
+    input: Levels,
+    output: Levels,
+}
+
+impl SampleLevels {
+    /// Takes a frame that went in, and what should have come out.
+    pub(super) fn note(&mut self, input: &Frame, output: &Frame) {
+        self.input.note(input);
+        self.output.note(output);
+    }
+}
+
+/// What frames corrected with `generations` left untouched of `board`.
+pub(super) fn not_exercised(
+    board: &Identity,
+    generations: &[&Generation],
+    samples: SampleLevels,
+) -> Vec<NotExercised> {
+    let Some(first) = generations.first() else { return Vec::new() };
+    let geometry = first.tables.geometry();
+    let tables: Vec<_> = generations.iter().map(|generation| &generation.tables).collect();
+    let depth = board.depths.iter().copied().max().unwrap_or_default().into();
+    let (nodes, taps) = unused_of_kernel(generations, board.taps);
+    [
+        some(samples.input.constant(depth), |bits| NotExercised::InputBits { bits }),
+        some(samples.output.constant(depth), |bits| NotExercised::OutputBits { bits }),
+        some(column_lines(geometry, board), |lines| NotExercised::ColumnAddress { lines }),
+        some(line_memory_lines(&tables, board), |lines| NotExercised::LineMemoryAddress { lines }),
+        some(row_table_lines(&tables, board), |lines| NotExercised::RowTableAddress { lines }),
+        some(factor_bits(&tables), |bits| NotExercised::RowFactorBits { bits }),
+        some(nodes, |nodes| NotExercised::KernelNodes { nodes }),
+        some(taps, |taps| NotExercised::Taps { taps }),
+        centre(&tables, board),
+        some(unused_depths(&tables, board), |bits| NotExercised::Depths { bits }),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+/// What `items` are, if there are any.
+fn some<T>(items: Vec<T>, what: impl FnOnce(Vec<T>) -> NotExercised) -> Option<NotExercised> {
+    (!items.is_empty()).then(|| what(items))
+}
+
+/// The lines that address so many entries.
+fn lines(entries: usize) -> std::ops::Range<usize> {
+    0..entries.saturating_sub(1).checked_ilog2().map_or(0, |top| top as usize + 1)
+}
+
+/// Lines of the board's widest row that are 0 at every column of these.
+fn column_lines(geometry: &Geometry, board: &Identity) -> Vec<usize> {
+    lines(board.max_width.into()).filter(|line| (geometry.width() - 1) >> line == 0).collect()
+}
+
+/// Lines of the ring that may be stuck unseen. A sample's place is also that of the one 2^line later then, so it must still
+/// be needed when that one has been stored (DATAPATH.md, "Ring").
+fn line_memory_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
+    let longest = tables.iter().filter_map(|tables| look_back(tables)).max().unwrap_or_default();
+    lines(board.ring.into()).filter(|line| 1_i64 << line > longest).collect()
+}
+
+/// The most samples that are stored behind one that is still needed. The row that is stretched most decides, at its end.
+fn look_back(tables: &TableSet) -> Option<i64> {
+    let (geometry, &step) = (tables.geometry(), tables.steps().iter().min()?);
+    let last = geometry.width() - 1;
+    Some(last as i64 - source(geometry, step, last).column + geometry.width() as i64 / 2 - 1)
+}
+
+/// Lines of the board's row table that tell no two rows of different factors apart.
+fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
+    let tells = |line: &usize| {
+        tables.iter().any(|tables| {
+            let steps = tables.steps();
+            let above = (0..steps.len()).filter(|row| row >> line & 1 == 1);
+            above.into_iter().any(|row| steps[row] != steps[row - (1 << line)])
+        })
+    };
+    lines(board.max_height.into()).filter(|line| !tells(line)).collect()
+}
+
+fn factor_bits(tables: &[&TableSet]) -> Vec<usize> {
+    Levels::of(tables.iter().flat_map(|tables| tables.steps()).copied()).constant(FACTOR_BITS)
+}
+
+/// Nodes that no output is made with, and taps of a board of `taps` that weigh nothing in any.
+fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<String>) {
+    let (mut used, mut weighed) = ([false; NODES], [false; TAPS.len()]);
+    let alike = |one: &Generation, other: &Generation| {
+        one.tables.geometry().centre2() == other.tables.geometry().centre2()
+            && one.tables.steps() == other.tables.steps()
+            && one.kernel == other.kernel
+    };
+    for (place, generation) in generations.iter().enumerate() {
+        if generations[..place].iter().any(|earlier| alike(earlier, generation)) {
+            continue;
+        }
+        let nodes = nodes_used(&generation.tables);
+        for (node, _) in nodes.iter().enumerate().filter(|(_, used)| **used) {
+            used[node] = true;
+            let [g0, r1, g4, r5, g6] = generation.kernel.nodes()[node].map(i32::from);
+            let weights = [g0, r1, (1 << 14) - g0 - g4 - g6, -r1 - r5, g4, r5, g6];
+            weighed.iter_mut().zip(weights).for_each(|(weighed, weight)| *weighed |= weight != 0);
+        }
+    }
+    let unused = (0..NODES).filter(|&node| !used[node]).collect();
+    let of_board = if taps < 7 { 1..6 } else { 0..7 };
+    let unweighed = of_board.filter(|&tap| !weighed[tap]).map(|tap| TAPS[tap].to_owned()).collect();
+    (unused, unweighed)
+}
+
+/// The nodes that outputs are made with: the one left of the source, and the next one unless it lies right on the first.
+fn nodes_used(tables: &TableSet) -> [bool; NODES] {
+    let (geometry, mut used) = (tables.geometry(), [false; NODES]);
+    let steps: BTreeSet<_> = tables.steps().iter().copied().collect();
+    for step in steps {
+        for column in 0..geometry.width() {
+            let Source { node, fraction, .. } = source(geometry, step, column);
+            used[node] = true;
+            used[node + 1] |= fraction > 0;
+        }
+        if used.iter().all(|&used| used) {
+            break;
+        }
+    }
+    used
+}
+
+fn centre(tables: &[&TableSet], board: &Identity) -> Option<NotExercised> {
+    let centres: BTreeSet<_> = tables.iter().map(|tables| tables.geometry().centre2()).collect();
+    if centres.len() == 1 {
+        return centres.first().map(|&centre2| NotExercised::OneCentre { centre2 });
+    }
+    let bits = lines(2 * usize::from(board.max_width) - 1).len() as u32;
+    some(Levels::of(centres).constant(bits), |bits| NotExercised::CentreBits { bits })
+}
+
+fn unused_depths(tables: &[&TableSet], board: &Identity) -> Vec<u32> {
+    let used = |bits: &u32| tables.iter().any(|tables| tables.geometry().depth().bits() == *bits);
+    board.depths.iter().copied().map(u32::from).filter(|bits| !used(bits)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Interpolant, Kernel, Phase};
+
+    use super::*;
+
+    fn board(taps: u8) -> Identity {
+        Identity {
+            name: "made".to_owned(),
+            serial: String::new(),
+            build: String::new(),
+            protocol: 1,
+            datapath: 1,
+            max_width: 2048,
+            max_height: 1024,
+            depths: vec![8, 10, 12],
+            taps,
+            latency: 12,
+            ring: 2048,
+            least_blanking: 0,
+            table_banks: 2,
+            row_banks_in: 2,
+            row_banks_out: 2,
+            clock_hz: 0,
+        }
+    }
+
+    /// 128 x 16 around the middle, C = 127, unless told otherwise.
+    fn generation(centre2: u32, interpolant: Interpolant, step: impl Fn(u32) -> u32) -> Generation {
+        let geometry = Geometry::new(128, 16, BitDepth::Twelve, centre2).unwrap();
+        let tables = TableSet::new(geometry, (0..16).map(step).collect()).unwrap();
+        Generation { number: 2, tables, kernel: Kernel::from(interpolant) }
+    }
+
+    fn found(taps: u8, generations: &[&Generation]) -> Vec<NotExercised> {
+        let mut samples = SampleLevels::default();
+        // Both levels of every bit.
+        let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, [0, 4095].repeat(32)).unwrap();
+        samples.note(&frame, &frame);
+        not_exercised(&board(taps), generations, samples)
+    }
+
+    fn taps(names: &[&str]) -> NotExercised {
+        NotExercised::Taps { taps: names.iter().map(|&name| name.to_owned()).collect() }
+    }
+
+    /// Without stretching, every output is its own column: x = 0, so node 0 and G2 alone, and n = 127 at column 127, so that
+    /// a sample is needed while 63 more are stored, of which line 6 tells none apart. One factor for all rows tells no line
+    /// of the row table, and keeps all of its 25 bits.
+    #[test]
+    fn a_table_that_stretches_nothing_exercises_next_to_nothing() {
+        let generation = generation(127, Interpolant::Hermite, |_| 1 << 24);
+        assert_eq!(
+            found(7, &[&generation]),
+            [
+                NotExercised::ColumnAddress { lines: vec![7, 8, 9, 10] },
+                NotExercised::LineMemoryAddress { lines: vec![6, 7, 8, 9, 10] },
+                NotExercised::RowTableAddress { lines: (0..10).collect() },
+                NotExercised::RowFactorBits { bits: (0..25).collect() },
+                NotExercised::KernelNodes { nodes: (1..65).collect() },
+                taps(&["G0", "R1", "R3", "G4", "R5", "G6"]),
+                NotExercised::OneCentre { centre2: 127 },
+                NotExercised::Depths { bits: vec![8, 10] },
+            ]
+        );
+    }
+
+    /// At half the distances the sources lie at (127 + 2j)/4: a quarter or three of the way between two columns, at nodes 8,
+    /// 24, 40 and 56. That of column 127 is 95.25, so a sample is needed while 32 + 63 = 95 more are stored.
+    #[test]
+    fn half_the_distances_use_four_nodes() {
+        let half = |row| if row == 0 { 1 << 24 } else { 1 << 23 };
+        let (all, lines) = (|nodes: &[usize]| (1..65).filter(|node| !nodes.contains(node)).collect(), 4..10);
+        let linear = generation(127, Interpolant::Linear, half);
+        let found_linear = found(7, &[&linear]);
+        assert!(found_linear.contains(&NotExercised::LineMemoryAddress { lines: (7..11).collect() }));
+        assert!(found_linear.contains(&NotExercised::RowTableAddress { lines: lines.collect() }));
+        assert!(found_linear.contains(&NotExercised::KernelNodes { nodes: all(&[8, 24, 40, 56]) }));
+        assert!(found_linear.contains(&NotExercised::RowFactorBits { bits: (0..23).collect() }));
+        assert!(found_linear.contains(&taps(&["G0", "R1", "R3", "R5", "G6"])));
+    }
+
+    /// The kernel decides, and what the board has.
+    #[test]
+    fn five_taps_leave_the_outer_ones_of_seven_unused() {
+        let five = generation(127, Interpolant::Hermite, |_| 1 << 23);
+        let seven = generation(127, Interpolant::Keys, |_| 1 << 23);
+        let is_tap = |part: &NotExercised| matches!(part, NotExercised::Taps { .. });
+        let named = |board, generations: &[&Generation]| {
+            found(board, generations).into_iter().filter(is_tap).collect::<Vec<_>>()
+        };
+        assert_eq!(named(7, &[&five]), [taps(&["G0", "G6"])]);
+        assert_eq!(named(5, &[&five]), []);
+        // Keys' kernel weighs no R, as Hermite's does not weigh G0 and G6.
+        assert_eq!(named(7, &[&seven]), [taps(&["R1", "R3", "R5"])]);
+        assert_eq!(named(7, &[&five, &seven]), []);
+    }
+
+    /// 127 is 0000 0111 1111 and 0 is 0 in the 12 bits of C on a board of 2048 columns.
+    #[test]
+    fn of_two_centres_the_bits_that_are_the_same_are_told() {
+        let [here, there] = [127, 0].map(|centre2| generation(centre2, Interpolant::Linear, |_| 1 << 23));
+        let found = found(7, &[&here, &there]);
+        assert!(found.contains(&NotExercised::CentreBits { bits: (7..12).collect() }));
+    }
+
+    /// 0x0f5 and 0x005: bits 0 and 2 are always 1, 4 to 7 are both, all others always 0.
+    #[test]
+    fn bits_of_samples_count_on_either_side_of_the_board() {
+        let frame =
+            |samples: [u16; 2]| Frame::new(64, BitDepth::Twelve, Phase::Grbg, samples.repeat(32)).unwrap();
+        let mut samples = SampleLevels::default();
+        samples.note(&frame([0x0f5, 0x005]), &frame([0, 0xfff]));
+        let generation = generation(127, Interpolant::Linear, |_| 1 << 23);
+        let found = not_exercised(&board(7), &[&generation], samples);
+        assert_eq!(found[0], NotExercised::InputBits { bits: vec![0, 1, 2, 3, 8, 9, 10, 11] });
+        assert!(!found.iter().any(|part| matches!(part, NotExercised::OutputBits { .. })));
+        samples.note(&frame([0, 0xfff]), &frame([7, 7]));
+        assert!(!matches!(
+            not_exercised(&board(7), &[&generation], samples)[0],
+            NotExercised::InputBits { .. }
+        ));
+    }
+}

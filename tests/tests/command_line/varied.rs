@@ -1,0 +1,70 @@
+//! What `verify` varies by itself, and what it says that it did not exercise.
+
+use halfrow_tests::program::{Folder, halfrow};
+use serde_json::{Value, json};
+
+use crate::small;
+
+/// What the frames of a call are set to otherwise than its tables have it.
+fn variations(arguments: &[&str]) -> Vec<Value> {
+    let said = halfrow(small("verify", arguments).into_iter().chain(["--json"])).json();
+    assert_eq!(said["verdict"], "PASS", "{arguments:?}");
+    let frames = said["frames"].as_array().unwrap();
+    frames.iter().map(|frame| frame["variation"].clone()).filter(|variation| !variation.is_null()).collect()
+}
+
+fn centre() -> Value {
+    json!({ "kind": "centre", "centre2": 0 })
+}
+
+fn depth(bits: u32) -> Value {
+    json!({ "kind": "depth", "bits": bits })
+}
+
+#[test]
+fn centre_and_depth_vary_unless_the_call_says_them() {
+    assert_eq!(variations(&[]), [centre(), depth(8), depth(10)]);
+    assert_eq!(variations(&["--bits", "12"]), [centre()]);
+    assert_eq!(variations(&["--centre-x", "63.5"]), [depth(8), depth(10)]);
+    assert_eq!(variations(&["--frame", "builtin:bars"]), [Value::Null; 0]);
+}
+
+#[test]
+fn a_board_of_one_depth_has_no_other_one() {
+    assert_eq!(variations(&["--board", "mock,depths=12"]), [centre()]);
+}
+
+#[test]
+fn tables_of_a_file_stay_as_they_are() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("tables", &["-o", "lens.json"])).code, Some(0));
+    let said = folder.halfrow(["verify", "--json", "--tables", "lens.json"]).json();
+    assert!(said["frames"].as_array().unwrap().iter().all(|frame| frame["variation"].is_null()));
+    let codes: Vec<_> =
+        said["not_exercised"].as_array().unwrap().iter().map(|part| part["code"].clone()).collect();
+    assert!(codes.contains(&"one-centre".into()) && codes.contains(&"depths".into()), "{codes:?}");
+}
+
+#[test]
+fn a_pass_says_in_words_what_it_did_not_exercise() {
+    let ended = halfrow(small("verify", &[]));
+    let text = ended.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("not exercised: address lines 7 to 10 of columns; "), "{text}");
+    let broken = halfrow(small("verify", &["--board", "mock,fault=stuck-data"]));
+    assert!(!broken.stdout.contains("not exercised"), "{}", broken.stdout);
+}
+
+/// A recording from before frames of their own were streamed does not speak of them.
+#[test]
+fn a_recording_that_does_not_speak_of_variations_has_none() {
+    let folder = Folder::new();
+    let fixed = ["--bits", "12", "--centre-x", "63.5", "--record", "run.rec"];
+    assert_eq!(folder.halfrow(small("verify", &fixed)).code, Some(0));
+    let path = folder.path().join("run.rec");
+    let bytes = std::fs::read(&path).unwrap();
+    let key = br#""vary":{"centre":false,"depth":false},"#;
+    let at = bytes.windows(key.len()).position(|window| window == key).unwrap();
+    std::fs::write(&path, [&bytes[..at], &bytes[at + key.len()..]].concat()).unwrap();
+    let ended = folder.halfrow(["verify", "--json", "--board", "replay:run.rec"]);
+    assert_eq!((ended.code, ended.json()["frames"].as_array().unwrap().len()), (Some(0), 16));
+}
