@@ -46,7 +46,7 @@ fn every_command_that_prints_a_result_prints_a_document() {
         let said = told(&folder, 0, &call);
         assert_eq!((&said["command"], &said["error"]), (&command.into(), &Value::Null), "{call:?}");
     }
-    assert_eq!(told(&folder, 0, &small("verify", &["--list"]))["listed"].as_array().unwrap().len(), 16);
+    assert_eq!(told(&folder, 0, &small("verify", &["--list"]))["listed"].as_array().unwrap().len(), 19);
 }
 
 #[test]
