@@ -21,9 +21,6 @@ use halfrow::run::{RECORDING_LOST, REPORT_LOST};
 use halfrow_lab::paper::{FolderError, PaperError, PhotographError};
 use halfrow_lab::training::TrainingError;
 
-/// List the codes of all findings, defects and errors, as they stand in JSON
-///
-/// Prints the page docs/CODES.md.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {}
 

@@ -76,22 +76,69 @@ pub struct Cli {
 }
 
 #[derive(Debug, Subcommand)]
+// A command's options are built only where it is the one that is called or asked about.
+#[command(defer = true)]
 enum Command {
+    /// Judge a board: stream frames through it and compare every sample with the reference
+    ///
+    /// Without --board the built-in mock board is judged. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
+    /// 6 identity or version refused, 129, 130 or 143 interrupted.
     Verify(verify::Arguments),
+    /// Correct frames with the reference model, or with a board, unjudged
     Correct(correct::Arguments),
+    /// Make a table file: a row factor for every row, and a kernel
     Tables(tables::Arguments),
+    /// Tell a lens's figures, and the error that row factors leave of it
+    ///
+    /// The error is that of each sample against the exact projection, which puts every vertical of the scene at the column where
+    /// the lens images it on the horizon. Its vertical part is how far the sample is from the row where the lens images its
+    /// latitude above or below the axis; no row factor changes that.
     Lens(lens::Arguments),
+    /// Fit a kernel to photographs, or measure one on them
     Kernel(kernel::Arguments),
+    /// Reproduce the paper's figures and tables
+    ///
+    /// Writes one page with pictures and numbers, and each picture and table as a file. Exit codes: 0 every number is accepted, 1
+    /// the board differs from the reference, 2 usage, 3 a number is missed or an item could not be made, 5 what was asked for could
+    /// not be tried.
     Paper(paper::Arguments),
+    /// Write the built-in frames as PGM files
     Frames(frames::Arguments),
+    /// List the boards that can be named with --board, and the devices that could be one
+    ///
+    /// Devices are looked at from outside: whether they are busy, and whether you may open them. With --ask each one that is
+    /// free is also greeted, which tells whether a board answers.
     Boards(boards::Arguments),
+    /// Say what a board is, what it can do, and what it has counted
     Info(info::Arguments),
+    /// Test the link to a board: error rate, round trips, throughput each way and together
+    ///
+    /// Random bytes go to the board and come back; nothing that the board computes is judged. Its tables are lost. Exit codes: 0 the
+    /// link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
     Link(link::Arguments),
+    /// Serve a mock or simulated board to other programs
+    ///
+    /// It is put behind a pseudo-terminal or a TCP port. Prints the target that leads to it, and goes on until Ctrl-C or
+    /// SIGTERM. One host at a time is served; one that vanishes leaves a board that the next can use. A board whose wire breaks
+    /// (fault=disconnect) hangs up, as a board does that is unplugged.
     Serve(serve::Arguments),
+    /// List the faults that the mock board can have
+    ///
+    /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
     Faults(faults::Arguments),
+    /// List the codes of all findings, defects and errors, as they stand in JSON
+    ///
+    /// Prints the page docs/CODES.md.
     Codes(codes::Arguments),
+    /// Print the JSON Schema of what --json prints and of report.json
     Schema(schema::Arguments),
+    /// Print a completion script for a shell
+    ///
+    /// For bash: halfrow completions bash > ~/.local/share/bash-completion/completions/halfrow
     Completions(completions::Completions),
+    /// Write the manual pages into a folder
+    ///
+    /// Then: man -l FOLDER/halfrow.1
     Manual(completions::Manual),
 }
 

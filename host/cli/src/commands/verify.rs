@@ -27,10 +27,6 @@ use halfrow::run::{
     self, Circumstances, Finished, FrameSource, Lack, Plan, RecordedRun, RestoreError, RunOptions, Timing,
 };
 
-/// Judge a board: stream frames through it and compare every sample with the reference
-///
-/// Without --board the built-in mock board is judged. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
-/// 6 identity or version refused, 129, 130 or 143 interrupted.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
