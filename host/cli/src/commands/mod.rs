@@ -14,6 +14,7 @@ mod info;
 mod inputs;
 mod kernel;
 mod lens;
+mod line;
 mod link;
 mod optics;
 mod paper;
@@ -25,8 +26,7 @@ mod verify;
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, CommandFactory, Parser, Subcommand};
-use halfrow_model::ModelPath;
+use clap::CommandFactory as _;
 
 use crate::console;
 use crate::exit::Exit;
@@ -35,6 +35,8 @@ use halfrow::board::BoardError;
 use halfrow::link::OpenError;
 use halfrow::reference;
 use halfrow::run::Misfit;
+
+use line::{Command, Line};
 
 pub use document::{failure, usage};
 
@@ -50,97 +52,9 @@ pub struct Context {
     pub json: bool,
 }
 
-/// Validates a board that straightens fisheye Bayer video, bit for bit.
-///
-/// Without a board, `halfrow verify` judges the built-in mock board.
-#[derive(Debug, Parser)]
-#[command(name = "halfrow", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
-pub struct Cli {
-    /// Log what happens on the link to stderr; twice for every packet that is late or damaged
-    #[arg(short, long, global = true, action = ArgAction::Count)]
-    verbose: u8,
-    /// Show no progress
-    #[arg(short, long, global = true)]
-    quiet: bool,
-    /// The settings file [default: halfrow/settings.toml in the user's configuration folder]
-    #[arg(long, global = true, value_name = "FILE", env = "HALFROW_SETTINGS")]
-    settings: Option<PathBuf>,
-    /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
-    #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
-    model_path: Option<ModelPath>,
-    /// Print the result, or why there is none, as JSON; `halfrow schema` tells its shape
-    #[arg(long, global = true)]
-    json: bool,
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Debug, Subcommand)]
-// A command's options are built only where it is the one that is called or asked about.
-#[command(defer = true)]
-enum Command {
-    /// Judge a board: stream frames through it and compare every sample with the reference
-    ///
-    /// Without --board the built-in mock board is judged. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
-    /// 6 identity or version refused, 129, 130 or 143 interrupted.
-    Verify(verify::Arguments),
-    /// Correct frames with the reference model, or with a board, unjudged
-    Correct(correct::Arguments),
-    /// Make a table file: a row factor for every row, and a kernel
-    Tables(tables::Arguments),
-    /// Tell a lens's figures, and the error that row factors leave of it
-    ///
-    /// The error is that of each sample against the exact projection, which puts every vertical of the scene at the column where
-    /// the lens images it on the horizon. Its vertical part is how far the sample is from the row where the lens images its
-    /// latitude above or below the axis; no row factor changes that.
-    Lens(lens::Arguments),
-    /// Fit a kernel to photographs, or measure one on them
-    Kernel(kernel::Arguments),
-    /// Reproduce the paper's figures and tables
-    ///
-    /// Writes one page with pictures and numbers, and each picture and table as a file. Exit codes: 0 every number is accepted, 1
-    /// the board differs from the reference, 2 usage, 3 a number is missed or an item could not be made, 5 what was asked for could
-    /// not be tried.
-    Paper(paper::Arguments),
-    /// Write the built-in frames as PGM files
-    Frames(frames::Arguments),
-    /// List the boards that can be named with --board, and the devices that could be one
-    ///
-    /// Devices are looked at from outside: whether they are busy, and whether you may open them. With --ask each one that is
-    /// free is also greeted, which tells whether a board answers.
-    Boards(boards::Arguments),
-    /// Say what a board is, what it can do, and what it has counted
-    Info(info::Arguments),
-    /// Test the link to a board: error rate, round trips, throughput each way and together
-    ///
-    /// Random bytes go to the board and come back; nothing that the board computes is judged. Its tables are lost. Exit codes: 0 the
-    /// link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
-    Link(link::Arguments),
-    /// Serve a mock or simulated board to other programs
-    ///
-    /// It is put behind a pseudo-terminal or a TCP port. Prints the target that leads to it, and goes on until Ctrl-C or
-    /// SIGTERM. One host at a time is served; one that vanishes leaves a board that the next can use. A board whose wire breaks
-    /// (fault=disconnect) hangs up, as a board does that is unplugged.
-    Serve(serve::Arguments),
-    /// List the faults that the mock board can have
-    ///
-    /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
-    Faults(faults::Arguments),
-    /// List the codes of all findings, defects and errors, as they stand in JSON
-    ///
-    /// Prints the page docs/CODES.md.
-    Codes(codes::Arguments),
-    /// Print the JSON Schema of what --json prints and of report.json
-    Schema(schema::Arguments),
-    /// Print a completion script for a shell
-    ///
-    /// For bash: halfrow completions bash > ~/.local/share/bash-completion/completions/halfrow
-    Completions(completions::Completions),
-    /// Write the manual pages into a folder
-    ///
-    /// Then: man -l FOLDER/halfrow.1
-    Manual(completions::Manual),
-}
+/// A call of the program.
+#[derive(Debug)]
+pub struct Cli(Line<Command>);
 
 /// A command that did not come to a result.
 #[derive(Debug)]
@@ -193,39 +107,30 @@ impl From<Misfit> for Failure {
 }
 
 impl Cli {
+    /// What the program is called with.
+    ///
+    /// # Errors
+    /// What is wrong with the call, or the help or version that it asks for.
+    pub fn read() -> Result<Self, clap::Error> {
+        Line::read().map(Self)
+    }
+
     /// How much to log: 0 for errors and warnings alone.
     #[must_use]
     pub fn verbosity(&self) -> u8 {
-        self.verbose
+        self.0.verbose
     }
 
     /// Whether the result is wanted as JSON.
     #[must_use]
     pub fn wants_json(&self) -> bool {
-        self.json
+        self.0.json
     }
 
     /// The command that was given.
     #[must_use]
     pub fn command_name(&self) -> &'static str {
-        match &self.command {
-            Command::Verify(_) => "verify",
-            Command::Correct(_) => "correct",
-            Command::Tables(_) => "tables",
-            Command::Lens(_) => "lens",
-            Command::Kernel(_) => "kernel",
-            Command::Paper(_) => "paper",
-            Command::Frames(_) => "frames",
-            Command::Boards(_) => "boards",
-            Command::Info(_) => "info",
-            Command::Link(_) => "link",
-            Command::Serve(_) => "serve",
-            Command::Faults(_) => "faults",
-            Command::Codes(_) => "codes",
-            Command::Schema(_) => "schema",
-            Command::Completions(_) => "completions",
-            Command::Manual(_) => "manual",
-        }
+        self.0.command.name()
     }
 
     /// Carries the command out.
@@ -233,18 +138,18 @@ impl Cli {
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
-        let settings = Settings::load(self.settings.as_deref()).map_err(Failure::call)?;
-        let path = reference::choose(self.model_path).map_err(Failure::call)?;
+        let settings = Settings::load(self.0.settings.as_deref()).map_err(Failure::call)?;
+        let path = reference::choose(self.0.model_path).map_err(Failure::call)?;
         tracing::info!("the model takes the path {path}");
-        let settings_file = Settings::file(self.settings.as_deref());
-        let context = Context { settings, settings_file, quiet: self.quiet, json: self.json };
+        let settings_file = Settings::file(self.0.settings.as_deref());
+        let context = Context { settings, settings_file, quiet: self.0.quiet, json: self.0.json };
         if context.json
-            && matches!(self.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
+            && matches!(self.0.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
         {
             let command = self.command_name();
             return Err(wrong_call!("`halfrow {command}` has no result in JSON; leave --json out"));
         }
-        match &self.command {
+        match &self.0.command {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
             Command::Tables(arguments) => tables::run(arguments, &context),
@@ -259,8 +164,12 @@ impl Cli {
             Command::Faults(arguments) => faults::run(arguments, &context),
             Command::Codes(arguments) => codes::run(arguments, &context),
             Command::Schema(arguments) => schema::run(arguments),
-            Command::Completions(arguments) => completions::complete(arguments, &mut Self::command()),
-            Command::Manual(arguments) => completions::manual(arguments, Self::command(), &context),
+            Command::Completions(arguments) => {
+                completions::complete(arguments, &mut Line::<Command>::command())
+            }
+            Command::Manual(arguments) => {
+                completions::manual(arguments, Line::<Command>::command(), &context)
+            }
         }
     }
 }
