@@ -183,3 +183,39 @@ pub fn write_rgb(path: &Path, image: &RgbImage, overwrite: bool) -> Result<(), W
         .map_err(|source| WriteError::Encode { path: path.to_owned(), source: source.into() })?;
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keeps what comes, write by write.
+    #[derive(Default)]
+    struct Writes(Vec<Vec<u8>>);
+
+    impl Write for Writes {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.push(bytes.to_vec());
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn all_but_the_last_write_are_whole_blocks() {
+        let (mut writes, mut wanted) = (Writes::default(), Vec::new());
+        let mut blocks = Blocks::new(&mut writes);
+        for (number, length) in [18, BUFFER - 18, 3840, BUFFER, 3 * BUFFER + 7, 5].into_iter().enumerate() {
+            let piece = vec![number as u8; length];
+            wanted.extend_from_slice(&piece);
+            blocks.bytes.extend_from_slice(&piece);
+            blocks.write_whole().unwrap();
+        }
+        blocks.write_rest().unwrap();
+        let (last, whole) = writes.0.split_last().unwrap();
+        assert!(whole.iter().all(|write| write.len().is_multiple_of(BUFFER)) && last.len() < BUFFER);
+        assert_eq!(writes.0.concat(), wanted);
+    }
+}

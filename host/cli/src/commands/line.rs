@@ -132,3 +132,18 @@ commands! {
     /// Then: man -l FOLDER/halfrow.1
     Manual(super::completions::Manual), "manual";
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_help_on_the_whole_program_needs_no_options_of_its_commands() {
+        let [mut named, mut whole] = [Line::<Named>::command(), Line::<Command>::command()];
+        assert_eq!(named.render_help().to_string(), whole.render_help().to_string());
+        assert_eq!(named.render_long_help().to_string(), whole.render_long_help().to_string());
+        assert!(named.get_subcommands().all(|command| command.get_arguments().next().is_none()));
+    }
+}
