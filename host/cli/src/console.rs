@@ -9,6 +9,7 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal as _, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use anstream::AutoStream;
 use indicatif::ProgressDrawTarget;
 
 /// A result that stdout did not take.
@@ -29,8 +30,11 @@ pub fn print(text: &str) -> Result<(), Unprinted> {
 /// # Errors
 /// As [`print()`].
 pub fn print_raw(text: &str) -> Result<(), Unprinted> {
-    let mut stdout = anstream::stdout().lock();
-    match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
+    let mut stdout = io::stdout().lock();
+    // Put together first: the stripping of colours would write every piece of text by itself.
+    let mut bytes = AutoStream::new(Vec::new(), AutoStream::choice(&stdout));
+    let styled = bytes.write_all(text.as_bytes());
+    match styled.and_then(|()| stdout.write_all(&bytes.into_inner())).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         written => written.map_err(Unprinted),
     }

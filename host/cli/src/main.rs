@@ -2,7 +2,6 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use tracing::level_filters::LevelFilter;
 
 use halfrow_cli::commands::{self, Cli, Failure};
@@ -18,7 +17,7 @@ fn main() -> ExitCode {
 }
 
 fn program() -> Exit {
-    let cli = match Cli::try_parse() {
+    let cli = match Cli::read() {
         Ok(cli) => cli,
         Err(told) => return tell(&told),
     };

@@ -1,7 +1,7 @@
 //! Frames on disk: reading a file whole, and replacing it whole or not at all.
 
 use std::fs::File;
-use std::io::{self, Read};
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use halfrow_model::Frame;
@@ -115,24 +115,49 @@ fn write_plain_rows<E: From<WriteError>>(
 ) -> Result<(), E> {
     let mut refused = None;
     let written = write_aside(path, overwrite, |out| {
-        format.write_header(shape, out)?;
-        let (mut row, mut lines) = (vec![0; shape.width], Vec::new());
+        let (mut row, mut blocks) = (vec![0; shape.width], Blocks::new(out));
+        format.write_header(shape, &mut blocks.bytes)?;
         for _ in 0..shape.height {
             if let Err(error) = next_row(&mut row) {
                 refused = Some(error);
                 return Err(io::ErrorKind::Other.into());
             }
-            format.pack(&row, shape.depth, &mut lines);
-            if lines.len() > BUFFER {
-                out.write_all(&lines)?;
-                lines.clear();
-            }
+            format.pack(&row, shape.depth, &mut blocks.bytes);
+            blocks.write_whole()?;
         }
-        out.write_all(&lines)
+        blocks.write_rest()
     });
     match refused {
         Some(error) => Err(error),
         None => Ok(written.map_err(WriteError::from)?),
+    }
+}
+
+/// What is on its way into a file, in blocks that begin at multiples of their length: the system keeps such a block in few
+/// large pages, and any other in many small ones.
+struct Blocks<'a> {
+    out: &'a mut dyn Write,
+    bytes: Vec<u8>,
+}
+
+impl<'a> Blocks<'a> {
+    fn new(out: &'a mut dyn Write) -> Self {
+        Self { out, bytes: Vec::with_capacity(2 * BUFFER) }
+    }
+
+    /// Writes the blocks that are whole.
+    fn write_whole(&mut self) -> io::Result<()> {
+        let whole = self.bytes.len() / BUFFER * BUFFER;
+        if whole > 0 {
+            self.out.write_all(&self.bytes[..whole])?;
+            self.bytes.drain(..whole);
+        }
+        Ok(())
+    }
+
+    /// Writes what is left.
+    fn write_rest(self) -> io::Result<()> {
+        self.out.write_all(&self.bytes)
     }
 }
 
@@ -157,4 +182,40 @@ pub fn write_rgb(path: &Path, image: &RgbImage, overwrite: bool) -> Result<(), W
     encode_png_rgb(image, &mut bytes)
         .map_err(|source| WriteError::Encode { path: path.to_owned(), source: source.into() })?;
     Ok(write_aside(path, overwrite, |out| out.write_all(&bytes))?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keeps what comes, write by write.
+    #[derive(Default)]
+    struct Writes(Vec<Vec<u8>>);
+
+    impl Write for Writes {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.push(bytes.to_vec());
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn all_but_the_last_write_are_whole_blocks() {
+        let (mut writes, mut wanted) = (Writes::default(), Vec::new());
+        let mut blocks = Blocks::new(&mut writes);
+        for (number, length) in [18, BUFFER - 18, 3840, BUFFER, 3 * BUFFER + 7, 5].into_iter().enumerate() {
+            let piece = vec![number as u8; length];
+            wanted.extend_from_slice(&piece);
+            blocks.bytes.extend_from_slice(&piece);
+            blocks.write_whole().unwrap();
+        }
+        blocks.write_rest().unwrap();
+        let (last, whole) = writes.0.split_last().unwrap();
+        assert!(whole.iter().all(|write| write.len().is_multiple_of(BUFFER)) && last.len() < BUFFER);
+        assert_eq!(writes.0.concat(), wanted);
+    }
 }

@@ -38,7 +38,7 @@ pub use mosaic::mosaic;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use rows::{FrameShape, RowReader};
 pub use scene::Scene;
-pub use size::{MAX_FILE_BYTES, MAX_SIDE};
+pub use size::MAX_SIDE;
 pub use turned::lying;
 
 /// What a file does not say about its samples.

@@ -26,7 +26,7 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 ///
 /// # Errors
 /// [`DecodeError`] when [`decode`] would refuse the PNG, or when it is grey or has 16 bits.
-pub fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
+pub(super) fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
     whole(bytes)?.into_rgb().ok_or(DecodeError::Unsupported {
         what: "a PNG that is not in colour with 8 bits a sample".to_owned(),
         remedy: "give the photograph itself, in red, green and blue",

@@ -150,7 +150,7 @@ fn raster(input: &mut File, how: &ReadOptions) -> std::io::Result<Option<Raster>
     let found = match how.raw {
         Some(geometry) => raw::raster(geometry),
         None => {
-            let mut head = Vec::new();
+            let mut head = Vec::with_capacity(HEAD as usize);
             input.take(HEAD).read_to_end(&mut head)?;
             pgm::raster(&head)
         }

@@ -6,7 +6,7 @@ use super::DecodeError;
 pub const MAX_SIDE: usize = 8192;
 
 /// The longest file that is read at all: [`MAX_SIDE`] squared, four channels of 16 bits, and room for a header.
-pub const MAX_FILE_BYTES: usize = MAX_SIDE * MAX_SIDE * 8 + (1 << 20);
+pub(crate) const MAX_FILE_BYTES: usize = MAX_SIDE * MAX_SIDE * 8 + (1 << 20);
 
 /// The most bytes that one compressed byte stands for: about 1,030 in deflate, 1,400 in LZW, 64 in PackBits.
 const MAX_EXPANSION: usize = 2048;

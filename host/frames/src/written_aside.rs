@@ -22,7 +22,7 @@ pub use place::{Place, check, check_folder, clear};
 pub use under_way::abandon_all;
 
 /// Bytes that are written at once.
-pub const BUFFER: usize = 1 << 17;
+pub(crate) const BUFFER: usize = 1 << 17;
 
 /// The same for streams.
 const STREAM_BUFFER: usize = 1 << 13;

@@ -60,7 +60,7 @@ pub use run::{Finished, FrameSource, Misfit, Plan, RunOptions, verify};
 pub use verdict::{Cause, StoppedBy, Verdict};
 
 /// The commit that this library was built from, abbreviated; `unknown` without git.
-pub const COMMIT: &str = env!("HALFROW_COMMIT");
+pub(crate) const COMMIT: &str = env!("HALFROW_COMMIT");
 
 /// The version and, in brackets, the commit.
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("HALFROW_COMMIT"), ")");

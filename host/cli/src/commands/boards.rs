@@ -10,10 +10,6 @@ use halfrow::target::{BoardKind, Target};
 use halfrow_link::discovery::{self, Access, Answer, Found};
 use halfrow_link::kinds::{Form, KINDS};
 
-/// List the boards that can be named with --board, and the devices that could be one
-///
-/// Devices are looked at from outside: whether they are busy, and whether you may open them. With --ask each one that is
-/// free is also greeted, which tells whether a board answers.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// Look at these targets instead of searching

@@ -22,9 +22,6 @@ use halfrow::run::{RECORDING_LOST, REPORT_LOST};
 use halfrow_lab::paper::{FolderError, PaperError, PhotographError};
 use halfrow_lab::training::TrainingError;
 
-/// List the codes of all findings, defects and errors, as they stand in JSON
-///
-/// Prints the page docs/CODES.md.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {}
 
@@ -269,8 +266,9 @@ fn page() -> String {
 
 const HEAD: &str = "# Codes
 
-Every finding, defect and error in JSON has a code and parameters, and so has what a PASS did not exercise. Codes are stable: none changes its meaning or its
-parameters' names within a schema number, and new ones may come. The sentences are made from them and may change.
+Every finding, defect and error in JSON has a code and parameters, and so has what a PASS did not exercise. Codes are
+stable: none changes its meaning or its parameters' names within a schema number, and new ones may come. The sentences
+are made from them and may change.
 `halfrow codes` prints this page; a test holds the two equal. Sentences are those of an example.
 ";
 

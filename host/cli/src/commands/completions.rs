@@ -12,18 +12,12 @@ use super::{Context, Failure};
 use crate::exit::Exit;
 use halfrow_frames::written_aside::write_aside;
 
-/// Print a completion script for a shell
-///
-/// For bash: halfrow completions bash > ~/.local/share/bash-completion/completions/halfrow
 #[derive(Debug, Args)]
 pub(super) struct Completions {
     /// The shell
     shell: Shell,
 }
 
-/// Write the manual pages into a folder
-///
-/// Then: man -l FOLDER/halfrow.1
 #[derive(Debug, Args)]
 pub(super) struct Manual {
     /// The folder, made if it is not there

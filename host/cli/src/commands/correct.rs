@@ -26,7 +26,6 @@ use halfrow::optics::Chosen;
 use halfrow::target::BoardKind;
 use places::{Places, Wanted};
 
-/// Correct frames with the reference model, or with a board, unjudged
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -59,7 +59,9 @@ pub fn usage(error: &clap::Error, arguments: &[String]) -> Option<String> {
     if !error.use_stderr() || !names().any(|argument| argument == "--json") {
         return None;
     }
-    let known = |name: &&str| <super::Cli as clap::CommandFactory>::command().find_subcommand(name).is_some();
+    let known = |name: &&str| {
+        <super::Line<super::Command> as clap::CommandFactory>::command().find_subcommand(name).is_some()
+    };
     let command = names().find(known).unwrap_or("halfrow");
     let message = error.render().to_string();
     let message = message.trim_start_matches("error: ").split("\n\nUsage:").next().unwrap_or_default().trim();

@@ -9,9 +9,6 @@ use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
 
-/// List the faults that the mock board can have
-///
-/// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {}
 

@@ -13,7 +13,6 @@ use crate::console;
 use crate::exit::Exit;
 use halfrow::frames::{self, Builtin};
 
-/// Write the built-in frames as PGM files
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

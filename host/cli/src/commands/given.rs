@@ -141,16 +141,13 @@ impl Args for Given {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory as _;
-
-    use super::super::Cli;
+    use super::super::{correct, paper, verify};
     use super::*;
 
     /// The ids of the options that a command has by itself.
-    fn options(command: &str) -> Vec<String> {
-        let cli = Cli::command();
-        let found = cli.find_subcommand(command).unwrap();
-        found.get_arguments().map(|argument| argument.get_id().to_string()).collect()
+    fn options<Arguments: Args>() -> Vec<String> {
+        let command = Arguments::augment_args(Command::new("halfrow"));
+        command.get_arguments().map(|argument| argument.get_id().to_string()).collect()
     }
 
     /// A new option has to be put on one side or the other.
@@ -160,20 +157,19 @@ mod tests {
         let mut decided: Vec<&str> = Decider::Recording.voids();
         decided.extend(stand);
         decided.sort_unstable();
-        let mut options = options("verify");
+        let mut options = options::<verify::Arguments>();
         options.sort_unstable();
         assert_eq!(options, decided);
     }
 
     #[test]
     fn options_that_are_void_exist() {
-        for (decider, command) in [
-            (Decider::Tables, "verify"),
-            (Decider::Model, "correct"),
-            (Decider::NoFrameFile, "correct"),
-            (Decider::NoBoardItem, "paper"),
+        for (decider, known) in [
+            (Decider::Tables, options::<verify::Arguments>()),
+            (Decider::Model, options::<correct::Arguments>()),
+            (Decider::NoFrameFile, options::<correct::Arguments>()),
+            (Decider::NoBoardItem, options::<paper::Arguments>()),
         ] {
-            let known = options(command);
             assert!(decider.voids().iter().all(|id| known.iter().any(|known| known == id)), "{decider:?}");
         }
     }

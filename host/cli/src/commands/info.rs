@@ -10,7 +10,6 @@ use crate::exit::Exit;
 use halfrow::board::{Board, Status};
 use halfrow::result::{BoardReport, Identity};
 
-/// Say what a board is, what it can do, and what it has counted
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -22,7 +22,6 @@ use halfrow::tables::KernelFile;
 use halfrow_lab::training;
 use halfrow_lab::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
 
-/// Fit a kernel to photographs, or measure one on them
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]

@@ -15,11 +15,6 @@ use halfrow::frames::{self, HeatMap};
 use halfrow::optics::{Optics, OpticsError, RowsBy};
 use halfrow_lab::{Residuals, Spread};
 
-/// Tell a lens's figures, and the error that row factors leave of it
-///
-/// The error is that of each sample against the exact projection, which puts every vertical of the scene at the column where
-/// the lens images it on the horizon. Its vertical part is how far the sample is from the row where the lens images its
-/// latitude above or below the axis; no row factor changes that.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

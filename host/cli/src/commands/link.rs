@@ -13,10 +13,6 @@ use halfrow::board::Board;
 use halfrow::link_test::{self, Figures, LinkTestError, Rate, RoundTrips, Throughput};
 use halfrow::result::{BoardReport, Identity};
 
-/// Test the link to a board: error rate, round trips, throughput each way and together
-///
-/// Random bytes go to the board and come back; nothing that the board computes is judged. Its tables are lost. Exit codes: 0 the
-/// link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -15,6 +15,7 @@ mod info;
 mod inputs;
 mod kernel;
 mod lens;
+mod line;
 mod link;
 mod optics;
 mod paper;
@@ -26,8 +27,7 @@ mod verify;
 
 use std::path::PathBuf;
 
-use clap::{ArgAction, CommandFactory, Parser, Subcommand};
-use halfrow_model::ModelPath;
+use clap::CommandFactory as _;
 
 use self::call_error::CallError;
 use crate::console;
@@ -37,6 +37,8 @@ use halfrow::board::BoardError;
 use halfrow::link::OpenError;
 use halfrow::reference;
 use halfrow::run::Misfit;
+
+use line::{Command, Line};
 
 pub use document::{failure, usage};
 
@@ -52,50 +54,9 @@ pub struct Context {
     pub json: bool,
 }
 
-/// Validates a board that straightens fisheye Bayer video, bit for bit.
-///
-/// Without a board, `halfrow verify` judges the built-in mock board.
-#[derive(Debug, Parser)]
-#[command(name = "halfrow", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
-pub struct Cli {
-    /// Log what happens on the link to stderr; twice for every packet that is late or damaged
-    #[arg(short, long, global = true, action = ArgAction::Count)]
-    verbose: u8,
-    /// Show no progress
-    #[arg(short, long, global = true)]
-    quiet: bool,
-    /// The settings file [default: halfrow/settings.toml in the user's configuration folder]
-    #[arg(long, global = true, value_name = "FILE", env = "HALFROW_SETTINGS")]
-    settings: Option<PathBuf>,
-    /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
-    #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
-    model_path: Option<ModelPath>,
-    /// Print the result, or why there is none, as JSON; `halfrow schema` tells its shape
-    #[arg(long, global = true)]
-    json: bool,
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Debug, Subcommand)]
-enum Command {
-    Verify(verify::Arguments),
-    Correct(correct::Arguments),
-    Tables(tables::Arguments),
-    Lens(lens::Arguments),
-    Kernel(kernel::Arguments),
-    Paper(paper::Arguments),
-    Frames(frames::Arguments),
-    Boards(boards::Arguments),
-    Info(info::Arguments),
-    Link(link::Arguments),
-    Serve(serve::Arguments),
-    Faults(faults::Arguments),
-    Codes(codes::Arguments),
-    Schema(schema::Arguments),
-    Completions(completions::Completions),
-    Manual(completions::Manual),
-}
+/// A call of the program.
+#[derive(Debug)]
+pub struct Cli(Line<Command>);
 
 /// A command that did not come to a result.
 #[derive(Debug)]
@@ -142,39 +103,30 @@ impl From<Misfit> for Failure {
 }
 
 impl Cli {
+    /// What the program is called with.
+    ///
+    /// # Errors
+    /// What is wrong with the call, or the help or version that it asks for.
+    pub fn read() -> Result<Self, clap::Error> {
+        Line::read().map(Self)
+    }
+
     /// How much to log: 0 for errors and warnings alone.
     #[must_use]
     pub fn verbosity(&self) -> u8 {
-        self.verbose
+        self.0.verbose
     }
 
     /// Whether the result is wanted as JSON.
     #[must_use]
     pub fn wants_json(&self) -> bool {
-        self.json
+        self.0.json
     }
 
     /// The command that was given.
     #[must_use]
     pub fn command_name(&self) -> &'static str {
-        match &self.command {
-            Command::Verify(_) => "verify",
-            Command::Correct(_) => "correct",
-            Command::Tables(_) => "tables",
-            Command::Lens(_) => "lens",
-            Command::Kernel(_) => "kernel",
-            Command::Paper(_) => "paper",
-            Command::Frames(_) => "frames",
-            Command::Boards(_) => "boards",
-            Command::Info(_) => "info",
-            Command::Link(_) => "link",
-            Command::Serve(_) => "serve",
-            Command::Faults(_) => "faults",
-            Command::Codes(_) => "codes",
-            Command::Schema(_) => "schema",
-            Command::Completions(_) => "completions",
-            Command::Manual(_) => "manual",
-        }
+        self.0.command.name()
     }
 
     /// Carries the command out.
@@ -182,18 +134,18 @@ impl Cli {
     /// # Errors
     /// [`Failure`] with its exit code, when there is no result to print.
     pub fn run(&self) -> Result<Exit, Failure> {
-        let settings = Settings::load(self.settings.as_deref()).map_err(Failure::call)?;
-        let path = reference::choose(self.model_path).map_err(Failure::call)?;
+        let settings = Settings::load(self.0.settings.as_deref()).map_err(Failure::call)?;
+        let path = reference::choose(self.0.model_path).map_err(Failure::call)?;
         tracing::info!("the model takes the path {path}");
-        let settings_file = Settings::file(self.settings.as_deref());
-        let context = Context { settings, settings_file, quiet: self.quiet, json: self.json };
+        let settings_file = Settings::file(self.0.settings.as_deref());
+        let context = Context { settings, settings_file, quiet: self.0.quiet, json: self.0.json };
         if context.json
-            && matches!(self.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
+            && matches!(self.0.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
         {
             let command = self.command_name();
             return Err(Failure::call(CallError::NoJson { command }));
         }
-        match &self.command {
+        match &self.0.command {
             Command::Verify(arguments) => verify::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
             Command::Tables(arguments) => tables::run(arguments, &context),
@@ -208,8 +160,12 @@ impl Cli {
             Command::Faults(arguments) => faults::run(arguments, &context),
             Command::Codes(arguments) => codes::run(arguments, &context),
             Command::Schema(arguments) => schema::run(arguments),
-            Command::Completions(arguments) => completions::complete(arguments, &mut Self::command()),
-            Command::Manual(arguments) => completions::manual(arguments, Self::command(), &context),
+            Command::Completions(arguments) => {
+                completions::complete(arguments, &mut Line::<Command>::command())
+            }
+            Command::Manual(arguments) => {
+                completions::manual(arguments, Line::<Command>::command(), &context)
+            }
         }
     }
 }

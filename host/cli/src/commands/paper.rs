@@ -19,11 +19,6 @@ use halfrow::frames::preview::RgbImage;
 use halfrow::target::BoardKind;
 use halfrow_lab::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperError, TestedBoard};
 
-/// Reproduce the paper's figures and tables
-///
-/// Writes one page with pictures and numbers, and each picture and table as a file. Exit codes: 0 every number is accepted, 1
-/// the board differs from the reference, 2 usage, 3 a number is missed or an item could not be made, 5 what was asked for could
-/// not be tried.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -9,7 +9,6 @@ use crate::exit::Exit;
 /// What the program prints as JSON; the codes come from the program.
 const SCHEMA: &str = include_str!("../../../schema/halfrow-1.json");
 
-/// Print the JSON Schema of what --json prints and of report.json
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The command whose documents alone are wanted, as `verify` [default: all]

@@ -12,11 +12,6 @@ use crate::signals;
 use halfrow::link;
 use halfrow::target::Target;
 
-/// Serve a mock or simulated board to other programs
-///
-/// It is put behind a pseudo-terminal or a TCP port. Prints the target that leads to it, and goes on until Ctrl-C or
-/// SIGTERM. One host at a time is served; one that vanishes leaves a board that the next can use. A board whose wire breaks
-/// (fault=disconnect) hangs up, as a board does that is unplugged.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The board to serve

@@ -15,7 +15,6 @@ use crate::exit::Exit;
 use halfrow::tables::{TableFile, mem};
 use halfrow_frames::written_aside::WriteAsideError;
 
-/// Make a table file: a row factor for every row, and a kernel
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

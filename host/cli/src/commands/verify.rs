@@ -29,11 +29,6 @@ use halfrow::run::{
     Timing, Vary,
 };
 
-/// Judge a board: stream frames through it and compare every sample with the reference
-///
-/// Without --board the built-in mock board is judged. Unless tables, frames, --centre-x or --bits say otherwise, the optical
-/// centre and the depth vary in frames of their own; a PASS names what no frame exercised. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR, 4 busy, 5 nothing judged,
-/// 6 identity or version refused, 129, 130 or 143 interrupted.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

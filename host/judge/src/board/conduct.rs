@@ -12,7 +12,7 @@ const ROWS: usize = 4096;
 
 /// The board broke the wire's rules, beyond what any link does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Misconduct {
+pub(crate) enum Misconduct {
     /// A row came twice, and not the same both times.
     CopyDiffers {
         /// The row.

@@ -20,13 +20,14 @@ use conversation::{Conversation, take_reply};
 use deadlines::{RetryLimit, Step};
 
 use crate::link::Link;
-pub use conduct::Misconduct;
+pub(crate) use conduct::Misconduct;
 pub use conversation::Tally;
 pub use error::BoardError;
-pub use rows::{NumberedFrame, ReturnedRow, RowTraffic, Unjudged, Unreturned};
-pub use sent::Sent;
+pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
+pub(crate) use rows::{Unjudged, Unreturned};
+pub(crate) use sent::Sent;
 pub use stop::Stop;
-pub use tables::{ReadBack, TablePort};
+pub(crate) use tables::{ReadBack, TablePort};
 
 pub use halfrow_protocol::message::{Bank, BoardNature, Capabilities, RefusalCode, Status, Table, Welcome};
 
@@ -97,7 +98,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] as of [`Self::open`].
-    pub fn greet_again(&mut self, options: &OpenOptions) -> Result<(), BoardError> {
+    pub(crate) fn greet_again(&mut self, options: &OpenOptions) -> Result<(), BoardError> {
         self.conversation.leave_session();
         self.welcome = greet_or_take_over(&mut self.conversation, options)?;
         self.counted_from = self.conversation.tally.packets_out;
@@ -106,14 +107,14 @@ impl Board {
 
     /// What the board did with rows in this session that no link can do.
     #[must_use]
-    pub fn misconduct(&self) -> Option<Misconduct> {
+    pub(crate) fn misconduct(&self) -> Option<Misconduct> {
         self.conversation.conduct.misconduct()
     }
 
     /// How many requests that change the board came to it more than once in this session, as far as can be seen. The second
     /// copy of one may have come late, behind others, and then the board is not as the host thinks that it is.
     #[must_use]
-    pub fn repeated_changes(&self) -> u64 {
+    pub(crate) fn repeated_changes(&self) -> u64 {
         self.conversation.repeated_changes
     }
 
@@ -189,7 +190,7 @@ impl Board {
 
     /// The packets that were sent since the board's counters were set back, all tries counted.
     #[must_use]
-    pub fn packets_since_clear(&self) -> u64 {
+    pub(crate) fn packets_since_clear(&self) -> u64 {
         self.conversation.tally.packets_out.saturating_sub(self.counted_from)
     }
 
@@ -235,12 +236,15 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] of any other kind.
-    pub fn stream_once(&mut self, traffic: &mut dyn RowTraffic) -> Result<Option<Unreturned>, BoardError> {
+    pub(crate) fn stream_once(
+        &mut self,
+        traffic: &mut dyn RowTraffic,
+    ) -> Result<Option<Unreturned>, BoardError> {
         rows::stream_once(&mut self.conversation, traffic)
     }
 
     /// Sends a row once more, and waits for nothing.
-    pub fn send_again(&mut self, row: &Unreturned) {
+    pub(crate) fn send_again(&mut self, row: &Unreturned) {
         self.conversation.queue_row(&row.place, &row.samples);
     }
 

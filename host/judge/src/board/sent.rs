@@ -7,9 +7,9 @@ use halfrow_protocol::{Decoder, samples};
 
 /// Rows and commits among recorded bytes.
 #[derive(Debug, Default)]
-pub struct Sent {
+pub(crate) struct Sent {
     /// The first frame of each committed generation.
-    pub first_frames: BTreeMap<u8, u16>,
+    pub(crate) first_frames: BTreeMap<u8, u16>,
     rows: BTreeMap<(u16, u16), Vec<u16>>,
 }
 
@@ -17,7 +17,7 @@ impl Sent {
     /// Finds them in all bytes that a host sent, which come in `pieces`. Rows of frames that are not `wanted` are left
     /// out.
     #[must_use]
-    pub fn find<'a>(pieces: impl Iterator<Item = &'a [u8]>, wanted: impl Fn(u16) -> bool) -> Self {
+    pub(crate) fn find<'a>(pieces: impl Iterator<Item = &'a [u8]>, wanted: impl Fn(u16) -> bool) -> Self {
         let mut sent = Self::default();
         let mut decoder = Decoder::new();
         for mut bytes in pieces {
@@ -43,7 +43,7 @@ impl Sent {
 
     /// The samples of frame `number`, `width` × `height`; rows that were never sent are black.
     #[must_use]
-    pub fn frame(&self, number: u16, width: usize, height: usize) -> Vec<u16> {
+    pub(crate) fn frame(&self, number: u16, width: usize, height: usize) -> Vec<u16> {
         let mut frame = vec![0; width * height];
         for ((_, row), samples) in self.rows.range((number, 0)..=(number, u16::MAX)) {
             if let Some(place) = frame.chunks_exact_mut(width).nth(usize::from(*row))

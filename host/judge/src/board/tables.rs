@@ -9,36 +9,35 @@ use super::{Board, BoardError};
 
 /// One of the ports by which the datapath reads its tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TablePort {
+pub(crate) struct TablePort {
     /// The table.
-    pub table: Table,
+    pub(crate) table: Table,
     /// The port's number.
-    pub port: u8,
+    pub(crate) port: u8,
 }
 
 /// The CRC of a table as one port reads it, beside what it should be.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ReadBack {
+pub(crate) struct ReadBack {
     /// The port.
-    pub port: TablePort,
+    pub(crate) port: TablePort,
     /// The CRC-32 of what was uploaded.
-    pub expected: u32,
+    pub(crate) expected: u32,
     /// The CRC-32 of what the port reads.
-    pub found: u32,
+    pub(crate) found: u32,
 }
 
 impl ReadBack {
     /// Whether the datapath gets what was uploaded.
     #[must_use]
-    pub fn agrees(&self) -> bool {
+    pub(crate) fn agrees(&self) -> bool {
         self.expected == self.found
     }
 }
 
 impl Board {
     /// Every port that the datapath reads tables by.
-    #[must_use]
-    pub fn table_ports(&self) -> Vec<TablePort> {
+    fn table_ports(&self) -> Vec<TablePort> {
         let ports = |table, count| (0..count).map(move |port| TablePort { table, port });
         ports(Table::Steps, self.capabilities.step_ports)
             .chain(ports(Table::Kernel, self.capabilities.kernel_ports))
@@ -85,7 +84,7 @@ impl Board {
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
-    pub fn read_back(
+    pub(crate) fn read_back(
         &mut self,
         bank: Bank,
         tables: &TableSet,

@@ -102,7 +102,7 @@ pub struct ReportFolder {
 }
 
 /// What makes the JSON of a report.
-pub type JsonView = fn(&Report) -> Result<String, serde_json::Error>;
+type JsonView = fn(&Report) -> Result<String, serde_json::Error>;
 
 impl ReportFolder {
     /// Makes sure that a report can be written to `path`, before a board is opened for it.

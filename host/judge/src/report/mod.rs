@@ -8,7 +8,7 @@ mod pictures;
 pub mod wording;
 
 pub use folder::check as check_folder;
-pub use folder::{JsonView, ReportError, ReportFolder};
+pub use folder::{ReportError, ReportFolder};
 pub use html::document;
 pub use html::render as html;
 pub use json::render as json;

@@ -35,7 +35,7 @@ pub struct RunOptions {
 impl RunOptions {
     /// The default of [`RunOptions::evidence_bytes`], 64 MiB: five frames of 1920 x 1080 with what went in and what should
     /// have come back.
-    pub const EVIDENCE_BYTES: usize = 64 << 20;
+    pub(crate) const EVIDENCE_BYTES: usize = 64 << 20;
 }
 
 impl Default for RunOptions {

@@ -188,12 +188,12 @@ pub struct Picture {
     /// What it shows, in one sentence.
     pub caption: String,
     /// The picture itself.
-    pub drawing: Drawing,
+    pub(crate) drawing: Drawing,
 }
 
 /// A picture of pixels or of lines.
 #[derive(Clone, Debug)]
-pub enum Drawing {
+pub(crate) enum Drawing {
     /// Pixels; each is shown as a square of so many.
     Pixels(RgbImage, usize),
     /// An SVG document.

@@ -29,7 +29,7 @@ mod views;
 pub use distortion::distorted;
 pub(crate) use distortion::distorted_by;
 pub use error::PaperError;
-pub use exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
+pub use exhibit::{Accepted, Cell, Claim, Exhibit, Picture, Table};
 pub use folder::{Folder, FolderError, numbers};
 pub use item::Item;
 pub use photographs::{PhotographError, read as read_photographs};

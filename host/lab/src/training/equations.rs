@@ -39,7 +39,7 @@ impl Equations {
     }
 
     /// Adds every sample of a frame, and the same seen from the other side: light has no preferred direction.
-    pub fn observe(&mut self, warped: &Warped) {
+    pub(crate) fn observe(&mut self, warped: &Warped) {
         let geometry = warped.tables.geometry();
         let rows = warped.distorted.rows().zip(warped.reference.rows()).zip(warped.tables.steps());
         for ((row, wanted), &step) in rows {
@@ -80,7 +80,7 @@ impl Equations {
 
     /// Divided by the number of samples.
     #[must_use]
-    pub fn per_sample(&self) -> Self {
+    pub(crate) fn per_sample(&self) -> Self {
         let mut scaled = Self::new();
         scaled.add(self, 1.0 / self.samples.max(1.0));
         scaled

@@ -21,7 +21,7 @@ const SEED: u64 = 5;
 
 /// A photograph distorted, with what ought to come of it.
 #[derive(Clone, Debug)]
-pub struct Warped {
+pub(crate) struct Warped {
     /// The row factors that take the distortion away.
     pub tables: TableSet,
     /// What a sensor would see without distortion.

@@ -13,7 +13,8 @@ mod model;
 pub use cholesky::solve;
 pub use equations::{Equations, RIDGE};
 pub use figures::noise_gain;
-pub use measure::{Gains, Spread, Warped, measure};
+pub(crate) use measure::Warped;
+pub use measure::{Gains, Spread, measure};
 pub use model::{Model, Warp};
 
 use halfrow_model::{

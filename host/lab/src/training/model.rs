@@ -76,7 +76,7 @@ impl Model {
     ///
     /// # Errors
     /// [`TrainingError`] when it has a size that no frame has.
-    pub fn warped(self, image: &RgbImage) -> Result<Warped, TrainingError> {
+    pub(crate) fn warped(self, image: &RgbImage) -> Result<Warped, TrainingError> {
         let image = &even(image);
         let lens = self.lens(image.height)?;
         Ok(Warped {

@@ -16,7 +16,8 @@ use super::deadlines::Step;
 use arrivals::Arrivals;
 use late::LateRows;
 
-pub use traffic::{NumberedFrame, ReturnedRow, RowTraffic, Unjudged};
+pub(crate) use traffic::Unjudged;
+pub use traffic::{NumberedFrame, ReturnedRow, RowTraffic};
 
 /// Bytes that may wait to be written before another row is packed. Two rows keep a link busy.
 const QUEUE: usize = 8 * 1024;
@@ -26,7 +27,7 @@ const PATIENT: u32 = 3;
 
 /// A row that did not come back although it was asked for only once.
 #[derive(Clone, Debug)]
-pub struct Unreturned {
+pub(crate) struct Unreturned {
     /// Its place.
     pub place: RowPlace,
     /// Its samples.

@@ -45,7 +45,7 @@ pub trait RowTraffic {
 
 /// Frames of which only the return matters.
 #[derive(Clone, Debug)]
-pub struct Unjudged<I>(pub I);
+pub(crate) struct Unjudged<I>(pub(crate) I);
 
 impl<I: Iterator<Item = NumberedFrame>> RowTraffic for Unjudged<I> {
     fn next_frame(&mut self) -> Option<NumberedFrame> {

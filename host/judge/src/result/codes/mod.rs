@@ -33,7 +33,7 @@ impl Coded {
 }
 
 /// Finds the code of an error.
-pub type Lookup = fn(&(dyn Error + 'static)) -> Option<Coded>;
+pub(crate) type Lookup = fn(&(dyn Error + 'static)) -> Option<Coded>;
 
 /// The codes of one type of error.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,150 @@
+//! The command line's grammar: the options that every command has, and the commands.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::{ArgAction, Parser, Subcommand};
+use halfrow_model::ModelPath;
+
+/// Validates a board that straightens fisheye Bayer video, bit for bit.
+///
+/// Without a board, `halfrow verify` judges the built-in mock board.
+#[derive(Debug, Parser)]
+#[command(name = "halfrow", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
+pub(super) struct Line<Commands: Subcommand> {
+    /// Log what happens on the link to stderr; twice for every packet that is late or damaged
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    pub(super) verbose: u8,
+    /// Show no progress
+    #[arg(short, long, global = true)]
+    pub(super) quiet: bool,
+    /// The settings file [default: halfrow/settings.toml in the user's configuration folder]
+    #[arg(long, global = true, value_name = "FILE", env = "HALFROW_SETTINGS")]
+    pub(super) settings: Option<PathBuf>,
+    /// How the model computes, always to the same bits: reference, scalar, avx2 or avx512 [default: the fastest here]
+    #[arg(long, global = true, value_name = "PATH", env = "HALFROW_MODEL_PATH")]
+    pub(super) model_path: Option<ModelPath>,
+    /// Print the result, or why there is none, as JSON; `halfrow schema` tells its shape
+    #[arg(long, global = true)]
+    pub(super) json: bool,
+    #[command(subcommand)]
+    pub(super) command: Commands,
+}
+
+impl Line<Command> {
+    /// The program's arguments.
+    pub(super) fn read() -> clap::error::Result<Self> {
+        let arguments: Vec<OsString> = std::env::args_os().collect();
+        // The options of all commands would take as long to build as the rest of the program takes to start and end.
+        if let [_, only] = arguments.as_slice()
+            && ["--help", "-h", "help"].iter().any(|help| only == help)
+        {
+            Line::<Named>::try_parse_from(&arguments)?;
+        }
+        Self::try_parse_from(arguments)
+    }
+}
+
+/// The commands: with their options, and by name alone, which is all that the help on the whole program tells.
+macro_rules! commands {
+    ($($(#[$about:meta])+ $variant:ident($arguments:ty), $name:literal;)+) => {
+        #[derive(Debug, Subcommand)]
+        pub(super) enum Command {
+            $($(#[$about])+ #[command(name = $name)] $variant($arguments),)+
+        }
+
+        #[derive(Debug, Subcommand)]
+        enum Named {
+            $($(#[$about])+ #[command(name = $name)] $variant,)+
+        }
+
+        impl Command {
+            /// As the command line has it.
+            pub(super) fn name(&self) -> &'static str {
+                match self {
+                    $(Self::$variant(_) => $name,)+
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    /// Judge a board: stream frames through it and compare every sample with the reference
+    ///
+    /// Without --board the built-in mock board is judged. Unless tables, frames, --centre-x or --bits say otherwise, the optical
+    /// centre and the depth vary in frames of their own; a PASS names what no frame exercised. Exit codes: 0 PASS, 1 FAIL, 2 usage,
+    /// 3 ERROR, 4 busy, 5 nothing judged, 6 identity or version refused, 129, 130 or 143 interrupted.
+    Verify(super::verify::Arguments), "verify";
+    /// Correct frames with the reference model, or with a board, unjudged
+    Correct(super::correct::Arguments), "correct";
+    /// Make a table file: a row factor for every row, and a kernel
+    Tables(super::tables::Arguments), "tables";
+    /// Tell a lens's figures, and the error that row factors leave of it
+    ///
+    /// The error is that of each sample against the exact projection, which puts every vertical of the scene at the column where
+    /// the lens images it on the horizon. Its vertical part is how far the sample is from the row where the lens images its
+    /// latitude above or below the axis; no row factor changes that.
+    Lens(super::lens::Arguments), "lens";
+    /// Fit a kernel to photographs, or measure one on them
+    Kernel(super::kernel::Arguments), "kernel";
+    /// Reproduce the paper's figures and tables
+    ///
+    /// Writes one page with pictures and numbers, and each picture and table as a file. Exit codes: 0 every number is accepted, 1
+    /// the board differs from the reference, 2 usage, 3 a number is missed or an item could not be made, 5 what was asked for could
+    /// not be tried.
+    Paper(super::paper::Arguments), "paper";
+    /// Write the built-in frames as PGM files
+    Frames(super::frames::Arguments), "frames";
+    /// List the boards that can be named with --board, and the devices that could be one
+    ///
+    /// Devices are looked at from outside: whether they are busy, and whether you may open them. With --ask each one that is
+    /// free is also greeted, which tells whether a board answers.
+    Boards(super::boards::Arguments), "boards";
+    /// Say what a board is, what it can do, and what it has counted
+    Info(super::info::Arguments), "info";
+    /// Test the link to a board: error rate, round trips, throughput each way and together
+    ///
+    /// Random bytes go to the board and come back; nothing that the board computes is judged. Its tables are lost. Exit codes: 0 the
+    /// link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
+    Link(super::link::Arguments), "link";
+    /// Serve a mock or simulated board to other programs
+    ///
+    /// It is put behind a pseudo-terminal or a TCP port. Prints the target that leads to it, and goes on until Ctrl-C or
+    /// SIGTERM. One host at a time is served; one that vanishes leaves a board that the next can use. A board whose wire breaks
+    /// (fault=disconnect) hangs up, as a board does that is unplugged.
+    Serve(super::serve::Arguments), "serve";
+    /// List the faults that the mock board can have
+    ///
+    /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.
+    Faults(super::faults::Arguments), "faults";
+    /// List the codes of all findings, defects and errors, as they stand in JSON
+    ///
+    /// Prints the page docs/CODES.md.
+    Codes(super::codes::Arguments), "codes";
+    /// Print the JSON Schema of what --json prints and of report.json
+    Schema(super::schema::Arguments), "schema";
+    /// Print a completion script for a shell
+    ///
+    /// For bash: halfrow completions bash > ~/.local/share/bash-completion/completions/halfrow
+    Completions(super::completions::Completions), "completions";
+    /// Write the manual pages into a folder
+    ///
+    /// Then: man -l FOLDER/halfrow.1
+    Manual(super::completions::Manual), "manual";
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory as _;
+
+    use super::*;
+
+    #[test]
+    fn the_help_on_the_whole_program_needs_no_options_of_its_commands() {
+        let [mut named, mut whole] = [Line::<Named>::command(), Line::<Command>::command()];
+        assert_eq!(named.render_help().to_string(), whole.render_help().to_string());
+        assert_eq!(named.render_long_help().to_string(), whole.render_long_help().to_string());
+        assert!(named.get_subcommands().all(|command| command.get_arguments().next().is_none()));
+    }
+}
