@@ -107,7 +107,7 @@ capabilities! {
     0x0a row_banks_in: u8,
     /// Rows that it holds until they are acknowledged.
     0x0b row_banks_out: u8,
-    /// Ports by which the datapath reads the row table.
+    /// Ports by which the datapath reads row factors.
     0x0c step_ports: u8,
     /// Ports by which it reads the kernel.
     0x0d kernel_ports: u8,

@@ -16,7 +16,7 @@ pub use refusal::{Refusal, RefusalCode};
 pub use rows::{RowIn, RowOut, RowPlace};
 pub use setup::{Configuration, Reset, ResetLevel};
 pub use status::Status;
-pub use tables::{Bank, Commit, Entries, NODE_BYTES, NODE_WEIGHTS, NODES, STEP_BYTES, Span, Table};
+pub use tables::{Bank, Commit, Entries, NODE_BYTES, NODE_WEIGHTS, NODES, ROW_FACTOR_BYTES, Span, Table};
 
 use crate::bytes::Fields;
 use crate::{Kind, Packet};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use halfrow_model::{Equidistant, Frame, FrameError, Interpolant, Kernel, Phase, STEP_ONE, TableSet};
+use halfrow_model::{Equidistant, Frame, FrameError, Interpolant, Kernel, Phase, RowFactor, TableSet};
 
 use crate::frames::{Builtin, Scene};
 
@@ -171,10 +171,10 @@ impl Plan {
     /// A row factor half way to 1 reaches half as far, so the ring's limits hold.
     #[must_use]
     pub fn generations(&self, taps: u8) -> Vec<Generation> {
-        let steps = self.tables.steps().iter().map(|&step| u32::midpoint(step, STEP_ONE)).collect();
+        let halved = self.tables.row_factors().iter().map(|own| own.midpoint(RowFactor::ONE)).collect();
         let kernel = self.decoy_kernel(taps);
         let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
-        match TableSet::new(*self.tables.geometry(), steps) {
+        match TableSet::new(*self.tables.geometry(), halved) {
             Ok(tables) => vec![Generation { number: DECOY, tables, kernel }, judged],
             Err(_) => vec![judged],
         }
