@@ -15,10 +15,13 @@ pub struct RowFactor(u32);
 /// A word that is no row factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "{0} is no row factor, which is 1 to {max}; give 2^24 / k, rounded, with a stretch factor k of at least 1",
+    "{units} is no row factor, which is 1 to {max}; give 2^24 / k, rounded, with a stretch factor k of at least 1",
     max = RowFactor::ONE.get()
 )]
-pub struct RowFactorError(pub u32);
+pub struct RowFactorError {
+    /// The word.
+    pub units: u32,
+}
 
 impl RowFactor {
     /// The row factor of a row that is not stretched: 2^24, which is 1.
@@ -36,7 +39,7 @@ impl RowFactor {
     /// [`RowFactorError`] outside [`Self::RANGE`].
     pub const fn new(units: u32) -> Result<Self, RowFactorError> {
         if units < Self::LEAST.0 || units > Self::ONE.0 {
-            return Err(RowFactorError(units));
+            return Err(RowFactorError { units });
         }
         Ok(Self(units))
     }

@@ -11,9 +11,9 @@ fn a_row_factor_is_above_zero_and_at_most_one() {
         assert_eq!(RowFactor::try_from(units).map(u32::from), Ok(units));
     }
     for units in [0, ONE + 1, 1 << 25, u32::MAX] {
-        assert_eq!(RowFactor::new(units), Err(RowFactorError(units)));
+        assert_eq!(RowFactor::new(units), Err(RowFactorError { units }));
     }
-    let refused = RowFactorError(0).to_string();
+    let refused = RowFactorError { units: 0 }.to_string();
     assert!(refused.starts_with("0 is no row factor, which is 1 to 16777216; give 2^24 / k"), "{refused}");
 }
 

@@ -50,8 +50,11 @@ fn a_row_factor_is_never_zero() {
 fn a_table_has_one_legal_row_factor_a_row() {
     let new = |factors: &[u32]| TableSet::from_units(geometry(3, 63), factors);
     assert_eq!(new(&[1, 2]), Err(TableError::Count { row_factors: 2, height: 3 }));
-    assert_eq!(new(&[1, 0, 1]), Err(TableError::RowFactor { row: 1, source: RowFactorError(0) }));
-    assert_eq!(new(&[1, 1, ONE + 1]), Err(TableError::RowFactor { row: 2, source: RowFactorError(ONE + 1) }));
+    assert_eq!(new(&[1, 0, 1]), Err(TableError::RowFactor { row: 1, source: RowFactorError { units: 0 } }));
+    assert_eq!(
+        new(&[1, 1, ONE + 1]),
+        Err(TableError::RowFactor { row: 2, source: RowFactorError { units: ONE + 1 } })
+    );
     assert!(new(&[1, 2, ONE]).is_ok());
 }
 

@@ -6,6 +6,7 @@ use std::path::Path;
 use halfrow_model::{
     BitDepth, Geometry, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, RowFactor, TAP_NAMES, TableSet,
 };
+use halfrow_protocol::message::Datapath;
 use serde_json::{Map, Value};
 
 use super::members::{Members, list, number};
@@ -59,8 +60,14 @@ impl TableFile {
     /// [`ContentError`] for the first thing that is wrong: the JSON, then the datapath, the keys, the geometry, the row
     /// factors from the top, the nodes from x = 0.
     pub fn parse(text: &str) -> Result<Self, ContentError> {
-        let mut members = Members::parse(text)?;
-        members.check_datapath()?;
+        let members = Members::parse(text)?;
+        match members.datapath()? {
+            // Without a datapath it is missed in its turn.
+            None | Some(Datapath::RowFactors) => Self::of_row_factors(members),
+        }
+    }
+
+    fn of_row_factors(mut members: Members) -> Result<Self, ContentError> {
         members.check_keys(&Self::KEYS)?;
         members.take(Place::Datapath)?;
         let geometry = geometry(&mut members)?;
@@ -105,8 +112,9 @@ impl KernelFile {
     /// [`ContentError`] for the first thing that is wrong, as [`TableFile::parse`]; `datapath` may be missing.
     pub fn parse(text: &str) -> Result<Self, ContentError> {
         let mut members = Members::parse(text)?;
-        members.check_datapath()?;
-        members.check_keys(&Self::KEYS)?;
+        match members.datapath()? {
+            None | Some(Datapath::RowFactors) => members.check_keys(&Self::KEYS)?,
+        }
         Ok(Self { kernel: kernel(&members.take(Place::Kernel)?)?, about: members.take_about()? })
     }
 

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use halfrow_model::{BitDepth, Geometry, Kernel, TAP_NAMES, TableSet};
+use halfrow_protocol::message::Datapath;
 
 use super::text::{self, quoted};
 use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath};
@@ -113,7 +114,12 @@ fn lines(lines: impl Iterator<Item = String>) -> String {
 /// # Errors
 /// [`MemError`] for the first thing that is wrong: the datapath, the geometry, the words from the top.
 pub fn parse_row_factors(text: &str) -> Result<TableSet, MemError> {
-    check_datapath(text)?;
+    match datapath(text)? {
+        Datapath::RowFactors => row_factors(text),
+    }
+}
+
+fn row_factors(text: &str) -> Result<TableSet, MemError> {
     let bits = noted(text, Place::Bits)?;
     let depth = BitDepth::from_bits(bits).ok_or(MemError::Bits { found: bits })?;
     let (width, height) = (noted(text, Place::Width)?, noted(text, Place::Height)?);
@@ -128,7 +134,9 @@ pub fn parse_row_factors(text: &str) -> Result<TableSet, MemError> {
 /// # Errors
 /// [`MemError`] for the first thing that is wrong: the datapath, the words from x = 0.
 pub fn parse_kernel(text: &str) -> Result<Kernel, MemError> {
-    check_datapath(text)?;
+    match datapath(text)? {
+        Datapath::RowFactors => {}
+    }
     let nodes: Result<_, _> = words::<NODE_DIGITS>(text).map(|word| word.map(weights)).collect();
     Ok(Kernel::from_nodes(nodes?)?)
 }
@@ -152,9 +160,9 @@ fn comment(line: &str) -> Option<&str> {
     line.trim().strip_prefix("//")
 }
 
-fn check_datapath(text: &str) -> Result<(), MemError> {
-    let found = noted(text, Place::Datapath)?;
-    if found == i128::from(DATAPATH) { Ok(()) } else { Err(WrongDatapath { found }.into()) }
+/// The datapath that the comments name.
+fn datapath(text: &str) -> Result<Datapath, MemError> {
+    Ok(WrongDatapath::check(noted(text, Place::Datapath)?)?)
 }
 
 /// The number that the comments note as `key=number`.

@@ -21,5 +21,7 @@ pub use error::{ContentError, MemError, TableFileError, WrongDatapath};
 pub use json::{KernelFile, TableFile};
 pub use place::Place;
 
-/// The datapath that tables are for (DATAPATH.md).
-pub const DATAPATH: u16 = 1;
+use halfrow_protocol::message::Datapath;
+
+/// The datapath of a [`TableSet`](halfrow_model::TableSet), and of the kernel beside it.
+pub const DATAPATH: Datapath = Datapath::RowFactors;

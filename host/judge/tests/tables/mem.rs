@@ -150,7 +150,7 @@ fn a_row_factor_that_no_board_could_use_is_refused() {
         let refused = parse_row_factors(&row_factors_text(&tables()).replace("0df84a8", word));
         assert_eq!(
             refused,
-            Err(MemError::Tables(TableError::RowFactor { row: 1, source: RowFactorError(units) }))
+            Err(MemError::Tables(TableError::RowFactor { row: 1, source: RowFactorError { units } }))
         );
     }
 }
