@@ -82,7 +82,7 @@ fn span_fields(span: Span) -> Fields {
 
 fn entries_fields(entries: Entries<'_>) -> Fields {
     let values = match entries.span.table {
-        Table::Steps => list(entries.steps()),
+        Table::RowFactors => list(entries.row_factors()),
         Table::Kernel => list(entries.nodes().flat_map(<[i16; NODE_WEIGHTS]>::into_iter)),
     };
     [span_fields(entries.span), vec![("entries", values)]].concat()

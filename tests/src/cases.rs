@@ -2,7 +2,7 @@
 //! drawn by a number, with frames that follow each other under tables of their own.
 
 use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
-use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, STEP_ONE, TableSet, correct};
+use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet, correct};
 
 use crate::dice::Dice;
 
@@ -118,7 +118,7 @@ impl Case {
         player.configure(self.settings.clone()).unwrap();
         let mut played = Played::default();
         for (number, (set, kernel, frame)) in self.frames.iter().enumerate() {
-            tables.write_factors(0, set.steps()).unwrap();
+            tables.write_factors(0, &set.units().collect::<Vec<_>>()).unwrap();
             let nodes: Vec<Node> = kernel.nodes().iter().map(|&node| node.into()).collect();
             tables.write_nodes(0, &nodes).unwrap();
             tables.commit(number as u8 + 1, number as u16).unwrap();
@@ -154,23 +154,26 @@ fn draw_width(dice: &mut Dice, ring: usize) -> usize {
     .max(64)
 }
 
+/// A row factor of 1.
+const ONE: u32 = RowFactor::ONE.get();
+
 /// Row factors that the ring can serve: drawn from the least that is legal up to 2^24, and often at one of these ends.
 fn draw_tables(dice: &mut Dice, geometry: Geometry, ring: usize) -> TableSet {
-    let least = least_step(geometry, ring);
-    let steps = (0..geometry.height()).map(|_| match dice.below(8) {
-        0 => STEP_ONE,
+    let least = least_factor(geometry, ring);
+    let factor = |_| match dice.below(8) {
+        0 => ONE,
         1 => least,
-        _ => least + dice.below((STEP_ONE - least) as usize + 1) as u32,
-    });
-    let steps = steps.collect();
-    TableSet::new(geometry, steps).unwrap()
+        _ => least + dice.below((ONE - least) as usize + 1) as u32,
+    };
+    let factors: Vec<u32> = (0..geometry.height()).map(factor).collect();
+    TableSet::from_units(geometry, &factors).unwrap()
 }
 
 /// The least row factor that is legal. The less it is the further from its own column a row reads, so a bisection finds it.
-fn least_step(geometry: Geometry, ring: usize) -> u32 {
+fn least_factor(geometry: Geometry, ring: usize) -> u32 {
     let one_row = Geometry::new(geometry.width(), 1, geometry.depth(), geometry.centre2()).unwrap();
-    let legal = |step| TableSet::new(one_row, vec![step]).unwrap().check_ring(ring).is_ok();
-    let (mut illegal, mut least) = (0, STEP_ONE);
+    let legal = |factor| TableSet::from_units(one_row, &[factor]).unwrap().check_ring(ring).is_ok();
+    let (mut illegal, mut least) = (0, ONE);
     while least - illegal > 1 {
         let middle = illegal.midpoint(least);
         *if legal(middle) { &mut least } else { &mut illegal } = middle;

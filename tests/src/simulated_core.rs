@@ -110,10 +110,10 @@ impl<'a> Bench<'a> {
             return;
         }
         let table_bank = self.tables % 2 == 1;
-        let steps = (0..).zip(set.steps()).map(|(table_entry, &step)| CoreInputs {
+        let row_factors = (0..).zip(set.units()).map(|(table_entry, units)| CoreInputs {
             step_write: true,
             table_entry,
-            table_data: [step, 0, 0],
+            table_data: [units, 0, 0],
             ..STILL
         });
         let nodes = (0..).zip(kernel.nodes()).map(|(table_entry, node)| {
@@ -121,7 +121,7 @@ impl<'a> Bench<'a> {
             let table_data = [g0 | r1 << 16, g4 | r5 << 16, g6];
             CoreInputs { node_write: true, table_entry, table_data, ..STILL }
         });
-        self.writes.extend(steps.chain(nodes).map(|write| CoreInputs { table_bank, ..write }));
+        self.writes.extend(row_factors.chain(nodes).map(|write| CoreInputs { table_bank, ..write }));
         self.tables += 1;
     }
 

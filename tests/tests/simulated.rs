@@ -69,9 +69,9 @@ fn boards_agree(front: Front, cases: u64) {
 /// Two photographs at the paper's size, the second under other tables and another kernel.
 fn photograph_case(build: Build, first: Frame, second: Frame, geometry: Geometry) -> Case {
     let tables = TableSet::from_lens(geometry, &Equidistant::default(), None).unwrap();
-    let reversed = TableSet::new(geometry, tables.steps().iter().rev().copied().collect()).unwrap();
-    let narrower =
-        TableSet::new(geometry, reversed.steps().iter().map(|step| step - step / 16).collect()).unwrap();
+    let reversed: Vec<_> = tables.units().rev().collect();
+    let narrower: Vec<_> = reversed.iter().map(|units| units - units / 16).collect();
+    let narrower = TableSet::from_units(geometry, &narrower).unwrap();
     let [hermite, keys] = [Interpolant::Hermite, Interpolant::Keys].map(Kernel::from);
     let drawn = Case::draw(&mut Dice::new(0), build, 0);
     let settings = Settings {

@@ -2,8 +2,9 @@
 
 use crate::lens::{Short, is_positive};
 use crate::projection::{is_outside, shrink_factor};
-use crate::table::nearest_step;
-use crate::{CalibratedLens, Geometry, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, STEP_ONE, TableSet};
+use crate::{
+    CalibratedLens, Geometry, GeometryError, LensError, MAX_RADIUS, MIN_RADIUS, RowFactor, TableSet,
+};
 
 /// A frame with the lens that it is seen through.
 #[derive(Clone, Debug, PartialEq)]
@@ -128,7 +129,7 @@ impl Camera {
     /// The row factors of Eq. 9 for [`Self::radius`]; y counts in widths of a pixel, as the circle is round in no other unit.
     #[must_use]
     pub fn equation_9(&self) -> TableSet {
-        self.table(|row| nearest_step(shrink_factor(self.radius(), self.height_of(row))))
+        self.table(|row| RowFactor::nearest(shrink_factor(self.radius(), self.height_of(row))))
     }
 
     /// The row factors that make the largest horizontal error of every row as small as it can be.
@@ -139,23 +140,23 @@ impl Camera {
     /// [`Self::targets`], and the error is that of Fig. 5, against this lens's own [`CalibratedLens::straightened`].
     #[must_use]
     pub fn fitted(&self) -> TableSet {
-        self.table(|row| self.fitted_step(row))
+        self.table(|row| self.fitted_to(row))
     }
 
-    fn table(&self, step: impl Fn(usize) -> u32) -> TableSet {
-        TableSet::of_legal_steps(self.geometry, (0..self.geometry.height()).map(step).collect())
+    fn table(&self, row_factor: impl Fn(usize) -> RowFactor) -> TableSet {
+        TableSet::of_rows(self.geometry, row_factor)
     }
 
-    fn fitted_step(&self, row: usize) -> u32 {
+    fn fitted_to(&self, row: usize) -> RowFactor {
         let lines: Vec<(f64, f64)> = self.targets(row).map(|target| self.line(target)).collect();
         // As no line's a is below zero, errors outwards rise with k and errors inwards fall.
         let outwards = |k: f64| lines.iter().map(|(a, b)| k * a - b).fold(f64::NEG_INFINITY, f64::max);
         let inwards = |k: f64| lines.iter().map(|(a, b)| b - k * a).fold(f64::NEG_INFINITY, f64::max);
-        let (mut low, mut high) = (1.0, f64::from(STEP_ONE));
+        let (mut low, mut high) = (1.0, 1.0 / RowFactor::LEAST.fraction());
         if lines.is_empty() || outwards(low) >= inwards(low) {
-            return STEP_ONE;
+            return RowFactor::ONE;
         }
-        // Far below half a step of Q: 1/k is known to 1e-13 of itself.
+        // Far below half a unit of Q: 1/k is known to 1e-13 of itself.
         while high - low > 1e-13 * low {
             let middle = f64::midpoint(low, high);
             if outwards(middle) < inwards(middle) {
@@ -164,7 +165,7 @@ impl Camera {
                 high = middle;
             }
         }
-        nearest_step(1.0 / low)
+        RowFactor::nearest(1.0 / low)
     }
 
     /// a and b of a sample, turned so that a is not below zero.
@@ -189,11 +190,11 @@ impl Camera {
         (0..self.geometry.width()).filter_map(target)
     }
 
-    /// How far the sample `target` of row `row` is from where it belongs, in a row with the step `step`, 1 to 2^24.
+    /// How far the sample `target` of row `row` is from where it belongs, in a row of the row factor `row_factor`.
     #[must_use]
-    pub fn residual(&self, row: usize, step: u32, target: Target) -> Residual {
+    pub fn residual(&self, row: usize, row_factor: RowFactor, target: Target) -> Residual {
         let middle = f64::from(self.geometry.centre2()) / 2.0;
-        let stretched = (target.column as f64 - middle) * f64::from(STEP_ONE) / f64::from(step.max(1));
+        let stretched = (target.column as f64 - middle) / row_factor.fraction();
         Residual { columns: middle + stretched - target.right_column, rows: row as f64 - target.right_row }
     }
 

@@ -1,8 +1,7 @@
 //! The corrector: the integer datapath, bit for bit (DATAPATH.md). Written to be read, since boards are judged by it.
 
 use crate::kernel::WEIGHT_ONE;
-use crate::table::STEP_ONE;
-use crate::{Frame, Geometry, Kernel, TableSet};
+use crate::{Frame, Geometry, Kernel, RowFactor, TableSet};
 
 /// Where an output sample comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,15 +46,22 @@ pub enum CorrectError {
     },
 }
 
-/// Where the output of `column`, 0 to W − 1, comes from in a row of step `step`, 1 to [`STEP_ONE`].
+/// Where the output of `column`, 0 to W − 1, comes from in a row of the row factor `row_factor`.
 #[must_use]
-pub fn source(geometry: &Geometry, step: u32, column: usize) -> Source {
-    locate(row_start(geometry, step) + 2 * column as i64 * i64::from(step), column)
+pub fn source(geometry: &Geometry, row_factor: RowFactor, column: usize) -> Source {
+    source_by_entry(geometry, row_factor.get(), column)
+}
+
+/// The arithmetic of [`source`] for any word in place of Q: what a board makes of an entry that it reads wrong. Above
+/// 2^24 the column may lie outside the row.
+#[must_use]
+pub fn source_by_entry(geometry: &Geometry, entry: u32, column: usize) -> Source {
+    locate(row_start(geometry, entry) + 2 * column as i64 * i64::from(entry), column)
 }
 
 /// S[0] = C · (2^24 − Q), in units of 2^-25 pixel.
-fn row_start(geometry: &Geometry, step: u32) -> i64 {
-    i64::from(geometry.centre2()) * (i64::from(STEP_ONE) - i64::from(step))
+fn row_start(geometry: &Geometry, entry: u32) -> i64 {
+    i64::from(geometry.centre2()) * (i64::from(RowFactor::ONE.get()) - i64::from(entry))
 }
 
 /// The source of `column` from its coordinate S in units of 2^-25 pixel.
@@ -90,18 +96,24 @@ fn blend(weights: [i32; 5], taps: [u16; 7], max: u16) -> u16 {
     ((sum + WEIGHT_ONE / 2) >> 14).clamp(0, i32::from(max)) as u16
 }
 
-/// Corrects one row of step `step` into `output`.
+/// Corrects one row of the row factor `row_factor` into `output`.
 ///
 /// # Panics
 /// When `row` or `output` holds fewer samples than the geometry's width.
-pub fn correct_row(geometry: &Geometry, step: u32, kernel: &Kernel, row: &[u16], output: &mut [u16]) {
+pub fn correct_row(
+    geometry: &Geometry,
+    row_factor: RowFactor,
+    kernel: &Kernel,
+    row: &[u16],
+    output: &mut [u16],
+) {
     let row = &row[..geometry.width()];
-    let mut coordinate = row_start(geometry, step);
+    let mut coordinate = row_start(geometry, row_factor.get());
     for (column, sample) in output[..geometry.width()].iter_mut().enumerate() {
         let source = locate(coordinate, column);
         let weights = kernel.weights_at(source.node, source.fraction);
         *sample = blend(weights, taps(geometry, row, source.base), geometry.depth().max());
-        coordinate += 2 * i64::from(step);
+        coordinate += 2 * i64::from(row_factor.get());
     }
 }
 
@@ -114,8 +126,8 @@ pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Fram
     check_frame(geometry, frame)?;
     let mut samples = vec![0; frame.samples().len()];
     let outputs = samples.chunks_exact_mut(geometry.width());
-    for ((row, &step), output) in frame.rows().zip(tables.steps()).zip(outputs) {
-        correct_row(geometry, step, kernel, row, output);
+    for ((row, &row_factor), output) in frame.rows().zip(tables.row_factors()).zip(outputs) {
+        correct_row(geometry, row_factor, kernel, row, output);
     }
     Ok(frame.with_samples(samples))
 }

@@ -27,12 +27,13 @@ mod lens;
 mod profile;
 mod projection;
 mod real;
+mod row_factor;
 mod table;
 
 pub use bayer::{Colour, Phase, UnknownPhase};
 pub use calibrated::CalibratedLens;
 pub use camera::{Camera, CameraError, Residual, Target};
-pub use corrector::{CorrectError, Source, correct, correct_row, source};
+pub use corrector::{CorrectError, Source, correct, correct_row, source, source_by_entry};
 pub use fast::{Corrector, ModelPath, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};
 pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
@@ -42,4 +43,5 @@ pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Short, Spherical}
 pub use profile::Profile;
 pub use projection::{exact, exact_inverse, simplified, simplified_inverse, stretch_factor};
 pub use real::{correct_real, round_to_frame};
-pub use table::{STEP_ONE, TableError, TableSet};
+pub use row_factor::{RowFactor, RowFactorError};
+pub use table::{TableError, TableSet};

@@ -1,41 +1,33 @@
-//! The table set: one step a row, which is all that the datapath keeps of the lens.
+//! The table set: one row factor a row, which is all that the datapath keeps of the lens.
 
 use crate::projection::shrink_factor;
-use crate::{Equidistant, Geometry, source};
+use crate::{Equidistant, Geometry, RowFactor, RowFactorError, source};
 
-/// The step of a row that is not stretched: 1/k = 1 in units of 2^-24.
-pub const STEP_ONE: u32 = 1 << 24;
-
-/// The rows' steps Q together with the geometry they were made for (DATAPATH.md, "Table").
-///
-/// A step is 1/k of Eq. 9, the distance in source columns from one output column to the next, with 24 fractional bits.
+/// The row factors together with the geometry they were made for (DATAPATH.md, "Table").
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableSet {
     geometry: Geometry,
-    steps: Vec<u32>,
+    row_factors: Vec<RowFactor>,
 }
 
-/// Steps that no board could use.
+/// Row factors that no board could use.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableError {
-    /// Not one step a row.
-    #[error("{steps} steps for {height} rows; give one step for each row")]
+    /// Not one row factor a row.
+    #[error("{row_factors} row factors for {height} rows; give one for each row")]
     Count {
-        /// Steps given.
-        steps: usize,
+        /// Row factors given.
+        row_factors: usize,
         /// Rows of the geometry.
         height: usize,
     },
-    /// A step outside 1 to 2^24.
-    #[error(
-        "the step of row {row} is {step}, outside 1 to {max}; a step is 2^24 / k with a stretch factor k of at least 1",
-        max = STEP_ONE
-    )]
-    Step {
+    /// A row's entry that is no row factor.
+    #[error("the entry of row {row} cannot be used")]
+    RowFactor {
         /// The row.
         row: usize,
-        /// Its step.
-        step: u32,
+        /// What is wrong with its entry.
+        source: RowFactorError,
     },
     /// A vertical centre that is no finite number.
     #[error("the optical centre is at row {0}; give a finite number, or none for the middle of the frame")]
@@ -67,18 +59,27 @@ pub enum TableError {
 }
 
 impl TableSet {
-    /// The table of `steps`, one for each row of `geometry` from the top.
+    /// The table of `row_factors`, one for each row of `geometry` from the top.
     ///
     /// # Errors
-    /// [`TableError`] when there is not one step a row or one is outside 1 to [`STEP_ONE`].
-    pub fn new(geometry: Geometry, steps: Vec<u32>) -> Result<Self, TableError> {
-        if steps.len() != geometry.height() {
-            return Err(TableError::Count { steps: steps.len(), height: geometry.height() });
+    /// [`TableError::Count`] when there is not one row factor a row.
+    pub fn new(geometry: Geometry, row_factors: Vec<RowFactor>) -> Result<Self, TableError> {
+        if row_factors.len() != geometry.height() {
+            return Err(TableError::Count { row_factors: row_factors.len(), height: geometry.height() });
         }
-        match steps.iter().position(|step| !(1..=STEP_ONE).contains(step)) {
-            Some(row) => Err(TableError::Step { row, step: steps[row] }),
-            None => Ok(Self { geometry, steps }),
-        }
+        Ok(Self { geometry, row_factors })
+    }
+
+    /// The table of the row factors `units` in units of 2^-24, one for each row of `geometry` from the top.
+    ///
+    /// # Errors
+    /// [`TableError`] when there is not one row factor a row or one is outside [`RowFactor::RANGE`].
+    pub fn from_units(geometry: Geometry, units: &[u32]) -> Result<Self, TableError> {
+        let row_factor = |(row, &units): (usize, &u32)| {
+            RowFactor::new(units).map_err(|source| TableError::RowFactor { row, source })
+        };
+        let row_factors: Result<_, _> = units.iter().enumerate().map(row_factor).collect();
+        Self::new(geometry, row_factors?)
     }
 
     /// The table of `lens` with its axis at row `centre_y`, by default the frame's middle (H − 1)/2.
@@ -96,31 +97,36 @@ impl TableSet {
         if let Some(centre_y) = centre_y.filter(|centre_y| !centre_y.is_finite()) {
             return Err(TableError::CentreRow(centre_y));
         }
-        let step = |row| nearest_step(shrink_factor(lens.radius(), geometry.row_offset(row, centre_y)));
-        Ok(Self { geometry, steps: (0..geometry.height()).map(step).collect() })
+        let shrink = |row| shrink_factor(lens.radius(), geometry.row_offset(row, centre_y));
+        Ok(Self::of_rows(geometry, |row| RowFactor::nearest(shrink(row))))
     }
 
-    /// The table of steps that are legal and one a row by the way they were made.
-    pub(crate) fn of_legal_steps(geometry: Geometry, steps: Vec<u32>) -> Self {
-        Self { geometry, steps }
+    /// The table with `row_factor` of every row.
+    pub(crate) fn of_rows(geometry: Geometry, row_factor: impl Fn(usize) -> RowFactor) -> Self {
+        Self { geometry, row_factors: (0..geometry.height()).map(row_factor).collect() }
     }
 
-    /// The geometry that the steps are for.
+    /// The geometry that the row factors are for.
     #[must_use]
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// Q of every row from the top, each 1 to [`STEP_ONE`].
+    /// The row factor of every row from the top.
     #[must_use]
-    pub fn steps(&self) -> &[u32] {
-        &self.steps
+    pub fn row_factors(&self) -> &[RowFactor] {
+        &self.row_factors
     }
 
-    /// Q of row `row`, if the frame has it.
+    /// The row factor of row `row`, if the frame has it.
     #[must_use]
-    pub fn step(&self, row: usize) -> Option<u32> {
-        self.steps.get(row).copied()
+    pub fn row_factor(&self, row: usize) -> Option<RowFactor> {
+        self.row_factors.get(row).copied()
+    }
+
+    /// The row factors from the top in units of 2^-24, which [`Self::from_units`] takes.
+    pub fn units(&self) -> impl DoubleEndedIterator<Item = u32> + '_ {
+        self.row_factors.iter().map(|row_factor| row_factor.get())
     }
 
     /// Whether a ring of `ring` samples holds every sample that every row reads (DATAPATH.md, "Ring").
@@ -128,34 +134,30 @@ impl TableSet {
     /// # Errors
     /// [`TableError::LookAhead`] or [`TableError::LookBack`] for the first row that breaks a condition.
     pub fn check_ring(&self, ring: usize) -> Result<(), TableError> {
-        self.steps.iter().enumerate().try_for_each(|(row, &step)| self.check_row(row, step, ring))
+        let mut rows = self.row_factors.iter().enumerate();
+        rows.try_for_each(|(row, &row_factor)| self.check_row(row, row_factor, ring))
     }
 
     /// Both conditions for one row. Columns minus sources never fall along a row, so its two ends decide.
-    fn check_row(&self, row: usize, step: u32, ring: usize) -> Result<(), TableError> {
+    fn check_row(&self, row: usize, row_factor: RowFactor, ring: usize) -> Result<(), TableError> {
         let half = self.geometry.width() / 2;
         let last = self.geometry.width() - 1;
-        let ahead = source(&self.geometry, step, 0).column + 4;
+        let ahead = source(&self.geometry, row_factor, 0).column + 4;
         if let Some(excess) = excess(ahead, half + 3) {
             return Err(TableError::LookAhead { row, excess });
         }
-        let back = last as i64 - source(&self.geometry, step, last).column + half as i64 - 1;
+        let back = last as i64 - source(&self.geometry, row_factor, last).column + half as i64 - 1;
         match excess(back + 1, ring) {
             Some(excess) => Err(TableError::LookBack { row, excess, ring }),
             None => Ok(()),
         }
     }
 
-    /// The table as a board takes it: each step as 32 bits, little endian, from the top row.
+    /// The table as a board takes it: each row factor as 32 bits, little endian, from the top row.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
-        self.steps.iter().flat_map(|step| step.to_le_bytes()).collect()
+        self.units().flat_map(u32::to_le_bytes).collect()
     }
-}
-
-/// The step nearest to `shrink` = 1/k, 1 to [`STEP_ONE`].
-pub(crate) fn nearest_step(shrink: f64) -> u32 {
-    ((f64::from(STEP_ONE) * shrink + 0.5).floor() as u32).clamp(1, STEP_ONE)
 }
 
 /// By how much `value` is above `limit`, if it is.

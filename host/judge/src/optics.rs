@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
-    LensError, Phase, STEP_ONE, TableError, TableSet,
+    LensError, Phase, RowFactor, TableError, TableSet,
 };
 
 use crate::frames::Scene;
@@ -208,7 +208,7 @@ impl Optics {
     pub fn check_circle(&self, tables: &TableSet) -> Result<(), OpticsError> {
         let (rows, outside) = (self.camera.geometry().height(), self.camera.rows_outside_circle());
         let (radius, centre) = (self.camera.radius(), self.camera.centre().1);
-        let stretches = tables.steps().iter().any(|&step| step != STEP_ONE);
+        let stretches = tables.row_factors().iter().any(|&row_factor| row_factor != RowFactor::ONE);
         if outside > 0 && !stretches {
             return Err(OpticsError::OutsideCircle { outside, rows, radius, centre });
         }

@@ -1,6 +1,6 @@
 //! What row factors leave of a lens's distortion.
 
-use halfrow_model::{Camera, TableSet};
+use halfrow_model::{Camera, RowFactor, TableSet};
 use serde::Serialize;
 
 /// Mean and largest amount, in pixels.
@@ -35,17 +35,17 @@ impl Residuals {
     #[must_use]
     pub fn of(camera: &Camera, tables: &TableSet) -> Self {
         let (mut horizontal, mut vertical) = (Sum::default(), Sum::default());
-        let mut row_of_map = |(row, &step): (usize, &u32)| {
+        let mut row_of_map = |(row, &row_factor): (usize, &RowFactor)| {
             let mut amounts = vec![0.0; camera.geometry().width()];
             for target in camera.targets(row) {
-                let residual = camera.residual(row, step, target);
+                let residual = camera.residual(row, row_factor, target);
                 amounts[target.column] = residual.columns.abs();
                 horizontal.add(residual.columns.abs());
                 vertical.add(residual.rows.abs());
             }
             amounts
         };
-        let map = tables.steps().iter().enumerate().map(&mut row_of_map).collect();
+        let map = tables.row_factors().iter().enumerate().map(&mut row_of_map).collect();
         Self { samples: horizontal.count, horizontal: horizontal.spread(), vertical: vertical.spread(), map }
     }
 }

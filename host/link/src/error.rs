@@ -77,6 +77,14 @@ pub enum OpenError {
     #[cfg(feature = "sim")]
     #[error(transparent)]
     Trace(#[from] halfrow_sim::TraceError),
+    /// The system does not give the board's device or connection the properties that a link needs, or not at all.
+    #[error("the system does not let `{target}` be used; check that it is there and that you may use it")]
+    System {
+        /// The target.
+        target: String,
+        /// The system's reason.
+        source: std::io::Error,
+    },
     /// The serial port cannot be opened.
     #[error(transparent)]
     Serial(#[from] SerialError),
@@ -106,6 +114,7 @@ impl OpenError {
             Self::Serial(error) => error.class(),
             Self::Tcp(error) => error.class(),
             Self::Usb(error) => error.class(),
+            Self::System { .. } => Class::Station,
             _ => Class::Call,
         }
     }

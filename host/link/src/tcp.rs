@@ -93,9 +93,8 @@ impl TcpLink {
             key == "baud" && set(&mut baud, positive(value).map(Some))
         })?;
         let stream = connect(&address)?;
-        let unreachable = |source| TcpError::Unreachable { address: address.clone(), source };
-        stream.set_nodelay(true).map_err(unreachable)?;
-        never_block(stream.as_raw_fd()).map_err(unreachable)?;
+        let refused = |source| OpenError::System { target: target.to_string(), source };
+        stream.set_nodelay(true).and_then(|()| never_block(stream.as_raw_fd())).map_err(refused)?;
         let (pump, opened) = (Pump::default(), Instant::now());
         Ok(Self { stream, pump, address, baud, opened, text: Vec::new(), zero_seen: false })
     }

@@ -44,9 +44,9 @@ pub(crate) fn a_commit_takes_effect_at_once_whatever_its_frame(on: &dyn Boards) 
 
 pub(crate) fn both_banks_are_the_same_memory(on: &dyn Boards) {
     let mut bench = ready(on, 1);
-    bench.done(&write(Table::Steps, 0, &GOLDEN_FACTOR.to_le_bytes()));
+    bench.done(&write(Table::RowFactors, 0, &GOLDEN_FACTOR.to_le_bytes()));
     for bank in [Bank::Shadow, Bank::Active] {
-        assert_eq!(bench.read(span(Table::Steps, bank, 0, 0, 1)), GOLDEN_FACTOR.to_le_bytes());
+        assert_eq!(bench.read(span(Table::RowFactors, bank, 0, 0, 1)), GOLDEN_FACTOR.to_le_bytes());
     }
 }
 
@@ -65,7 +65,7 @@ pub(crate) fn tables_are_written_and_committed_between_frames(on: &dyn Boards) {
 pub(crate) fn nothing_is_written_while_any_row_is_inside(on: &dyn Boards) {
     let mut bench = ready(on, 2);
     bench.send_all(2, [0]);
-    let one = write(Table::Steps, 0, &[1, 0, 0, 0]);
+    let one = write(Table::RowFactors, 0, &[1, 0, 0, 0]);
     assert_eq!(bench.refused(&one), (RefusalCode::Busy, 0));
     assert_eq!(bench.refused(&write(Table::Kernel, 0, &[0; 10])), (RefusalCode::Busy, 0));
     bench.send_all(2, [1]);

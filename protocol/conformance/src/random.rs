@@ -98,7 +98,7 @@ fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
 }
 
 fn span([a, b, c, d]: [u32; 4]) -> Span {
-    let table = if a.is_multiple_of(2) { Table::Steps } else { Table::Kernel };
+    let table = if a.is_multiple_of(2) { Table::RowFactors } else { Table::Kernel };
     let bank = if b.is_multiple_of(3) { Bank::Active } else { Bank::Shadow };
     Span { table, bank, port: a as u8 % 4, first: c as u16, count: d as u16 }
 }

@@ -12,8 +12,8 @@ use crate::{Boards, Build, offered};
 fn golden(on: &dyn Boards) -> Bench {
     let mut bench = Bench::greeted(on);
     let bytes: Vec<_> = factors(1080, 1106.697).into_iter().flat_map(u32::to_le_bytes).collect();
-    bench.done(&write(Table::Steps, 0, &bytes[..2160]));
-    bench.done(&write(Table::Steps, 540, &bytes[2160..]));
+    bench.done(&write(Table::RowFactors, 0, &bytes[..2160]));
+    bench.done(&write(Table::RowFactors, 540, &bytes[2160..]));
     let bytes: Vec<_> = hermite().into_iter().flatten().flat_map(i16::to_le_bytes).collect();
     bench.done(&write(Table::Kernel, 0, &bytes));
     bench
@@ -21,7 +21,7 @@ fn golden(on: &dyn Boards) -> Bench {
 
 pub(crate) fn the_golden_tables_read_back_with_the_golden_crcs_through_every_port(on: &dyn Boards) {
     let mut bench = golden(on);
-    assert_eq!(bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 1080)), 0x5f5a_7553);
+    assert_eq!(bench.crc(span(Table::RowFactors, Bank::Shadow, 0, 0, 1080)), 0x5f5a_7553);
     for port in 0..2 {
         assert_eq!(bench.crc(span(Table::Kernel, Bank::Shadow, port, 0, 65)), 0x16e2_9b0f);
     }
@@ -29,7 +29,7 @@ pub(crate) fn the_golden_tables_read_back_with_the_golden_crcs_through_every_por
 
 pub(crate) fn a_read_answers_with_its_span_and_the_entries(on: &dyn Boards) {
     let mut bench = golden(on);
-    let payload = bench.done(&Request::TableRead(span(Table::Steps, Bank::Shadow, 0, 539, 1))).payload;
+    let payload = bench.done(&Request::TableRead(span(Table::RowFactors, Bank::Shadow, 0, 539, 1))).payload;
     // Q[539] of the golden table is 16777214.
     assert_eq!(payload, [0, 0, 0, 0x1b, 0x02, 1, 0, 0xfe, 0xff, 0xff, 0x00]);
     let payload = bench.done(&Request::TableRead(span(Table::Kernel, Bank::Shadow, 1, 32, 1))).payload;
@@ -41,7 +41,7 @@ pub(crate) fn a_read_answers_with_its_span_and_the_entries(on: &dyn Boards) {
 fn expect_blank(bench: &mut Bench, rows: u16) {
     let unstretched = vec![UNSTRETCHED.to_le_bytes(); rows.into()].concat();
     for bank in [Bank::Shadow, Bank::Active] {
-        assert_eq!(bench.crc(span(Table::Steps, bank, 0, 0, rows)), crc32fast::hash(&unstretched));
+        assert_eq!(bench.crc(span(Table::RowFactors, bank, 0, 0, rows)), crc32fast::hash(&unstretched));
         for port in 0..2 {
             assert_eq!(bench.crc(span(Table::Kernel, bank, port, 0, 65)), crc_of_words([0; 325]));
         }
@@ -61,17 +61,17 @@ pub(crate) fn before_any_write_nothing_is_stretched_and_all_nodes_are_0(on: &dyn
 
 pub(crate) fn the_crc_of_no_entries_is_that_of_no_bytes(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    assert_eq!(bench.crc(span(Table::Steps, Bank::Shadow, 0, 2048, 0)), 0);
+    assert_eq!(bench.crc(span(Table::RowFactors, Bank::Shadow, 0, 2048, 0)), 0);
     assert_eq!(bench.crc(span(Table::Kernel, Bank::Active, 1, 65, 0)), 0);
 }
 
 pub(crate) fn ports_and_entries_that_are_not_there_are_refused(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
     for wrong in [
-        span(Table::Steps, Bank::Shadow, 1, 3, 1),
+        span(Table::RowFactors, Bank::Shadow, 1, 3, 1),
         span(Table::Kernel, Bank::Shadow, 2, 3, 1),
-        span(Table::Steps, Bank::Active, 0, 2047, 2),
-        span(Table::Steps, Bank::Active, 0, 2049, 0),
+        span(Table::RowFactors, Bank::Active, 0, 2047, 2),
+        span(Table::RowFactors, Bank::Active, 0, 2049, 0),
         span(Table::Kernel, Bank::Shadow, 0, 64, 2),
         span(Table::Kernel, Bank::Shadow, 0, 0, 66),
         span(Table::Kernel, Bank::Shadow, 0, 0xffff, 0xffff),
@@ -85,12 +85,12 @@ pub(crate) fn ports_and_entries_that_are_not_there_are_refused(on: &dyn Boards) 
 pub(crate) fn a_read_that_fits_no_packet_is_refused_and_its_crc_is_not(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
     // A packet has room for 4080 bytes, of which the span takes 7.
-    let payload = bench.done(&Request::TableRead(span(Table::Steps, Bank::Shadow, 0, 5, 1018))).payload;
+    let payload = bench.done(&Request::TableRead(span(Table::RowFactors, Bank::Shadow, 0, 5, 1018))).payload;
     assert_eq!(payload.len(), 7 + 4 * 1018);
-    let longer = span(Table::Steps, Bank::Shadow, 0, 5, 1019);
+    let longer = span(Table::RowFactors, Bank::Shadow, 0, 5, 1019);
     assert_eq!(bench.refused(&Request::TableRead(longer)), (RefusalCode::Range, 5));
     bench.crc(longer);
-    bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 2048));
+    bench.crc(span(Table::RowFactors, Bank::Shadow, 0, 0, 2048));
 }
 
 pub(crate) fn both_banks_are_read_and_a_commit_that_takes_effect_swaps_them(on: &dyn Boards) {
@@ -110,7 +110,7 @@ pub(crate) fn both_banks_are_read_and_a_commit_that_takes_effect_swaps_them(on: 
 pub(crate) fn nothing_is_read_while_a_row_is_inside(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 2);
     let requests = [
-        Request::TableRead(span(Table::Steps, Bank::Active, 0, 0, 1)),
+        Request::TableRead(span(Table::RowFactors, Bank::Active, 0, 0, 1)),
         Request::TableCrc(span(Table::Kernel, Bank::Shadow, 1, 0, 1)),
     ];
     bench.send_all(2, [0]);

@@ -22,10 +22,10 @@ fn read(bench: &mut Bench, table: Table, first: u16, count: u16) -> Vec<u8> {
 
 pub(crate) fn entries_are_written_from_the_first_one_on_and_nowhere_else(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    let before = read(&mut bench, Table::Steps, 0, 8);
-    bench.done(&write(Table::Steps, 3, &factors(&[1, 1 << 24, 123_456])));
+    let before = read(&mut bench, Table::RowFactors, 0, 8);
+    bench.done(&write(Table::RowFactors, 3, &factors(&[1, 1 << 24, 123_456])));
     let expected = [&before[..12], &factors(&[1, 1 << 24, 123_456]), &before[24..]].concat();
-    assert_eq!(read(&mut bench, Table::Steps, 0, 8), expected);
+    assert_eq!(read(&mut bench, Table::RowFactors, 0, 8), expected);
     let before = read(&mut bench, Table::Kernel, 0, 65);
     bench.done(&write(Table::Kernel, 64, &node([1, -2, 3, -4, i16::MIN])));
     let expected = [&before[..640], &node([1, -2, 3, -4, i16::MIN])].concat();
@@ -34,19 +34,19 @@ pub(crate) fn entries_are_written_from_the_first_one_on_and_nowhere_else(on: &dy
 
 pub(crate) fn the_reply_is_empty_and_the_port_is_not_looked_at(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    let span = Span { table: Table::Steps, bank: Bank::Shadow, port: 255, first: 0, count: 1 };
+    let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 255, first: 0, count: 1 };
     let bytes = &factors(&[5]);
     assert_eq!(bench.done(&Request::TableWrite(Entries { span, bytes })).payload, []);
-    assert_eq!(read(&mut bench, Table::Steps, 0, 1), factors(&[5]));
+    assert_eq!(read(&mut bench, Table::RowFactors, 0, 1), factors(&[5]));
 }
 
 pub(crate) fn a_factor_out_of_range_is_named_by_its_index_and_nothing_is_written(on: &dyn Boards) {
     for wrong in [0, (1 << 24) + 1, u32::MAX] {
         let mut bench = Bench::greeted(on);
-        let before = read(&mut bench, Table::Steps, 100, 4);
-        let refusal = bench.refused(&write(Table::Steps, 100, &factors(&[7, 7, wrong, 0])));
+        let before = read(&mut bench, Table::RowFactors, 100, 4);
+        let refusal = bench.refused(&write(Table::RowFactors, 100, &factors(&[7, 7, wrong, 0])));
         assert_eq!(refusal, (RefusalCode::Range, 102));
-        assert_eq!(read(&mut bench, Table::Steps, 100, 4), before);
+        assert_eq!(read(&mut bench, Table::RowFactors, 100, 4), before);
     }
 }
 
@@ -55,9 +55,9 @@ pub(crate) fn spans_end_before_max_height_and_node_65(on: &dyn Boards) {
         for build in offered(on, [Build { max_height, ..Build::default() }]) {
             let mut bench = Bench::switched_on(on, &build);
             bench.greet(&HELLO);
-            bench.done(&write(Table::Steps, max_height - 1, &factors(&[1])));
+            bench.done(&write(Table::RowFactors, max_height - 1, &factors(&[1])));
             for first in [max_height - 1, max_height, 0xffff] {
-                let refusal = bench.refused(&write(Table::Steps, first, &factors(&[1, 1])));
+                let refusal = bench.refused(&write(Table::RowFactors, first, &factors(&[1, 1])));
                 assert_eq!(refusal, (RefusalCode::Range, first));
             }
         }
@@ -73,15 +73,15 @@ pub(crate) fn spans_end_before_max_height_and_node_65(on: &dyn Boards) {
 
 pub(crate) fn a_span_of_no_entries_is_legal(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
-    bench.done(&write(Table::Steps, 0, &[]));
-    bench.done(&write(Table::Steps, 2048, &[]));
+    bench.done(&write(Table::RowFactors, 0, &[]));
+    bench.done(&write(Table::RowFactors, 2048, &[]));
     bench.done(&write(Table::Kernel, 65, &[]));
 }
 
 pub(crate) fn the_active_bank_is_not_written(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 4);
     for first in [0, 9] {
-        let span = Span { table: Table::Steps, bank: Bank::Active, port: 0, first, count: 1 };
+        let span = Span { table: Table::RowFactors, bank: Bank::Active, port: 0, first, count: 1 };
         let bytes = &factors(&[5]);
         let refusal = bench.refused(&Request::TableWrite(Entries { span, bytes }));
         assert_eq!(refusal, (RefusalCode::Range, first));
@@ -102,7 +102,7 @@ pub(crate) fn five_taps_refuse_a_node_that_needs_seven_and_name_it(on: &dyn Boar
 
 pub(crate) fn of_several_wrong_things_the_bank_is_named_then_busy_then_the_span(on: &dyn Boards) {
     let write_to = |bank, first| {
-        let span = Span { table: Table::Steps, bank, port: 0, first, count: 1 };
+        let span = Span { table: Table::RowFactors, bank, port: 0, first, count: 1 };
         Request::TableWrite(Entries { span, bytes: &[0; 4] })
     };
     let mut bench = ready(on, &Build::default(), 1);
@@ -119,13 +119,13 @@ pub(crate) fn of_several_wrong_things_the_bank_is_named_then_busy_then_the_span(
 
 pub(crate) fn nothing_is_written_while_a_commit_is_pending(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 4);
-    assert_eq!(bench.refused(&write(Table::Steps, 0, &factors(&[1]))), (RefusalCode::Busy, 0));
+    assert_eq!(bench.refused(&write(Table::RowFactors, 0, &factors(&[1]))), (RefusalCode::Busy, 0));
     bench.send_all(4, 0..4);
-    bench.done(&write(Table::Steps, 0, &factors(&[1])));
+    bench.done(&write(Table::RowFactors, 0, &factors(&[1])));
 }
 
 pub(crate) fn the_shadow_bank_is_written_while_rows_use_the_other_one(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [0]);
-    bench.done(&write(Table::Steps, 0, &factors(&[1])));
+    bench.done(&write(Table::RowFactors, 0, &factors(&[1])));
 }

@@ -29,7 +29,7 @@ impl TableSet {
 
     /// Writes both into the shadow bank.
     pub fn upload(&self, bench: &mut Bench) {
-        bench.done(&write(Table::Steps, 0, &self.factors));
+        bench.done(&write(Table::RowFactors, 0, &self.factors));
         bench.done(&write(Table::Kernel, 0, &self.nodes));
     }
 

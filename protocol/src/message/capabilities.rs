@@ -3,6 +3,7 @@
 use alloc::string::String;
 use alloc::vec::Vec;
 
+use super::{Datapath, UnknownDatapath};
 use crate::Malformed;
 use crate::bytes::Fields;
 
@@ -85,7 +86,7 @@ macro_rules! capabilities {
 }
 
 capabilities! {
-    /// The datapath's id: which arithmetic (DATAPATH.md) the board computes.
+    /// The datapath's id: which arithmetic the board computes. [`Self::known_datapath`] tells whether it is known.
     0x01 datapath: u16,
     /// The widest row, in samples.
     0x02 max_width: u16,
@@ -107,7 +108,7 @@ capabilities! {
     0x0a row_banks_in: u8,
     /// Rows that it holds until they are acknowledged.
     0x0b row_banks_out: u8,
-    /// Ports by which the datapath reads the row table.
+    /// Ports by which the datapath reads row factors.
     0x0c step_ports: u8,
     /// Ports by which it reads the kernel.
     0x0d kernel_ports: u8,
@@ -118,6 +119,14 @@ capabilities! {
 }
 
 impl Capabilities {
+    /// The datapath.
+    ///
+    /// # Errors
+    /// [`UnknownDatapath`], of which a host can neither make tables nor judge.
+    pub fn known_datapath(&self) -> Result<Datapath, UnknownDatapath> {
+        self.datapath.try_into()
+    }
+
     /// The sample depths.
     #[must_use]
     pub fn sample_depths(&self) -> Depths {

@@ -1,6 +1,7 @@
 //! What packets say. Integers are little endian; a reader skips what a later version appended to a payload it knows.
 
 mod capabilities;
+mod datapath;
 mod hello;
 mod refusal;
 mod rows;
@@ -11,12 +12,13 @@ mod tables;
 use alloc::vec::Vec;
 
 pub use capabilities::{BoardNature, Capabilities, Depths};
+pub use datapath::{Datapath, UnknownDatapath};
 pub use hello::{Hello, MAGIC, Welcome};
 pub use refusal::{Refusal, RefusalCode};
 pub use rows::{RowIn, RowOut, RowPlace};
 pub use setup::{Configuration, Reset, ResetLevel};
 pub use status::Status;
-pub use tables::{Bank, Commit, Entries, NODE_BYTES, NODE_WEIGHTS, NODES, STEP_BYTES, Span, Table};
+pub use tables::{Bank, Commit, Entries, NODE_BYTES, NODE_WEIGHTS, NODES, ROW_FACTOR_BYTES, Span, Table};
 
 use crate::bytes::Fields;
 use crate::{Kind, Packet};

@@ -6,7 +6,7 @@ use crate::Malformed;
 use crate::bytes::Fields;
 
 /// Bytes of a row factor on the wire: an unsigned 32-bit word that holds 25 bits.
-pub const STEP_BYTES: usize = 4;
+pub const ROW_FACTOR_BYTES: usize = 4;
 /// Nodes of a kernel.
 pub const NODES: usize = 65;
 /// Weights of a node, in the order g0, r1, g4, r5, g6.
@@ -19,7 +19,7 @@ pub const NODE_BYTES: usize = 2 * NODE_WEIGHTS;
 #[repr(u8)]
 pub enum Table {
     /// The row factors Q.
-    Steps = 0,
+    RowFactors = 0,
     /// The kernel's nodes.
     Kernel = 1,
 }
@@ -29,14 +29,14 @@ impl Table {
     #[must_use]
     pub const fn entry_bytes(self) -> usize {
         match self {
-            Self::Steps => STEP_BYTES,
+            Self::RowFactors => ROW_FACTOR_BYTES,
             Self::Kernel => NODE_BYTES,
         }
     }
 
     fn read(fields: &mut Fields<'_>) -> Result<Self, Malformed> {
         match fields.u8()? {
-            0 => Ok(Self::Steps),
+            0 => Ok(Self::RowFactors),
             1 => Ok(Self::Kernel),
             other => Err(Malformed::Value { field: "table", value: other.into() }),
         }
@@ -99,9 +99,9 @@ pub struct Entries<'a> {
 }
 
 impl<'a> Entries<'a> {
-    /// Row factors, if they are the table's.
-    pub fn steps(&self) -> impl Iterator<Item = u32> + use<'a> {
-        self.bytes.as_chunks::<STEP_BYTES>().0.iter().map(|&step| u32::from_le_bytes(step))
+    /// Row factors, if they are the table's: words as they came, which the board that takes them must check.
+    pub fn row_factors(&self) -> impl Iterator<Item = u32> + use<'a> {
+        self.bytes.as_chunks::<ROW_FACTOR_BYTES>().0.iter().map(|&word| u32::from_le_bytes(word))
     }
 
     /// Kernel nodes, if they are the table's.

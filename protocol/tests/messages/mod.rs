@@ -218,7 +218,7 @@ fn configuration() -> impl Strategy<Value = Configuration> {
 }
 
 fn span() -> impl Strategy<Value = Span> {
-    let table = select(vec![Table::Steps, Table::Kernel]);
+    let table = select(vec![Table::RowFactors, Table::Kernel]);
     let bank = select(vec![Bank::Shadow, Bank::Active]);
     (table, bank, any::<(u8, u16, u16)>()).prop_map(|(table, bank, (port, first, count))| Span {
         table,

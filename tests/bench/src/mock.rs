@@ -11,14 +11,14 @@ use crate::scene::{HEIGHT, frame, tables};
 
 pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
     let options = Options::default();
-    let (steps, frame) = (tables(HEIGHT)?, frame(HEIGHT, 0)?);
+    let (set, frame) = (tables(HEIGHT)?, frame(HEIGHT, 0)?);
     let mut tables = Tables::new(&options, None);
-    tables.write_factors(0, steps.steps())?;
+    tables.write_factors(0, &set.units().collect::<Vec<_>>())?;
     let nodes: Vec<_> = Kernel::from(Interpolant::Hermite).nodes().iter().copied().map(Node::from).collect();
     tables.write_nodes(0, &nodes)?;
     tables.commit(1, 0)?;
     let mut player = Player::new(&options, None)?;
-    let geometry = steps.geometry();
+    let geometry = set.geometry();
     player.configure(Settings {
         width: geometry.width() as u16,
         height: geometry.height() as u16,

@@ -25,9 +25,9 @@ fn open(target: &str) -> Candidate {
 /// The plan of `SYSTEM` with frames of 8 bits.
 fn eight_bits() -> Plan {
     let plan = SYSTEM.plan();
-    let (own, steps) = (plan.tables.geometry(), plan.tables.steps().to_vec());
+    let (own, factors) = (plan.tables.geometry(), plan.tables.row_factors().to_vec());
     let geometry = Geometry::new(own.width(), own.height(), BitDepth::Eight, own.centre2()).unwrap();
-    Plan { tables: TableSet::new(geometry, steps).unwrap(), ..plan }
+    Plan { tables: TableSet::new(geometry, factors).unwrap(), ..plan }
 }
 
 #[test]

@@ -102,6 +102,16 @@ fn a_broken_board_gives_another_frame_than_the_model() {
 }
 
 #[test]
+fn a_board_of_another_datapath_corrects_nothing() {
+    let folder = Folder::new();
+    let call = small("correct", &["builtin:noise", "--board", "mock,fault=wrong-datapath", "-o", "out.pgm"]);
+    let refused = folder.halfrow(call);
+    assert_eq!(refused.code, Some(6), "{}", refused.stderr);
+    assert!(refused.stderr.contains("datapath 2 is not known here"), "{}", refused.stderr);
+    assert_eq!(folder.names("."), [""; 0]);
+}
+
+#[test]
 fn every_format_can_be_written_and_read_again() {
     let folder = Folder::new();
     let call = small("correct", &["builtin:street", "--model", "-o", "once.pgm"]);

@@ -72,8 +72,8 @@ fn the_table_file_holds_the_fitted_rows_and_the_lens_s_centre() {
     );
     let file: Value = serde_json::from_slice(&folder.read("dsl215.json")).unwrap();
     assert_eq!((&file["width"], &file["height"], &file["centre2"]), (&752.into(), &480.into(), &729.into()));
-    for (row, step) in [(0, 13_125_603.7), (150, 16_374_261.0), (479, 12_368_952.0)] {
-        assert_near(&file["step"][row], step, 2.0);
+    for (row, factor) in [(0, 13_125_603.7), (150, 16_374_261.0), (479, 12_368_952.0)] {
+        assert_near(&file["step"][row], factor, 2.0);
     }
     let call = ["tables", "--lens", "dsl215.txt", "--rows", "equation-9", "-o", "eq9.json"];
     assert_eq!(folder.halfrow(call).code, Some(0));
@@ -84,15 +84,19 @@ fn the_table_file_holds_the_fitted_rows_and_the_lens_s_centre() {
 #[test]
 fn the_paper_s_lens_keeps_eq_9_unless_fitted_rows_are_asked_for() {
     let folder = Folder::new();
-    let steps = |name: &str, lens: &[&str]| {
+    let row_factors = |name: &str, lens: &[&str]| {
         let call = ["tables", "-o", name].into_iter().chain(lens.iter().copied());
         assert_eq!(folder.halfrow(call).code, Some(0));
         serde_json::from_slice::<Value>(&folder.read(name)).unwrap()["step"].clone()
     };
-    let plain = steps("plain.json", &["--radius", "1106.697"]);
+    let plain = row_factors("plain.json", &["--radius", "1106.697"]);
     assert_eq!(plain[0], 14_648_698);
-    assert_eq!(steps("named.json", &["--lens", "equidistant:1106.697"]), plain);
-    assert_near(&steps("fitted.json", &["--radius", "1106.697", "--rows", "fitted"])[0], 14_124_828.2, 2.0);
+    assert_eq!(row_factors("named.json", &["--lens", "equidistant:1106.697"]), plain);
+    assert_near(
+        &row_factors("fitted.json", &["--radius", "1106.697", "--rows", "fitted"])[0],
+        14_124_828.2,
+        2.0,
+    );
 }
 
 #[test]

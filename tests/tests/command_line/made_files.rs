@@ -39,8 +39,8 @@ fn memory_images_hold_the_same_words() {
     let folder = Folder::new();
     assert_eq!(folder.halfrow(["tables", "--radius", "1106.697", "-o", "lens.mem"]).code, Some(0));
     assert_eq!(folder.names("."), ["lens.kernel.mem", "lens.steps.mem"]);
-    let steps = folder.text("lens.steps.mem");
-    let words: Vec<_> = steps.lines().filter(|line| !line.starts_with("//")).collect();
+    let rows = folder.text("lens.steps.mem");
+    let words: Vec<_> = rows.lines().filter(|line| !line.starts_with("//")).collect();
     assert_eq!(
         (words[0], words[539]),
         (format!("{FIRST_FACTOR:07x}").as_str(), format!("{MIDDLE_FACTOR:07x}").as_str())

@@ -9,7 +9,7 @@ use crate::options::TapCount;
 /// The arithmetic of fpga/DATAPATH.md.
 const DATAPATH: u16 = 1;
 /// Ports by which the datapath reads row factors.
-pub(super) const STEP_PORTS: u8 = 1;
+pub(super) const ROW_FACTOR_PORTS: u8 = 1;
 /// Ports by which it reads nodes: i and i + 1 at once.
 pub(super) const KERNEL_PORTS: u8 = 2;
 
@@ -41,7 +41,7 @@ impl Board {
             table_banks: options.table_banks,
             row_banks_in: options.row_banks_in,
             row_banks_out: options.row_banks_out,
-            step_ports: STEP_PORTS,
+            step_ports: ROW_FACTOR_PORTS,
             kernel_ports: KERNEL_PORTS,
             clock_source: 0,
             clock_hz: options.pixel_clock,

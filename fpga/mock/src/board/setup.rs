@@ -3,7 +3,7 @@
 use halfrow_protocol::MAX_PAYLOAD;
 use halfrow_protocol::message::{Bank, Commit, Configuration, Entries, NODES, RefusalCode, Span, Table};
 
-use super::identity::{KERNEL_PORTS, STEP_PORTS};
+use super::identity::{KERNEL_PORTS, ROW_FACTOR_PORTS};
 use super::{Board, Refused};
 use crate::core::Node;
 use crate::depth::Depth;
@@ -45,7 +45,7 @@ impl Board {
         }
         let first = usize::from(first);
         let written = match table {
-            Table::Steps => self.tables.write_factors(first, &entries.steps().collect::<Vec<_>>()),
+            Table::RowFactors => self.tables.write_factors(first, &entries.row_factors().collect::<Vec<_>>()),
             Table::Kernel => {
                 self.tables.write_nodes(first, &entries.nodes().map(Node::from).collect::<Vec<_>>())
             }
@@ -73,7 +73,7 @@ impl Board {
             return Err((RefusalCode::Busy, 0));
         }
         let (ports, entries) = match table {
-            Table::Steps => (STEP_PORTS, usize::from(self.options.max_height)),
+            Table::RowFactors => (ROW_FACTOR_PORTS, usize::from(self.options.max_height)),
             Table::Kernel => (KERNEL_PORTS, NODES),
         };
         let (start, end) = (usize::from(first), usize::from(first) + usize::from(count));
@@ -85,7 +85,7 @@ impl Board {
             Bank::Active => tables::Bank::Active,
         };
         Ok(match table {
-            Table::Steps => (start..end)
+            Table::RowFactors => (start..end)
                 .filter_map(|row| self.tables.factor(bank, row, Port::ReadBack))
                 .flat_map(u32::to_le_bytes)
                 .collect(),
@@ -112,7 +112,7 @@ impl Board {
         }
         let height = self.player.settings().height;
         for (table, ports, count, crc) in [
-            (Table::Steps, STEP_PORTS, height, commit.steps_crc),
+            (Table::RowFactors, ROW_FACTOR_PORTS, height, commit.steps_crc),
             (Table::Kernel, KERNEL_PORTS, NODES as u16, commit.kernel_crc),
         ] {
             for port in 0..ports {

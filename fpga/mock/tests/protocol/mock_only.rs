@@ -132,7 +132,7 @@ fn a_hidden_fault_does_not_show_in_a_read() {
     let hidden = BoardFault::RowFactor { row: 0, bit: 3, hidden: true };
     let mut bench = ready_with(Some(hidden), 1);
     assert_eq!(
-        bench.crc(span(Table::Steps, Bank::Shadow, 0, 0, 1)),
+        bench.crc(span(Table::RowFactors, Bank::Shadow, 0, 0, 1)),
         crc32fast::hash(&(1_u32 << 24).to_le_bytes())
     );
 }

@@ -7,9 +7,9 @@ use super::walk::{Ends, Located, Padded, Walk};
 #[cfg(target_arch = "x86_64")]
 use super::x86;
 use crate::corrector::correct_row;
-use crate::{Geometry, Kernel};
+use crate::{Geometry, Kernel, RowFactor};
 
-/// Rows of one step, to be corrected together.
+/// Rows of one row factor, to be corrected together.
 pub(super) struct Rows<'a, const ROWS: usize> {
     pub(super) walk: Walk,
     pub(super) width: usize,
@@ -45,26 +45,26 @@ impl Engine {
         }
     }
 
-    /// Corrects rows of step `step`, with `ends` to keep their ends in.
+    /// Corrects rows of the row factor `row_factor`, with `ends` to keep their ends in.
     pub(super) fn correct_rows<const ROWS: usize>(
         &self,
         ends: &mut [Ends; 2],
         geometry: &Geometry,
-        step: u32,
+        row_factor: RowFactor,
         rows: [&[u16]; ROWS],
         outputs: [&mut [u16]; ROWS],
     ) {
         let width = geometry.width();
         if let Self::Reference(kernel) = self {
             for (row, output) in rows.into_iter().zip(outputs) {
-                correct_row(geometry, step, kernel, row, output);
+                correct_row(geometry, row_factor, kernel, row, output);
             }
             return;
         }
         let rows = rows.map(|row| &row[..width]);
         rows.iter().zip(&mut *ends).for_each(|(row, ends)| ends.take(row));
         let inputs = std::array::from_fn(|row| Padded::new(rows[row], &ends[row]));
-        let walk = Walk::new(geometry, step);
+        let walk = Walk::new(geometry, row_factor);
         self.correct(Rows { walk, width, max: geometry.depth().max(), inputs, outputs });
     }
 

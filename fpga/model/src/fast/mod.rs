@@ -2,7 +2,7 @@
 //!
 //! The oracle beside it stays as DATAPATH.md has it, and each path here is checked against it. What is done otherwise:
 //! a row's ends are copied with its edges drawn out, so that no tap is a special case; coordinates are taken relative to
-//! the block of columns, so that 32 bits hold them; and rows of one step, above and below the lens's axis, share
+//! the block of columns, so that 32 bits hold them; and rows of one row factor, above and below the lens's axis, share
 //! coordinates and weights.
 
 mod engine;
@@ -16,7 +16,7 @@ mod x86;
 pub use path::{ModelPath, UnavailablePath, UnknownPath};
 
 use crate::corrector::check_frame;
-use crate::{CorrectError, Frame, Geometry, Kernel, TableSet};
+use crate::{CorrectError, Frame, Geometry, Kernel, RowFactor, TableSet};
 use engine::{Engine, Rows};
 use walk::{Ends, Located, Walk, blocks};
 
@@ -57,17 +57,23 @@ impl Corrector {
         self.path
     }
 
-    /// Corrects one row of step `step` into `output`, as [`crate::correct_row`] does.
+    /// Corrects one row of the row factor `row_factor` into `output`, as [`crate::correct_row`] does.
     ///
     /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are.
     ///
     /// # Panics
     /// When `row` or `output` holds fewer samples than the geometry's width.
-    pub fn correct_row(&mut self, geometry: &Geometry, step: u32, row: &[u16], output: &mut [u16]) {
-        self.engine.correct_rows(&mut self.ends, geometry, step, [row], [output]);
+    pub fn correct_row(
+        &mut self,
+        geometry: &Geometry,
+        row_factor: RowFactor,
+        row: &[u16],
+        output: &mut [u16],
+    ) {
+        self.engine.correct_rows(&mut self.ends, geometry, row_factor, [row], [output]);
     }
 
-    /// Corrects `frame` into `samples`, row after row. Rows of one step that mirror each other are corrected together.
+    /// Corrects `frame` into `samples`, row after row. Rows of one row factor that mirror each other are corrected together.
     ///
     /// # Errors
     /// [`CorrectError`] when the frame has another size or depth than the tables are for.
@@ -87,16 +93,16 @@ impl Corrector {
         let mut lower = lower.rchunks_exact_mut(frame.width());
         for (row, output) in upper.chunks_exact_mut(frame.width()).enumerate() {
             let mirrored = frame.height() - 1 - row;
-            let [step, mirrored_step] = [row, mirrored].map(|row| tables.steps()[row]);
+            let [own, opposite] = [row, mirrored].map(|row| tables.row_factors()[row]);
             let inputs = [row, mirrored].map(|row| frame.row(row));
             match lower.next() {
-                None => self.correct_row(geometry, step, inputs[0], output),
-                Some(below) if step == mirrored_step => {
-                    self.engine.correct_rows(&mut self.ends, geometry, step, inputs, [output, below]);
+                None => self.correct_row(geometry, own, inputs[0], output),
+                Some(below) if own == opposite => {
+                    self.engine.correct_rows(&mut self.ends, geometry, own, inputs, [output, below]);
                 }
                 Some(below) => {
-                    self.correct_row(geometry, step, inputs[0], output);
-                    self.correct_row(geometry, mirrored_step, inputs[1], below);
+                    self.correct_row(geometry, own, inputs[0], output);
+                    self.correct_row(geometry, opposite, inputs[1], below);
                 }
             }
         }
@@ -118,11 +124,17 @@ impl Corrector {
     ///
     /// # Panics
     /// When `bases` or `distances` is shorter than the geometry's width.
-    pub fn locate(&self, geometry: &Geometry, step: u32, bases: &mut [i16], distances: &mut [u16]) {
-        let walk = Walk::new(geometry, step);
+    pub fn locate(
+        &self,
+        geometry: &Geometry,
+        row_factor: RowFactor,
+        bases: &mut [i16],
+        distances: &mut [u16],
+    ) {
+        let walk = Walk::new(geometry, row_factor);
         for column in blocks(geometry.width(), BLOCK) {
             let located = match self.engine {
-                Engine::Reference(_) => Located::by_oracle(geometry, step, column),
+                Engine::Reference(_) => Located::by_oracle(geometry, row_factor, column),
                 _ => self.engine.locate(walk, column),
             };
             located.write(&mut bases[column..column + BLOCK], &mut distances[column..column + BLOCK]);

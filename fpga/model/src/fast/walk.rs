@@ -2,7 +2,7 @@
 #![cfg_attr(not(target_arch = "x86_64"), allow(dead_code, reason = "vectors need more than plain Rust does"))]
 
 use super::BLOCK;
-use crate::{Geometry, STEP_ONE, Source, source};
+use crate::{Geometry, RowFactor, Source, source};
 
 /// Samples in front of a padded row. Its taps begin three columns left of the row.
 pub(super) const LEFT: usize = 4;
@@ -23,7 +23,7 @@ pub(super) struct Walk {
 
 /// Where a block of columns that starts at an even one finds its samples.
 ///
-/// n moves by 0 or 1 a column. So does the last column with the output's colour at or left of it, but for a first step
+/// n moves by 0 or 1 a column. So does the last column with the output's colour at or left of it, but for a first move
 /// back: from the lesser of the first two outputs' bases on, a block of N columns has its bases within N samples.
 #[derive(Clone, Copy)]
 pub(super) struct Start {
@@ -49,10 +49,9 @@ pub(super) const LEADS: [[u16; BLOCK]; 2] = {
 };
 
 impl Walk {
-    pub(super) fn new(geometry: &Geometry, step: u32) -> Self {
-        debug_assert!((1..=STEP_ONE).contains(&step));
-        let origin = u64::from(geometry.centre2()) * u64::from(STEP_ONE - step) + (1 << 11);
-        Self { origin, stride: 2 * step }
+    pub(super) fn new(geometry: &Geometry, row_factor: RowFactor) -> Self {
+        let start = u64::from(geometry.centre2()) * u64::from(RowFactor::ONE.get() - row_factor.get());
+        Self { origin: start + (1 << 11), stride: 2 * row_factor.get() }
     }
 
     /// S + 2^11 of `column`.
@@ -140,8 +139,9 @@ pub(super) struct Located {
 
 impl Located {
     /// The oracle's, with the least base two columns left of the row.
-    pub(super) fn by_oracle(geometry: &Geometry, step: u32, column: usize) -> Self {
-        let sources: [Source; BLOCK] = std::array::from_fn(|index| source(geometry, step, column + index));
+    pub(super) fn by_oracle(geometry: &Geometry, row_factor: RowFactor, column: usize) -> Self {
+        let sources: [Source; BLOCK] =
+            std::array::from_fn(|index| source(geometry, row_factor, column + index));
         Self {
             first: LEFT - 4,
             base: sources.map(|source| (source.base + 2) as u16),

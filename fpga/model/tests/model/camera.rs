@@ -2,7 +2,7 @@
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, LensError, Profile, Residual,
-    TableSet,
+    RowFactor, TableSet,
 };
 
 use crate::calibrated::{DSL215_CENTRE, dsl215, kannala_brandt};
@@ -28,12 +28,12 @@ fn fifth() -> Camera {
     camera((150, 96), dsl215().scaled(0.2).unwrap(), ((column + 0.5) * 0.2 - 0.5, (row + 0.5) * 0.2 - 0.5))
 }
 
-/// Every step of `tables` named by its row is within 2 of `expected`: Q is rounded, and the program stops at 1e-7.
+/// Every row factor of `tables` named by its row is within 2 of `expected`: Q is rounded, and the program stops at 1e-7.
 #[track_caller]
-fn assert_steps(tables: &TableSet, expected: &[(usize, f64)]) {
-    for &(row, step) in expected {
-        let found = f64::from(tables.step(row).unwrap());
-        assert!((found - step).abs() < 2.0, "row {row}: {found} is not {step}");
+fn assert_row_factors(tables: &TableSet, expected: &[(usize, f64)]) {
+    for &(row, factor) in expected {
+        let found = f64::from(tables.row_factor(row).unwrap().get());
+        assert!((found - factor).abs() < 2.0, "row {row}: {found} is not {factor}");
     }
 }
 
@@ -44,9 +44,11 @@ fn spread(residuals: &[f64]) -> (f64, f64) {
 }
 
 fn residuals(camera: &Camera, tables: &TableSet) -> Vec<Residual> {
-    let steps = tables.steps().iter().enumerate();
-    steps
-        .flat_map(|(row, &step)| camera.targets(row).map(move |target| camera.residual(row, step, target)))
+    let factors = tables.row_factors().iter().enumerate();
+    factors
+        .flat_map(|(row, &factor)| {
+            camera.targets(row).map(move |target| camera.residual(row, factor, target))
+        })
         .collect()
 }
 
@@ -58,7 +60,7 @@ fn assert_spread(camera: &Camera, tables: &TableSet, pixels: usize, columns: (f6
     let found_rows = spread(&found.iter().map(|residual| residual.rows).collect::<Vec<_>>());
     for ((mean, most), (expected_mean, expected_most)) in [(found_columns, columns), (found_rows, rows)] {
         assert!((mean - expected_mean).abs() < 1e-6, "mean {mean} is not {expected_mean}");
-        // Half a step of Q is 3e-6 of a pixel at the edge.
+        // Half a unit of Q is 3e-6 of a pixel at the edge.
         assert!((most - expected_most).abs() < 5e-6, "largest {most} is not {expected_most}");
     }
 }
@@ -66,7 +68,7 @@ fn assert_spread(camera: &Camera, tables: &TableSet, pixels: usize, columns: (f6
 #[test]
 fn the_paper_s_rows_are_fitted_as_linear_programming_fits_them() {
     let expected = [(0, 14_124_828.212), (100, 15_052_944.671), (300, 16_278_900.409), (539, 16_777_213.850)];
-    assert_steps(&paper().fitted(), &expected);
+    assert_row_factors(&paper().fitted(), &expected);
 }
 
 #[test]
@@ -80,11 +82,11 @@ fn eq_9_of_an_equidistant_lens_is_the_plain_table() {
 #[test]
 fn the_rows_of_measured_lenses_are_fitted_as_linear_programming_fits_them() {
     let expected = [(0, 15_212_578.787), (8, 15_926_773.115), (30, 16_776_167.975), (71, 14_081_257.058)];
-    assert_steps(&tenth().fitted(), &expected);
+    assert_row_factors(&tenth().fitted(), &expected);
     let expected = [(0, 13_162_999.784), (10, 14_661_803.723), (45, 16_776_790.707), (95, 12_415_174.488)];
-    assert_steps(&fifth().fitted(), &expected);
+    assert_row_factors(&fifth().fitted(), &expected);
     let full = camera((752, 480), dsl215(), DSL215_CENTRE);
-    assert_steps(&full.fitted(), &[(0, 13_125_603.730), (150, 16_374_260.952), (479, 12_368_952.034)]);
+    assert_row_factors(&full.fitted(), &[(0, 13_125_603.730), (150, 16_374_260.952), (479, 12_368_952.034)]);
 }
 
 /// Oblong pixels make the circle an ellipse: R counts columns, and y counts in widths of a pixel.
@@ -92,9 +94,12 @@ fn the_rows_of_measured_lenses_are_fitted_as_linear_programming_fits_them() {
 fn eq_9_of_measured_lenses_takes_r_from_90_degrees() {
     assert!((tenth().radius() - 82.486_596_644_624_63).abs() < 1e-9);
     assert_eq!(tenth().geometry().centre2(), 121);
-    assert_steps(&tenth().equation_9(), &[(0, 15_549_370.794), (30, 16_776_417.927), (71, 14_623_893.114)]);
+    assert_row_factors(
+        &tenth().equation_9(),
+        &[(0, 15_549_370.794), (30, 16_776_417.927), (71, 14_623_893.114)],
+    );
     assert!((fifth().radius() - 77.711_559_354_207_82).abs() < 1e-9);
-    assert_steps(&fifth().equation_9(), &[(0, 13_600_525.311), (95, 12_939_033.903)]);
+    assert_row_factors(&fifth().equation_9(), &[(0, 13_600_525.311), (95, 12_939_033.903)]);
 }
 
 #[test]
@@ -113,10 +118,10 @@ fn rows_without_a_sample_in_the_circle_are_not_stretched() {
     let camera = camera((64, 100), lens.into(), (31.5, 49.5));
     // |y| is 0.5, 1.5, … 49.5; ten of the 50 rows on either side have |y| of 40.5 or more.
     assert_eq!(camera.rows_outside_circle(), 20);
-    assert!(
-        (0..10).all(|row| camera.fitted().step(row) == Some(1 << 24) && camera.targets(row).count() == 0)
-    );
-    assert_eq!(camera.equation_9().step(9), Some(1 << 24));
+    assert!((0..10).all(
+        |row| camera.fitted().row_factor(row) == Some(RowFactor::ONE) && camera.targets(row).count() == 0
+    ));
+    assert_eq!(camera.equation_9().row_factor(9), Some(RowFactor::ONE));
 }
 
 #[test]
@@ -143,7 +148,7 @@ fn a_profile_that_turns_back_inside_the_frame_is_refused_and_outside_of_it_taken
     assert!(new(300.0, 129.0).is_ok());
     let far = new(900.0, 180.0).unwrap();
     assert!((far.radius() - 450.0 * std::f64::consts::PI).abs() < 1e-9);
-    assert!(far.fitted().steps().iter().all(|&step| step < 1 << 24));
+    assert!(far.fitted().row_factors().iter().all(|&factor| factor < RowFactor::ONE));
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! The integer datapath by hand, and what holds of it always.
 
 use halfrow_model::{
-    BitDepth, Colour, CorrectError, Frame, Geometry, Interpolant, Kernel, NODES, Phase, STEP_ONE, Source,
-    TableSet, correct, correct_row, source,
+    BitDepth, Colour, CorrectError, Frame, Geometry, Interpolant, Kernel, NODES, Phase, Source, TableSet,
+    correct, correct_row, source,
 };
 use proptest::prelude::*;
+
+use crate::{ONE, row_factor};
 
 /// One row of 64 columns, 12 bits.
 fn geometry(centre2: u32) -> Geometry {
@@ -14,7 +16,7 @@ fn geometry(centre2: u32) -> Geometry {
 /// `row` stretched to twice its width around column `centre2` / 2.
 fn double(geometry: &Geometry, interpolant: Interpolant, row: &[u16]) -> [u16; 64] {
     let mut output = [0; 64];
-    correct_row(geometry, STEP_ONE / 2, &interpolant.into(), row, &mut output);
+    correct_row(geometry, row_factor(ONE / 2), &interpolant.into(), row, &mut output);
     output
 }
 
@@ -29,16 +31,16 @@ fn row_of(samples: &[(usize, u16)]) -> [u16; 64] {
 fn a_source_is_found_as_by_hand() {
     // C = 63, Q = 2^23: the source of column 5 is 31.5 + (5 − 31.5)/2 = 18.25, its base the odd column 17.
     let expected = Source { base: 17, column: 18, node: 40, fraction: 0 };
-    assert_eq!(source(&geometry(63), STEP_ONE / 2, 5), expected);
+    assert_eq!(source(&geometry(63), row_factor(ONE / 2), 5), expected);
     // Worked example of DATAPATH.md.
     let expected = Source { base: 7, column: 8, node: 43, fraction: 153 };
-    assert_eq!(source(&geometry(63), 14_648_488, 5), expected);
+    assert_eq!(source(&geometry(63), row_factor(14_648_488), 5), expected);
 }
 
 #[test]
 fn a_source_left_of_an_odd_columns_first_colour_has_its_base_outside() {
     let expected = Source { base: -1, column: 0, node: 48, fraction: 0 };
-    assert_eq!(source(&geometry(0), STEP_ONE / 2, 1), expected);
+    assert_eq!(source(&geometry(0), row_factor(ONE / 2), 1), expected);
 }
 
 #[test]
@@ -46,7 +48,7 @@ fn an_unstretched_row_passes_through() {
     let row: [u16; 64] = std::array::from_fn(|column| (column * 1777 % 4096) as u16);
     for interpolant in Interpolant::ALL {
         let mut output = [0; 64];
-        correct_row(&geometry(29), STEP_ONE, &interpolant.into(), &row, &mut output);
+        correct_row(&geometry(29), row_factor(ONE), &interpolant.into(), &row, &mut output);
         assert_eq!(output, row, "{interpolant}");
     }
 }
@@ -110,7 +112,7 @@ fn weights_are_interpolated_between_nodes_with_rounding() {
     let kernel = Kernel::from_nodes(nodes).unwrap();
     let row = row_of(&[(2, 2)]);
     let mut output = [0; 64];
-    correct_row(&geometry(0), STEP_ONE - 3 * (1 << 17), &kernel, &row, &mut output);
+    correct_row(&geometry(0), row_factor(ONE - 3 * (1 << 17)), &kernel, &row, &mut output);
     // The weight is 4096, not 4095.5 or 4095: only then is 2 · 4096 / 2^14 the half that rounds to 1.
     assert_eq!(output[2], 1);
 }
@@ -118,7 +120,7 @@ fn weights_are_interpolated_between_nodes_with_rounding() {
 #[test]
 fn every_phase_keeps_its_colours() {
     let geometry = Geometry::centred(64, 2, BitDepth::Ten).unwrap();
-    let tables = TableSet::new(geometry, vec![9_999_999; 2]).unwrap();
+    let tables = TableSet::from_units(geometry, &[9_999_999; 2]).unwrap();
     for phase in Phase::ALL {
         let sample = |place: usize| match phase.colour(place / 64, place % 64) {
             Colour::Red => 100,
@@ -133,9 +135,9 @@ fn every_phase_keeps_its_colours() {
 }
 
 #[test]
-fn each_row_is_corrected_with_its_own_step() {
+fn each_row_is_corrected_with_its_own_row_factor() {
     let geometry = Geometry::centred(64, 2, BitDepth::Twelve).unwrap();
-    let tables = TableSet::new(geometry, vec![STEP_ONE, STEP_ONE / 2]).unwrap();
+    let tables = TableSet::from_units(geometry, &[ONE, ONE / 2]).unwrap();
     let row = row_of(&[(20, 3000), (41, 2000)]);
     let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, [row, row].concat()).unwrap();
     let corrected = correct(&tables, &Interpolant::Keys.into(), &frame).unwrap();
@@ -146,7 +148,7 @@ fn each_row_is_corrected_with_its_own_step() {
 
 #[test]
 fn a_frame_of_another_size_or_depth_is_refused() {
-    let tables = TableSet::new(geometry(63), vec![1]).unwrap();
+    let tables = TableSet::from_units(geometry(63), &[1]).unwrap();
     let kernel = Kernel::from(Interpolant::Linear);
     let frame = Frame::new(64, BitDepth::Twelve, Phase::Grbg, vec![0; 128]).unwrap();
     let size = CorrectError::Size { frame_width: 64, frame_height: 2, width: 64, height: 1 };
@@ -161,8 +163,8 @@ fn any_kernel() -> impl Strategy<Value = Kernel> {
 
 proptest! {
     #[test]
-    fn sources_stay_inside_the_row_and_never_jump(centre2 in 0_u32..=126, step in 1..=STEP_ONE) {
-        let sources: Vec<_> = (0..64).map(|column| source(&geometry(centre2), step, column)).collect();
+    fn sources_stay_inside_the_row_and_never_jump(centre2 in 0_u32..=126, factor in 1..=ONE) {
+        let sources: Vec<_> = (0..64).map(|column| source(&geometry(centre2), row_factor(factor), column)).collect();
         for (column, source) in sources.iter().enumerate() {
             prop_assert!((0..64).contains(&source.column));
             prop_assert!((source.column - 1..=source.column).contains(&source.base));
@@ -173,30 +175,30 @@ proptest! {
     }
 
     #[test]
-    fn a_source_is_within_its_resolution_of_the_real_one(centre2 in 0_u32..=126, step in 1..=STEP_ONE, column in 0_usize..64) {
+    fn a_source_is_within_its_resolution_of_the_real_one(centre2 in 0_u32..=126, factor in 1..=ONE, column in 0_usize..64) {
         let centre = f64::from(centre2) / 2.0;
-        let real = centre + (column as f64 - centre) * f64::from(step) / f64::from(STEP_ONE);
-        let found = source(&geometry(centre2), step, column);
+        let real = centre + (column as f64 - centre) * f64::from(factor) / f64::from(ONE);
+        let found = source(&geometry(centre2), row_factor(factor), column);
         let position = found.base as f64 + found.node as f64 / 32.0 + f64::from(found.fraction) / 8192.0;
         prop_assert!((position - real).abs() <= 1.0 / 16384.0);
     }
 
     #[test]
     fn a_flat_field_stays_flat_to_the_bit_under_any_kernel(
-        kernel in any_kernel(), centre2 in 0_u32..=126, step in 1..=STEP_ONE, own in 0_u16..=4095, other in 0_u16..=4095,
+        kernel in any_kernel(), centre2 in 0_u32..=126, factor in 1..=ONE, own in 0_u16..=4095, other in 0_u16..=4095,
     ) {
         let row: [u16; 64] = std::array::from_fn(|column| if column % 2 == 0 { own } else { other });
         let mut output = [0; 64];
-        correct_row(&geometry(centre2), step, &kernel, &row, &mut output);
+        correct_row(&geometry(centre2), row_factor(factor), &kernel, &row, &mut output);
         prop_assert_eq!(output, row);
     }
 
     #[test]
     fn no_weights_and_no_samples_overflow(
-        kernel in any_kernel(), step in 1..=STEP_ONE, row in prop::collection::vec(prop::sample::select(vec![0_u16, 4095]), 64),
+        kernel in any_kernel(), factor in 1..=ONE, row in prop::collection::vec(prop::sample::select(vec![0_u16, 4095]), 64),
     ) {
         let mut output = [0; 64];
-        correct_row(&geometry(63), step, &kernel, &row, &mut output);
+        correct_row(&geometry(63), row_factor(factor), &kernel, &row, &mut output);
         prop_assert!(output.iter().all(|&sample| sample <= 4095));
     }
 }

@@ -6,10 +6,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::Instant;
 
 use halfrow_model::{
-    BitDepth, Corrector, Geometry, Interpolant, Kernel, MAX_WIDTH, ModelPath, NODES, STEP_ONE, correct_row,
+    BitDepth, Corrector, Geometry, Interpolant, Kernel, MAX_WIDTH, ModelPath, NODES, correct_row,
 };
 
 use crate::fast::{paths, sources};
+use crate::{ONE, row_factor};
 
 /// Coprime to 2^24, so that the factors it goes through have every ending.
 const STRIDE: usize = 101;
@@ -31,10 +32,10 @@ fn over_factors(what: &str, stride: usize, check: impl Fn(Share) + Sync) {
             scope.spawn(|| {
                 loop {
                     let first = next.fetch_add((SHARE * stride) as u32, Ordering::Relaxed);
-                    if first > STEP_ONE {
+                    if first > ONE {
                         break;
                     }
-                    check((first..=STEP_ONE).step_by(stride).take(SHARE));
+                    check((first..=ONE).step_by(stride).take(SHARE));
                 }
             });
         }
@@ -47,13 +48,13 @@ fn named() -> String {
 }
 
 /// Checks that all paths find the oracle's sources, every column's.
-fn check_sources(correctors: &[Corrector], geometry: &Geometry, step: u32) {
-    let expected = sources(geometry, step);
+fn check_sources(correctors: &[Corrector], geometry: &Geometry, factor: u32) {
+    let expected = sources(geometry, factor);
     let mut found = (vec![0; geometry.width()], vec![0; geometry.width()]);
     for corrector in correctors {
-        corrector.locate(geometry, step, &mut found.0, &mut found.1);
+        corrector.locate(geometry, row_factor(factor), &mut found.0, &mut found.1);
         let centre2 = geometry.centre2();
-        assert!(found == expected, "{}, Q = {step}, C = {centre2}", corrector.path());
+        assert!(found == expected, "{}, Q = {factor}, C = {centre2}", corrector.path());
         found.0.fill(-2);
     }
 }
@@ -65,8 +66,8 @@ fn every_path_finds_the_sources_of_all_factors_at_all_columns() {
     let geometry = Geometry::centred(MAX_WIDTH, 1, BitDepth::Twelve).unwrap();
     let kernel = Interpolant::Linear.into();
     let correctors: Vec<_> = paths().map(|path| Corrector::new(path, &kernel).unwrap()).collect();
-    over_factors("sources of 2^24 factors at 2592 columns", 1, |steps| {
-        steps.for_each(|step| check_sources(&correctors, &geometry, step));
+    over_factors("sources of 2^24 factors at 2592 columns", 1, |factors| {
+        factors.for_each(|factor| check_sources(&correctors, &geometry, factor));
     });
 }
 
@@ -76,13 +77,13 @@ fn every_path_finds_the_sources_of_all_factors_at_all_columns() {
 fn every_path_finds_the_sources_about_any_centre() {
     let kernel = Interpolant::Linear.into();
     let correctors: Vec<_> = paths().map(|path| Corrector::new(path, &kernel).unwrap()).collect();
-    over_factors("sources about six centres on a stride of the factors", STRIDE, |steps| {
-        for step in steps {
+    over_factors("sources about six centres on a stride of the factors", STRIDE, |factors| {
+        for factor in factors {
             for width in WIDTHS {
                 let last = 2 * width as u32 - 2;
-                for centre2 in [0, 1, last / 3, last - 1, last, step % (last + 1)] {
+                for centre2 in [0, 1, last / 3, last - 1, last, factor % (last + 1)] {
                     let geometry = Geometry::new(width, 1, BitDepth::Twelve, centre2).unwrap();
-                    check_sources(&correctors, &geometry, step);
+                    check_sources(&correctors, &geometry, factor);
                 }
             }
         }
@@ -102,23 +103,23 @@ fn kernels() -> [Kernel; 4] {
 #[ignore = "minutes; scripts/soak factors"]
 fn every_path_corrects_whole_rows_on_a_stride_of_the_factors() {
     let kernels = kernels();
-    over_factors("whole rows on a stride of the factors, four kernels", STRIDE, |steps| {
+    over_factors("whole rows on a stride of the factors, four kernels", STRIDE, |factors| {
         let mut correctors: Vec<Vec<_>> = kernels
             .iter()
             .map(|kernel| paths().map(|path| Corrector::new(path, kernel).unwrap()).collect())
             .collect();
-        for (index, step) in steps.enumerate() {
-            let width = WIDTHS[(step as usize + index) % WIDTHS.len()];
-            let depth = BitDepth::ALL[step as usize % 3];
-            let geometry = Geometry::new(width, 1, depth, step % (2 * width as u32 - 1)).unwrap();
-            let sample = |column: u32| (column ^ step).wrapping_mul(2_654_435_761) >> (32 - depth.bits());
+        for (index, factor) in factors.enumerate() {
+            let width = WIDTHS[(factor as usize + index) % WIDTHS.len()];
+            let depth = BitDepth::ALL[factor as usize % 3];
+            let geometry = Geometry::new(width, 1, depth, factor % (2 * width as u32 - 1)).unwrap();
+            let sample = |column: u32| (column ^ factor).wrapping_mul(2_654_435_761) >> (32 - depth.bits());
             let row: Vec<u16> = (0..width as u32).map(|column| sample(column) as u16).collect();
             let (mut expected, mut found) = (vec![0; width], vec![0; width]);
             for (kernel, correctors) in kernels.iter().zip(&mut correctors) {
-                correct_row(&geometry, step, kernel, &row, &mut expected);
+                correct_row(&geometry, row_factor(factor), kernel, &row, &mut expected);
                 for corrector in correctors {
-                    corrector.correct_row(&geometry, step, &row, &mut found);
-                    assert!(found == expected, "{}: Q = {step}, {geometry:?}", corrector.path());
+                    corrector.correct_row(&geometry, row_factor(factor), &row, &mut found);
+                    assert!(found == expected, "{}: Q = {factor}, {geometry:?}", corrector.path());
                 }
             }
         }

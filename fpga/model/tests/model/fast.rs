@@ -5,9 +5,11 @@ use std::sync::Once;
 
 use halfrow_model::{
     BitDepth, CorrectError, Corrector, Frame, Geometry, Interpolant, Kernel, MAX_WIDTH, MIN_WIDTH, ModelPath,
-    NODES, Phase, STEP_ONE, TableSet, correct, correct_row, source,
+    NODES, Phase, TableSet, correct, correct_row, source,
 };
 use proptest::prelude::*;
+
+use crate::{ONE, row_factor};
 
 /// The paths to be held against the oracle. Says which ones this processor cannot try, past the harness, which keeps what
 /// passing tests print.
@@ -45,8 +47,8 @@ fn any_kernel() -> impl Strategy<Value = Kernel> {
 }
 
 /// Factors, the least and the greatest among them often.
-fn any_step() -> impl Strategy<Value = u32> {
-    prop_oneof![6 => 1..=STEP_ONE, 1 => Just(1), 1 => Just(STEP_ONE), 1 => STEP_ONE - 64..=STEP_ONE]
+fn any_factor() -> impl Strategy<Value = u32> {
+    prop_oneof![6 => 1..=ONE, 1 => Just(1), 1 => Just(ONE), 1 => ONE - 64..=ONE]
 }
 
 /// Widths up to `widest`, whole blocks or not, and centres, the outermost among them often.
@@ -79,34 +81,34 @@ fn samples(geometry: &Geometry, seed: u32) -> Vec<u16> {
 proptest! {
     #[test]
     fn every_path_corrects_a_row_as_the_oracle_does(
-        geometry in any_geometry(1..=1, MAX_WIDTH), step in any_step(), kernel in any_kernel(), seed in any::<u32>(),
+        geometry in any_geometry(1..=1, MAX_WIDTH), factor in any_factor(), kernel in any_kernel(), seed in any::<u32>(),
     ) {
         let row = samples(&geometry, seed);
         let mut expected = vec![0; geometry.width()];
-        correct_row(&geometry, step, &kernel, &row, &mut expected);
+        correct_row(&geometry, row_factor(factor), &kernel, &row, &mut expected);
         for path in paths() {
             let mut found = vec![0xffff; geometry.width()];
-            Corrector::new(path, &kernel).unwrap().correct_row(&geometry, step, &row, &mut found);
+            Corrector::new(path, &kernel).unwrap().correct_row(&geometry, row_factor(factor), &row, &mut found);
             prop_assert_eq!(&found, &expected, "{}", path);
         }
     }
 
     #[test]
     fn every_path_corrects_a_frame_as_the_oracle_does(
-        geometry in any_geometry(1..=5, 200), steps in prop::collection::vec(any_step(), 5), mirrored in 0..=2_usize,
+        geometry in any_geometry(1..=5, 200), factors in prop::collection::vec(any_factor(), 5), mirrored in 0..=2_usize,
         kernel in any_kernel(), seed in any::<u32>(),
     ) {
         let height = geometry.height();
         // Each row's own, the mirrored row's, or next to it.
-        let step = |row: usize| {
+        let factor = |row: usize| {
             let other = row.min(height - 1 - row);
             match mirrored {
-                0 => steps[row],
-                1 => steps[other],
-                _ => (steps[other] ^ u32::from(row > other)).clamp(1, STEP_ONE),
+                0 => factors[row],
+                1 => factors[other],
+                _ => (factors[other] ^ u32::from(row > other)).clamp(1, ONE),
             }
         };
-        let tables = TableSet::new(geometry, (0..height).map(step).collect()).unwrap();
+        let tables = TableSet::from_units(geometry, &(0..height).map(factor).collect::<Vec<_>>()).unwrap();
         let frame = Frame::new(geometry.width(), geometry.depth(), Phase::Grbg, samples(&geometry, seed)).unwrap();
         let expected = correct(&tables, &kernel, &frame).unwrap();
         for path in ModelPath::available() {
@@ -118,12 +120,12 @@ proptest! {
     }
 
     #[test]
-    fn every_path_finds_the_sources_that_the_oracle_finds(geometry in any_geometry(1..=1, MAX_WIDTH), step in any_step()) {
-        let expected = sources(&geometry, step);
+    fn every_path_finds_the_sources_that_the_oracle_finds(geometry in any_geometry(1..=1, MAX_WIDTH), factor in any_factor()) {
+        let expected = sources(&geometry, factor);
         for path in ModelPath::available() {
             let corrector = Corrector::new(path, &Interpolant::Linear.into()).unwrap();
             let (mut bases, mut distances) = (vec![i16::MIN; geometry.width()], vec![0xffff; geometry.width()]);
-            corrector.locate(&geometry, step, &mut bases, &mut distances);
+            corrector.locate(&geometry, row_factor(factor), &mut bases, &mut distances);
             prop_assert_eq!(&bases, &expected.0, "{}", path);
             prop_assert_eq!(&distances, &expected.1, "{}", path);
         }
@@ -131,9 +133,9 @@ proptest! {
 }
 
 /// The oracle's a and x of every column; x tells n, too.
-pub(crate) fn sources(geometry: &Geometry, step: u32) -> (Vec<i16>, Vec<u16>) {
+pub(crate) fn sources(geometry: &Geometry, factor: u32) -> (Vec<i16>, Vec<u16>) {
     let of = |column| {
-        let source = source(geometry, step, column);
+        let source = source(geometry, row_factor(factor), column);
         let x = (source.node << 8) as u16 + source.fraction as u16;
         assert_eq!(source.column - source.base, i64::from(x >> 13));
         (source.base as i16, x)
@@ -155,16 +157,21 @@ fn every_path_follows_the_steepest_kernels() {
         [all.collect(), five.collect(), fitting.collect()].map(|nodes| Kernel::from_nodes(nodes).unwrap())
     {
         // Q = 2^24 − 2^12 moves x by one a column pair.
-        for step in [STEP_ONE - (1 << 12), STEP_ONE / 3] {
+        for factor in [ONE - (1 << 12), ONE / 3] {
             let geometry = Geometry::new(MAX_WIDTH, 1, BitDepth::Twelve, 0).unwrap();
             for seed in [0, 1] {
                 let row = samples(&geometry, seed);
                 let mut expected = vec![0; MAX_WIDTH];
-                correct_row(&geometry, step, &kernel, &row, &mut expected);
+                correct_row(&geometry, row_factor(factor), &kernel, &row, &mut expected);
                 for path in paths() {
                     let mut found = vec![0; MAX_WIDTH];
-                    Corrector::new(path, &kernel).unwrap().correct_row(&geometry, step, &row, &mut found);
-                    assert_eq!(found, expected, "{path}, step {step}");
+                    Corrector::new(path, &kernel).unwrap().correct_row(
+                        &geometry,
+                        row_factor(factor),
+                        &row,
+                        &mut found,
+                    );
+                    assert_eq!(found, expected, "{path}, Q = {factor}");
                 }
             }
         }
@@ -181,8 +188,8 @@ fn a_corrector_goes_on_with_other_widths() {
             let geometry = Geometry::centred(width, 1, BitDepth::Twelve).unwrap();
             let row = samples(&geometry, width as u32);
             let (mut expected, mut found) = (vec![0; width], vec![0; width]);
-            correct_row(&geometry, STEP_ONE - 5, &kernel, &row, &mut expected);
-            corrector.correct_row(&geometry, STEP_ONE - 5, &row, &mut found);
+            correct_row(&geometry, row_factor(ONE - 5), &kernel, &row, &mut expected);
+            corrector.correct_row(&geometry, row_factor(ONE - 5), &row, &mut found);
             assert_eq!(found, expected, "{path}, {width} columns");
         }
     }
@@ -190,7 +197,7 @@ fn a_corrector_goes_on_with_other_widths() {
 
 #[test]
 fn a_frame_that_the_tables_are_not_for_is_refused_by_every_path() {
-    let tables = TableSet::new(Geometry::centred(64, 2, BitDepth::Twelve).unwrap(), vec![1; 2]).unwrap();
+    let tables = TableSet::from_units(Geometry::centred(64, 2, BitDepth::Twelve).unwrap(), &[1; 2]).unwrap();
     let frame = Frame::new(64, BitDepth::Ten, Phase::Grbg, vec![0; 128]).unwrap();
     for path in ModelPath::available() {
         let mut corrector = Corrector::new(path, &Interpolant::Linear.into()).unwrap();

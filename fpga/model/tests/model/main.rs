@@ -14,5 +14,16 @@ mod kernel;
 mod lens;
 mod projection;
 mod real;
+mod row_factor;
 mod scenes;
 mod table;
+
+use halfrow_model::RowFactor;
+
+/// A row factor of 1, in units of 2^-24.
+const ONE: u32 = 1 << 24;
+
+/// The row factor of `units`, which are 1 to 2^24.
+fn row_factor(units: u32) -> RowFactor {
+    RowFactor::new(units).unwrap()
+}

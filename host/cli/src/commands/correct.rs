@@ -35,8 +35,7 @@ pub(super) struct Arguments {
     inputs: Vec<OsString>,
     #[command(flatten)]
     tables: TableArgument,
-    /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(long, value_name = "NAME|FILE", help = optics::kernel_help(", instead of the table file's"))]
     kernel: Option<OsString>,
     /// Correct with the reference model, whatever board is set
     #[arg(long)]

@@ -62,8 +62,7 @@ struct Measure {
     /// Folders of PNG photographs in colour, 8 bits
     #[arg(long, value_name = "FOLDER", required = true, num_args = 1..)]
     images: Vec<PathBuf>,
-    /// nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
-    #[arg(long, value_name = "NAME|FILE")]
+    #[arg(long, help = optics::kernel_help(""), value_name = "NAME|FILE")]
     kernel: OsString,
 }
 

@@ -98,7 +98,7 @@ impl From<BoardError> for Failure {
 
 impl From<Misfit> for Failure {
     fn from(error: Misfit) -> Self {
-        Self::call(error)
+        if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
     }
 }
 

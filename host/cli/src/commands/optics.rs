@@ -12,6 +12,7 @@ use halfrow_model::{
 };
 
 use super::{CallError, Failure};
+use halfrow::kernels;
 use halfrow::lenses::LensFile;
 
 use super::table_file::NamedTables;
@@ -234,6 +235,11 @@ impl LensArguments {
 /// Column and row of the frame's middle.
 fn middle(geometry: &Geometry) -> (f64, f64) {
     ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0)
+}
+
+/// The help of an option that takes a kernel.
+pub(super) fn kernel_help(instead: &str) -> String {
+    format!("The kernel: {}, or a file{instead}", kernels::names(", "))
 }
 
 /// A kernel by name, or from a kernel file.

@@ -99,6 +99,7 @@ impl From<PaperError> for Failure {
     fn from(error: PaperError) -> Self {
         match &error {
             PaperError::Board(of_board) => Self { exit: of_board.cause().into(), error: error.into() },
+            PaperError::Misfit(misfit) if misfit.is_other_datapath() => Self::refused(error),
             PaperError::Misfit(_) | PaperError::Synthesis { .. } => Self::call(error),
             _ => Self::error(error),
         }

@@ -19,8 +19,7 @@ use halfrow_frames::written_aside::WriteAsideError;
 pub(super) struct Arguments {
     #[command(flatten)]
     lens: LensArguments,
-    /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file
-    #[arg(long, default_value = "hermite", value_name = "NAME|FILE")]
+    #[arg(long, help = optics::kernel_help(""), default_value = "hermite", value_name = "NAME|FILE")]
     kernel: OsString,
     /// Where to: FILE.json, or FILE.mem for two files that Verilog's $readmemh reads
     #[arg(short, long, value_name = "FILE")]

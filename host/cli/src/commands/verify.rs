@@ -40,8 +40,7 @@ pub(super) struct Arguments {
     frame: Vec<OsString>,
     #[command(flatten)]
     tables: TableArgument,
-    /// The kernel: nearest, linear, keys, hermite, hermite-balanced, sharp5, sharp7, or a file, instead of the table file's
-    #[arg(long, value_name = "NAME|FILE", env = "HALFROW_KERNEL")]
+    #[arg(long, value_name = "NAME|FILE", help = optics::kernel_help(", instead of the table file's"), env = "HALFROW_KERNEL")]
     kernel: Option<OsString>,
     /// Write a report (JSON, JUnit, HTML) into this folder
     #[arg(long, value_name = "FOLDER", env = "HALFROW_REPORT")]

@@ -111,10 +111,10 @@ fn impulses_meet_every_tap_in_every_interval_of_the_kernel() {
     let frame = render(Builtin::Impulses, &scene);
     let tables = TableSet::from_lens(scene.geometry, &Equidistant::default(), None).unwrap();
     let mut met = HashSet::new();
-    for (index, (row, &step)) in frame.rows().zip(tables.steps()).enumerate() {
+    for (index, (row, &row_factor)) in frame.rows().zip(tables.row_factors()).enumerate() {
         let rare = if index % 2 == 0 { 4095 } else { 0 };
         for column in 4..row.len() - 4 {
-            let source = source(&scene.geometry, step, column);
+            let source = source(&scene.geometry, row_factor, column);
             let taps = (0..7).map(|tap| row[scene.geometry.sample_column(source.base - 2 + tap)]);
             let hits: Vec<usize> =
                 (0..7).zip(taps).filter(|(_, sample)| *sample == rare).map(|hit| hit.0).collect();

@@ -29,7 +29,9 @@ pub(crate) use sent::Sent;
 pub use stop::Stop;
 pub(crate) use tables::{ReadBack, TablePort};
 
-pub use halfrow_protocol::message::{Bank, BoardNature, Capabilities, RefusalCode, Status, Table, Welcome};
+pub use halfrow_protocol::message::{
+    Bank, BoardNature, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,
+};
 
 /// How a session is opened.
 #[derive(Clone, Debug, Default)]

@@ -39,7 +39,7 @@ impl Board {
     /// Every port that the datapath reads tables by.
     fn table_ports(&self) -> Vec<TablePort> {
         let ports = |table, count| (0..count).map(move |port| TablePort { table, port });
-        ports(Table::Steps, self.capabilities.step_ports)
+        ports(Table::RowFactors, self.capabilities.step_ports)
             .chain(ports(Table::Kernel, self.capabilities.kernel_ports))
             .collect()
     }
@@ -49,7 +49,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
     pub fn upload(&mut self, tables: &TableSet, kernel: &Kernel) -> Result<(), BoardError> {
-        self.write(Table::Steps, &tables.to_bytes())?;
+        self.write(Table::RowFactors, &tables.to_bytes())?;
         self.write(Table::Kernel, &kernel.to_bytes())
     }
 
@@ -90,13 +90,13 @@ impl Board {
         tables: &TableSet,
         kernel: &Kernel,
     ) -> Result<Vec<ReadBack>, BoardError> {
-        let steps = (tables.geometry().height() as u16, crc32fast::hash(&tables.to_bytes()));
+        let row_factors = (tables.geometry().height() as u16, crc32fast::hash(&tables.to_bytes()));
         let nodes = (NODES as u16, crc32fast::hash(&kernel.to_bytes()));
         self.table_ports()
             .into_iter()
             .map(|port| {
                 let (count, expected) = match port.table {
-                    Table::Steps => steps,
+                    Table::RowFactors => row_factors,
                     Table::Kernel => nodes,
                 };
                 let span = Span { table: port.table, bank, port: port.port, first: 0, count };

@@ -5,7 +5,7 @@
 //! between two reads, and a factor above 1. It reads the row as a board does, by a window of eight samples and one read a
 //! pixel clock (DATAPATH.md, "Ring").
 
-use halfrow_model::{Geometry, Kernel, STEP_ONE, correct_row, source};
+use halfrow_model::{Geometry, Kernel, RowFactor, Source, correct_row, source_by_entry};
 
 /// Samples in the window, columns n − 3 to n + 4.
 const WINDOW: usize = 8;
@@ -22,8 +22,8 @@ const LEFT_OF_N: usize = 1 << 13;
 pub(super) struct RowTables<'a> {
     /// Size, depth and centre.
     pub(super) geometry: &'a Geometry,
-    /// The row's factor Q; 1 to 2^24 when it is sound.
-    pub(super) step: u32,
+    /// The table's entry as the board reads it: a row factor when the board is sound, else any word.
+    pub(super) entry: u32,
     /// The kernel.
     pub(super) kernel: &'a Kernel,
 }
@@ -70,11 +70,11 @@ impl Default for Wiring {
 impl RowTables<'_> {
     /// What a board without defect makes of `input`, a row of the geometry's width, with these tables.
     pub(super) fn corrected(&self, input: &[u16]) -> Vec<u16> {
-        if !(1..=STEP_ONE).contains(&self.step) {
+        let Ok(row_factor) = RowFactor::new(self.entry) else {
             return self.run(&Wiring::default(), |column, _| self.sample_of(input, column));
-        }
+        };
         let mut output = vec![0; self.geometry.width()];
-        correct_row(self.geometry, self.step, self.kernel, input, &mut output);
+        correct_row(self.geometry, row_factor, self.kernel, input, &mut output);
         output
     }
 
@@ -84,7 +84,7 @@ impl RowTables<'_> {
         let mut window: Option<Window> = None;
         (0..self.geometry.width())
             .map(|output| {
-                let source = source(self.geometry, self.step, output);
+                let source = self.source(output);
                 let column = source.column.rem_euclid(COLUMNS);
                 let window = window.get_or_insert_with(|| Window::load(column, |m| read(m, output)));
                 window.follow(column, |m| read(m, output));
@@ -96,9 +96,14 @@ impl RowTables<'_> {
             .collect()
     }
 
+    /// Where the output of a column is taken from.
+    pub(super) fn source(&self, column: usize) -> Source {
+        source_by_entry(self.geometry, self.entry, column)
+    }
+
     /// The output at one column of `input`.
     pub(super) fn output(&self, input: &[u16], column: usize) -> u16 {
-        let source = source(self.geometry, self.step, column);
+        let source = self.source(column);
         let position = source.node << 8 | source.fraction as usize;
         let taps = std::array::from_fn(|tap| self.sample_of(input, source.base - 2 + tap as i64));
         Wiring::default().output(self.kernel, position, taps, self.geometry.depth().max())

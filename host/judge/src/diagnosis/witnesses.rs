@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_model::{Frame, Geometry};
+use halfrow_model::{Frame, Geometry, RowFactor};
 
 use super::datapath::RowTables;
 use super::{Case, Uploaded};
@@ -52,7 +52,8 @@ impl<'a> Witness<'a> {
     /// What the row must be made with.
     pub(super) fn tables(&self) -> RowTables<'a> {
         let Uploaded { tables, kernel, .. } = self.uploaded;
-        RowTables { geometry: tables.geometry(), step: tables.step(self.row).unwrap_or_default(), kernel }
+        let entry = tables.row_factor(self.row).map_or(0, RowFactor::get);
+        RowTables { geometry: tables.geometry(), entry, kernel }
     }
 
     /// Where it stands in the run.

@@ -25,7 +25,7 @@ pub enum NamedKernel {
 
 /// A name of no kernel.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is no named kernel; use nearest, linear, keys, hermite, hermite-balanced, sharp5 or sharp7")]
+#[error("`{0}` is no named kernel; use {known}", known = names(" or "))]
 pub struct UnknownKernel(String);
 
 /// A named kernel that this program was built with and cannot make.
@@ -36,6 +36,16 @@ pub struct DamagedKernel {
     name: &'static str,
     /// What is wrong with its numbers.
     source: ContentError,
+}
+
+/// The names of all named kernels, with commas between them and `last` in front of the last one.
+#[must_use]
+pub fn names(last: &str) -> String {
+    let names = NamedKernel::ALL.map(NamedKernel::name);
+    match names.split_last() {
+        Some((end, others)) => format!("{}{last}{end}", others.join(", ")),
+        None => String::new(),
+    }
 }
 
 impl NamedKernel {

@@ -107,7 +107,7 @@ impl Test<'_> {
         let begun = self.begin();
         while !self.is_over(&begun) {
             let entries = self.entries();
-            self.board.write(Table::Steps, &entries)?;
+            self.board.write(Table::RowFactors, &entries)?;
         }
         Ok(self.throughput(&begun))
     }
@@ -115,9 +115,9 @@ impl Test<'_> {
     /// The same read back. Returns the number of packets that hold something else as well.
     fn inward(&mut self) -> Result<(Throughput, u64), BoardError> {
         let entries = self.entries();
-        self.board.write(Table::Steps, &entries)?;
+        self.board.write(Table::RowFactors, &entries)?;
         let begun = self.begin();
-        let port = TablePort { table: Table::Steps, port: 0 };
+        let port = TablePort { table: Table::RowFactors, port: 0 };
         let mut wrong = 0;
         while !self.is_over(&begun) {
             let read = self.board.read_entries(Bank::Shadow, port, entries.len() / 4)?;
@@ -128,7 +128,7 @@ impl Test<'_> {
 
     /// A packet of row factors, 1 to 2^24, as many as fit into packet and table.
     fn entries(&mut self) -> Vec<u8> {
-        let count = Board::entries_at_once(Table::Steps).min(self.board.capabilities.max_height.into());
+        let count = Board::entries_at_once(Table::RowFactors).min(self.board.capabilities.max_height.into());
         (0..count).flat_map(|_| (1 + (self.random.next_u32() >> 8)).to_le_bytes()).collect()
     }
 }

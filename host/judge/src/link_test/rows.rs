@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, STEP_ONE, TableSet};
+use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet};
 use rand_core::Rng;
 
 use super::{LinkTestError, Test, Throughput};
@@ -64,5 +64,5 @@ fn size(board: &Board) -> (usize, usize) {
 /// Tables that leave every row as it is.
 fn straight_tables(frame: &Frame) -> Result<TableSet, Box<dyn std::error::Error + Send + Sync>> {
     let geometry = Geometry::centred(frame.width(), frame.height(), frame.depth())?;
-    Ok(TableSet::new(geometry, vec![STEP_ONE; frame.height()])?)
+    Ok(TableSet::new(geometry, vec![RowFactor::ONE; frame.height()])?)
 }

@@ -1,5 +1,6 @@
-//! The folder of a report: `report.json`, `report.xml` and `report.html`, all of one run or none.
+//! The folder of a report: its JSON and its other views, all of one run or none.
 
+use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufReader, Write as _};
 use std::path::{Path, PathBuf};
@@ -7,13 +8,11 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 
-use super::{html, json, junit};
+use super::{VIEWS, json};
 use crate::result::{Evidence, Report};
 use halfrow_frames::written_aside::{AsideFolder, Claim, Misplaced, WriteAsideError};
 
 const JSON: &str = "report.json";
-const JUNIT: &str = "report.xml";
-const HTML: &str = "report.html";
 
 /// A report that could not be written.
 #[derive(Debug, thiserror::Error)]
@@ -132,8 +131,9 @@ impl ReportFolder {
     /// [`ReportError`] when a view cannot be encoded, a file cannot be written, or something came to be in the way.
     pub fn commit(self, report: &Report, evidence: &[Evidence]) -> Result<(), ReportError> {
         self.write(JSON, &(self.json)(report)?)?;
-        self.write(JUNIT, &junit::render(report)?)?;
-        self.write(HTML, &html::render(report, evidence)?)?;
+        for view in &VIEWS {
+            self.write(view.name, &(view.render)(report, evidence)?)?;
+        }
         let Self { path, overwrite, aside, .. } = self;
         let placed = if overwrite { aside.replace(foreign) } else { aside.put_in_place() };
         placed.map_err(|misplaced| match misplaced {
@@ -190,7 +190,7 @@ fn foreign(path: &Path) -> Option<String> {
         Ok(entries) => entries,
         Err(error) => return Some(format!("it cannot be listed ({error})")),
     };
-    let ours = |name: &std::ffi::OsStr| [JSON, JUNIT, HTML].iter().any(|our| name == *our);
+    let ours = |name: &OsStr| name == JSON || VIEWS.iter().any(|view| name == view.name);
     if let Some(other) = entries.iter().map(fs::DirEntry::file_name).find(|name| !ours(name)) {
         return Some(format!("it also holds `{}`", other.display()));
     }

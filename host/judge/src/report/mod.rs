@@ -13,3 +13,19 @@ pub use html::document;
 pub use html::render as html;
 pub use json::render as json;
 pub use junit::render as junit;
+
+use crate::result::{Evidence, Report};
+
+/// A view in the folder of a report.
+struct View {
+    /// Its file's name.
+    name: &'static str,
+    render: fn(&Report, &[Evidence]) -> Result<String, ReportError>,
+}
+
+/// The views in the folder of a report beside its JSON, by which the folder is known. A new one is a module and a line
+/// here.
+const VIEWS: [View; 2] = [
+    View { name: "report.xml", render: |report, _| Ok(junit::render(report)?) },
+    View { name: "report.html", render: |report, evidence| Ok(html::render(report, evidence)?) },
+];

@@ -3,13 +3,11 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_model::{Frame, Geometry, NODES, Source, TableSet, source};
+use halfrow_model::{Frame, Geometry, NODES, RowFactor, Source, TableSet, source};
 
 use super::plan::Generation;
 use crate::result::{Identity, NotExercised};
 
-/// Bits of a row factor.
-const FACTOR_BITS: u32 = 25;
 /// The taps in the order of their columns.
 const TAPS: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
 
@@ -110,25 +108,26 @@ fn line_memory_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
 
 /// The most samples that are stored behind one that is still needed. The row that is stretched most decides, at its end.
 fn look_back(tables: &TableSet) -> Option<i64> {
-    let (geometry, &step) = (tables.geometry(), tables.steps().iter().min()?);
+    let (geometry, &least) = (tables.geometry(), tables.row_factors().iter().min()?);
     let last = geometry.width() - 1;
-    Some(last as i64 - source(geometry, step, last).column + geometry.width() as i64 / 2 - 1)
+    Some(last as i64 - source(geometry, least, last).column + geometry.width() as i64 / 2 - 1)
 }
 
 /// Lines of the board's row table that tell no two rows of different factors apart.
 fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     let tells = |line: &usize| {
         tables.iter().any(|tables| {
-            let steps = tables.steps();
-            let above = (0..steps.len()).filter(|row| row >> line & 1 == 1);
-            above.into_iter().any(|row| steps[row] != steps[row - (1 << line)])
+            let factors = tables.row_factors();
+            let above = (0..factors.len()).filter(|row| row >> line & 1 == 1);
+            above.into_iter().any(|row| factors[row] != factors[row - (1 << line)])
         })
     };
     lines(board.max_height.into()).filter(|line| !tells(line)).collect()
 }
 
 fn factor_bits(tables: &[&TableSet]) -> Vec<usize> {
-    Levels::of(tables.iter().flat_map(|tables| tables.steps()).copied()).constant(FACTOR_BITS)
+    let factors = tables.iter().flat_map(|tables| tables.row_factors());
+    Levels::of(factors.map(|factor| factor.get())).constant(RowFactor::BITS)
 }
 
 /// Nodes that no output is made with, and taps of a board of `taps` that weigh nothing in any.
@@ -136,7 +135,7 @@ fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<S
     let (mut used, mut weighed) = ([false; NODES], [false; TAPS.len()]);
     let alike = |one: &Generation, other: &Generation| {
         one.tables.geometry().centre2() == other.tables.geometry().centre2()
-            && one.tables.steps() == other.tables.steps()
+            && one.tables.row_factors() == other.tables.row_factors()
             && one.kernel == other.kernel
     };
     for (place, generation) in generations.iter().enumerate() {
@@ -160,10 +159,10 @@ fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<S
 /// The nodes that outputs are made with: the one left of the source, and the next one unless it lies right on the first.
 fn nodes_used(tables: &TableSet) -> [bool; NODES] {
     let (geometry, mut used) = (tables.geometry(), [false; NODES]);
-    let steps: BTreeSet<_> = tables.steps().iter().copied().collect();
-    for step in steps {
+    let factors: BTreeSet<_> = tables.row_factors().iter().copied().collect();
+    for factor in factors {
         for column in 0..geometry.width() {
-            let Source { node, fraction, .. } = source(geometry, step, column);
+            let Source { node, fraction, .. } = source(geometry, factor, column);
             used[node] = true;
             used[node + 1] |= fraction > 0;
         }
@@ -216,9 +215,10 @@ mod tests {
     }
 
     /// 128 x 16 around the middle, C = 127, unless told otherwise.
-    fn generation(centre2: u32, interpolant: Interpolant, step: impl Fn(u32) -> u32) -> Generation {
+    fn generation(centre2: u32, interpolant: Interpolant, factor: impl Fn(u32) -> u32) -> Generation {
         let geometry = Geometry::new(128, 16, BitDepth::Twelve, centre2).unwrap();
-        let tables = TableSet::new(geometry, (0..16).map(step).collect()).unwrap();
+        let factors = (0..16).map(|row| RowFactor::new(factor(row)).unwrap()).collect();
+        let tables = TableSet::new(geometry, factors).unwrap();
         Generation { number: 2, tables, kernel: Kernel::from(interpolant) }
     }
 

@@ -14,7 +14,7 @@ struct GoldenRow {
 }
 
 /// Its row factor.
-const STEP: u32 = 14_648_488;
+const ROW_FACTOR: u32 = 14_648_488;
 
 const ROWS: [GoldenRow; 2] = [
     GoldenRow {
@@ -143,7 +143,7 @@ fn judge_row(golden: &GoldenRow) -> Result<usize, GoldenError> {
     let interpolant = golden.interpolant;
     let found = Geometry::new(64, 1, BitDepth::Twelve, 63)
         .ok()
-        .and_then(|geometry| TableSet::new(geometry, vec![STEP]).ok())
+        .and_then(|geometry| TableSet::from_units(geometry, &[ROW_FACTOR]).ok())
         .zip(frame(64, 1))
         .and_then(|(tables, frame)| correct(&tables, &Kernel::from(golden.interpolant), &frame).ok())
         .ok_or(GoldenError::Unmade { what: "row" })?;

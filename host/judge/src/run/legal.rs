@@ -1,6 +1,6 @@
 //! What a board may say of itself: `protocol/WIRE.md` section 3 and `fpga/DATAPATH.md`.
 
-use crate::board::Capabilities;
+use crate::board::{Capabilities, Datapath};
 use crate::result::Finding;
 
 /// What a capability may be.
@@ -21,6 +21,7 @@ const NARROWEST: u16 = 64;
 /// L = 3 + p: what an output may need beside its column, and the pipeline.
 const LATENCY: std::ops::RangeInclusive<u8> = 3..=super::MAX_LATENCY;
 
+/// Of datapath 1.
 const RULES: [Rule; 11] = [
     Rule {
         name: "max_width",
@@ -90,9 +91,12 @@ const RULES: [Rule; 11] = [
     },
 ];
 
-/// Why no board can have these capabilities, if none can.
-pub(super) fn impossible(capabilities: &Capabilities) -> Option<Finding> {
-    let broken = RULES.iter().find(|rule| !(rule.holds)(capabilities))?;
+/// Why no board of `datapath` can have these capabilities, if none can.
+pub(super) fn impossible(datapath: Datapath, capabilities: &Capabilities) -> Option<Finding> {
+    let rules = match datapath {
+        Datapath::RowFactors => &RULES,
+    };
+    let broken = rules.iter().find(|rule| !(rule.holds)(capabilities))?;
     let (Rule { name, legal, .. }, value) = (broken, (broken.value)(capabilities));
     let (capability, legal) = ((*name).to_owned(), (*legal).to_owned());
     Some(Finding::CapabilityImpossible { capability, value, legal })

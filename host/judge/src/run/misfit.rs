@@ -1,14 +1,18 @@
 //! Whether a board can have what a plan uploads.
 
 use halfrow_model::{Kernel, TableError, TableSet, Taps};
-use halfrow_protocol::message::BoardNature;
+use halfrow_protocol::message::{BoardNature, Datapath, UnknownDatapath};
 
 use super::plan::TooManyFrames;
 use crate::board::Capabilities;
 
-/// Why a board cannot have tables, a kernel or frames: the call does not fit the board, so that there is nothing to judge.
+/// Why a board cannot have tables, a kernel or frames: the call does not fit the board, or the board not this program, so
+/// that there is nothing to judge.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Misfit {
+    /// The board's datapath is none that tables can be made for.
+    #[error("the board can be given no tables")]
+    Datapath(#[from] UnknownDatapath),
     /// The frames are too large.
     #[error(
         "frames of {width} x {height} do not fit the board, which takes {most_width} x {most_height} at most; {remedy}"
@@ -42,9 +46,22 @@ pub enum Misfit {
     TooManyFrames(#[from] TooManyFrames),
 }
 
+impl Misfit {
+    /// Whether it is the board that does not fit this program, and not the call that does not fit the board.
+    #[must_use]
+    pub fn is_other_datapath(&self) -> bool {
+        matches!(self, Self::Datapath(_))
+    }
+}
+
 /// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
 #[must_use]
 pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<Misfit> {
+    match capabilities.known_datapath() {
+        // That of the tables.
+        Ok(Datapath::RowFactors) => {}
+        Err(unknown) => return Some(unknown.into()),
+    }
     let geometry = tables.geometry();
     let (width, height) = (geometry.width(), geometry.height());
     let (most_width, most_height) = (capabilities.max_width.into(), capabilities.max_height.into());

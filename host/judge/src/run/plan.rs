@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use halfrow_model::{
-    Equidistant, Frame, FrameError, Geometry, Interpolant, Kernel, Phase, STEP_ONE, TableSet,
+    Equidistant, Frame, FrameError, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet,
 };
 
 use super::variations::{Build, Vary, varied};
@@ -198,9 +198,9 @@ impl Plan {
     /// A row factor half way to 1 reaches half as far, so the ring's limits hold.
     #[must_use]
     pub fn generations(&self, build: &Build) -> Vec<Generation> {
-        let steps = self.tables.steps().iter().map(|&step| u32::midpoint(step, STEP_ONE)).collect();
+        let halved = self.tables.row_factors().iter().map(|own| own.midpoint(RowFactor::ONE)).collect();
         let kernel = self.decoy_kernel(build.taps);
-        let decoy = TableSet::new(*self.tables.geometry(), steps).ok();
+        let decoy = TableSet::new(*self.tables.geometry(), halved).ok();
         let decoy = decoy.map(|tables| Generation { number: DECOY, tables, kernel });
         let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
         decoy.into_iter().chain([judged]).chain(self.varied(build)).collect()

@@ -14,7 +14,7 @@ use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
 use super::variations::Build;
-use crate::board::Board;
+use crate::board::{Board, Datapath, UnknownDatapath};
 use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, Problem};
@@ -118,11 +118,14 @@ impl Run<'_> {
 
     fn identity(&mut self) -> Result<(), End> {
         let error = |cause, finding: Finding| Err(End::error(CheckName::Identity, cause, finding));
-        let datapath = self.board.capabilities.datapath;
-        if datapath != DATAPATH {
-            return error(Cause::Refused, Finding::DatapathUnknown { datapath, known: DATAPATH });
-        }
-        if let Some(impossible) = impossible(&self.board.capabilities) {
+        let datapath = match self.board.capabilities.known_datapath() {
+            Ok(datapath @ Datapath::RowFactors) => datapath,
+            Err(UnknownDatapath { id: datapath }) => {
+                let known = DATAPATH.id();
+                return error(Cause::Refused, Finding::DatapathUnknown { datapath, known });
+            }
+        };
+        if let Some(impossible) = impossible(datapath, &self.board.capabilities) {
             return error(Cause::Refused, impossible);
         }
         if self.options.require_hardware && self.findings.board.kind != BoardKind::Hardware {
@@ -137,7 +140,8 @@ impl Run<'_> {
             return end;
         }
         let (name, wire) = (self.board.capabilities.name.clone(), self.board.welcome.version);
-        self.findings.passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath });
+        self.findings
+            .passed(CheckName::Identity, Finding::BoardIdentified { name, wire, datapath: datapath.id() });
         Ok(())
     }
 

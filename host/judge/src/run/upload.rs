@@ -33,7 +33,7 @@ impl Run<'_> {
     fn upload(&mut self, generation: &Generation, first_frame: u16) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         self.board.upload(tables, kernel).map_err(|error| End::board(CheckName::Upload, &error))?;
-        let (rows, nodes) = (tables.steps().len(), kernel.nodes().len());
+        let (rows, nodes) = (tables.row_factors().len(), kernel.nodes().len());
         self.findings.passed(CheckName::Upload, Finding::TablesUploaded { rows, nodes, generation: *number });
         let ports = self.check_read_back(CheckName::ReadBack, Bank::Shadow, generation)?;
         self.board.commit(tables, kernel, first_frame, *number).map_err(|error| match error {
@@ -70,7 +70,7 @@ impl Run<'_> {
         wrong: &ReadBack,
     ) -> End {
         let expected = match wrong.port.table {
-            Table::Steps => generation.tables.to_bytes(),
+            Table::RowFactors => generation.tables.to_bytes(),
             Table::Kernel => generation.kernel.to_bytes(),
         };
         let entries = expected.len() / wrong.port.table.entry_bytes();

@@ -53,7 +53,7 @@ pub(super) fn varied(tables: &TableSet, vary: Vary, build: &Build) -> Vec<TableS
     let own = tables.geometry();
     let of = |depth, centre2| {
         let geometry = Geometry::new(own.width(), own.height(), depth, centre2).ok()?;
-        TableSet::new(geometry, tables.steps().to_vec()).ok()
+        TableSet::new(geometry, tables.row_factors().to_vec()).ok()
     };
     let centre = vary.centre.then(|| {
         other_centres(own).find_map(|centre2| {
@@ -80,11 +80,13 @@ fn other_centres(geometry: &Geometry) -> impl Iterator<Item = u32> {
 
 #[cfg(test)]
 mod tests {
+    use halfrow_model::RowFactor;
+
     use super::*;
 
-    fn tables(width: usize, centre2: u32, step: u32) -> TableSet {
+    fn tables(width: usize, centre2: u32, factor: u32) -> TableSet {
         let geometry = Geometry::new(width, 1, BitDepth::Twelve, centre2).unwrap();
-        TableSet::new(geometry, vec![step]).unwrap()
+        TableSet::new(geometry, vec![RowFactor::new(factor).unwrap()]).unwrap()
     }
 
     fn centre(tables: &TableSet, ring: usize) -> Option<u32> {

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 
 use halfrow_model::{GeometryError, KernelError, TableError};
 
-use super::{DATAPATH, Place};
+use halfrow_protocol::message::Datapath;
+
+use super::Place;
 
 /// A file that holds no tables that can be used. The source says where and what to do.
 #[derive(Debug, thiserror::Error)]
@@ -62,15 +64,28 @@ impl TableFileError {
     }
 }
 
-/// Tables for a datapath that is not [`DATAPATH`].
+/// Tables for a datapath that is not known.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the tables are for datapath {found}, and this program knows datapath {DATAPATH} alone; \
-     make them again with `halfrow tables`, or use a halfrow that knows datapath {found}"
+    "the tables are for datapath {found}, and this program knows datapath {known} alone; \
+     make them again with `halfrow tables`, or use a halfrow that knows datapath {found}",
+    known = known()
 )]
 pub struct WrongDatapath {
     /// The id found.
     pub found: i128,
+}
+
+impl WrongDatapath {
+    /// The datapath that tables say they are for.
+    pub(super) fn check(found: i128) -> Result<Datapath, Self> {
+        let id = u16::try_from(found).ok();
+        id.and_then(|id| Datapath::try_from(id).ok()).ok_or(Self { found })
+    }
+}
+
+fn known() -> String {
+    Datapath::ALL.iter().map(ToString::to_string).collect::<Vec<_>>().join(" and ")
 }
 
 /// Text that is no table file or no kernel file.

@@ -4,8 +4,9 @@ use std::io;
 use std::path::Path;
 
 use halfrow_model::{
-    BitDepth, Geometry, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, STEP_ONE, TAP_NAMES, TableSet,
+    BitDepth, Geometry, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, RowFactor, TAP_NAMES, TableSet,
 };
+use halfrow_protocol::message::Datapath;
 use serde_json::{Map, Value};
 
 use super::members::{Members, list, number};
@@ -15,7 +16,7 @@ use halfrow_frames::written_aside::{WriteAsideError, write_aside};
 /// A table file: everything that a board is given before frames.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TableFile {
-    /// The rows' steps and the geometry they are for.
+    /// The row factors and the geometry they are for.
     pub tables: TableSet,
     /// The interpolation weights.
     pub kernel: Kernel,
@@ -41,7 +42,7 @@ impl TableFile {
         Place::Height,
         Place::Bits,
         Place::Centre2,
-        Place::Steps,
+        Place::RowFactors,
         Place::Kernel,
     ];
 
@@ -56,17 +57,23 @@ impl TableFile {
     /// The table file with the content `text`.
     ///
     /// # Errors
-    /// [`ContentError`] for the first thing that is wrong: the JSON, then the datapath, the keys, the geometry, the steps
-    /// from the top, the nodes from x = 0.
+    /// [`ContentError`] for the first thing that is wrong: the JSON, then the datapath, the keys, the geometry, the row
+    /// factors from the top, the nodes from x = 0.
     pub fn parse(text: &str) -> Result<Self, ContentError> {
-        let mut members = Members::parse(text)?;
-        members.check_datapath()?;
+        let members = Members::parse(text)?;
+        match members.datapath()? {
+            // Without a datapath it is missed in its turn.
+            None | Some(Datapath::RowFactors) => Self::of_row_factors(members),
+        }
+    }
+
+    fn of_row_factors(mut members: Members) -> Result<Self, ContentError> {
         members.check_keys(&Self::KEYS)?;
         members.take(Place::Datapath)?;
         let geometry = geometry(&mut members)?;
-        let steps = steps(&members.take(Place::Steps)?, geometry.height())?;
+        let row_factors = row_factors(&members.take(Place::RowFactors)?, geometry.height())?;
         Ok(Self {
-            tables: TableSet::new(geometry, steps)?,
+            tables: TableSet::from_units(geometry, &row_factors)?,
             kernel: kernel(&members.take(Place::Kernel)?)?,
             about: members.take_about()?,
         })
@@ -105,8 +112,9 @@ impl KernelFile {
     /// [`ContentError`] for the first thing that is wrong, as [`TableFile::parse`]; `datapath` may be missing.
     pub fn parse(text: &str) -> Result<Self, ContentError> {
         let mut members = Members::parse(text)?;
-        members.check_datapath()?;
-        members.check_keys(&Self::KEYS)?;
+        match members.datapath()? {
+            None | Some(Datapath::RowFactors) => members.check_keys(&Self::KEYS)?,
+        }
         Ok(Self { kernel: kernel(&members.take(Place::Kernel)?)?, about: members.take_about()? })
     }
 
@@ -144,9 +152,9 @@ fn geometry(members: &mut Members) -> Result<Geometry, ContentError> {
     Ok(Geometry::new(width, height, depth, centre2)?)
 }
 
-fn steps(value: &Value, height: usize) -> Result<Vec<u32>, ContentError> {
-    let steps = list(Place::Steps, value, height)?.iter().enumerate();
-    steps.map(|(row, value)| number(Place::Step { row }, value, &(1..=STEP_ONE))).collect()
+fn row_factors(value: &Value, height: usize) -> Result<Vec<u32>, ContentError> {
+    let values = list(Place::RowFactors, value, height)?.iter().enumerate();
+    values.map(|(row, value)| number(Place::RowFactor { row }, value, &RowFactor::RANGE)).collect()
 }
 
 fn kernel(value: &Value) -> Result<Kernel, ContentError> {

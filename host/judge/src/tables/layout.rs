@@ -1,23 +1,23 @@
-//! How table files look: a key a line, some steps a line, a node a line.
+//! How table files look: a key a line, some row factors a line, a node a line.
 
 use halfrow_model::Kernel;
 use serde_json::{Map, Value};
 
 use super::{DATAPATH, KernelFile, Place, TableFile};
 
-/// Steps on a line: 8 digits and a comma each fill about a hundred columns.
-const STEPS_A_LINE: usize = 10;
+/// Row factors on a line: 8 digits and a comma each fill about a hundred columns.
+const FACTORS_A_LINE: usize = 10;
 
 /// The text of a table file, its members in the order of [`TableFile::KEYS`].
 pub(super) fn table_file(file: &TableFile) -> String {
     let geometry = file.tables.geometry();
-    let steps: Vec<_> = file.tables.steps().iter().map(ToString::to_string).collect();
+    let row_factors: Vec<_> = file.tables.units().map(|units| units.to_string()).collect();
     let members = TableFile::KEYS.into_iter().filter_map(|place| match place {
         Place::Width => Some((place, geometry.width().to_string())),
         Place::Height => Some((place, geometry.height().to_string())),
         Place::Bits => Some((place, geometry.depth().bits().to_string())),
         Place::Centre2 => Some((place, geometry.centre2().to_string())),
-        Place::Steps => Some((place, list(&steps, STEPS_A_LINE))),
+        Place::RowFactors => Some((place, list(&row_factors, FACTORS_A_LINE))),
         other => shared_member(other, &file.kernel, file.about.as_ref()),
     });
     object(members)

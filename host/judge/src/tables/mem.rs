@@ -1,6 +1,6 @@
 //! Memory images for Verilog's `$readmemh`: NAME.steps.mem and NAME.kernel.mem.
 //!
-//! A step is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20 digits: g0 r1 g4 r5 g6,
+//! A row factor is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20 digits: g0 r1 g4 r5 g6,
 //! 16 bits each in two's complement, g0 the most significant. Comments at the top say so, and give the geometry that
 //! reading needs.
 
@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use halfrow_model::{BitDepth, Geometry, Kernel, TAP_NAMES, TableSet};
+use halfrow_protocol::message::Datapath;
 
 use super::text::{self, quoted};
 use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath};
 use halfrow_frames::written_aside::{Aside, Claim, WriteAsideError};
 
-/// Hexadecimal digits of a step.
-const STEP_DIGITS: usize = 7;
+/// Hexadecimal digits of a row factor.
+const FACTOR_DIGITS: usize = 7;
 
 /// Hexadecimal digits of a weight.
 const WEIGHT_DIGITS: usize = 4;
@@ -45,15 +46,15 @@ pub fn write(
     kernel: &Kernel,
     overwrite: bool,
 ) -> Result<Vec<PathBuf>, WriteAsideError> {
-    let [steps, nodes] = paths(path);
+    let [rows, nodes] = paths(path);
     // Of two runs that overwrite each other, both files are those of the one or of the other.
     let _turn = Claim::wait(path)?;
     let written = [
-        Aside::written(&steps, overwrite, |out| out.write_all(steps_text(tables).as_bytes()))?,
+        Aside::written(&rows, overwrite, |out| out.write_all(row_factors_text(tables).as_bytes()))?,
         Aside::written(&nodes, overwrite, |out| out.write_all(kernel_text(kernel).as_bytes()))?,
     ];
     written.into_iter().try_for_each(Aside::put_in_place)?;
-    Ok(vec![steps, nodes])
+    Ok(vec![rows, nodes])
 }
 
 /// Reads both files for `path`, as [`paths`] names them.
@@ -61,8 +62,8 @@ pub fn write(
 /// # Errors
 /// [`TableFileError`] when one of them cannot be read or is no memory image of tables.
 pub fn read(path: &Path) -> Result<(TableSet, Kernel), TableFileError> {
-    let [steps, kernel] = paths(path);
-    Ok((read_one(steps, parse_steps)?, read_one(kernel, parse_kernel)?))
+    let [rows, kernel] = paths(path);
+    Ok((read_one(rows, parse_row_factors)?, read_one(kernel, parse_kernel)?))
 }
 
 fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<T, TableFileError> {
@@ -72,12 +73,12 @@ fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<
     }
 }
 
-/// The memory image of the rows' steps.
+/// The memory image of the row factors.
 #[must_use]
-pub fn steps_text(tables: &TableSet) -> String {
+pub fn row_factors_text(tables: &TableSet) -> String {
     let geometry = tables.geometry();
     let header = [
-        "// halfrow steps Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first".to_owned(),
+        "// halfrow row factors Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first".to_owned(),
         format!(
             "// datapath={DATAPATH} width={} height={} bits={} centre2={}",
             geometry.width(),
@@ -86,7 +87,7 @@ pub fn steps_text(tables: &TableSet) -> String {
             geometry.centre2()
         ),
     ];
-    let words = tables.steps().iter().map(|step| format!("{step:0STEP_DIGITS$x}"));
+    let words = tables.units().map(|units| format!("{units:0FACTOR_DIGITS$x}"));
     lines(header.into_iter().chain(words))
 }
 
@@ -108,18 +109,24 @@ fn lines(lines: impl Iterator<Item = String>) -> String {
     lines.flat_map(|line| [line, "\n".to_owned()]).collect()
 }
 
-/// The table set with the memory image `text`. The comments must give its geometry, as those of [`steps_text`] do.
+/// The table set with the memory image `text`. The comments must give its geometry, as those of [`row_factors_text`] do.
 ///
 /// # Errors
 /// [`MemError`] for the first thing that is wrong: the datapath, the geometry, the words from the top.
-pub fn parse_steps(text: &str) -> Result<TableSet, MemError> {
-    check_datapath(text)?;
+pub fn parse_row_factors(text: &str) -> Result<TableSet, MemError> {
+    match datapath(text)? {
+        Datapath::RowFactors => row_factors(text),
+    }
+}
+
+fn row_factors(text: &str) -> Result<TableSet, MemError> {
     let bits = noted(text, Place::Bits)?;
     let depth = BitDepth::from_bits(bits).ok_or(MemError::Bits { found: bits })?;
     let (width, height) = (noted(text, Place::Width)?, noted(text, Place::Height)?);
     let geometry = Geometry::new(width, height, depth, noted(text, Place::Centre2)?)?;
-    let steps: Result<_, _> = words::<STEP_DIGITS>(text).map(|word| word.map(|step| step as u32)).collect();
-    Ok(TableSet::new(geometry, steps?)?)
+    let units: Result<Vec<_>, _> =
+        words::<FACTOR_DIGITS>(text).map(|word| word.map(|units| units as u32)).collect();
+    Ok(TableSet::from_units(geometry, &units?)?)
 }
 
 /// The kernel with the memory image `text`.
@@ -127,7 +134,9 @@ pub fn parse_steps(text: &str) -> Result<TableSet, MemError> {
 /// # Errors
 /// [`MemError`] for the first thing that is wrong: the datapath, the words from x = 0.
 pub fn parse_kernel(text: &str) -> Result<Kernel, MemError> {
-    check_datapath(text)?;
+    match datapath(text)? {
+        Datapath::RowFactors => {}
+    }
     let nodes: Result<_, _> = words::<NODE_DIGITS>(text).map(|word| word.map(weights)).collect();
     Ok(Kernel::from_nodes(nodes?)?)
 }
@@ -151,9 +160,9 @@ fn comment(line: &str) -> Option<&str> {
     line.trim().strip_prefix("//")
 }
 
-fn check_datapath(text: &str) -> Result<(), MemError> {
-    let found = noted(text, Place::Datapath)?;
-    if found == i128::from(DATAPATH) { Ok(()) } else { Err(WrongDatapath { found }.into()) }
+/// The datapath that the comments name.
+fn datapath(text: &str) -> Result<Datapath, MemError> {
+    Ok(WrongDatapath::check(noted(text, Place::Datapath)?)?)
 }
 
 /// The number that the comments note as `key=number`.

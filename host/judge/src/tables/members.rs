@@ -4,11 +4,12 @@ use std::collections::HashSet;
 use std::fmt::{self, Display};
 use std::ops::RangeInclusive;
 
+use halfrow_protocol::message::Datapath;
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use serde_json::{Map, Value};
 
 use super::text::quoted;
-use super::{ContentError, DATAPATH, Place, WrongDatapath};
+use super::{ContentError, Place, WrongDatapath};
 
 /// An object's members as they stand in the text: a key that comes twice is there twice.
 pub(super) struct Members(Vec<(String, Value)>);
@@ -48,15 +49,15 @@ impl Members {
         }
     }
 
-    /// Whether the tables are for the datapath that is known, if they say for which.
+    /// The datapath that the tables are for, if they say which.
     ///
     /// To be asked first: another datapath's file may have other keys.
-    pub(super) fn check_datapath(&self) -> Result<(), ContentError> {
+    pub(super) fn datapath(&self) -> Result<Option<Datapath>, ContentError> {
         let Some((_, value)) = self.0.iter().find(|(key, _)| key == Place::Datapath.key()) else {
-            return Ok(());
+            return Ok(None);
         };
         let found = integer(Place::Datapath, value)?;
-        if found == i128::from(DATAPATH) { Ok(()) } else { Err(WrongDatapath { found }.into()) }
+        Ok(Some(WrongDatapath::check(found)?))
     }
 
     /// Whether there are no members beside `places`.

@@ -2,7 +2,7 @@
 //!
 //! ```json
 //! {"datapath": 1, "about": {}, "width": 1920, "height": 1080, "bits": 12, "centre2": 1919,
-//!  "step": [Q, one a row], "kernel": [[g0, r1, g4, r5, g6], 65 nodes]}
+//!  "step": [row factor Q, one a row], "kernel": [[g0, r1, g4, r5, g6], 65 nodes]}
 //! ```
 //!
 //! The numbers are those of DATAPATH.md. Nothing else is in a file but `about`, an object that is kept as it is and never
@@ -21,5 +21,7 @@ pub use error::{ContentError, MemError, TableFileError, WrongDatapath};
 pub use json::{KernelFile, TableFile};
 pub use place::Place;
 
-/// The datapath that tables are for (DATAPATH.md).
-pub const DATAPATH: u16 = 1;
+use halfrow_protocol::message::Datapath;
+
+/// The datapath of a [`TableSet`](halfrow_model::TableSet), and of the kernel beside it.
+pub const DATAPATH: Datapath = Datapath::RowFactors;

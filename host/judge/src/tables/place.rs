@@ -17,10 +17,10 @@ pub enum Place {
     Bits,
     /// `centre2`: C.
     Centre2,
-    /// `step`: the list of all Q.
-    Steps,
-    /// Q of one row.
-    Step {
+    /// `step`: the list of all row factors.
+    RowFactors,
+    /// The row factor of one row.
+    RowFactor {
         /// The row, from 0 at the top.
         row: usize,
     },
@@ -51,7 +51,7 @@ impl Place {
             Self::Height => "height",
             Self::Bits => "bits",
             Self::Centre2 => "centre2",
-            Self::Steps | Self::Step { .. } => "step",
+            Self::RowFactors | Self::RowFactor { .. } => "step",
             Self::Kernel | Self::Node { .. } | Self::Weight { .. } => "kernel",
         }
     }
@@ -65,8 +65,10 @@ impl Place {
             Self::Height => "give the frame's rows",
             Self::Bits => "give 8, 10 or 12 bits a sample",
             Self::Centre2 => "give twice the column of the optical centre, counted from 0",
-            Self::Steps => "give one step for each row, from the top",
-            Self::Step { .. } => "a step is 2^24 / k, rounded, with a stretch factor k of at least 1",
+            Self::RowFactors => "give one row factor for each row, from the top",
+            Self::RowFactor { .. } => {
+                "a row factor is 2^24 / k, rounded, with a stretch factor k of at least 1"
+            }
             Self::Kernel => "give one node for each x = 0, 1/32, ..., 2",
             Self::Node { .. } => "give the five weights g0, r1, g4, r5, g6",
             Self::Weight { .. } => {
@@ -79,7 +81,7 @@ impl Place {
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Step { row } => write!(f, "the step of row {row}"),
+            Self::RowFactor { row } => write!(f, "the row factor of row {row}"),
             Self::Node { node } => write!(f, "node {node} of `kernel`"),
             Self::Weight { node, tap } => write!(f, "the weight {tap} of node {node}"),
             whole => write!(f, "`{}`", whole.key()),

@@ -1,7 +1,7 @@
 //! Frames that were altered by hand, for defects that the mock does not make.
 
 use halfrow::result::Suspect;
-use halfrow_model::{Frame, Kernel, TableSet, correct, correct_row, source};
+use halfrow_model::{Frame, Kernel, RowFactor, TableSet, correct, correct_row, source};
 
 use crate::bench::{Bench, Generation, Seen, WHITE, fault, narrow, off_centre, wide};
 
@@ -34,10 +34,10 @@ fn certain(suspects: &[Suspect]) -> (&str, String) {
 }
 
 /// The reference's frame with other tables.
-fn remade(bench: &Bench, input: &Frame, steps: impl Fn(usize) -> usize, generation: usize) -> Vec<u16> {
+fn remade(bench: &Bench, input: &Frame, rows: impl Fn(usize) -> usize, generation: usize) -> Vec<u16> {
     let tables = &bench.generations[generation].tables;
-    let steps = (0..input.height()).map(|row| tables.step(steps(row)).unwrap()).collect();
-    let tables = TableSet::new(bench.geometry, steps).unwrap();
+    let row_factors = (0..input.height()).map(|row| tables.row_factor(rows(row)).unwrap()).collect();
+    let tables = TableSet::new(bench.geometry, row_factors).unwrap();
     correct(&tables, &bench.generations[generation].kernel, input).unwrap().samples().to_vec()
 }
 
@@ -69,7 +69,13 @@ fn rows_that_went_in_at_another_place_are_named() {
         by_row(input, |row| {
             let mut output = vec![0; input.width()];
             let from = if row % 8 == 5 { row + 2 } else { row };
-            correct_row(&bench.geometry, tables.step(row).unwrap(), kernel, input.row(from), &mut output);
+            correct_row(
+                &bench.geometry,
+                tables.row_factor(row).unwrap(),
+                kernel,
+                input.row(from),
+                &mut output,
+            );
             output
         })
     });
@@ -108,7 +114,7 @@ fn exchanged_columns_are_named() {
 /// The sum by hand, from the samples around the source (DATAPATH.md, "Output sample"), without its clamp.
 fn sum(bench: &Bench, generation: usize, row: usize, input: &[u16], column: usize) -> i32 {
     let Generation { tables, kernel, .. } = &bench.generations[generation];
-    let source = source(&bench.geometry, tables.step(row).unwrap(), column);
+    let source = source(&bench.geometry, tables.row_factor(row).unwrap(), column);
     let tap = |tap: i64| i32::from(input[bench.geometry.sample_column(source.base - 2 + tap)]);
     let nodes = [kernel.nodes()[source.node], kernel.nodes()[source.node + 1]];
     let weight = |index: usize| {
@@ -164,7 +170,7 @@ fn a_row_counter_that_is_ahead_is_named() {
 #[test]
 fn a_factor_of_any_value_is_found() {
     let bench = wide();
-    let wrong = 13_131_313;
+    let wrong = RowFactor::new(13_131_313).unwrap();
     let suspects = diagnose(&bench, |frame, input, expected| {
         let kernel = &bench.generations[generation(frame)].kernel;
         let mut samples = expected.samples().to_vec();
@@ -177,7 +183,7 @@ fn a_factor_of_any_value_is_found() {
     assert_eq!(certain(&suspects), ("row factor", "row 4's factor".to_owned()));
     let figures: Vec<u32> =
         suspects[0].evidence().split(|c: char| !c.is_ascii_digit()).filter_map(|w| w.parse().ok()).collect();
-    assert!(figures[0].abs_diff(wrong) < 4096, "{}", suspects[0].evidence());
+    assert!(figures[0].abs_diff(wrong.get()) < 4096, "{}", suspects[0].evidence());
 }
 
 #[test]
@@ -219,13 +225,8 @@ fn two_defects_are_both_named_and_neither_for_certain() {
         let mut samples = expected.samples().to_vec();
         for (row, bit) in [(3, 20), (21, 22)] {
             let output = &mut samples[row * input.width()..][..input.width()];
-            correct_row(
-                &bench.geometry,
-                tables.step(row).unwrap() ^ 1 << bit,
-                kernel,
-                input.row(row),
-                output,
-            );
+            let wrong = RowFactor::new(tables.row_factor(row).unwrap().get() ^ 1 << bit).unwrap();
+            correct_row(&bench.geometry, wrong, kernel, input.row(row), output);
         }
         samples
     });

@@ -8,7 +8,7 @@ use halfrow::diagnosis::{Case, Uploaded, diagnose};
 use halfrow::result::{Evidence, FrameReport, FrameTiming, Suspect};
 use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
 use halfrow_model::{
-    BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, STEP_ONE, TableSet, correct,
+    BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, RowFactor, TableSet, correct,
 };
 use halfrow_pipe::Parameters;
 
@@ -77,7 +77,7 @@ impl Bench {
         let lens = Equidistant::from_radius(radius).unwrap();
         let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
         tables.check_ring(ring.into()).unwrap();
-        let halves = tables.steps().iter().map(|&step| u32::midpoint(step, STEP_ONE)).collect();
+        let halves = tables.row_factors().iter().map(|own| own.midpoint(RowFactor::ONE)).collect();
         let decoy = TableSet::new(geometry, halves).unwrap();
         let generations = [
             Generation { number: 1, tables: decoy, kernel: Kernel::from(Interpolant::Linear) },
@@ -175,7 +175,7 @@ impl Bench {
             _ => return,
         };
         let nodes: Vec<_> = generation.kernel.nodes().iter().copied().map(Node::from).collect();
-        tables.write_factors(0, generation.tables.steps()).unwrap();
+        tables.write_factors(0, &generation.tables.units().collect::<Vec<_>>()).unwrap();
         tables.write_nodes(0, &nodes).unwrap();
         tables.commit(generation.number, first_frame).unwrap();
     }

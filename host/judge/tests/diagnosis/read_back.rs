@@ -7,13 +7,13 @@ use halfrow_model::{Interpolant, Kernel};
 
 use crate::bench::narrow;
 
-fn steps() -> Vec<u32> {
+fn factors() -> Vec<u32> {
     (0..100_u32).map(|row| 16_777_216 - row.wrapping_mul(2_654_435_761) % 5_000_000).collect()
 }
 
-fn read_steps(found: &[u32]) -> Vec<Suspect> {
-    let bytes = |steps: &[u32]| steps.iter().flat_map(|step| step.to_le_bytes()).collect::<Vec<_>>();
-    read_back(Table::Steps, &bytes(&steps()), &bytes(found))
+fn read_factors(found: &[u32]) -> Vec<Suspect> {
+    let bytes = |factors: &[u32]| factors.iter().flat_map(|factor| factor.to_le_bytes()).collect::<Vec<_>>();
+    read_back(Table::RowFactors, &bytes(&factors()), &bytes(found))
 }
 
 fn read_nodes(change: impl Fn(usize, &mut [i16; 5])) -> Vec<Suspect> {
@@ -30,18 +30,21 @@ fn first(suspects: &[Suspect]) -> (String, f64) {
 
 #[test]
 fn equal_tables_have_no_suspects() {
-    assert_eq!(read_steps(&steps()), []);
+    assert_eq!(read_factors(&factors()), []);
     let bytes = narrow().generations[1].tables.to_bytes();
-    assert_eq!(read_back(Table::Steps, &bytes, &bytes), []);
+    assert_eq!(read_back(Table::RowFactors, &bytes, &bytes), []);
 }
 
 #[test]
 fn one_wrong_factor_is_named_with_its_bit_and_values() {
-    let mut found = steps();
+    let mut found = factors();
     found[17] ^= 1 << 12;
-    let suspects = read_steps(&found);
+    let suspects = read_factors(&found);
     assert_eq!(first(&suspects), ("row 17's factor, bit 12".to_owned(), 1.0));
-    assert_eq!(suspects[0].evidence(), format!("{} was read where {} was uploaded", found[17], steps()[17]));
+    assert_eq!(
+        suspects[0].evidence(),
+        format!("{} was read where {} was uploaded", found[17], factors()[17])
+    );
 }
 
 #[test]
@@ -56,7 +59,7 @@ fn one_wrong_weight_is_named_with_its_bits() {
 
 #[test]
 fn a_stuck_data_line_is_named() {
-    let suspects = read_steps(&steps().iter().map(|step| step | 1 << 7).collect::<Vec<_>>());
+    let suspects = read_factors(&factors().iter().map(|factor| factor | 1 << 7).collect::<Vec<_>>());
     assert_eq!(first(&suspects), ("row table, data bit 7".to_owned(), 1.0));
     assert!(suspects[0].evidence().contains("stuck at 1"));
     assert_eq!(suspects.len(), 1);
@@ -71,7 +74,7 @@ fn a_stuck_data_line_of_one_weights_memory_is_named() {
 
 #[test]
 fn a_stuck_address_line_is_named() {
-    let suspects = read_steps(&(0..100).map(|row: usize| steps()[row & !8]).collect::<Vec<_>>());
+    let suspects = read_factors(&(0..100).map(|row: usize| factors()[row & !8]).collect::<Vec<_>>());
     assert_eq!(first(&suspects), ("row table, address bit 3".to_owned(), 1.0));
     let nodes = *Kernel::from(Interpolant::Hermite).nodes();
     let suspects = read_nodes(|node, weights| *weights = nodes[node & !16]);
@@ -82,36 +85,37 @@ fn a_stuck_address_line_is_named() {
 #[test]
 fn an_address_line_stuck_for_writing_too_is_named() {
     let later = |row: usize| if row | 32 < 100 { row | 32 } else { row };
-    let suspects = read_steps(&(0..100).map(|row| steps()[later(row)]).collect::<Vec<_>>());
+    let suspects = read_factors(&(0..100).map(|row| factors()[later(row)]).collect::<Vec<_>>());
     assert_eq!(first(&suspects), ("row table, address bit 5".to_owned(), 1.0));
 }
 
 #[test]
 fn entries_read_one_place_off_are_named() {
-    let suspects = read_steps(&(0..100).map(|row: usize| steps()[row.saturating_sub(1)]).collect::<Vec<_>>());
+    let suspects =
+        read_factors(&(0..100).map(|row: usize| factors()[row.saturating_sub(1)]).collect::<Vec<_>>());
     assert_eq!(first(&suspects), ("row table, its address".to_owned(), 1.0));
     assert!(suspects[0].evidence().contains("the one before"));
 }
 
 #[test]
 fn a_dead_table_is_named() {
-    assert_eq!(first(&read_steps(&[0; 100])), ("row table".to_owned(), 1.0));
+    assert_eq!(first(&read_factors(&[0; 100])), ("row table".to_owned(), 1.0));
 }
 
 #[test]
 fn words_without_a_common_cause_are_counted() {
-    let mut found = steps();
+    let mut found = factors();
     for (row, bit) in [(5, 3), (40, 9), (77, 20)] {
         found[row] ^= 1 << bit;
     }
-    let suspects = read_steps(&found);
+    let suspects = read_factors(&found);
     assert_eq!(first(&suspects), ("row 5's factor, bit 3".to_owned(), 1.0 / 3.0));
     assert!(suspects[0].evidence().contains("the first of 3 wrong words"));
 }
 
 #[test]
 fn a_table_of_another_length_is_told_by_its_length() {
-    let suspects = read_steps(&steps()[..60]);
+    let suspects = read_factors(&factors()[..60]);
     assert_eq!(suspects[0].evidence(), "100 entries were uploaded and 60 came back");
     assert_eq!(read_back(Table::Kernel, &[1, 2, 3], &[1, 2, 4]), []);
 }

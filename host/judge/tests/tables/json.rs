@@ -18,7 +18,7 @@ fn paper_file() -> TableFile {
 fn small_file() -> TableFile {
     let geometry = Geometry::new(64, 3, BitDepth::Ten, 126).unwrap();
     TableFile {
-        tables: TableSet::new(geometry, vec![1, 14_648_488, 16_777_216]).unwrap(),
+        tables: TableSet::from_units(geometry, &[1, 14_648_488, 16_777_216]).unwrap(),
         kernel: Kernel::from_nodes(vec![[1, -1, 16384, -32768, 32767]; 65]).unwrap(),
         about: None,
     }
@@ -40,12 +40,12 @@ fn another_json_reader_finds_the_papers_numbers() {
     let integers = |list: &Value| -> Vec<i64> {
         list.as_array().unwrap().iter().map(|number| number.as_i64().unwrap()).collect()
     };
-    let steps: Vec<u8> =
-        integers(&value["step"]).iter().flat_map(|&step| (step as u32).to_le_bytes()).collect();
+    let bytes: Vec<u8> =
+        integers(&value["step"]).iter().flat_map(|&units| (units as u32).to_le_bytes()).collect();
     let nodes = value["kernel"].as_array().unwrap().iter().flat_map(integers);
     let weights: Vec<u8> = nodes.flat_map(|weight| (weight as i16).to_le_bytes()).collect();
     assert_eq!(value["step"][0], 14_648_698);
-    assert_eq!(crc32fast::hash(&steps), 0x5f5a_7553);
+    assert_eq!(crc32fast::hash(&bytes), 0x5f5a_7553);
     assert_eq!(crc32fast::hash(&weights), 0x16e2_9b0f);
 }
 

@@ -3,24 +3,26 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use halfrow::tables::mem::{self, kernel_text, parse_kernel, parse_steps, steps_text};
+use halfrow::tables::mem::{self, kernel_text, parse_kernel, parse_row_factors, row_factors_text};
 use halfrow::tables::{MemError, Place, TableFileError};
 use halfrow_frames::written_aside::WriteAsideError;
-use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, KernelError, TableError, TableSet};
+use halfrow_model::{
+    BitDepth, Geometry, Interpolant, Kernel, KernelError, RowFactorError, TableError, TableSet,
+};
 
 fn tables() -> TableSet {
     let geometry = Geometry::new(64, 3, BitDepth::Twelve, 63).unwrap();
-    TableSet::new(geometry, vec![1, 14_648_488, 16_777_216]).unwrap()
+    TableSet::from_units(geometry, &[1, 14_648_488, 16_777_216]).unwrap()
 }
 
 #[test]
-fn steps_are_seven_digits_under_a_comment_with_the_geometry() {
-    let expected = "// halfrow steps Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first\n\
+fn row_factors_are_seven_digits_under_a_comment_with_the_geometry() {
+    let expected = "// halfrow row factors Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first\n\
                     // datapath=1 width=64 height=3 bits=12 centre2=63\n\
                     0000001\n\
                     0df84a8\n\
                     1000000\n";
-    assert_eq!(steps_text(&tables()), expected);
+    assert_eq!(row_factors_text(&tables()), expected);
 }
 
 #[test]
@@ -42,7 +44,7 @@ fn node_16_of_the_hermite_kernel_is_that_of_eq_18() {
 
 #[test]
 fn nothing_but_ascii_goes_to_verilog() {
-    assert!(steps_text(&tables()).is_ascii());
+    assert!(row_factors_text(&tables()).is_ascii());
     assert!(kernel_text(&Interpolant::Keys.into()).is_ascii());
 }
 
@@ -55,14 +57,14 @@ fn every_built_in_kernel_is_read_back_as_it_was() {
 }
 
 #[test]
-fn steps_are_read_back_with_their_geometry() {
-    assert_eq!(parse_steps(&steps_text(&tables())), Ok(tables()));
+fn row_factors_are_read_back_with_their_geometry() {
+    assert_eq!(parse_row_factors(&row_factors_text(&tables())), Ok(tables()));
 }
 
 #[test]
 fn upper_case_blank_lines_and_other_comments_are_read_over() {
-    let text = steps_text(&tables()).replace("0df84a8", "\r\n  // by hand\n\n  0DF84A8  ");
-    assert_eq!(parse_steps(&text), Ok(tables()));
+    let text = row_factors_text(&tables()).replace("0df84a8", "\r\n  // by hand\n\n  0DF84A8  ");
+    assert_eq!(parse_row_factors(&text), Ok(tables()));
 }
 
 #[test]
@@ -85,36 +87,37 @@ fn both_files_are_written_and_read_back() {
 #[test]
 fn when_one_file_may_not_be_replaced_neither_is_written() {
     let folder = tempfile::tempdir().unwrap();
-    let [steps, kernel] = mem::paths(&folder.path().join("line"));
+    let [rows, kernel] = mem::paths(&folder.path().join("line"));
     fs::write(&kernel, "mine").unwrap();
     let write = |overwrite| {
         mem::write(&folder.path().join("line"), &tables(), &Interpolant::Linear.into(), overwrite)
     };
     assert!(matches!(write(false), Err(WriteAsideError::Exists { path }) if path == kernel));
-    assert!(!steps.exists());
-    assert_eq!(write(true).unwrap(), [steps, kernel]);
+    assert!(!rows.exists());
+    assert_eq!(write(true).unwrap(), [rows, kernel]);
 }
 
 #[test]
 fn a_missing_or_foreign_file_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("line.mem");
-    let [steps, _] = mem::paths(&path);
-    assert!(matches!(mem::read(&path), Err(TableFileError::Io { path, .. }) if path == steps));
-    fs::write(&steps, "// datapath=1\n").unwrap();
-    assert!(matches!(mem::read(&path), Err(TableFileError::Mem { path, .. }) if path == steps));
-    fs::write(&steps, "// datapath=2\n").unwrap();
-    assert!(matches!(mem::read(&path), Err(TableFileError::Datapath { path, .. }) if path == steps));
+    let [rows, _] = mem::paths(&path);
+    assert!(matches!(mem::read(&path), Err(TableFileError::Io { path, .. }) if path == rows));
+    fs::write(&rows, "// datapath=1\n").unwrap();
+    assert!(matches!(mem::read(&path), Err(TableFileError::Mem { path, .. }) if path == rows));
+    fs::write(&rows, "// datapath=2\n").unwrap();
+    assert!(matches!(mem::read(&path), Err(TableFileError::Datapath { path, .. }) if path == rows));
 }
 
 #[test]
 fn a_header_without_a_number_names_the_number() {
     let places = [Place::Datapath, Place::Bits, Place::Width, Place::Height, Place::Centre2];
     for place in places {
-        let text = steps_text(&tables()).replace(&format!("{}=", place.key()), "x=");
-        assert_eq!(parse_steps(&text), Err(MemError::Header(place)));
+        let text = row_factors_text(&tables()).replace(&format!("{}=", place.key()), "x=");
+        assert_eq!(parse_row_factors(&text), Err(MemError::Header(place)));
     }
-    let refused = parse_steps(&steps_text(&tables()).replace("width=64", "width=-64")).unwrap_err();
+    let refused =
+        parse_row_factors(&row_factors_text(&tables()).replace("width=64", "width=-64")).unwrap_err();
     let sentence =
         "its comments give no whole number as `width=`; write the file again with `halfrow tables`";
     assert_eq!(refused.to_string(), sentence);
@@ -122,17 +125,17 @@ fn a_header_without_a_number_names_the_number() {
 
 #[test]
 fn a_geometry_that_the_datapath_does_not_have_is_refused() {
-    let refuse = |old, new| parse_steps(&steps_text(&tables()).replace(old, new)).unwrap_err();
+    let refuse = |old, new| parse_row_factors(&row_factors_text(&tables()).replace(old, new)).unwrap_err();
     assert_eq!(refuse("bits=12", "bits=9"), MemError::Bits { found: 9 });
     assert!(matches!(refuse("width=64", "width=65"), MemError::Geometry(_)));
-    let count = TableError::Count { steps: 3, height: 4 };
+    let count = TableError::Count { row_factors: 3, height: 4 };
     assert_eq!(refuse("height=3", "height=4"), MemError::Tables(count));
 }
 
 #[test]
 fn a_line_that_is_no_word_is_named() {
     for word in ["0df84a", "0df84a88", "0df84ag", "+df84a8", "xxxxxxx", "@000001", "0df84a8 // Q"] {
-        let refused = parse_steps(&steps_text(&tables()).replace("0df84a8", word)).unwrap_err();
+        let refused = parse_row_factors(&row_factors_text(&tables()).replace("0df84a8", word)).unwrap_err();
         assert_eq!(refused, MemError::Word { line: 4, found: word.to_owned(), digits: 7 });
     }
     let refused = parse_kernel("// datapath=1\n0001\n").unwrap_err();
@@ -142,10 +145,13 @@ fn a_line_that_is_no_word_is_named() {
 }
 
 #[test]
-fn a_step_that_no_board_could_use_is_refused() {
-    for (word, step) in [("0000000", 0), ("1000001", 0x100_0001), ("fffffff", 0xfff_ffff)] {
-        let refused = parse_steps(&steps_text(&tables()).replace("0df84a8", word));
-        assert_eq!(refused, Err(MemError::Tables(TableError::Step { row: 1, step })));
+fn a_row_factor_that_no_board_could_use_is_refused() {
+    for (word, units) in [("0000000", 0), ("1000001", 0x100_0001), ("fffffff", 0xfff_ffff)] {
+        let refused = parse_row_factors(&row_factors_text(&tables()).replace("0df84a8", word));
+        assert_eq!(
+            refused,
+            Err(MemError::Tables(TableError::RowFactor { row: 1, source: RowFactorError { units } }))
+        );
     }
 }
 

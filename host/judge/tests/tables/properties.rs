@@ -1,6 +1,6 @@
 //! Properties of table files over random tables and random damage.
 
-use halfrow::tables::mem::{kernel_text, parse_kernel, parse_steps, steps_text};
+use halfrow::tables::mem::{kernel_text, parse_kernel, parse_row_factors, row_factors_text};
 use halfrow::tables::{KernelFile, TableFile};
 use halfrow_model::{BitDepth, Geometry, Kernel, TableSet};
 use proptest::array::uniform5;
@@ -13,9 +13,9 @@ fn table_sets() -> impl Strategy<Value = TableSet> {
     let sizes = (32_usize..=1296, 1_usize..40, select(BitDepth::ALL.to_vec()));
     sizes.prop_flat_map(|(pairs, height, depth)| {
         let width = 2 * pairs;
-        let steps = vec(1_u32..=1 << 24, height);
-        (0..=2 * width as u32 - 2, steps).prop_map(move |(centre2, steps)| {
-            TableSet::new(Geometry::new(width, height, depth, centre2).unwrap(), steps).unwrap()
+        let units = vec(1_u32..=1 << 24, height);
+        (0..=2 * width as u32 - 2, units).prop_map(move |(centre2, units)| {
+            TableSet::from_units(Geometry::new(width, height, depth, centre2).unwrap(), &units).unwrap()
         })
     })
 }
@@ -65,7 +65,7 @@ fn near_misses() -> impl Strategy<Value = String> {
 fn read_every_way(text: &str) {
     let _ = TableFile::parse(text);
     let _ = KernelFile::parse(text);
-    let _ = parse_steps(text);
+    let _ = parse_row_factors(text);
     let _ = parse_kernel(text);
 }
 
@@ -83,7 +83,7 @@ proptest! {
 
     #[test]
     fn every_memory_image_is_read_back_as_it_was(tables in table_sets(), kernel in kernels()) {
-        prop_assert_eq!(parse_steps(&steps_text(&tables)), Ok(tables));
+        prop_assert_eq!(parse_row_factors(&row_factors_text(&tables)), Ok(tables));
         prop_assert_eq!(parse_kernel(&kernel_text(&kernel)), Ok(kernel));
     }
 
@@ -103,7 +103,7 @@ proptest! {
         damage in vec((any::<Index>(), any::<u8>()), 1..4),
         end in any::<Index>(),
     ) {
-        for text in [file.to_json(), steps_text(&file.tables), kernel_text(&file.kernel)] {
+        for text in [file.to_json(), row_factors_text(&file.tables), kernel_text(&file.kernel)] {
             let mut bytes = text.into_bytes();
             for (place, byte) in &damage {
                 let place = place.index(bytes.len());

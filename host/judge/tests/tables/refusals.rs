@@ -151,25 +151,25 @@ fn a_centre_outside_the_frame_is_refused() {
 }
 
 #[test]
-fn missing_and_surplus_steps_are_counted() {
+fn missing_and_surplus_row_factors_are_counted() {
     let refused = refusal(|file| drop(file["step"].as_array_mut().unwrap().pop()));
-    says(&refused, "`step` has 3 entries instead of 4; give one step for each row, from the top");
+    says(&refused, "`step` has 3 entries instead of 4; give one row factor for each row, from the top");
     let refused = refusal(|file| file["step"].as_array_mut().unwrap().push(json!(1)));
-    assert!(matches!(refused, ContentError::Length { place: Place::Steps, found: 5, wanted: 4 }));
+    assert!(matches!(refused, ContentError::Length { place: Place::RowFactors, found: 5, wanted: 4 }));
 }
 
 #[test]
-fn a_step_that_is_zero_or_too_large_is_named_with_its_row() {
-    for (step, found) in [(json!(0), 0), (json!(16_777_217), 16_777_217), (json!(-5), -5)] {
-        let refused = refusal(|file| file["step"][2] = step);
+fn a_row_factor_that_is_zero_or_too_large_is_named_with_its_row() {
+    for (units, found) in [(json!(0), 0), (json!(16_777_217), 16_777_217), (json!(-5), -5)] {
+        let refused = refusal(|file| file["step"][2] = units);
         says(
             &refused,
             &format!(
-                "the step of row 2 is {found}, outside 1 to 16777216; a step is 2^24 / k, rounded, with a stretch \
+                "the row factor of row 2 is {found}, outside 1 to 16777216; a row factor is 2^24 / k, rounded, with a stretch \
                  factor k of at least 1"
             ),
         );
-        assert!(matches!(refused, ContentError::Range { place: Place::Step { row: 2 }, .. }));
+        assert!(matches!(refused, ContentError::Range { place: Place::RowFactor { row: 2 }, .. }));
     }
     let refused = refusal(|file| file["step"][0] = json!(u64::MAX));
     assert!(matches!(refused, ContentError::Range { found: 0xffff_ffff_ffff_ffff, .. }), "{refused:?}");
@@ -212,8 +212,9 @@ fn what_is_no_whole_number_is_shown() {
     for (value, shown) in values.into_iter().zip(["1.5", "1e30", "\"12\"", "null", "[1]", "true"]) {
         let refused = refusal(|file| file["step"][3] = value);
         let sentence = refused.to_string().replace("1e+30", "1e30");
-        let expected =
-            format!("the step of row 3 is {shown}, not a whole number in plain digits; a step is ");
+        let expected = format!(
+            "the row factor of row 3 is {shown}, not a whole number in plain digits; a row factor is "
+        );
         assert!(sentence.starts_with(&expected), "{sentence}");
     }
 }
@@ -231,7 +232,7 @@ fn every_number_must_be_whole() {
 #[test]
 fn what_should_be_a_list_or_an_object_is_named() {
     let refused = refusal(|file| file["step"] = json!(16_777_216));
-    says(&refused, "`step` is 16777216, not a list; give one step for each row, from the top");
+    says(&refused, "`step` is 16777216, not a list; give one row factor for each row, from the top");
     let refused = refusal(|file| file["kernel"][3] = json!({"g0": 0}));
     assert!(matches!(refused, ContentError::Kind { place: Place::Node { node: 3 }, .. }));
     let refused = refusal(|file| file["about"] = json!("made on Monday"));

@@ -41,10 +41,10 @@ impl Equations {
     /// Adds every sample of a frame, and the same seen from the other side: light has no preferred direction.
     pub(crate) fn observe(&mut self, warped: &Warped) {
         let geometry = warped.tables.geometry();
-        let rows = warped.distorted.rows().zip(warped.reference.rows()).zip(warped.tables.steps());
-        for ((row, wanted), &step) in rows {
+        let rows = warped.distorted.rows().zip(warped.reference.rows()).zip(warped.tables.row_factors());
+        for ((row, wanted), &row_factor) in rows {
             for (column, &wanted) in wanted.iter().enumerate() {
-                let source = source(geometry, step, column);
+                let source = source(geometry, row_factor, column);
                 let mut taps: [f64; 7] = std::array::from_fn(|tap| {
                     row[geometry.sample_column(source.base - 2 + tap as i64)].into()
                 });

@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use halfrow_model::{STEP_ONE, source};
+use halfrow_model::RowFactor;
 
 use super::first_where;
-use super::row_factor::{BITS, FEW_ROWS, with_step};
+use super::row_factor::{FEW_ROWS, with_entry};
 use crate::diagnosis::datapath::RowTables;
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
@@ -26,19 +26,19 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
     let mut seen: Vec<_> = witnesses.sample(usize::MAX).filter(|witness| witness.row == row).collect();
     seen.sort_by_key(|witness| std::cmp::Reverse(witness.differences));
     let generation = seen.first()?.uploaded.generation;
-    let uploaded = seen.first()?.tables().step;
+    let uploaded = seen.first()?.tables().entry;
     seen.retain(|witness| witness.uploaded.generation == generation);
     seen.truncate(FRAMES);
-    let steps = matching_steps(&seen)?;
-    let one_bit = |bit: u32| steps.iter().any(|range| range.contains(&(uploaded ^ (1_u32 << bit))));
-    if (0..BITS).any(one_bit) {
+    let factors = matching_factors(&seen)?;
+    let one_bit = |bit: u32| factors.iter().any(|range| range.contains(&(uploaded ^ (1_u32 << bit))));
+    if (0..RowFactor::BITS).any(one_bit) {
         return None;
     }
-    let (&least, &most) = (steps.first()?.start(), steps.last()?.end());
+    let (&least, &most) = (factors.first()?.start(), factors.last()?.end());
     let defect = Defect::RowFactorWrong { row, generation, least, most, uploaded };
     Some(Hypothesis::new(defect, move |witness| {
         let mine = witness.row == row && witness.uploaded.generation == generation;
-        mine.then(|| with_step(witness, least))
+        mine.then(|| with_entry(witness, least))
     }))
 }
 
@@ -46,13 +46,13 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
 ///
 /// The farther an output is from the optical centre, the finer its source depends on the factor. So ranges of factors that
 /// give the samples next to the centre are divided, output by output, and those that give another sample are dropped.
-fn matching_steps(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
+fn matching_factors(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
     let first = seen.first()?;
     let geometry = first.geometry();
     let distance = |column: &usize| (2 * *column as i64 - i64::from(geometry.centre2())).unsigned_abs();
     let mut columns: Vec<_> = (0..geometry.width()).filter(|column| distance(column) > 0).collect();
     columns.sort_by_key(distance);
-    let mut ranges = vec![1..=STEP_ONE];
+    let mut ranges = vec![RowFactor::RANGE];
     let mut budget = BUDGET;
     for column in columns {
         let mut kept: Vec<RangeInclusive<u32>> = Vec::new();
@@ -60,7 +60,7 @@ fn matching_steps(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
             let mut start = *range.start();
             while start <= *range.end() {
                 budget = budget.checked_sub(1)?;
-                let end = last_alike(&RowTables { step: start, ..first.tables() }, column, *range.end());
+                let end = last_alike(&RowTables { entry: start, ..first.tables() }, column, *range.end());
                 if seen.iter().all(|row| gives(row, start, column)) {
                     join(&mut kept, start..=end);
                 }
@@ -75,13 +75,13 @@ fn matching_steps(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
 /// The largest factor up to `limit` that takes `column` from the same source as the tables' own: the source moves one way
 /// with the factor.
 fn last_alike(tables: &RowTables<'_>, column: usize, limit: u32) -> u32 {
-    let here = source(tables.geometry, tables.step, column);
-    let differs = |step: i64| source(tables.geometry, step as u32, column) != here;
-    first_where(tables.step.into()..i64::from(limit) + 1, differs) as u32 - 1
+    let here = tables.source(column);
+    let differs = |entry: i64| RowTables { entry: entry as u32, ..*tables }.source(column) != here;
+    first_where(tables.entry.into()..i64::from(limit) + 1, differs) as u32 - 1
 }
 
-fn gives(row: &Witness<'_>, step: u32, column: usize) -> bool {
-    let tables = RowTables { step, ..row.tables() };
+fn gives(row: &Witness<'_>, entry: u32, column: usize) -> bool {
+    let tables = RowTables { entry, ..row.tables() };
     row.found.get(column) == Some(&tables.output(row.samples(), column))
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use halfrow_model::{Kernel, NODES, STEP_ONE};
+use halfrow_model::{Kernel, NODES, RowFactor};
 
 use super::row_factor::FEW_ROWS;
 use crate::diagnosis::Case;
@@ -63,15 +63,15 @@ fn tables<'b>(
     row: &Witness<'b>,
 ) -> Option<RowTables<'b>> {
     let uploaded = |generation| case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation);
-    let step = match made.factors {
-        Some(generation) => uploaded(generation)?.tables.step(row.row)?,
-        None => STEP_ONE,
+    let row_factor = match made.factors {
+        Some(generation) => uploaded(generation)?.tables.row_factor(row.row)?,
+        None => RowFactor::ONE,
     };
     let kernel = match made.kernel {
         Some(generation) => uploaded(generation)?.kernel,
         None => blank,
     };
-    Some(RowTables { geometry: row.geometry(), step, kernel })
+    Some(RowTables { geometry: row.geometry(), entry: row_factor.get(), kernel })
 }
 
 fn defect(witnesses: &Witnesses<'_>, frames: BTreeMap<usize, Vec<MadeWith>>) -> Defect {

@@ -2,8 +2,6 @@
 
 use std::ops::Range;
 
-use halfrow_model::source;
-
 use super::first_where;
 use super::kernel_word::{KernelWord, common_words};
 use crate::diagnosis::Uploaded;
@@ -35,7 +33,7 @@ fn any_value<'a>(
     let rows = witnesses.sample(ROWS).filter(|row| row.uploaded.generation == uploaded.generation);
     for row in rows {
         for column in 0..row.found.len() {
-            let node = source(row.geometry(), row.tables().step, column).node;
+            let node = row.tables().source(column).node;
             if node == word.node || node + 1 == word.node {
                 values = narrowed(values, row, column, word)?;
             }

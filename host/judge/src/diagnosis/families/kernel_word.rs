@@ -1,6 +1,6 @@
 //! One word of the kernel with a bit inverted.
 
-use halfrow_model::{Kernel, NODES, TAP_NAMES, source};
+use halfrow_model::{Kernel, NODES, TAP_NAMES};
 
 use super::table_word::{Word, changed, inversions, reading};
 use crate::diagnosis::Uploaded;
@@ -40,7 +40,7 @@ fn common_nodes(witnesses: &Witnesses<'_>) -> Vec<usize> {
     for witness in witnesses.differing.iter().take(ROWS) {
         let tables = witness.tables();
         for column in witness.differing_columns() {
-            let node = source(tables.geometry, tables.step, column).node;
+            let node = tables.source(column).node;
             samples += 1;
             for count in uses.iter_mut().skip(node).take(2) {
                 *count += 1;

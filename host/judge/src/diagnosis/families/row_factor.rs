@@ -1,6 +1,6 @@
 //! One row's table entry with a bit inverted.
 
-use halfrow_model::STEP_ONE;
+use halfrow_model::RowFactor;
 
 use super::table_word::{Word, changed, inversions, reading};
 use crate::diagnosis::datapath::RowTables;
@@ -10,8 +10,6 @@ use crate::result::Defect;
 
 /// More rows than this are not one table entry each.
 pub(super) const FEW_ROWS: usize = 8;
-/// Bits of an entry.
-pub(super) const BITS: u32 = 25;
 
 /// Every bit of the entry of every row that differs, when few do.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
@@ -23,14 +21,15 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
     let words: Vec<_> = witnesses
         .generations()
         .iter()
-        .filter_map(|uploaded| Some((uploaded.generation, uploaded.tables.step(row)?)))
+        .filter_map(|uploaded| Some((uploaded.generation, uploaded.tables.row_factor(row)?.get())))
         .collect();
-    let bits = (0..BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
+    let bits =
+        (0..RowFactor::BITS).flat_map(|bit| inversions(&words, bit).into_iter().map(move |read| (bit, read)));
     bits.map(|(bit, read)| {
         let (above_one, reading) = (is_illegal(&read), reading(&words, &read, i64::from));
         Hypothesis::new(Defect::RowFactorBitWrong { row, bit, reading, above_one }, move |witness| {
             let read = changed(&read, &witness.uploaded).filter(|_| witness.row == row);
-            read.map(|step| with_step(witness, step))
+            read.map(|entry| with_entry(witness, entry))
         })
     })
     .collect()
@@ -38,10 +37,10 @@ fn entry<'a>(witnesses: &Witnesses<'a>, row: usize) -> Vec<Hypothesis<'a>> {
 
 /// A factor above 1 reads ahead of what the ring holds, where the simulation ends.
 fn is_illegal(read: &[Word]) -> bool {
-    read.iter().any(|word| word.1 > STEP_ONE)
+    read.iter().any(|word| word.1 > RowFactor::ONE.get())
 }
 
-/// The witness's row made with another factor.
-pub(super) fn with_step(witness: &Witness<'_>, step: u32) -> Prediction {
-    RowTables { step, ..witness.tables() }.corrected(witness.samples()).into()
+/// The witness's row made with another entry of the table.
+pub(super) fn with_entry(witness: &Witness<'_>, entry: u32) -> Prediction {
+    RowTables { entry, ..witness.tables() }.corrected(witness.samples()).into()
 }

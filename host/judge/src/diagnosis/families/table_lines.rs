@@ -1,16 +1,15 @@
 //! A line of a table's memory stuck, so that many entries are read wrong.
 
-use halfrow_model::{Kernel, NODES, TAP_NAMES};
+use halfrow_model::{Kernel, NODES, RowFactor, TAP_NAMES};
 
 use super::StuckLine;
-use super::row_factor::with_step;
+use super::row_factor::with_entry;
 use crate::diagnosis::Uploaded;
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::Witnesses;
 use crate::result::Defect;
 
-/// Bits of a row factor, of a weight, and of a node's number.
-const FACTOR_BITS: u32 = 25;
+/// Bits of a weight, and of a node's number.
 const WEIGHT_BITS: u32 = 16;
 const NODE_BITS: u32 = 7;
 
@@ -21,7 +20,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     let generations = witnesses.generations();
     let weights =
         (0..TAP_NAMES.len()).flat_map(|tap| StuckLine::all(WEIGHT_BITS).map(move |line| (tap, line)));
-    StuckLine::all(FACTOR_BITS)
+    StuckLine::all(RowFactor::BITS)
         .map(factor_data)
         .chain(StuckLine::all(row_bits).map(factor_address))
         .chain([-1, 1].map(neighbour))
@@ -33,8 +32,8 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 fn factor_data<'a>(line: StuckLine) -> Hypothesis<'a> {
     let defect = Defect::RowTableDataStuck { bit: line.bit, value: line.value() };
     Hypothesis::new(defect, move |witness| {
-        let step = line.carry(witness.tables().step);
-        (step != witness.tables().step).then(|| with_step(witness, step))
+        let entry = line.carry(witness.tables().entry);
+        (entry != witness.tables().entry).then(|| with_entry(witness, entry))
     })
 }
 
@@ -55,8 +54,8 @@ fn from_other_entry<'a>(defect: Defect, entry: impl Fn(usize) -> Option<usize> +
         if other == Some(witness.row) {
             return None;
         }
-        let step = other.and_then(|row| witness.uploaded.tables.step(row));
-        Some(step.map_or_else(Prediction::unknown, |step| with_step(witness, step)))
+        let read = other.and_then(|row| witness.uploaded.tables.row_factor(row));
+        Some(read.map_or_else(Prediction::unknown, |read| with_entry(witness, read.get())))
     })
 }
 

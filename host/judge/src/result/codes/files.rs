@@ -1,7 +1,7 @@
 //! The codes of errors of files, of what is in them, and of the model's own values.
 
 use halfrow_model::{
-    CameraError, CorrectError, FrameError, GeometryError, KernelError, LensError, TableError,
+    CameraError, CorrectError, FrameError, GeometryError, KernelError, LensError, RowFactorError, TableError,
     UnavailablePath, UnknownPhase,
 };
 
@@ -166,6 +166,8 @@ codes! {
     GeometryError => "geometry-impossible"
     ;
     TableError => "row-factors-impossible"
+    ;
+    RowFactorError [units] => "row-factor-out-of-range"
     ;
     KernelError => "kernel-impossible"
     ;

@@ -1,6 +1,6 @@
 //! The codes of errors of boards, links and targets.
 
-use halfrow_protocol::message::Malformed;
+use halfrow_protocol::message::{Malformed, UnknownDatapath};
 
 use super::codes;
 use crate::board::BoardError;
@@ -51,6 +51,7 @@ codes! {
         Pace [key, value] => "target-pace-wrong",
         UnknownFront (front) => "simulation-unknown",
         NoSimulation (target) => "simulation-not-built",
+        System [target] => "target-not-let-be-used",
         = Serial,
         = Tcp,
         = Usb,
@@ -114,6 +115,7 @@ codes! {
         Correct [name] => "frame-not-corrected",
     }
     Misfit {
+        Datapath => "board-of-other-datapath",
         Size [width, height, most_width, most_height] => "frames-too-large-for-board",
         Depth [bits] => "depth-not-of-board",
         Taps => "kernel-has-too-many-taps",
@@ -135,6 +137,8 @@ codes! {
     UsbFailure => "usb-device-failed"
     ;
     TraceError => "waveform-not-written"
+    ;
+    UnknownDatapath [id] => "datapath-not-known"
     ;
     Malformed => "message-malformed"
 }

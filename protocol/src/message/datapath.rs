@@ -1,0 +1,85 @@
+//! Which arithmetic a board computes.
+
+use core::fmt;
+
+macro_rules! datapaths {
+    ($($(#[$doc:meta])* $name:ident = $id:literal,)*) => {
+        /// A datapath that is known: which tables a board takes, what it makes of them, to the bit, and when.
+        ///
+        /// Whoever adds one is told by the compiler where there is something to decide: nobody matches on this with a
+        /// wildcard.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        #[repr(u16)]
+        pub enum Datapath {
+            $($(#[$doc])* $name = $id,)*
+        }
+
+        impl Datapath {
+            /// All that are known.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+        }
+
+        impl TryFrom<u16> for Datapath {
+            type Error = UnknownDatapath;
+
+            fn try_from(id: u16) -> Result<Self, UnknownDatapath> {
+                match id {
+                    $($id => Ok(Self::$name),)*
+                    id => Err(UnknownDatapath { id }),
+                }
+            }
+        }
+    };
+}
+
+datapaths! {
+    /// DATAPATH.md: one row factor a row, and a kernel.
+    RowFactors = 1,
+}
+
+impl Datapath {
+    /// The id, by which boards, files and reports name it.
+    #[must_use]
+    pub const fn id(self) -> u16 {
+        self as u16
+    }
+}
+
+impl fmt::Display for Datapath {
+    /// The id.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.id().fmt(f)
+    }
+}
+
+/// The id of a datapath that is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "datapath {id} is not known here; load a bitstream of a known one, or install a halfrow that knows {id}"
+)]
+pub struct UnknownDatapath {
+    /// The id.
+    pub id: u16,
+}
+
+#[cfg(test)]
+mod tests {
+    use alloc::vec::Vec;
+
+    use super::*;
+
+    /// WIRE.md, tag 01: DATAPATH.md describes 1.
+    #[test]
+    fn the_datapath_that_is_described_is_known_and_no_other() {
+        let known: Vec<u16> = (0..=u16::MAX).filter(|&id| Datapath::try_from(id).is_ok()).collect();
+        assert_eq!(known, [1]);
+        assert_eq!(Datapath::try_from(2), Err(UnknownDatapath { id: 2 }));
+    }
+
+    #[test]
+    fn every_datapath_is_found_by_its_id() {
+        for &datapath in Datapath::ALL {
+            assert_eq!(Datapath::try_from(datapath.id()), Ok(datapath));
+        }
+    }
+}
