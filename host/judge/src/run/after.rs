@@ -47,7 +47,7 @@ impl Run<'_> {
 
     /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame does not come to
     /// those that are judged.
-    fn tables_after(&mut self) -> Result<Finding, End> {
+    pub(super) fn tables_after(&mut self) -> Result<Finding, End> {
         let last = self.findings.seen.frames.last().map_or(DECOY, |frame| frame.generation);
         let last = self.generations.iter().find(|generation| generation.number == last).cloned();
         let Some(last) = last.filter(|generation| generation.number != DECOY) else {

@@ -117,6 +117,13 @@ pub struct Segment {
     pub frames: Vec<ScheduledFrame>,
 }
 
+impl Segment {
+    /// Whether it has a centre or a depth of its own.
+    pub(super) fn is_varied(&self) -> bool {
+        self.commit.is_some_and(|(generation, _)| generation >= VARIED)
+    }
+}
+
 /// A frame with the tables that it is to be corrected by.
 #[derive(Clone, Debug)]
 pub struct ScheduledFrame {

@@ -73,7 +73,7 @@ impl Run<'_> {
         })
     }
 
-    /// Streams the segments, up to the first that differs when that is asked for, and returns the last one streamed.
+    /// Streams the segments, up to the first that differs when that is asked for, or whose tables have changed, and returns the last one streamed.
     fn stream_all<'s>(
         &mut self,
         schedule: &'s [Segment],
@@ -82,7 +82,13 @@ impl Run<'_> {
         let height = self.plan.tables.geometry().height() as u64;
         let frames: usize = schedule.iter().map(|segment| segment.frames.len()).sum();
         self.progress.rows_expected(frames as u64 * height);
+        let mut last = None;
         for segment in schedule {
+            // Tables that have changed are not replaced, since they are read back behind the last frame.
+            if segment.is_varied() && matches!(self.tables_after(), Err(End::Failed { .. })) {
+                return Ok(last);
+            }
+            last = Some(segment);
             if let Err(end) = self.prepare(segment) {
                 self.return_to(segment, 0, end)?;
             }
@@ -91,7 +97,7 @@ impl Run<'_> {
                 return Ok(Some(segment));
             }
         }
-        Ok(schedule.last())
+        Ok(last)
     }
 
     /// Judges what was seen, with the board back where it was after `last` if it goes away meanwhile.
