@@ -145,6 +145,7 @@ mod tests {
         let [mut named, mut whole] = [Line::<Named>::command(), Line::<Command>::command()];
         assert_eq!(named.render_help().to_string(), whole.render_help().to_string());
         assert_eq!(named.render_long_help().to_string(), whole.render_long_help().to_string());
-        assert!(named.get_subcommands().all(|command| command.get_arguments().next().is_none()));
+        let unbuilt = Line::<Named>::command();
+        assert!(unbuilt.get_subcommands().all(|command| command.get_arguments().next().is_none()));
     }
 }
