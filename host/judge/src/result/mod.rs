@@ -111,49 +111,55 @@ impl Report {
     }
 }
 
-/// With its sentences, and what every document of the program begins with.
+/// What a report has behind what every document of the program begins with, with its sentences.
+#[derive(Serialize)]
+struct Rest<'a> {
+    cause: Cause,
+    headline: String,
+    remedy: Option<String>,
+    finding: &'a Finding,
+    suspects: &'a [Suspect],
+    checks: &'a [Check],
+    frames: &'a [FrameReport],
+    not_exercised: Vec<InWords<'a>>,
+    latency: &'a Option<LatencyReport>,
+    street: &'a Option<StreetReport>,
+    evidence: &'a EvidenceReport,
+    link: &'a LinkReport,
+    tables: &'a TablesReport,
+    run: &'a RunReport,
+}
+
+impl<'a> From<&'a Report> for Rest<'a> {
+    fn from(report: &'a Report) -> Self {
+        Self {
+            cause: report.cause,
+            headline: report.headline(),
+            remedy: report.remedy(),
+            finding: &report.finding,
+            suspects: &report.suspects,
+            checks: &report.checks,
+            frames: &report.frames,
+            not_exercised: report.not_exercised.iter().map(InWords::from).collect(),
+            latency: &report.latency,
+            street: &report.street,
+            evidence: &report.evidence,
+            link: &report.link,
+            tables: &report.tables,
+            run: &report.run,
+        }
+    }
+}
+
 impl Serialize for Report {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Rest<'a> {
-            cause: Cause,
-            headline: String,
-            remedy: Option<String>,
-            finding: &'a Finding,
-            suspects: &'a [Suspect],
-            checks: &'a [Check],
-            frames: &'a [FrameReport],
-            not_exercised: Vec<InWords<'a>>,
-            latency: &'a Option<LatencyReport>,
-            street: &'a Option<StreetReport>,
-            evidence: &'a EvidenceReport,
-            link: &'a LinkReport,
-            tables: &'a TablesReport,
-            run: &'a RunReport,
-        }
-        let rest = Rest {
-            cause: self.cause,
-            headline: self.headline(),
-            remedy: self.remedy(),
-            finding: &self.finding,
-            suspects: &self.suspects,
-            checks: &self.checks,
-            frames: &self.frames,
-            not_exercised: self.not_exercised.iter().map(InWords::from).collect(),
-            latency: &self.latency,
-            street: &self.street,
-            evidence: &self.evidence,
-            link: &self.link,
-            tables: &self.tables,
-            run: &self.run,
-        };
         Document {
             schema: self.schema,
             command: "verify",
             verdict: Some(self.verdict),
             board: Some(&self.board),
             error: self.error().as_ref(),
-            rest,
+            rest: Rest::from(self),
         }
         .serialize(serializer)
     }
