@@ -7,7 +7,13 @@
 //!                             record: one JSON file, by its hash ─► store: SQLite, its index
 //! ```
 
+pub mod check;
+mod clock;
 pub mod commands;
 pub mod console;
 pub mod exit;
+pub mod lane;
 pub mod plan;
+pub mod record;
+pub mod run;
+pub mod store;

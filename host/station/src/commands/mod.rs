@@ -1,11 +1,15 @@
 //! The command line: one file a command.
 
+mod check;
+mod lane;
 mod plan;
+mod run;
 
 use clap::{ArgAction, Parser, Subcommand};
 
 use crate::console;
 use crate::exit::Exit;
+use crate::store::StoreError;
 
 /// Judges boards on a production line by plans, and keeps every result.
 #[derive(Debug, Parser)]
@@ -20,7 +24,10 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    Run(run::Arguments),
+    Check(check::Arguments),
     Plan(plan::Arguments),
+    Lane(lane::Arguments),
 }
 
 /// A command that did not come to a result.
@@ -57,8 +64,18 @@ impl Cli {
     /// [`Failure`] with its exit code, when there is no result.
     pub fn run(&self) -> Result<Exit, Failure> {
         match &self.command {
+            Command::Run(arguments) => run::run(arguments),
+            Command::Check(arguments) => check::run(arguments),
             Command::Plan(arguments) => plan::run(arguments),
+            Command::Lane(arguments) => lane::run(arguments),
         }
+    }
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        let exit = if matches!(error, StoreError::InUse { .. }) { Exit::Busy } else { Exit::Error };
+        Self { exit, error: error.into() }
     }
 }
 

@@ -28,6 +28,7 @@ use halfrow::optics::Chosen;
 use halfrow::result::FileHash;
 
 pub use error::PlanError;
+pub(crate) use files::plan_hash;
 use limits::Limit;
 use serial::{Serial, SerialError, SerialRule};
 

@@ -27,35 +27,15 @@ const MOST_REPEATS: u32 = 1000;
 /// The plan of `text` in the file `path`; its own text is left to the caller.
 pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
     let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error))?;
-    if *read.schema.get_ref() != SCHEMA {
-        let what = format!("this program reads plans of schema {SCHEMA}, not {}", read.schema.get_ref());
-        return Err(Fault::wrong(
-            read.schema.span().start,
-            what,
-            "take the halfrow-station that it was written for",
-        ));
-    }
-    let [name, version, product] =
-        [&read.plan.name, &read.plan.version, &read.plan.product].map(|word| not_empty(word));
+    check_schema(&read)?;
+    let [name, version, product] = [&read.plan.name, &read.plan.version, &read.plan.product].map(not_empty);
     let serial = SerialRule::new(read.serial.pattern.get_ref(), read.serial.check);
     let serial =
         serial.map_err(|(what, remedy)| Fault::wrong(read.serial.pattern.span().start, what, remedy))?;
     let builds = builds(&read.board)?;
     let mut files = Files::beside(path);
     let base = selected(&read, &read.tables, &LimitsText::new(), &mut files)?;
-    let mut variants = Vec::new();
-    for (name, variant) in &read.variant {
-        if !serial.has_variants() {
-            let what = format!("no serial number says that it is of the variant {}", name.get_ref());
-            return Err(Fault::wrong(
-                name.span().start,
-                what,
-                "give the pattern a group (?<variant>…), or leave the variant out",
-            ));
-        }
-        let tables = read.tables.under(&variant.tables);
-        variants.push((name.get_ref().clone(), selected(&read, &tables, &variant.limits, &mut files)?));
-    }
+    let variants = variants(&read, &serial, &mut files)?;
     let (files, sha256) = files.hashed(text);
     Ok(Plan {
         sha256,
@@ -71,6 +51,40 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
         base,
         variants,
     })
+}
+
+fn check_schema(read: &PlanText) -> Result<(), Fault> {
+    if *read.schema.get_ref() != SCHEMA {
+        let what = format!("this program reads plans of schema {SCHEMA}, not {}", read.schema.get_ref());
+        return Err(Fault::wrong(
+            read.schema.span().start,
+            what,
+            "take the halfrow-station that it was written for",
+        ));
+    }
+    Ok(())
+}
+
+/// What is done with the boards of each variant that is named.
+fn variants(
+    read: &PlanText,
+    serial: &SerialRule,
+    files: &mut Files,
+) -> Result<Vec<(String, Selected)>, Fault> {
+    let mut variants = Vec::new();
+    for (name, variant) in &read.variant {
+        if !serial.has_variants() {
+            let what = format!("no serial number says that it is of the variant {}", name.get_ref());
+            return Err(Fault::wrong(
+                name.span().start,
+                what,
+                "give the pattern a group (?<variant>…), or leave the variant out",
+            ));
+        }
+        let tables = read.tables.under(&variant.tables);
+        variants.push((name.get_ref().clone(), selected(read, &tables, &variant.limits, files)?));
+    }
+    Ok(variants)
 }
 
 fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {

@@ -1,0 +1,61 @@
+//! A result that cannot be saved is none.
+
+use std::process::Command;
+
+use crate::bench::{Did, PLAN, Station, program};
+
+/// A run under strace, in which calls fail or end the program.
+pub(crate) fn injected(station: &Station, serial: &str, inject: &str) -> Did {
+    Command::new("strace")
+        .args(["-qq", "-o", "/dev/null", "-e"])
+        .arg(format!("inject={inject}"))
+        .arg(program())
+        .args(station.run_arguments(serial, "mock"))
+        .output()
+        .unwrap()
+        .into()
+}
+
+/// How often a run makes one of these calls.
+pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> usize {
+    let trace = station.path("calls");
+    let traced = Command::new("strace")
+        .args(["-qq", "-e", &format!("trace={names}"), "-o"])
+        .arg(&trace)
+        .arg(program())
+        .args(station.run_arguments(serial, "mock"))
+        .output()
+        .unwrap();
+    assert!(traced.status.success(), "{traced:?}");
+    let text = std::fs::read_to_string(&trace).unwrap();
+    // A line for each call, and one for the end of the process.
+    text.lines().filter(|line| line.contains('(')).count()
+}
+
+/// Whatever fails, and from which call on: there is a verdict on the screen only if it is in the store, and the station is
+/// well as soon as the disk is.
+#[test]
+fn no_verdict_is_shown_that_the_disk_did_not_take() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    let mut unsaved = 0;
+    for (call, error) in [("pwrite64", "ENOSPC"), ("fsync", "EIO"), ("pwrite64", "EROFS")] {
+        let all = calls(&station, "CAT00001", call);
+        assert!(all > 2, "{all} calls of {call}");
+        for first in [1, all / 3, all / 2, 2 * all / 3, all - 1, all] {
+            let first = first.max(1);
+            let did = injected(&station, "CAT00002", &format!("{call}:error={error}:when={first}+"));
+            let is_shown = did.said.contains("PASS");
+            let stored = station.query("SELECT count(*) FROM run JOIN unit ON unit.id = unit_id WHERE serial = 'CAT00002' AND verdict = 'PASS'");
+            assert_eq!(is_shown, did.code == Some(0), "{did:?}");
+            assert!(!is_shown || stored != ["0"], "{call} {error} from {first} on: {did:?}");
+            unsaved += usize::from(did.said.contains("UNSAVED CAT00002: keep this board apart"));
+            assert!(is_shown || did.code == Some(3), "{did:?}");
+            let after = station.run("CAT00003", "mock");
+            assert_eq!(after.code, Some(0), "{call} {error} from {first} on: {after:?}");
+        }
+    }
+    assert!(unsaved >= 4, "only {unsaved} runs came to their end and were not saved");
+    assert_eq!(station.query("SELECT count(*) FROM run WHERE state = 'open'"), ["0"]);
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
