@@ -289,3 +289,13 @@ fn the_schema_says_of_plans_what_the_program_does() {
     assert_eq!(known.len(), limits.len());
     assert_eq!(known.len(), MEASUREMENTS.len() - 1, "all but the samples that differ");
 }
+
+#[test]
+fn the_plan_of_the_page_is_one_by_the_schema() {
+    let page = include_str!("../../../docs/station.md");
+    let plan = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let validator = jsonschema::validator_for(&serde_json::from_str(JSON_SCHEMA).unwrap()).unwrap();
+    let errors: Vec<_> =
+        validator.iter_errors(&as_json(plan).unwrap()).map(|error| error.to_string()).collect();
+    assert_eq!(errors, Vec::<String>::new());
+}

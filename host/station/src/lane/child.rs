@@ -43,7 +43,8 @@ pub fn carry_out(job: &Job, request: &StopRequest, tell: &(dyn Fn(&Message) + Sy
 
 /// The plan as the run began with it.
 fn prepared(job: &Job) -> Result<(Plan, Target), String> {
-    let plan = Plan::parse(&job.plan, job.text.clone()).map_err(|error| error.to_string())?;
+    let plan = Plan::parse(&job.plan, job.text.clone());
+    let plan = plan.map_err(|error| format!("{:#}", anyhow::Error::from(error)))?;
     if plan.sha256 != job.sha256 {
         return Err(
             "a file that the plan names was changed while the run began; test the board again".to_owned()

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use halfrow::frames::written_aside::{WriteAsideError, write_aside};
+use halfrow::frames::written_aside::{self, WriteAsideError, write_aside};
 use halfrow::result::sha256;
 
 /// Evidence that cannot be written or read.
@@ -80,6 +80,14 @@ impl Blobs {
             written => written?,
         }
         Ok(hash)
+    }
+
+    /// Removes what a program left half written that was killed.
+    pub fn clear(&self) {
+        let folders = fs::read_dir(&self.folder).into_iter().flatten().filter_map(Result::ok);
+        for kept in folders.flat_map(|folder| written_aside::clear(&folder.path())) {
+            tracing::warn!("{} was kept; it is no evidence", kept.display());
+        }
     }
 
     /// The bytes of this hash.

@@ -23,12 +23,15 @@ use crate::lane::supervisor::{EVENTS, End, Heard, LOG, Patience, supervise};
 use crate::lane::{Job, Message};
 use crate::plan::limits::Maker;
 use crate::plan::serial::SerialError;
-use crate::plan::{Plan, Selected};
+use crate::plan::{Act, Plan, Selected, Step};
 use crate::record::{
     Attachment, BlobError, Blobs, Conclusion, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
     judged,
 };
 use crate::store::{Store, StoreError, Stored};
+
+/// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
+const LINK_TEST_PARTS: u32 = 5;
 
 /// What is to be done with which board.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +52,7 @@ pub struct Order<'a> {
     pub operator: &'a str,
     /// The program whose `lane` is started.
     pub program: &'a Path,
-    /// How long the lane may be silent.
+    /// How long the lane may be silent, beside the link tests of the plan.
     pub silence: Duration,
 }
 
@@ -126,10 +129,20 @@ pub fn run(
         seed: ids::seed(id),
     };
     let spool = store.folder().spool(&head.id);
-    let patience = Patience { silence: order.silence, whole: whole(selected) };
+    let silence = order.silence.saturating_add(longest_link_test(selected));
+    let patience = Patience { silence, whole: whole(selected) };
     let heard = supervise(order.program, &job, &spool, patience, stop, hear);
     let record = record(head, planned, order, selected, heard, begun.elapsed());
     save(store, record, &spool, selected.steps.len() as u32)
+}
+
+/// How long the longest link test is silent by its nature.
+fn longest_link_test(selected: &Selected) -> Duration {
+    let parts = |step: &Step| match step.act {
+        Act::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
+        Act::Identity | Act::Verify(_) => Duration::ZERO,
+    };
+    selected.steps.iter().map(parts).max().unwrap_or_default()
 }
 
 /// The longest that a run may take: every try of every step as long as it may, and as much again as one step for the rest.

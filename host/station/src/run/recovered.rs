@@ -18,6 +18,9 @@ use super::{RunError, Saved, save};
 /// [`RunError`] when a run cannot be closed; its lane stays blocked.
 pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     let open = store.open_runs().map_err(|error| RunError::NotBegun(Box::new(error)))?;
+    if !open.is_empty() {
+        store.folder().blobs().clear();
+    }
     let closed = open.into_iter().map(|open| closed(store, open)).collect::<Result<_, _>>()?;
     clear(&store.folder().spools());
     Ok(closed)
@@ -45,8 +48,8 @@ fn closed(store: &mut Store, open: OpenRun) -> Result<Saved, RunError> {
         ended_ms: clock::now_ms().max(run.started_ms),
         seconds: None,
         conclusion: Conclusion::error(RunCause::Crash, headline),
+        production: takes_hardware_alone(&text),
         plan: PlanRecord { sha256: plan_sha256, name, version, text, files: None },
-        production: false,
         marginal: steps.iter().any(|step| step.attempt > 1),
         board: steps.iter().find_map(|step| step.board.clone()),
         suspects: Vec::new(),
@@ -57,6 +60,13 @@ fn closed(store: &mut Store, open: OpenRun) -> Result<Saved, RunError> {
         run,
     };
     save(store, record, &spool, 0)
+}
+
+/// What the plan's text says of hardware. The plan was read whole when the run began; its files may be others by now.
+fn takes_hardware_alone(text: &str) -> bool {
+    let plan: toml::Table = text.parse().unwrap_or_default();
+    let required = plan.get("board").and_then(|board| board.get("require_hardware"));
+    required.and_then(toml::Value::as_bool).unwrap_or(false)
 }
 
 /// The steps that the lane told of, as far as they were written down.

@@ -19,7 +19,8 @@ fn station() -> Station {
     station
 }
 
-fn evidence(station: &Station) -> Vec<PathBuf> {
+/// Every file of evidence.
+pub(crate) fn evidence(station: &Station) -> Vec<PathBuf> {
     let folders = fs::read_dir(station.data().join("blobs")).unwrap();
     folders
         .flat_map(|folder| fs::read_dir(folder.unwrap().path()).unwrap())

@@ -1,5 +1,6 @@
 //! A result that cannot be saved is none.
 
+use std::collections::BTreeMap;
 use std::process::Command;
 
 use crate::bench::{Did, PLAN, Station, program};
@@ -16,11 +17,14 @@ pub(crate) fn injected(station: &Station, serial: &str, inject: &str) -> Did {
         .into()
 }
 
-/// How often a run makes one of these calls.
-pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> usize {
+/// A system call of a run: its name, and the how-manieth of that name it is.
+pub(crate) type Call = (String, usize);
+
+/// The calls of these names that a run makes, in their order.
+pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> Vec<Call> {
     let trace = station.path("calls");
     let traced = Command::new("strace")
-        .args(["-qq", "-e", &format!("trace={names}"), "-o"])
+        .args(["-qq", "-e", &format!("trace={names}"), "-e", "signal=none", "-o"])
         .arg(&trace)
         .arg(program())
         .args(station.run_arguments(serial, "mock"))
@@ -28,8 +32,14 @@ pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> usize {
         .unwrap();
     assert!(traced.status.success(), "{traced:?}");
     let text = std::fs::read_to_string(&trace).unwrap();
-    // A line for each call, and one for the end of the process.
-    text.lines().filter(|line| line.contains('(')).count()
+    let mut counts = BTreeMap::new();
+    let names = text.lines().filter_map(|line| line.split_once('(')).map(|(name, _)| name.to_owned());
+    let numbered = names.map(|name| {
+        let count = counts.entry(name.clone()).or_insert(0);
+        *count += 1;
+        (name, *count)
+    });
+    numbered.collect()
 }
 
 /// Whatever fails, and from which call on: there is a verdict on the screen only if it is in the store, and the station is
@@ -40,7 +50,7 @@ fn no_verdict_is_shown_that_the_disk_did_not_take() {
     station.run("CAT00001", "mock");
     let mut unsaved = 0;
     for (call, error) in [("pwrite64", "ENOSPC"), ("fsync", "EIO"), ("pwrite64", "EROFS")] {
-        let all = calls(&station, "CAT00001", call);
+        let all = calls(&station, "CAT00001", call).len();
         assert!(all > 2, "{all} calls of {call}");
         for first in [1, all / 3, all / 2, 2 * all / 3, all - 1, all] {
             let first = first.max(1);
