@@ -106,19 +106,27 @@ impl Lane {
             .spawn()?;
         let (sender, lines) = mpsc::channel();
         let stdout = child.stdout.take();
-        let mut stdin = child.stdin.take();
-        let lane = |child, stdin| Self { child, stdin, lines, events };
         thread::Builder::new().name("lane".to_owned()).spawn(move || {
             let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
             // Nobody hears it any more when the run is over.
             lines.map_while(Result::ok).take_while(|line| sender.send(line.clone()).is_ok()).for_each(drop);
         })?;
-        let born = started(child.id()).unwrap_or_default();
-        fs::write(spool.join(PROCESS), format!("{} {born}\n", child.id()))?;
-        if let Some(stdin) = &mut stdin {
-            writeln!(stdin, "{}", serde_json::to_string(job)?)?;
+        let mut lane = Self { stdin: child.stdin.take(), child, lines, events };
+        match lane.brief(job, spool) {
+            Ok(()) => Ok(lane),
+            Err(error) => {
+                lane.end(End::Killed(String::new()));
+                Err(error)
+            }
         }
-        Ok(lane(child, stdin))
+    }
+
+    /// Notes the process, so that the next start can find it, and hands it its job.
+    fn brief(&mut self, job: &Job, spool: &Path) -> io::Result<()> {
+        let id = self.child.id();
+        fs::write(spool.join(PROCESS), format!("{id} {}\n", started(id).unwrap_or_default()))?;
+        let job = serde_json::to_string(job)?;
+        self.stdin.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{job}"))
     }
 
     /// Hears the lane until its last message, its end, or the end of patience.

@@ -85,3 +85,74 @@ impl Conclusion {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(seq: u32, attempt: u32, outcome: StepOutcome, cause: RunCause) -> StepRecord {
+        StepRecord {
+            seq,
+            attempt,
+            name: format!("step {seq}"),
+            kind: "verify".to_owned(),
+            outcome,
+            cause,
+            exit_code: seq as u8,
+            started_ms: 1,
+            ended_ms: 2,
+            detail: format!("step {seq}, try {attempt}"),
+            remedy: None,
+            measurements: Vec::new(),
+            suspects: Vec::new(),
+            board: None,
+            evidence: None,
+        }
+    }
+
+    fn of(planned: u32, steps: &[StepRecord], lane: Option<Conclusion>) -> (Verdict, RunCause) {
+        let conclusion = Conclusion::of(planned, steps, &[], lane);
+        (conclusion.verdict, conclusion.cause)
+    }
+
+    #[test]
+    fn a_pass_needs_every_step_of_the_plan() {
+        let passed = |seq| step(seq, 1, StepOutcome::Passed, RunCause::None);
+        assert_eq!(of(2, &[passed(1), passed(2)], None), (Verdict::Pass, RunCause::None));
+        assert_eq!(of(3, &[passed(1), passed(2)], None), (Verdict::Error, RunCause::Station));
+        assert_eq!(of(1, &[], None), (Verdict::Error, RunCause::Station));
+        let skipped = step(2, 1, StepOutcome::Skipped, RunCause::None);
+        assert_eq!(of(2, &[passed(1), skipped], None), (Verdict::Error, RunCause::Station));
+        let died = Conclusion::error(RunCause::Crash, "it died");
+        assert_eq!(of(2, &[passed(1), passed(2)], Some(died)), (Verdict::Error, RunCause::Crash));
+    }
+
+    #[test]
+    fn the_last_try_of_a_step_counts_and_an_error_is_worse_than_a_fail() {
+        let error = |attempt| step(1, attempt, StepOutcome::Error, RunCause::Link);
+        let passed = step(1, 2, StepOutcome::Passed, RunCause::None);
+        assert_eq!(of(1, &[error(1), passed], None), (Verdict::Pass, RunCause::None));
+        assert_eq!(of(1, &[error(1), error(2)], None), (Verdict::Error, RunCause::Link));
+        let failed = step(1, 1, StepOutcome::Failed, RunCause::Board);
+        assert_eq!(of(1, std::slice::from_ref(&failed), None), (Verdict::Fail, RunCause::Board));
+        let later = step(2, 1, StepOutcome::Error, RunCause::Station);
+        assert_eq!(of(2, &[failed.clone(), later], None), (Verdict::Error, RunCause::Station));
+        let hung = Conclusion::error(RunCause::Crash, "it hung");
+        assert_eq!(of(1, &[failed], Some(hung)), (Verdict::Error, RunCause::Crash));
+    }
+
+    #[test]
+    fn a_limit_on_the_whole_run_counts_like_one_on_a_step() {
+        use crate::plan::limits::{Blame, Limit, Maker, Measurement};
+        use crate::record::judged;
+        let measurement = Measurement::named("run.seconds").unwrap();
+        let passed = step(1, 1, StepOutcome::Passed, RunCause::None);
+        let came = |blames| {
+            let limit = Limit { measurement, least: None, most: Some(60.0), blames };
+            let run = judged(Maker::Run, &[("run.seconds", Some(61.0))], &[limit]);
+            Conclusion::of(1, std::slice::from_ref(&passed), &run, None).verdict
+        };
+        let verdicts = [Blame::Board, Blame::Station, Blame::Nobody].map(came);
+        assert_eq!(verdicts, [Verdict::Fail, Verdict::Error, Verdict::Pass]);
+    }
+}

@@ -172,3 +172,68 @@ impl Record {
         serde_json::from_slice(bytes).map_err(RecordError::Json)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::limits::Maker;
+
+    fn pass() -> Record {
+        let run = RunHead {
+            id: "017f22e2-79b0-7cc3-98c4-dc0c0c07398f".to_owned(),
+            station: "12".to_owned(),
+            lane: "1".to_owned(),
+            unit_id: "017f22e2-79b0-7cc3-98c4-dc0c0c073990".to_owned(),
+            product: "CAM-A".to_owned(),
+            serial: "CA1".to_owned(),
+            variant: String::new(),
+            operator: "weber".to_owned(),
+            target: "mock".to_owned(),
+            fence: 1,
+            started_ms: 1,
+        };
+        let [sha256, name, version, text] = ["0", "n", "1", "t"].map(str::to_owned);
+        Record {
+            schema: SCHEMA,
+            run,
+            ended_ms: 2,
+            seconds: Some(0.001),
+            conclusion: Conclusion {
+                verdict: Verdict::Pass,
+                cause: RunCause::None,
+                exit_code: 0,
+                headline: "all is right".to_owned(),
+                remedy: None,
+            },
+            plan: PlanRecord { sha256, name, version, text, files: Some(Vec::new()) },
+            production: true,
+            marginal: false,
+            board: None,
+            steps: Vec::new(),
+            measurements: judged(Maker::Run, &[("run.seconds", Some(0.001))], &[]),
+            suspects: Vec::new(),
+            attachments: Vec::new(),
+            program: "halfrow".to_owned(),
+        }
+    }
+
+    #[test]
+    fn a_pass_without_an_outcome_of_a_step_is_not_stored() {
+        assert!(matches!(pass().bytes(1), Err(RecordError::Incomplete { seq: 1, steps: 1 })));
+        let mut error = pass();
+        error.conclusion = Conclusion::error(RunCause::Crash, "it died");
+        let bytes = error.bytes(1).unwrap();
+        assert_eq!(Record::parse(&bytes).unwrap(), error);
+    }
+
+    /// JSON has no such number; it would become `null`, and a measurement that was not made.
+    #[test]
+    fn a_measurement_that_is_no_number_is_not_stored() {
+        let mut record = pass();
+        record.conclusion = Conclusion::error(RunCause::Crash, "it died");
+        for wrong in [f64::NAN, f64::INFINITY] {
+            record.measurements[0].value = Some(wrong);
+            assert!(matches!(record.bytes(1), Err(RecordError::NotANumber { .. })));
+        }
+    }
+}

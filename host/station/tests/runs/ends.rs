@@ -138,7 +138,7 @@ fn silent_board() -> (TcpListener, String) {
     (listener, target)
 }
 
-/// The process of the lane, as soon as it has connected to the board.
+/// The process of the lane, as soon as it has connected to the board and the station has heard of it.
 fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
     let (mut connection, _) = listener.accept().unwrap();
     assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
@@ -147,8 +147,10 @@ fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
     let spool = std::fs::read_dir(station.data().join("spool")).unwrap().next().unwrap().unwrap().path();
     let begun = Instant::now();
     loop {
-        let noted = std::fs::read_to_string(spool.join("lane.pid")).unwrap_or_default();
-        if let Some(Ok(id)) = noted.split_whitespace().next().map(str::parse) {
+        let read = |name| std::fs::read_to_string(spool.join(name)).unwrap_or_default();
+        let has_told = read("events.jsonl").ends_with('\n');
+        if let Some(Ok(id)) = read("lane.pid").split_whitespace().next().map(str::parse).filter(|_| has_told)
+        {
             return id;
         }
         assert!(begun.elapsed() < Duration::from_secs(60), "no lane");
