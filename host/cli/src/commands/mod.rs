@@ -19,6 +19,7 @@ mod optics;
 mod paper;
 mod schema;
 mod serve;
+mod station;
 mod table_file;
 mod tables;
 mod verify;
@@ -88,6 +89,7 @@ enum Command {
     Info(info::Arguments),
     Link(link::Arguments),
     Serve(serve::Arguments),
+    Station(station::Arguments),
     Faults(faults::Arguments),
     Codes(codes::Arguments),
     Schema(schema::Arguments),
@@ -173,6 +175,7 @@ impl Cli {
             Command::Info(_) => "info",
             Command::Link(_) => "link",
             Command::Serve(_) => "serve",
+            Command::Station(_) => "station",
             Command::Faults(_) => "faults",
             Command::Codes(_) => "codes",
             Command::Schema(_) => "schema",
@@ -192,7 +195,10 @@ impl Cli {
         let settings_file = Settings::file(self.settings.as_deref());
         let context = Context { settings, settings_file, quiet: self.quiet, json: self.json };
         if context.json
-            && matches!(self.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
+            && matches!(
+                self.command,
+                Command::Serve(_) | Command::Station(_) | Command::Completions(_) | Command::Manual(_)
+            )
         {
             let command = self.command_name();
             return Err(wrong_call!("`halfrow {command}` has no result in JSON; leave --json out"));
@@ -209,6 +215,7 @@ impl Cli {
             Command::Info(arguments) => info::run(arguments, &context),
             Command::Link(arguments) => link::run(arguments, &context),
             Command::Serve(arguments) => serve::run(arguments),
+            Command::Station(arguments) => station::run(arguments).map(|never| match never {}),
             Command::Faults(arguments) => faults::run(arguments, &context),
             Command::Codes(arguments) => codes::run(arguments, &context),
             Command::Schema(arguments) => schema::run(arguments),
