@@ -23,7 +23,8 @@ pub fn print(text: &str) -> Result<(), Unprinted> {
     }
 }
 
-/// Prints what is not the only result of a command: its exit code says it, too. If stdout does not take it, stderr says so.
+/// Prints what is not the only result of a command: its exit code says it, too. If stdout does not take it, stderr says
+/// so.
 pub fn tell(text: &str) {
     if let Err(unprinted) = print(text) {
         error(&format_args!("{:#}; the exit code stands", anyhow::Error::from(unprinted)));

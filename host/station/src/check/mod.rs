@@ -1,5 +1,5 @@
-//! Whether everything is as it was written: every hash anew, and the index made anew from the records beside the one that is
-//! there.
+//! Whether everything is as it was written: every hash anew, and the index made anew from the records beside the one
+//! that is there.
 
 use std::collections::BTreeMap;
 

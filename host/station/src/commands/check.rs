@@ -12,8 +12,8 @@ use crate::store::Folder;
 
 /// Read everything that the station has kept, and say what is not as it was written
 ///
-/// Every hash is computed anew, and the database is made anew from the records, in memory, and compared. Exit codes: 0 all is as it was
-/// written, 3 something is not.
+/// Every hash is computed anew, and the database is made anew from the records, in memory, and compared. Exit codes: 0
+/// all is as it was written, 3 something is not.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The station's folder

@@ -23,8 +23,9 @@ use crate::store::{Folder, Store};
 
 /// Judge one board by a plan, and save the result
 ///
-/// The verdict is printed when it is on the disk and was read back. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR or a result
-/// that could not be saved, 4 busy, 5 nothing judged, 6 identity or version refused, 129, 130 or 143 interrupted.
+/// The verdict is printed when it is on the disk and was read back. Exit codes: 0 PASS, 1 FAIL, 2 usage, 3 ERROR or a
+/// result that could not be saved, 4 busy, 5 nothing judged, 6 identity or version refused, 129, 130 or 143
+/// interrupted.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The station's folder, which is made if it is not there

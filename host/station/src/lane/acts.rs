@@ -61,8 +61,8 @@ impl Try {
         Self { remedy: Some(remedy.to_owned()), ..Self::of(Cause::Refused, "", detail) }
     }
 
-    /// With these measurements: a PASS that misses a limit is what the limit says, and a FAIL with a limit that blames the
-    /// station is ERROR.
+    /// With these measurements: a PASS that misses a limit is what the limit says, and a FAIL with a limit that blames
+    /// the station is ERROR.
     fn measured(mut self, measurements: Vec<Measured>) -> Self {
         let faults: Vec<_> =
             measurements.iter().filter_map(|one| Some((one.fault()?, one.sentence()))).collect();

@@ -1,5 +1,5 @@
-//! The station's side of a lane: starts its process, hears what it tells, and kills its group when it falls silent or takes
-//! too long.
+//! The station's side of a lane: starts its process, hears what it tells, and kills its group when it falls silent or
+//! takes too long.
 
 use std::fs::{self, File};
 use std::io::{self, BufRead as _, BufReader, Write as _};
@@ -60,8 +60,8 @@ pub enum End {
     Killed(String),
 }
 
-/// Has a process of `program` do `job`, with what it writes down in the folder `spool`. `stop` is asked who wants it to end, and
-/// `hear` is told every message.
+/// Has a process of `program` do `job`, with what it writes down in the folder `spool`. `stop` is asked who wants it to
+/// end, and `hear` is told every message.
 pub fn supervise(
     program: &Path,
     job: &Job,
@@ -226,8 +226,8 @@ fn kill(group: u32) {
     }
 }
 
-/// Kills the lane of a run whose station ended before it, if it is still there: by its id and by when it began, since ids
-/// are used again.
+/// Kills the lane of a run whose station ended before it, if it is still there: by its id and by when it began, since
+/// ids are used again.
 pub fn kill_left_behind(spool: &Path) {
     let noted = fs::read_to_string(spool.join(PROCESS)).unwrap_or_default();
     let mut words = noted.split_whitespace().map(str::parse::<u64>);

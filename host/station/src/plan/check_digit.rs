@@ -13,8 +13,8 @@ pub enum CheckDigit {
     /// As ISBN-10 (ISO 2108): digits weighted from the last one, 1, 2, 3, …, sum to a multiple of 11; the last may be X
     /// for 10. Up to ten digits, since the eleventh would weigh nothing. Whatever is no digit counts for nothing.
     Mod11,
-    /// ISO/IEC 7812-1, annex B: every second digit from the right doubled, all figures sum to a multiple of 10. Whatever is
-    /// no digit counts for nothing.
+    /// ISO/IEC 7812-1, annex B: every second digit from the right doubled, all figures sum to a multiple of 10.
+    /// Whatever is no digit counts for nothing.
     Luhn,
     /// ISO 7064 MOD 97-10, as in ISO 17442: letters read as 10 to 35, the whole number leaves 1 when divided by 97.
     Mod97,
@@ -99,9 +99,9 @@ fn mod_43(number: &str) -> bool {
 mod tests {
     use super::*;
 
-    /// Published numbers: an ISBN-10 of Penguin and one with X (Wikipedia, "ISBN"), the example of "Luhn algorithm" there,
-    /// a test card of Visa's, the IBANs of the registry for the United Kingdom and Germany (the first four characters
-    /// behind the others, as ISO 13616 has it), GLEIF's own LEI, and the worked examples of Code 39.
+    /// Published numbers: an ISBN-10 of Penguin and one with X (Wikipedia, "ISBN"), the example of "Luhn algorithm"
+    /// there, a test card of Visa's, the IBANs of the registry for the United Kingdom and Germany (the first four
+    /// characters behind the others, as ISO 13616 has it), GLEIF's own LEI, and the worked examples of Code 39.
     const WORKED: [(CheckDigit, &str); 11] = [
         (CheckDigit::Mod11, "0306406152"),
         (CheckDigit::Mod11, "080442957X"),

@@ -1,4 +1,5 @@
-//! A plan as it stands in its file: what TOML and its types can say, each value with its place where an error may name it.
+//! A plan as it stands in its file: what TOML and its types can say, each value with its place where an error may name
+//! it.
 
 use std::collections::BTreeMap;
 

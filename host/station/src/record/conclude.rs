@@ -22,8 +22,9 @@ pub struct Conclusion {
 }
 
 impl Conclusion {
-    /// Of a plan of `planned` steps: the worst that the last try of a step came to, an ERROR being worse than a FAIL; PASS only
-    /// if every step passed. `lane` says why there are no more steps, if the lane did not come to the plan's end by itself.
+    /// Of a plan of `planned` steps: the worst that the last try of a step came to, an ERROR being worse than a FAIL;
+    /// PASS only if every step passed. `lane` says why there are no more steps, if the lane did not come to the plan's
+    /// end by itself.
     #[must_use]
     pub fn of(planned: u32, steps: &[StepRecord], run: &[Measured], lane: Option<Self>) -> Self {
         let is_last = |step: &StepRecord| {

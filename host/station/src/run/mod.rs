@@ -145,7 +145,8 @@ fn longest_link_test(selected: &Selected) -> Duration {
     selected.steps.iter().map(parts).max().unwrap_or_default()
 }
 
-/// The longest that a run may take: every try of every step as long as it may, and as much again as one step for the rest.
+/// The longest that a run may take: every try of every step as long as it may, and as much again as one step for the
+/// rest.
 fn whole(selected: &Selected) -> Duration {
     let tries = selected.steps.iter().map(|step| step.timeout.saturating_mul(step.retries + 1));
     let longest = selected.steps.iter().map(|step| step.timeout).max().unwrap_or_default();

@@ -11,8 +11,8 @@ use crate::store::{OpenRun, Store};
 
 use super::{RunError, Saved, save};
 
-/// Closes every run that is open as ERROR, cause crash, with what its lane wrote down. What it was about to come to does not
-/// count: a board that is tested again costs a minute, a PASS that is none costs more.
+/// Closes every run that is open as ERROR, cause crash, with what its lane wrote down. What it was about to come to
+/// does not count: a board that is tested again costs a minute, a PASS that is none costs more.
 ///
 /// # Errors
 /// [`RunError`] when a run cannot be closed; its lane stays blocked.

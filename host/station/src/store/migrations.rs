@@ -8,8 +8,8 @@ use rusqlite::{Connection, OptionalExtension as _, TransactionBehavior, params};
 use super::StoreError;
 use super::statements::{SCHEMA_VERSION, SCHEMAS, for_sqlite};
 
-/// Applies each schema that `database`, the file `path`, does not have yet, in a transaction of its own. Before a database that holds
-/// results is changed, a copy of it is laid beside it.
+/// Applies each schema that `database`, the file `path`, does not have yet, in a transaction of its own. Before a
+/// database that holds results is changed, a copy of it is laid beside it.
 pub(super) fn apply(database: &mut Connection, path: &Path, now_ms: i64) -> Result<(), StoreError> {
     let refused = |source| StoreError::Database { path: path.to_owned(), doing: "a new version", source };
     database.execute_batch(&for_sqlite(SCHEMA_VERSION)).map_err(refused)?;

@@ -7,7 +7,8 @@
 //!  station.lock        held by the one program that writes
 //! ```
 //!
-//! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read it back.
+//! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read
+//! it back.
 
 mod error;
 mod migrations;
@@ -167,8 +168,8 @@ impl Store {
         Ok(RunHead { unit_id, fence, ..run })
     }
 
-    /// Ends an open run: the record on the disk first, then all rows in one transaction. Returns the verdict as a second
-    /// connection reads it back. Only then may it be shown.
+    /// Ends an open run: the record on the disk first, then all rows in one transaction. Returns the verdict as a
+    /// second connection reads it back. Only then may it be shown.
     ///
     /// # Errors
     /// [`StoreError`] when anything is not as it was written. There is no verdict then.

@@ -5,8 +5,8 @@ use rusqlite::{Connection, Transaction, params};
 use super::statements as sql;
 use crate::record::{PlanRecord, Record, RunHead};
 
-/// Unit, plan and open run. Returns the unit's id and the fence; the unit that is named is made if there is none of this serial
-/// number.
+/// Unit, plan and open run. Returns the unit's id and the fence; the unit that is named is made if there is none of
+/// this serial number.
 pub(super) fn open(
     to: &Transaction<'_>,
     run: &RunHead,
@@ -35,8 +35,8 @@ pub(super) fn open(
     Ok((unit, fence))
 }
 
-/// The end of a run with all that belongs to it. Returns the number of runs that it ended: none, and then nothing is changed,
-/// when the run is not open, or somebody else's.
+/// The end of a run with all that belongs to it. Returns the number of runs that it ended: none, and then nothing is
+/// changed, when the run is not open, or somebody else's.
 pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusqlite::Result<usize> {
     let id = &record.run.id;
     let (ended, board) = (&record.conclusion, record.board.as_ref());
