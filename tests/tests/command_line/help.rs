@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 16] = [
+const COMMANDS: [(&str, &str); 17] = [
     ("verify", "Judge a board"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
@@ -17,6 +17,7 @@ const COMMANDS: [(&str, &str); 16] = [
     ("info", "Say what a board is"),
     ("link", "Test the link"),
     ("serve", "Serve a mock or simulated board"),
+    ("station", "Start the production station"),
     ("faults", "List the faults"),
     ("codes", "List the codes"),
     ("schema", "Print the JSON Schema"),

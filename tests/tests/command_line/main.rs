@@ -24,6 +24,7 @@ mod settings;
 mod signals;
 #[cfg(feature = "sim")]
 mod simulated;
+mod station;
 mod streams;
 mod varied;
 mod verdicts;

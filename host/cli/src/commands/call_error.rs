@@ -117,4 +117,13 @@ pub(super) enum CallError {
     /// A frame of another size than the tables.
     #[error("{} is {width} x {height}, and the tables are for {columns} x {rows}; {remedy}", path.display())]
     OtherSize { path: PathBuf, width: usize, height: usize, columns: usize, rows: usize, remedy: String },
+    /// The station's program does not lie beside this one.
+    #[error(
+        "the station is a program of its own, and {} is not there; build it with `cargo build --release --package \
+         halfrow-station`, or install it with `cargo install --path host/station`", path.display()
+    )]
+    StationMissing { path: PathBuf },
+    /// The station's program does not start.
+    #[error("{} cannot be started; build or install it again", path.display())]
+    StationNotStarted { path: PathBuf, source: io::Error },
 }

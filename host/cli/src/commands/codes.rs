@@ -57,6 +57,8 @@ codes::codes! {
         PhotographsMissing => "paper-photographs-missing",
         Unreadable [path] => "input-unreadable",
         OtherSize [path, width, height, columns, rows] => "frame-of-other-size",
+        StationMissing [path] => "station-missing",
+        StationNotStarted [path] => "station-not-started",
     }
     SettingsError {
         Io [path] => "settings-file-unreadable",

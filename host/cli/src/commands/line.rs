@@ -114,6 +114,10 @@ commands! {
     /// SIGTERM. One host at a time is served; one that vanishes leaves a board that the next can use. A board whose wire breaks
     /// (fault=disconnect) hangs up, as a board does that is unplugged.
     Serve(super::serve::Arguments), "serve";
+    /// Start the production station, a program of its own
+    ///
+    /// `halfrow station help` lists its commands.
+    Station(super::station::Arguments), "station";
     /// List the faults that the mock board can have
     ///
     /// Use one as `--board mock,fault=NAME`, with its parameters behind further commas. Those of the wire serve `sim` as well.

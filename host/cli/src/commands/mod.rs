@@ -21,6 +21,7 @@ mod optics;
 mod paper;
 mod schema;
 mod serve;
+mod station;
 mod table_file;
 mod tables;
 mod verify;
@@ -140,7 +141,10 @@ impl Cli {
         let settings_file = Settings::file(self.0.settings.as_deref());
         let context = Context { settings, settings_file, quiet: self.0.quiet, json: self.0.json };
         if context.json
-            && matches!(self.0.command, Command::Serve(_) | Command::Completions(_) | Command::Manual(_))
+            && matches!(
+                self.0.command,
+                Command::Serve(_) | Command::Station(_) | Command::Completions(_) | Command::Manual(_)
+            )
         {
             let command = self.command_name();
             return Err(Failure::call(CallError::NoJson { command }));
@@ -157,6 +161,7 @@ impl Cli {
             Command::Info(arguments) => info::run(arguments, &context),
             Command::Link(arguments) => link::run(arguments, &context),
             Command::Serve(arguments) => serve::run(arguments),
+            Command::Station(arguments) => station::run(arguments).map(|never| match never {}),
             Command::Faults(arguments) => faults::run(arguments, &context),
             Command::Codes(arguments) => codes::run(arguments, &context),
             Command::Schema(arguments) => schema::run(arguments),

@@ -1,0 +1,34 @@
+//! `halfrow station`
+
+use std::convert::Infallible;
+use std::ffi::OsString;
+use std::os::unix::process::CommandExt as _;
+use std::path::Path;
+use std::process::Command;
+
+use clap::Args;
+
+use super::{CallError, Failure};
+
+/// The program that lies beside this one.
+const PROGRAM: &str = "halfrow-station";
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// What the station is called with
+    #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "ARGUMENTS")]
+    arguments: Vec<OsString>,
+}
+
+/// Becomes the station, if it is there.
+pub(super) fn run(arguments: &Arguments) -> Result<Infallible, Failure> {
+    let not_started = |path: &Path, source| CallError::StationNotStarted { path: path.to_owned(), source };
+    let here =
+        std::env::current_exe().map_err(|source| Failure::error(not_started(Path::new(PROGRAM), source)))?;
+    let path = here.parent().unwrap_or(Path::new(".")).join(PROGRAM);
+    if !path.exists() {
+        return Err(Failure::call(CallError::StationMissing { path }));
+    }
+    let source = Command::new(&path).args(&arguments.arguments).exec();
+    Err(Failure::error(not_started(&path, source)))
+}

@@ -1,0 +1,1 @@
+SELECT id, record_sha256 FROM run WHERE state = 'final' ORDER BY id;

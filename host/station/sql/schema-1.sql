@@ -1,0 +1,98 @@
+-- The tables of a station and of a plant. {int}, {real} and {strict} are what the two engines call differently.
+CREATE TABLE plan (
+  sha256 TEXT PRIMARY KEY CHECK (length(sha256) = 64),
+  name TEXT NOT NULL,
+  version TEXT NOT NULL,
+  product TEXT NOT NULL,
+  text TEXT NOT NULL,
+  first_used_ms {int} NOT NULL
+){strict};
+
+CREATE TABLE unit (
+  id TEXT PRIMARY KEY CHECK (length(id) = 36),
+  product TEXT NOT NULL,
+  serial TEXT NOT NULL,
+  first_seen_ms {int} NOT NULL,
+  UNIQUE (product, serial)
+){strict};
+
+CREATE TABLE run (
+  id TEXT PRIMARY KEY CHECK (length(id) = 36),
+  station TEXT NOT NULL,
+  lane TEXT NOT NULL,
+  unit_id TEXT NOT NULL REFERENCES unit (id),
+  plan_sha256 TEXT NOT NULL REFERENCES plan (sha256),
+  variant TEXT NOT NULL,
+  operator_id TEXT NOT NULL,
+  target TEXT NOT NULL,
+  board_kind TEXT,
+  device TEXT,
+  build TEXT,
+  retest_of TEXT REFERENCES run (id),
+  nth {int} NOT NULL,
+  fence {int} NOT NULL,
+  started_ms {int} NOT NULL,
+  ended_ms {int},
+  state TEXT NOT NULL CHECK (state IN ('open', 'final')),
+  verdict TEXT CHECK (verdict IN ('PASS', 'FAIL', 'ERROR')),
+  exit_code {int},
+  cause TEXT CHECK (cause IN ('none', 'board', 'link', 'station', 'operator', 'crash', 'refused')),
+  headline TEXT,
+  record_sha256 TEXT CHECK (length(record_sha256) = 64),
+  CHECK ((state = 'final') = (verdict IS NOT NULL)),
+  CHECK ((state = 'final') = (exit_code IS NOT NULL AND cause IS NOT NULL)),
+  CHECK ((state = 'final') = (ended_ms IS NOT NULL AND record_sha256 IS NOT NULL)),
+  CHECK ((verdict = 'PASS') = (cause = 'none')),
+  CHECK ((verdict = 'FAIL') = (cause = 'board'))
+){strict};
+
+CREATE INDEX run_time ON run (started_ms DESC, id DESC);
+CREATE INDEX run_unit ON run (unit_id, started_ms DESC);
+CREATE INDEX run_yield ON run (plan_sha256, nth, verdict, started_ms);
+CREATE UNIQUE INDEX run_open_lane ON run (station, lane) WHERE state = 'open';
+CREATE UNIQUE INDEX run_open_unit ON run (unit_id) WHERE state = 'open';
+
+CREATE TABLE step (
+  run_id TEXT NOT NULL REFERENCES run (id),
+  seq {int} NOT NULL,
+  attempt {int} NOT NULL,
+  name TEXT NOT NULL,
+  outcome TEXT NOT NULL CHECK (outcome IN ('passed', 'failed', 'error', 'skipped')),
+  started_ms {int} NOT NULL,
+  ended_ms {int} NOT NULL,
+  detail TEXT NOT NULL,
+  PRIMARY KEY (run_id, seq, attempt)
+){strict};
+
+-- Those of the run as a whole have the number 0 in the place of a step's.
+CREATE TABLE measurement (
+  run_id TEXT NOT NULL REFERENCES run (id),
+  seq {int} NOT NULL,
+  attempt {int} NOT NULL,
+  name TEXT NOT NULL,
+  value {real},
+  unit TEXT NOT NULL,
+  low {real},
+  high {real},
+  blames TEXT NOT NULL CHECK (blames IN ('board', 'station', 'nobody')),
+  outcome TEXT NOT NULL CHECK (outcome IN ('passed', 'failed', 'unset', 'not judged')),
+  PRIMARY KEY (run_id, seq, attempt, name)
+){strict};
+
+CREATE TABLE suspect (
+  run_id TEXT NOT NULL REFERENCES run (id),
+  rank {int} NOT NULL,
+  part TEXT NOT NULL,
+  place TEXT NOT NULL,
+  explained {real} NOT NULL,
+  PRIMARY KEY (run_id, rank)
+){strict};
+
+CREATE TABLE attachment (
+  run_id TEXT NOT NULL REFERENCES run (id),
+  name TEXT NOT NULL,
+  sha256 TEXT NOT NULL CHECK (length(sha256) = 64),
+  bytes {int} NOT NULL,
+  media_type TEXT NOT NULL,
+  PRIMARY KEY (run_id, name)
+){strict};

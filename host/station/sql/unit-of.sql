@@ -1,0 +1,1 @@
+SELECT id FROM unit WHERE product = $1 AND serial = $2;

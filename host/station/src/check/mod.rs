@@ -1,0 +1,183 @@
+//! Whether everything is as it was written: every hash anew, and the index made anew from the records beside the one
+//! that is there.
+
+use std::collections::BTreeMap;
+
+use crate::plan::plan_hash;
+use crate::record::{BlobError, Blobs, Record, RecordError};
+use crate::store::{Folder, OpenRun, Rebuilt, Row, Snapshot, StoreError, TABLES};
+
+/// What was looked at, and what is wrong.
+#[derive(Debug)]
+pub struct Checked {
+    /// Runs that are over.
+    pub runs: usize,
+    /// Runs that are open.
+    pub open: usize,
+    /// Records and attachments.
+    pub evidence: usize,
+    /// What is not as it was written.
+    pub faults: Vec<Fault>,
+}
+
+/// Something that is not as it was written.
+#[derive(Debug, thiserror::Error)]
+pub enum Fault {
+    /// SQLite finds its own file damaged.
+    #[error("the database is damaged ({said}); restore it from a copy")]
+    Database {
+        /// What it says.
+        said: String,
+    },
+    /// A record or an attachment is not there, or other than its hash.
+    #[error("evidence of run {run}: {source}")]
+    Evidence {
+        /// The run.
+        run: String,
+        /// What is wrong.
+        source: BlobError,
+    },
+    /// A record is whole and cannot be read.
+    #[error("the record of run {run}: {source}")]
+    Record {
+        /// The run.
+        run: String,
+        /// Why.
+        source: RecordError,
+    },
+    /// A record does not fit the records before it.
+    #[error("the record of run {run} does not fit those before it: {source}")]
+    Contradiction {
+        /// The run.
+        run: String,
+        /// Why.
+        source: Box<StoreError>,
+    },
+    /// The plan in a record is not what its hash says.
+    #[error("the plan in the record of run {run} has another hash than it says; look at the record")]
+    Plan {
+        /// The run.
+        run: String,
+    },
+    /// A row is not what the records say.
+    #[error("table {table}, row {key}: {column} is `{stored}`, and the records say `{rebuilt}`")]
+    Differs {
+        /// The table.
+        table: &'static str,
+        /// The row's key.
+        key: String,
+        /// The column.
+        column: String,
+        /// What is there.
+        stored: String,
+        /// What should be.
+        rebuilt: String,
+    },
+    /// A row is not there.
+    #[error("table {table} has no row {key}, and the records have")]
+    Missing {
+        /// The table.
+        table: &'static str,
+        /// The row's key.
+        key: String,
+    },
+    /// A row is there without a record.
+    #[error("table {table} has a row {key}, and no record has")]
+    Surplus {
+        /// The table.
+        table: &'static str,
+        /// The row's key.
+        key: String,
+    },
+}
+
+/// Looks at all that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile.
+///
+/// # Errors
+/// [`StoreError`] when the database cannot be read at all.
+pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
+    let snapshot = Snapshot::take(folder)?;
+    let mut faults: Vec<_> = snapshot.damage()?.into_iter().map(|said| Fault::Database { said }).collect();
+    let (finals, open) = (snapshot.final_runs()?, snapshot.open_runs()?);
+    let mut look = Look { blobs: folder.blobs(), rebuilt: Rebuilt::new()?, evidence: 0, faults: Vec::new() };
+    look.at_runs(&finals, &open);
+    faults.append(&mut look.faults);
+    for (table, key) in TABLES {
+        compare(table, key, snapshot.table(table, key)?, look.rebuilt.table(table, key)?, &mut faults);
+    }
+    Ok(Checked { runs: finals.len(), open: open.len(), evidence: look.evidence, faults })
+}
+
+struct Look {
+    blobs: Blobs,
+    rebuilt: Rebuilt,
+    evidence: usize,
+    faults: Vec<Fault>,
+}
+
+impl Look {
+    /// Goes through the runs in the order in which they began.
+    fn at_runs(&mut self, finals: &[(String, String)], open: &[OpenRun]) {
+        let mut open = open.iter().peekable();
+        for (run, hash) in finals {
+            while let Some(earlier) = open.next_if(|open| open.run.id < *run) {
+                self.at_open(earlier);
+            }
+            if let Err(fault) = self.at_final(run, hash) {
+                self.faults.push(fault);
+            }
+        }
+        open.for_each(|open| self.at_open(open));
+    }
+
+    fn at_open(&mut self, open: &OpenRun) {
+        if let Err(source) = self.rebuilt.add_open(open) {
+            let (run, source) = (open.run.id.clone(), Box::new(source));
+            self.faults.push(Fault::Contradiction { run, source });
+        }
+    }
+
+    fn at_final(&mut self, run: &str, hash: &str) -> Result<(), Fault> {
+        let owned = || run.to_owned();
+        let evidence = |source| Fault::Evidence { run: owned(), source };
+        self.evidence += 1;
+        let bytes = self.blobs.get(hash).map_err(evidence)?;
+        let record = Record::parse(&bytes).map_err(|source| Fault::Record { run: owned(), source })?;
+        for attachment in &record.attachments {
+            self.evidence += 1;
+            if let Err(source) = self.blobs.get(&attachment.sha256) {
+                self.faults.push(evidence(source));
+            }
+        }
+        let plan = &record.plan;
+        if plan.files.as_ref().is_some_and(|files| plan_hash(&plan.text, files) != plan.sha256) {
+            self.faults.push(Fault::Plan { run: owned() });
+        }
+        let added = self.rebuilt.add(&record, hash);
+        added.map_err(|source| Fault::Contradiction { run: owned(), source: Box::new(source) })
+    }
+}
+
+/// Compares a table with the one that was made anew.
+fn compare(table: &'static str, key: &str, stored: Vec<Row>, rebuilt: Vec<Row>, faults: &mut Vec<Fault>) {
+    let by_key =
+        |rows: Vec<Row>| rows.into_iter().map(|row| (key_of(key, &row), row)).collect::<BTreeMap<_, _>>();
+    let (stored, mut rebuilt) = (by_key(stored), by_key(rebuilt));
+    for (key, row) in stored {
+        let Some(right) = rebuilt.remove(&key) else {
+            faults.push(Fault::Surplus { table, key });
+            continue;
+        };
+        let differing = row.into_iter().zip(right).filter(|(stored, rebuilt)| stored != rebuilt);
+        faults.extend(differing.map(|((column, stored), (_, rebuilt))| {
+            let key = key.clone();
+            Fault::Differs { table, key, column, stored, rebuilt }
+        }));
+    }
+    faults.extend(rebuilt.into_keys().map(|key| Fault::Missing { table, key }));
+}
+
+fn key_of(key: &str, row: &Row) -> String {
+    let value = |name: &str| row.iter().find(|(column, _)| column == name).map(|(_, value)| value.as_str());
+    key.split(", ").filter_map(value).collect::<Vec<_>>().join(" ")
+}

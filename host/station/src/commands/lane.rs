@@ -1,0 +1,47 @@
+//! `halfrow-station lane`: what the station starts for every run.
+
+use std::io::{self, BufRead as _};
+use std::process;
+use std::thread;
+
+use clap::Args;
+
+use super::Failure;
+use crate::console;
+use crate::exit::Exit;
+use crate::lane::child::{StopRequest, carry_out};
+use crate::lane::{Control, Job, Message};
+
+/// Carry out one run; the station starts it
+#[derive(Debug, Args)]
+#[command(hide = true)]
+pub(super) struct Arguments {}
+
+pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
+    let mut line = String::new();
+    io::stdin().lock().read_line(&mut line).map_err(Failure::error)?;
+    let job: Job = serde_json::from_str(&line).map_err(|error| {
+        let why = anyhow::Error::from(error);
+        Failure::call(why.context("the first line is no job; `halfrow-station run` starts lanes, not people"))
+    })?;
+    let request = StopRequest::default();
+    let heeded = request.clone();
+    thread::Builder::new().name("stdin".to_owned()).spawn(move || heed(&heeded)).map_err(Failure::error)?;
+    carry_out(&job, &request, &|message: &Message| {
+        // A station that hears nothing more is gone, and then stdin ends this process.
+        if let Ok(line) = serde_json::to_string(message) {
+            let _ = console::print(&line);
+        }
+    });
+    Ok(Exit::Pass)
+}
+
+/// Heeds what the station says until it is gone, and the lane with it.
+fn heed(request: &StopRequest) {
+    for line in io::stdin().lock().lines().map_while(Result::ok) {
+        if let Ok(control) = serde_json::from_str::<Control>(&line) {
+            request.ask(control.into());
+        }
+    }
+    process::exit(Exit::Error.code().into());
+}

@@ -1,0 +1,86 @@
+//! The command line: one file a command.
+
+mod check;
+mod lane;
+mod plan;
+mod run;
+
+use clap::{ArgAction, Parser, Subcommand};
+
+use crate::console;
+use crate::exit::Exit;
+use crate::store::StoreError;
+
+/// Judges boards on a production line by plans, and keeps every result.
+#[derive(Debug, Parser)]
+#[command(name = "halfrow-station", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
+pub struct Cli {
+    /// Log what happens to stderr; twice for every packet that is late or damaged
+    #[arg(short, long, global = true, action = ArgAction::Count)]
+    verbose: u8,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Run(run::Arguments),
+    Check(check::Arguments),
+    Plan(plan::Arguments),
+    Lane(lane::Arguments),
+}
+
+/// A command that did not come to a result.
+#[derive(Debug)]
+pub struct Failure {
+    /// The exit code.
+    pub exit: Exit,
+    /// Why, with its causes.
+    pub error: anyhow::Error,
+}
+
+impl Failure {
+    /// A failure of the call or of its input.
+    fn call(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Usage, error: error.into() }
+    }
+
+    /// A failure that is not the caller's.
+    fn error(error: impl Into<anyhow::Error>) -> Self {
+        Self { exit: Exit::Error, error: error.into() }
+    }
+}
+
+impl Cli {
+    /// How much to log: 0 for errors and warnings alone.
+    #[must_use]
+    pub fn verbosity(&self) -> u8 {
+        self.verbose
+    }
+
+    /// Carries the command out.
+    ///
+    /// # Errors
+    /// [`Failure`] with its exit code, when there is no result.
+    pub fn run(&self) -> Result<Exit, Failure> {
+        match &self.command {
+            Command::Run(arguments) => run::run(arguments),
+            Command::Check(arguments) => check::run(arguments),
+            Command::Plan(arguments) => plan::run(arguments),
+            Command::Lane(arguments) => lane::run(arguments),
+        }
+    }
+}
+
+impl From<StoreError> for Failure {
+    fn from(error: StoreError) -> Self {
+        let exit = if matches!(error, StoreError::InUse { .. }) { Exit::Busy } else { Exit::Error };
+        Self { exit, error: error.into() }
+    }
+}
+
+/// Prints a result, which is the command's only one.
+fn print(text: &str) -> Result<Exit, Failure> {
+    console::print(text).map_err(Failure::error)?;
+    Ok(Exit::Pass)
+}

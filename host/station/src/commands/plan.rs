@@ -1,0 +1,103 @@
+//! `halfrow-station plan`
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::{Failure, print};
+use crate::exit::Exit;
+use crate::plan::limits::Limit;
+use crate::plan::{Act, JSON_SCHEMA, Plan, Seed, Selected, Step};
+
+/// Look at plans
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Read a plan and every file that it names, and print what would be run
+    Check {
+        /// The plan
+        file: PathBuf,
+        /// What would be run with the board of this serial number alone
+        #[arg(long)]
+        serial: Option<String>,
+    },
+    /// Print the JSON Schema of plans
+    Schema,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    match &arguments.command {
+        Command::Check { file, serial } => {
+            let plan = Plan::load(file).map_err(Failure::call)?;
+            print(&match serial {
+                Some(serial) => {
+                    let (serial, selected) = plan.select(serial).map_err(Failure::call)?;
+                    format!("{}\n{}", head(&plan), variant(&serial.variant, selected))
+                }
+                None => {
+                    let variants = plan.variants().map(|(name, selected)| variant(name, selected));
+                    std::iter::once(head(&plan)).chain(variants).collect::<Vec<_>>().join("\n")
+                }
+            })
+        }
+        Command::Schema => print(JSON_SCHEMA.trim_end()),
+    }
+}
+
+fn head(plan: &Plan) -> String {
+    let Plan { name, version, product, sha256, builds, .. } = plan;
+    let mut lines = vec![
+        format!("plan      {name} {version} for {product}"),
+        format!("hash      {sha256}"),
+        format!("builds    {}", builds.join(", ")),
+    ];
+    lines.extend(plan.files.iter().map(|file| format!("file      {} {}", file.path, file.sha256)));
+    if !plan.require_hardware {
+        lines.push("any kind of board is judged, so no run counts as production".to_owned());
+    }
+    lines.join("\n")
+}
+
+fn variant(name: &str, selected: &Selected) -> String {
+    let title =
+        if name.is_empty() { "any variant without a name".to_owned() } else { format!("variant {name}") };
+    let steps = selected.steps.iter().zip(1..).map(|(step, seq)| format!("  {seq} {}", told(step)));
+    let limits = selected.limits.iter().map(|limit| format!("  limit {}", bounds(limit)));
+    std::iter::once(title).chain(steps).chain(limits).collect::<Vec<_>>().join("\n")
+}
+
+fn told(step: &Step) -> String {
+    let what = match &step.act {
+        Act::Identity => "the board is asked who it is".to_owned(),
+        Act::Link { each } => format!("the link is tested in parts of {} s", each.as_secs_f64()),
+        Act::Verify(judging) => {
+            let names: Vec<_> = judging.frames.iter().map(halfrow::FrameSource::name).collect();
+            let seed = match judging.seed {
+                Seed::Run => "of the run".to_owned(),
+                Seed::Fixed(seed) => seed.to_string(),
+            };
+            format!("{} x {}, by {}, seed {seed}", judging.repeat, names.join(", "), judging.chosen.source)
+        }
+    };
+    let tries =
+        if step.retries == 0 { String::new() } else { format!(", tried again {} times", step.retries) };
+    format!("{}: {what}{tries}, within {} s", step.name, step.timeout.as_secs_f64())
+}
+
+fn bounds(limit: &Limit) -> String {
+    let side = |word: &str, bound: Option<f64>| bound.map(|bound| format!(" {word} {bound}"));
+    let sides = [side("at least", limit.least), side("at most", limit.most)].into_iter().flatten();
+    let measurement = limit.measurement;
+    format!(
+        "{}{} {}, blames {}",
+        measurement.name,
+        sides.collect::<String>(),
+        measurement.unit,
+        limit.blames.name()
+    )
+}

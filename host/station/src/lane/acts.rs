@@ -1,0 +1,291 @@
+//! What the steps of a plan do with a board.
+
+use std::error::Error;
+use std::time::{Duration, Instant};
+
+use halfrow::board::{Board, OpenOptions, Stop};
+use halfrow::link::{self, Candidate, Class, OpenError};
+use halfrow::link_test::{self, Figures, LinkTestError};
+use halfrow::result::{BoardReport, Identity, Problem};
+use halfrow::run::{Circumstances, Draws};
+use halfrow::target::{BoardKind, Target};
+use halfrow::verdict::{Cause, Verdict};
+use halfrow::{Progress, Report, RunOptions};
+use serde_json::Value;
+
+use crate::exit::Exit;
+use crate::plan::limits::{Limit, Maker, SAMPLES_DIFFERING};
+use crate::plan::{DeviceRule, Judging, Plan};
+use crate::record::{BoardSeen, Measured, RunCause, StepOutcome, SuspectRecord, judged};
+
+/// What a try of a step came to.
+#[derive(Debug)]
+pub(super) struct Try {
+    pub(super) outcome: StepOutcome,
+    pub(super) cause: RunCause,
+    pub(super) exit: Exit,
+    pub(super) detail: String,
+    pub(super) remedy: Option<String>,
+    pub(super) measurements: Vec<Measured>,
+    pub(super) suspects: Vec<SuspectRecord>,
+    pub(super) board: Option<BoardSeen>,
+    pub(super) evidence: Option<Value>,
+}
+
+impl Try {
+    fn of(cause: Cause, code: &str, detail: impl Into<String>) -> Self {
+        let outcome = match cause.verdict() {
+            Verdict::Pass => StepOutcome::Passed,
+            Verdict::Fail => StepOutcome::Failed,
+            Verdict::Error => StepOutcome::Error,
+        };
+        Self {
+            outcome,
+            cause: RunCause::of(cause, code),
+            exit: cause.into(),
+            detail: detail.into(),
+            remedy: None,
+            measurements: Vec::new(),
+            suspects: Vec::new(),
+            board: None,
+            evidence: None,
+        }
+    }
+
+    fn error(cause: Cause, error: &(dyn Error + 'static)) -> Self {
+        let problem = Problem::of(error);
+        Self { remedy: problem.remedy.clone(), ..Self::of(cause, &problem.code, problem.sentence()) }
+    }
+
+    fn refused(detail: String, remedy: &str) -> Self {
+        Self { remedy: Some(remedy.to_owned()), ..Self::of(Cause::Refused, "", detail) }
+    }
+
+    /// With these measurements: a PASS that misses a limit is what the limit says, and a FAIL with a limit that blames
+    /// the station is ERROR.
+    fn measured(mut self, measurements: Vec<Measured>) -> Self {
+        let faults: Vec<_> =
+            measurements.iter().filter_map(|one| Some((one.fault()?, one.sentence()))).collect();
+        self.measurements = measurements;
+        // What is not the board's fault is worse: the board was not judged rightly then.
+        let worst = faults.iter().find(|(cause, _)| *cause != RunCause::Board).or(faults.first());
+        let is_worse = |cause: &RunCause| match self.outcome {
+            StepOutcome::Passed => true,
+            StepOutcome::Failed => *cause != RunCause::Board,
+            StepOutcome::Error | StepOutcome::Skipped => false,
+        };
+        let Some((cause, sentence)) = worst.filter(|(cause, _)| is_worse(cause)) else { return self };
+        (self.outcome, self.exit) = match cause {
+            RunCause::Board => (StepOutcome::Failed, Exit::Fail),
+            RunCause::Refused => (StepOutcome::Error, Exit::Refused),
+            _ => (StepOutcome::Error, Exit::Error),
+        };
+        (self.cause, self.detail) = (*cause, sentence.clone());
+        self
+    }
+}
+
+/// What the steps of a run have in common.
+pub(super) struct Common<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) target: &'a Target,
+    pub(super) seed: u64,
+    pub(super) stop: &'a Stop,
+    pub(super) limits: &'a [Limit],
+    /// The board that the run began with.
+    pub(super) first: Option<BoardSeen>,
+}
+
+impl Common<'_> {
+    /// Asks the board who it is, and whether the plan may judge it. Nothing is uploaded.
+    pub(super) fn identity(&self, within: Duration) -> Try {
+        let (mut board, kind) = match self.open(within) {
+            Ok(open) => open,
+            Err(result) => return *result,
+        };
+        let identity = Identity::of(&board.welcome, &board.capabilities);
+        close(&mut board);
+        let seen = seen(kind, &identity);
+        let Plan { require_hardware, builds, device, .. } = self.plan;
+        let refused = if *require_hardware && kind != BoardKind::Hardware {
+            let detail = format!("the board is a {kind}, and the plan takes hardware alone");
+            Some(Try::refused(detail, "Check the lane's target."))
+        } else if !builds.contains(&seen.build) {
+            let detail =
+                format!("the board's build is {}, and the plan takes {}", seen.build, builds.join(", "));
+            Some(Try::refused(detail, "Load a released build, or take the plan for this one."))
+        } else if *device == DeviceRule::Required && seen.device.is_none() {
+            let detail = "the board does not say which device it is, and the plan asks for it".to_owned();
+            Some(Try::refused(detail, "Load a build that reads the FPGA's own number."))
+        } else {
+            None
+        };
+        let known = match (&seen.device, device) {
+            (Some(device), DeviceRule::Required | DeviceRule::IfPresent) => format!("device {device}"),
+            _ => "identity not checked".to_owned(),
+        };
+        let detail = format!("{} ({}), build {}, {known}", seen.name, seen.kind, seen.build);
+        let result = refused.unwrap_or_else(|| Try::of(Cause::Equal, "", detail));
+        Try { board: Some(seen), ..result }
+    }
+
+    /// Tests the link.
+    pub(super) fn link(&self, each: Duration, within: Duration) -> Try {
+        let (mut board, kind) = match self.open(within) {
+            Ok(open) => open,
+            Err(result) => return *result,
+        };
+        let seen = seen(kind, &Identity::of(&board.welcome, &board.capabilities));
+        if let Some(exchanged) = self.exchanged(&seen) {
+            return exchanged;
+        }
+        let tested = link_test::run(&mut board, each, self.seed);
+        close(&mut board);
+        let figures = match tested {
+            Ok(figures) => figures,
+            Err(error) => {
+                let cause = match &error {
+                    LinkTestError::Board(error) => error.cause(),
+                    LinkTestError::NoFrame(_) => Cause::Station,
+                };
+                return Try { board: Some(seen), ..Try::error(cause, &error) };
+            }
+        };
+        let result = match figures.errors.wrong {
+            0 => Try::of(Cause::Equal, "", format!("the link was tested: {}", figures.link)),
+            wrong => {
+                let detail = format!("{wrong} answers hold other bytes than were sent, under a right CRC");
+                Try::of(Cause::Different, "", detail)
+            }
+        };
+        let evidence = serde_json::to_value(&figures).ok();
+        let measured = judged(Maker::Link, &of_link(&figures), self.limits);
+        Try { board: Some(seen), evidence, ..result }.measured(measured)
+    }
+
+    /// Judges the board.
+    pub(super) fn verify(&self, judging: &Judging, within: Duration, progress: &dyn Progress) -> Try {
+        let begun = Instant::now();
+        let candidate = match self.candidate() {
+            Ok(candidate) => candidate,
+            Err(result) => return *result,
+        };
+        let circumstances = Circumstances {
+            arguments: std::env::args().collect(),
+            files: self.plan.files.clone(),
+            draws: Draws::draw(),
+        };
+        let options = RunOptions {
+            timeout: Some(within),
+            stop: self.stop.clone().within(Some(within)),
+            require_hardware: self.plan.require_hardware,
+            circumstances,
+            ..RunOptions::default()
+        };
+        let finished = match halfrow::verify(&judging.plan(self.seed), candidate, &options, progress) {
+            Ok(finished) => finished,
+            // The plan does not fit the board, which was not judged.
+            Err(misfit) => return Try::error(Cause::Refused, &misfit),
+        };
+        let report = finished.report;
+        let seen = report.board.identity.as_ref().map(|identity| seen(report.board.kind, identity));
+        if let Some(exchanged) = seen.as_ref().and_then(|seen| self.exchanged(seen)) {
+            return exchanged;
+        }
+        let code = report.error().map_or_else(String::new, |problem| problem.code);
+        let measured = judged(Maker::Verify, &of_verify(&report, begun.elapsed()), self.limits);
+        let result = Try {
+            remedy: report.remedy(),
+            suspects: report.suspects.iter().map(suspect).collect(),
+            board: seen,
+            evidence: serde_json::to_value(&report).ok(),
+            ..Try::of(report.cause, &code, report.headline())
+        };
+        result.measured(measured)
+    }
+
+    /// Another board than the run began with.
+    fn exchanged(&self, seen: &BoardSeen) -> Option<Try> {
+        let first = self.first.as_ref().filter(|first| *first != seen)?;
+        let name = |board: &BoardSeen| {
+            format!("{} of build {}", board.device.as_deref().unwrap_or("unnumbered"), board.build)
+        };
+        let detail = format!("the board was exchanged during the run: {} became {}", name(first), name(seen));
+        let refused = Try::refused(detail, "Leave the board in its place, and test it again.");
+        Some(Try { board: Some(seen.clone()), ..refused })
+    }
+
+    fn candidate(&self) -> Result<Candidate, Box<Try>> {
+        link::open(self.target).map_err(|error: OpenError| {
+            let cause = match error.class() {
+                Class::Call | Class::Station => Cause::Station,
+                Class::Busy => Cause::Busy,
+            };
+            Box::new(Try::error(cause, &error))
+        })
+    }
+
+    fn open(&self, within: Duration) -> Result<(Board, BoardKind), Box<Try>> {
+        let candidate = self.candidate()?;
+        let Draws { nonce, host } = Draws::draw();
+        let stop = self.stop.clone().limited(Some(within)).within(Some(within));
+        let options = OpenOptions { nonce, host, stop, ..OpenOptions::default() };
+        let board = Board::open(candidate.link, &options)
+            .map_err(|(error, _)| Box::new(Try::error(error.cause(), &error)))?;
+        let kind = candidate.kind.confirmed_by(board.capabilities.nature);
+        Ok((board, kind))
+    }
+}
+
+fn close(board: &mut Board) {
+    if let Err(error) = board.close() {
+        tracing::debug!("the session was not closed: {error}");
+    }
+}
+
+fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
+    let has_number = identity.serial.bytes().any(|digit| digit != b'0');
+    BoardSeen {
+        kind: kind.to_string(),
+        name: identity.name.clone(),
+        device: has_number.then(|| identity.serial.clone()),
+        build: identity.build.clone(),
+    }
+}
+
+fn suspect(suspect: &halfrow::result::Suspect) -> SuspectRecord {
+    SuspectRecord {
+        part: suspect.part().to_owned(),
+        place: suspect.place(),
+        explained: suspect.explained,
+        technician: suspect.technician(),
+    }
+}
+
+fn of_link(figures: &Figures) -> [(&'static str, Option<f64>); 5] {
+    let together = &figures.together;
+    let slower = together.out.bytes_per_second.zip(together.back.bytes_per_second);
+    // A wire on a virtual clock has no round trip.
+    let trip = Some(figures.round_trips.median_us).filter(|_| figures.round_trips.most_us > 0.0);
+    [
+        ("link.round_trip", trip),
+        ("link.to_board", figures.to_board.out.bytes_per_second),
+        ("link.to_host", figures.to_host.back.bytes_per_second),
+        ("link.together", slower.map(|(out, back)| out.min(back))),
+        ("link.retries", Some(figures.errors.retries as f64)),
+    ]
+}
+
+fn of_verify(report: &Report, took: Duration) -> [(&'static str, Option<f64>); 5] {
+    let clocks = report.latency.map(|latency| f64::from(latency.most));
+    let BoardReport { identity, .. } = &report.board;
+    let hertz = identity.as_ref().map(|identity| f64::from(identity.clock_hz)).filter(|hertz| *hertz > 0.0);
+    let differing: usize = report.frames.iter().map(|frame| frame.comparison.differences).sum();
+    [
+        ("latency.clocks", clocks),
+        ("latency.microseconds", clocks.zip(hertz).map(|(clocks, hertz)| 1e6 * clocks / hertz)),
+        ("verify.retries", Some(report.link.retries as f64)),
+        ("verify.seconds", Some(took.as_secs_f64())),
+        (SAMPLES_DIFFERING, Some(differing as f64)),
+    ]
+}

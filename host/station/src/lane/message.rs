@@ -1,0 +1,99 @@
+//! What supervisor and lane tell each other: one JSON object a line.
+
+use std::path::PathBuf;
+
+use halfrow::verdict::StoppedBy;
+use serde::{Deserialize, Serialize};
+
+use crate::record::StepRecord;
+
+/// What the lane is to do: the first line that it reads.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Job {
+    /// The run.
+    pub run: String,
+    /// The target string of the board.
+    pub target: String,
+    /// The file of the plan, to which its paths are relative.
+    pub plan: PathBuf,
+    /// The plan's text.
+    pub text: String,
+    /// The hash of the plan and its files.
+    pub sha256: String,
+    /// The variant.
+    pub variant: String,
+    /// The seed of the run.
+    pub seed: u64,
+}
+
+/// What the lane reads after it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "stop", rename_all = "lowercase")]
+pub enum Control {
+    /// A person wants it to end.
+    Person,
+    /// The system does.
+    System,
+    /// The terminal is gone.
+    Disconnection,
+}
+
+impl From<StoppedBy> for Control {
+    fn from(by: StoppedBy) -> Self {
+        match by {
+            StoppedBy::Person | StoppedBy::Caller => Self::Person,
+            StoppedBy::System => Self::System,
+            StoppedBy::Disconnection => Self::Disconnection,
+        }
+    }
+}
+
+impl From<Control> for StoppedBy {
+    fn from(control: Control) -> Self {
+        match control {
+            Control::Person => Self::Person,
+            Control::System => Self::System,
+            Control::Disconnection => Self::Disconnection,
+        }
+    }
+}
+
+/// What the lane tells.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "told", rename_all = "kebab-case")]
+pub enum Message {
+    /// A try of a step begins.
+    Step {
+        /// The step's place, from 1.
+        seq: u32,
+        /// The try, from 1.
+        attempt: u32,
+        /// The step's name.
+        name: String,
+    },
+    /// The step does something else.
+    Doing {
+        /// What, for people.
+        what: String,
+    },
+    /// Rows that came back so far.
+    Rows {
+        /// How many.
+        done: u64,
+        /// Of so many.
+        expected: u64,
+    },
+    /// A try of a step is over.
+    Ended {
+        /// What it came to.
+        step: Box<StepRecord>,
+    },
+    /// All is done: the last message.
+    Done,
+    /// The job cannot be done: the last message, too.
+    Refused {
+        /// Why, and what to do.
+        why: String,
+    },
+}

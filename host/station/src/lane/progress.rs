@@ -1,0 +1,55 @@
+//! Progress of the judge as messages, not more of them than somebody can read.
+
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+use halfrow::{Event, Progress};
+
+use super::Message;
+
+/// The least time between two messages that only count rows.
+const PACE: Duration = Duration::from_millis(250);
+
+/// Tells messages.
+pub(super) struct Told<'a> {
+    tell: &'a (dyn Fn(&Message) + Sync),
+    rows: Mutex<Rows>,
+}
+
+struct Rows {
+    done: u64,
+    expected: u64,
+    told: Option<Instant>,
+}
+
+impl<'a> Told<'a> {
+    pub(super) fn by(tell: &'a (dyn Fn(&Message) + Sync)) -> Self {
+        Self { tell, rows: Mutex::new(Rows { done: 0, expected: 0, told: None }) }
+    }
+
+    fn count(&self, rows: u64) {
+        // A thread that panicked ends the lane anyway.
+        let Ok(mut so_far) = self.rows.lock() else { return };
+        so_far.done += rows;
+        if so_far.told.is_none_or(|told| told.elapsed() >= PACE) {
+            so_far.told = Some(Instant::now());
+            (self.tell)(&Message::Rows { done: so_far.done, expected: so_far.expected });
+        }
+    }
+}
+
+impl Progress for Told<'_> {
+    fn event(&self, event: Event) {
+        match event {
+            Event::Step(step) => (self.tell)(&Message::Doing { what: step.to_string() }),
+            Event::Frame(name) => (self.tell)(&Message::Doing { what: name }),
+            Event::Rows(rows) => self.count(rows),
+            Event::RowsExpected(rows) => {
+                if let Ok(mut so_far) = self.rows.lock() {
+                    so_far.expected += rows;
+                }
+            }
+            Event::Done => {}
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! The station's side of a lane: starts its process, hears what it tells, and kills its group when it falls silent or
+//! takes too long.
+
+use std::fs::{self, File};
+use std::io::{self, BufRead as _, BufReader, Write as _};
+use std::os::unix::process::CommandExt as _;
+use std::path::Path;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use halfrow::verdict::StoppedBy;
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
+
+use super::{Control, Job, Message};
+use crate::record::StepRecord;
+
+/// How often the supervisor looks whether anybody wants the run to end.
+const LOOK: Duration = Duration::from_millis(50);
+/// How long a lane may take to end once it is told to, or has nothing left to do.
+const GRACE: Duration = Duration::from_secs(10);
+
+/// What the lane tells, in the run's spool.
+pub const EVENTS: &str = "events.jsonl";
+/// What it logs.
+pub const LOG: &str = "lane.log";
+/// Its process id, and when it began.
+const PROCESS: &str = "lane.pid";
+
+/// How long a lane is waited for.
+#[derive(Clone, Copy, Debug)]
+pub struct Patience {
+    /// The longest between two messages.
+    pub silence: Duration,
+    /// The longest in all.
+    pub whole: Duration,
+}
+
+/// What a lane told, and how it ended.
+#[derive(Debug)]
+pub struct Heard {
+    /// Every try of a step that came to an end.
+    pub steps: Vec<StepRecord>,
+    /// How it ended.
+    pub end: End,
+}
+
+/// How a lane ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    /// It did all that it would.
+    Done,
+    /// It could not do the job at all.
+    Refused(String),
+    /// Its process did not start, or ended before it was done.
+    Died(String),
+    /// It was killed, since it was silent or took too long.
+    Killed(String),
+}
+
+/// Has a process of `program` do `job`, with what it writes down in the folder `spool`. `stop` is asked who wants it to
+/// end, and `hear` is told every message.
+pub fn supervise(
+    program: &Path,
+    job: &Job,
+    spool: &Path,
+    patience: Patience,
+    stop: &dyn Fn() -> Option<StoppedBy>,
+    hear: &mut dyn FnMut(&Message),
+) -> Heard {
+    let mut steps = Vec::new();
+    let end = match Lane::start(program, job, spool) {
+        Ok(mut lane) => {
+            let end = lane.hear(patience, stop, &mut |message| {
+                if let Message::Ended { step } = message {
+                    steps.push(StepRecord::clone(step));
+                }
+                hear(message);
+            });
+            lane.end(end)
+        }
+        Err(error) => End::Died(format!("the lane could not be started: {error}")),
+    };
+    Heard { steps, end }
+}
+
+struct Lane {
+    child: Child,
+    stdin: Option<ChildStdin>,
+    lines: Receiver<String>,
+    events: File,
+}
+
+impl Lane {
+    fn start(program: &Path, job: &Job, spool: &Path) -> io::Result<Self> {
+        fs::create_dir_all(spool)?;
+        let events = File::create(spool.join(EVENTS))?;
+        let mut child = Command::new(program)
+            .arg("lane")
+            .process_group(0)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(File::create(spool.join(LOG))?)
+            .spawn()?;
+        let (sender, lines) = mpsc::channel();
+        let stdout = child.stdout.take();
+        thread::Builder::new().name("lane".to_owned()).spawn(move || {
+            let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
+            // Nobody hears it any more when the run is over.
+            lines.map_while(Result::ok).take_while(|line| sender.send(line.clone()).is_ok()).for_each(drop);
+        })?;
+        let mut lane = Self { stdin: child.stdin.take(), child, lines, events };
+        match lane.brief(job, spool) {
+            Ok(()) => Ok(lane),
+            Err(error) => {
+                lane.end(End::Killed(String::new()));
+                Err(error)
+            }
+        }
+    }
+
+    /// Notes the process, so that the next start can find it, and hands it its job.
+    fn brief(&mut self, job: &Job, spool: &Path) -> io::Result<()> {
+        let id = self.child.id();
+        fs::write(spool.join(PROCESS), format!("{id} {}\n", started(id).unwrap_or_default()))?;
+        let job = serde_json::to_string(job)?;
+        self.stdin.as_mut().map_or(Ok(()), |stdin| writeln!(stdin, "{job}"))
+    }
+
+    /// Hears the lane until its last message, its end, or the end of patience.
+    fn hear(
+        &mut self,
+        patience: Patience,
+        stop: &dyn Fn() -> Option<StoppedBy>,
+        hear: &mut dyn FnMut(&Message),
+    ) -> End {
+        let begun = Instant::now();
+        let (mut last, mut asked) = (begun, None);
+        loop {
+            match self.lines.recv_timeout(LOOK) {
+                Ok(line) => {
+                    last = Instant::now();
+                    // What is lost here is lost as evidence alone; the record has all that counts.
+                    let _ = writeln!(self.events, "{line}");
+                    match serde_json::from_str(&line) {
+                        Ok(Message::Done) => return End::Done,
+                        Ok(Message::Refused { why }) => return End::Refused(why),
+                        Ok(message) => hear(&message),
+                        Err(_) => return End::Killed(format!("the lane told what is no message: {line}")),
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => return End::Died(String::new()),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if asked.is_none()
+                && let Some(by) = stop()
+            {
+                self.tell(by.into());
+                asked = Some(Instant::now());
+            }
+            if let Some(why) = impatient(patience, begun, last, asked) {
+                return End::Killed(why);
+            }
+        }
+    }
+
+    fn tell(&mut self, control: Control) {
+        if let (Some(stdin), Ok(line)) = (&mut self.stdin, serde_json::to_string(&control)) {
+            // A lane that is gone has no need to be told.
+            let _ = writeln!(stdin, "{line}");
+        }
+    }
+
+    /// Sees that the process is gone.
+    fn end(mut self, end: End) -> End {
+        drop(self.stdin.take());
+        let is_over = matches!(end, End::Done | End::Refused(_) | End::Died(_));
+        let mut status = if is_over { waited(&mut self.child) } else { None };
+        if status.is_none() {
+            kill(self.child.id());
+            status = waited(&mut self.child);
+        }
+        match (end, status) {
+            (End::Killed(why), None) => End::Killed(format!("{why}, and could not even be killed")),
+            (End::Died(_), Some(status)) => {
+                End::Died(format!("the lane ended before it was done ({status})"))
+            }
+            (End::Died(_), None) => End::Killed("the lane fell silent for good".to_owned()),
+            (end, _) => end,
+        }
+    }
+}
+
+/// Why the lane is waited for no longer.
+fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<Instant>) -> Option<String> {
+    let seconds = |limit: Duration| limit.as_secs_f64();
+    if last.elapsed() > patience.silence {
+        return Some(format!("the lane told nothing for {} s", seconds(patience.silence)));
+    }
+    if begun.elapsed() > patience.whole {
+        return Some(format!("the lane took longer than {} s", seconds(patience.whole)));
+    }
+    let is_deaf = asked.is_some_and(|asked| asked.elapsed() > GRACE);
+    is_deaf.then(|| format!("the lane did not end within {} s of being told to", seconds(GRACE)))
+}
+
+/// How a process ended, if it does within [`GRACE`].
+fn waited(child: &mut Child) -> Option<std::process::ExitStatus> {
+    let begun = Instant::now();
+    loop {
+        match child.try_wait() {
+            Ok(Some(status)) => return Some(status),
+            _ if begun.elapsed() > GRACE => return None,
+            _ => thread::sleep(Duration::from_millis(2)),
+        }
+    }
+}
+
+fn kill(group: u32) {
+    if let Ok(group) = i32::try_from(group)
+        && let Err(error) = killpg(Pid::from_raw(group), Signal::SIGKILL)
+    {
+        tracing::debug!("the lane's processes {group} were not killed: {error}");
+    }
+}
+
+/// Kills the lane of a run whose station ended before it, if it is still there: by its id and by when it began, since
+/// ids are used again.
+pub fn kill_left_behind(spool: &Path) {
+    let noted = fs::read_to_string(spool.join(PROCESS)).unwrap_or_default();
+    let mut words = noted.split_whitespace().map(str::parse::<u64>);
+    let (Some(Ok(id)), Some(Ok(born))) = (words.next(), words.next()) else { return };
+    if let Ok(id) = u32::try_from(id)
+        && started(id) == Some(born)
+    {
+        kill(id);
+    }
+}
+
+/// When a process began, in ticks since the computer did: field 22 of proc_pid_stat(5), whose second may hold blanks.
+fn started(id: u32) -> Option<u64> {
+    let stat = fs::read_to_string(format!("/proc/{id}/stat")).ok()?;
+    stat.rsplit_once(')')?.1.split_whitespace().nth(19)?.parse().ok()
+}

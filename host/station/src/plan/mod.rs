@@ -1,0 +1,195 @@
+//! A plan: what is done with every board of a product, and what its results must be.
+//!
+//! ```text
+//!  plan.toml ─► text (TOML, types) ─► read (what they mean together) ─► Plan ─► Selected, for one serial number
+//!                                        │
+//!                   tables, frames, kernel: every file that the plan names is read, and hashed
+//! ```
+//!
+//! Whatever is wrong with a plan is found when it is loaded, before any board is touched.
+
+pub mod check_digit;
+mod error;
+mod files;
+pub mod limits;
+mod read;
+pub mod serial;
+mod tables;
+mod text;
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use halfrow::FrameSource;
+use halfrow::optics::Chosen;
+use halfrow::result::FileHash;
+
+pub use error::PlanError;
+pub(crate) use files::plan_hash;
+use limits::Limit;
+use serial::{Serial, SerialError, SerialRule};
+
+/// The version of the plan's own format.
+pub const SCHEMA: u32 = 1;
+
+/// The JSON Schema of a plan, for editors.
+pub const JSON_SCHEMA: &str = include_str!("../../schema/plan-1.json");
+
+/// Whether a board must say which device it is, by the FPGA's own number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DeviceRule {
+    /// A board without one is refused.
+    Required,
+    /// A board without one is judged, too.
+    IfPresent,
+    /// Nobody looks.
+    NotChecked,
+}
+
+/// A plan that can be carried out.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// SHA-256 of [`Self::text`] and of every file that it names: what was judged by this plan was judged by just this.
+    pub sha256: String,
+    /// Its text.
+    pub text: String,
+    /// Its name; with the product it says which runs are compared.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// What the boards are.
+    pub product: String,
+    /// Which serial numbers they have.
+    pub serial: SerialRule,
+    /// Refuse anything but hardware.
+    pub require_hardware: bool,
+    /// The builds of the board that may be judged, as the first eight hexadecimal digits of their commits.
+    pub builds: Vec<String>,
+    /// Whether a board must say which device it is.
+    pub device: DeviceRule,
+    /// The files that it names, in order.
+    pub files: Vec<FileHash>,
+    /// What is done with boards of no named variant.
+    base: Selected,
+    /// And with those of each variant, by its name.
+    variants: Vec<(String, Selected)>,
+}
+
+/// What is done with one board.
+#[derive(Clone, Debug)]
+pub struct Selected {
+    /// The steps, in order.
+    pub steps: Vec<Step>,
+    /// The limits.
+    pub limits: Vec<Limit>,
+}
+
+/// A step of a plan.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Its name.
+    pub name: String,
+    /// What it does.
+    pub act: Act,
+    /// How often it is tried again when the link or the station was in the way; a FAIL never is.
+    pub retries: u32,
+    /// The longest that one try may take.
+    pub timeout: Duration,
+}
+
+/// What a step does.
+#[derive(Clone, Debug)]
+pub enum Act {
+    /// Asks the board who it is. Every run begins with it.
+    Identity,
+    /// Tests the link.
+    Link {
+        /// How long each part of the test takes.
+        each: Duration,
+    },
+    /// Judges the board.
+    Verify(Box<Judging>),
+}
+
+impl Act {
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Identity => "identity",
+            Self::Link { .. } => "link",
+            Self::Verify(_) => "verify",
+        }
+    }
+}
+
+/// What a board is judged with.
+#[derive(Clone, Debug)]
+pub struct Judging {
+    /// Tables, kernel and lens.
+    pub chosen: Chosen,
+    /// Bayer phase of built-in frames.
+    pub phase: halfrow::model::Phase,
+    /// The frames.
+    pub frames: Vec<FrameSource>,
+    /// How often they are streamed.
+    pub repeat: u32,
+    /// The seed of noise, gaps and nonces.
+    pub seed: Seed,
+}
+
+/// Where a seed comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Seed {
+    /// Drawn from the run's id: another one for every run, and recorded with it.
+    Run,
+    /// Always this one.
+    Fixed(u64),
+}
+
+impl Plan {
+    /// The plan in the file `path`, whose own paths are relative to it.
+    ///
+    /// # Errors
+    /// [`PlanError`], with the line.
+    pub fn load(path: &Path) -> Result<Self, PlanError> {
+        let text = fs::read_to_string(path)
+            .map_err(|source| PlanError::Unreadable { path: path.to_owned(), source })?;
+        Self::parse(path, text)
+    }
+
+    /// The plan `text`, which stands or stood in the file `path`.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn parse(path: &Path, text: String) -> Result<Self, PlanError> {
+        read::plan(path, &text).map_err(|fault| fault.in_file(path, &text)).map(|plan| Self { text, ..plan })
+    }
+
+    /// What is done with the board of this serial number, which says its variant.
+    ///
+    /// # Errors
+    /// [`SerialError`] when the number is none of this product's.
+    pub fn select(&self, scanned: &str) -> Result<(Serial, &Selected), SerialError> {
+        let serial = self.serial.read(scanned)?;
+        let selected = self.variant(&serial.variant);
+        Ok((serial, selected))
+    }
+
+    /// What is done with boards of this variant.
+    #[must_use]
+    pub fn variant(&self, name: &str) -> &Selected {
+        let named = self.variants.iter().find(|(variant, _)| variant == name);
+        named.map_or(&self.base, |(_, selected)| selected)
+    }
+
+    /// The variants that are named, and what is done with all others under the name of nothing.
+    pub fn variants(&self) -> impl Iterator<Item = (&str, &Selected)> {
+        let named = self.variants.iter().map(|(name, selected)| (name.as_str(), selected));
+        std::iter::once(("", &self.base)).chain(named)
+    }
+}

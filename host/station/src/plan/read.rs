@@ -1,0 +1,304 @@
+//! What the parts of a plan mean together.
+
+use std::path::Path;
+use std::time::Duration;
+
+use toml::Spanned;
+
+use super::error::Fault;
+use super::files::Files;
+use super::limits::{Limit, MEASUREMENTS, Maker, Measurement, SAMPLES_DIFFERING};
+use super::serial::SerialRule;
+use super::tables;
+use super::text::{BoardText, LimitText, LimitsText, PlanText, SeedText, StepKindText, StepText, TablesText};
+use super::{Act, Judging, Plan, SCHEMA, Seed, Selected, Step};
+
+/// How long a step may take that does not say.
+const TIMEOUT: Duration = Duration::from_secs(120);
+/// The longest that one may say, in seconds.
+const MOST_SECONDS: f64 = 86_400.0;
+/// The longest part of a link test, in seconds.
+const MOST_LINK_SECONDS: f64 = 3600.0;
+/// The most tries behind the first.
+const MOST_RETRIES: u32 = 10;
+/// The most repetitions of a step's frames.
+const MOST_REPEATS: u32 = 1000;
+
+/// The plan of `text` in the file `path`; its own text is left to the caller.
+pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
+    let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error))?;
+    check_schema(&read)?;
+    let [name, version, product] = [&read.plan.name, &read.plan.version, &read.plan.product].map(not_empty);
+    let serial = SerialRule::new(read.serial.pattern.get_ref(), read.serial.check);
+    let serial =
+        serial.map_err(|(what, remedy)| Fault::wrong(read.serial.pattern.span().start, what, remedy))?;
+    let builds = builds(&read.board)?;
+    let mut files = Files::beside(path);
+    let base = selected(&read, &read.tables, &LimitsText::new(), &mut files)?;
+    let variants = variants(&read, &serial, &mut files)?;
+    let (files, sha256) = files.hashed(text);
+    Ok(Plan {
+        sha256,
+        text: String::new(),
+        name: name?,
+        version: version?,
+        product: product?,
+        serial,
+        require_hardware: read.board.require_hardware,
+        builds,
+        device: read.board.device,
+        files,
+        base,
+        variants,
+    })
+}
+
+fn check_schema(read: &PlanText) -> Result<(), Fault> {
+    if *read.schema.get_ref() != SCHEMA {
+        let what = format!("this program reads plans of schema {SCHEMA}, not {}", read.schema.get_ref());
+        return Err(Fault::wrong(
+            read.schema.span().start,
+            what,
+            "take the halfrow-station that it was written for",
+        ));
+    }
+    Ok(())
+}
+
+/// What is done with the boards of each variant that is named.
+fn variants(
+    read: &PlanText,
+    serial: &SerialRule,
+    files: &mut Files,
+) -> Result<Vec<(String, Selected)>, Fault> {
+    let mut variants = Vec::new();
+    for (name, variant) in &read.variant {
+        if !serial.has_variants() {
+            let what = format!("no serial number says that it is of the variant {}", name.get_ref());
+            return Err(Fault::wrong(
+                name.span().start,
+                what,
+                "give the pattern a group (?<variant>…), or leave the variant out",
+            ));
+        }
+        let tables = read.tables.under(&variant.tables);
+        variants.push((name.get_ref().clone(), selected(read, &tables, &variant.limits, files)?));
+    }
+    Ok(variants)
+}
+
+fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
+    match word.get_ref().trim() {
+        "" => Err(Fault::wrong(
+            word.span().start,
+            "there is no name here",
+            "write one, which reports will have",
+        )),
+        word => Ok(word.to_owned()),
+    }
+}
+
+/// The builds that may be judged, which must be some.
+fn builds(board: &BoardText) -> Result<Vec<String>, Fault> {
+    if board.builds.get_ref().is_empty() {
+        let what = "no build of the board may be judged";
+        return Err(Fault::wrong(
+            board.builds.span().start,
+            what,
+            "name the builds that are released, as `halfrow info` prints them",
+        ));
+    }
+    let build = |build: &Spanned<String>| {
+        let text = build.get_ref();
+        let is_build = text.len() == 8 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
+        is_build.then(|| text.clone()).ok_or_else(|| {
+            let what = format!("`{text}` is no build");
+            let remedy = "write the eight hexadecimal digits, in lower case, that `halfrow info` prints";
+            Fault::wrong(build.span().start, what, remedy)
+        })
+    };
+    board.builds.get_ref().iter().map(build).collect()
+}
+
+/// Steps and limits with these tables, and with limits that take the place of the plan's.
+fn selected(
+    plan: &PlanText,
+    tables: &TablesText,
+    instead: &LimitsText,
+    files: &mut Files,
+) -> Result<Selected, Fault> {
+    let Some(first) = plan.step.first() else {
+        let at = plan.schema.span().start;
+        return Err(Fault::wrong(at, "the plan has no step", "write a [[step]] with kind = \"verify\""));
+    };
+    if !plan.step.iter().any(|step| *step.kind.get_ref() == StepKindText::Verify) {
+        let what = "no step judges the board";
+        return Err(Fault::wrong(first.kind.span().start, what, "add a [[step]] with kind = \"verify\""));
+    }
+    let identity = Step { name: "identity".to_owned(), act: Act::Identity, retries: 0, timeout: TIMEOUT };
+    let mut steps = vec![identity];
+    for text in &plan.step {
+        let step = step(text, tables, files)?;
+        if steps.iter().any(|other| other.name == step.name) {
+            let at = text.name.as_ref().map_or(text.kind.span().start, |name| name.span().start);
+            let what = format!("two steps are called {}", step.name);
+            return Err(Fault::wrong(at, what, "give each a `name` of its own"));
+        }
+        steps.push(step);
+    }
+    let kept = plan.limits.iter().filter(|(name, _)| !instead.contains_key(*name));
+    let limits = kept.chain(instead).map(|(name, text)| limit(name, text, &steps));
+    Ok(Selected { limits: limits.collect::<Result<_, _>>()?, steps })
+}
+
+fn step(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Step, Fault> {
+    let (act, name) = match text.kind.get_ref() {
+        StepKindText::Link => (link(text)?, "link"),
+        StepKindText::Verify => (verify(text, tables, files)?, "verify"),
+    };
+    let name = text.name.as_ref().map_or_else(|| Ok(name.to_owned()), not_empty)?;
+    let retries = whole(text.retries.as_ref(), 0, 0..=MOST_RETRIES)?;
+    let timeout = seconds(text.timeout.as_ref(), TIMEOUT, MOST_SECONDS)?;
+    Ok(Step { name, act, retries, timeout })
+}
+
+fn link(text: &StepText) -> Result<Act, Fault> {
+    let foreign = [
+        text.frames.as_ref().map(|key| ("frames", key.span().start)),
+        text.repeat.as_ref().map(|key| ("repeat", key.span().start)),
+        text.seed.as_ref().map(|key| ("seed", key.span().start)),
+        text.tables.as_ref().map(|_| ("tables", text.kind.span().start)),
+    ];
+    if let Some((key, at)) = foreign.into_iter().flatten().next() {
+        let what = format!("a step `link` has no `{key}`");
+        return Err(Fault::wrong(at, what, "leave it out, or write it into a step `verify`"));
+    }
+    Ok(Act::Link { each: seconds(text.seconds.as_ref(), Duration::from_millis(500), MOST_LINK_SECONDS)? })
+}
+
+fn verify(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Act, Fault> {
+    let at = text.kind.span().start;
+    if let Some(seconds) = &text.seconds {
+        let what = "a step `verify` takes as long as its frames do";
+        return Err(Fault::wrong(seconds.span().start, what, "leave `seconds` out; `timeout` limits it"));
+    }
+    let tables = text.tables.as_ref().map_or_else(|| tables.clone(), |own| tables.under(own));
+    let chosen = tables.choose(files, at)?;
+    let phase = tables.phase.unwrap_or_default();
+    let named = text.frames.as_ref().filter(|names| !names.get_ref().is_empty());
+    let Some(names) = named else {
+        let remedy =
+            "name files, or built-in frames as `halfrow frames` lists them, such as \"builtin:noise\"";
+        return Err(Fault::wrong(at, "the step has no frames", remedy));
+    };
+    let frames = tables::frames(names.get_ref(), chosen.tables.geometry(), phase, files)?;
+    let repeat = whole(text.repeat.as_ref(), 1, 1..=MOST_REPEATS)?;
+    let judging = Judging { chosen, phase, frames, repeat, seed: seed(text.seed.as_ref())? };
+    let fits = judging.plan(0).check_length();
+    fits.map_err(|error| Fault::input(names.span().start, "so many frames", error))?;
+    Ok(Act::Verify(Box::new(judging)))
+}
+
+impl Judging {
+    /// What the judge is asked to do, with `of_run` where the plan says that the run has a seed of its own.
+    #[must_use]
+    pub fn plan(&self, of_run: u64) -> halfrow::Plan {
+        let seed = match self.seed {
+            Seed::Run => of_run,
+            Seed::Fixed(seed) => seed,
+        };
+        let plan = self.chosen.clone().plan(self.phase).frames(self.frames.iter().cloned());
+        halfrow::Plan { repeat: self.repeat, seed, ..plan }
+    }
+}
+
+fn seed(text: Option<&Spanned<SeedText>>) -> Result<Seed, Fault> {
+    match text.map(|text| (text.get_ref(), text.span().start)) {
+        None => Ok(Seed::Run),
+        Some((SeedText::Number(seed), _)) => Ok(Seed::Fixed(*seed)),
+        Some((SeedText::Word(word), _)) if word == "run" => Ok(Seed::Run),
+        Some((SeedText::Word(word), at)) => {
+            Err(Fault::wrong(at, format!("`{word}` is no seed"), "write \"run\", or a whole number"))
+        }
+    }
+}
+
+fn seconds(text: Option<&Spanned<f64>>, otherwise: Duration, most: f64) -> Result<Duration, Fault> {
+    let Some(text) = text else { return Ok(otherwise) };
+    let seconds = *text.get_ref();
+    if !(0.001..=most).contains(&seconds) {
+        let remedy = format!("write a number of seconds, 0.001 to {most}");
+        return Err(Fault::wrong(
+            text.span().start,
+            format!("{seconds} seconds are none that a step can take"),
+            remedy,
+        ));
+    }
+    Ok(Duration::from_secs_f64(seconds))
+}
+
+fn whole(
+    text: Option<&Spanned<u32>>,
+    otherwise: u32,
+    range: std::ops::RangeInclusive<u32>,
+) -> Result<u32, Fault> {
+    let Some(text) = text else { return Ok(otherwise) };
+    if !range.contains(text.get_ref()) {
+        let remedy = format!("write a whole number from {} to {}", range.start(), range.end());
+        return Err(Fault::wrong(text.span().start, format!("{} is out of range", text.get_ref()), remedy));
+    }
+    Ok(*text.get_ref())
+}
+
+fn limit(name: &Spanned<String>, text: &LimitText, steps: &[Step]) -> Result<Limit, Fault> {
+    let at = name.span().start;
+    let Some(measurement) = Measurement::named(name.get_ref()) else {
+        let known: Vec<_> = MEASUREMENTS.iter().map(|known| known.name).collect();
+        let what = format!("nothing is measured that is called {}", name.get_ref());
+        return Err(Fault::wrong(at, what, format!("name one of {}", known.join(", "))));
+    };
+    if measurement.name == SAMPLES_DIFFERING {
+        let what = "no sample may differ, whatever a plan says";
+        return Err(Fault::wrong(at, what, "leave this limit out; a sample that differs is FAIL"));
+    }
+    let is_made = match measurement.made_by {
+        Maker::Run => true,
+        Maker::Link => steps.iter().any(|step| matches!(step.act, Act::Link { .. })),
+        Maker::Verify => steps.iter().any(|step| matches!(step.act, Act::Verify(_))),
+    };
+    if !is_made {
+        let what = format!("no step of the plan measures {}", measurement.name);
+        return Err(Fault::wrong(at, what, "add a [[step]] with kind = \"link\", or leave the limit out"));
+    }
+    if let Some(unit) = text.unit.as_ref().filter(|unit| unit.get_ref() != measurement.unit) {
+        let what =
+            format!("{} is measured in {}, not in {}", measurement.name, measurement.unit, unit.get_ref());
+        let remedy = format!("write the limit in {}", measurement.unit);
+        return Err(Fault::wrong(unit.span().start, what, remedy));
+    }
+    let (least, most) = bounds(at, text)?;
+    Ok(Limit { measurement, least, most, blames: text.blames.unwrap_or(measurement.blames) })
+}
+
+/// The least and the most value, of which one is there at least.
+fn bounds(at: usize, text: &LimitText) -> Result<(Option<f64>, Option<f64>), Fault> {
+    let number = |bound: &Option<Spanned<f64>>| match bound {
+        Some(bound) if !bound.get_ref().is_finite() => {
+            let what = format!("{} is no limit", bound.get_ref());
+            Err(Fault::wrong(bound.span().start, what, "write a number, or leave this side open"))
+        }
+        bound => Ok(bound.as_ref().map(|bound| *bound.get_ref())),
+    };
+    match (number(&text.least)?, number(&text.most)?) {
+        (None, None) => Err(Fault::wrong(
+            at,
+            "a limit without `least` and `most` limits nothing",
+            "write one of them, or both",
+        )),
+        (Some(least), Some(most)) if least > most => {
+            let what = format!("nothing is at least {least} and at most {most}");
+            Err(Fault::wrong(at, what, "exchange `least` and `most`, or correct one"))
+        }
+        bounds => Ok(bounds),
+    }
+}

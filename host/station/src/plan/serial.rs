@@ -1,0 +1,208 @@
+//! Which serial numbers a plan takes.
+
+use regex::Regex;
+
+use super::check_digit::CheckDigit;
+
+/// The most characters of a serial number.
+pub const MOST_CHARACTERS: usize = 64;
+/// What barcodes of the station's own begin with; no serial number does.
+pub const RESERVED: &str = "HR:";
+
+/// A serial number that a plan has taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Serial {
+    /// The whole.
+    pub text: String,
+    /// What the pattern's group `variant` matched; empty without one.
+    pub variant: String,
+}
+
+/// A serial number that a plan does not take.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SerialError {
+    /// Nothing at all.
+    #[error("there is no serial number; scan the board's label")]
+    Empty,
+    /// It is longer than any.
+    #[error(
+        "a serial number of {characters} characters is longer than {MOST_CHARACTERS}; scan one label at a time"
+    )]
+    TooLong {
+        /// How many it has.
+        characters: usize,
+    },
+    /// It holds what no label has.
+    #[error(
+        "character {place} of the serial number is {character:?}, not printable ASCII; scan the label again"
+    )]
+    Character {
+        /// The character.
+        character: char,
+        /// Its place, from 1.
+        place: usize,
+    },
+    /// It is one of the station's own barcodes.
+    #[error("`{serial}` is a barcode of the station, not of a board; scan the board's label")]
+    Reserved {
+        /// What was scanned.
+        serial: String,
+    },
+    /// It is another product's, or misread.
+    #[error(
+        "`{serial}` is no serial number of this product, whose pattern is {pattern}; scan the board's label again, \
+         or take the plan of its product"
+    )]
+    Pattern {
+        /// What was scanned.
+        serial: String,
+        /// What is right.
+        pattern: String,
+    },
+    /// It is misread.
+    #[error("the check digit of `{serial}` is wrong ({check}); scan the board's label again")]
+    CheckDigit {
+        /// What was scanned.
+        serial: String,
+        /// By what it guards itself.
+        check: CheckDigit,
+    },
+}
+
+/// `[serial]` of a plan.
+#[derive(Clone, Debug)]
+pub struct SerialRule {
+    pattern: Regex,
+    source: String,
+    check: CheckDigit,
+}
+
+impl SerialRule {
+    /// The rule of `pattern`, a regular expression between `^` and `$`.
+    ///
+    /// # Errors
+    /// What is wrong with the pattern, and what to do about it.
+    pub(super) fn new(pattern: &str, check: CheckDigit) -> Result<Self, (String, &'static str)> {
+        if !(pattern.starts_with('^') && pattern.ends_with('$')) {
+            let what =
+                format!("the pattern {pattern} is not anchored, and would take a part of a serial number");
+            return Err((what, "begin it with ^ and end it with $"));
+        }
+        // An alternative in the pattern would leave an anchor at one end only.
+        let regex = Regex::new(&format!(r"\A(?:{pattern})\z"))
+            .map_err(|error| (one_line(&error), "write a regular expression as the crate regex reads it"))?;
+        Ok(Self { pattern: regex, source: pattern.to_owned(), check })
+    }
+
+    /// Whether the pattern has a group `variant`.
+    #[must_use]
+    pub fn has_variants(&self) -> bool {
+        self.pattern.capture_names().any(|name| name == Some("variant"))
+    }
+
+    /// The serial number that was scanned: as it is, since whatever is cut off could have been a part of it.
+    ///
+    /// The check digits guard what the group `number` matches; without one, the whole.
+    ///
+    /// # Errors
+    /// [`SerialError`] when it is none of this product's.
+    pub fn read(&self, scanned: &str) -> Result<Serial, SerialError> {
+        let characters = scanned.chars().count();
+        if characters == 0 {
+            return Err(SerialError::Empty);
+        }
+        if characters > MOST_CHARACTERS {
+            return Err(SerialError::TooLong { characters });
+        }
+        let strange = scanned.chars().position(|character| !matches!(character, ' '..='~'));
+        if let Some((place, character)) = strange.and_then(|place| Some((place, scanned.chars().nth(place)?)))
+        {
+            return Err(SerialError::Character { character, place: place + 1 });
+        }
+        let serial = scanned.to_owned();
+        if serial.starts_with(RESERVED) {
+            return Err(SerialError::Reserved { serial });
+        }
+        let Some(groups) = self.pattern.captures(scanned) else {
+            return Err(SerialError::Pattern { serial, pattern: self.source.clone() });
+        };
+        let number = groups.name("number").map_or(scanned, |number| number.as_str());
+        if !self.check.holds(number) {
+            return Err(SerialError::CheckDigit { serial, check: self.check });
+        }
+        let variant = groups.name("variant").map_or_else(String::new, |variant| variant.as_str().to_owned());
+        Ok(Serial { text: serial, variant })
+    }
+}
+
+/// A message of several lines in one: its last one, which says what is wrong.
+fn one_line(error: &regex::Error) -> String {
+    let text = error.to_string();
+    text.lines().last().unwrap_or_default().trim_start_matches("error: ").to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rule(pattern: &str, check: CheckDigit) -> SerialRule {
+        SerialRule::new(pattern, check).unwrap()
+    }
+
+    #[test]
+    fn a_serial_number_names_its_variant_and_is_kept_as_it_is() {
+        let rule = rule("^CA(?<variant>[WN])(?<number>[0-9]{9}[0-9X])$", CheckDigit::Mod11);
+        let serial = rule.read("CAW080442957X").unwrap();
+        assert_eq!((serial.text.as_str(), serial.variant.as_str()), ("CAW080442957X", "W"));
+    }
+
+    #[test]
+    fn misread_labels_are_refused_each_for_its_reason() {
+        let rule = rule("^CA[WN][0-9]{9}[0-9X]$", CheckDigit::Mod11);
+        let right = "CAW080442957X";
+        rule.read(right).unwrap();
+        let pattern = |serial: &str| SerialError::Pattern {
+            serial: serial.to_owned(),
+            pattern: "^CA[WN][0-9]{9}[0-9X]$".to_owned(),
+        };
+        let of_check =
+            |serial: &str| SerialError::CheckDigit { serial: serial.to_owned(), check: CheckDigit::Mod11 };
+        // A digit is missing, doubled; lower case; a blank before or behind; another product.
+        for scanned in
+            ["CAW08044295X", "CAW0880442957X", "caw080442957X", " CAW080442957X", "CAW080442957X ", "CB1"]
+        {
+            assert_eq!(rule.read(scanned), Err(pattern(scanned)));
+        }
+        // A digit is changed; neighbours are exchanged; the check digit is another.
+        for scanned in ["CAW080442947X", "CAW084042957X", "CAW0804429573"] {
+            assert_eq!(rule.read(scanned), Err(of_check(scanned)));
+        }
+        assert_eq!(rule.read(""), Err(SerialError::Empty));
+        assert_eq!(rule.read(&right.repeat(5)), Err(SerialError::TooLong { characters: 65 }));
+        let control = SerialError::Character { character: '\t', place: 14 };
+        assert_eq!(rule.read("CAW080442957X\t"), Err(control));
+        assert_eq!(rule.read(&right.repeat(2)), Err(pattern(&right.repeat(2))), "two labels run together");
+    }
+
+    #[test]
+    fn no_pattern_takes_a_barcode_of_the_station() {
+        let rule = rule("^[A-Z:]+$", CheckDigit::None);
+        let serial = "HR:START".to_owned();
+        assert_eq!(rule.read(&serial), Err(SerialError::Reserved { serial }));
+    }
+
+    #[test]
+    fn an_alternative_does_not_lift_an_anchor() {
+        let rule = rule("^A|B$", CheckDigit::None);
+        assert!(rule.read("A").is_ok() && rule.read("B").is_ok());
+        assert!(rule.read("AX").is_err() && rule.read("XB").is_err());
+    }
+
+    #[test]
+    fn a_pattern_that_is_none_is_told_what_to_be() {
+        let (what, remedy) = SerialRule::new("CA[0-9]+", CheckDigit::None).unwrap_err();
+        assert!(what.contains("not anchored") && remedy.contains("begin it with ^"), "{what}");
+        let (what, _) = SerialRule::new("^CA[0-9$", CheckDigit::None).unwrap_err();
+        assert!(what.contains("unclosed character class"), "{what}");
+    }
+}

@@ -1,0 +1,189 @@
+//! From `[tables]` to what a board is judged with.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use halfrow::FrameSource;
+use halfrow::frames::{self, ReadOptions};
+use halfrow::lenses::LensFile;
+use halfrow::model::{BitDepth, Camera, Equidistant, Frame, Geometry, Phase};
+use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, RowsBy};
+use halfrow::tables::TableFile;
+use toml::Spanned;
+
+use super::error::Fault;
+use super::files::Files;
+use super::text::{RowsText, TablesText};
+
+impl TablesText {
+    /// These, with what `over` says instead. A lens, a file and a radius take each other's place.
+    pub(super) fn under(&self, over: &Self) -> Self {
+        let has_source = over.lens.is_some() || over.file.is_some() || over.radius.is_some();
+        let below = if has_source { &Self::default() } else { self };
+        Self {
+            lens: over.lens.clone().or_else(|| below.lens.clone()),
+            file: over.file.clone().or_else(|| below.file.clone()),
+            radius: over.radius.clone().or_else(|| below.radius.clone()),
+            width: over.width.clone().or_else(|| self.width.clone()),
+            height: over.height.clone().or_else(|| self.height.clone()),
+            bits: over.bits.clone().or_else(|| self.bits.clone()),
+            phase: over.phase.or(self.phase),
+            rows: over.rows.or(self.rows),
+            kernel: over.kernel.clone().or_else(|| self.kernel.clone()),
+        }
+    }
+
+    /// Where in the plan these tables stand, for errors; `otherwise` if they are the built-in ones.
+    fn place(&self, otherwise: usize) -> usize {
+        let named = self.file.as_ref().or(self.lens.as_ref()).map(|name| name.span().start);
+        let radius = || self.radius.as_ref().map(|radius| radius.span().start);
+        let size = || self.width.as_ref().or(self.height.as_ref()).map(|size| size.span().start);
+        named.or_else(radius).or_else(size).unwrap_or(otherwise)
+    }
+
+    /// Tables, kernel and lens. `step` is the place of the step that wants them.
+    pub(super) fn choose(&self, files: &mut Files, step: usize) -> Result<Chosen, Fault> {
+        self.check()?;
+        let kernel = self.kernel.as_ref().map(|name| kernel(name, files)).transpose()?;
+        let kernel = kernel.as_deref().map(Path::as_os_str);
+        let at = self.place(step);
+        let chosen = match (&self.file, &self.lens) {
+            (Some(name), _) => self.of_file(&files.take(name)?, kernel),
+            (None, Some(name)) => self.of_lens(&files.take(name)?, kernel),
+            (None, None) => self.of_radius(kernel),
+        };
+        let chosen = chosen.map_err(|error| Fault::input(at, "what the plan says of tables", error))?;
+        let ring = chosen.tables.geometry().width().next_power_of_two();
+        let fits = chosen.tables.check_ring(ring);
+        fits.map_err(|error| Fault::input(at, "what the plan says of tables", error))?;
+        Ok(chosen)
+    }
+
+    /// Refuses what contradicts each other, and depths that no sample has.
+    fn check(&self) -> Result<(), Fault> {
+        self.depth()?;
+        let named = [
+            self.file.as_ref().map(|name| ("file", name.span().start)),
+            self.lens.as_ref().map(|name| ("lens", name.span().start)),
+            self.radius.as_ref().map(|radius| ("radius", radius.span().start)),
+        ];
+        let mut named = named.into_iter().flatten();
+        if let (Some((first, _)), Some((second, at))) = (named.next(), named.next()) {
+            let what = format!("tables are said by `{first}` and by `{second}`");
+            return Err(Fault::wrong(at, what, "keep one of them"));
+        }
+        let sized = [&self.width, &self.height].into_iter().flatten().next();
+        if let (Some(_), Some(size)) = (&self.file, sized) {
+            let what = "a file of tables has a size of its own";
+            return Err(Fault::wrong(size.span().start, what, "leave `width` and `height` out"));
+        }
+        Ok(())
+    }
+
+    fn depth(&self) -> Result<BitDepth, Fault> {
+        let Some(bits) = &self.bits else { return Ok(BitDepth::default()) };
+        BitDepth::from_bits(*bits.get_ref()).ok_or_else(|| {
+            let what = format!("a sample has no {} bits", bits.get_ref());
+            Fault::wrong(bits.span().start, what, "write 8, 10 or 12")
+        })
+    }
+
+    fn size(&self, otherwise: (usize, usize)) -> (usize, usize) {
+        let of = |given: &Option<Spanned<usize>>| given.as_ref().map(|size| *size.get_ref());
+        (of(&self.width).unwrap_or(otherwise.0), of(&self.height).unwrap_or(otherwise.1))
+    }
+
+    fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
+        let file = TableFile::read(path)?;
+        let geometry = *file.tables.geometry();
+        optics::choose(Some((path, file)), equidistant(geometry, None, RowsBy::Equation9)?, kernel)
+    }
+
+    fn of_lens(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
+        let depth = self.depth().unwrap_or_default();
+        let file = LensFile::read(path)?;
+        let (width, height) = self.size(file.size.unwrap_or(PAPER_SIZE));
+        let geometry = Geometry::centred(width, height, depth)?;
+        let shape = |source| OpticsError::Shape { path: path.to_owned(), source };
+        let (lens, centre) = file.for_frame(width, height).map_err(shape)?;
+        let camera = Camera::new(geometry, lens, centre, PAPER_FIELD)?;
+        let name = format!("{} {}", file.model, path.display());
+        optics::choose(None, Optics::calibrated(camera, name, self.rows_by(RowsBy::Fitting))?, kernel)
+    }
+
+    fn of_radius(&self, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
+        let (width, height) = self.size(PAPER_SIZE);
+        let geometry = Geometry::centred(width, height, self.depth().unwrap_or_default())?;
+        let radius = self.radius.as_ref().map(|radius| *radius.get_ref());
+        optics::choose(None, equidistant(geometry, radius, self.rows_by(RowsBy::Equation9))?, kernel)
+    }
+
+    fn rows_by(&self, otherwise: RowsBy) -> RowsBy {
+        match self.rows {
+            Some(RowsText::Fitted) => RowsBy::Fitting,
+            Some(RowsText::Equation9) => RowsBy::Equation9,
+            None => otherwise,
+        }
+    }
+}
+
+fn equidistant(geometry: Geometry, radius: Option<f64>, rows: RowsBy) -> Result<Optics, OpticsError> {
+    let lens = radius.map_or_else(|| Ok(Equidistant::default()), Equidistant::from_radius)?;
+    let middle = ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0);
+    let camera = Camera::new(geometry, lens.into(), middle, PAPER_FIELD)?;
+    Ok(Optics::equidistant(camera, lens, None, rows))
+}
+
+/// The kernel's name, or its file's path.
+fn kernel(name: &Spanned<String>, files: &mut Files) -> Result<PathBuf, Fault> {
+    use halfrow::kernels::NamedKernel;
+    if name.get_ref().parse::<NamedKernel>().is_ok() {
+        return Ok(PathBuf::from(name.get_ref()));
+    }
+    files.take(name)
+}
+
+/// The frames with these names: `builtin:NAME`, or files, which must have the size of the tables.
+pub(super) fn frames(
+    names: &[Spanned<String>],
+    geometry: &Geometry,
+    phase: Phase,
+    files: &mut Files,
+) -> Result<Vec<FrameSource>, Fault> {
+    let how = ReadOptions { depth: geometry.depth(), phase, raw: None };
+    let source = |name: &Spanned<String>| match name.get_ref().strip_prefix("builtin:") {
+        Some(builtin) => {
+            let parsed = builtin.parse().map(FrameSource::Builtin);
+            parsed.map_err(|error| Fault::input(name.span().start, format!("`{}`", name.get_ref()), error))
+        }
+        None => of_file(name, &how, geometry, files),
+    };
+    names.iter().map(source).collect()
+}
+
+fn of_file(
+    name: &Spanned<String>,
+    how: &ReadOptions,
+    geometry: &Geometry,
+    files: &mut Files,
+) -> Result<FrameSource, Fault> {
+    let at = name.span().start;
+    let path = files.take(name)?;
+    let read = frames::read(&path, how);
+    let frame: Frame =
+        read.map_err(|error| Fault::input(at, format!("the frame {}", path.display()), error))?;
+    let (size, wanted) = ((frame.width(), frame.height()), (geometry.width(), geometry.height()));
+    if size != wanted {
+        let what = format!(
+            "{} is {} x {}, and the tables are for {} x {}",
+            path.display(),
+            size.0,
+            size.1,
+            wanted.0,
+            wanted.1
+        );
+        return Err(Fault::wrong(at, what, "name a frame of the tables' size, or tables of the frame's"));
+    }
+    Ok(FrameSource::File { path, frame: Arc::new(frame) })
+}

@@ -1,0 +1,131 @@
+//! Evidence under its own hash: a file that is there is whole, and is what its name says.
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use halfrow::frames::written_aside::{self, WriteAsideError, write_aside};
+use halfrow::result::sha256;
+
+/// Evidence that cannot be written or read.
+#[derive(Debug, thiserror::Error)]
+pub enum BlobError {
+    /// The folder cannot be made or brought to the disk.
+    #[error("the folder {} cannot be used; check that it is writable and has space", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The file cannot be written.
+    #[error(transparent)]
+    Write(#[from] WriteAsideError),
+    /// The file cannot be read.
+    #[error("{} cannot be read; restore it from a copy, or from the plant", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The file is not what its name says.
+    #[error("{} holds other bytes than its name says, whose hash is {found}; restore it from a copy", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// The hash of what is there.
+        found: String,
+    },
+}
+
+/// A folder of evidence.
+#[derive(Clone, Debug)]
+pub struct Blobs {
+    folder: PathBuf,
+}
+
+impl Blobs {
+    /// The evidence in `folder`.
+    #[must_use]
+    pub fn new(folder: PathBuf) -> Self {
+        Self { folder }
+    }
+
+    /// Where the evidence of this hash is, if it is there.
+    #[must_use]
+    pub fn path(&self, hash: &str) -> PathBuf {
+        self.folder.join(hash.get(..2).unwrap_or("00")).join(hash)
+    }
+
+    /// Brings `bytes` to the disk, their name with them, and returns their hash.
+    ///
+    /// # Errors
+    /// [`BlobError`]; nothing half written is there then.
+    pub fn put(&self, bytes: &[u8]) -> Result<String, BlobError> {
+        let hash = sha256([bytes]);
+        let path = self.path(&hash);
+        let folder = path.parent().unwrap_or(&self.folder);
+        if !folder.is_dir() {
+            fs::create_dir_all(folder)
+                .map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
+            synced(&self.folder)?;
+        }
+        match write_aside(&path, false, |file| file.write_all(bytes)) {
+            // A run that ended early may have left it, and its name not yet on the disk.
+            Err(WriteAsideError::Exists { .. }) => {
+                self.get(&hash)?;
+                synced(folder)?;
+            }
+            written => written?,
+        }
+        Ok(hash)
+    }
+
+    /// Removes what a program left half written that was killed.
+    pub fn clear(&self) {
+        let folders = fs::read_dir(&self.folder).into_iter().flatten().filter_map(Result::ok);
+        for kept in folders.flat_map(|folder| written_aside::clear(&folder.path())) {
+            tracing::warn!("{} was kept; it is no evidence", kept.display());
+        }
+    }
+
+    /// The bytes of this hash.
+    ///
+    /// # Errors
+    /// [`BlobError`] when they are not there, or others.
+    pub fn get(&self, hash: &str) -> Result<Vec<u8>, BlobError> {
+        let path = self.path(hash);
+        let bytes = fs::read(&path).map_err(|source| BlobError::Read { path: path.clone(), source })?;
+        let found = sha256([&bytes]);
+        if found == hash { Ok(bytes) } else { Err(BlobError::Damaged { path, found }) }
+    }
+}
+
+/// Brings the names in a folder to the disk.
+pub(crate) fn synced(folder: &Path) -> Result<(), BlobError> {
+    let done = File::open(folder).and_then(|open| open.sync_all());
+    done.map_err(|source| BlobError::Folder { path: folder.to_owned(), source })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn evidence_is_found_by_its_hash_and_a_flipped_bit_is_seen() {
+        let folder = tempfile::tempdir().unwrap();
+        let blobs = Blobs::new(folder.path().to_owned());
+        let hash = blobs.put(b"abc").unwrap();
+        // FIPS 180-4, appendix B.1.
+        assert_eq!(hash, "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+        assert_eq!(blobs.put(b"abc").unwrap(), hash);
+        assert_eq!(blobs.get(&hash).unwrap(), b"abc");
+        fs::write(blobs.path(&hash), b"abb").unwrap();
+        assert!(matches!(blobs.get(&hash), Err(BlobError::Damaged { .. })));
+        assert!(
+            matches!(blobs.put(b"abc"), Err(BlobError::Damaged { .. })),
+            "damage is not taken for evidence"
+        );
+    }
+}

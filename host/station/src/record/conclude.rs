@@ -1,0 +1,159 @@
+//! From the steps to the verdict.
+
+use halfrow::Verdict;
+use serde::{Deserialize, Serialize};
+
+use super::step::{Measured, RunCause, StepOutcome, StepRecord};
+use crate::exit::Exit;
+
+/// What a run came to.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Conclusion {
+    /// The verdict. It has no default.
+    pub verdict: Verdict,
+    /// Why.
+    pub cause: RunCause,
+    /// The exit code.
+    pub exit_code: u8,
+    /// It in one sentence.
+    pub headline: String,
+    /// What to do next.
+    pub remedy: Option<String>,
+}
+
+impl Conclusion {
+    /// Of a plan of `planned` steps: the worst that the last try of a step came to, an ERROR being worse than a FAIL;
+    /// PASS only if every step passed. `lane` says why there are no more steps, if the lane did not come to the plan's
+    /// end by itself.
+    #[must_use]
+    pub fn of(planned: u32, steps: &[StepRecord], run: &[Measured], lane: Option<Self>) -> Self {
+        let is_last = |step: &StepRecord| {
+            !steps.iter().any(|other| other.seq == step.seq && other.attempt > step.attempt)
+        };
+        let ended = steps.iter().filter(|step| is_last(step));
+        let by_step = ended.filter_map(Self::by_step);
+        let by_run = run.iter().filter_map(Self::by_measurement);
+        let missing = || {
+            let passed = steps.iter().filter(|step| step.outcome == StepOutcome::Passed).count();
+            let why = || format!("{passed} of {planned} steps passed, and of the others nothing is known");
+            (passed < planned as usize).then(|| Self::error(RunCause::Station, why()))
+        };
+        let mut worst: Vec<_> = by_step.chain(by_run).chain(lane).collect();
+        // Of two that are as bad the first came first.
+        worst.sort_by_key(|conclusion| conclusion.verdict != Verdict::Error);
+        let worst = worst.into_iter().next().or_else(missing);
+        worst.unwrap_or_else(|| Self {
+            verdict: Verdict::Pass,
+            cause: RunCause::None,
+            exit_code: Exit::Pass.code(),
+            headline: steps.last().map_or_else(String::new, |step| step.detail.clone()),
+            remedy: None,
+        })
+    }
+
+    /// An ERROR of this cause.
+    #[must_use]
+    pub fn error(cause: RunCause, headline: impl Into<String>) -> Self {
+        let exit = if cause == RunCause::Refused { Exit::Refused } else { Exit::Error };
+        let remedy = Some("Test the board again.".to_owned());
+        Self { verdict: Verdict::Error, cause, exit_code: exit.code(), headline: headline.into(), remedy }
+    }
+
+    fn by_step(step: &StepRecord) -> Option<Self> {
+        let verdict = match step.outcome {
+            StepOutcome::Passed | StepOutcome::Skipped => return None,
+            StepOutcome::Failed => Verdict::Fail,
+            StepOutcome::Error => Verdict::Error,
+        };
+        Some(Self {
+            verdict,
+            cause: step.cause,
+            exit_code: step.exit_code,
+            headline: step.detail.clone(),
+            remedy: step.remedy.clone(),
+        })
+    }
+
+    fn by_measurement(measured: &Measured) -> Option<Self> {
+        let cause = measured.fault()?;
+        let headline = measured.sentence();
+        Some(match cause {
+            RunCause::Board => {
+                let (verdict, exit_code) = (Verdict::Fail, Exit::Fail.code());
+                Self { verdict, cause, exit_code, headline, remedy: None }
+            }
+            cause => Self::error(cause, headline),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn step(seq: u32, attempt: u32, outcome: StepOutcome, cause: RunCause) -> StepRecord {
+        StepRecord {
+            seq,
+            attempt,
+            name: format!("step {seq}"),
+            kind: "verify".to_owned(),
+            outcome,
+            cause,
+            exit_code: seq as u8,
+            started_ms: 1,
+            ended_ms: 2,
+            detail: format!("step {seq}, try {attempt}"),
+            remedy: None,
+            measurements: Vec::new(),
+            suspects: Vec::new(),
+            board: None,
+            evidence: None,
+        }
+    }
+
+    fn of(planned: u32, steps: &[StepRecord], lane: Option<Conclusion>) -> (Verdict, RunCause) {
+        let conclusion = Conclusion::of(planned, steps, &[], lane);
+        (conclusion.verdict, conclusion.cause)
+    }
+
+    #[test]
+    fn a_pass_needs_every_step_of_the_plan() {
+        let passed = |seq| step(seq, 1, StepOutcome::Passed, RunCause::None);
+        assert_eq!(of(2, &[passed(1), passed(2)], None), (Verdict::Pass, RunCause::None));
+        assert_eq!(of(3, &[passed(1), passed(2)], None), (Verdict::Error, RunCause::Station));
+        assert_eq!(of(1, &[], None), (Verdict::Error, RunCause::Station));
+        let skipped = step(2, 1, StepOutcome::Skipped, RunCause::None);
+        assert_eq!(of(2, &[passed(1), skipped], None), (Verdict::Error, RunCause::Station));
+        let died = Conclusion::error(RunCause::Crash, "it died");
+        assert_eq!(of(2, &[passed(1), passed(2)], Some(died)), (Verdict::Error, RunCause::Crash));
+    }
+
+    #[test]
+    fn the_last_try_of_a_step_counts_and_an_error_is_worse_than_a_fail() {
+        let error = |attempt| step(1, attempt, StepOutcome::Error, RunCause::Link);
+        let passed = step(1, 2, StepOutcome::Passed, RunCause::None);
+        assert_eq!(of(1, &[error(1), passed], None), (Verdict::Pass, RunCause::None));
+        assert_eq!(of(1, &[error(1), error(2)], None), (Verdict::Error, RunCause::Link));
+        let failed = step(1, 1, StepOutcome::Failed, RunCause::Board);
+        assert_eq!(of(1, std::slice::from_ref(&failed), None), (Verdict::Fail, RunCause::Board));
+        let later = step(2, 1, StepOutcome::Error, RunCause::Station);
+        assert_eq!(of(2, &[failed.clone(), later], None), (Verdict::Error, RunCause::Station));
+        let hung = Conclusion::error(RunCause::Crash, "it hung");
+        assert_eq!(of(1, &[failed], Some(hung)), (Verdict::Error, RunCause::Crash));
+    }
+
+    #[test]
+    fn a_limit_on_the_whole_run_counts_like_one_on_a_step() {
+        use crate::plan::limits::{Blame, Limit, Maker, Measurement};
+        use crate::record::judged;
+        let measurement = Measurement::named("run.seconds").unwrap();
+        let passed = step(1, 1, StepOutcome::Passed, RunCause::None);
+        let came = |blames| {
+            let limit = Limit { measurement, least: None, most: Some(60.0), blames };
+            let run = judged(Maker::Run, &[("run.seconds", Some(61.0))], &[limit]);
+            Conclusion::of(1, std::slice::from_ref(&passed), &run, None).verdict
+        };
+        let verdicts = [Blame::Board, Blame::Station, Blame::Nobody].map(came);
+        assert_eq!(verdicts, [Verdict::Fail, Verdict::Error, Verdict::Pass]);
+    }
+}

@@ -1,0 +1,239 @@
+//! The record of a run: one JSON file that says all of it. The tables of the store are its index.
+
+mod blobs;
+mod conclude;
+mod step;
+
+use halfrow::Verdict;
+use halfrow::result::FileHash;
+use serde::{Deserialize, Serialize};
+
+pub(crate) use blobs::synced;
+pub use blobs::{BlobError, Blobs};
+pub use conclude::Conclusion;
+pub use step::{
+    BoardSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord, judged,
+};
+
+/// The version of the record's format.
+pub const SCHEMA: u32 = 1;
+
+/// A run that is over, however it ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Record {
+    /// [`SCHEMA`]
+    pub schema: u32,
+    /// What was known before the board was touched.
+    pub run: RunHead,
+    /// When it ended, in milliseconds since 1970, UTC.
+    pub ended_ms: i64,
+    /// How long it took by a clock that nobody sets, in seconds; none after a crash.
+    pub seconds: Option<f64>,
+    /// What it came to.
+    pub conclusion: Conclusion,
+    /// The plan, whole.
+    pub plan: PlanRecord,
+    /// Whether the plan takes hardware alone: without that no run counts as production.
+    pub production: bool,
+    /// Whether a step needed more than one try.
+    pub marginal: bool,
+    /// The board, as soon as it had said who it is.
+    pub board: Option<BoardSeen>,
+    /// Every try of every step, in order.
+    pub steps: Vec<StepRecord>,
+    /// Measurements of the run as a whole.
+    pub measurements: Vec<Measured>,
+    /// The parts that are suspected, the likeliest first.
+    pub suspects: Vec<SuspectRecord>,
+    /// Further evidence, each under its hash.
+    pub attachments: Vec<Attachment>,
+    /// The program that judged, and the commit that it was built from.
+    pub program: String,
+}
+
+/// What is known of a run before the board is touched.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RunHead {
+    /// The run, a UUID of version 7.
+    pub id: String,
+    /// The station.
+    pub station: String,
+    /// The lane.
+    pub lane: String,
+    /// The unit, a UUID.
+    pub unit_id: String,
+    /// The product.
+    pub product: String,
+    /// The serial number.
+    pub serial: String,
+    /// The variant; empty if the serial number names none.
+    pub variant: String,
+    /// Who started it.
+    pub operator: String,
+    /// The target string of the board.
+    pub target: String,
+    /// The how-manieth holder of the lane this run is.
+    pub fence: i64,
+    /// When it began, in milliseconds since 1970, UTC.
+    pub started_ms: i64,
+}
+
+/// The plan of a run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlanRecord {
+    /// Hash of its text and files.
+    pub sha256: String,
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+    /// Its text.
+    pub text: String,
+    /// The files that it names, in order; none are known after a crash.
+    pub files: Option<Vec<FileHash>>,
+}
+
+/// Evidence beside the record.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Attachment {
+    /// Its name within the run.
+    pub name: String,
+    /// SHA-256 of its bytes.
+    pub sha256: String,
+    /// How many they are.
+    pub bytes: u64,
+    /// Its media type.
+    pub media_type: String,
+}
+
+/// A record that must not be stored.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// A number is none.
+    #[error(
+        "the measurement {name} came to {value}, which is no number; report this with the plan and the board"
+    )]
+    NotANumber {
+        /// Of what.
+        name: String,
+        /// What it came to.
+        value: f64,
+    },
+    /// A PASS does not tell of every step that the plan has.
+    #[error(
+        "the record says PASS and has no outcome of step {seq} of {steps}; run the board again, and report this"
+    )]
+    Incomplete {
+        /// The step.
+        seq: u32,
+        /// The plan's steps.
+        steps: u32,
+    },
+    /// It cannot be written as JSON, or read.
+    #[error("the record is no JSON of schema {SCHEMA}; report this with the record")]
+    Json(#[source] serde_json::Error),
+}
+
+impl Record {
+    /// What is stored, for a plan of `steps` steps.
+    ///
+    /// # Errors
+    /// [`RecordError`] when it says what no record may say.
+    pub fn bytes(&self, steps: u32) -> Result<Vec<u8>, RecordError> {
+        let measured = self.steps.iter().flat_map(|step| &step.measurements).chain(&self.measurements);
+        for Measured { name, value, .. } in measured {
+            if let Some(value) = value.filter(|value| !value.is_finite()) {
+                return Err(RecordError::NotANumber { name: name.clone(), value });
+            }
+        }
+        if self.conclusion.verdict == Verdict::Pass {
+            let passed = |seq: &u32| {
+                let mut tries = self.steps.iter().rev().filter(|step| step.seq == *seq);
+                tries.next().is_some_and(|step| step.outcome == StepOutcome::Passed)
+            };
+            if let Some(seq) = (1..=steps.max(1)).find(|seq| !passed(seq)) {
+                return Err(RecordError::Incomplete { seq, steps });
+            }
+        }
+        let mut bytes = serde_json::to_vec_pretty(self).map_err(RecordError::Json)?;
+        bytes.push(b'\n');
+        Ok(bytes)
+    }
+
+    /// The record that these bytes are.
+    ///
+    /// # Errors
+    /// [`RecordError::Json`]
+    pub fn parse(bytes: &[u8]) -> Result<Self, RecordError> {
+        serde_json::from_slice(bytes).map_err(RecordError::Json)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::limits::Maker;
+
+    fn pass() -> Record {
+        let run = RunHead {
+            id: "017f22e2-79b0-7cc3-98c4-dc0c0c07398f".to_owned(),
+            station: "12".to_owned(),
+            lane: "1".to_owned(),
+            unit_id: "017f22e2-79b0-7cc3-98c4-dc0c0c073990".to_owned(),
+            product: "CAM-A".to_owned(),
+            serial: "CA1".to_owned(),
+            variant: String::new(),
+            operator: "weber".to_owned(),
+            target: "mock".to_owned(),
+            fence: 1,
+            started_ms: 1,
+        };
+        let [sha256, name, version, text] = ["0", "n", "1", "t"].map(str::to_owned);
+        Record {
+            schema: SCHEMA,
+            run,
+            ended_ms: 2,
+            seconds: Some(0.001),
+            conclusion: Conclusion {
+                verdict: Verdict::Pass,
+                cause: RunCause::None,
+                exit_code: 0,
+                headline: "all is right".to_owned(),
+                remedy: None,
+            },
+            plan: PlanRecord { sha256, name, version, text, files: Some(Vec::new()) },
+            production: true,
+            marginal: false,
+            board: None,
+            steps: Vec::new(),
+            measurements: judged(Maker::Run, &[("run.seconds", Some(0.001))], &[]),
+            suspects: Vec::new(),
+            attachments: Vec::new(),
+            program: "halfrow".to_owned(),
+        }
+    }
+
+    #[test]
+    fn a_pass_without_an_outcome_of_a_step_is_not_stored() {
+        assert!(matches!(pass().bytes(1), Err(RecordError::Incomplete { seq: 1, steps: 1 })));
+        let mut error = pass();
+        error.conclusion = Conclusion::error(RunCause::Crash, "it died");
+        let bytes = error.bytes(1).unwrap();
+        assert_eq!(Record::parse(&bytes).unwrap(), error);
+    }
+
+    /// JSON has no such number; it would become `null`, and a measurement that was not made.
+    #[test]
+    fn a_measurement_that_is_no_number_is_not_stored() {
+        let mut record = pass();
+        record.conclusion = Conclusion::error(RunCause::Crash, "it died");
+        for wrong in [f64::NAN, f64::INFINITY] {
+            record.measurements[0].value = Some(wrong);
+            assert!(matches!(record.bytes(1), Err(RecordError::NotANumber { .. })));
+        }
+    }
+}

@@ -1,0 +1,350 @@
+//! What a step of a run came to.
+
+use halfrow::result::codes;
+use halfrow::verdict::{Cause, StoppedBy};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::exit::Exit;
+use crate::plan::Step;
+use crate::plan::limits::{Blame, Limit, MEASUREMENTS, Maker, Measurement};
+
+/// One try of one step.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StepRecord {
+    /// Its place in the plan, from 1.
+    pub seq: u32,
+    /// Which try, from 1.
+    pub attempt: u32,
+    /// Its name.
+    pub name: String,
+    /// What it does: `identity`, `link` or `verify`.
+    pub kind: String,
+    /// How it came out.
+    pub outcome: StepOutcome,
+    /// Why.
+    pub cause: RunCause,
+    /// The exit code of a run that ends with it.
+    pub exit_code: u8,
+    /// When it began, in milliseconds since 1970, UTC.
+    pub started_ms: i64,
+    /// When it ended.
+    pub ended_ms: i64,
+    /// What was seen, in one sentence.
+    pub detail: String,
+    /// What to do next.
+    pub remedy: Option<String>,
+    /// What was measured.
+    pub measurements: Vec<Measured>,
+    /// The parts that are suspected, the likeliest first.
+    pub suspects: Vec<SuspectRecord>,
+    /// The board, if it said who it is.
+    pub board: Option<BoardSeen>,
+    /// All that the judge says: the report of `verify`, the figures of `link`.
+    pub evidence: Option<Value>,
+}
+
+impl StepRecord {
+    /// Of a step that was not reached by `at_ms`, the end of the run.
+    #[must_use]
+    pub fn skipped(seq: u32, step: &Step, at_ms: i64) -> Self {
+        Self {
+            seq,
+            attempt: 1,
+            name: step.name.clone(),
+            kind: step.act.name().to_owned(),
+            outcome: StepOutcome::Skipped,
+            cause: RunCause::None,
+            exit_code: Exit::NothingJudged.code(),
+            started_ms: at_ms,
+            ended_ms: at_ms,
+            detail: "not reached".to_owned(),
+            remedy: None,
+            measurements: Vec::new(),
+            suspects: Vec::new(),
+            board: None,
+            evidence: None,
+        }
+    }
+}
+
+/// How a step came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StepOutcome {
+    /// As it should be.
+    Passed,
+    /// The board is wrong.
+    Failed,
+    /// It could not be judged.
+    Error,
+    /// It was not reached.
+    Skipped,
+}
+
+impl StepOutcome {
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Failed => "failed",
+            Self::Error => "error",
+            Self::Skipped => "skipped",
+        }
+    }
+}
+
+/// Whom or what a result is owed to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RunCause {
+    /// PASS.
+    None,
+    /// FAIL: the board.
+    Board,
+    /// The link to it.
+    Link,
+    /// The station, or this computer.
+    Station,
+    /// Whoever stopped the run.
+    Operator,
+    /// The program or the computer ended in the middle of it.
+    Crash,
+    /// The board is none that this plan may judge.
+    Refused,
+}
+
+impl RunCause {
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Board => "board",
+            Self::Link => "link",
+            Self::Station => "station",
+            Self::Operator => "operator",
+            Self::Crash => "crash",
+            Self::Refused => "refused",
+        }
+    }
+
+    /// Why the judge ended as it did; `code` is that of its finding or error.
+    #[must_use]
+    pub fn of(cause: Cause, code: &str) -> Self {
+        match cause {
+            Cause::Equal => Self::None,
+            Cause::Different => Self::Board,
+            Cause::Station if is_of_link(code) => Self::Link,
+            Cause::Station | Cause::Busy | Cause::NothingJudged => Self::Station,
+            Cause::Refused => Self::Refused,
+            Cause::Stopped(StoppedBy::Person | StoppedBy::Caller) => Self::Operator,
+            Cause::Stopped(StoppedBy::System | StoppedBy::Disconnection) => Self::Station,
+        }
+    }
+
+    /// Whether a step that ended so may be tried again: a FAIL never is.
+    #[must_use]
+    pub const fn may_pass_off(self) -> bool {
+        matches!(self, Self::Link | Self::Station)
+    }
+}
+
+/// Whether an error of the judge's with this code is one of the link.
+fn is_of_link(code: &str) -> bool {
+    const OF_LINK: [&str; 5] = ["BoardError", "LinkError", "SerialError", "TcpError", "UsbError"];
+    let lists = codes::LISTS.into_iter().flatten().filter(|list| OF_LINK.contains(&list.error));
+    lists.flat_map(|list| list.codes).any(|(known, _)| *known == code)
+}
+
+/// A board that said who it is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BoardSeen {
+    /// `mock`, `sim`, `replay` or `hardware`.
+    pub kind: String,
+    /// Its name.
+    pub name: String,
+    /// The FPGA's own number, in hexadecimal; none where it has none.
+    pub device: Option<String>,
+    /// The commit of its build, in hexadecimal.
+    pub build: String,
+}
+
+/// A part that is suspected.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SuspectRecord {
+    /// The kind of part.
+    pub part: String,
+    /// Where.
+    pub place: String,
+    /// The share of what is wrong that it explains, 0 to 1.
+    pub explained: f64,
+    /// What a technician does with this board.
+    pub technician: String,
+}
+
+/// A measurement, beside its limit if it has one.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Measured {
+    /// Its name.
+    pub name: String,
+    /// What it came to; none if it could not be measured.
+    pub value: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// The least that is right.
+    pub low: Option<f64>,
+    /// The most.
+    pub high: Option<f64>,
+    /// Whom it blames when it is beyond them.
+    pub blames: Blame,
+    /// How it came out.
+    pub outcome: MeasuredOutcome,
+}
+
+/// How a measurement came out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum MeasuredOutcome {
+    /// Within its limit.
+    #[serde(rename = "passed")]
+    Passed,
+    /// Beyond it.
+    #[serde(rename = "failed")]
+    Failed,
+    /// It has a limit and no value.
+    #[serde(rename = "unset")]
+    Unset,
+    /// It has no limit.
+    #[serde(rename = "not judged")]
+    NotJudged,
+}
+
+impl MeasuredOutcome {
+    /// Its name: stable, lower case.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Passed => "passed",
+            Self::Failed => "failed",
+            Self::Unset => "unset",
+            Self::NotJudged => "not judged",
+        }
+    }
+}
+
+impl Measured {
+    fn of(measurement: Measurement, value: Option<f64>, limit: Option<&Limit>) -> Self {
+        let outcome = match (limit, value) {
+            (None, _) => MeasuredOutcome::NotJudged,
+            (Some(_), None) => MeasuredOutcome::Unset,
+            (Some(limit), Some(value)) if limit.allows(value) => MeasuredOutcome::Passed,
+            (Some(_), Some(_)) => MeasuredOutcome::Failed,
+        };
+        Self {
+            name: measurement.name.to_owned(),
+            value,
+            unit: measurement.unit.to_owned(),
+            low: limit.and_then(|limit| limit.least),
+            high: limit.and_then(|limit| limit.most),
+            blames: limit.map_or(measurement.blames, |limit| limit.blames),
+            outcome,
+        }
+    }
+
+    /// Whose fault it is, if it is beyond a limit that blames somebody. What could not be measured is refused.
+    #[must_use]
+    pub fn fault(&self) -> Option<RunCause> {
+        match (self.outcome, self.blames) {
+            (_, Blame::Nobody) | (MeasuredOutcome::Passed | MeasuredOutcome::NotJudged, _) => None,
+            (MeasuredOutcome::Unset, _) => Some(RunCause::Refused),
+            (MeasuredOutcome::Failed, Blame::Board) => Some(RunCause::Board),
+            (MeasuredOutcome::Failed, Blame::Station) => Some(RunCause::Station),
+        }
+    }
+
+    /// It in one sentence.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        let side = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {bound}"));
+        let sides = [side("at least", self.low), side("at most", self.high)];
+        let limit = sides.into_iter().flatten().collect::<Vec<_>>().join(" and ");
+        let Self { name, unit, .. } = self;
+        match self.value {
+            Some(value) => format!("{name} is {value} {unit}, and {limit} is right"),
+            None => format!("{name} could not be measured, and {limit} is asked for"),
+        }
+    }
+}
+
+/// All measurements of `made_by`, whose values are `values` by name, against the limits on them.
+#[must_use]
+pub fn judged(made_by: Maker, values: &[(&str, Option<f64>)], limits: &[Limit]) -> Vec<Measured> {
+    let made = MEASUREMENTS.into_iter().filter(|measurement| measurement.made_by == made_by);
+    let one = |measurement: Measurement| {
+        let value = values.iter().find(|(name, _)| *name == measurement.name).and_then(|(_, value)| *value);
+        let limit = limits.iter().find(|limit| limit.measurement == measurement);
+        Measured::of(measurement, value, limit)
+    };
+    made.map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limited(value: Option<f64>, least: Option<f64>, most: Option<f64>, blames: Blame) -> Measured {
+        let measurement = Measurement::named("link.together").unwrap();
+        Measured::of(measurement, value, Some(&Limit { measurement, least, most, blames }))
+    }
+
+    #[test]
+    fn a_limit_says_whose_fault_it_is() {
+        let of = |value, blames| limited(value, Some(10.0), Some(20.0), blames).fault();
+        for right in [10.0, 15.0, 20.0] {
+            assert_eq!(of(Some(right), Blame::Board), None);
+        }
+        for wrong in [9.9, 20.1] {
+            assert_eq!(of(Some(wrong), Blame::Board), Some(RunCause::Board));
+            assert_eq!(of(Some(wrong), Blame::Station), Some(RunCause::Station));
+            assert_eq!(of(Some(wrong), Blame::Nobody), None);
+        }
+        assert_eq!(
+            of(None, Blame::Board),
+            Some(RunCause::Refused),
+            "what nobody measured is no PASS and no FAIL"
+        );
+        assert_eq!(of(None, Blame::Nobody), None);
+    }
+
+    #[test]
+    fn every_measurement_of_a_step_is_there_with_a_limit_or_without() {
+        let measurement = Measurement::named("latency.clocks").unwrap();
+        let limit = Limit { measurement, least: None, most: Some(40.0), blames: Blame::Board };
+        let all =
+            judged(Maker::Verify, &[("latency.clocks", Some(41.0)), ("verify.seconds", Some(2.0))], &[limit]);
+        let outcomes: Vec<_> = all.iter().map(|one| (one.name.as_str(), one.outcome.name())).collect();
+        let expected = [
+            ("latency.clocks", "failed"),
+            ("latency.microseconds", "not judged"),
+            ("verify.retries", "not judged"),
+            ("verify.seconds", "not judged"),
+            ("frames.samples_differing", "not judged"),
+        ];
+        assert_eq!(outcomes, expected);
+        assert_eq!(all[0].sentence(), "latency.clocks is 41 clocks, and at most 40 is right");
+    }
+
+    #[test]
+    fn an_error_of_the_link_is_told_from_one_of_the_station() {
+        assert_eq!(RunCause::of(Cause::Station, "no-answer"), RunCause::Link);
+        assert_eq!(RunCause::of(Cause::Station, "link-closed"), RunCause::Link);
+        assert_eq!(RunCause::of(Cause::Station, "golden-samples-wrong"), RunCause::Station);
+        assert_eq!(RunCause::of(Cause::Stopped(StoppedBy::Person), "stopped-by-signal"), RunCause::Operator);
+        assert!(!RunCause::Board.may_pass_off() && !RunCause::Refused.may_pass_off());
+    }
+}

@@ -1,0 +1,41 @@
+//! Ids that are made before anything else is known.
+
+use rand::TryRng as _;
+use rand::rngs::SysRng;
+use uuid::{Builder, Uuid};
+
+/// A system without randomness.
+#[derive(Debug, thiserror::Error)]
+#[error("the system has no randomness for an id; restart it")]
+pub struct NoRandomness(#[source] rand::rngs::SysError);
+
+/// A UUID of version 7 (RFC 9562, section 5.7) of the moment `now_ms`, milliseconds since 1970.
+///
+/// # Errors
+/// [`NoRandomness`]
+pub(super) fn new(now_ms: i64) -> Result<Uuid, NoRandomness> {
+    let mut random = [0; 10];
+    SysRng.try_fill_bytes(&mut random).map_err(NoRandomness)?;
+    Ok(Builder::from_unix_timestamp_millis(now_ms.max(0).unsigned_abs(), &random).into_uuid())
+}
+
+/// The seed of the run of this id: 48 of its random bits, which any reader of JSON has room for.
+#[must_use]
+pub(super) fn seed(id: Uuid) -> u64 {
+    (id.as_u128() & 0xffff_ffff_ffff) as u64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_id_is_of_version_7_and_of_its_moment() {
+        // The example of RFC 9562, appendix A.6: 22 February 2022, 14:22:22 at UTC-5.
+        let id = new(0x017F_22E2_79B0).unwrap();
+        assert_eq!((id.get_version_num(), id.get_variant()), (7, uuid::Variant::RFC4122));
+        assert!(id.to_string().starts_with("017f22e2-79b0-7"), "{id}");
+        assert_ne!(new(1).unwrap(), new(1).unwrap());
+        assert_eq!(seed("017F22E2-79B0-7CC3-98C4-DC0C0C07398F".parse().unwrap()), 0xDC0C_0C07_398F);
+    }
+}

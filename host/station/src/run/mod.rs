@@ -1,0 +1,243 @@
+//! A run, from the serial number to a verdict that is saved.
+//!
+//! ```text
+//!  open row ─► lane ─► record ─► evidence on the disk ─► COMMIT ─► read back ─► verdict
+//!     └ recovered: a run that is found open is ERROR, cause crash, and never PASS
+//! ```
+
+mod ids;
+mod recovered;
+
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use halfrow::target::Target;
+use halfrow::verdict::StoppedBy;
+
+pub use ids::NoRandomness;
+pub use recovered::recover;
+
+use crate::clock;
+use crate::lane::supervisor::{EVENTS, End, Heard, LOG, Patience, supervise};
+use crate::lane::{Job, Message};
+use crate::plan::limits::Maker;
+use crate::plan::serial::SerialError;
+use crate::plan::{Act, Plan, Selected, Step};
+use crate::record::{
+    Attachment, BlobError, Blobs, Conclusion, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
+    judged,
+};
+use crate::store::{Store, StoreError, Stored};
+
+/// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
+const LINK_TEST_PARTS: u32 = 5;
+
+/// What is to be done with which board.
+#[derive(Clone, Copy, Debug)]
+pub struct Order<'a> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// Its file.
+    pub plan_file: &'a Path,
+    /// The serial number, as it was scanned.
+    pub serial: &'a str,
+    /// The board.
+    pub target: &'a Target,
+    /// The station.
+    pub station: &'a str,
+    /// The lane.
+    pub lane: &'a str,
+    /// Who starts it.
+    pub operator: &'a str,
+    /// The program whose `lane` is started.
+    pub program: &'a Path,
+    /// How long the lane may be silent, beside the link tests of the plan.
+    pub silence: Duration,
+}
+
+/// A run whose verdict is saved.
+#[derive(Debug)]
+pub struct Saved {
+    /// Its record.
+    pub record: Record,
+    /// What was read back.
+    pub stored: Stored,
+}
+
+/// A run without a verdict.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// The serial number is none of the product's. Nothing was begun.
+    #[error(transparent)]
+    Serial(#[from] SerialError),
+    /// It could not be entered. The board was not touched.
+    #[error("the run was not begun, and the board not touched")]
+    NotBegun(#[source] Box<StoreError>),
+    /// The same.
+    #[error(transparent)]
+    NoRandomness(#[from] NoRandomness),
+    /// It is over and its result not saved: there is none.
+    #[error(
+        "the result of run {run} could not be saved, so there is none; test the board again when this is put right"
+    )]
+    Unsaved {
+        /// The run.
+        run: String,
+        /// Why.
+        source: Box<StoreError>,
+    },
+}
+
+/// Carries the order out. `stop` is asked who wants it to end, and `hear` is told what the lane does.
+///
+/// # Errors
+/// [`RunError`] when there is no verdict that may be shown.
+pub fn run(
+    store: &mut Store,
+    order: &Order<'_>,
+    stop: &dyn Fn() -> Option<StoppedBy>,
+    hear: &mut dyn FnMut(&Message),
+) -> Result<Saved, RunError> {
+    let Order { plan, .. } = order;
+    let (serial, selected) = plan.select(order.serial)?;
+    let started_ms = clock::now_ms();
+    let id = ids::new(started_ms)?;
+    let head = RunHead {
+        id: id.to_string(),
+        station: order.station.to_owned(),
+        lane: order.lane.to_owned(),
+        unit_id: ids::new(started_ms)?.to_string(),
+        product: plan.product.clone(),
+        serial: serial.text,
+        variant: serial.variant,
+        operator: order.operator.to_owned(),
+        target: order.target.to_string(),
+        fence: 0,
+        started_ms,
+    };
+    let planned = plan_record(plan);
+    let head = store.begin(head, &planned).map_err(|error| RunError::NotBegun(Box::new(error)))?;
+    let begun = Instant::now();
+    let job = Job {
+        run: head.id.clone(),
+        target: head.target.clone(),
+        plan: order.plan_file.to_owned(),
+        text: plan.text.clone(),
+        sha256: plan.sha256.clone(),
+        variant: head.variant.clone(),
+        seed: ids::seed(id),
+    };
+    let spool = store.folder().spool(&head.id);
+    let silence = order.silence.saturating_add(longest_link_test(selected));
+    let patience = Patience { silence, whole: whole(selected) };
+    let heard = supervise(order.program, &job, &spool, patience, stop, hear);
+    let record = record(head, planned, order, selected, heard, begun.elapsed());
+    save(store, record, &spool, selected.steps.len() as u32)
+}
+
+/// How long the longest link test is silent by its nature.
+fn longest_link_test(selected: &Selected) -> Duration {
+    let parts = |step: &Step| match step.act {
+        Act::Link { each } => each.saturating_mul(LINK_TEST_PARTS),
+        Act::Identity | Act::Verify(_) => Duration::ZERO,
+    };
+    selected.steps.iter().map(parts).max().unwrap_or_default()
+}
+
+/// The longest that a run may take: every try of every step as long as it may, and as much again as one step for the
+/// rest.
+fn whole(selected: &Selected) -> Duration {
+    let tries = selected.steps.iter().map(|step| step.timeout.saturating_mul(step.retries + 1));
+    let longest = selected.steps.iter().map(|step| step.timeout).max().unwrap_or_default();
+    tries.fold(longest, Duration::saturating_add)
+}
+
+fn plan_record(plan: &Plan) -> PlanRecord {
+    PlanRecord {
+        sha256: plan.sha256.clone(),
+        name: plan.name.clone(),
+        version: plan.version.clone(),
+        text: plan.text.clone(),
+        files: Some(plan.files.clone()),
+    }
+}
+
+fn record(
+    run: RunHead,
+    plan: PlanRecord,
+    order: &Order<'_>,
+    selected: &Selected,
+    heard: Heard,
+    took: Duration,
+) -> Record {
+    let Heard { mut steps, end } = heard;
+    let ended_ms = clock::now_ms();
+    let seconds = took.as_secs_f64();
+    let measurements = judged(Maker::Run, &[("run.seconds", Some(seconds))], &selected.limits);
+    let lane = match end {
+        End::Done => None,
+        End::Refused(why) => Some(Conclusion::error(RunCause::Station, why)),
+        End::Died(why) | End::Killed(why) => Some(Conclusion::error(RunCause::Crash, why)),
+    };
+    let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, lane);
+    let reached = steps.last().map_or(0, |step| step.seq);
+    let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
+    steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
+    Record {
+        schema: SCHEMA,
+        run,
+        ended_ms,
+        seconds: Some(seconds),
+        conclusion,
+        plan,
+        production: order.plan.require_hardware,
+        marginal: steps.iter().any(|step| step.attempt > 1),
+        board: steps.iter().find_map(|step| step.board.clone()),
+        suspects: steps
+            .iter()
+            .rev()
+            .map(|step| &step.suspects)
+            .find(|some| !some.is_empty())
+            .cloned()
+            .unwrap_or_default(),
+        steps,
+        measurements,
+        attachments: Vec::new(),
+        program: halfrow::VERSION.to_owned(),
+    }
+}
+
+/// Saves the record, with what the lane wrote down unless it is a PASS, and empties the spool.
+fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Result<Saved, RunError> {
+    let run = record.run.id.clone();
+    let mut saved = || {
+        if record.conclusion.verdict != halfrow::Verdict::Pass {
+            record.attachments = attached(&store.folder().blobs(), spool)?;
+        }
+        store.finish(&record, steps)
+    };
+    let stored = saved().map_err(|source| RunError::Unsaved { run, source: Box::new(source) })?;
+    if let Err(error) = fs::remove_dir_all(spool) {
+        tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
+    }
+    Ok(Saved { record, stored })
+}
+
+/// What a lane wrote down, as evidence.
+fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
+    let mut attachments = Vec::new();
+    for (name, media_type) in [(EVENTS, "application/jsonl"), (LOG, "text/plain; charset=utf-8")] {
+        let path = spool.join(name);
+        let bytes = match fs::read(&path) {
+            Ok(bytes) if bytes.is_empty() => continue,
+            Ok(bytes) => bytes,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => continue,
+            Err(source) => return Err(BlobError::Read { path, source }.into()),
+        };
+        let sha256 = blobs.put(&bytes)?;
+        let (name, media_type) = (name.to_owned(), media_type.to_owned());
+        attachments.push(Attachment { name, sha256, bytes: bytes.len() as u64, media_type });
+    }
+    Ok(attachments)
+}

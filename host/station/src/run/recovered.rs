@@ -1,0 +1,85 @@
+//! Runs that are found open when the station starts: the program or the computer ended in the middle of them.
+
+use std::fs;
+use std::path::Path;
+
+use crate::clock;
+use crate::lane::Message;
+use crate::lane::supervisor::{EVENTS, kill_left_behind};
+use crate::record::{Conclusion, PlanRecord, Record, RunCause, SCHEMA, StepRecord};
+use crate::store::{OpenRun, Store};
+
+use super::{RunError, Saved, save};
+
+/// Closes every run that is open as ERROR, cause crash, with what its lane wrote down. What it was about to come to
+/// does not count: a board that is tested again costs a minute, a PASS that is none costs more.
+///
+/// # Errors
+/// [`RunError`] when a run cannot be closed; its lane stays blocked.
+pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
+    let open = store.open_runs().map_err(|error| RunError::NotBegun(Box::new(error)))?;
+    if !open.is_empty() {
+        store.folder().blobs().clear();
+    }
+    let closed = open.into_iter().map(|open| closed(store, open)).collect::<Result<_, _>>()?;
+    clear(&store.folder().spools());
+    Ok(closed)
+}
+
+/// Removes what runs left that ended between their result and their last act.
+fn clear(spools: &Path) {
+    let left = fs::read_dir(spools).into_iter().flatten().filter_map(Result::ok);
+    for path in left.map(|entry| entry.path()) {
+        if let Err(error) = fs::remove_dir_all(&path) {
+            tracing::warn!("{} cannot be removed: {error}; it is not needed any more", path.display());
+        }
+    }
+}
+
+fn closed(store: &mut Store, open: OpenRun) -> Result<Saved, RunError> {
+    let OpenRun { run, plan_sha256, plan: [name, version, text] } = open;
+    let spool = store.folder().spool(&run.id);
+    kill_left_behind(&spool);
+    let steps = told(&spool);
+    let headline =
+        format!("the station ended in the middle of the run, after {} tries of steps", steps.len());
+    let record = Record {
+        schema: SCHEMA,
+        ended_ms: clock::now_ms().max(run.started_ms),
+        seconds: None,
+        conclusion: Conclusion::error(RunCause::Crash, headline),
+        production: takes_hardware_alone(&text),
+        plan: PlanRecord { sha256: plan_sha256, name, version, text, files: None },
+        marginal: steps.iter().any(|step| step.attempt > 1),
+        board: steps.iter().find_map(|step| step.board.clone()),
+        suspects: Vec::new(),
+        steps,
+        measurements: Vec::new(),
+        attachments: Vec::new(),
+        program: halfrow::VERSION.to_owned(),
+        run,
+    };
+    save(store, record, &spool, 0)
+}
+
+/// What the plan's text says of hardware. The plan was read whole when the run began; its files may be others by now.
+fn takes_hardware_alone(text: &str) -> bool {
+    let plan: toml::Table = text.parse().unwrap_or_default();
+    let required = plan.get("board").and_then(|board| board.get("require_hardware"));
+    required.and_then(toml::Value::as_bool).unwrap_or(false)
+}
+
+/// The steps that the lane told of, as far as they were written down.
+fn told(spool: &Path) -> Vec<StepRecord> {
+    let events = fs::read(spool.join(EVENTS)).unwrap_or_default();
+    let lines = events.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok());
+    let mut steps: Vec<StepRecord> = Vec::new();
+    for message in lines {
+        if let Message::Ended { step } = message
+            && !steps.iter().any(|known| (known.seq, known.attempt) == (step.seq, step.attempt))
+        {
+            steps.push(*step);
+        }
+    }
+    steps
+}

@@ -1,0 +1,85 @@
+//! Why the store cannot do what it was asked.
+
+use std::io;
+use std::path::PathBuf;
+
+use crate::record::{BlobError, RecordError};
+
+/// Something that the store cannot do.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// Another program has the folder.
+    #[error("another halfrow-station works in {}; wait until it is done, or name another folder", folder.display())]
+    InUse {
+        /// The folder.
+        folder: PathBuf,
+    },
+    /// The folder cannot be used.
+    #[error("the station's folder {} cannot be used; check that it is writable and has space", folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The database refuses.
+    #[error("the database {} refuses {doing}; check that its folder is writable and has space", path.display())]
+    Database {
+        /// The file.
+        path: PathBuf,
+        /// What was under way.
+        doing: &'static str,
+        /// Why.
+        source: rusqlite::Error,
+    },
+    /// The file system cannot keep what SQLite needs.
+    #[error(
+        "the database {} cannot have a write-ahead log where it is ({mode}); put the folder on a local disk",
+        path.display()
+    )]
+    NoLog {
+        /// The file.
+        path: PathBuf,
+        /// The journal that it has instead.
+        mode: String,
+    },
+    /// It is of a newer program.
+    #[error(
+        "the database {} has version {found} and this program knows {known}; use the halfrow-station that made it",
+        path.display()
+    )]
+    Newer {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: i64,
+        /// The newest that is known.
+        known: i64,
+    },
+    /// It was made by another text of the same version.
+    #[error("version {version} of the database {} is not this program's; restore it from a copy", path.display())]
+    OtherSchema {
+        /// The file.
+        path: PathBuf,
+        /// The version.
+        version: i64,
+    },
+    /// The run is not open any more, or somebody else's.
+    #[error("the run {run} is no longer this program's to finish; its lane was taken over")]
+    NotOpen {
+        /// The run.
+        run: String,
+    },
+    /// What was read back is not what was written.
+    #[error("the run {run} reads back otherwise than it was written; check the disk")]
+    ReadsOtherwise {
+        /// The run.
+        run: String,
+    },
+    /// The evidence.
+    #[error(transparent)]
+    Blob(#[from] BlobError),
+    /// The record.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}

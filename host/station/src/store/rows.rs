@@ -1,0 +1,102 @@
+//! What a run leaves in the tables. A database that is rebuilt from records gets its rows here, too.
+
+use rusqlite::{Connection, Transaction, params};
+
+use super::statements as sql;
+use crate::record::{PlanRecord, Record, RunHead};
+
+/// Unit, plan and open run. Returns the unit's id and the fence; the unit that is named is made if there is none of
+/// this serial number.
+pub(super) fn open(
+    to: &Transaction<'_>,
+    run: &RunHead,
+    plan: &PlanRecord,
+) -> rusqlite::Result<(String, i64)> {
+    let PlanRecord { sha256, name, version, text, files: _ } = plan;
+    let RunHead { product, serial, started_ms, .. } = run;
+    to.execute(sql::ADD_PLAN, params![sha256, name, version, product, text, started_ms])?;
+    to.execute(sql::ADD_UNIT, params![run.unit_id, product, serial, started_ms])?;
+    let unit: String = to.query_row(sql::UNIT_OF, params![product, serial], |row| row.get(0))?;
+    let fence = to.query_row(
+        sql::OPEN_RUN,
+        params![
+            run.id,
+            run.station,
+            run.lane,
+            unit,
+            sha256,
+            run.variant,
+            run.operator,
+            run.target,
+            started_ms
+        ],
+        |row| row.get(0),
+    )?;
+    Ok((unit, fence))
+}
+
+/// The end of a run with all that belongs to it. Returns the number of runs that it ended: none, and then nothing is
+/// changed, when the run is not open, or somebody else's.
+pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusqlite::Result<usize> {
+    let id = &record.run.id;
+    let (ended, board) = (&record.conclusion, record.board.as_ref());
+    let changed = to.execute(
+        sql::FINISH_RUN,
+        params![
+            ended.verdict.to_string(),
+            ended.exit_code,
+            ended.cause.name(),
+            ended.headline,
+            record.ended_ms,
+            hash,
+            board.map(|board| &board.kind),
+            board.and_then(|board| board.device.as_ref()),
+            board.map(|board| &board.build),
+            id,
+            record.run.fence,
+        ],
+    )?;
+    if changed == 0 {
+        return Ok(0);
+    }
+    for step in &record.steps {
+        let (seq, attempt) = (step.seq, step.attempt);
+        let outcome = step.outcome.name();
+        to.execute(
+            sql::ADD_STEP,
+            params![id, seq, attempt, step.name, outcome, step.started_ms, step.ended_ms, step.detail],
+        )?;
+    }
+    measurements(to, record)?;
+    for (suspect, rank) in record.suspects.iter().zip(1..) {
+        to.execute(sql::ADD_SUSPECT, params![id, rank, suspect.part, suspect.place, suspect.explained])?;
+    }
+    for one in &record.attachments {
+        to.execute(sql::ADD_ATTACHMENT, params![id, one.name, one.sha256, one.bytes as i64, one.media_type])?;
+    }
+    Ok(changed)
+}
+
+fn measurements(to: &Connection, record: &Record) -> rusqlite::Result<()> {
+    let of_steps = record.steps.iter().map(|step| (step.seq, step.attempt, &step.measurements));
+    for (seq, attempt, measured) in of_steps.chain([(0, 1, &record.measurements)]) {
+        for one in measured {
+            to.execute(
+                sql::ADD_MEASUREMENT,
+                params![
+                    record.run.id,
+                    seq,
+                    attempt,
+                    one.name,
+                    one.value,
+                    one.unit,
+                    one.low,
+                    one.high,
+                    one.blames.name(),
+                    one.outcome.name(),
+                ],
+            )?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,179 @@
+//! The tables as they are at one moment, and as they are when they are made anew from the records.
+
+use rusqlite::types::Value;
+use rusqlite::{Connection, TransactionBehavior};
+
+use super::{Folder, OpenRun, StoreError, migrations, open_run, rows, statements};
+use crate::record::{PlanRecord, Record};
+
+/// The tables that are an index of the records, each with its key.
+pub const TABLES: [(&str, &str); 7] = [
+    ("plan", "sha256"),
+    ("unit", "id"),
+    ("run", "id"),
+    ("step", "run_id, seq, attempt"),
+    ("measurement", "run_id, seq, attempt, name"),
+    ("suspect", "run_id, rank"),
+    ("attachment", "run_id, name"),
+];
+
+/// A row, each value as text with its column.
+pub type Row = Vec<(String, String)>;
+
+/// The tables as they are, whatever is written meanwhile.
+#[derive(Debug)]
+pub struct Snapshot {
+    folder: Folder,
+    reader: Connection,
+}
+
+impl Snapshot {
+    /// The tables of the station in `folder`.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database is not there or cannot be read.
+    pub fn take(folder: &Folder) -> Result<Self, StoreError> {
+        let snapshot = Self { folder: folder.clone(), reader: folder.reader()? };
+        snapshot.read("to be read", |reader| {
+            reader.execute_batch("BEGIN")?;
+            // It begins with the first look.
+            reader.query_row("SELECT count(*) FROM run", [], |_| Ok(()))
+        })?;
+        Ok(snapshot)
+    }
+
+    /// What SQLite itself finds wrong with its file; nothing when all is well.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it cannot even look.
+    pub fn damage(&self) -> Result<Vec<String>, StoreError> {
+        let said: Vec<String> = self.read("to be checked", |reader| {
+            reader.prepare("PRAGMA integrity_check")?.query_map([], |row| row.get(0))?.collect()
+        })?;
+        Ok(said.into_iter().filter(|line| line != "ok").collect())
+    }
+
+    /// The ids of all runs that are over, with the hashes of their records, the earliest first.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn final_runs(&self) -> Result<Vec<(String, String)>, StoreError> {
+        self.read("to tell its runs", |reader| {
+            let mut statement = reader.prepare(statements::FINAL_RUNS)?;
+            statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
+        })
+    }
+
+    /// Every run that is open, the earliest first.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn open_runs(&self) -> Result<Vec<OpenRun>, StoreError> {
+        self.read("to tell its open runs", |reader| {
+            reader.prepare(statements::OPEN_RUNS)?.query_map([], open_run)?.collect()
+        })
+    }
+
+    /// All rows of a table, by its key.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn table(&self, name: &str, key: &str) -> Result<Vec<Row>, StoreError> {
+        self.read("to tell a table", |reader| table(reader, name, key))
+    }
+
+    fn read<T>(
+        &self,
+        doing: &'static str,
+        read: impl FnOnce(&Connection) -> rusqlite::Result<T>,
+    ) -> Result<T, StoreError> {
+        read(&self.reader).map_err(|source| StoreError::Database {
+            path: self.folder.database(),
+            doing,
+            source,
+        })
+    }
+}
+
+fn table(reader: &Connection, name: &str, key: &str) -> rusqlite::Result<Vec<Row>> {
+    let mut statement = reader.prepare(&format!("SELECT * FROM {name} ORDER BY {key}"))?;
+    let columns: Vec<String> = statement.column_names().map(str::to_owned).collect();
+    let text = |value: Value| match value {
+        Value::Null => "NULL".to_owned(),
+        Value::Integer(number) => number.to_string(),
+        Value::Real(number) => format!("{number:?}"),
+        Value::Text(text) => text,
+        Value::Blob(bytes) => format!("{bytes:?}"),
+    };
+    let row = |row: &rusqlite::Row<'_>| {
+        columns
+            .iter()
+            .enumerate()
+            .map(|(place, column)| Ok((column.clone(), text(row.get(place)?))))
+            .collect()
+    };
+    statement.query_map([], row)?.collect()
+}
+
+/// Tables that are made anew, in memory.
+#[derive(Debug)]
+pub struct Rebuilt {
+    database: Connection,
+}
+
+impl Rebuilt {
+    /// Without a row.
+    ///
+    /// # Errors
+    /// [`StoreError`] when there is no memory for it.
+    pub fn new() -> Result<Self, StoreError> {
+        let mut database = Connection::open_in_memory().map_err(refused)?;
+        migrations::apply(&mut database, "a rebuilt index".as_ref(), 0)?;
+        Ok(Self { database })
+    }
+
+    /// The run of this record, whose hash is `hash`. Runs come in the order of their ids.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it contradicts the runs before.
+    pub fn add(&mut self, record: &Record, hash: &str) -> Result<(), StoreError> {
+        self.change(|to| {
+            rows::open(to, &record.run, &record.plan)?;
+            rows::finish(to, record, hash).map(drop)
+        })
+    }
+
+    /// A run that is open.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_open(&mut self, open: &OpenRun) -> Result<(), StoreError> {
+        let [name, version, text] = open.plan.clone();
+        let plan = PlanRecord { sha256: open.plan_sha256.clone(), name, version, text, files: None };
+        self.change(|to| rows::open(to, &open.run, &plan).map(drop))
+    }
+
+    /// All rows of a table, by its key.
+    ///
+    /// # Errors
+    /// [`StoreError`] when they cannot be read.
+    pub fn table(&self, name: &str, key: &str) -> Result<Vec<Row>, StoreError> {
+        table(&self.database, name, key).map_err(refused)
+    }
+
+    fn change(
+        &mut self,
+        change: impl FnOnce(&rusqlite::Transaction<'_>) -> rusqlite::Result<()>,
+    ) -> Result<(), StoreError> {
+        let run = || {
+            let transaction = self.database.transaction_with_behavior(TransactionBehavior::Immediate)?;
+            change(&transaction)?;
+            transaction.commit()
+        };
+        run().map_err(refused)
+    }
+}
+
+fn refused(source: rusqlite::Error) -> StoreError {
+    StoreError::Database { path: "a rebuilt index".into(), doing: "a record", source }
+}

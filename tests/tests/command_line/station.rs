@@ -1,0 +1,27 @@
+//! `halfrow station`, which starts a program beside it.
+
+use std::process::Command;
+
+use halfrow_tests::program::{Folder, command, finish};
+
+/// What is written by a process of its own is open in no other when it is started.
+fn shell(folder: &Folder, text: &str, argument: &std::ffi::OsStr) {
+    let mut shell = Command::new("sh");
+    shell.current_dir(folder.path()).args(["-ec", text, "sh"]).arg(argument);
+    assert_eq!(finish(&mut shell).code, Some(0));
+}
+
+#[test]
+fn the_station_beside_the_program_is_started_or_how_to_get_it_is_told() {
+    let folder = Folder::new();
+    shell(&folder, "cp \"$1\" halfrow", command([]).get_program());
+    let call =
+        || finish(Command::new(folder.path().join("halfrow")).args(["station", "run", "--lane", "1", "-v"]));
+    let without = call();
+    assert_eq!(without.code, Some(2), "{without:?}");
+    assert!(without.stderr.contains("cargo build --release --package halfrow-station"), "{without:?}");
+    let station = "printf '#!/bin/sh\\necho \"$@\"\\nexit 6\\n' > halfrow-station; chmod +x halfrow-station";
+    shell(&folder, station, "".as_ref());
+    let started = call();
+    assert_eq!((started.code, started.stdout.as_str()), (Some(6), "run --lane 1 -v\n"), "{started:?}");
+}
