@@ -45,12 +45,17 @@ fn main() {
     println!("cargo::rerun-if-changed={}", rtl.display());
     println!("cargo::rerun-if-changed=shim");
     println!("cargo::rerun-if-env-changed=VERILATOR");
+    println!("cargo::rerun-if-env-changed=HALFROW_UNLINKED");
+    // What only looks at sources, as clippy does, needs nothing that is compiled for minutes.
+    if env::var_os("HALFROW_UNLINKED").is_some() {
+        return;
+    }
     let verilator = Verilator::find();
     let out = PathBuf::from(env::var_os("OUT_DIR").unwrap_or_default());
     let all = env::var_os("CARGO_FEATURE_BUILDS").is_some();
     let models: Vec<_> = BOARDS.iter().chain(BUILDS.iter().filter(|_| all)).collect();
-    for model in &models {
-        verilator.translate(model, &rtl, &out.join(model.class));
+    for (place, model) in models.iter().enumerate() {
+        verilator.translate(model, place < BOARDS.len(), &rtl, &out.join(model.class));
     }
     verilator.compile(&models, &out);
 }
@@ -77,12 +82,13 @@ impl Verilator {
         Self { program, include: Path::new(root.trim()).join("include") }
     }
 
-    /// Translates one model into `folder`.
-    fn translate(&self, model: &Model, rtl: &Path, folder: &Path) {
+    /// Translates one model into `folder`, with what a waveform needs if it `is_traced`: more code than all the rest.
+    fn translate(&self, model: &Model, is_traced: bool, rtl: &Path, folder: &Path) {
         // What a module that is gone left behind would be compiled as well.
         let _ = fs::remove_dir_all(folder);
         let mut command = Command::new(&self.program);
-        command.args(["--cc", "-O3", "--trace", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal"]);
+        command.args(["--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal"]);
+        command.args(is_traced.then_some("--trace"));
         command.args(["--top-module", model.top, "--prefix", model.class]).arg("--Mdir").arg(folder);
         let identity = IDENTITY.iter().filter(|_| model.top != "halfrow_core");
         command.args(model.parameters.iter().chain(identity).map(|parameter| format!("-G{parameter}")));

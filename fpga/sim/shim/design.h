@@ -3,9 +3,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <type_traits>
+#include <utility>
 
 #include "verilated.h"
 #include "verilated_vcd_c.h"
+
+// Whether a model was translated with what a waveform needs.
+template <class Model, class = void>
+struct IsTraced : std::false_type {};
+template <class Model>
+struct IsTraced<Model, std::void_t<decltype(std::declval<Model&>().trace(std::declval<VerilatedVcdC*>(), 99))>>
+    : std::true_type {};
 
 template <class Model>
 struct Design {
@@ -17,7 +26,7 @@ struct Design {
     explicit Design(uint32_t seed) {
         context.randReset(2);
         context.randSeed(static_cast<int>(seed & 0x7fffffff));
-        context.traceEverOn(true);
+        context.traceEverOn(IsTraced<Model>::value);
         model = std::make_unique<Model>(&context, "");
     }
 
@@ -27,10 +36,13 @@ struct Design {
     }
 
     bool trace_to(const char* path) {
-        trace = std::make_unique<VerilatedVcdC>();
-        model->trace(trace.get(), 99);
-        trace->open(path);
-        return trace->isOpen();
+        if constexpr (IsTraced<Model>::value) {
+            trace = std::make_unique<VerilatedVcdC>();
+            model->trace(trace.get(), 99);
+            trace->open(path);
+            return trace->isOpen();
+        }
+        return false;
     }
 
     // Settles what hangs on the inputs, with all clocks low. Outputs are now what a register sees at the next edge.

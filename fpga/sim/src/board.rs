@@ -115,7 +115,7 @@ impl Board {
         Self { machine: Box::new(Clocked(port)), outgoing: Vec::new(), milliseconds: 0, failure: None }
     }
 
-    /// Writes a waveform of the whole design, from now on, to `path` in VCD.
+    /// Writes a waveform of the whole design, from now on, to `path` in VCD. Builds for tests have none.
     ///
     /// # Errors
     /// [`TraceError`] if there is such a file already, or it cannot be opened.

@@ -1,7 +1,5 @@
 //! The core alone, clock by clock.
 
-use std::path::Path;
-
 use crate::ffi::{self, CoreInputs, CoreOutputs, Design};
 
 /// A build of the core.
@@ -59,10 +57,5 @@ impl Core {
     /// One clock. Returns what a register at the core's outputs samples at its edge.
     pub fn clock(&mut self, inputs: &CoreInputs) -> CoreOutputs {
         self.0.clock(inputs)
-    }
-
-    /// Writes a waveform to `path` from now on. Returns whether it could be opened.
-    pub fn trace(&mut self, path: &Path) -> bool {
-        self.0.trace(path)
     }
 }
