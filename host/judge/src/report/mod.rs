@@ -1,4 +1,4 @@
-//! The views of a [`Report`](crate::result::Report): text, JSON, JUnit and HTML with pictures, and the folder of them all.
+//! The views of a [`Report`]: text, JSON, JUnit and HTML with pictures, and the folder of them all.
 
 mod folder;
 mod html;
