@@ -12,6 +12,8 @@ mod clock;
 pub mod commands;
 pub mod console;
 pub mod exit;
+pub mod history;
+pub mod kept;
 pub mod lane;
 pub mod plan;
 pub mod record;
