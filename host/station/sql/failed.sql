@@ -1,2 +1,6 @@
-SELECT count(*), count(DISTINCT run.unit_id)
-FROM run WHERE run.verdict = 'FAIL' AND +run.started_ms >= $1 AND +run.started_ms < $2 {filters};
+SELECT coalesce(sum(runs), 0), count(*)
+FROM (
+  SELECT count(*) AS runs FROM run
+  WHERE run.verdict = 'FAIL' AND +run.started_ms >= $1 AND +run.started_ms < $2 {filters}
+  GROUP BY run.unit_id
+) AS of_unit;

@@ -57,8 +57,8 @@ CREATE INDEX run_plan ON run (plan_sha256, started_ms DESC, id DESC);
 CREATE INDEX run_verdict ON run (verdict, started_ms DESC, id DESC);
 -- All that yield counts, in the order in which it is counted; a day has 86400000 milliseconds.
 CREATE INDEX run_yield ON run (plan_sha256, station, lane, (started_ms / 86400000), verdict, nth, cause, started_ms);
-CREATE INDEX run_again ON run (unit_id, nth, verdict, plan_sha256) WHERE nth >= 2;
-CREATE INDEX run_failed ON run (id, plan_sha256, station, lane, started_ms, unit_id) WHERE verdict = 'FAIL';
+CREATE INDEX run_again ON run (unit_id, nth, verdict, plan_sha256, started_ms, id) WHERE nth >= 2;
+CREATE INDEX run_failed ON run (verdict, unit_id, id, plan_sha256, lane, started_ms) WHERE verdict = 'FAIL';
 CREATE UNIQUE INDEX run_open_lane ON run (station, lane) WHERE state = 'open';
 CREATE UNIQUE INDEX run_open_unit ON run (unit_id) WHERE state = 'open';
 
@@ -101,8 +101,6 @@ CREATE TABLE suspect (
   explained {real} NOT NULL,
   PRIMARY KEY (run_id, rank)
 ){strict};
-
-CREATE INDEX suspect_first ON suspect (run_id, part) WHERE rank = 1;
 
 CREATE TABLE attachment (
   run_id TEXT NOT NULL REFERENCES run (id),

@@ -12,6 +12,7 @@ mod clock;
 pub mod commands;
 pub mod console;
 pub mod exit;
+pub mod export;
 pub mod history;
 pub mod kept;
 pub mod lane;

@@ -3,32 +3,17 @@
 use clap::Args;
 
 use super::Failure;
-use super::looking::{Data, Range, Word, either, table, time};
+use super::looking::{Data, Filtered, either, table, time};
 use crate::exit::Exit;
-use crate::history::runs::{Filter, MOST, Page, Place, page};
+use crate::history::runs::{MOST, Page, Place, page};
 
 /// List runs, the newest first
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     data: Data,
-    /// Of the units of this serial number
-    #[arg(long)]
-    serial: Option<String>,
-    /// Of this verdict
-    #[arg(long, value_enum, ignore_case = true)]
-    verdict: Option<Word>,
-    /// Under plans of this name
-    #[arg(long, value_name = "NAME")]
-    plan: Option<String>,
-    /// In this lane
-    #[arg(long)]
-    lane: Option<String>,
-    /// By this operator
-    #[arg(long, value_name = "NAME")]
-    operator: Option<String>,
     #[command(flatten)]
-    range: Range,
+    filtered: Filtered,
     /// So many at most
     #[arg(long, value_name = "RUNS", default_value = "50", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST)))]
     limit: u32,
@@ -41,14 +26,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let filter = Filter {
-        serial: arguments.serial.clone(),
-        verdict: arguments.verdict.map(Into::into),
-        plan: arguments.plan.clone(),
-        lane: arguments.lane.clone(),
-        operator: arguments.operator.clone(),
-        period: arguments.range.period(),
-    };
+    let filter = arguments.filtered.filter();
     let page = page(&arguments.data.snapshot()?, &filter, arguments.after.as_ref(), arguments.limit)?;
     either(&page, arguments.json, text)
 }

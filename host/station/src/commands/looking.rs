@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::history::Period;
+use crate::history::runs::Filter;
 use crate::history::yields::Wanted;
 use crate::store::{Folder, Snapshot};
 
@@ -38,7 +39,7 @@ impl Data {
 
 /// Which runs are meant, by when they began.
 #[derive(Clone, Copy, Debug, Args)]
-pub(super) struct Range {
+struct Range {
     /// Runs that began at this moment or later: 2026-11-22, which begins at midnight UTC, or 2026-11-22T06:00:00+01:00
     #[arg(long, value_name = "TIME", value_parser = moment)]
     from: Option<i64>,
@@ -49,7 +50,7 @@ pub(super) struct Range {
 
 impl Range {
     /// As a period.
-    pub(super) fn period(self) -> Period {
+    fn period(self) -> Period {
         let all = Period::default();
         Period { from_ms: self.from.unwrap_or(all.from_ms), until_ms: self.until.unwrap_or(all.until_ms) }
     }
@@ -75,9 +76,45 @@ impl Counted {
     }
 }
 
+/// Which runs are meant.
+#[derive(Debug, Args)]
+pub(super) struct Filtered {
+    /// Of the units of this serial number
+    #[arg(long)]
+    serial: Option<String>,
+    /// Of this verdict
+    #[arg(long, value_enum, ignore_case = true)]
+    verdict: Option<Word>,
+    /// Under plans of this name
+    #[arg(long, value_name = "NAME")]
+    plan: Option<String>,
+    /// In this lane
+    #[arg(long)]
+    lane: Option<String>,
+    /// By this operator
+    #[arg(long, value_name = "NAME")]
+    operator: Option<String>,
+    #[command(flatten)]
+    range: Range,
+}
+
+impl Filtered {
+    /// As a filter.
+    pub(super) fn filter(&self) -> Filter {
+        Filter {
+            serial: self.serial.clone(),
+            verdict: self.verdict.map(Into::into),
+            plan: self.plan.clone(),
+            lane: self.lane.clone(),
+            operator: self.operator.clone(),
+            period: self.range.period(),
+        }
+    }
+}
+
 /// A verdict, as it is written on the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Word {
+enum Word {
     /// The board is right.
     Pass,
     /// The board is wrong.

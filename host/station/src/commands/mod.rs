@@ -1,6 +1,7 @@
 //! The command line: one file a command.
 
 mod check;
+mod export;
 mod history;
 mod kept;
 mod lane;
@@ -38,6 +39,7 @@ enum Command {
     Yield(yields::Arguments),
     Pareto(pareto::Arguments),
     Waive(waive::Arguments),
+    Export(export::Arguments),
     Backup(kept::Backup),
     Restore(kept::Restore),
     Prune(kept::Prune),
@@ -86,6 +88,7 @@ impl Cli {
             Command::Yield(arguments) => yields::run(arguments),
             Command::Pareto(arguments) => pareto::run(arguments),
             Command::Waive(arguments) => waive::run(arguments),
+            Command::Export(arguments) => export::run(arguments),
             Command::Backup(arguments) => kept::backup(arguments),
             Command::Restore(arguments) => kept::restore(arguments),
             Command::Prune(arguments) => kept::prune(arguments),

@@ -124,7 +124,9 @@ pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreErr
         if let Some(counts) = cells.get_mut(&unit.cell).filter(|_| is_wanted) {
             counts.adjust(unit.first_passed, unit.last_passed);
             counts.waived += u64::from(waived.contains_key(&unit.last));
-            flips.extend(unit.flip());
+            if unit.is_flip() {
+                flips.push(unit.flip(serial_of(of, &unit.unit)?));
+            }
         }
     }
     for (run, (cell, started_ms)) in &waived {
@@ -214,7 +216,7 @@ fn cells(
 /// A unit that was judged more than once.
 struct Again {
     cell: Cell,
-    serial: String,
+    unit: String,
     first: String,
     first_ms: i64,
     first_passed: bool,
@@ -225,16 +227,20 @@ struct Again {
 }
 
 impl Again {
-    fn flip(&self) -> Option<Flip> {
-        (!self.first_passed && self.last_passed).then(|| Flip {
+    fn is_flip(&self) -> bool {
+        !self.first_passed && self.last_passed
+    }
+
+    fn flip(&self, serial: String) -> Flip {
+        Flip {
             plan: self.cell.plan.clone(),
-            serial: self.serial.clone(),
+            serial,
             failed: self.first.clone(),
             failed_ms: self.first_ms,
             passed: self.last.clone(),
             passed_ms: self.last_ms,
             judgements: self.judgements,
-        })
+        }
     }
 }
 
@@ -245,28 +251,28 @@ fn again(
 ) -> Result<(Vec<Again>, BTreeSet<String>), StoreError> {
     let passed = |verdict: String| verdict == halfrow::Verdict::Pass.to_string();
     let rows = of.rows("to tell what was judged again", statements::YIELD_AGAIN, &[], |row| {
-        let started_ms: i64 = row.get(8)?;
-        let hash: String = row.get(9)?;
-        // A run stands by its plan: the schema holds it.
-        let plan = plans.get(&hash).cloned().ok_or(rusqlite::Error::QueryReturnedNoRows)?;
-        let cell = Cell { plan, station: row.get(10)?, lane: row.get(11)?, day: started_ms / DAY_MS };
-        let unit: String = row.get(4)?;
-        let again = Again {
-            serial: row.get(5)?,
-            first: row.get(6)?,
-            first_ms: started_ms,
-            first_passed: passed(row.get(7)?),
+        let (first_ms, theirs, ours): (i64, String, String) = (row.get(7)?, row.get(3)?, row.get(8)?);
+        // A unit has a first judgement under plans of each name.
+        let Some(plan) = plans.get(&ours).filter(|plan| plans.get(&theirs) == Some(plan)).cloned() else {
+            return Ok(None);
+        };
+        let cell = Cell { plan, station: row.get(9)?, lane: row.get(10)?, day: first_ms / DAY_MS };
+        Ok(Some(Again {
+            cell,
+            unit: row.get(4)?,
+            first: row.get(5)?,
+            first_ms,
+            first_passed: passed(row.get(6)?),
             last: row.get(0)?,
             last_ms: row.get(2)?,
             last_passed: passed(row.get(1)?),
             judgements: 2,
-            cell,
-        };
-        Ok(((unit, again.cell.plan.clone()), again))
+        }))
     })?;
     let mut of_many = BTreeSet::new();
     let mut last = BTreeMap::<(String, PlanName), Again>::new();
-    for (key, mut again) in rows {
+    for mut again in rows.into_iter().flatten() {
+        let key = (again.unit.clone(), again.cell.plan.clone());
         of_many.extend([again.first.clone(), again.last.clone()]);
         if let Some(before) = last.get(&key) {
             again.judgements = before.judgements + 1;
@@ -274,6 +280,11 @@ fn again(
         last.insert(key, again);
     }
     Ok((last.into_values().collect(), of_many))
+}
+
+fn serial_of(of: &Snapshot, unit: &str) -> Result<String, StoreError> {
+    let serials = of.rows("to tell a unit", statements::SERIAL_OF, &[&unit], |row| row.get(0))?;
+    Ok(serials.into_iter().next().unwrap_or_default())
 }
 
 /// Every waived FAIL with its cell, and when it began.

@@ -32,6 +32,7 @@ pub(crate) const UNIT_ATTACHMENTS: &str = include_str!("../../sql/unit-attachmen
 pub(crate) const UNIT_WAIVERS: &str = include_str!("../../sql/unit-waivers.sql");
 pub(crate) const YIELD_CELLS: &str = include_str!("../../sql/yield-cells.sql");
 pub(crate) const YIELD_AGAIN: &str = include_str!("../../sql/yield-again.sql");
+pub(crate) const SERIAL_OF: &str = include_str!("../../sql/serial-of.sql");
 pub(crate) const WAIVED: &str = include_str!("../../sql/waived.sql");
 pub(crate) const PARETO_PARTS: &str = include_str!("../../sql/pareto-parts.sql");
 pub(crate) const PARETO_CHECKS: &str = include_str!("../../sql/pareto-checks.sql");
@@ -46,7 +47,7 @@ pub(super) fn for_sqlite(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [&str; 32] = [
+    const ALL: [&str; 33] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -75,6 +76,7 @@ mod tests {
         UNIT_WAIVERS,
         YIELD_CELLS,
         YIELD_AGAIN,
+        SERIAL_OF,
         WAIVED,
         PARETO_PARTS,
         PARETO_CHECKS,

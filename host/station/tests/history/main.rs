@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod commands;
+mod exports;
 mod generated;
 mod kept;
 mod made;
