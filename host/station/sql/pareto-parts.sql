@@ -1,5 +1,5 @@
 -- Failed runs, and units of them, by the part that is suspected first.
-SELECT part, sum(runs), count(*)
+SELECT part, CAST(sum(runs) AS BIGINT), count(*)
 FROM (
   SELECT run.unit_id, coalesce(suspect.part, '') AS part, count(*) AS runs
   FROM run

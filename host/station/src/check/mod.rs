@@ -159,7 +159,7 @@ impl Look {
         for attachment in &record.attachments {
             match self.blobs.get(&attachment.sha256) {
                 Err(error) if error.is_gone() && self.removed.contains(&attachment.sha256) => {
-                    self.pruned += 1
+                    self.pruned += 1;
                 }
                 Err(source) => self.faults.push(evidence(source)),
                 Ok(_) => self.evidence += 1,

@@ -10,7 +10,7 @@ use quick_junit::SerializeError;
 
 pub use table::{COLUMNS, Table};
 
-use crate::record::{Record, RecordError};
+use crate::record::Record;
 use crate::store::{Folder, StoreError};
 
 /// What one run is written as. All runs together are a [`Table`].
@@ -60,7 +60,7 @@ pub enum ExportError {
 pub fn record(folder: &Folder, hash: &str) -> Result<(Record, Vec<u8>), ExportError> {
     let read = || -> Result<_, StoreError> {
         let bytes = folder.blobs().get(hash)?;
-        Ok((Record::parse(&bytes).map_err(RecordError::from)?, bytes))
+        Ok((Record::parse(&bytes)?, bytes))
     };
     Ok(read()?)
 }

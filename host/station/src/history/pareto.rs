@@ -13,7 +13,7 @@ use crate::store::{Snapshot, StoreError, statements};
 pub enum Of {
     /// The part that is suspected first. A run has one or none.
     Part,
-    /// What failed: a limit that blames the board, or a step beside its limits. A run may have several.
+    /// What failed: a limit that blames the board, or a step by more than its limits. A run may have several.
     Check,
 }
 

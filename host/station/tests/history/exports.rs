@@ -124,7 +124,7 @@ fn every_document_is_one_that_jenkins_takes() {
 fn every_cell_of_the_table_is_read_back_by_python() {
     let made = made();
     let ((_one, table), (_other, records)) = (exported(&made, "csv"), exported(&made, "record"));
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/history/table.py");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/history/read_table.py");
     let read = || Command::new("python3").arg(script).arg(&table).arg(&records).output().unwrap();
     let right = read();
     assert!(right.status.success(), "{}", String::from_utf8_lossy(&right.stderr));
@@ -147,7 +147,7 @@ fn openhtf_writes_the_same_of_the_record_that_it_makes_of_ours() {
     assert!(Command::new(&python).args(install).status().unwrap().success());
     let made = made();
     let (_kept, to) = exported(&made, "openhtf");
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/history/openhtf.py");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/history/read_openhtf.py");
     let read = || Command::new(&python).arg(script).args(files(&to)).output().unwrap();
     let right = read();
     assert!(right.status.success(), "{}", String::from_utf8_lossy(&right.stderr));

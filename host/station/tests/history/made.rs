@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use halfrow::Verdict;
-use halfrow_station::plan::limits::{Blame, Limit, Maker, Measurement};
+use halfrow_station::plan::limits::{Blame, Limit, Maker, Measurement, SAMPLES_DIFFERING};
 use halfrow_station::record::{
     Attachment, BoardSeen, Conclusion, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepOutcome,
     StepRecord, SuspectRecord, judged,
@@ -24,6 +24,8 @@ pub(crate) enum End {
     Fail(&'static [&'static str]),
     /// The latency is beyond its limit.
     TooLate,
+    /// And five samples differ besides.
+    TooLateAndWrong,
     Error(RunCause),
     Open,
 }
@@ -138,64 +140,82 @@ fn plan((name, version): (&str, &str)) -> PlanRecord {
 
 /// The record of a run that ended.
 fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
-    let ended_ms = run.started_ms + 1500;
-    let (outcome, cause, verdict, exit_code) = match made.end {
-        End::Pass => (StepOutcome::Passed, RunCause::None, Verdict::Pass, 0),
-        End::Fail(_) | End::TooLate => (StepOutcome::Failed, RunCause::Board, Verdict::Fail, 1),
-        End::Error(cause) => (StepOutcome::Error, cause, Verdict::Error, 3),
-        End::Open => panic!("an open run has no record"),
+    let verify = verify(&run, made.end);
+    let identity = step(&run, 1, "identity", (StepOutcome::Passed, RunCause::None, 0));
+    let verdict = match verify.outcome {
+        StepOutcome::Passed => Verdict::Pass,
+        StepOutcome::Failed => Verdict::Fail,
+        _ => Verdict::Error,
     };
-    let suspects = suspects(made.end);
-    let measurement = Measurement::named("latency.clocks").unwrap();
-    let limit = Limit { measurement, least: None, most: Some(1004.0), blames: Blame::Board };
-    let clocks = if made.end == End::TooLate { 1005.5 } else { 1004.0 };
-    let board = Some(BoardSeen {
-        kind: "hardware".to_owned(),
-        name: "cam".to_owned(),
-        device: Some("0123456789abcdef".to_owned()),
-        build: "99bff58a".to_owned(),
-    });
-    let step = |seq: u32, name: &str, outcome: StepOutcome| StepRecord {
-        seq,
-        attempt: 1,
-        name: name.to_owned(),
-        kind: name.to_owned(),
-        outcome,
-        cause: if outcome == StepOutcome::Passed { RunCause::None } else { cause },
-        exit_code: if outcome == StepOutcome::Passed { 0 } else { exit_code },
-        started_ms: run.started_ms + 500 * i64::from(seq - 1),
-        ended_ms: run.started_ms + 500 * i64::from(seq),
-        detail: format!("{name} \"{}\", <{}>", outcome.name(), cause.name()),
-        remedy: None,
-        measurements: Vec::new(),
-        suspects: Vec::new(),
-        board: board.clone(),
-        evidence: None,
-    };
-    let mut verify = step(2, "verify", outcome);
-    verify.measurements = judged(Maker::Verify, &[("latency.clocks", Some(clocks))], &[limit]);
-    verify.suspects.clone_from(&suspects);
     Record {
         schema: SCHEMA,
-        ended_ms,
+        ended_ms: run.started_ms + 1500,
         seconds: Some(1.5),
         conclusion: Conclusion {
             verdict,
-            cause,
-            exit_code,
+            cause: verify.cause,
+            exit_code: verify.exit_code,
             headline: format!("it is {verdict}, \"as\" made"),
             remedy: None,
         },
         plan,
         production: true,
         marginal: false,
-        board: board.clone(),
-        steps: vec![step(1, "identity", StepOutcome::Passed), verify],
+        board: verify.board.clone(),
+        suspects: verify.suspects.clone(),
+        steps: vec![identity, verify],
         measurements: judged(Maker::Run, &[("run.seconds", Some(1.5))], &[]),
-        suspects,
         attachments: Vec::new(),
         program: "halfrow 0".to_owned(),
         run,
+    }
+}
+
+/// The step that a run's end comes from.
+fn verify(run: &RunHead, end: End) -> StepRecord {
+    let came = match end {
+        End::Pass => (StepOutcome::Passed, RunCause::None, 0),
+        End::Fail(_) | End::TooLate | End::TooLateAndWrong => (StepOutcome::Failed, RunCause::Board, 1),
+        End::Error(cause) => (StepOutcome::Error, cause, 3),
+        End::Open => panic!("an open run has no record"),
+    };
+    let measurement = Measurement::named("latency.clocks").unwrap();
+    let limit = Limit { measurement, least: None, most: Some(1004.0), blames: Blame::Board };
+    let is_late = matches!(end, End::TooLate | End::TooLateAndWrong);
+    let clocks = if is_late { 1005.5 } else { 1004.0 };
+    let differing = if matches!(end, End::Fail(_) | End::TooLateAndWrong) { 5.0 } else { 0.0 };
+    let values = [("latency.clocks", Some(clocks)), (SAMPLES_DIFFERING, Some(differing))];
+    StepRecord {
+        measurements: judged(Maker::Verify, &values, &[limit]),
+        suspects: suspects(end),
+        ..step(run, 2, "verify", came)
+    }
+}
+
+fn step(run: &RunHead, seq: u32, name: &str, came: (StepOutcome, RunCause, u8)) -> StepRecord {
+    let (outcome, cause, exit_code) = came;
+    let board = BoardSeen {
+        kind: "hardware".to_owned(),
+        name: "cam".to_owned(),
+        device: Some("0123456789abcdef".to_owned()),
+        build: "99bff58a".to_owned(),
+    };
+    StepRecord {
+        seq,
+        attempt: 1,
+        name: name.to_owned(),
+        kind: name.to_owned(),
+        outcome,
+        cause,
+        exit_code,
+        started_ms: run.started_ms + 500 * i64::from(seq - 1),
+        ended_ms: run.started_ms + 500 * i64::from(seq),
+        detail: format!("{name} \"{}\", <{}>", outcome.name(), cause.name()),
+        remedy: None,
+        measurements: Vec::new(),
+        suspects: Vec::new(),
+        board: Some(board),
+        evidence: None,
     }
 }
 

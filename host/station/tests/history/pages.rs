@@ -32,7 +32,7 @@ fn made() -> (Made, Vec<(String, Run)>) {
 fn wanted(entered: &[(String, Run)], filter: &Filter) -> Vec<String> {
     let verdict = |run: &Run| match run.end {
         End::Pass => Some(Verdict::Pass),
-        End::Fail(_) | End::TooLate => Some(Verdict::Fail),
+        End::Fail(_) | End::TooLate | End::TooLateAndWrong => Some(Verdict::Fail),
         End::Error(_) => Some(Verdict::Error),
         End::Open => None,
     };

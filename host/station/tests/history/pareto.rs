@@ -63,6 +63,14 @@ fn failures_are_counted_by_the_check_that_failed() {
 }
 
 #[test]
+fn a_step_that_failed_by_more_than_its_limit_counts_with_both() {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::TooLateAndWrong));
+    let right = named(&[("latency.clocks", 1, 1), ("verify", 1, 1)]);
+    assert_eq!(bars(&made, &Wanted::default(), Of::Check), right);
+}
+
+#[test]
 fn all_that_failed_are_told_with_their_units() {
     let all = pareto(&made().now(), &Wanted::default(), Of::Part).unwrap();
     assert_eq!((all.failed, all.units), (6, 4));

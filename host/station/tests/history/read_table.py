@@ -1,4 +1,4 @@
-"""Reads a table of runs with Python's csv, and compares each cell with the records: table.py TABLE FOLDER."""
+"""Reads a table of runs with Python's csv, and compares each cell with the records: read_table.py TABLE FOLDER."""
 import csv
 import json
 import pathlib
