@@ -16,6 +16,8 @@ CREATE TABLE unit (
   UNIQUE (product, serial)
 ){strict};
 
+CREATE INDEX unit_serial ON unit (serial);
+
 CREATE TABLE run (
   id TEXT PRIMARY KEY CHECK (length(id) = 36),
   station TEXT NOT NULL,
@@ -46,9 +48,17 @@ CREATE TABLE run (
   CHECK ((verdict = 'FAIL') = (cause = 'board'))
 ){strict};
 
+-- Pages of runs, by each filter, in the order in which they are shown.
 CREATE INDEX run_time ON run (started_ms DESC, id DESC);
-CREATE INDEX run_unit ON run (unit_id, started_ms DESC);
-CREATE INDEX run_yield ON run (plan_sha256, nth, verdict, started_ms);
+CREATE INDEX run_unit ON run (unit_id, started_ms DESC, id DESC);
+CREATE INDEX run_operator ON run (operator_id, started_ms DESC, id DESC);
+CREATE INDEX run_lane ON run (lane, started_ms DESC, id DESC);
+CREATE INDEX run_plan ON run (plan_sha256, started_ms DESC, id DESC);
+CREATE INDEX run_verdict ON run (verdict, started_ms DESC, id DESC);
+-- All that yield counts, in the order in which it is counted; a day has 86400000 milliseconds.
+CREATE INDEX run_yield ON run (plan_sha256, station, lane, (started_ms / 86400000), verdict, nth, cause, started_ms);
+CREATE INDEX run_again ON run (unit_id, nth, verdict, plan_sha256, started_ms, id) WHERE nth >= 2;
+CREATE INDEX run_failed ON run (verdict, unit_id, id, plan_sha256, lane, started_ms) WHERE verdict = 'FAIL';
 CREATE UNIQUE INDEX run_open_lane ON run (station, lane) WHERE state = 'open';
 CREATE UNIQUE INDEX run_open_unit ON run (unit_id) WHERE state = 'open';
 
@@ -64,6 +74,8 @@ CREATE TABLE step (
   PRIMARY KEY (run_id, seq, attempt)
 ){strict};
 
+CREATE INDEX step_failed ON step (run_id, seq, name) WHERE outcome = 'failed';
+
 -- Those of the run as a whole have the number 0 in the place of a step's.
 CREATE TABLE measurement (
   run_id TEXT NOT NULL REFERENCES run (id),
@@ -78,6 +90,8 @@ CREATE TABLE measurement (
   outcome TEXT NOT NULL CHECK (outcome IN ('passed', 'failed', 'unset', 'not judged')),
   PRIMARY KEY (run_id, seq, attempt, name)
 ){strict};
+
+CREATE INDEX measurement_failed ON measurement (run_id, seq, name) WHERE outcome = 'failed' AND blames = 'board';
 
 CREATE TABLE suspect (
   run_id TEXT NOT NULL REFERENCES run (id),
@@ -95,4 +109,23 @@ CREATE TABLE attachment (
   bytes {int} NOT NULL,
   media_type TEXT NOT NULL,
   PRIMARY KEY (run_id, name)
+){strict};
+
+CREATE TABLE waiver (
+  id TEXT PRIMARY KEY,
+  run_id TEXT NOT NULL REFERENCES run (id),
+  at_ms {int} NOT NULL,
+  operator_id TEXT NOT NULL,
+  reason TEXT NOT NULL
+){strict};
+
+CREATE INDEX waiver_run ON waiver (run_id);
+
+CREATE TABLE audit (
+  id TEXT PRIMARY KEY,
+  at_ms {int} NOT NULL,
+  operator_id TEXT NOT NULL,
+  act TEXT NOT NULL,
+  subject TEXT NOT NULL,
+  detail TEXT NOT NULL
 ){strict};

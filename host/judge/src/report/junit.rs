@@ -32,7 +32,15 @@ pub fn render(report: &Report) -> Result<String, SerializeError> {
     suite.add_test_case(verdict_case(report));
     suite.add_test_cases(report.checks.iter().map(check_case));
     suite.add_test_cases(report.frames.iter().map(|frame| frame_case(report, frame)));
-    let mut document = Document::new(SUITE);
+    document(suite)
+}
+
+/// The document of one suite, as Jenkins' schema has it.
+///
+/// # Errors
+/// The XML writer's, for text that XML has no letters for; [`plain`](super::wording::plain) leaves none.
+pub fn document(suite: TestSuite) -> Result<String, SerializeError> {
+    let mut document = Document::new(suite.name.as_str());
     document.time = suite.time;
     document.add_test_suite(suite);
     Ok(without_skipped(&document.to_string()?))

@@ -12,6 +12,7 @@ pub use folder::{ReportError, ReportFolder};
 pub use html::document;
 pub use html::render as html;
 pub use json::render as json;
+pub use junit::document as junit_document;
 pub use junit::render as junit;
 
 use crate::result::{Evidence, Report};

@@ -1,7 +1,7 @@
 //! Whether everything is as it was written: every hash anew, and the index made anew from the records beside the one
 //! that is there.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plan::plan_hash;
 use crate::record::{BlobError, Blobs, Record, RecordError};
@@ -16,6 +16,8 @@ pub struct Checked {
     pub open: usize,
     /// Records and attachments.
     pub evidence: usize,
+    /// Attachments that were removed since they were old.
+    pub pruned: usize,
     /// What is not as it was written.
     pub faults: Vec<Fault>,
 }
@@ -99,19 +101,30 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     let snapshot = Snapshot::take(folder)?;
     let mut faults: Vec<_> = snapshot.damage()?.into_iter().map(|said| Fault::Database { said }).collect();
     let (finals, open) = (snapshot.final_runs()?, snapshot.open_runs()?);
-    let mut look = Look { blobs: folder.blobs(), rebuilt: Rebuilt::new()?, evidence: 0, faults: Vec::new() };
+    let mut look = Look {
+        blobs: folder.blobs(),
+        removed: snapshot.pruned()?,
+        rebuilt: Rebuilt::new()?,
+        evidence: 0,
+        pruned: 0,
+        faults: Vec::new(),
+    };
     look.at_runs(&finals, &open);
     faults.append(&mut look.faults);
     for (table, key) in TABLES {
         compare(table, key, snapshot.table(table, key)?, look.rebuilt.table(table, key)?, &mut faults);
     }
-    Ok(Checked { runs: finals.len(), open: open.len(), evidence: look.evidence, faults })
+    let Look { evidence, pruned, .. } = look;
+    Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, faults })
 }
 
 struct Look {
     blobs: Blobs,
+    /// The hashes of what was removed since it was old.
+    removed: BTreeSet<String>,
     rebuilt: Rebuilt,
     evidence: usize,
+    pruned: usize,
     faults: Vec<Fault>,
 }
 
@@ -144,9 +157,12 @@ impl Look {
         let bytes = self.blobs.get(hash).map_err(evidence)?;
         let record = Record::parse(&bytes).map_err(|source| Fault::Record { run: owned(), source })?;
         for attachment in &record.attachments {
-            self.evidence += 1;
-            if let Err(source) = self.blobs.get(&attachment.sha256) {
-                self.faults.push(evidence(source));
+            match self.blobs.get(&attachment.sha256) {
+                Err(error) if error.is_gone() && self.removed.contains(&attachment.sha256) => {
+                    self.pruned += 1;
+                }
+                Err(source) => self.faults.push(evidence(source)),
+                Ok(_) => self.evidence += 1,
             }
         }
         let plan = &record.plan;

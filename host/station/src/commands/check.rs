@@ -27,6 +27,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if checked.open > 0 {
         lines.push(format!("{} runs are open; the next start of the station closes them", checked.open));
     }
+    if checked.pruned > 0 {
+        lines.push(format!("{} pieces of evidence were removed since they were old", checked.pruned));
+    }
     let (runs, evidence, faults) = (checked.runs, checked.evidence, checked.faults.len());
     lines.push(format!("{runs} runs and {evidence} pieces of evidence were read, {faults} faults found"));
     console::tell(&lines.join("\n"));

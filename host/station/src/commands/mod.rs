@@ -1,9 +1,17 @@
 //! The command line: one file a command.
 
 mod check;
+mod export;
+mod history;
+mod kept;
 mod lane;
+mod looking;
+mod pareto;
 mod plan;
 mod run;
+mod unit;
+mod waive;
+mod yields;
 
 use clap::{ArgAction, Parser, Subcommand};
 
@@ -26,6 +34,15 @@ pub struct Cli {
 enum Command {
     Run(run::Arguments),
     Check(check::Arguments),
+    History(history::Arguments),
+    Unit(unit::Arguments),
+    Yield(yields::Arguments),
+    Pareto(pareto::Arguments),
+    Waive(waive::Arguments),
+    Export(export::Arguments),
+    Backup(kept::Backup),
+    Restore(kept::Restore),
+    Prune(kept::Prune),
     Plan(plan::Arguments),
     Lane(lane::Arguments),
 }
@@ -66,6 +83,15 @@ impl Cli {
         match &self.command {
             Command::Run(arguments) => run::run(arguments),
             Command::Check(arguments) => check::run(arguments),
+            Command::History(arguments) => history::run(arguments),
+            Command::Unit(arguments) => unit::run(arguments),
+            Command::Yield(arguments) => yields::run(arguments),
+            Command::Pareto(arguments) => pareto::run(arguments),
+            Command::Waive(arguments) => waive::run(arguments),
+            Command::Export(arguments) => export::run(arguments),
+            Command::Backup(arguments) => kept::backup(arguments),
+            Command::Restore(arguments) => kept::restore(arguments),
+            Command::Prune(arguments) => kept::prune(arguments),
             Command::Plan(arguments) => plan::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }

@@ -39,6 +39,14 @@ pub enum BlobError {
     },
 }
 
+impl BlobError {
+    /// Whether the evidence is not there at all.
+    #[must_use]
+    pub fn is_gone(&self) -> bool {
+        matches!(self, Self::Read { source, .. } if source.kind() == io::ErrorKind::NotFound)
+    }
+}
+
 /// A folder of evidence.
 #[derive(Clone, Debug)]
 pub struct Blobs {

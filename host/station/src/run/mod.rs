@@ -5,7 +5,7 @@
 //!     └ recovered: a run that is found open is ERROR, cause crash, and never PASS
 //! ```
 
-mod ids;
+pub(crate) mod ids;
 mod recovered;
 
 use std::fs;

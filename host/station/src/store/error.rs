@@ -4,6 +4,7 @@ use std::io;
 use std::path::PathBuf;
 
 use crate::record::{BlobError, RecordError};
+use crate::run::NoRandomness;
 
 /// Something that the store cannot do.
 #[derive(Debug, thiserror::Error)]
@@ -82,4 +83,7 @@ pub enum StoreError {
     /// The record.
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// An id cannot be made.
+    #[error(transparent)]
+    NoRandomness(#[from] NoRandomness),
 }

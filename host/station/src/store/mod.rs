@@ -11,10 +11,12 @@
 //! it back.
 
 mod error;
+mod keeping;
 mod migrations;
 mod rows;
 mod snapshot;
-mod statements;
+pub(crate) mod statements;
+mod waivers;
 
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
@@ -24,6 +26,7 @@ use rusqlite::{Connection, OpenFlags, OptionalExtension as _, TransactionBehavio
 
 pub use error::StoreError;
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
+pub use waivers::{NoWaiver, Waiver};
 
 use crate::clock;
 use crate::record::{Blobs, PlanRecord, Record, RunHead};
@@ -151,6 +154,15 @@ impl Store {
         migrations::apply(&mut writer, &path, clock::now_ms())?;
         crate::record::synced(&folder.0)?;
         Ok(Self { folder: folder.clone(), writer, _lock: lock })
+    }
+
+    /// The store in `folder`, which must be there.
+    ///
+    /// # Errors
+    /// As [`Self::open`], and when there is none.
+    pub fn open_existing(folder: &Folder) -> Result<Self, StoreError> {
+        folder.reader()?;
+        Self::open(folder)
     }
 
     /// Its folder.

@@ -1,7 +1,7 @@
 //! The tables as they are at one moment, and as they are when they are made anew from the records.
 
 use rusqlite::types::Value;
-use rusqlite::{Connection, TransactionBehavior};
+use rusqlite::{Connection, ToSql, TransactionBehavior};
 
 use super::{Folder, OpenRun, StoreError, migrations, open_run, rows, statements};
 use crate::record::{PlanRecord, Record};
@@ -37,7 +37,7 @@ impl Snapshot {
         snapshot.read("to be read", |reader| {
             reader.execute_batch("BEGIN")?;
             // It begins with the first look.
-            reader.query_row("SELECT count(*) FROM run", [], |_| Ok(()))
+            reader.query_row("SELECT max(n) FROM schema_version", [], |_| Ok(()))
         })?;
         Ok(snapshot)
     }
@@ -80,6 +80,23 @@ impl Snapshot {
     /// [`StoreError`] when the database cannot be read.
     pub fn table(&self, name: &str, key: &str) -> Result<Vec<Row>, StoreError> {
         self.read("to tell a table", |reader| table(reader, name, key))
+    }
+
+    /// What `row` makes of each row that `text`, a statement that reads, brings for `values`.
+    pub(crate) fn rows<T>(
+        &self,
+        doing: &'static str,
+        text: &str,
+        values: &[&dyn ToSql],
+        row: impl FnMut(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
+    ) -> Result<Vec<T>, StoreError> {
+        self.read(doing, |reader| reader.prepare(text)?.query_map(values, row)?.collect())
+    }
+
+    /// The folder that they stand in.
+    #[must_use]
+    pub fn folder(&self) -> &Folder {
+        &self.folder
     }
 
     fn read<T>(

@@ -16,6 +16,27 @@ pub(super) const ADD_ATTACHMENT: &str = include_str!("../../sql/add-attachment.s
 pub(super) const VERDICT_OF: &str = include_str!("../../sql/verdict-of.sql");
 pub(super) const OPEN_RUNS: &str = include_str!("../../sql/open-runs.sql");
 pub(super) const FINAL_RUNS: &str = include_str!("../../sql/final-runs.sql");
+pub(super) const ADD_WAIVER: &str = include_str!("../../sql/add-waiver.sql");
+pub(super) const ADD_AUDIT: &str = include_str!("../../sql/add-audit.sql");
+pub(super) const WAIVER_OF: &str = include_str!("../../sql/waiver-of.sql");
+pub(super) const ATTACHMENTS: &str = include_str!("../../sql/attachments.sql");
+pub(super) const PRUNED: &str = include_str!("../../sql/pruned.sql");
+pub(super) const OLD_EVIDENCE: &str = include_str!("../../sql/old-evidence.sql");
+pub(crate) const RUNS: &str = include_str!("../../sql/runs.sql");
+pub(crate) const PLANS: &str = include_str!("../../sql/plans.sql");
+pub(crate) const UNITS_OF_SERIAL: &str = include_str!("../../sql/units-of-serial.sql");
+pub(crate) const UNIT_RUNS: &str = include_str!("../../sql/unit-runs.sql");
+pub(crate) const UNIT_STEPS: &str = include_str!("../../sql/unit-steps.sql");
+pub(crate) const UNIT_SUSPECTS: &str = include_str!("../../sql/unit-suspects.sql");
+pub(crate) const UNIT_ATTACHMENTS: &str = include_str!("../../sql/unit-attachments.sql");
+pub(crate) const UNIT_WAIVERS: &str = include_str!("../../sql/unit-waivers.sql");
+pub(crate) const YIELD_CELLS: &str = include_str!("../../sql/yield-cells.sql");
+pub(crate) const YIELD_AGAIN: &str = include_str!("../../sql/yield-again.sql");
+pub(crate) const SERIAL_OF: &str = include_str!("../../sql/serial-of.sql");
+pub(crate) const WAIVED: &str = include_str!("../../sql/waived.sql");
+pub(crate) const PARETO_PARTS: &str = include_str!("../../sql/pareto-parts.sql");
+pub(crate) const PARETO_CHECKS: &str = include_str!("../../sql/pareto-checks.sql");
+pub(crate) const FAILED: &str = include_str!("../../sql/failed.sql");
 
 /// The text as SQLite takes it.
 pub(super) fn for_sqlite(text: &str) -> String {
@@ -26,7 +47,7 @@ pub(super) fn for_sqlite(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [&str; 12] = [
+    const ALL: [&str; 33] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -39,6 +60,27 @@ mod tests {
         VERDICT_OF,
         OPEN_RUNS,
         FINAL_RUNS,
+        ADD_WAIVER,
+        ADD_AUDIT,
+        WAIVER_OF,
+        ATTACHMENTS,
+        PRUNED,
+        OLD_EVIDENCE,
+        RUNS,
+        PLANS,
+        UNITS_OF_SERIAL,
+        UNIT_RUNS,
+        UNIT_STEPS,
+        UNIT_SUSPECTS,
+        UNIT_ATTACHMENTS,
+        UNIT_WAIVERS,
+        YIELD_CELLS,
+        YIELD_AGAIN,
+        SERIAL_OF,
+        WAIVED,
+        PARETO_PARTS,
+        PARETO_CHECKS,
+        FAILED,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.
@@ -58,7 +100,8 @@ mod tests {
     #[test]
     fn nothing_is_left_of_what_the_engines_call_differently() {
         for text in SCHEMAS.into_iter().chain(ALL).chain([SCHEMA_VERSION]) {
-            assert!(!for_sqlite(text).contains(['{', '}']), "{text}");
+            let text = for_sqlite(text).replace("{filters}", "").replace("{limit}", "1");
+            assert!(!text.contains(['{', '}']), "{text}");
         }
     }
 }

@@ -1,0 +1,8 @@
+-- No record is among it, whatever a row says.
+SELECT attachment.sha256
+FROM attachment JOIN run ON run.id = attachment.run_id
+GROUP BY attachment.sha256
+HAVING max(run.ended_ms) < $1
+EXCEPT
+SELECT record_sha256 FROM run
+ORDER BY 1;

@@ -1,0 +1,1 @@
+SELECT DISTINCT subject FROM audit WHERE act = 'prune';

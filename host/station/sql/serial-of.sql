@@ -1,0 +1,1 @@
+SELECT serial FROM unit WHERE id = $1;

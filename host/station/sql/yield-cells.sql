@@ -1,0 +1,10 @@
+-- What is counted, by plan, lane and day. An ERROR has a number, too, and is no judgement.
+SELECT plan_sha256, station, lane, started_ms / 86400000,
+  count(*),
+  count(*) FILTER (WHERE verdict = 'ERROR'),
+  count(*) FILTER (WHERE cause = 'crash'),
+  count(*) FILTER (WHERE verdict <> 'ERROR' AND nth = 1),
+  count(*) FILTER (WHERE verdict = 'PASS' AND nth = 1)
+FROM run
+WHERE verdict IS NOT NULL AND +started_ms >= $1 AND +started_ms < $2
+GROUP BY plan_sha256, station, lane, started_ms / 86400000;

@@ -1,0 +1,152 @@
+//! `halfrow-station export`
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use halfrow::frames::written_aside::{Aside, WriteAsideError, write_aside};
+
+use super::looking::{Data, Filtered};
+use super::{Failure, print};
+use crate::exit::Exit;
+use crate::export::{self, ExportError, Format, Table};
+use crate::history::runs::{Filter, MOST, page};
+use crate::store::{Folder, Snapshot};
+
+/// Write runs for other programs
+///
+/// One run goes to stdout, or to the file of `--to`. Without a run all that the filters leave are written: `csv` into the file
+/// of `--to`, and each other format into a file for each run in the folder of `--to`. Nothing is overwritten. Runs that are open
+/// are left out.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The run, as `halfrow-station history` names it [default: all that the filters leave]
+    run: Option<String>,
+    #[command(flatten)]
+    data: Data,
+    /// How they are written
+    #[arg(long, value_enum, default_value = "record")]
+    format: Written,
+    /// The file, or the folder, which is made if it is not there
+    #[arg(long, value_name = "PATH", required_unless_present = "run")]
+    to: Option<PathBuf>,
+    #[command(flatten)]
+    filtered: Filtered,
+}
+
+/// A format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Written {
+    /// The record, those very bytes
+    Record,
+    /// JUnit XML
+    Junit,
+    /// A table with a line for each measurement
+    Csv,
+    /// The JSON of OpenHTF 1.6
+    Openhtf,
+}
+
+impl Written {
+    /// The format of one run; none for the table.
+    const fn format(self) -> Option<Format> {
+        match self {
+            Self::Record => Some(Format::Record),
+            Self::Junit => Some(Format::Junit),
+            Self::Openhtf => Some(Format::OpenHtf),
+            Self::Csv => None,
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let folder = arguments.data.folder();
+    let snapshot = arguments.data.snapshot()?;
+    match (&arguments.run, &arguments.to) {
+        (Some(run), to) => one(&folder, run, arguments.format, to.as_deref()),
+        (None, Some(to)) => all(&snapshot, &arguments.filtered.filter(), arguments.format, to),
+        (None, None) => Err(Failure::call(anyhow::Error::msg("name a run, or a place with --to"))),
+    }
+}
+
+fn one(folder: &Folder, run: &str, written: Written, to: Option<&Path>) -> Result<Exit, Failure> {
+    let Some(stored) = folder.verdict_of(run)? else {
+        let what = format!("no run {run} is over; `halfrow-station history` lists the runs");
+        return Err(Failure::call(anyhow::Error::msg(what)));
+    };
+    let bytes = match written.format() {
+        Some(format) => export::run(folder, &stored.record_sha256, format)?,
+        None => {
+            let mut table = Table::begin(Vec::new())?;
+            table.add(&export::record(folder, &stored.record_sha256)?.0)?;
+            table.end()
+        }
+    };
+    if let Some(to) = to {
+        write_aside(to, false, |file| file.write_all(&bytes)).map_err(unwritten)?;
+        return Ok(Exit::Pass);
+    }
+    let text = String::from_utf8_lossy(&bytes);
+    // The line's end comes with the printing.
+    print(text.strip_suffix('\n').unwrap_or(&text))
+}
+
+/// Writes all runs of the filter, and says how many they were.
+fn all(of: &Snapshot, filter: &Filter, written: Written, to: &Path) -> Result<Exit, Failure> {
+    let count = match written.format() {
+        Some(format) => {
+            fs::create_dir_all(to).map_err(Failure::error)?;
+            each(of, filter, |run, hash| {
+                let bytes = export::run(of.folder(), hash, format)?;
+                let path = to.join(format!("{run}{}", format.ending()));
+                write_aside(&path, false, |file| file.write_all(&bytes)).map_err(unwritten)
+            })?
+        }
+        None => {
+            let aside = Aside::written(to, false, |_| Ok(())).map_err(unwritten)?;
+            let mut table = Table::begin(aside)?;
+            let count = each(of, filter, |_, hash| Ok(table.add(&export::record(of.folder(), hash)?.0)?))?;
+            table.end().put_in_place().map_err(unwritten)?;
+            count
+        }
+    };
+    print(&format!("{count} runs are in {}", to.display()))
+}
+
+/// Has each run of the filter written, the newest first, by its id and its record's hash; returns how many they were.
+fn each(
+    of: &Snapshot,
+    filter: &Filter,
+    mut write: impl FnMut(&str, &str) -> Result<(), Failure>,
+) -> Result<usize, Failure> {
+    let (mut count, mut after) = (0, None);
+    loop {
+        let page = page(of, filter, after.as_ref(), MOST)?;
+        for run in &page.runs {
+            if let Some(hash) = &run.record_sha256 {
+                write(&run.id, hash)?;
+                count += 1;
+            }
+        }
+        after = page.next;
+        if after.is_none() {
+            return Ok(count);
+        }
+    }
+}
+
+impl From<ExportError> for Failure {
+    fn from(error: ExportError) -> Self {
+        match error {
+            ExportError::Store(error) => error.into(),
+            error => Self::error(error),
+        }
+    }
+}
+
+fn unwritten(error: WriteAsideError) -> Failure {
+    match error {
+        WriteAsideError::Exists { .. } => Failure::call(error),
+        error => Failure::error(error),
+    }
+}

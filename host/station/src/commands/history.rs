@@ -1,0 +1,54 @@
+//! `halfrow-station history`
+
+use clap::Args;
+
+use super::Failure;
+use super::looking::{Data, Filtered, either, table, time};
+use crate::exit::Exit;
+use crate::history::runs::{MOST, Page, Place, page};
+
+/// List runs, the newest first
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    data: Data,
+    #[command(flatten)]
+    filtered: Filtered,
+    /// So many at most
+    #[arg(long, value_name = "RUNS", default_value = "50", value_parser = clap::value_parser!(u32).range(1..=i64::from(MOST)))]
+    limit: u32,
+    /// Go on after this place, with which the page before ends
+    #[arg(long, value_name = "PLACE")]
+    after: Option<Place>,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let filter = arguments.filtered.filter();
+    let page = page(&arguments.data.snapshot()?, &filter, arguments.after.as_ref(), arguments.limit)?;
+    either(&page, arguments.json, text)
+}
+
+fn text(page: &Page) -> String {
+    let rows = page.runs.iter().map(|run| {
+        let verdict = run.verdict.clone().unwrap_or_else(|| "open".to_owned());
+        let waived = if run.waived { ", waived" } else { "" };
+        vec![
+            time(run.started_ms),
+            run.serial.clone(),
+            format!("{verdict}{waived}"),
+            format!("{} {}", run.plan, run.version),
+            run.lane.clone(),
+            run.operator.clone(),
+            run.id.clone(),
+        ]
+    });
+    let header = ["began", "serial", "verdict", "plan", "lane", "operator", "run"];
+    let mut text = table(&header, &[], rows);
+    if let Some(next) = &page.next {
+        text.push_str(&format!("\nmore: --after {next}"));
+    }
+    text
+}

@@ -1,0 +1,178 @@
+//! What the commands that look at results have in common.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use comfy_table::{CellAlignment, Table, presets};
+use halfrow::Verdict;
+use halfrow::report::wording::plain;
+use jiff::civil::Date;
+use jiff::{Timestamp, tz::TimeZone};
+use serde::Serialize;
+
+use super::{Failure, print};
+use crate::exit::Exit;
+use crate::history::Period;
+use crate::history::runs::Filter;
+use crate::history::yields::Wanted;
+use crate::store::{Folder, Snapshot};
+
+/// Where the results are.
+#[derive(Debug, Args)]
+pub(super) struct Data {
+    /// The station's folder
+    #[arg(long, value_name = "FOLDER", env = "HALFROW_STATION_DATA")]
+    data: PathBuf,
+}
+
+impl Data {
+    /// The folder.
+    pub(super) fn folder(&self) -> Folder {
+        Folder::new(&self.data)
+    }
+
+    /// The results at this moment.
+    pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
+        Ok(Snapshot::take(&self.folder())?)
+    }
+}
+
+/// Which runs are meant, by when they began.
+#[derive(Clone, Copy, Debug, Args)]
+struct Range {
+    /// Runs that began at this moment or later: 2026-11-22, which begins at midnight UTC, or 2026-11-22T06:00:00+01:00
+    #[arg(long, value_name = "TIME", value_parser = moment)]
+    from: Option<i64>,
+    /// Runs that began before this moment
+    #[arg(long, value_name = "TIME", value_parser = moment)]
+    until: Option<i64>,
+}
+
+impl Range {
+    /// As a period.
+    fn period(self) -> Period {
+        let all = Period::default();
+        Period { from_ms: self.from.unwrap_or(all.from_ms), until_ms: self.until.unwrap_or(all.until_ms) }
+    }
+}
+
+/// Which units are counted.
+#[derive(Debug, Args)]
+pub(super) struct Counted {
+    /// Under plans of this name
+    #[arg(long, value_name = "NAME")]
+    plan: Option<String>,
+    /// In this lane
+    #[arg(long)]
+    lane: Option<String>,
+    #[command(flatten)]
+    range: Range,
+}
+
+impl Counted {
+    /// As the counting functions take it.
+    pub(super) fn wanted(&self) -> Wanted {
+        Wanted { plan: self.plan.clone(), lane: self.lane.clone(), period: self.range.period() }
+    }
+}
+
+/// Which runs are meant.
+#[derive(Debug, Args)]
+pub(super) struct Filtered {
+    /// Of the units of this serial number
+    #[arg(long)]
+    serial: Option<String>,
+    /// Of this verdict
+    #[arg(long, value_enum, ignore_case = true)]
+    verdict: Option<Word>,
+    /// Under plans of this name
+    #[arg(long, value_name = "NAME")]
+    plan: Option<String>,
+    /// In this lane
+    #[arg(long)]
+    lane: Option<String>,
+    /// By this operator
+    #[arg(long, value_name = "NAME")]
+    operator: Option<String>,
+    #[command(flatten)]
+    range: Range,
+}
+
+impl Filtered {
+    /// As a filter.
+    pub(super) fn filter(&self) -> Filter {
+        Filter {
+            serial: self.serial.clone(),
+            verdict: self.verdict.map(Into::into),
+            plan: self.plan.clone(),
+            lane: self.lane.clone(),
+            operator: self.operator.clone(),
+            period: self.range.period(),
+        }
+    }
+}
+
+/// A verdict, as it is written on the command line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Word {
+    /// The board is right.
+    Pass,
+    /// The board is wrong.
+    Fail,
+    /// It could not be judged.
+    Error,
+}
+
+impl From<Word> for Verdict {
+    fn from(word: Word) -> Self {
+        match word {
+            Word::Pass => Self::Pass,
+            Word::Fail => Self::Fail,
+            Word::Error => Self::Error,
+        }
+    }
+}
+
+/// Milliseconds since 1970 of a date or a moment.
+fn moment(text: &str) -> Result<i64, String> {
+    let midnight = |date: Date| date.to_zoned(TimeZone::UTC).map(|zoned| zoned.timestamp());
+    let moment = text.parse::<Timestamp>().or_else(|_| text.parse::<Date>().and_then(midnight));
+    let moment = moment.map(Timestamp::as_millisecond).ok().filter(|ms| *ms >= 0);
+    moment.ok_or_else(|| "give a date as 2026-11-22, or a moment as 2026-11-22T06:00:00Z".to_owned())
+}
+
+/// A moment for people: to the second, UTC.
+pub(super) fn time(ms: i64) -> String {
+    let moment = Timestamp::from_millisecond(ms).ok();
+    moment.map_or_else(|| ms.to_string(), |moment| format!("{moment:.0}"))
+}
+
+/// Prints a result as JSON, or as `text` says it.
+pub(super) fn either<T: Serialize>(
+    result: &T,
+    is_json: bool,
+    text: impl FnOnce(&T) -> String,
+) -> Result<Exit, Failure> {
+    if is_json {
+        return print(&serde_json::to_string_pretty(result).map_err(Failure::error)?);
+    }
+    print(&text(result))
+}
+
+/// A table for people. The columns `numbers` stand to the right. What a board or a scanner said has no control characters.
+pub(super) fn table(
+    header: &[&str],
+    numbers: &[usize],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING);
+    table.set_header(header.iter().copied());
+    for row in rows {
+        table.add_row(row.iter().map(|cell| plain(cell).into_owned()));
+    }
+    for column in table.column_iter_mut().filter(|column| numbers.contains(&column.index)) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    table.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,52 @@
+//! `halfrow-station pareto`
+
+use clap::{Args, ValueEnum};
+
+use super::Failure;
+use super::looking::{Counted, Data, either, table};
+use crate::exit::Exit;
+use crate::history::pareto::{Of, Pareto, pareto};
+
+/// Count what fails most
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    data: Data,
+    /// Count by this
+    #[arg(long, value_enum, default_value = "part")]
+    by: Each,
+    #[command(flatten)]
+    counted: Counted,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What failures are counted by.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Each {
+    /// The part that is suspected first
+    Part,
+    /// The limit or the step that failed; a run counts with each
+    Check,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let by = match arguments.by {
+        Each::Part => Of::Part,
+        Each::Check => Of::Check,
+    };
+    let pareto = pareto(&arguments.data.snapshot()?, &arguments.counted.wanted(), by)?;
+    either(&pareto, arguments.json, text)
+}
+
+fn text(Pareto { failed, units, bars }: &Pareto) -> String {
+    let rows = bars.iter().map(|bar| {
+        let name = if bar.name.is_empty() { "no part is suspected" } else { &bar.name };
+        vec![name.to_owned(), bar.runs.count.to_string(), bar.runs.text(), bar.units.to_string()]
+    });
+    format!(
+        "{failed} runs of {units} units failed\n{}",
+        table(&["", "runs", "share", "units"], &[1, 3], rows)
+    )
+}

@@ -1,0 +1,70 @@
+//! `halfrow-station unit`
+
+use clap::Args;
+use halfrow::report::wording::plain;
+
+use super::Failure;
+use super::looking::{Data, either, time};
+use crate::exit::Exit;
+use crate::history::unit::{Unit, UnitRun, units};
+
+/// Tell all that is known of the units of a serial number
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The serial number
+    serial: String,
+    #[command(flatten)]
+    data: Data,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let units = units(&arguments.data.snapshot()?, &arguments.serial)?;
+    if units.is_empty() {
+        let serial = &arguments.serial;
+        let what = format!("no unit {serial} was tested here; `halfrow-station history` lists the runs");
+        return Err(Failure::call(anyhow::Error::msg(what)));
+    }
+    either(&units, arguments.json, |units| {
+        let lines: Vec<_> = units.iter().flat_map(unit_lines).map(|line| plain(&line).into_owned()).collect();
+        lines.join("\n")
+    })
+}
+
+fn unit_lines(unit: &Unit) -> Vec<String> {
+    let Unit { product, serial, runs, .. } = unit;
+    let mut lines = vec![format!("{serial}, {product}, first seen {}", time(unit.first_seen_ms))];
+    lines.extend(runs.iter().flat_map(run_lines));
+    lines
+}
+
+fn run_lines(run: &UnitRun) -> Vec<String> {
+    let line = &run.line;
+    let verdict = line.verdict.as_deref().unwrap_or("open");
+    let headline = line.headline.as_deref().unwrap_or("it is under way");
+    let device = run.device.as_deref().unwrap_or("not known");
+    let mut lines = vec![
+        String::new(),
+        format!("{verdict} {}: {headline}", time(line.started_ms)),
+        format!("  run       {}, {} {}", line.id, line.plan, line.version),
+        format!("  place     {}, lane {}, by {}", line.station, line.lane, line.operator),
+        format!("  board     {}, device {device}", run.target),
+    ];
+    let evidence = run.attachments.iter().map(|one| format!("  evidence  {} {}", one.name, one.sha256));
+    lines.extend(run.steps.iter().map(|step| {
+        let again = if step.attempt > 1 { format!(", try {}", step.attempt) } else { String::new() };
+        format!("  step      {}{again} {}: {}", step.name, step.outcome, step.detail)
+    }));
+    lines.extend(run.suspects.iter().map(|suspect| {
+        let share = 100.0 * suspect.explained;
+        format!("  suspect   {}, {}: explains {share:.0} %", suspect.part, suspect.place)
+    }));
+    lines.extend(line.record_sha256.iter().map(|hash| format!("  record    {hash}")));
+    lines.extend(evidence);
+    lines.extend(run.waivers.iter().map(|waiver| {
+        format!("  waived    {} by {}: {}", time(waiver.at_ms), waiver.operator, waiver.reason)
+    }));
+    lines
+}

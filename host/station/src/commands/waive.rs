@@ -1,0 +1,43 @@
+//! `halfrow-station waive`
+
+use clap::Args;
+
+use super::Failure;
+use super::looking::Data;
+use crate::console;
+use crate::exit::Exit;
+use crate::store::{NoWaiver, Store};
+
+/// Waive the FAIL of a run: it stays FAIL, and everyone sees who waived it and why
+///
+/// For a unit that is used as it is, or a FAIL that was the fixture's. Yields count the unit as failed, and as waived besides.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The run, as `halfrow-station history` names it
+    run: String,
+    #[command(flatten)]
+    data: Data,
+    /// Why
+    #[arg(long, value_name = "TEXT")]
+    reason: String,
+    /// Who waives
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let mut store = Store::open_existing(&arguments.data.folder())?;
+    let waiver = store.waive(&arguments.run, &arguments.operator, &arguments.reason)?;
+    console::tell(&format!("run {} is waived by {}: {}", waiver.run, waiver.operator, waiver.reason));
+    Ok(Exit::Pass)
+}
+
+impl From<NoWaiver> for Failure {
+    fn from(error: NoWaiver) -> Self {
+        match error {
+            NoWaiver::Store(error) => error.into(),
+            NoWaiver::NoRandomness(error) => Self::error(error),
+            error => Self::call(error),
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! `halfrow-station yield`
+
+use clap::{Args, ValueEnum};
+
+use super::Failure;
+use super::looking::{Counted, Data, either, table, time};
+use crate::exit::Exit;
+use crate::history::yields::{By, Flip, Yield, Yields, yields};
+
+/// Count how many units are judged good, at first and in the end
+///
+/// A unit belongs to the lane and the day of its first judgement. ERROR is no judgement, and has a rate of its own.
+/// Behind each share stands its 95 % interval (Wilson).
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    data: Data,
+    /// A line for each
+    #[arg(long, value_enum, default_value = "plan")]
+    by: Each,
+    #[command(flatten)]
+    counted: Counted,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// What a line is for, beside product and plan.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Each {
+    /// Plan
+    Plan,
+    /// Day, UTC
+    Day,
+    /// Lane
+    Lane,
+}
+
+impl From<Each> for By {
+    fn from(each: Each) -> Self {
+        match each {
+            Each::Plan => Self::Plan,
+            Each::Day => Self::Day,
+            Each::Lane => Self::Lane,
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let snapshot = arguments.data.snapshot()?;
+    let yields = yields(&snapshot, &arguments.counted.wanted(), arguments.by.into())?;
+    either(&yields, arguments.json, text)
+}
+
+fn text(Yields { lines, flips }: &Yields) -> String {
+    let header = ["plan", "units", "first pass", "in the end", "waived", "runs", "errors", "crashes"];
+    let mut text = table(&header, &[1, 4, 5, 7], lines.iter().map(row));
+    if !flips.is_empty() {
+        text.push_str("\n\nfirst FAIL, in the end PASS\n");
+        let header = ["serial", "plan", "judgements", "failed", "passed", "run that failed"];
+        text.push_str(&table(&header, &[2], flips.iter().map(flip)));
+    }
+    text
+}
+
+fn row(line: &Yield) -> Vec<String> {
+    let Yield { plan, first_pass, last, errors, .. } = line;
+    let place = line.station.iter().zip(&line.lane).map(|(station, lane)| format!("{station} lane {lane}"));
+    let names = [plan.product.clone(), plan.plan.clone()].into_iter();
+    let day = line.day.iter().map(ToString::to_string);
+    vec![
+        names.chain(day).chain(place).collect::<Vec<_>>().join(" "),
+        first_pass.of.to_string(),
+        first_pass.text(),
+        last.text(),
+        line.waived.to_string(),
+        errors.of.to_string(),
+        errors.text(),
+        line.crashes.to_string(),
+    ]
+}
+
+fn flip(flip: &Flip) -> Vec<String> {
+    vec![
+        flip.serial.clone(),
+        format!("{} {}", flip.plan.product, flip.plan.plan),
+        flip.judgements.to_string(),
+        time(flip.failed_ms),
+        time(flip.passed_ms),
+        flip.failed.clone(),
+    ]
+}

@@ -1,0 +1,113 @@
+//! A run as JUnit XML: its verdict, then the last try of every step, then every limit.
+
+use std::time::Duration;
+
+use halfrow::Verdict;
+use halfrow::report::{junit_document, wording::plain};
+use jiff::Timestamp;
+use quick_junit::{NonSuccessKind, Property, SerializeError, TestCase, TestCaseStatus as Status, TestSuite};
+
+use crate::record::{Measured, MeasuredOutcome, Record, RunCause, StepOutcome, StepRecord};
+
+pub(super) fn render(record: &Record) -> Result<String, SerializeError> {
+    let mut suite = TestSuite::new(plain(&format!("{} {}", record.plan.name, record.plan.version)));
+    let started = Timestamp::from_millisecond(record.run.started_ms).ok();
+    suite.timestamp = started.and_then(|started| started.to_string().parse().ok());
+    suite.time = Some(took(record.run.started_ms, record.ended_ms));
+    for (name, value) in properties(record) {
+        suite.add_property(Property::new(name, plain(&value)));
+    }
+    suite.add_test_case(verdict(record));
+    let is_last = |step: &&StepRecord| {
+        !record.steps.iter().any(|other| other.seq == step.seq && other.attempt > step.attempt)
+    };
+    let last: Vec<_> = record.steps.iter().filter(is_last).collect();
+    suite.add_test_cases(last.iter().map(|step| step_case(step)));
+    for step in last {
+        suite.add_test_cases(limits(&step.name, &step.measurements));
+    }
+    suite.add_test_cases(limits("run", &record.measurements));
+    junit_document(suite)
+}
+
+fn properties(record: &Record) -> Vec<(&'static str, String)> {
+    let run = &record.run;
+    let mut list = vec![
+        ("verdict", record.conclusion.verdict.to_string()),
+        ("cause", record.conclusion.cause.name().to_owned()),
+        ("run", run.id.clone()),
+        ("product", run.product.clone()),
+        ("serial", run.serial.clone()),
+        ("station", run.station.clone()),
+        ("lane", run.lane.clone()),
+        ("operator", run.operator.clone()),
+        ("plan.sha256", record.plan.sha256.clone()),
+        ("board.target", run.target.clone()),
+        ("halfrow.version", record.program.clone()),
+    ];
+    if let Some(board) = &record.board {
+        list.push(("board.kind", board.kind.clone()));
+        list.push(("board.build", board.build.clone()));
+        list.extend(board.device.iter().map(|device| ("board.device", device.clone())));
+    }
+    list
+}
+
+fn verdict(record: &Record) -> TestCase {
+    let ended = &record.conclusion;
+    let kind = match ended.verdict {
+        Verdict::Pass => None,
+        Verdict::Fail => Some(NonSuccessKind::Failure),
+        Verdict::Error => Some(NonSuccessKind::Error),
+    };
+    let remedy = ended.remedy.as_deref().unwrap_or_default();
+    case("run", "verdict", Duration::ZERO, status(kind, &ended.headline, remedy))
+}
+
+fn step_case(step: &StepRecord) -> TestCase {
+    let status = match step.outcome {
+        StepOutcome::Passed => Status::success(),
+        StepOutcome::Skipped => Status::skipped(),
+        StepOutcome::Failed => status(Some(NonSuccessKind::Failure), &step.detail, ""),
+        StepOutcome::Error => status(Some(NonSuccessKind::Error), &step.detail, ""),
+    };
+    // The number keeps apart two steps of one name.
+    let name = format!("{} (step {}, try {})", step.name, step.seq, step.attempt);
+    case("step", &name, took(step.started_ms, step.ended_ms), status)
+}
+
+/// A case for each measurement that has a limit; one that blames nobody fails nothing.
+fn limits(step: &str, measured: &[Measured]) -> Vec<TestCase> {
+    let limited = measured.iter().filter(|one| one.outcome != MeasuredOutcome::NotJudged);
+    let one = |one: &Measured| {
+        let kind = one.fault().map(|cause| match cause {
+            RunCause::Board => NonSuccessKind::Failure,
+            _ => NonSuccessKind::Error,
+        });
+        let name = format!("{} ({step})", one.name);
+        case("limit", &name, Duration::ZERO, status(kind, &one.sentence(), ""))
+    };
+    limited.map(one).collect()
+}
+
+fn case(class: &str, name: &str, took: Duration, status: Status) -> TestCase {
+    let mut case = TestCase::new(plain(name), status);
+    case.time = Some(took);
+    case.set_classname(format!("halfrow-station.{class}"));
+    case
+}
+
+fn status(kind: Option<NonSuccessKind>, message: &str, description: &str) -> Status {
+    let Some(kind) = kind else { return Status::success() };
+    let mut status = Status::non_success(kind);
+    status.set_message(plain(message));
+    status.set_type(if kind == NonSuccessKind::Failure { "FAIL" } else { "ERROR" });
+    if !description.is_empty() {
+        status.set_description(plain(description));
+    }
+    status
+}
+
+fn took(from_ms: i64, to_ms: i64) -> Duration {
+    Duration::from_millis(to_ms.saturating_sub(from_ms).max(0).unsigned_abs())
+}

@@ -1,0 +1,83 @@
+//! Results for other programs. Every format is made from the record alone, so a run has the same bytes every time.
+
+mod junit;
+mod openhtf;
+mod table;
+
+use std::io;
+
+use quick_junit::SerializeError;
+
+pub use table::{COLUMNS, Table};
+
+use crate::record::Record;
+use crate::store::{Folder, StoreError};
+
+/// What one run is written as. All runs together are a [`Table`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// The record, those very bytes.
+    Record,
+    /// JUnit XML, for CI systems.
+    Junit,
+    /// The JSON of OpenHTF 1.6.
+    OpenHtf,
+}
+
+impl Format {
+    /// What the names of its files end with, after the run's id.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
+        match self {
+            Self::Record => ".json",
+            Self::Junit => ".xml",
+            Self::OpenHtf => ".openhtf.json",
+        }
+    }
+}
+
+/// A run that is not exported.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// The store.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// It is not one that XML can be made of.
+    #[error("the run cannot be written as XML; report this with its record")]
+    Xml(#[from] SerializeError),
+    /// It is not one that JSON can be made of.
+    #[error("the run cannot be written as JSON; report this with its record")]
+    Json(#[from] serde_json::Error),
+    /// The place where it goes takes no more.
+    #[error("the table cannot be written; check that there is space where it goes")]
+    Write(#[source] io::Error),
+}
+
+/// The record of this hash, with its bytes.
+///
+/// # Errors
+/// [`ExportError::Store`] when it is not there, or not as it was written.
+pub fn record(folder: &Folder, hash: &str) -> Result<(Record, Vec<u8>), ExportError> {
+    let read = || -> Result<_, StoreError> {
+        let bytes = folder.blobs().get(hash)?;
+        Ok((Record::parse(&bytes)?, bytes))
+    };
+    Ok(read()?)
+}
+
+/// The run whose record has this hash, in this format. It ends with a line's end.
+///
+/// # Errors
+/// [`ExportError`]
+pub fn run(folder: &Folder, hash: &str, format: Format) -> Result<Vec<u8>, ExportError> {
+    let (record, bytes) = record(folder, hash)?;
+    match format {
+        Format::Record => Ok(bytes),
+        Format::Junit => Ok(junit::render(&record)?.into_bytes()),
+        Format::OpenHtf => {
+            let mut bytes = serde_json::to_vec_pretty(&openhtf::of(&record))?;
+            bytes.push(b'\n');
+            Ok(bytes)
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! A run as the JSON that OpenHTF 1.6 writes of its own test records (`openhtf.output.callbacks.json_factory`): a try of
+//! a step is a phase.
+
+use serde_json::{Map, Value, json};
+
+use crate::record::{Measured, MeasuredOutcome, Record, RunCause, StepOutcome, StepRecord};
+
+pub(super) fn of(record: &Record) -> Value {
+    let Record { run, plan, conclusion: ended, .. } = record;
+    // A person's wish has an outcome of its own there.
+    let outcome = match ended.cause {
+        RunCause::Operator => "ABORTED".to_owned(),
+        _ => ended.verdict.to_string(),
+    };
+    let whole = (!record.measurements.is_empty()).then(|| {
+        let times = (run.started_ms, record.ended_ms);
+        phase(0, "run", times, "PASS", record.marginal, &record.measurements)
+    });
+    let phases: Vec<_> = record.steps.iter().map(of_step).chain(whole).collect();
+    json!({
+        "dut_id": run.serial,
+        "start_time_millis": run.started_ms,
+        "end_time_millis": record.ended_ms,
+        "outcome": outcome,
+        "outcome_details": [{ "code": ended.cause.name(), "description": ended.headline }],
+        "marginal": record.marginal,
+        "metadata": {
+            "test_name": plan.name,
+            "test_version": plan.version,
+            "operator_name": run.operator,
+            "run": run.id,
+            "product": run.product,
+            "lane": run.lane,
+            "plan_sha256": plan.sha256,
+            "config": {},
+        },
+        "phases": phases,
+        "subtests": [],
+        "branches": [],
+        "diagnosers": [],
+        "diagnoses": [],
+        "log_records": [],
+        "station_id": run.station,
+        "code_info": code_info("halfrow-station", &plan.text),
+    })
+}
+
+fn of_step(step: &StepRecord) -> Value {
+    let outcome = match step.outcome {
+        StepOutcome::Passed => "PASS",
+        StepOutcome::Failed => "FAIL",
+        StepOutcome::Error => "ERROR",
+        StepOutcome::Skipped => "SKIP",
+    };
+    let times = (step.started_ms, step.ended_ms);
+    phase(step.seq, &step.name, times, outcome, step.attempt > 1, &step.measurements)
+}
+
+fn phase(
+    number: u32,
+    name: &str,
+    (started_ms, ended_ms): (i64, i64),
+    outcome: &str,
+    marginal: bool,
+    measured: &[Measured],
+) -> Value {
+    let measurements: Map<_, _> = measured.iter().map(|one| (one.name.clone(), measurement(one))).collect();
+    json!({
+        "measurements": measurements,
+        "options": null,
+        "diagnosers": [],
+        "subtest_name": null,
+        "start_time_millis": started_ms,
+        "end_time_millis": ended_ms,
+        "attachments": {},
+        "diagnosis_results": [],
+        "failure_diagnosis_results": [],
+        "result": null,
+        "outcome": outcome,
+        "marginal": marginal,
+        "descriptor_id": number,
+        "name": name,
+        "codeinfo": code_info(name, ""),
+    })
+}
+
+fn code_info(name: &str, source: &str) -> Value {
+    json!({ "name": name, "docstring": null, "sourcecode": source })
+}
+
+/// OpenHTF knows no limit that blames nobody: the measurement has passed there, and its limit is in words.
+fn measurement(one: &Measured) -> Value {
+    let outcome = match one.outcome {
+        MeasuredOutcome::Unset => "UNSET",
+        MeasuredOutcome::Failed if one.fault().is_some() => "FAIL",
+        _ if one.value.is_none() => "UNSET",
+        _ => "PASS",
+    };
+    let mut fields = Map::new();
+    fields.insert("name".to_owned(), one.name.clone().into());
+    fields.insert("outcome".to_owned(), outcome.into());
+    if let Some(range) = range(one) {
+        fields.insert("validators".to_owned(), json!([range]));
+    }
+    fields.insert("docstring".to_owned(), format!("in {}, blames {}", one.unit, one.blames.name()).into());
+    if let Some(value) = one.value {
+        fields.insert("measured_value".to_owned(), value.into());
+    }
+    Value::Object(fields)
+}
+
+/// A limit as `openhtf.util.validators.InRange` writes it.
+fn range(one: &Measured) -> Option<String> {
+    let (low, high) = (one.low, one.high);
+    match (low, high) {
+        (None, None) => None,
+        (Some(low), None) => Some(format!("{low:?} <= x")),
+        (None, Some(high)) => Some(format!("x <= {high:?}")),
+        (Some(low), Some(high)) if low == high => Some(format!("x == {low:?}")),
+        (Some(low), Some(high)) => Some(format!("{low:?} <= x <= {high:?}")),
+    }
+}

@@ -1,0 +1,70 @@
+//! What was judged. These functions read and change nothing; commands and pages call the same ones.
+//!
+//! ```text
+//!  runs     pages of runs, by filters and by the last key of the page before
+//!  unit     a serial number with all that is known of it
+//!  yields   first-pass and final yield, with their intervals
+//!  pareto   what fails most, by part and by check
+//! ```
+//!
+//! Each takes a [`Snapshot`](crate::store::Snapshot), so that what one page shows is of one moment.
+
+pub mod pareto;
+pub mod rate;
+pub mod runs;
+pub mod unit;
+pub mod yields;
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::store::{Snapshot, StoreError, statements};
+
+/// From when until when runs began, in milliseconds since 1970, UTC.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Period {
+    /// The first moment.
+    pub from_ms: i64,
+    /// The first moment after.
+    pub until_ms: i64,
+}
+
+impl Default for Period {
+    fn default() -> Self {
+        Self { from_ms: 0, until_ms: i64::MAX }
+    }
+}
+
+impl Period {
+    fn holds(self, ms: i64) -> bool {
+        (self.from_ms..self.until_ms).contains(&ms)
+    }
+}
+
+/// What is compared: a product under plans of one name, whatever their version.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct PlanName {
+    /// The product.
+    pub product: String,
+    /// The plan's name.
+    pub plan: String,
+}
+
+/// The plans of the station, by their hashes.
+fn plans(of: &Snapshot) -> Result<BTreeMap<String, PlanName>, StoreError> {
+    let plans = of.rows("to tell its plans", statements::PLANS, &[], |row| {
+        Ok((row.get(0)?, PlanName { product: row.get(1)?, plan: row.get(2)? }))
+    })?;
+    Ok(plans.into_iter().collect())
+}
+
+/// The hashes of the plans of this name.
+fn plans_named(of: &Snapshot, name: &str) -> Result<Vec<String>, StoreError> {
+    Ok(plans(of)?.into_iter().filter(|(_, plan)| plan.plan == name).map(|(hash, _)| hash).collect())
+}
+
+/// A number of things, which is not negative.
+fn count(row: &rusqlite::Row<'_>, column: usize) -> rusqlite::Result<u64> {
+    row.get::<_, i64>(column).map(i64::unsigned_abs)
+}

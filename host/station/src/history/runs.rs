@@ -1,0 +1,277 @@
+//! Pages of runs.
+
+use std::fmt;
+use std::str::FromStr;
+
+use halfrow::Verdict;
+use rusqlite::ToSql;
+use serde::{Serialize, Serializer};
+
+use super::{Period, plans_named};
+use crate::store::{Snapshot, StoreError, statements};
+
+/// The most runs of a page.
+pub const MOST: u32 = 1000;
+
+/// Which runs are wanted; all of them by default.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Filter {
+    /// Of the units of this serial number.
+    pub serial: Option<String>,
+    /// Of this verdict.
+    pub verdict: Option<Verdict>,
+    /// Under plans of this name.
+    pub plan: Option<String>,
+    /// In this lane.
+    pub lane: Option<String>,
+    /// By this operator.
+    pub operator: Option<String>,
+    /// That began then.
+    pub period: Period,
+}
+
+/// The place of a run among all runs: a page goes on after one.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Place {
+    /// When it began, in milliseconds since 1970, UTC.
+    pub started_ms: i64,
+    /// Its id.
+    pub id: String,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{}", self.started_ms, self.id)
+    }
+}
+
+impl Serialize for Place {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// A text that is no place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("this is no place among the runs; take the one that the page before ends with")]
+pub struct NoPlace;
+
+impl FromStr for Place {
+    type Err = NoPlace;
+
+    fn from_str(text: &str) -> Result<Self, NoPlace> {
+        let (started, id) = text.split_once('.').ok_or(NoPlace)?;
+        let started_ms = started.parse().map_err(|_| NoPlace)?;
+        uuid::Uuid::try_parse(id).map_err(|_| NoPlace)?;
+        Ok(Self { started_ms, id: id.to_owned() })
+    }
+}
+
+/// A run in one line.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RunLine {
+    /// The run.
+    pub id: String,
+    /// When it began, in milliseconds since 1970, UTC.
+    pub started_ms: i64,
+    /// When it ended; none while it is open, as of all that follows from its end.
+    pub ended_ms: Option<i64>,
+    /// The product.
+    pub product: String,
+    /// The serial number.
+    pub serial: String,
+    /// The plan's name.
+    pub plan: String,
+    /// The plan's version.
+    pub version: String,
+    /// The station.
+    pub station: String,
+    /// The lane.
+    pub lane: String,
+    /// Who started it.
+    pub operator: String,
+    /// `PASS`, `FAIL` or `ERROR`.
+    pub verdict: Option<String>,
+    /// Whom or what it is owed to.
+    pub cause: Option<String>,
+    /// It in one sentence.
+    pub headline: Option<String>,
+    /// The how-manieth judgement of the unit under plans of this name; an ERROR has the number of the next one.
+    pub nth: i64,
+    /// Whether there is a waiver.
+    pub waived: bool,
+    /// The hash of the record.
+    pub record_sha256: Option<String>,
+}
+
+impl RunLine {
+    /// From the first sixteen columns.
+    pub(super) fn of(row: &rusqlite::Row<'_>) -> rusqlite::Result<Self> {
+        Ok(Self {
+            id: row.get(0)?,
+            started_ms: row.get(1)?,
+            ended_ms: row.get(2)?,
+            product: row.get(3)?,
+            serial: row.get(4)?,
+            plan: row.get(5)?,
+            version: row.get(6)?,
+            station: row.get(7)?,
+            lane: row.get(8)?,
+            operator: row.get(9)?,
+            verdict: row.get(10)?,
+            cause: row.get(11)?,
+            headline: row.get(12)?,
+            nth: row.get(13)?,
+            waived: row.get(14)?,
+            record_sha256: row.get(15)?,
+        })
+    }
+
+    fn place(&self) -> Place {
+        Place { started_ms: self.started_ms, id: self.id.clone() }
+    }
+}
+
+/// A page of runs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Page {
+    /// The runs, the newest first.
+    pub runs: Vec<RunLine>,
+    /// After which the next page begins; none after the last.
+    pub next: Option<Place>,
+}
+
+/// At most `limit` runs, 1 to [`MOST`], that `filter` wants, from the one after `after` on.
+///
+/// # Errors
+/// [`StoreError`] when the database cannot be read.
+pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Place>, limit: u32) -> Result<Page, StoreError> {
+    let limit = limit.clamp(1, MOST);
+    let verdict = filter.verdict.map(|verdict| verdict.to_string());
+    let mut runs = Vec::new();
+    for unit in each(filter.serial.as_deref(), |serial| units(of, serial))? {
+        for plan in each(filter.plan.as_deref(), |name| plans_named(of, name))? {
+            let equal = [
+                ("unit_id", unit.as_ref()),
+                ("operator_id", filter.operator.as_ref()),
+                ("lane", filter.lane.as_ref()),
+                ("plan_sha256", plan.as_ref()),
+                ("verdict", verdict.as_ref()),
+            ];
+            runs.append(&mut one(of, &equal, filter.period, after, limit + 1)?);
+        }
+    }
+    runs.sort_unstable_by_key(|run| std::cmp::Reverse(run.place()));
+    let has_more = runs.len() > limit as usize;
+    runs.truncate(limit as usize);
+    let next = runs.last().filter(|_| has_more).map(RunLine::place);
+    Ok(Page { runs, next })
+}
+
+/// The keys that a name stands for; one that is none when no name is asked for.
+fn each(
+    name: Option<&str>,
+    keys: impl FnOnce(&str) -> Result<Vec<String>, StoreError>,
+) -> Result<Vec<Option<String>>, StoreError> {
+    Ok(match name {
+        None => vec![None],
+        Some(name) => keys(name)?.into_iter().map(Some).collect(),
+    })
+}
+
+fn units(of: &Snapshot, serial: &str) -> Result<Vec<String>, StoreError> {
+    of.rows("to tell a unit", statements::UNITS_OF_SERIAL, &[&serial], |row| row.get(0))
+}
+
+/// The first runs for which these columns are as they should be.
+fn one(
+    of: &Snapshot,
+    equal: &[(&str, Option<&String>)],
+    period: Period,
+    after: Option<&Place>,
+    limit: u32,
+) -> Result<Vec<RunLine>, StoreError> {
+    let columns: Vec<_> = equal.iter().filter(|(_, value)| value.is_some()).map(|(name, _)| *name).collect();
+    let text = text(&columns, period, after.is_some(), limit);
+    let mut values: Vec<&dyn ToSql> = Vec::new();
+    values.extend(equal.iter().filter_map(|(_, value)| *value).map(|value| value as &dyn ToSql));
+    if period != Period::default() {
+        values.extend([&period.from_ms as &dyn ToSql, &period.until_ms]);
+    }
+    if let Some(Place { started_ms, id }) = after {
+        values.extend([started_ms as &dyn ToSql, id]);
+    }
+    of.rows("to tell its runs", &text, &values, RunLine::of)
+}
+
+/// The statement for conditions on these columns, the most selective first. Only that one may choose the index; between two
+/// that it knows nothing of, an engine may choose the one that holds for nearly all runs.
+fn text(equal: &[&str], period: Period, is_next: bool, limit: u32) -> String {
+    let mut used = 0;
+    let mut parameter = || {
+        used += 1;
+        format!("${used}")
+    };
+    let mut conditions: Vec<String> = Vec::new();
+    for (place, column) in equal.iter().enumerate() {
+        let column = if place == 0 { format!("run.{column}") } else { format!("coalesce(run.{column}, '')") };
+        conditions.push(format!("{column} = {}", parameter()));
+    }
+    if period != Period::default() {
+        let (from, until) = (parameter(), parameter());
+        conditions.push(format!("run.started_ms >= {from} AND run.started_ms < {until}"));
+    }
+    if is_next {
+        let (started, id) = (parameter(), parameter());
+        conditions.push(format!("(run.started_ms, run.id) < ({started}, {id})"));
+    }
+    let all = conditions.join(" AND ");
+    let filters = if all.is_empty() { all } else { format!("WHERE {all}") };
+    statements::RUNS.replace("{filters}", &filters).replace("{limit}", &limit.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::{Folder, Store};
+
+    /// How SQLite carries a statement out.
+    fn explained(of: &Snapshot, text: &str, parameters: usize) -> Vec<String> {
+        let values: Vec<&dyn ToSql> = vec![&1; parameters];
+        of.rows("a plan", &format!("EXPLAIN QUERY PLAN {text}"), &values, |row| row.get(3)).unwrap()
+    }
+
+    #[test]
+    fn every_page_comes_from_an_index_in_its_order_whatever_is_asked_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = Folder::new(folder.path());
+        drop(Store::open(&folder).unwrap());
+        let of = Snapshot::take(&folder).unwrap();
+        let all = ["unit_id", "operator_id", "lane", "plan_sha256", "verdict"];
+        let index = ["run_unit", "run_operator", "run_lane", "run_plan", "run_verdict"];
+        let some = Period { from_ms: 1, until_ms: 2 };
+        for chosen in 0_usize..1 << all.len() {
+            let is_chosen = |place: &usize| chosen >> place & 1 == 1;
+            let columns: Vec<_> = (0..all.len()).filter(is_chosen).map(|place| all[place]).collect();
+            for (period, is_next) in
+                [(Period::default(), false), (some, false), (Period::default(), true), (some, true)]
+            {
+                let parameters = columns.len() + 2 * usize::from(period == some) + 2 * usize::from(is_next);
+                let text = text(&columns, period, is_next, 51);
+                let how = explained(&of, &text, parameters);
+                assert!(!how.iter().any(|step| step.contains("TEMP B-TREE")), "{text}\n{how:?}");
+                let index = (0..all.len()).find(is_chosen).map_or("run_time", |place| index[place]);
+                assert!(how[0].contains(&format!("INDEX {index}")), "{text}\n{how:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_place_reads_back_and_nothing_else_is_one() {
+        let place = Place { started_ms: 7, id: "017f22e2-79b0-7cc3-98c4-dc0c0c07398f".to_owned() };
+        assert_eq!(place.to_string().parse(), Ok(place));
+        for wrong in ["", "7", "7.", ".017f22e2-79b0-7cc3-98c4-dc0c0c07398f", "7.x' OR 1=1"] {
+            assert_eq!(wrong.parse::<Place>(), Err(NoPlace), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! All that is known of a unit.
+
+use std::collections::BTreeMap;
+
+use rusqlite::Row;
+use serde::Serialize;
+
+use super::runs::RunLine;
+use crate::record::Attachment;
+use crate::store::{Snapshot, StoreError, Waiver, statements};
+
+/// A unit with everything that happened to it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Unit {
+    /// Its id.
+    pub id: String,
+    /// The product.
+    pub product: String,
+    /// The serial number.
+    pub serial: String,
+    /// When it was first seen, in milliseconds since 1970, UTC.
+    pub first_seen_ms: i64,
+    /// Its runs, the newest first.
+    pub runs: Vec<UnitRun>,
+}
+
+/// A run of a unit.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UnitRun {
+    /// It in one line.
+    #[serde(flatten)]
+    pub line: RunLine,
+    /// The variant; empty if the serial number names none.
+    pub variant: String,
+    /// The target string of the board.
+    pub target: String,
+    /// `mock`, `sim`, `replay` or `hardware`; none if the board did not say who it is, as of the two that follow.
+    pub board_kind: Option<String>,
+    /// The FPGA's own number, in hexadecimal.
+    pub device: Option<String>,
+    /// The build's commit, in hexadecimal.
+    pub build: Option<String>,
+    /// The exit code.
+    pub exit_code: Option<u8>,
+    /// Every try of every step, in order.
+    pub steps: Vec<StepTry>,
+    /// The parts that are suspected, the likeliest first.
+    pub suspects: Vec<Suspect>,
+    /// Evidence beside the record.
+    pub attachments: Vec<Attachment>,
+    /// The waiver of its FAIL.
+    pub waivers: Vec<Waiver>,
+}
+
+/// A try of a step.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct StepTry {
+    /// The step's place in the plan, from 1.
+    pub seq: u32,
+    /// Which try, from 1.
+    pub attempt: u32,
+    /// The step's name.
+    pub name: String,
+    /// `passed`, `failed`, `error` or `skipped`.
+    pub outcome: String,
+    /// When it began, in milliseconds since 1970, UTC.
+    pub started_ms: i64,
+    /// When it ended.
+    pub ended_ms: i64,
+    /// What was seen, in one sentence.
+    pub detail: String,
+}
+
+/// A part that is suspected.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Suspect {
+    /// The kind of part.
+    pub part: String,
+    /// Where.
+    pub place: String,
+    /// The share of what is wrong that it explains, 0 to 1.
+    pub explained: f64,
+}
+
+/// The units of this serial number: one for each product that has it.
+///
+/// # Errors
+/// [`StoreError`] when the database cannot be read.
+pub fn units(of: &Snapshot, serial: &str) -> Result<Vec<Unit>, StoreError> {
+    let mut units = of.rows("to tell a unit", statements::UNITS_OF_SERIAL, &[&serial], |row| {
+        let (id, product, serial, first_seen_ms) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
+        Ok(Unit { id, product, serial, first_seen_ms, runs: Vec::new() })
+    })?;
+    for unit in &mut units {
+        unit.runs = runs(of, &unit.id)?;
+    }
+    Ok(units)
+}
+
+fn runs(of: &Snapshot, unit: &str) -> Result<Vec<UnitRun>, StoreError> {
+    let mut runs = of.rows("to tell a unit's runs", statements::UNIT_RUNS, &[&unit], run)?;
+    let mut steps = by_run(of, unit, statements::UNIT_STEPS, step)?;
+    let mut suspects = by_run(of, unit, statements::UNIT_SUSPECTS, suspect)?;
+    let mut attachments = by_run(of, unit, statements::UNIT_ATTACHMENTS, attachment)?;
+    let mut waivers = by_run(of, unit, statements::UNIT_WAIVERS, waiver)?;
+    for run in &mut runs {
+        let id = &run.line.id;
+        run.steps = steps.remove(id).unwrap_or_default();
+        run.suspects = suspects.remove(id).unwrap_or_default();
+        run.attachments = attachments.remove(id).unwrap_or_default();
+        run.waivers = waivers.remove(id).unwrap_or_default();
+    }
+    Ok(runs)
+}
+
+/// What `one` makes of the rows that belong to the runs of a unit, by the run, which is their first column.
+fn by_run<T>(
+    of: &Snapshot,
+    unit: &str,
+    text: &str,
+    one: impl Fn(&Row<'_>) -> rusqlite::Result<T>,
+) -> Result<BTreeMap<String, Vec<T>>, StoreError> {
+    let rows = of.rows("to tell a unit's runs", text, &[&unit], |row| Ok((row.get(0)?, one(row)?)))?;
+    let mut by_run = BTreeMap::<String, Vec<T>>::new();
+    for (run, one) in rows {
+        by_run.entry(run).or_default().push(one);
+    }
+    Ok(by_run)
+}
+
+fn run(row: &Row<'_>) -> rusqlite::Result<UnitRun> {
+    Ok(UnitRun {
+        line: RunLine::of(row)?,
+        variant: row.get(16)?,
+        target: row.get(17)?,
+        board_kind: row.get(18)?,
+        device: row.get(19)?,
+        build: row.get(20)?,
+        exit_code: row.get(21)?,
+        steps: Vec::new(),
+        suspects: Vec::new(),
+        attachments: Vec::new(),
+        waivers: Vec::new(),
+    })
+}
+
+fn step(row: &Row<'_>) -> rusqlite::Result<StepTry> {
+    Ok(StepTry {
+        seq: row.get(1)?,
+        attempt: row.get(2)?,
+        name: row.get(3)?,
+        outcome: row.get(4)?,
+        started_ms: row.get(5)?,
+        ended_ms: row.get(6)?,
+        detail: row.get(7)?,
+    })
+}
+
+fn suspect(row: &Row<'_>) -> rusqlite::Result<Suspect> {
+    Ok(Suspect { part: row.get(1)?, place: row.get(2)?, explained: row.get(3)? })
+}
+
+fn attachment(row: &Row<'_>) -> rusqlite::Result<Attachment> {
+    let bytes: i64 = row.get(3)?;
+    let (name, sha256, media_type) = (row.get(1)?, row.get(2)?, row.get(4)?);
+    Ok(Attachment { name, sha256, bytes: bytes.unsigned_abs(), media_type })
+}
+
+fn waiver(row: &Row<'_>) -> rusqlite::Result<Waiver> {
+    Ok(Waiver { run: row.get(0)?, at_ms: row.get(1)?, operator: row.get(2)?, reason: row.get(3)? })
+}

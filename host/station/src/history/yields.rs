@@ -1,0 +1,335 @@
+//! Yield: how many units are judged good, at first and in the end.
+//!
+//! A unit belongs to the lane and the day of its first judgement, so that both yields are of the same units.
+//!
+//! | run | where it counts |
+//! |---|---|
+//! | PASS, FAIL | the first one of a unit in the first pass, the last one in the final yield |
+//! | ERROR, crashes and refusals among them | in the rate of errors alone: the unit was not judged |
+//! | open | nowhere |
+//! | FAIL with a waiver | as the FAIL that it is; a unit whose last judgement it is counts as waived besides |
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use jiff::civil::Date;
+use jiff::{SignedDuration, Timestamp, tz};
+use serde::Serialize;
+
+use super::rate::Rate;
+use super::{Period, PlanName, count, plans};
+use crate::store::{Snapshot, StoreError, statements};
+
+/// Milliseconds of a day.
+const DAY_MS: i64 = 86_400_000;
+
+/// What the lines of a yield are about, beside product and plan.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum By {
+    /// Nothing else.
+    Plan,
+    /// The day, UTC.
+    Day,
+    /// Station and lane.
+    Lane,
+}
+
+/// Which units are wanted; all of them by default.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// Under plans of this name.
+    pub plan: Option<String>,
+    /// In this lane.
+    pub lane: Option<String>,
+    /// First judged then; of errors, those that began then.
+    pub period: Period,
+}
+
+impl Wanted {
+    fn is_wanted(&self, cell: &Cell) -> bool {
+        self.plan.as_ref().is_none_or(|plan| *plan == cell.plan.plan)
+            && self.lane.as_ref().is_none_or(|lane| *lane == cell.lane)
+    }
+}
+
+/// The yield of one line.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Yield {
+    /// Product and plan.
+    #[serde(flatten)]
+    pub plan: PlanName,
+    /// The day, UTC, in a yield by day.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub day: Option<Date>,
+    /// The station, in a yield by lane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub station: Option<String>,
+    /// The lane, in a yield by lane.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lane: Option<String>,
+    /// Units whose first judgement is PASS, of those that were judged.
+    pub first_pass: Rate,
+    /// Units whose last judgement is PASS, of the same.
+    pub last: Rate,
+    /// Units whose last judgement is a FAIL with a waiver.
+    pub waived: u64,
+    /// Units that first failed and passed in the end.
+    pub flipped: u64,
+    /// Runs that are ERROR, of all that are over.
+    pub errors: Rate,
+    /// Those of them that the program or the computer did not outlive.
+    pub crashes: u64,
+}
+
+/// A unit that first failed and passed in the end.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+pub struct Flip {
+    /// Product and plan.
+    #[serde(flatten)]
+    pub plan: PlanName,
+    /// The serial number.
+    pub serial: String,
+    /// The run that failed.
+    pub failed: String,
+    /// When it began, in milliseconds since 1970, UTC.
+    pub failed_ms: i64,
+    /// The run that passed, the last judgement.
+    pub passed: String,
+    /// When it began.
+    pub passed_ms: i64,
+    /// Judgements from the first to the last.
+    pub judgements: u64,
+}
+
+/// What came of the units that are wanted.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Yields {
+    /// A line for each group.
+    pub lines: Vec<Yield>,
+    /// Every unit that flipped from FAIL to PASS.
+    pub flips: Vec<Flip>,
+}
+
+/// The yield of the units that are wanted, by plan and by what `by` says.
+///
+/// # Errors
+/// [`StoreError`] when the database cannot be read.
+pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreError> {
+    let plans = plans(of)?;
+    let mut cells = cells(of, wanted, &plans)?;
+    let (again, of_many) = again(of, &plans)?;
+    let waived = waived(of, &plans)?;
+    let mut flips = Vec::new();
+    for unit in &again {
+        let is_wanted = wanted.is_wanted(&unit.cell) && wanted.period.holds(unit.first_ms);
+        if let Some(counts) = cells.get_mut(&unit.cell).filter(|_| is_wanted) {
+            counts.adjust(unit.first_passed, unit.last_passed);
+            counts.waived += u64::from(waived.contains_key(&unit.last));
+            if unit.is_flip() {
+                flips.push(unit.flip(serial_of(of, &unit.unit)?));
+            }
+        }
+    }
+    for (run, (cell, started_ms)) in &waived {
+        let is_only = !of_many.contains(run);
+        let is_wanted = wanted.is_wanted(cell) && wanted.period.holds(*started_ms);
+        if let Some(counts) = cells.get_mut(cell).filter(|_| is_only && is_wanted) {
+            counts.waived += 1;
+        }
+    }
+    flips.sort();
+    Ok(Yields { lines: lines(&cells, by), flips })
+}
+
+/// What is counted together.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Cell {
+    plan: PlanName,
+    station: String,
+    lane: String,
+    day: i64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    runs: u64,
+    errors: u64,
+    crashes: u64,
+    units: u64,
+    first: u64,
+    last: u64,
+    waived: u64,
+    flipped: u64,
+}
+
+impl Counts {
+    fn add(&mut self, other: &Self) {
+        self.runs += other.runs;
+        self.errors += other.errors;
+        self.crashes += other.crashes;
+        self.units += other.units;
+        self.first += other.first;
+        self.last += other.last;
+        self.waived += other.waived;
+        self.flipped += other.flipped;
+    }
+
+    /// A unit that was counted by its first judgement has another last one.
+    fn adjust(&mut self, first_passed: bool, last_passed: bool) {
+        match (first_passed, last_passed) {
+            (false, true) => {
+                self.last += 1;
+                self.flipped += 1;
+            }
+            (true, false) => self.last -= 1,
+            _ => {}
+        }
+    }
+}
+
+/// Every cell, with the units as their first judgement left them.
+fn cells(
+    of: &Snapshot,
+    wanted: &Wanted,
+    plans: &BTreeMap<String, PlanName>,
+) -> Result<BTreeMap<Cell, Counts>, StoreError> {
+    let Period { from_ms, until_ms } = wanted.period;
+    let rows = of.rows("to be counted", statements::YIELD_CELLS, &[&from_ms, &until_ms], |row| {
+        let (plan, station, lane, day): (String, _, _, _) =
+            (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
+        let [runs, errors, crashes, units, first] = [4, 5, 6, 7, 8].map(|column| count(row, column));
+        let (first, rest) = (first?, Counts::default());
+        let (runs, errors, crashes, units) = (runs?, errors?, crashes?, units?);
+        let counts = Counts { runs, errors, crashes, units, first, last: first, ..rest };
+        Ok((plan, station, lane, day, counts))
+    })?;
+    let mut cells = BTreeMap::<_, Counts>::new();
+    for (plan, station, lane, day, counts) in rows {
+        let Some(plan) = plans.get(&plan).cloned() else { continue };
+        let cell = Cell { plan, station, lane, day };
+        if wanted.is_wanted(&cell) {
+            cells.entry(cell).or_default().add(&counts);
+        }
+    }
+    Ok(cells)
+}
+
+/// A unit that was judged more than once.
+struct Again {
+    cell: Cell,
+    unit: String,
+    first: String,
+    first_ms: i64,
+    first_passed: bool,
+    last: String,
+    last_ms: i64,
+    last_passed: bool,
+    judgements: u64,
+}
+
+impl Again {
+    fn is_flip(&self) -> bool {
+        !self.first_passed && self.last_passed
+    }
+
+    fn flip(&self, serial: String) -> Flip {
+        Flip {
+            plan: self.cell.plan.clone(),
+            serial,
+            failed: self.first.clone(),
+            failed_ms: self.first_ms,
+            passed: self.last.clone(),
+            passed_ms: self.last_ms,
+            judgements: self.judgements,
+        }
+    }
+}
+
+/// The units that were judged more than once, and all of their judgements.
+fn again(
+    of: &Snapshot,
+    plans: &BTreeMap<String, PlanName>,
+) -> Result<(Vec<Again>, BTreeSet<String>), StoreError> {
+    let passed = |verdict: String| verdict == halfrow::Verdict::Pass.to_string();
+    let rows = of.rows("to tell what was judged again", statements::YIELD_AGAIN, &[], |row| {
+        let (first_ms, theirs, ours): (i64, String, String) = (row.get(7)?, row.get(3)?, row.get(8)?);
+        // A unit has a first judgement under plans of each name.
+        let Some(plan) = plans.get(&ours).filter(|plan| plans.get(&theirs) == Some(plan)).cloned() else {
+            return Ok(None);
+        };
+        let cell = Cell { plan, station: row.get(9)?, lane: row.get(10)?, day: first_ms / DAY_MS };
+        Ok(Some(Again {
+            cell,
+            unit: row.get(4)?,
+            first: row.get(5)?,
+            first_ms,
+            first_passed: passed(row.get(6)?),
+            last: row.get(0)?,
+            last_ms: row.get(2)?,
+            last_passed: passed(row.get(1)?),
+            judgements: 2,
+        }))
+    })?;
+    let mut of_many = BTreeSet::new();
+    let mut last = BTreeMap::<(String, PlanName), Again>::new();
+    for mut again in rows.into_iter().flatten() {
+        let key = (again.unit.clone(), again.cell.plan.clone());
+        of_many.extend([again.first.clone(), again.last.clone()]);
+        if let Some(before) = last.get(&key) {
+            again.judgements = before.judgements + 1;
+        }
+        last.insert(key, again);
+    }
+    Ok((last.into_values().collect(), of_many))
+}
+
+fn serial_of(of: &Snapshot, unit: &str) -> Result<String, StoreError> {
+    let serials = of.rows("to tell a unit", statements::SERIAL_OF, &[&unit], |row| row.get(0))?;
+    Ok(serials.into_iter().next().unwrap_or_default())
+}
+
+/// Every waived FAIL with its cell, and when it began.
+fn waived(
+    of: &Snapshot,
+    plans: &BTreeMap<String, PlanName>,
+) -> Result<BTreeMap<String, (Cell, i64)>, StoreError> {
+    let rows = of.rows("to tell its waivers", statements::WAIVED, &[], |row| {
+        let (hash, started_ms): (String, i64) = (row.get(1)?, row.get(4)?);
+        let plan = plans.get(&hash).cloned().ok_or(rusqlite::Error::QueryReturnedNoRows)?;
+        let cell = Cell { plan, station: row.get(2)?, lane: row.get(3)?, day: started_ms / DAY_MS };
+        Ok((row.get(0)?, (cell, started_ms)))
+    })?;
+    Ok(rows.into_iter().collect())
+}
+
+/// The cells put together.
+fn lines(cells: &BTreeMap<Cell, Counts>, by: By) -> Vec<Yield> {
+    type Key = (PlanName, Option<i64>, Option<(String, String)>);
+    let mut groups = BTreeMap::<Key, Counts>::new();
+    for (cell, counts) in cells {
+        let day = (by == By::Day).then_some(cell.day);
+        let lane = (by == By::Lane).then(|| (cell.station.clone(), cell.lane.clone()));
+        groups.entry((cell.plan.clone(), day, lane)).or_default().add(counts);
+    }
+    let line = |((plan, day, place), counts): (Key, Counts)| {
+        let (station, lane) = place.unzip();
+        Yield {
+            plan,
+            day: day.and_then(date),
+            station,
+            lane,
+            first_pass: Rate::new(counts.first, counts.units),
+            last: Rate::new(counts.last, counts.units),
+            waived: counts.waived,
+            flipped: counts.flipped,
+            errors: Rate::new(counts.errors, counts.runs),
+            crashes: counts.crashes,
+        }
+    };
+    groups.into_iter().map(line).collect()
+}
+
+/// The date of a day that is so many after 1 January 1970.
+fn date(day: i64) -> Option<Date> {
+    let begun = Timestamp::UNIX_EPOCH.checked_add(SignedDuration::from_hours(24 * day)).ok()?;
+    Some(begun.to_zoned(tz::TimeZone::UTC).date())
+}

@@ -1,0 +1,142 @@
+//! Copies of a station's folder: the index of one moment, and every piece of evidence that it names.
+
+use std::collections::BTreeSet;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::check::check;
+use crate::record::synced;
+use crate::store::{Folder, Snapshot, StoreError};
+
+/// What was copied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Copied {
+    /// Runs that are over.
+    pub runs: usize,
+    /// Records and attachments.
+    pub evidence: usize,
+}
+
+/// A folder that is not copied. Nothing is there then that looks like a copy.
+#[derive(Debug, thiserror::Error)]
+pub enum CopyError {
+    /// There is something where the copy shall be.
+    #[error("{} is there already and not empty; name another folder", path.display())]
+    Exists {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// Another copy is being made there, or was when its program was killed.
+    #[error("{} is there: remove it, if nobody is making a copy just now", path.display())]
+    UnderWay {
+        /// What is there.
+        path: PathBuf,
+    },
+    /// The copy cannot be written.
+    #[error("{} cannot be written; check that its folder is writable and has space", path.display())]
+    Io {
+        /// The folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// What shall be copied is not as it was written.
+    #[error("{faults} faults are in {}, the first: {first}; `halfrow-station check` tells all", path.display())]
+    Faulty {
+        /// The folder.
+        path: PathBuf,
+        /// How many.
+        faults: usize,
+        /// The first of them.
+        first: String,
+    },
+    /// A store.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// Copies the station in `from` to the new folder `to`. Runs may go on meanwhile; the copy is of the moment at which it
+/// began.
+///
+/// # Errors
+/// [`CopyError`]
+pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
+    let refused = |source| CopyError::Io { path: to.to_owned(), source };
+    if fs::read_dir(to).is_ok_and(|mut entries| entries.next().is_some()) || to.is_file() {
+        return Err(CopyError::Exists { path: to.to_owned() });
+    }
+    let to = std::path::absolute(to).map_err(refused)?;
+    let (Some(parent), Some(name)) = (to.parent(), to.file_name()) else {
+        return Err(CopyError::Exists { path: to.clone() });
+    };
+    let aside = parent.join(format!(".{}.partial", name.to_string_lossy()));
+    match fs::create_dir(&aside) {
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+            return Err(CopyError::UnderWay { path: aside });
+        }
+        made => made.map_err(refused)?,
+    }
+    let copied = into(from, &aside).and_then(|copied| {
+        fs::rename(&aside, &to).map_err(refused)?;
+        synced(parent).map_err(StoreError::from)?;
+        Ok(copied)
+    });
+    if copied.is_err() {
+        // What cannot be removed is named by the next attempt.
+        let _ = fs::remove_dir_all(&aside);
+    }
+    copied
+}
+
+/// Makes a station's new folder `to` from the copy in `from`, when all of it is as it was written.
+///
+/// # Errors
+/// [`CopyError`]
+pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
+    sound(from)?;
+    let copied = backup(from, to)?;
+    sound(&Folder::new(to))?;
+    Ok(copied)
+}
+
+fn sound(folder: &Folder) -> Result<(), CopyError> {
+    let checked = check(folder)?;
+    match checked.faults.first() {
+        None => Ok(()),
+        Some(first) => Err(CopyError::Faulty {
+            path: folder.path().to_owned(),
+            faults: checked.faults.len(),
+            first: first.to_string(),
+        }),
+    }
+}
+
+fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
+    let to = Folder::new(aside);
+    let refused = |source| CopyError::Io { path: aside.to_owned(), source };
+    from.copy_database(&to.database())?;
+    File::open(to.database()).and_then(|file| file.sync_all()).map_err(refused)?;
+    let spools = to.spools();
+    let blobs = aside.join("blobs");
+    for folder in [&spools, &blobs] {
+        fs::create_dir(folder).map_err(refused)?;
+    }
+    let copy = Snapshot::take(&to)?;
+    let runs = copy.final_runs()?;
+    let pruned = copy.pruned()?;
+    let records = runs.iter().map(|(_, hash)| hash.clone());
+    let all: BTreeSet<_> = records.chain(copy.attachments()?).collect();
+    let mut evidence = 0;
+    for hash in &all {
+        match from.blobs().get(hash) {
+            Err(error) if error.is_gone() && pruned.contains(hash) => {}
+            bytes => {
+                to.blobs().put(&bytes.map_err(StoreError::from)?).map_err(StoreError::from)?;
+                evidence += 1;
+            }
+        }
+    }
+    synced(aside).map_err(StoreError::from)?;
+    Ok(Copied { runs: runs.len(), evidence })
+}

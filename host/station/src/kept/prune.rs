@@ -1,0 +1,35 @@
+//! Evidence that is older than it need be kept. Records and rows are kept for ever.
+
+use std::fs;
+
+use crate::record::BlobError;
+use crate::store::{Store, StoreError};
+
+/// What was removed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Pruned {
+    /// Pieces of evidence.
+    pub pieces: usize,
+    /// Their bytes.
+    pub bytes: u64,
+}
+
+/// Removes all evidence of which every run ended before `before_ms`, milliseconds since 1970, UTC. That it is removed is
+/// in the audit before it is, so that `check` can tell it from evidence that is lost.
+///
+/// # Errors
+/// [`StoreError`]; what is removed by then is in the audit.
+pub fn prune(store: &mut Store, before_ms: i64, operator: &str) -> Result<Pruned, StoreError> {
+    let blobs = store.folder().blobs();
+    let old = store.old_evidence(before_ms)?;
+    let here: Vec<_> = old.into_iter().filter(|hash| blobs.path(hash).is_file()).collect();
+    store.note_pruned(&here, operator)?;
+    let mut pruned = Pruned::default();
+    for hash in &here {
+        let path = blobs.path(hash);
+        let removed = fs::metadata(&path).and_then(|known| fs::remove_file(&path).map(|()| known.len()));
+        pruned.bytes += removed.map_err(|source| BlobError::Folder { path, source })?;
+        pruned.pieces += 1;
+    }
+    Ok(pruned)
+}

@@ -1,0 +1,64 @@
+//! What backups and pruning ask of the database.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use rusqlite::params;
+
+use super::{Folder, Snapshot, Store, StoreError, statements as sql};
+use crate::clock;
+use crate::run::{NoRandomness, ids};
+
+impl Folder {
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+
+    /// Copies the database as it is at this moment to the new file `to`.
+    pub(crate) fn copy_database(&self, to: &Path) -> Result<(), StoreError> {
+        let copied = self.reader()?.execute("VACUUM INTO $1", [to.to_string_lossy()]);
+        let path = self.database();
+        copied.map(drop).map_err(|source| StoreError::Database { path, doing: "to be copied", source })
+    }
+}
+
+impl Snapshot {
+    /// The hashes of all attachments.
+    pub(crate) fn attachments(&self) -> Result<Vec<String>, StoreError> {
+        self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| row.get(0))
+    }
+
+    /// The hashes of the evidence that was removed since it was old.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn pruned(&self) -> Result<BTreeSet<String>, StoreError> {
+        let pruned = self.rows("to tell what was removed", sql::PRUNED, &[], |row| row.get(0))?;
+        Ok(pruned.into_iter().collect())
+    }
+}
+
+impl Store {
+    /// The hashes of the attachments of which every run ended before `before_ms`.
+    pub(crate) fn old_evidence(&self, before_ms: i64) -> Result<Vec<String>, StoreError> {
+        Snapshot::take(&self.folder)?
+            .rows("to tell old evidence", sql::OLD_EVIDENCE, &[&before_ms], |row| row.get(0))
+    }
+
+    /// Enters in the audit that these pieces of evidence are removed.
+    pub(crate) fn note_pruned(&mut self, hashes: &[String], operator: &str) -> Result<(), StoreError> {
+        let at_ms = clock::now_ms();
+        let id = |_: &String| Ok(ids::new(at_ms)?.to_string());
+        let named: Result<Vec<_>, NoRandomness> = hashes.iter().map(id).collect();
+        let named = named?;
+        self.change("an audit", |to| {
+            let mut add = to.prepare(sql::ADD_AUDIT)?;
+            for (id, hash) in named.iter().zip(hashes) {
+                add.execute(params![id, at_ms, operator, "prune", hash, "older than it is kept"])?;
+            }
+            Ok(())
+        })
+    }
+}

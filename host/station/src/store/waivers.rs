@@ -1,0 +1,97 @@
+//! Waivers: an engineer's word on a FAIL, beside it and never in its place.
+
+use rusqlite::{Connection, OptionalExtension as _, params};
+use serde::Serialize;
+
+use super::{Store, StoreError, statements as sql};
+use crate::clock;
+use crate::run::{NoRandomness, ids};
+
+/// A waiver of a run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Waiver {
+    /// The run.
+    pub run: String,
+    /// When it was given, in milliseconds since 1970, UTC.
+    pub at_ms: i64,
+    /// Who gave it.
+    pub operator: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// A waiver that is not given.
+#[derive(Debug, thiserror::Error)]
+pub enum NoWaiver {
+    /// There is no run of this id that is over.
+    #[error("no run {run} is over; `halfrow-station history` lists the runs")]
+    NoRun {
+        /// What was asked for.
+        run: String,
+    },
+    /// The run is no FAIL.
+    #[error("the run {run} is {verdict}, and a waiver is for a FAIL; test the unit again instead")]
+    NoFail {
+        /// The run.
+        run: String,
+        /// Its verdict.
+        verdict: String,
+    },
+    /// It has a waiver.
+    #[error("the run {run} has a waiver already, by {}: {}; one is enough", waiver.operator, waiver.reason)]
+    Waived {
+        /// The run.
+        run: String,
+        /// The waiver that it has.
+        waiver: Box<Waiver>,
+    },
+    /// It says no reason, or no name.
+    #[error("a waiver needs a name and a reason; say both")]
+    Empty,
+    /// An id cannot be made.
+    #[error(transparent)]
+    NoRandomness(#[from] NoRandomness),
+    /// The store does not take it.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+impl Store {
+    /// Waives the FAIL of this run. The run stays as it is; waiver and audit are entered in one transaction.
+    ///
+    /// # Errors
+    /// [`NoWaiver`]
+    pub fn waive(&mut self, run: &str, operator: &str, reason: &str) -> Result<Waiver, NoWaiver> {
+        let (operator, reason) = (operator.trim(), reason.trim());
+        if operator.is_empty() || reason.is_empty() {
+            return Err(NoWaiver::Empty);
+        }
+        let stored = self.folder.verdict_of(run)?;
+        let verdict = stored.ok_or_else(|| NoWaiver::NoRun { run: run.to_owned() })?.verdict;
+        if verdict != halfrow::Verdict::Fail.to_string() {
+            return Err(NoWaiver::NoFail { run: run.to_owned(), verdict });
+        }
+        let at_ms = clock::now_ms();
+        let (id, audit) = (ids::new(at_ms)?.to_string(), ids::new(at_ms)?.to_string());
+        let before = self.change("a waiver", |to| {
+            let before = waiver_of(to, run)?;
+            if before.is_none() {
+                to.execute(sql::ADD_WAIVER, params![id, run, at_ms, operator, reason])?;
+                to.execute(sql::ADD_AUDIT, params![audit, at_ms, operator, "waive", run, reason])?;
+            }
+            Ok(before)
+        })?;
+        if let Some(waiver) = before {
+            return Err(NoWaiver::Waived { run: run.to_owned(), waiver: Box::new(waiver) });
+        }
+        let [run, operator, reason] = [run, operator, reason].map(str::to_owned);
+        Ok(Waiver { run, at_ms, operator, reason })
+    }
+}
+
+fn waiver_of(database: &Connection, run: &str) -> rusqlite::Result<Option<Waiver>> {
+    let waiver = |row: &rusqlite::Row<'_>| {
+        Ok(Waiver { run: row.get(1)?, at_ms: row.get(2)?, operator: row.get(3)?, reason: row.get(4)? })
+    };
+    database.query_row(sql::WAIVER_OF, [run], waiver).optional()
+}

@@ -1,0 +1,231 @@
+//! A store with runs that were entered as the station enters them, and judged by no board.
+
+use std::path::Path;
+
+use halfrow::Verdict;
+use halfrow_station::plan::limits::{Blame, Limit, Maker, Measurement, SAMPLES_DIFFERING};
+use halfrow_station::record::{
+    Attachment, BoardSeen, Conclusion, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepOutcome,
+    StepRecord, SuspectRecord, judged,
+};
+use halfrow_station::store::{Folder, Snapshot, Store};
+use tempfile::TempDir;
+
+/// 1 November 2026, midnight UTC.
+pub(crate) const BEGIN_MS: i64 = 1_793_491_200_000;
+pub(crate) const HOUR_MS: i64 = 3_600_000;
+pub(crate) const PRODUCT: &str = "CAM-T";
+
+/// How a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum End {
+    Pass,
+    /// With these parts suspected.
+    Fail(&'static [&'static str]),
+    /// The latency is beyond its limit.
+    TooLate,
+    /// And five samples differ besides.
+    TooLateAndWrong,
+    Error(RunCause),
+    Open,
+}
+
+/// A run to be entered.
+#[derive(Clone, Debug)]
+pub(crate) struct Run {
+    pub(crate) serial: String,
+    pub(crate) plan: (&'static str, &'static str),
+    pub(crate) lane: String,
+    pub(crate) operator: String,
+    pub(crate) started_ms: i64,
+    pub(crate) end: End,
+    /// What is attached.
+    pub(crate) evidence: Vec<&'static str>,
+}
+
+impl Run {
+    pub(crate) fn of(serial: &str, end: End) -> Self {
+        let [serial, lane, operator] = [serial, "1", "weber"].map(str::to_owned);
+        Self { serial, plan: ("final", "1"), lane, operator, started_ms: BEGIN_MS, end, evidence: Vec::new() }
+    }
+}
+
+/// A store, and what was entered into it.
+pub(crate) struct Made {
+    folder: TempDir,
+    pub(crate) store: Store,
+    entered: u32,
+}
+
+impl Made {
+    pub(crate) fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(&Folder::new(folder.path())).unwrap();
+        Self { folder, store, entered: 0 }
+    }
+
+    pub(crate) fn folder(&self) -> Folder {
+        Folder::new(self.folder.path())
+    }
+
+    /// The folder, which another program may write to from here on.
+    pub(crate) fn closed(self) -> TempDir {
+        self.folder
+    }
+
+    pub(crate) fn now(&self) -> Snapshot {
+        Snapshot::take(&self.folder()).unwrap()
+    }
+
+    /// Enters a run and returns its id.
+    pub(crate) fn run(&mut self, run: &Run) -> String {
+        self.entered += 1;
+        let plan = plan(run.plan);
+        let head = self.store.begin(self.head(run), &plan).unwrap();
+        let id = head.id.clone();
+        if run.end != End::Open {
+            let attachments = self.attached(run);
+            self.store.finish(&Record { attachments, ..record(head, plan, run) }, 2).unwrap();
+        }
+        id
+    }
+
+    fn attached(&self, run: &Run) -> Vec<Attachment> {
+        let attached = |bytes: &&str| Attachment {
+            name: format!("{bytes}.txt"),
+            sha256: self.folder().blobs().put(bytes.as_bytes()).unwrap(),
+            bytes: bytes.len() as u64,
+            media_type: "text/plain".to_owned(),
+        };
+        run.evidence.iter().map(attached).collect()
+    }
+
+    fn head(&self, run: &Run) -> RunHead {
+        RunHead {
+            id: id(run.started_ms, self.entered),
+            station: "station 7".to_owned(),
+            lane: run.lane.clone(),
+            unit_id: id(run.started_ms, 1_000_000 + self.entered),
+            product: PRODUCT.to_owned(),
+            serial: run.serial.clone(),
+            variant: String::new(),
+            operator: run.operator.clone(),
+            target: "usb:1-2.3".to_owned(),
+            fence: 0,
+            started_ms: run.started_ms,
+        }
+    }
+}
+
+impl AsRef<Path> for Made {
+    fn as_ref(&self) -> &Path {
+        self.folder.path()
+    }
+}
+
+/// The `number`-th id of this moment.
+pub(crate) fn id(ms: i64, number: u32) -> String {
+    let mut random = [0; 10];
+    random[..4].copy_from_slice(&number.to_be_bytes());
+    uuid::Builder::from_unix_timestamp_millis(ms.unsigned_abs(), &random).into_uuid().to_string()
+}
+
+fn plan((name, version): (&str, &str)) -> PlanRecord {
+    let text = format!("schema = 1 # {name} {version}\n");
+    // What the station's own hash of a plan without files is.
+    let sha256 = halfrow::result::sha256([text.as_bytes()]);
+    let (name, version) = (name.to_owned(), version.to_owned());
+    PlanRecord { sha256, name, version, text, files: None }
+}
+
+/// The record of a run that ended.
+fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
+    let verify = verify(&run, made.end);
+    let identity = step(&run, 1, "identity", (StepOutcome::Passed, RunCause::None, 0));
+    let verdict = match verify.outcome {
+        StepOutcome::Passed => Verdict::Pass,
+        StepOutcome::Failed => Verdict::Fail,
+        _ => Verdict::Error,
+    };
+    Record {
+        schema: SCHEMA,
+        ended_ms: run.started_ms + 1500,
+        seconds: Some(1.5),
+        conclusion: Conclusion {
+            verdict,
+            cause: verify.cause,
+            exit_code: verify.exit_code,
+            headline: format!("it is {verdict}, \"as\" made"),
+            remedy: None,
+        },
+        plan,
+        production: true,
+        marginal: false,
+        board: verify.board.clone(),
+        suspects: verify.suspects.clone(),
+        steps: vec![identity, verify],
+        measurements: judged(Maker::Run, &[("run.seconds", Some(1.5))], &[]),
+        attachments: Vec::new(),
+        program: "halfrow 0".to_owned(),
+        run,
+    }
+}
+
+/// The step that a run's end comes from.
+fn verify(run: &RunHead, end: End) -> StepRecord {
+    let came = match end {
+        End::Pass => (StepOutcome::Passed, RunCause::None, 0),
+        End::Fail(_) | End::TooLate | End::TooLateAndWrong => (StepOutcome::Failed, RunCause::Board, 1),
+        End::Error(cause) => (StepOutcome::Error, cause, 3),
+        End::Open => panic!("an open run has no record"),
+    };
+    let measurement = Measurement::named("latency.clocks").unwrap();
+    let limit = Limit { measurement, least: None, most: Some(1004.0), blames: Blame::Board };
+    let is_late = matches!(end, End::TooLate | End::TooLateAndWrong);
+    let clocks = if is_late { 1005.5 } else { 1004.0 };
+    let differing = if matches!(end, End::Fail(_) | End::TooLateAndWrong) { 5.0 } else { 0.0 };
+    let values = [("latency.clocks", Some(clocks)), (SAMPLES_DIFFERING, Some(differing))];
+    StepRecord {
+        measurements: judged(Maker::Verify, &values, &[limit]),
+        suspects: suspects(end),
+        ..step(run, 2, "verify", came)
+    }
+}
+
+fn step(run: &RunHead, seq: u32, name: &str, came: (StepOutcome, RunCause, u8)) -> StepRecord {
+    let (outcome, cause, exit_code) = came;
+    let board = BoardSeen {
+        kind: "hardware".to_owned(),
+        name: "cam".to_owned(),
+        device: Some("0123456789abcdef".to_owned()),
+        build: "99bff58a".to_owned(),
+    };
+    StepRecord {
+        seq,
+        attempt: 1,
+        name: name.to_owned(),
+        kind: name.to_owned(),
+        outcome,
+        cause,
+        exit_code,
+        started_ms: run.started_ms + 500 * i64::from(seq - 1),
+        ended_ms: run.started_ms + 500 * i64::from(seq),
+        detail: format!("{name} \"{}\", <{}>", outcome.name(), cause.name()),
+        remedy: None,
+        measurements: Vec::new(),
+        suspects: Vec::new(),
+        board: Some(board),
+        evidence: None,
+    }
+}
+
+fn suspects(end: End) -> Vec<SuspectRecord> {
+    let End::Fail(parts) = end else { return Vec::new() };
+    let suspect = |part: &&str| SuspectRecord {
+        part: (*part).to_owned(),
+        place: "bit 3".to_owned(),
+        explained: 0.75,
+        technician: "Look at it.".to_owned(),
+    };
+    parts.iter().map(suspect).collect()
+}

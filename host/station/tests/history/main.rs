@@ -1,0 +1,16 @@
+//! What was judged, read back: pages, units, yields, what fails most; and what is kept.
+
+// A helper that cannot go on fails the test.
+#![allow(clippy::panic, clippy::unwrap_used)]
+
+mod commands;
+mod exports;
+mod generated;
+mod kept;
+mod made;
+mod pages;
+mod pareto;
+mod units;
+mod waivers;
+mod wilson;
+mod yields;
