@@ -12,6 +12,8 @@ mod clock;
 pub mod commands;
 pub mod console;
 pub mod exit;
+mod ids;
+pub mod input_error;
 pub mod lane;
 pub mod plan;
 pub mod record;

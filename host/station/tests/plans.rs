@@ -244,7 +244,7 @@ fn limits_need_a_step_that_measures_and_a_plan_one_that_judges() {
 #[test]
 fn a_plan_that_is_not_there_is_named() {
     let said = Plan::load(Path::new("no/plan.toml")).unwrap_err().to_string();
-    assert_eq!(said, "the plan no/plan.toml cannot be read; check its name, and who may read it");
+    assert_eq!(said, "no/plan.toml cannot be read; check its name, and who may read it");
 }
 
 fn as_json(text: &str) -> Option<Value> {

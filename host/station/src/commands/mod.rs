@@ -3,13 +3,16 @@
 mod check;
 mod lane;
 mod plan;
+mod rebind;
 mod run;
+mod signals;
 
 use clap::{ArgAction, Parser, Subcommand};
 
 use crate::console;
 use crate::exit::Exit;
-use crate::store::StoreError;
+use crate::run::{self as runs, RunError, Saved};
+use crate::store::{Store, StoreError};
 
 /// Judges boards on a production line by plans, and keeps every result.
 #[derive(Debug, Parser)]
@@ -27,6 +30,7 @@ enum Command {
     Run(run::Arguments),
     Check(check::Arguments),
     Plan(plan::Arguments),
+    Rebind(rebind::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -67,6 +71,7 @@ impl Cli {
             Command::Run(arguments) => run::run(arguments),
             Command::Check(arguments) => check::run(arguments),
             Command::Plan(arguments) => plan::run(arguments),
+            Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }
@@ -77,6 +82,15 @@ impl From<StoreError> for Failure {
         let exit = if matches!(error, StoreError::InUse { .. }) { Exit::Busy } else { Exit::Error };
         Self { exit, error: error.into() }
     }
+}
+
+/// Closes what was under way when the station ended, and says so.
+fn recovered(store: &mut Store) -> Result<(), RunError> {
+    for Saved { record, .. } in runs::recover(store)? {
+        let (id, serial) = (&record.run.id, &record.run.serial);
+        console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
+    }
+    Ok(())
 }
 
 /// Prints a result, which is the command's only one.

@@ -9,7 +9,6 @@
 //! Whatever is wrong with a plan is found when it is loaded, before any board is touched.
 
 pub mod check_digit;
-mod error;
 mod files;
 pub mod limits;
 mod read;
@@ -27,7 +26,7 @@ use halfrow::FrameSource;
 use halfrow::optics::Chosen;
 use halfrow::result::FileHash;
 
-pub use error::PlanError;
+use crate::input_error::InputError;
 pub(crate) use files::plan_hash;
 use limits::Limit;
 use serial::{Serial, SerialError, SerialRule};
@@ -155,10 +154,10 @@ impl Plan {
     /// The plan in the file `path`, whose own paths are relative to it.
     ///
     /// # Errors
-    /// [`PlanError`], with the line.
-    pub fn load(path: &Path) -> Result<Self, PlanError> {
+    /// [`InputError`], with the line.
+    pub fn load(path: &Path) -> Result<Self, InputError> {
         let text = fs::read_to_string(path)
-            .map_err(|source| PlanError::Unreadable { path: path.to_owned(), source })?;
+            .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
         Self::parse(path, text)
     }
 
@@ -166,7 +165,7 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Self::load`].
-    pub fn parse(path: &Path, text: String) -> Result<Self, PlanError> {
+    pub fn parse(path: &Path, text: String) -> Result<Self, InputError> {
         read::plan(path, &text).map_err(|fault| fault.in_file(path, &text)).map(|plan| Self { text, ..plan })
     }
 

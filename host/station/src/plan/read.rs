@@ -5,14 +5,16 @@ use std::time::Duration;
 
 use toml::Spanned;
 
-use super::error::Fault;
 use super::files::Files;
 use super::limits::{Limit, MEASUREMENTS, Maker, Measurement, SAMPLES_DIFFERING};
 use super::serial::SerialRule;
 use super::tables;
 use super::text::{BoardText, LimitText, LimitsText, PlanText, SeedText, StepKindText, StepText, TablesText};
 use super::{Act, Judging, Plan, SCHEMA, Seed, Selected, Step};
+use crate::input_error::Fault;
 
+/// Where all keys are listed.
+const KEYS: &str = "`halfrow-station plan schema` lists every key and its values";
 /// How long a step may take that does not say.
 const TIMEOUT: Duration = Duration::from_secs(120);
 /// The longest that one may say, in seconds.
@@ -26,7 +28,7 @@ const MOST_REPEATS: u32 = 1000;
 
 /// The plan of `text` in the file `path`; its own text is left to the caller.
 pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
-    let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error))?;
+    let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
     check_schema(&read)?;
     let [name, version, product] = [&read.plan.name, &read.plan.version, &read.plan.product].map(not_empty);
     let serial = SerialRule::new(read.serial.pattern.get_ref(), read.serial.check);

@@ -16,6 +16,14 @@ pub(super) const ADD_ATTACHMENT: &str = include_str!("../../sql/add-attachment.s
 pub(super) const VERDICT_OF: &str = include_str!("../../sql/verdict-of.sql");
 pub(super) const OPEN_RUNS: &str = include_str!("../../sql/open-runs.sql");
 pub(super) const FINAL_RUNS: &str = include_str!("../../sql/final-runs.sql");
+pub(super) const ADD_BINDING: &str = include_str!("../../sql/add-binding.sql");
+pub(super) const END_BINDINGS: &str = include_str!("../../sql/end-bindings.sql");
+pub(super) const UNIT_OF_DEVICE: &str = include_str!("../../sql/unit-of-device.sql");
+pub(super) const DEVICE_OF_UNIT: &str = include_str!("../../sql/device-of-unit.sql");
+pub(super) const UNITS_OF_SERIAL: &str = include_str!("../../sql/units-of-serial.sql");
+pub(super) const ADD_AUDIT: &str = include_str!("../../sql/add-audit.sql");
+pub(super) const AUDIT_OF_ACT: &str = include_str!("../../sql/audit-of-act.sql");
+pub(super) const OPEN_RUN_OF_UNIT: &str = include_str!("../../sql/open-run-of-unit.sql");
 
 /// The text as SQLite takes it.
 pub(super) fn for_sqlite(text: &str) -> String {
@@ -26,7 +34,7 @@ pub(super) fn for_sqlite(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [&str; 12] = [
+    const ALL: [&str; 20] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -39,6 +47,14 @@ mod tests {
         VERDICT_OF,
         OPEN_RUNS,
         FINAL_RUNS,
+        ADD_BINDING,
+        END_BINDINGS,
+        UNIT_OF_DEVICE,
+        DEVICE_OF_UNIT,
+        UNITS_OF_SERIAL,
+        ADD_AUDIT,
+        AUDIT_OF_ACT,
+        OPEN_RUN_OF_UNIT,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.

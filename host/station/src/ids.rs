@@ -13,7 +13,7 @@ pub struct NoRandomness(#[source] rand::rngs::SysError);
 ///
 /// # Errors
 /// [`NoRandomness`]
-pub(super) fn new(now_ms: i64) -> Result<Uuid, NoRandomness> {
+pub(crate) fn new(now_ms: i64) -> Result<Uuid, NoRandomness> {
     let mut random = [0; 10];
     SysRng.try_fill_bytes(&mut random).map_err(NoRandomness)?;
     Ok(Builder::from_unix_timestamp_millis(now_ms.max(0).unsigned_abs(), &random).into_uuid())
@@ -21,7 +21,7 @@ pub(super) fn new(now_ms: i64) -> Result<Uuid, NoRandomness> {
 
 /// The seed of the run of this id: 48 of its random bits, which any reader of JSON has room for.
 #[must_use]
-pub(super) fn seed(id: Uuid) -> u64 {
+pub(crate) fn seed(id: Uuid) -> u64 {
     (id.as_u128() & 0xffff_ffff_ffff) as u64
 }
 

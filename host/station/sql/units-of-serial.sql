@@ -1,0 +1,1 @@
+SELECT id, product FROM unit WHERE serial = $1 ORDER BY product;
