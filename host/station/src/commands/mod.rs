@@ -2,6 +2,7 @@
 
 mod check;
 mod lane;
+mod lanes;
 mod plan;
 mod rebind;
 mod run;
@@ -31,6 +32,7 @@ enum Command {
     Check(check::Arguments),
     Plan(plan::Arguments),
     Rebind(rebind::Arguments),
+    Lanes(lanes::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -72,6 +74,7 @@ impl Cli {
             Command::Check(arguments) => check::run(arguments),
             Command::Plan(arguments) => plan::run(arguments),
             Command::Rebind(arguments) => rebind::run(arguments),
+            Command::Lanes(arguments) => lanes::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }

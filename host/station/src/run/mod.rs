@@ -146,10 +146,8 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         seed: ids::seed(id),
     };
     let spool = store.with(|store| store.folder().spool(&head.id));
-    let silence = order.silence.saturating_add(longest_link_test(selected));
-    let patience = Patience { silence, whole: whole(selected) };
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
-    let heard = supervise(order.program, &job, &spool, patience, &mut attending);
+    let heard = supervise(order.program, &job, &spool, patience(order, selected), &mut attending);
     attending.watch.hear(Stage::Saving);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let record = record(head, planned, order, selected, (heard, device), begun.elapsed());
@@ -191,6 +189,12 @@ impl Attendant for Attending<'_> {
             Err(error) => Ruling::Untold { why: format!("{:#}", anyhow::Error::from(error)) },
         }
     }
+}
+
+/// How long the lane is waited for.
+fn patience(order: &Order<'_>, selected: &Selected) -> Patience {
+    let silence = order.silence.saturating_add(longest_link_test(selected));
+    Patience { silence, whole: whole(selected) }
 }
 
 /// How long the longest link test is silent by its nature.
