@@ -12,12 +12,17 @@ use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 
 use super::{Failure, recovered, signals};
+use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::lane::Message;
 use crate::plan::Plan;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::store::{Folder, SharedStore, Store};
+
+/// What a run says that is no production.
+const NO_PRODUCTION: &str = "it counts as no production: its plan takes any kind of board, or the unit checks shifts, or \
+                             this shift is not checked yet";
 
 /// Judge one board by a plan, and save the result
 ///
@@ -66,6 +71,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let mut store = Store::open(&Folder::new(&arguments.data))?;
     recovered(&mut store)?;
     let station = arguments.station.clone().unwrap_or_else(this_computer);
+    let owed = store.folder().owed(&station, &arguments.lane, &plan, clock::now_ms())?;
     let order = Order {
         plan: &plan,
         plan_file: &plan_file,
@@ -75,6 +81,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         lane: &arguments.lane,
         operator: &arguments.operator,
         program: &program,
+        counts: plan.counts(&arguments.serial) && owed.is_none(),
         silence: arguments.silence,
     };
     // Closing the database takes a while, and the verdict does not wait for it.
@@ -138,7 +145,7 @@ fn text(saved: &Saved) -> String {
         lines.push("marginal  a step needed more than one try".to_owned());
     }
     if !record.production {
-        lines.push("this plan takes any kind of board, so the run counts as no production".to_owned());
+        lines.push(NO_PRODUCTION.to_owned());
     }
     lines.push(format!("run       {}, the unit's judgement {}", record.run.id, stored.nth));
     lines.push(format!("record    {}", stored.record_sha256));

@@ -11,8 +11,11 @@ use halfrow::verdict::StoppedBy;
 use super::bay::{self, Shared, StopAsked};
 use super::news::{LaneState, News};
 use super::{Board, Heard, Input};
-use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, ScanError, Word};
+use crate::clock;
+use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
 use crate::presence::{Presence, USB, is_there};
+use crate::settings::Settings;
+use crate::store::Folder;
 
 /// How often boards are looked for.
 const LOOK: Duration = Duration::from_millis(500);
@@ -95,6 +98,7 @@ impl AtWork {
     fn look(&mut self) {
         let now = self.now();
         for lane in 0..self.presence.len() {
+            self.check(lane);
             let Some(settings) = self.shared.settings.lanes.get(lane) else { continue };
             let is_seen = is_there(&settings.board, Path::new(USB));
             let changed = self.presence.get_mut(lane).and_then(|presence| presence.look(is_seen, now));
@@ -102,6 +106,27 @@ impl AtWork {
                 self.happened(lane, Event::Present(is_present));
             }
         }
+    }
+
+    /// What a lane owes to the shift, as the store says; it is out of service while that cannot be told.
+    fn owed(&self, lane: usize) -> Option<Owes> {
+        let Settings { name, data, lanes, plans, .. } = &self.shared.settings;
+        let settings = lanes.get(lane)?;
+        settings.plans.iter().find_map(|&plan| {
+            let of = &plans.get(plan)?.plan;
+            match Folder::new(data).owed(name, &settings.name, of, clock::now_ms()) {
+                Ok(owed) => owed.map(|owed| Owes { plan, serial: Some(owed.serial), why: owed.why }),
+                Err(error) => {
+                    let why = format!("{:#}", anyhow::Error::from(error));
+                    Some(Owes { plan, serial: None, why })
+                }
+            }
+        })
+    }
+
+    fn check(&mut self, lane: usize) {
+        let owed = self.owed(lane);
+        self.happened(lane, Event::Owes(owed));
     }
 
     fn scan(&mut self, number: u64, text: String, operator: String) {
@@ -138,7 +163,13 @@ impl AtWork {
     fn heard(&mut self, lane: usize, heard: Heard) {
         let name = || self.floor.lanes().get(lane).map_or_else(String::new, |lane| lane.name().to_owned());
         match heard {
-            Heard::Happened(event) => self.happened(lane, event),
+            Heard::Happened(event) => {
+                let is_over = matches!(event, Event::Ended(_));
+                self.happened(lane, event);
+                if is_over {
+                    self.check(lane);
+                }
+            }
             Heard::Doing { run, what, rows } => self.tell(&News::Doing { lane: name(), run, what, rows }),
             Heard::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),
         }

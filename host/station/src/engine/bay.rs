@@ -79,6 +79,8 @@ fn carried_out(
         lane: &of.name,
         operator,
         program: &shared.program,
+        // A lane that owes its shift a check takes no other board.
+        counts: file.plan.counts(&accepted.serial),
         silence: *silence,
     };
     let mut watched = Watched { shared, lane, run: String::new(), stop };

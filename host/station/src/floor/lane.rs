@@ -8,7 +8,7 @@
 
 use halfrow::Verdict;
 
-use super::words::{Accepted, Effect, Event, Refusal, Shown, Starts, Word};
+use super::words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Phase {
@@ -30,14 +30,15 @@ pub struct Lane {
     waiting: Option<Accepted>,
     shown: Option<Shown>,
     note: Option<String>,
+    owes: Option<Owes>,
 }
 
 impl Lane {
     /// A lane without a board.
     #[must_use]
     pub fn new(name: impl Into<String>, starts: Starts) -> Self {
-        let (is_present, waiting, shown, note) = (false, None, None, None);
-        Self { name: name.into(), starts, phase: Phase::Idle, is_present, waiting, shown, note }
+        let (is_present, waiting, shown, note, owes) = (false, None, None, None, None);
+        Self { name: name.into(), starts, phase: Phase::Idle, is_present, waiting, shown, note, owes }
     }
 
     /// Its name.
@@ -54,6 +55,7 @@ impl Lane {
             (Phase::Running { .. }, _) => Word::Running,
             (Phase::Saving { .. }, _) => Word::Saving,
             (Phase::Unsaved { .. }, _) => Word::Unsaved,
+            (Phase::Idle | Phase::Ended, _) if self.owes.is_some() => Word::Out,
             (Phase::Ended, Some(Verdict::Pass)) => Word::Pass,
             (Phase::Ended, Some(Verdict::Fail)) => Word::Fail,
             (Phase::Ended, Some(Verdict::Error)) => Word::Error,
@@ -107,6 +109,9 @@ impl Lane {
     pub fn note(&self) -> Option<&str> {
         match &self.phase {
             Phase::Out { why } | Phase::Unsaved { why, .. } => Some(why),
+            Phase::Idle | Phase::Ended if self.owes.is_some() => {
+                self.owes.as_ref().map(|owes| owes.why.as_str())
+            }
             _ => self.note.as_deref(),
         }
     }
@@ -127,6 +132,10 @@ impl Lane {
                 None
             }),
             Event::In => self.back(),
+            Event::Owes(owes) => {
+                self.owes = owes;
+                Ok(None)
+            }
             told => Ok(self.told(told)),
         }
     }
@@ -166,6 +175,12 @@ impl Lane {
 
     fn given(&mut self, accepted: Accepted) -> Result<Option<Effect>, Refusal> {
         self.free()?;
+        let is_owed = |owes: &Owes| {
+            (owes.plan, owes.serial.as_deref()) == (accepted.plan, Some(accepted.serial.as_str()))
+        };
+        if let Some(owes) = self.owes.as_ref().filter(|owes| !is_owed(owes)) {
+            return Err(Refusal::Owes { lane: self.name.clone(), why: owes.why.clone() });
+        }
         if self.starts.scan && self.is_present {
             return Ok(Some(self.begin(accepted)));
         }

@@ -14,7 +14,7 @@ use std::time::Duration;
 
 pub use lane::Lane;
 pub use scan::{Act, Scan, UnknownBarcode};
-pub use words::{Accepted, Effect, Event, Refusal, Shown, Starts, Word};
+pub use words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
 
 use crate::plan::serial::{SerialError, SerialRule};
 

@@ -107,6 +107,19 @@ pub enum Event {
     },
     /// Its process cannot be killed, and may still have the board.
     Stuck,
+    /// What it is to do before its production counts, if anything.
+    Owes(Option<Owes>),
+}
+
+/// A unit that a lane is to test before any other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Owes {
+    /// The plan, by its place in the station's list.
+    pub plan: usize,
+    /// The serial number of the unit; none when it cannot be told which.
+    pub serial: Option<String>,
+    /// Why.
+    pub why: String,
 }
 
 /// What is to be done.
@@ -134,6 +147,14 @@ pub enum Refusal {
         /// The lane.
         lane: String,
         /// Why.
+        why: String,
+    },
+    /// It was not checked in this shift.
+    #[error("lane {lane} is out of service: {why}")]
+    Owes {
+        /// The lane.
+        lane: String,
+        /// What is to be done.
         why: String,
     },
     /// A run is under way.

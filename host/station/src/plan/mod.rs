@@ -70,12 +70,25 @@ pub struct Plan {
     pub builds: Vec<String>,
     /// Whether a board must say which device it is.
     pub device: DeviceRule,
+    /// The units that check every lane in each shift; none if production counts without.
+    pub shift: Option<Shift>,
     /// The files that it names, in order.
     pub files: Vec<FileHash>,
     /// What is done with boards of no named variant.
     base: Selected,
     /// And with those of each variant, by its name.
     variants: Vec<(String, Selected)>,
+}
+
+/// How a lane is checked before its production counts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shift {
+    /// The serial number of a unit that must pass.
+    pub good: String,
+    /// That of one that must fail.
+    pub bad: String,
+    /// How long the two count.
+    pub lasts: Duration,
 }
 
 /// What is done with one board.
@@ -177,6 +190,18 @@ impl Plan {
         let serial = self.serial.read(scanned)?;
         let selected = self.variant(&serial.variant);
         Ok((serial, selected))
+    }
+
+    /// Whether the unit of this serial number checks shifts, and is no product.
+    #[must_use]
+    pub fn is_reference(&self, serial: &str) -> bool {
+        self.shift.as_ref().is_some_and(|shift| shift.good == serial || shift.bad == serial)
+    }
+
+    /// Whether a run of this serial number can count as production.
+    #[must_use]
+    pub fn counts(&self, serial: &str) -> bool {
+        self.require_hardware && !self.is_reference(serial)
     }
 
     /// What is done with boards of this variant.

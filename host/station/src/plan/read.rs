@@ -9,8 +9,10 @@ use super::files::Files;
 use super::limits::{Limit, MEASUREMENTS, Maker, Measurement, SAMPLES_DIFFERING};
 use super::serial::SerialRule;
 use super::tables;
-use super::text::{BoardText, LimitText, LimitsText, PlanText, SeedText, StepKindText, StepText, TablesText};
-use super::{Act, Judging, Plan, SCHEMA, Seed, Selected, Step};
+use super::text::{
+    BoardText, LimitText, LimitsText, PlanText, SeedText, ShiftText, StepKindText, StepText, TablesText,
+};
+use super::{Act, Judging, Plan, SCHEMA, Seed, Selected, Shift, Step};
 use crate::input_error::Fault;
 
 /// Where all keys are listed.
@@ -21,6 +23,8 @@ const TIMEOUT: Duration = Duration::from_secs(120);
 const MOST_SECONDS: f64 = 86_400.0;
 /// The longest part of a link test, in seconds.
 const MOST_LINK_SECONDS: f64 = 3600.0;
+/// The longest shift, in hours.
+const MOST_SHIFT_HOURS: f64 = 168.0;
 /// The most tries behind the first.
 const MOST_RETRIES: u32 = 10;
 /// The most repetitions of a step's frames.
@@ -35,6 +39,7 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
     let serial =
         serial.map_err(|(what, remedy)| Fault::wrong(read.serial.pattern.span().start, what, remedy))?;
     let builds = builds(&read.board)?;
+    let shift = read.shift.as_ref().map(|text| shift(text, &serial)).transpose()?;
     let mut files = Files::beside(path);
     let base = selected(&read, &read.tables, &LimitsText::new(), &mut files)?;
     let variants = variants(&read, &serial, &mut files)?;
@@ -49,6 +54,7 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
         require_hardware: read.board.require_hardware,
         builds,
         device: read.board.device,
+        shift,
         files,
         base,
         variants,
@@ -65,6 +71,25 @@ fn check_schema(read: &PlanText) -> Result<(), Fault> {
         ));
     }
     Ok(())
+}
+
+/// The units that check a shift, whose serial numbers are the product's.
+fn shift(text: &ShiftText, rule: &SerialRule) -> Result<Shift, Fault> {
+    for unit in [&text.good, &text.bad] {
+        rule.read(unit.get_ref())
+            .map_err(|error| Fault::input(unit.span().start, "the unit that checks a shift", error))?;
+    }
+    if text.good.get_ref() == text.bad.get_ref() {
+        let what = "one unit is both good and bad";
+        return Err(Fault::wrong(text.bad.span().start, what, "name two units"));
+    }
+    let hours = *text.hours.get_ref();
+    if !(0.1..=MOST_SHIFT_HOURS).contains(&hours) {
+        let remedy = format!("write 0.1 to {MOST_SHIFT_HOURS} hours");
+        return Err(Fault::wrong(text.hours.span().start, format!("no shift has {hours} hours"), remedy));
+    }
+    let [good, bad] = [&text.good, &text.bad].map(|unit| unit.get_ref().clone());
+    Ok(Shift { good, bad, lasts: Duration::from_secs_f64(3600.0 * hours) })
 }
 
 /// What is done with the boards of each variant that is named.

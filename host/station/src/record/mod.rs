@@ -38,7 +38,8 @@ pub struct Record {
     pub conclusion: Conclusion,
     /// The plan, whole.
     pub plan: PlanRecord,
-    /// Whether the plan takes hardware alone: without that no run counts as production.
+    /// Whether the run counts as production: the plan takes hardware alone, the unit is none that checks shifts, and the
+    /// shift was checked.
     pub production: bool,
     /// Whether a step needed more than one try.
     pub marginal: bool,

@@ -51,6 +51,8 @@ pub struct Order<'a> {
     pub operator: &'a str,
     /// The program whose `lane` is started.
     pub program: &'a Path,
+    /// Whether the run counts as production: the board is a product, and the lane was checked in this shift.
+    pub counts: bool,
     /// How long the lane may be silent, beside the link tests of the plan.
     pub silence: Duration,
 }
@@ -252,7 +254,7 @@ fn record(
         seconds: Some(seconds),
         conclusion,
         plan,
-        production: order.plan.require_hardware,
+        production: order.counts,
         marginal: steps.iter().any(|step| step.attempt > 1),
         board: steps.iter().find_map(|step| step.board.clone()),
         device,

@@ -15,6 +15,7 @@ mod error;
 mod migrations;
 mod rows;
 mod shared;
+mod shift;
 mod snapshot;
 mod statements;
 
@@ -28,6 +29,7 @@ use rusqlite::{Connection, OpenFlags, OptionalExtension as _, TransactionBehavio
 pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub use error::StoreError;
 pub use shared::SharedStore;
+pub use shift::Owed;
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
 
 use crate::clock;

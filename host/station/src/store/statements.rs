@@ -23,6 +23,7 @@ pub(super) const DEVICE_OF_UNIT: &str = include_str!("../../sql/device-of-unit.s
 pub(super) const UNITS_OF_SERIAL: &str = include_str!("../../sql/units-of-serial.sql");
 pub(super) const ADD_AUDIT: &str = include_str!("../../sql/add-audit.sql");
 pub(super) const AUDIT_OF_ACT: &str = include_str!("../../sql/audit-of-act.sql");
+pub(super) const LAST_JUDGEMENT: &str = include_str!("../../sql/last-judgement.sql");
 pub(super) const OPEN_RUN_OF_UNIT: &str = include_str!("../../sql/open-run-of-unit.sql");
 
 /// The text as SQLite takes it.
@@ -34,7 +35,7 @@ pub(super) fn for_sqlite(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [&str; 20] = [
+    const ALL: [&str; 21] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -55,6 +56,7 @@ mod tests {
         ADD_AUDIT,
         AUDIT_OF_ACT,
         OPEN_RUN_OF_UNIT,
+        LAST_JUDGEMENT,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.

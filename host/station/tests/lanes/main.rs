@@ -7,3 +7,4 @@ mod ends;
 mod floor;
 mod hooks;
 mod refused;
+mod shift;
