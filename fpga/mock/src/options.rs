@@ -14,6 +14,8 @@ const TABLE_BANKS: Limits = Limits::new("table-banks", 1, 2);
 const MAX_WIDTH: Limits = Limits::new("max-width", 64, 2592);
 const MAX_HEIGHT: Limits = Limits::new("max-height", 1, 2048);
 const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
+/// As wide as the number that a Spartan-6 has, which is of 57 bits.
+const SERIAL: Limits = Limits::new("serial", 0, (1 << 57) - 1);
 
 /// The name of the option that says how many taps there are.
 const TAPS: &str = "taps";
@@ -88,6 +90,8 @@ pub struct Options {
     pub depths: Vec<Depth>,
     /// Pixel clock in Hz, 1 to 10^9. Told to the host, not kept to.
     pub pixel_clock: u32,
+    /// The FPGA's own number, below 2^57; 0 for none.
+    pub serial: u64,
 }
 
 impl Default for Options {
@@ -104,6 +108,7 @@ impl Default for Options {
             max_height: 2048,
             depths: Depth::ALL.to_vec(),
             pixel_clock: 96_000_000,
+            serial: 0,
         }
     }
 }
@@ -128,6 +133,7 @@ impl Options {
         MAX_WIDTH.check(self.max_width.into())?;
         MAX_HEIGHT.check(self.max_height.into())?;
         PIXEL_CLOCK.check(self.pixel_clock.into())?;
+        SERIAL.check(i64::try_from(self.serial).unwrap_or(i64::MAX))?;
         let (ring, max_width) = (self.ring_size(), self.max_width);
         RING.check(ring.into())?;
         if !ring.is_power_of_two() {
@@ -158,6 +164,7 @@ impl BoardOptions for Options {
         MAX_HEIGHT.key(),
         DEPTHS,
         PIXEL_CLOCK.key(),
+        SERIAL.key(),
     ];
 
     const FAULTS: &'static [Fault<BoardFault>] = FAULTS;
@@ -174,6 +181,7 @@ impl BoardOptions for Options {
             "max-width" => self.max_width = MAX_WIDTH.parse(value)?,
             "max-height" => self.max_height = MAX_HEIGHT.parse(value)?,
             "pixel-clock" => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
+            "serial" => self.serial = SERIAL.parse(value)?,
             TAPS => {
                 self.taps = parse_word(TAPS, value, &[("five", TapCount::Five), ("seven", TapCount::Seven)])?;
             }

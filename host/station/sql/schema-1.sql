@@ -121,8 +121,23 @@ CREATE TABLE waiver (
 
 CREATE INDEX waiver_run ON waiver (run_id);
 
+-- Which device has which serial number, from when to when. What a run bound has the id of the run; what a person bound has
+-- that of its line in the audit.
+CREATE TABLE binding (
+  id TEXT PRIMARY KEY CHECK (length(id) = 36),
+  device TEXT NOT NULL CHECK (length(device) = 16),
+  unit_id TEXT NOT NULL REFERENCES unit (id),
+  from_ms {int} NOT NULL,
+  to_ms {int},
+  by_operator TEXT NOT NULL,
+  reason TEXT NOT NULL
+){strict};
+
+CREATE UNIQUE INDEX binding_device_now ON binding (device) WHERE to_ms IS NULL;
+CREATE UNIQUE INDEX binding_unit_now ON binding (unit_id) WHERE to_ms IS NULL;
+
 CREATE TABLE audit (
-  id TEXT PRIMARY KEY,
+  id TEXT PRIMARY KEY CHECK (length(id) = 36),
   at_ms {int} NOT NULL,
   operator_id TEXT NOT NULL,
   act TEXT NOT NULL,

@@ -5,18 +5,26 @@
 //!                               │        │ JSON lines
 //!                               ▼        ▼
 //!                             record: one JSON file, by its hash ─► store: SQLite, its index
+//!
+//!  station.toml ─► settings ─► engine: scans in, news out; the floor says what is to be done, runs do it
 //! ```
 
 pub mod check;
 mod clock;
 pub mod commands;
 pub mod console;
+pub mod engine;
 pub mod exit;
 pub mod export;
+pub mod floor;
 pub mod history;
+mod ids;
+pub mod input_error;
 pub mod kept;
 pub mod lane;
 pub mod plan;
+mod presence;
 pub mod record;
 pub mod run;
+pub mod settings;
 pub mod store;

@@ -54,6 +54,10 @@ seed = 7
 [variant.W]
 tables = { radius = 30.0 }
 limits = { "latency.clocks" = { most = 1010 } }
+[shift]
+good = "CAW080442957X"
+bad = "CAN0306406152"
+hours = 8.0
 "#;
 
 fn load(text: &str) -> Result<Plan, String> {
@@ -131,7 +135,7 @@ fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
 }
 
 /// What is replaced in the plan, by what, and what is said then.
-const BAD: [(&str, &str, &str); 33] = [
+const BAD: [(&str, &str, &str); 36] = [
     ("schema = 1", "schema = 2", "plan.toml:1: this program reads plans of schema 1, not 2; take the"),
     ("schema = 1", "schema = 1\nschma = 1", "plan.toml:2: unknown field `schma`"),
     ("version = \"7\"", "version = \"7\"\nversion = \"8\"", "plan.toml:5: duplicate key"),
@@ -213,6 +217,17 @@ const BAD: [(&str, &str, &str); 33] = [
         "[WN]",
         "plan.toml:41: no serial number says that it is of the variant W; give the pattern",
     ),
+    (
+        "bad = \"CAN0306406152\"",
+        "bad = \"CAN0306406153\"",
+        "plan.toml:46: the unit that checks a shift cannot be used: the check digit of `CAN0306406153` is wrong",
+    ),
+    (
+        "bad = \"CAN0306406152\"",
+        "bad = \"CAW080442957X\"",
+        "plan.toml:46: one unit is both good and bad; name",
+    ),
+    ("hours = 8.0", "hours = 0.0", "plan.toml:47: no shift has 0 hours; write 0.1 to 168 hours"),
 ];
 
 #[test]
@@ -244,7 +259,7 @@ fn limits_need_a_step_that_measures_and_a_plan_one_that_judges() {
 #[test]
 fn a_plan_that_is_not_there_is_named() {
     let said = Plan::load(Path::new("no/plan.toml")).unwrap_err().to_string();
-    assert_eq!(said, "the plan no/plan.toml cannot be read; check its name, and who may read it");
+    assert_eq!(said, "no/plan.toml cannot be read; check its name, and who may read it");
 }
 
 fn as_json(text: &str) -> Option<Value> {

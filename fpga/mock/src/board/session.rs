@@ -99,7 +99,7 @@ impl Board {
             version: VERSION,
             session: self.session.number(),
             build: 0,
-            serial: 0,
+            serial: self.options.serial,
         })
     }
 

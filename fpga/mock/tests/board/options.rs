@@ -31,6 +31,7 @@ fn every_option_is_set_by_its_name() {
         ("max-height", "1944"),
         ("depths", "8+12"),
         ("pixel-clock", "50000000"),
+        ("serial", "144115188075855871"),
     ];
     let expected = Options {
         latency: 32,
@@ -44,6 +45,8 @@ fn every_option_is_set_by_its_name() {
         max_height: 1944,
         depths: vec![Depth::Eight, Depth::Twelve],
         pixel_clock: 50_000_000,
+        // The largest number of 57 bits.
+        serial: 0x01ff_ffff_ffff_ffff,
     };
     assert_eq!(options(&given), Ok(expected));
 }

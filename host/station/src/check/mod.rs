@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::plan::plan_hash;
 use crate::record::{BlobError, Blobs, Record, RecordError};
-use crate::store::{Folder, OpenRun, Rebuilt, Row, Snapshot, StoreError, TABLES};
+use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Row, Snapshot, StoreError, TABLES};
 
 /// What was looked at, and what is wrong.
 #[derive(Debug)]
@@ -52,6 +52,14 @@ pub enum Fault {
     Contradiction {
         /// The run.
         run: String,
+        /// Why.
+        source: Box<StoreError>,
+    },
+    /// A line of the audit does not fit the records.
+    #[error("the binding of line {id} of the audit does not fit the records: {source}")]
+    Audit {
+        /// The line.
+        id: String,
         /// Why.
         source: Box<StoreError>,
     },
@@ -109,13 +117,20 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
         pruned: 0,
         faults: Vec::new(),
     };
-    look.at_runs(&finals, &open);
+    look.at_all(&finals, &open, &snapshot.rebindings()?);
     faults.append(&mut look.faults);
     for (table, key) in TABLES {
         compare(table, key, snapshot.table(table, key)?, look.rebuilt.table(table, key)?, &mut faults);
     }
     let Look { evidence, pruned, .. } = look;
     Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, faults })
+}
+
+/// Something that the tables follow from.
+enum Entry<'a> {
+    Final { run: &'a str, hash: &'a str },
+    Open(&'a OpenRun),
+    Rebinding(&'a Rebinding),
 }
 
 struct Look {
@@ -129,25 +144,31 @@ struct Look {
 }
 
 impl Look {
-    /// Goes through the runs in the order in which they began.
-    fn at_runs(&mut self, finals: &[(String, String)], open: &[OpenRun]) {
-        let mut open = open.iter().peekable();
-        for (run, hash) in finals {
-            while let Some(earlier) = open.next_if(|open| open.run.id < *run) {
-                self.at_open(earlier);
-            }
-            if let Err(fault) = self.at_final(run, hash) {
-                self.faults.push(fault);
-            }
+    /// Goes through runs and changes of bindings in the order in which they began, which is that of their ids.
+    fn at_all(&mut self, finals: &[(String, String)], open: &[OpenRun], rebindings: &[Rebinding]) {
+        let finals = finals.iter().map(|(run, hash)| (run, Entry::Final { run, hash }));
+        let open = open.iter().map(|open| (&open.run.id, Entry::Open(open)));
+        let rebindings = rebindings.iter().map(|change| (&change.id, Entry::Rebinding(change)));
+        let mut all: Vec<_> = finals.chain(open).chain(rebindings).collect();
+        all.sort_by_key(|(id, _)| *id);
+        for (_, entry) in all {
+            let done = match entry {
+                Entry::Final { run, hash } => self.at_final(run, hash),
+                Entry::Open(open) => self.at_open(open),
+                Entry::Rebinding(change) => self.at_rebinding(change),
+            };
+            self.faults.extend(done.err());
         }
-        open.for_each(|open| self.at_open(open));
     }
 
-    fn at_open(&mut self, open: &OpenRun) {
-        if let Err(source) = self.rebuilt.add_open(open) {
-            let (run, source) = (open.run.id.clone(), Box::new(source));
-            self.faults.push(Fault::Contradiction { run, source });
-        }
+    fn at_rebinding(&mut self, change: &Rebinding) -> Result<(), Fault> {
+        let added = self.rebuilt.add_rebinding(change);
+        added.map_err(|source| Fault::Audit { id: change.id.clone(), source: Box::new(source) })
+    }
+
+    fn at_open(&mut self, open: &OpenRun) -> Result<(), Fault> {
+        let added = self.rebuilt.add_open(open);
+        added.map_err(|source| Fault::Contradiction { run: open.run.id.clone(), source: Box::new(source) })
     }
 
     fn at_final(&mut self, run: &str, hash: &str) -> Result<(), Fault> {

@@ -9,7 +9,7 @@ use clap::Args;
 use super::Failure;
 use crate::console;
 use crate::exit::Exit;
-use crate::lane::child::{StopRequest, carry_out};
+use crate::lane::child::{Orders, carry_out, orders};
 use crate::lane::{Control, Job, Message};
 
 /// Carry out one run; the station starts it
@@ -24,10 +24,9 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
         let why = anyhow::Error::from(error);
         Failure::call(why.context("the first line is no job; `halfrow-station run` starts lanes, not people"))
     })?;
-    let request = StopRequest::default();
-    let heeded = request.clone();
-    thread::Builder::new().name("stdin".to_owned()).spawn(move || heed(&heeded)).map_err(Failure::error)?;
-    carry_out(&job, &request, &|message: &Message| {
+    let (orders, heeded) = orders();
+    thread::Builder::new().name("stdin".to_owned()).spawn(move || heed(&orders)).map_err(Failure::error)?;
+    carry_out(&job, &heeded, &|message: &Message| {
         // A station that hears nothing more is gone, and then stdin ends this process.
         if let Ok(line) = serde_json::to_string(message) {
             let _ = console::print(&line);
@@ -37,10 +36,10 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
 }
 
 /// Heeds what the station says until it is gone, and the lane with it.
-fn heed(request: &StopRequest) {
+fn heed(orders: &Orders) {
     for line in io::stdin().lock().lines().map_while(Result::ok) {
         if let Ok(control) = serde_json::from_str::<Control>(&line) {
-            request.ask(control.into());
+            orders.take(control);
         }
     }
     process::exit(Exit::Error.code().into());

@@ -5,10 +5,13 @@ mod export;
 mod history;
 mod kept;
 mod lane;
+mod lanes;
 mod looking;
 mod pareto;
 mod plan;
+mod rebind;
 mod run;
+mod signals;
 mod unit;
 mod waive;
 mod yields;
@@ -17,7 +20,8 @@ use clap::{ArgAction, Parser, Subcommand};
 
 use crate::console;
 use crate::exit::Exit;
-use crate::store::StoreError;
+use crate::run::{self as runs, RunError, Saved};
+use crate::store::{Store, StoreError};
 
 /// Judges boards on a production line by plans, and keeps every result.
 #[derive(Debug, Parser)]
@@ -44,6 +48,8 @@ enum Command {
     Restore(kept::Restore),
     Prune(kept::Prune),
     Plan(plan::Arguments),
+    Rebind(rebind::Arguments),
+    Lanes(lanes::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -93,6 +99,8 @@ impl Cli {
             Command::Restore(arguments) => kept::restore(arguments),
             Command::Prune(arguments) => kept::prune(arguments),
             Command::Plan(arguments) => plan::run(arguments),
+            Command::Rebind(arguments) => rebind::run(arguments),
+            Command::Lanes(arguments) => lanes::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }
@@ -103,6 +111,15 @@ impl From<StoreError> for Failure {
         let exit = if matches!(error, StoreError::InUse { .. }) { Exit::Busy } else { Exit::Error };
         Self { exit, error: error.into() }
     }
+}
+
+/// Closes what was under way when the station ended, and says so.
+fn recovered(store: &mut Store) -> Result<(), RunError> {
+    for Saved { record, .. } in runs::recover(store)? {
+        let (id, serial) = (&record.run.id, &record.run.serial);
+        console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
+    }
+    Ok(())
 }
 
 /// Prints a result, which is the command's only one.

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::limits::Limit;
-use crate::plan::{Act, JSON_SCHEMA, Plan, Seed, Selected, Step};
+use crate::plan::{Act, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
 
 /// Look at plans
 #[derive(Debug, Args)]
@@ -57,6 +57,10 @@ fn head(plan: &Plan) -> String {
         format!("builds    {}", builds.join(", ")),
     ];
     lines.extend(plan.files.iter().map(|file| format!("file      {} {}", file.path, file.sha256)));
+    if let Some(Shift { good, bad, lasts }) = &plan.shift {
+        let hours = lasts.as_secs_f64() / 3600.0;
+        lines.push(format!("shift     {good} passes and {bad} fails in each lane every {hours} hours"));
+    }
     if !plan.require_hardware {
         lines.push("any kind of board is judged, so no run counts as production".to_owned());
     }

@@ -10,16 +10,19 @@ use clap::Args;
 use halfrow::Verdict;
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-use signal_hook::flag;
 
-use super::Failure;
+use super::{Failure, recovered, signals};
+use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::lane::Message;
 use crate::plan::Plan;
-use crate::run::{self, Order, RunError, Saved};
-use crate::store::{Folder, Store};
+use crate::run::{self, Order, RunError, Saved, Stage, Watch};
+use crate::store::{Folder, SharedStore, Store};
+
+/// What a run says that is no production.
+const NO_PRODUCTION: &str = "it counts as no production: its plan takes any kind of board, or the unit checks shifts, or \
+                             this shift is not checked yet";
 
 /// Judge one board by a plan, and save the result
 ///
@@ -64,13 +67,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plan = Plan::load(&plan_file).map_err(Failure::call)?;
     plan.select(&arguments.serial).map_err(Failure::call)?;
     let program = std::env::current_exe().map_err(Failure::error)?;
-    let signal = signals().map_err(Failure::error)?;
+    let signal = signals::last().map_err(Failure::error)?;
     let mut store = Store::open(&Folder::new(&arguments.data))?;
-    for Saved { record, .. } in run::recover(&mut store)? {
-        let (id, serial) = (&record.run.id, &record.run.serial);
-        console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
-    }
+    recovered(&mut store)?;
     let station = arguments.station.clone().unwrap_or_else(this_computer);
+    let owed = store.folder().owed(&station, &arguments.lane, &plan, clock::now_ms())?;
     let order = Order {
         plan: &plan,
         plan_file: &plan_file,
@@ -80,10 +81,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         lane: &arguments.lane,
         operator: &arguments.operator,
         program: &program,
+        counts: plan.counts(&arguments.serial) && owed.is_none(),
         silence: arguments.silence,
     };
-    let stop = move || stopped_by(signal.load(Ordering::Relaxed));
-    let ended = run::run(&mut store, &order, &stop, &mut tell);
+    // Closing the database takes a while, and the verdict does not wait for it.
+    let store = SharedStore::new(store);
+    let ended = run::run(&store, &order, &mut Watched { signal });
     if let Err(RunError::Unsaved { .. }) = &ended {
         console::tell(&format!("UNSAVED {}: keep this board apart; it has no verdict", arguments.serial));
     }
@@ -101,18 +104,37 @@ impl From<RunError> for Failure {
     }
 }
 
-/// What the lane tells, for those who want to know.
-fn tell(message: &Message) {
+/// A run that signals end, and whose log is for those who want to know.
+struct Watched {
+    signal: Arc<AtomicUsize>,
+}
+
+impl Watch for Watched {
+    fn stop(&self) -> Option<StoppedBy> {
+        signals::stopped_by(self.signal.load(Ordering::Relaxed))
+    }
+
+    fn hear(&mut self, stage: Stage<'_>) {
+        match stage {
+            Stage::Begun(run) => tracing::info!("run {}", run.id),
+            Stage::Told(message) => log(message),
+            Stage::Saving => tracing::info!("the result is being saved"),
+        }
+    }
+}
+
+fn log(message: &Message) {
     match message {
         Message::Step { seq, attempt, name } => tracing::info!("step {seq}, {name}, try {attempt}"),
         Message::Doing { what } => tracing::info!("{what}"),
         Message::Ended { step } => tracing::info!("{} {}: {}", step.name, step.outcome.name(), step.detail),
+        Message::Identified { board } => tracing::info!("the board says it is {}", board.name),
         Message::Rows { .. } | Message::Done | Message::Refused { .. } => {}
     }
 }
 
 fn text(saved: &Saved) -> String {
-    let Saved { record, stored } = saved;
+    let Saved { record, stored, .. } = saved;
     let ended = &record.conclusion;
     let mut lines = vec![format!("{} {}: {}", ended.verdict, record.run.serial, ended.headline)];
     lines.extend(ended.remedy.iter().filter(|_| ended.verdict != Verdict::Pass).cloned());
@@ -123,7 +145,7 @@ fn text(saved: &Saved) -> String {
         lines.push("marginal  a step needed more than one try".to_owned());
     }
     if !record.production {
-        lines.push("this plan takes any kind of board, so the run counts as no production".to_owned());
+        lines.push(NO_PRODUCTION.to_owned());
     }
     lines.push(format!("run       {}, the unit's judgement {}", record.run.id, stored.nth));
     lines.push(format!("record    {}", stored.record_sha256));
@@ -143,20 +165,6 @@ fn exit(saved: &Saved) -> Exit {
         Exit::Terminated,
     ];
     all.into_iter().find(|exit| exit.code() == saved.stored.exit_code).unwrap_or(Exit::Error)
-}
-
-/// Holds the exit code of the last signal, and 0 before.
-fn signals() -> std::io::Result<Arc<AtomicUsize>> {
-    let last = Arc::new(AtomicUsize::new(0));
-    for (signal, exit) in [(SIGINT, Exit::Interrupted), (SIGTERM, Exit::Terminated), (SIGHUP, Exit::HungUp)] {
-        flag::register_usize(signal, Arc::clone(&last), exit.code().into())?;
-    }
-    Ok(last)
-}
-
-fn stopped_by(code: usize) -> Option<StoppedBy> {
-    let by = [StoppedBy::Person, StoppedBy::System, StoppedBy::Disconnection];
-    by.into_iter().find(|&by| usize::from(Exit::from(halfrow::Cause::Stopped(by)).code()) == code)
 }
 
 /// This computer's name.

@@ -9,14 +9,17 @@ use halfrow::link_test::{self, Figures, LinkTestError};
 use halfrow::result::{BoardReport, Identity, Problem};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
-use halfrow::verdict::{Cause, Verdict};
+use halfrow::verdict::{Cause, StoppedBy, Verdict};
 use halfrow::{Progress, Report, RunOptions};
 use serde_json::Value;
 
+use super::Ruling;
 use crate::exit::Exit;
 use crate::plan::limits::{Limit, Maker, SAMPLES_DIFFERING};
 use crate::plan::{DeviceRule, Judging, Plan};
-use crate::record::{BoardSeen, Measured, RunCause, StepOutcome, SuspectRecord, judged};
+use crate::record::{
+    BoardSeen, IDENTITY_NOT_CHECKED, Measured, RunCause, StepOutcome, SuspectRecord, judged,
+};
 
 /// What a try of a step came to.
 #[derive(Debug)]
@@ -61,6 +64,12 @@ impl Try {
         Self { remedy: Some(remedy.to_owned()), ..Self::of(Cause::Refused, "", detail) }
     }
 
+    /// Somebody mixed boards up.
+    fn mixed_up(detail: String, remedy: String) -> Self {
+        let refused = Self::of(Cause::Refused, "", detail);
+        Self { cause: RunCause::Operator, remedy: Some(remedy), ..refused }
+    }
+
     /// With these measurements: a PASS that misses a limit is what the limit says, and a FAIL with a limit that blames
     /// the station is ERROR.
     fn measured(mut self, measurements: Vec<Measured>) -> Self {
@@ -91,6 +100,8 @@ pub(super) struct Common<'a> {
     pub(super) target: &'a Target,
     pub(super) seed: u64,
     pub(super) stop: &'a Stop,
+    /// Asks the station whether the board may be judged under the serial number; says who wants the run to end instead.
+    pub(super) rule: &'a dyn Fn(&BoardSeen) -> Result<Ruling, StoppedBy>,
     pub(super) limits: &'a [Limit],
     /// The board that the run began with.
     pub(super) first: Option<BoardSeen>,
@@ -106,8 +117,14 @@ impl Common<'_> {
         let identity = Identity::of(&board.welcome, &board.capabilities);
         close(&mut board);
         let seen = seen(kind, &identity);
+        let result = self.not_allowed(kind, &seen).unwrap_or_else(|| self.ruled(&seen));
+        Try { board: Some(seen), ..result }
+    }
+
+    /// Why the plan takes no such board.
+    fn not_allowed(&self, kind: BoardKind, seen: &BoardSeen) -> Option<Try> {
         let Plan { require_hardware, builds, device, .. } = self.plan;
-        let refused = if *require_hardware && kind != BoardKind::Hardware {
+        if *require_hardware && kind != BoardKind::Hardware {
             let detail = format!("the board is a {kind}, and the plan takes hardware alone");
             Some(Try::refused(detail, "Check the lane's target."))
         } else if !builds.contains(&seen.build) {
@@ -119,14 +136,25 @@ impl Common<'_> {
             Some(Try::refused(detail, "Load a build that reads the FPGA's own number."))
         } else {
             None
+        }
+    }
+
+    /// Whether the device may be judged under the serial number, which the station knows.
+    fn ruled(&self, seen: &BoardSeen) -> Try {
+        let of = |known: &str| {
+            let detail = format!("{} ({}), build {}, {known}", seen.name, seen.kind, seen.build);
+            Try::of(Cause::Equal, "", detail)
         };
-        let known = match (&seen.device, device) {
-            (Some(device), DeviceRule::Required | DeviceRule::IfPresent) => format!("device {device}"),
-            _ => "identity not checked".to_owned(),
+        let Some(device) = seen.device.as_ref().filter(|_| self.plan.device != DeviceRule::NotChecked) else {
+            return of(IDENTITY_NOT_CHECKED);
         };
-        let detail = format!("{} ({}), build {}, {known}", seen.name, seen.kind, seen.build);
-        let result = refused.unwrap_or_else(|| Try::of(Cause::Equal, "", detail));
-        Try { board: Some(seen), ..result }
+        match (self.rule)(seen) {
+            Ok(Ruling::Known) => of(&format!("device {device}")),
+            Ok(Ruling::New) => of(&format!("device {device}, seen for the first time")),
+            Ok(Ruling::Refused { why, remedy }) => Try::mixed_up(why, remedy),
+            Ok(Ruling::Untold { why }) => Try::of(Cause::Station, "", why),
+            Err(by) => Try::of(Cause::Stopped(by), "", "the run was stopped before the board was judged"),
+        }
     }
 
     /// Tests the link.

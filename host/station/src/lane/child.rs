@@ -1,6 +1,8 @@
 //! The lane's own side: carries a job out and tells of it. It ends no process and prints nothing.
 
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, OnceLock};
+use std::time::Duration;
 
 use halfrow::board::Stop;
 use halfrow::target::Target;
@@ -8,33 +10,73 @@ use halfrow::verdict::StoppedBy;
 
 use super::acts::{Common, Try};
 use super::progress::Told;
-use super::{Job, Message};
+use super::{Control, Job, Message, Ruling};
 use crate::clock;
 use crate::plan::{Act, Plan, Step};
-use crate::record::{StepOutcome, StepRecord};
+use crate::record::{BoardSeen, StepOutcome, StepRecord};
 
-/// Who wants the job to end early, as soon as somebody does.
-#[derive(Clone, Debug, Default)]
-pub struct StopRequest(Arc<OnceLock<StoppedBy>>);
+/// How often a lane that waits for the station looks whether it is to end.
+const LOOK: Duration = Duration::from_millis(50);
 
-impl StopRequest {
-    /// Somebody wants it to end. The first one counts.
-    pub fn ask(&self, by: StoppedBy) {
-        // Whoever asked before has been heard.
-        let _ = self.0.set(by);
+/// Hands on what the station says while the job is under way.
+#[derive(Clone, Debug)]
+pub struct Orders {
+    stop: Arc<OnceLock<StoppedBy>>,
+    rulings: Sender<Ruling>,
+}
+
+/// What the station has said.
+#[derive(Debug)]
+pub struct Heeded {
+    stop: Arc<OnceLock<StoppedBy>>,
+    rulings: Receiver<Ruling>,
+}
+
+/// The two ends between whoever reads what the station says and the job.
+#[must_use]
+pub fn orders() -> (Orders, Heeded) {
+    let (stop, (sender, rulings)) = (Arc::default(), mpsc::channel());
+    (Orders { stop: Arc::clone(&stop), rulings: sender }, Heeded { stop, rulings })
+}
+
+impl Orders {
+    /// The station has said `control`.
+    pub fn take(&self, control: Control) {
+        match control {
+            // The first one counts.
+            Control::Stop(stopper) => drop(self.stop.set(stopper.into())),
+            // A job that is over waits for none.
+            Control::Device(ruling) => drop(self.rulings.send(ruling)),
+        }
+    }
+}
+
+impl Heeded {
+    fn stop(&self) -> Stop {
+        let asked = Arc::clone(&self.stop);
+        Stop::when(move || asked.get().copied())
     }
 
-    fn stop(&self) -> Stop {
-        let asked = Arc::clone(&self.0);
-        Stop::when(move || asked.get().copied())
+    /// The next ruling; who wants the job to end, if that comes first.
+    fn ruling(&self) -> Result<Ruling, StoppedBy> {
+        loop {
+            match self.rulings.recv_timeout(LOOK) {
+                Ok(ruling) => return Ok(ruling),
+                Err(RecvTimeoutError::Disconnected) => return Err(StoppedBy::System),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if let Some(by) = self.stop.get() {
+                return Err(*by);
+            }
+        }
     }
 }
 
 /// Carries the job out, step by step, and tells of it. A step that does not pass is the last one.
-pub fn carry_out(job: &Job, request: &StopRequest, tell: &(dyn Fn(&Message) + Sync)) {
+pub fn carry_out(job: &Job, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
     match prepared(job) {
         Ok((plan, target)) => {
-            steps(job, &plan, &target, request, tell);
+            steps(job, &plan, &target, heeded, tell);
             tell(&Message::Done);
         }
         Err(why) => tell(&Message::Refused { why }),
@@ -54,10 +96,14 @@ fn prepared(job: &Job) -> Result<(Plan, Target), String> {
     Ok((plan, target))
 }
 
-fn steps(job: &Job, plan: &Plan, target: &Target, request: &StopRequest, tell: &(dyn Fn(&Message) + Sync)) {
+fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
     let selected = plan.variant(&job.variant);
-    let (stop, limits) = (request.stop(), selected.limits.as_slice());
-    let mut common = Common { plan, target, seed: job.seed, stop: &stop, limits, first: None };
+    let (stop, limits) = (heeded.stop(), selected.limits.as_slice());
+    let rule = |board: &BoardSeen| {
+        tell(&Message::Identified { board: board.clone() });
+        heeded.ruling()
+    };
+    let mut common = Common { plan, target, seed: job.seed, stop: &stop, rule: &rule, limits, first: None };
     for (step, seq) in selected.steps.iter().zip(1..) {
         let mut attempt = 1;
         let passed = loop {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use halfrow::verdict::StoppedBy;
 use serde::{Deserialize, Serialize};
 
-use crate::record::StepRecord;
+use crate::record::{BoardSeen, StepRecord};
 
 /// What the lane is to do: the first line that it reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -28,18 +28,50 @@ pub struct Job {
 }
 
 /// What the lane reads after it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "stop", rename_all = "lowercase")]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Control {
-    /// A person wants it to end.
+    /// The run is to end.
+    Stop(Stopper),
+    /// The answer to [`Message::Identified`].
+    Device(Ruling),
+}
+
+/// Who wants a run to end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stopper {
+    /// A person.
     Person,
-    /// The system does.
+    /// The system.
     System,
-    /// The terminal is gone.
+    /// Nobody: the terminal is gone.
     Disconnection,
 }
 
-impl From<StoppedBy> for Control {
+/// Whether a device may be judged under the serial number of the run.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Ruling {
+    /// It may: neither was seen before.
+    New,
+    /// It may: they belong together.
+    Known,
+    /// It may not: somebody mixed boards up.
+    Refused {
+        /// Why.
+        why: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// It cannot be told.
+    Untold {
+        /// Why.
+        why: String,
+    },
+}
+
+impl From<StoppedBy> for Stopper {
     fn from(by: StoppedBy) -> Self {
         match by {
             StoppedBy::Person | StoppedBy::Caller => Self::Person,
@@ -49,12 +81,12 @@ impl From<StoppedBy> for Control {
     }
 }
 
-impl From<Control> for StoppedBy {
-    fn from(control: Control) -> Self {
-        match control {
-            Control::Person => Self::Person,
-            Control::System => Self::System,
-            Control::Disconnection => Self::Disconnection,
+impl From<Stopper> for StoppedBy {
+    fn from(stopper: Stopper) -> Self {
+        match stopper {
+            Stopper::Person => Self::Person,
+            Stopper::System => Self::System,
+            Stopper::Disconnection => Self::Disconnection,
         }
     }
 }
@@ -71,6 +103,11 @@ pub enum Message {
         attempt: u32,
         /// The step's name.
         name: String,
+    },
+    /// The board said which device it is; no frame is sent before [`Control::Device`] answers.
+    Identified {
+        /// The board.
+        board: BoardSeen,
     },
     /// The step does something else.
     Doing {

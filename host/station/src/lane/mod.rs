@@ -5,7 +5,7 @@
 //!             ◄── messages, one JSON line each ── stdout    lane ─► the judge ─► board
 //! ```
 //!
-//! The lane has neither store nor verdict. It ends when its stdin does, so that it cannot outlive the station.
+//! The lane has neither store nor verdict: it asks the station whether the device may have the serial number. It ends when its stdin does, so that it cannot outlive the station.
 
 mod acts;
 pub mod child;
@@ -13,4 +13,4 @@ mod message;
 mod progress;
 pub mod supervisor;
 
-pub use message::{Control, Job, Message};
+pub use message::{Control, Job, Message, Ruling, Stopper};

@@ -14,8 +14,8 @@ use halfrow::verdict::StoppedBy;
 use nix::sys::signal::{Signal, killpg};
 use nix::unistd::Pid;
 
-use super::{Control, Job, Message};
-use crate::record::StepRecord;
+use super::{Control, Job, Message, Ruling};
+use crate::record::{BoardSeen, StepRecord};
 
 /// How often the supervisor looks whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(50);
@@ -58,27 +58,32 @@ pub enum End {
     Died(String),
     /// It was killed, since it was silent or took too long.
     Killed(String),
+    /// It should have been killed, and the system could not: it may still have the board.
+    Stuck(String),
 }
 
-/// Has a process of `program` do `job`, with what it writes down in the folder `spool`. `stop` is asked who wants it to
-/// end, and `hear` is told every message.
+/// Who attends to a lane while it works.
+pub trait Attendant {
+    /// Who wants it to end, as soon as somebody does.
+    fn stop(&self) -> Option<StoppedBy>;
+    /// The lane told something.
+    fn hear(&mut self, message: &Message);
+    /// Whether the board may be judged under the serial number of the run.
+    fn rule(&mut self, board: &BoardSeen) -> Ruling;
+}
+
+/// Has a process of `program` do `job`, with what it writes down in the folder `spool`.
 pub fn supervise(
     program: &Path,
     job: &Job,
     spool: &Path,
     patience: Patience,
-    stop: &dyn Fn() -> Option<StoppedBy>,
-    hear: &mut dyn FnMut(&Message),
+    attendant: &mut dyn Attendant,
 ) -> Heard {
     let mut steps = Vec::new();
     let end = match Lane::start(program, job, spool) {
         Ok(mut lane) => {
-            let end = lane.hear(patience, stop, &mut |message| {
-                if let Message::Ended { step } = message {
-                    steps.push(StepRecord::clone(step));
-                }
-                hear(message);
-            });
+            let end = lane.attended(patience, attendant, &mut steps);
             lane.end(end)
         }
         Err(error) => End::Died(format!("the lane could not be started: {error}")),
@@ -130,11 +135,11 @@ impl Lane {
     }
 
     /// Hears the lane until its last message, its end, or the end of patience.
-    fn hear(
+    fn attended(
         &mut self,
         patience: Patience,
-        stop: &dyn Fn() -> Option<StoppedBy>,
-        hear: &mut dyn FnMut(&Message),
+        attendant: &mut dyn Attendant,
+        steps: &mut Vec<StepRecord>,
     ) -> End {
         let begun = Instant::now();
         let (mut last, mut asked) = (begun, None);
@@ -147,7 +152,7 @@ impl Lane {
                     match serde_json::from_str(&line) {
                         Ok(Message::Done) => return End::Done,
                         Ok(Message::Refused { why }) => return End::Refused(why),
-                        Ok(message) => hear(&message),
+                        Ok(message) => self.answer(&message, attendant, steps),
                         Err(_) => return End::Killed(format!("the lane told what is no message: {line}")),
                     }
                 }
@@ -155,9 +160,9 @@ impl Lane {
                 Err(RecvTimeoutError::Timeout) => {}
             }
             if asked.is_none()
-                && let Some(by) = stop()
+                && let Some(by) = attendant.stop()
             {
-                self.tell(by.into());
+                self.tell(&Control::Stop(by.into()));
                 asked = Some(Instant::now());
             }
             if let Some(why) = impatient(patience, begun, last, asked) {
@@ -166,8 +171,18 @@ impl Lane {
         }
     }
 
-    fn tell(&mut self, control: Control) {
-        if let (Some(stdin), Ok(line)) = (&mut self.stdin, serde_json::to_string(&control)) {
+    /// Takes a message that is not the last, and answers the one that asks something.
+    fn answer(&mut self, message: &Message, attendant: &mut dyn Attendant, steps: &mut Vec<StepRecord>) {
+        attendant.hear(message);
+        match message {
+            Message::Ended { step } => steps.push(StepRecord::clone(step)),
+            Message::Identified { board } => self.tell(&Control::Device(attendant.rule(board))),
+            _ => {}
+        }
+    }
+
+    fn tell(&mut self, control: &Control) {
+        if let (Some(stdin), Ok(line)) = (&mut self.stdin, serde_json::to_string(control)) {
             // A lane that is gone has no need to be told.
             let _ = writeln!(stdin, "{line}");
         }
@@ -183,11 +198,13 @@ impl Lane {
             status = waited(&mut self.child);
         }
         match (end, status) {
-            (End::Killed(why), None) => End::Killed(format!("{why}, and could not even be killed")),
+            (End::Killed(why), None) => End::Stuck(format!("{why}, and could not even be killed")),
             (End::Died(_), Some(status)) => {
                 End::Died(format!("the lane ended before it was done ({status})"))
             }
-            (End::Died(_), None) => End::Killed("the lane fell silent for good".to_owned()),
+            (End::Died(_) | End::Done | End::Refused(_), None) => {
+                End::Stuck("the lane did not end, and could not even be killed".to_owned())
+            }
             (end, _) => end,
         }
     }

@@ -7,7 +7,7 @@ use halfrow::frames::check_regular;
 use halfrow::result::{FileHash, sha256};
 use toml::Spanned;
 
-use super::error::Fault;
+use crate::input_error::Fault;
 
 /// The files that were named so far, in order.
 #[derive(Debug)]

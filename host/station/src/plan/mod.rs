@@ -9,7 +9,6 @@
 //! Whatever is wrong with a plan is found when it is loaded, before any board is touched.
 
 pub mod check_digit;
-mod error;
 mod files;
 pub mod limits;
 mod read;
@@ -27,7 +26,7 @@ use halfrow::FrameSource;
 use halfrow::optics::Chosen;
 use halfrow::result::FileHash;
 
-pub use error::PlanError;
+use crate::input_error::InputError;
 pub(crate) use files::plan_hash;
 use limits::Limit;
 use serial::{Serial, SerialError, SerialRule};
@@ -71,12 +70,25 @@ pub struct Plan {
     pub builds: Vec<String>,
     /// Whether a board must say which device it is.
     pub device: DeviceRule,
+    /// The units that check every lane in each shift; none if production counts without.
+    pub shift: Option<Shift>,
     /// The files that it names, in order.
     pub files: Vec<FileHash>,
     /// What is done with boards of no named variant.
     base: Selected,
     /// And with those of each variant, by its name.
     variants: Vec<(String, Selected)>,
+}
+
+/// How a lane is checked before its production counts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shift {
+    /// The serial number of a unit that must pass.
+    pub good: String,
+    /// That of one that must fail.
+    pub bad: String,
+    /// How long the two count.
+    pub lasts: Duration,
 }
 
 /// What is done with one board.
@@ -155,10 +167,10 @@ impl Plan {
     /// The plan in the file `path`, whose own paths are relative to it.
     ///
     /// # Errors
-    /// [`PlanError`], with the line.
-    pub fn load(path: &Path) -> Result<Self, PlanError> {
+    /// [`InputError`], with the line.
+    pub fn load(path: &Path) -> Result<Self, InputError> {
         let text = fs::read_to_string(path)
-            .map_err(|source| PlanError::Unreadable { path: path.to_owned(), source })?;
+            .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
         Self::parse(path, text)
     }
 
@@ -166,7 +178,7 @@ impl Plan {
     ///
     /// # Errors
     /// As [`Self::load`].
-    pub fn parse(path: &Path, text: String) -> Result<Self, PlanError> {
+    pub fn parse(path: &Path, text: String) -> Result<Self, InputError> {
         read::plan(path, &text).map_err(|fault| fault.in_file(path, &text)).map(|plan| Self { text, ..plan })
     }
 
@@ -178,6 +190,18 @@ impl Plan {
         let serial = self.serial.read(scanned)?;
         let selected = self.variant(&serial.variant);
         Ok((serial, selected))
+    }
+
+    /// Whether the unit of this serial number checks shifts, and is no product.
+    #[must_use]
+    pub fn is_reference(&self, serial: &str) -> bool {
+        self.shift.as_ref().is_some_and(|shift| shift.good == serial || shift.bad == serial)
+    }
+
+    /// Whether a run of this serial number can count as production.
+    #[must_use]
+    pub fn counts(&self, serial: &str) -> bool {
+        self.require_hardware && !self.is_reference(serial)
     }
 
     /// What is done with boards of this variant.

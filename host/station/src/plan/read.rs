@@ -5,20 +5,26 @@ use std::time::Duration;
 
 use toml::Spanned;
 
-use super::error::Fault;
 use super::files::Files;
 use super::limits::{Limit, MEASUREMENTS, Maker, Measurement, SAMPLES_DIFFERING};
 use super::serial::SerialRule;
 use super::tables;
-use super::text::{BoardText, LimitText, LimitsText, PlanText, SeedText, StepKindText, StepText, TablesText};
-use super::{Act, Judging, Plan, SCHEMA, Seed, Selected, Step};
+use super::text::{
+    BoardText, LimitText, LimitsText, PlanText, SeedText, ShiftText, StepKindText, StepText, TablesText,
+};
+use super::{Act, Judging, Plan, SCHEMA, Seed, Selected, Shift, Step};
+use crate::input_error::Fault;
 
+/// Where all keys are listed.
+const KEYS: &str = "`halfrow-station plan schema` lists every key and its values";
 /// How long a step may take that does not say.
 const TIMEOUT: Duration = Duration::from_secs(120);
 /// The longest that one may say, in seconds.
 const MOST_SECONDS: f64 = 86_400.0;
 /// The longest part of a link test, in seconds.
 const MOST_LINK_SECONDS: f64 = 3600.0;
+/// The longest shift, in hours.
+const MOST_SHIFT_HOURS: f64 = 168.0;
 /// The most tries behind the first.
 const MOST_RETRIES: u32 = 10;
 /// The most repetitions of a step's frames.
@@ -26,13 +32,14 @@ const MOST_REPEATS: u32 = 1000;
 
 /// The plan of `text` in the file `path`; its own text is left to the caller.
 pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
-    let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error))?;
+    let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
     check_schema(&read)?;
     let [name, version, product] = [&read.plan.name, &read.plan.version, &read.plan.product].map(not_empty);
     let serial = SerialRule::new(read.serial.pattern.get_ref(), read.serial.check);
     let serial =
         serial.map_err(|(what, remedy)| Fault::wrong(read.serial.pattern.span().start, what, remedy))?;
     let builds = builds(&read.board)?;
+    let shift = read.shift.as_ref().map(|text| shift(text, &serial)).transpose()?;
     let mut files = Files::beside(path);
     let base = selected(&read, &read.tables, &LimitsText::new(), &mut files)?;
     let variants = variants(&read, &serial, &mut files)?;
@@ -47,6 +54,7 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
         require_hardware: read.board.require_hardware,
         builds,
         device: read.board.device,
+        shift,
         files,
         base,
         variants,
@@ -63,6 +71,25 @@ fn check_schema(read: &PlanText) -> Result<(), Fault> {
         ));
     }
     Ok(())
+}
+
+/// The units that check a shift, whose serial numbers are the product's.
+fn shift(text: &ShiftText, rule: &SerialRule) -> Result<Shift, Fault> {
+    for unit in [&text.good, &text.bad] {
+        rule.read(unit.get_ref())
+            .map_err(|error| Fault::input(unit.span().start, "the unit that checks a shift", error))?;
+    }
+    if text.good.get_ref() == text.bad.get_ref() {
+        let what = "one unit is both good and bad";
+        return Err(Fault::wrong(text.bad.span().start, what, "name two units"));
+    }
+    let hours = *text.hours.get_ref();
+    if !(0.1..=MOST_SHIFT_HOURS).contains(&hours) {
+        let remedy = format!("write 0.1 to {MOST_SHIFT_HOURS} hours");
+        return Err(Fault::wrong(text.hours.span().start, format!("no shift has {hours} hours"), remedy));
+    }
+    let [good, bad] = [&text.good, &text.bad].map(|unit| unit.get_ref().clone());
+    Ok(Shift { good, bad, lasts: Duration::from_secs_f64(3600.0 * hours) })
 }
 
 /// What is done with the boards of each variant that is named.

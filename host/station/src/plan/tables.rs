@@ -12,9 +12,9 @@ use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE
 use halfrow::tables::TableFile;
 use toml::Spanned;
 
-use super::error::Fault;
 use super::files::Files;
 use super::text::{RowsText, TablesText};
+use crate::input_error::Fault;
 
 impl TablesText {
     /// These, with what `over` says instead. A lens, a file and a radius take each other's place.

@@ -18,6 +18,7 @@ pub(super) struct PlanText {
     pub(super) plan: AboutText,
     pub(super) serial: SerialText,
     pub(super) board: BoardText,
+    pub(super) shift: Option<ShiftText>,
     #[serde(default)]
     pub(super) tables: TablesText,
     #[serde(default)]
@@ -52,6 +53,15 @@ pub(super) struct BoardText {
     pub(super) require_hardware: bool,
     pub(super) builds: Spanned<Vec<Spanned<String>>>,
     pub(super) device: super::DeviceRule,
+}
+
+/// `[shift]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ShiftText {
+    pub(super) good: Spanned<String>,
+    pub(super) bad: Spanned<String>,
+    pub(super) hours: Spanned<f64>,
 }
 
 /// `[tables]`, and what a step or a variant has instead.

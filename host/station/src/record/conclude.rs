@@ -3,7 +3,8 @@
 use halfrow::Verdict;
 use serde::{Deserialize, Serialize};
 
-use super::step::{Measured, RunCause, StepOutcome, StepRecord};
+use super::IDENTITY_NOT_CHECKED;
+use super::step::{DeviceSeen, Measured, RunCause, StepOutcome, StepRecord};
 use crate::exit::Exit;
 
 /// What a run came to.
@@ -49,6 +50,15 @@ impl Conclusion {
             headline: steps.last().map_or_else(String::new, |step| step.detail.clone()),
             remedy: None,
         })
+    }
+
+    /// A PASS says so when nobody could tell whether the board has the serial number that was scanned.
+    #[must_use]
+    pub fn knowing(self, device: DeviceSeen) -> Self {
+        if self.verdict == Verdict::Pass && device == DeviceSeen::NotChecked {
+            return Self { headline: format!("{}; {IDENTITY_NOT_CHECKED}", self.headline), ..self };
+        }
+        self
     }
 
     /// An ERROR of this cause.

@@ -12,8 +12,12 @@ pub(crate) use blobs::synced;
 pub use blobs::{BlobError, Blobs};
 pub use conclude::Conclusion;
 pub use step::{
-    BoardSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord, judged,
+    BoardSeen, DeviceSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord,
+    judged,
 };
+
+/// What a PASS says when nobody could tell whether the board has the serial number that was scanned.
+pub const IDENTITY_NOT_CHECKED: &str = "identity not checked";
 
 /// The version of the record's format.
 pub const SCHEMA: u32 = 1;
@@ -34,12 +38,15 @@ pub struct Record {
     pub conclusion: Conclusion,
     /// The plan, whole.
     pub plan: PlanRecord,
-    /// Whether the plan takes hardware alone: without that no run counts as production.
+    /// Whether the run counts as production: the plan takes hardware alone, the unit is none that checks shifts, and the
+    /// shift was checked.
     pub production: bool,
     /// Whether a step needed more than one try.
     pub marginal: bool,
     /// The board, as soon as it had said who it is.
     pub board: Option<BoardSeen>,
+    /// What the store knew of the board's device before it was judged.
+    pub device: DeviceSeen,
     /// Every try of every step, in order.
     pub steps: Vec<StepRecord>,
     /// Measurements of the run as a whole.
@@ -164,6 +171,13 @@ impl Record {
         Ok(bytes)
     }
 
+    /// The device that this run binds to its serial number: one that neither knew, once it is judged.
+    #[must_use]
+    pub fn binds(&self) -> Option<&str> {
+        let is_new = self.device == DeviceSeen::New && self.conclusion.verdict != Verdict::Error;
+        self.board.as_ref().filter(|_| is_new)?.device.as_deref()
+    }
+
     /// The record that these bytes are.
     ///
     /// # Errors
@@ -209,6 +223,7 @@ mod tests {
             production: true,
             marginal: false,
             board: None,
+            device: DeviceSeen::NotChecked,
             steps: Vec::new(),
             measurements: judged(Maker::Run, &[("run.seconds", Some(0.001))], &[]),
             suspects: Vec::new(),

@@ -108,7 +108,7 @@ pub enum RunCause {
     Link,
     /// The station, or this computer.
     Station,
-    /// Whoever stopped the run.
+    /// Whoever stopped the run, or scanned the label of another board.
     Operator,
     /// The program or the computer ended in the middle of it.
     Crash,
@@ -171,6 +171,18 @@ pub struct BoardSeen {
     pub device: Option<String>,
     /// The commit of its build, in hexadecimal.
     pub build: String,
+}
+
+/// What the store knows of a device under the serial number that was scanned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DeviceSeen {
+    /// Nobody looked: the board says no number, or the plan asks for none.
+    NotChecked,
+    /// Neither was seen before.
+    New,
+    /// They belong together.
+    Known,
 }
 
 /// A part that is suspected.

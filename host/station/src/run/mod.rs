@@ -5,7 +5,6 @@
 //!     └ recovered: a run that is found open is ERROR, cause crash, and never PASS
 //! ```
 
-pub(crate) mod ids;
 mod recovered;
 
 use std::fs;
@@ -15,20 +14,20 @@ use std::time::{Duration, Instant};
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 
-pub use ids::NoRandomness;
-pub use recovered::recover;
+pub use crate::ids::NoRandomness;
+pub use recovered::{recover, recover_run};
 
-use crate::clock;
-use crate::lane::supervisor::{EVENTS, End, Heard, LOG, Patience, supervise};
-use crate::lane::{Job, Message};
+use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG, Patience, supervise};
+use crate::lane::{Job, Message, Ruling};
 use crate::plan::limits::Maker;
 use crate::plan::serial::SerialError;
 use crate::plan::{Act, Plan, Selected, Step};
 use crate::record::{
-    Attachment, BlobError, Blobs, Conclusion, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
-    judged,
+    Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead,
+    SCHEMA, StepRecord, judged,
 };
-use crate::store::{Store, StoreError, Stored};
+use crate::store::{Admission, SharedStore, Store, StoreError, Stored};
+use crate::{clock, ids};
 
 /// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
 const LINK_TEST_PARTS: u32 = 5;
@@ -52,6 +51,8 @@ pub struct Order<'a> {
     pub operator: &'a str,
     /// The program whose `lane` is started.
     pub program: &'a Path,
+    /// Whether the run counts as production: the board is a product, and the lane was checked in this shift.
+    pub counts: bool,
     /// How long the lane may be silent, beside the link tests of the plan.
     pub silence: Duration,
 }
@@ -63,6 +64,27 @@ pub struct Saved {
     pub record: Record,
     /// What was read back.
     pub stored: Stored,
+    /// Whether the lane's process could not be killed: it may still have the board.
+    pub is_stuck: bool,
+}
+
+/// Who watches a run.
+pub trait Watch {
+    /// Who wants it to end, as soon as somebody does.
+    fn stop(&self) -> Option<StoppedBy>;
+    /// It has come so far.
+    fn hear(&mut self, stage: Stage<'_>);
+}
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug)]
+pub enum Stage<'a> {
+    /// It is in the store, and its lane starts.
+    Begun(&'a RunHead),
+    /// Its lane told something.
+    Told(&'a Message),
+    /// Its lane has ended, and its result is being saved.
+    Saving,
 }
 
 /// A run without a verdict.
@@ -89,16 +111,11 @@ pub enum RunError {
     },
 }
 
-/// Carries the order out. `stop` is asked who wants it to end, and `hear` is told what the lane does.
+/// Carries the order out before the eyes of `watch`. The store is taken for moments only.
 ///
 /// # Errors
 /// [`RunError`] when there is no verdict that may be shown.
-pub fn run(
-    store: &mut Store,
-    order: &Order<'_>,
-    stop: &dyn Fn() -> Option<StoppedBy>,
-    hear: &mut dyn FnMut(&Message),
-) -> Result<Saved, RunError> {
+pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Result<Saved, RunError> {
     let Order { plan, .. } = order;
     let (serial, selected) = plan.select(order.serial)?;
     let started_ms = clock::now_ms();
@@ -117,7 +134,9 @@ pub fn run(
         started_ms,
     };
     let planned = plan_record(plan);
-    let head = store.begin(head, &planned).map_err(|error| RunError::NotBegun(Box::new(error)))?;
+    let head = store.with(|store| store.begin(head, &planned));
+    let head = head.map_err(|error| RunError::NotBegun(Box::new(error)))?;
+    watch.hear(Stage::Begun(&head));
     let begun = Instant::now();
     let job = Job {
         run: head.id.clone(),
@@ -128,12 +147,56 @@ pub fn run(
         variant: head.variant.clone(),
         seed: ids::seed(id),
     };
-    let spool = store.folder().spool(&head.id);
+    let spool = store.with(|store| store.folder().spool(&head.id));
+    let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
+    let heard = supervise(order.program, &job, &spool, patience(order, selected), &mut attending);
+    attending.watch.hear(Stage::Saving);
+    let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
+    let record = record(head, planned, order, selected, (heard, device), begun.elapsed());
+    let saved = store.with(|store| save(store, record, &spool, selected.steps.len() as u32))?;
+    Ok(Saved { is_stuck, ..saved })
+}
+
+/// Attends to the lane of a run: answers from the store which device may have the serial number.
+struct Attending<'a> {
+    store: &'a SharedStore,
+    run: &'a RunHead,
+    watch: &'a mut dyn Watch,
+    device: DeviceSeen,
+}
+
+impl Attendant for Attending<'_> {
+    fn stop(&self) -> Option<StoppedBy> {
+        self.watch.stop()
+    }
+
+    fn hear(&mut self, message: &Message) {
+        self.watch.hear(Stage::Told(message));
+    }
+
+    fn rule(&mut self, board: &BoardSeen) -> Ruling {
+        let Some(device) = &board.device else {
+            return Ruling::Untold { why: "the board does not say which device it is".to_owned() };
+        };
+        match self.store.with(|store| store.admit(self.run, device)) {
+            Ok(Admission::New) => {
+                self.device = DeviceSeen::New;
+                Ruling::New
+            }
+            Ok(Admission::Known) => {
+                self.device = DeviceSeen::Known;
+                Ruling::Known
+            }
+            Ok(Admission::Refused { why, remedy }) => Ruling::Refused { why, remedy: remedy.to_owned() },
+            Err(error) => Ruling::Untold { why: format!("{:#}", anyhow::Error::from(error)) },
+        }
+    }
+}
+
+/// How long the lane is waited for.
+fn patience(order: &Order<'_>, selected: &Selected) -> Patience {
     let silence = order.silence.saturating_add(longest_link_test(selected));
-    let patience = Patience { silence, whole: whole(selected) };
-    let heard = supervise(order.program, &job, &spool, patience, stop, hear);
-    let record = record(head, planned, order, selected, heard, begun.elapsed());
-    save(store, record, &spool, selected.steps.len() as u32)
+    Patience { silence, whole: whole(selected) }
 }
 
 /// How long the longest link test is silent by its nature.
@@ -168,7 +231,7 @@ fn record(
     plan: PlanRecord,
     order: &Order<'_>,
     selected: &Selected,
-    heard: Heard,
+    (heard, device): (Heard, DeviceSeen),
     took: Duration,
 ) -> Record {
     let Heard { mut steps, end } = heard;
@@ -178,9 +241,9 @@ fn record(
     let lane = match end {
         End::Done => None,
         End::Refused(why) => Some(Conclusion::error(RunCause::Station, why)),
-        End::Died(why) | End::Killed(why) => Some(Conclusion::error(RunCause::Crash, why)),
+        End::Died(why) | End::Killed(why) | End::Stuck(why) => Some(Conclusion::error(RunCause::Crash, why)),
     };
-    let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, lane);
+    let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, lane).knowing(device);
     let reached = steps.last().map_or(0, |step| step.seq);
     let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
     steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
@@ -191,9 +254,10 @@ fn record(
         seconds: Some(seconds),
         conclusion,
         plan,
-        production: order.plan.require_hardware,
+        production: order.counts,
         marginal: steps.iter().any(|step| step.attempt > 1),
         board: steps.iter().find_map(|step| step.board.clone()),
+        device,
         suspects: steps
             .iter()
             .rev()
@@ -221,7 +285,7 @@ fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Resu
     if let Err(error) = fs::remove_dir_all(spool) {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
-    Ok(Saved { record, stored })
+    Ok(Saved { record, stored, is_stuck: false })
 }
 
 /// What a lane wrote down, as evidence.

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::clock;
 use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind};
-use crate::record::{Conclusion, PlanRecord, Record, RunCause, SCHEMA, StepRecord};
+use crate::record::{Conclusion, DeviceSeen, PlanRecord, Record, RunCause, SCHEMA, StepRecord};
 use crate::store::{OpenRun, Store};
 
 use super::{RunError, Saved, save};
@@ -21,9 +21,26 @@ pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     if !open.is_empty() {
         store.folder().blobs().clear();
     }
-    let closed = open.into_iter().map(|open| closed(store, open)).collect::<Result<_, _>>()?;
+    let closed =
+        open.into_iter().map(|open| closed(store, open, "the station ended in the middle of the run"));
+    let closed = closed.collect::<Result<_, _>>()?;
     clear(&store.folder().spools());
     Ok(closed)
+}
+
+/// What became of a run whose result could not be saved, once the store is well: ERROR, cause crash; what the store has,
+/// if all had come to the disk and only could not be read back.
+///
+/// # Errors
+/// [`RunError`] when the store is not well yet, or does not know the run.
+pub fn recover_run(store: &mut Store, run: &str) -> Result<Saved, RunError> {
+    let unsaved = |source| RunError::Unsaved { run: run.to_owned(), source: Box::new(source) };
+    let open = store.open_runs().map_err(unsaved)?;
+    if let Some(open) = open.into_iter().find(|open| open.run.id == run) {
+        return closed(store, open, "the result could not be saved when the run was over");
+    }
+    let (stored, record) = store.saved(run).map_err(unsaved)?;
+    Ok(Saved { record, stored, is_stuck: false })
 }
 
 /// Removes what runs left that ended between their result and their last act.
@@ -36,13 +53,12 @@ fn clear(spools: &Path) {
     }
 }
 
-fn closed(store: &mut Store, open: OpenRun) -> Result<Saved, RunError> {
+fn closed(store: &mut Store, open: OpenRun, why: &str) -> Result<Saved, RunError> {
     let OpenRun { run, plan_sha256, plan: [name, version, text] } = open;
     let spool = store.folder().spool(&run.id);
     kill_left_behind(&spool);
     let steps = told(&spool);
-    let headline =
-        format!("the station ended in the middle of the run, after {} tries of steps", steps.len());
+    let headline = format!("{why}, after {} tries of steps", steps.len());
     let record = Record {
         schema: SCHEMA,
         ended_ms: clock::now_ms().max(run.started_ms),
@@ -52,6 +68,7 @@ fn closed(store: &mut Store, open: OpenRun) -> Result<Saved, RunError> {
         plan: PlanRecord { sha256: plan_sha256, name, version, text, files: None },
         marginal: steps.iter().any(|step| step.attempt > 1),
         board: steps.iter().find_map(|step| step.board.clone()),
+        device: DeviceSeen::NotChecked,
         suspects: Vec::new(),
         steps,
         measurements: Vec::new(),

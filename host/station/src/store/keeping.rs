@@ -7,7 +7,8 @@ use rusqlite::params;
 
 use super::{Folder, Snapshot, Store, StoreError, statements as sql};
 use crate::clock;
-use crate::run::{NoRandomness, ids};
+use crate::ids;
+use crate::run::NoRandomness;
 
 impl Folder {
     /// Where it is.

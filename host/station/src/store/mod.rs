@@ -10,21 +10,28 @@
 //! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read
 //! it back.
 
+mod bindings;
 mod error;
 mod keeping;
 mod migrations;
 mod rows;
+mod shared;
+mod shift;
 mod snapshot;
 pub(crate) mod statements;
 mod waivers;
 
+use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, TransactionBehavior};
 
+pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub use error::StoreError;
+pub use shared::SharedStore;
+pub use shift::Owed;
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
 pub use waivers::{NoWaiver, Waiver};
 
@@ -124,6 +131,8 @@ pub struct Stored {
 pub struct Store {
     folder: Folder,
     writer: Connection,
+    /// Devices that are being tested, each with its run.
+    admitted: BTreeMap<String, String>,
     _lock: File,
 }
 
@@ -153,7 +162,7 @@ impl Store {
             .map_err(refused("to be safe"))?;
         migrations::apply(&mut writer, &path, clock::now_ms())?;
         crate::record::synced(&folder.0)?;
-        Ok(Self { folder: folder.clone(), writer, _lock: lock })
+        Ok(Self { folder: folder.clone(), writer, admitted: BTreeMap::new(), _lock: lock })
     }
 
     /// The store in `folder`, which must be there.
@@ -193,12 +202,21 @@ impl Store {
         if changed != 1 {
             return Err(StoreError::NotOpen { run: run() });
         }
-        let stored = self.folder.verdict_of(&run())?;
-        let stored = stored.ok_or_else(|| StoreError::ReadsOtherwise { run: run() })?;
-        let is_same = stored.record_sha256 == hash
-            && stored.verdict == record.conclusion.verdict.to_string()
-            && self.folder.blobs().get(&hash)? == bytes;
-        if is_same { Ok(stored) } else { Err(StoreError::ReadsOtherwise { run: run() }) }
+        self.admitted.retain(|_, admitted| *admitted != record.run.id);
+        let (stored, _) = self.saved(&run())?;
+        if stored.record_sha256 == hash { Ok(stored) } else { Err(StoreError::ReadsOtherwise { run: run() }) }
+    }
+
+    /// A run that is over, as a second connection reads it back.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it is not there, or its row and its record differ.
+    pub fn saved(&self, run: &str) -> Result<(Stored, Record), StoreError> {
+        let otherwise = || StoreError::ReadsOtherwise { run: run.to_owned() };
+        let stored = self.folder.verdict_of(run)?.ok_or_else(otherwise)?;
+        let record = Record::parse(&self.folder.blobs().get(&stored.record_sha256)?)?;
+        let is_same = stored.verdict == record.conclusion.verdict.to_string() && record.run.id == run;
+        if is_same { Ok((stored, record)) } else { Err(otherwise()) }
     }
 
     /// Every run that is open, the earliest first.
@@ -213,6 +231,10 @@ impl Store {
             let path = self.folder.database();
             StoreError::Database { path, doing: "to tell its open runs", source }
         })
+    }
+
+    fn refuses(&self, doing: &'static str, source: rusqlite::Error) -> StoreError {
+        StoreError::Database { path: self.folder.database(), doing, source }
     }
 
     /// What `change` returns once all that it did is on the disk. A change of no row is taken back.

@@ -2,7 +2,7 @@
 
 use rusqlite::{Connection, Transaction, params};
 
-use super::statements as sql;
+use super::{bindings, statements as sql};
 use crate::record::{PlanRecord, Record, RunHead};
 
 /// Unit, plan and open run. Returns the unit's id and the fence; the unit that is named is made if there is none of
@@ -58,6 +58,9 @@ pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusql
     )?;
     if changed == 0 {
         return Ok(0);
+    }
+    if let Some(device) = record.binds() {
+        bindings::bind(to, &record.run, device, record.ended_ms)?;
     }
     for step in &record.steps {
         let (seq, attempt) = (step.seq, step.attempt);

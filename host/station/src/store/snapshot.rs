@@ -3,13 +3,14 @@
 use rusqlite::types::Value;
 use rusqlite::{Connection, ToSql, TransactionBehavior};
 
-use super::{Folder, OpenRun, StoreError, migrations, open_run, rows, statements};
+use super::{Folder, OpenRun, Rebinding, StoreError, bindings, migrations, open_run, rows, statements};
 use crate::record::{PlanRecord, Record};
 
-/// The tables that are an index of the records, each with its key.
-pub const TABLES: [(&str, &str); 7] = [
+/// The tables that follow from the records and the audit, each with its key.
+pub const TABLES: [(&str, &str); 8] = [
     ("plan", "sha256"),
     ("unit", "id"),
+    ("binding", "id"),
     ("run", "id"),
     ("step", "run_id, seq, attempt"),
     ("measurement", "run_id, seq, attempt, name"),
@@ -72,6 +73,14 @@ impl Snapshot {
         self.read("to tell its open runs", |reader| {
             reader.prepare(statements::OPEN_RUNS)?.query_map([], open_run)?.collect()
         })
+    }
+
+    /// Every binding that a person changed, the earliest first.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn rebindings(&self) -> Result<Vec<Rebinding>, StoreError> {
+        self.read("to tell who bound what", bindings::rebindings)
     }
 
     /// All rows of a table, by its key.
@@ -168,6 +177,14 @@ impl Rebuilt {
         let [name, version, text] = open.plan.clone();
         let plan = PlanRecord { sha256: open.plan_sha256.clone(), name, version, text, files: None };
         self.change(|to| rows::open(to, &open.run, &plan).map(drop))
+    }
+
+    /// A binding that a person changed.
+    ///
+    /// # Errors
+    /// As [`Self::add`].
+    pub fn add_rebinding(&mut self, change: &Rebinding) -> Result<(), StoreError> {
+        self.change(|to| bindings::rebind(to, change))
     }
 
     /// All rows of a table, by its key.

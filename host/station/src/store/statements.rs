@@ -37,6 +37,13 @@ pub(crate) const WAIVED: &str = include_str!("../../sql/waived.sql");
 pub(crate) const PARETO_PARTS: &str = include_str!("../../sql/pareto-parts.sql");
 pub(crate) const PARETO_CHECKS: &str = include_str!("../../sql/pareto-checks.sql");
 pub(crate) const FAILED: &str = include_str!("../../sql/failed.sql");
+pub(super) const ADD_BINDING: &str = include_str!("../../sql/add-binding.sql");
+pub(super) const END_BINDINGS: &str = include_str!("../../sql/end-bindings.sql");
+pub(super) const UNIT_OF_DEVICE: &str = include_str!("../../sql/unit-of-device.sql");
+pub(super) const DEVICE_OF_UNIT: &str = include_str!("../../sql/device-of-unit.sql");
+pub(super) const AUDIT_OF_ACT: &str = include_str!("../../sql/audit-of-act.sql");
+pub(super) const LAST_JUDGEMENT: &str = include_str!("../../sql/last-judgement.sql");
+pub(super) const OPEN_RUN_OF_UNIT: &str = include_str!("../../sql/open-run-of-unit.sql");
 
 /// The text as SQLite takes it.
 pub(super) fn for_sqlite(text: &str) -> String {
@@ -47,7 +54,7 @@ pub(super) fn for_sqlite(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [&str; 33] = [
+    const ALL: [&str; 40] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -81,6 +88,13 @@ mod tests {
         PARETO_PARTS,
         PARETO_CHECKS,
         FAILED,
+        ADD_BINDING,
+        END_BINDINGS,
+        UNIT_OF_DEVICE,
+        DEVICE_OF_UNIT,
+        AUDIT_OF_ACT,
+        OPEN_RUN_OF_UNIT,
+        LAST_JUDGEMENT,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.

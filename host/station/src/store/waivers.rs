@@ -5,7 +5,8 @@ use serde::Serialize;
 
 use super::{Store, StoreError, statements as sql};
 use crate::clock;
-use crate::run::{NoRandomness, ids};
+use crate::ids;
+use crate::run::NoRandomness;
 
 /// A waiver of a run.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

@@ -6,6 +6,7 @@
 mod bench;
 mod checked;
 mod ends;
+mod identity;
 mod killed;
 mod saved;
 mod unsaved;

@@ -21,7 +21,7 @@ pub(crate) fn new(now_ms: i64) -> Result<Uuid, NoRandomness> {
 
 /// The seed of the run of this id: 48 of its random bits, which any reader of JSON has room for.
 #[must_use]
-pub(super) fn seed(id: Uuid) -> u64 {
+pub(crate) fn seed(id: Uuid) -> u64 {
     (id.as_u128() & 0xffff_ffff_ffff) as u64
 }
 

@@ -1,0 +1,1 @@
+SELECT id FROM run WHERE unit_id = $1 AND state = 'open';

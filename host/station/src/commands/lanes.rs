@@ -1,0 +1,81 @@
+//! `halfrow-station lanes`
+
+use std::io::{self, BufRead as _};
+use std::path::{self, PathBuf};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+use clap::Args;
+
+use super::{Failure, recovered, signals};
+use crate::console;
+use crate::engine::{Engine, News};
+use crate::exit::Exit;
+use crate::settings::Settings;
+use crate::store::{Folder, Store};
+
+/// How often it is looked whether a signal came.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Judge the boards in all lanes of a station, with scans from stdin
+///
+/// Every line of stdin is a scan: a serial number, or HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN. What happens is
+/// printed, one JSON object a line. At the end of stdin the runs that are under way come to theirs; a signal ends them.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The station's settings
+    #[arg(long, value_name = "FILE", env = "HALFROW_STATION_SETTINGS")]
+    settings: PathBuf,
+    /// Who tests
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let settings = path::absolute(&arguments.settings).map_err(Failure::call)?;
+    let settings = Settings::load(&settings).map_err(Failure::call)?;
+    let program = std::env::current_exe().map_err(Failure::error)?;
+    let signal = signals::last().map_err(Failure::error)?;
+    let mut store = Store::open(&Folder::new(&settings.data))?;
+    recovered(&mut store)?;
+    let engine = Engine::start(settings, store, program).map_err(Failure::error)?;
+    let news = engine.listen();
+    let printer = thread::Builder::new().name("news".to_owned()).spawn(move || print(&news));
+    let printer = printer.map_err(Failure::error)?;
+    let scans = scans().map_err(Failure::error)?;
+    let by = loop {
+        if let Some(by) = signals::stopped_by(signal.load(Ordering::Relaxed)) {
+            break Some(by);
+        }
+        match scans.recv_timeout(LOOK) {
+            Ok((number, line)) => engine.scan(number, &line, &arguments.operator),
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break None,
+        }
+    };
+    engine.close(by);
+    let _ = printer.join();
+    Ok(by.map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
+}
+
+/// The lines of stdin, counted, until its end.
+fn scans() -> io::Result<Receiver<(u64, String)>> {
+    let (sender, scans) = mpsc::channel();
+    thread::Builder::new().name("scans".to_owned()).spawn(move || {
+        let lines = io::stdin().lock().lines().map_while(Result::ok);
+        // Nobody takes scans any more when the station closes.
+        (1..).zip(lines).take_while(|scan| sender.send(scan.clone()).is_ok()).for_each(drop);
+    })?;
+    Ok(scans)
+}
+
+fn print(news: &Receiver<News>) {
+    for one in news {
+        match serde_json::to_string(&one) {
+            Ok(line) => console::tell(&line),
+            Err(error) => tracing::error!("a piece of news is no JSON: {error}"),
+        }
+    }
+}

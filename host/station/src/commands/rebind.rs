@@ -1,0 +1,68 @@
+//! `halfrow-station rebind`
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::{Failure, print};
+use crate::exit::Exit;
+use crate::store::{Change, Folder, RebindError, Store};
+
+/// Say that a serial number has another device from now on
+///
+/// For boards that were repaired, and for labels that were exchanged. Who, when and why are kept.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The station's folder
+    #[arg(long, value_name = "FOLDER", env = "HALFROW_STATION_DATA")]
+    data: PathBuf,
+    /// The board's serial number
+    #[arg(long)]
+    serial: String,
+    /// Why
+    #[arg(long, value_parser = not_empty)]
+    reason: String,
+    /// The number of its FPGA, 16 hexadecimal digits [default: that of the board that is judged next]
+    #[arg(long, value_name = "DEVICE", value_parser = device)]
+    device: Option<String>,
+    /// Its product, where several have such a serial number
+    #[arg(long)]
+    product: Option<String>,
+    /// Who says so
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+fn not_empty(text: &str) -> Result<String, String> {
+    let text = text.trim();
+    if text.is_empty() { Err("say why; it is kept".to_owned()) } else { Ok(text.to_owned()) }
+}
+
+fn device(text: &str) -> Result<String, String> {
+    let is_device = text.len() == 16 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
+    let says = "give 16 hexadecimal digits in lower case, not all 0, as a run prints them behind `device`";
+    let has_number = text.bytes().any(|digit| digit != b'0');
+    if is_device && has_number { Ok(text.to_owned()) } else { Err(says.to_owned()) }
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let Arguments { data, serial, reason, device, product, operator } = arguments;
+    let mut store = Store::open(&Folder::new(data))?;
+    let change = Change { serial, product: product.as_deref(), device: device.as_deref(), operator, reason };
+    let bound = store.rebind(&change)?;
+    let from_now = device.as_deref().map_or_else(
+        || "is bound to the device of the next board that is judged under it".to_owned(),
+        |device| format!("is bound to device {device}"),
+    );
+    print(&format!("{serial} {from_now}\naudit     {}, by {operator}", bound.id))
+}
+
+impl From<RebindError> for Failure {
+    fn from(error: RebindError) -> Self {
+        match error {
+            RebindError::Store(error) => error.into(),
+            RebindError::NoRandomness(_) | RebindError::UnderTest { .. } => Self::error(error),
+            RebindError::Unknown { .. } | RebindError::Several { .. } => Self::call(error),
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! The engine's own thread.
+
+use std::path::Path;
+use std::sync::mpsc::Receiver;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use halfrow::verdict::StoppedBy;
+
+use super::bay::{self, Shared, StopAsked};
+use super::news::{LaneState, News};
+use super::{Board, Heard, Input};
+use crate::clock;
+use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
+use crate::presence::{Presence, USB, is_there};
+use crate::settings::Settings;
+use crate::store::Folder;
+
+/// How often boards are looked for.
+const LOOK: Duration = Duration::from_millis(500);
+
+/// What the thread has to itself.
+pub(super) struct AtWork {
+    floor: Floor,
+    shared: Arc<Shared>,
+    board: Arc<Mutex<Board>>,
+    presence: Vec<Presence>,
+    stops: Vec<StopAsked>,
+    /// Who scanned last.
+    operator: String,
+    threads: Vec<JoinHandle<()>>,
+    begun: Instant,
+}
+
+impl AtWork {
+    pub(super) fn new(floor: Floor, shared: Arc<Shared>, board: Arc<Mutex<Board>>) -> Self {
+        let lanes = floor.lanes().len();
+        Self {
+            floor,
+            shared,
+            board,
+            presence: vec![Presence::default(); lanes],
+            stops: vec![StopAsked::default(); lanes],
+            operator: String::new(),
+            threads: Vec::new(),
+            begun: Instant::now(),
+        }
+    }
+
+    /// Works until it is told to close and every run is over.
+    pub(super) fn run(mut self, inbox: &Receiver<Input>) {
+        let (mut looked, mut is_closing) = (None::<Instant>, false);
+        while !(is_closing && self.is_idle()) {
+            if !is_closing && looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
+                looked = Some(Instant::now());
+                self.look();
+            }
+            let Ok(input) = inbox.recv_timeout(LOOK) else { continue };
+            match input {
+                Input::Scan { .. } | Input::Act { .. } if is_closing => {}
+                Input::Scan { number, text, operator } => self.scan(number, text, operator),
+                Input::Act { number, lane, act, operator } => self.act(number, lane, act, operator),
+                Input::Heard { lane, heard } => self.heard(lane, heard),
+                Input::Close(by) => {
+                    is_closing = true;
+                    (0..self.stops.len()).for_each(|lane| self.stop(lane, by));
+                }
+            }
+        }
+        self.end(inbox);
+    }
+
+    /// Waits for hooks and recoveries, and hears what is left.
+    fn end(mut self, inbox: &Receiver<Input>) {
+        for thread in std::mem::take(&mut self.threads) {
+            if thread.join().is_err() {
+                tracing::error!("a thread of a lane ended early; look at what it said before");
+            }
+        }
+        while let Ok(input) = inbox.try_recv() {
+            if let Input::Heard { lane, heard: heard @ Heard::Hook { .. } } = input {
+                self.heard(lane, heard);
+            }
+        }
+    }
+
+    /// Whether no run is under way. What could not be saved is found open by the next start.
+    fn is_idle(&self) -> bool {
+        !self.floor.lanes().iter().any(|lane| matches!(lane.word(), Word::Running | Word::Saving))
+    }
+
+    fn now(&self) -> Duration {
+        self.begun.elapsed()
+    }
+
+    /// Looks which boards are there.
+    fn look(&mut self) {
+        let now = self.now();
+        for lane in 0..self.presence.len() {
+            self.check(lane);
+            let Some(settings) = self.shared.settings.lanes.get(lane) else { continue };
+            let is_seen = is_there(&settings.board, Path::new(USB));
+            let changed = self.presence.get_mut(lane).and_then(|presence| presence.look(is_seen, now));
+            if let Some(is_present) = changed {
+                self.happened(lane, Event::Present(is_present));
+            }
+        }
+    }
+
+    /// What a lane owes to the shift, as the store says; it is out of service while that cannot be told.
+    fn owed(&self, lane: usize) -> Option<Owes> {
+        let Settings { name, data, lanes, plans, .. } = &self.shared.settings;
+        let settings = lanes.get(lane)?;
+        settings.plans.iter().find_map(|&plan| {
+            let of = &plans.get(plan)?.plan;
+            match Folder::new(data).owed(name, &settings.name, of, clock::now_ms()) {
+                Ok(owed) => owed.map(|owed| Owes { plan, serial: Some(owed.serial), why: owed.why }),
+                Err(error) => {
+                    let why = format!("{:#}", anyhow::Error::from(error));
+                    Some(Owes { plan, serial: None, why })
+                }
+            }
+        })
+    }
+
+    fn check(&mut self, lane: usize) {
+        let owed = self.owed(lane);
+        self.happened(lane, Event::Owes(owed));
+    }
+
+    fn scan(&mut self, number: u64, text: String, operator: String) {
+        let now = self.now();
+        self.operator = operator;
+        let answer = match self.shared.settings.scanner.label(&text) {
+            Some(label) => self.floor.scan(label, now),
+            None => Err(ScanError::Incomplete),
+        };
+        self.answer(number, text, answer);
+    }
+
+    fn act(&mut self, number: u64, lane: usize, act: Act, operator: String) {
+        self.operator = operator;
+        let answer = self.floor.act(lane, act);
+        self.answer(number, act.barcode(), answer);
+    }
+
+    /// Tells what became of a scan, and does what it asks for.
+    fn answer(&mut self, number: u64, scanned: String, answer: Result<Answer, ScanError>) {
+        let is_taken = answer.is_ok();
+        let (lane, effect, said) = match answer {
+            Ok(Answer { lane, effect, said }) => (lane, effect, said),
+            Err(error) => (None, None, error.to_string()),
+        };
+        let name = lane.and_then(|lane| Some(self.floor.lanes().get(lane)?.name().to_owned()));
+        self.tell(&News::Scan { number, scanned, is_taken, lane: name, said });
+        if let Some(lane) = lane {
+            self.publish(lane);
+            self.effect(lane, effect);
+        }
+    }
+
+    fn heard(&mut self, lane: usize, heard: Heard) {
+        let name = || self.floor.lanes().get(lane).map_or_else(String::new, |lane| lane.name().to_owned());
+        match heard {
+            Heard::Happened(event) => {
+                let is_over = matches!(event, Event::Ended(_));
+                self.happened(lane, event);
+                if is_over {
+                    self.check(lane);
+                }
+            }
+            Heard::Doing { run, what, rows } => self.tell(&News::Doing { lane: name(), run, what, rows }),
+            Heard::Hook { run, said } => self.tell(&News::Hook { lane: name(), run, said }),
+        }
+    }
+
+    fn happened(&mut self, lane: usize, event: Event) {
+        let effect = self.floor.happened(lane, event, self.now());
+        self.publish(lane);
+        self.effect(lane, effect);
+    }
+
+    /// Does what is to be done. The state is told before: a lamp says nothing that the screen does not.
+    fn effect(&mut self, lane: usize, effect: Option<Effect>) {
+        let started = match effect {
+            None => return,
+            Some(Effect::Stop) => return self.stop(lane, Some(StoppedBy::Person)),
+            Some(Effect::Begin(accepted)) => self.begin(lane, accepted),
+            Some(Effect::Recover { run }) => bay::recover(&self.shared, lane, run),
+            Some(Effect::Hooks(shown)) => bay::hook(&self.shared, lane, shown),
+        };
+        self.threads.retain(|thread| !thread.is_finished());
+        match started {
+            Ok(thread) => self.threads.push(thread),
+            Err(error) => {
+                let why = format!("the system has no thread for it ({error}); end other programs");
+                self.happened(lane, Event::NotBegun { why });
+            }
+        }
+    }
+
+    fn begin(&mut self, lane: usize, accepted: Accepted) -> std::io::Result<JoinHandle<()>> {
+        let stop = StopAsked::default();
+        if let Some(place) = self.stops.get_mut(lane) {
+            *place = Arc::clone(&stop);
+        }
+        bay::begin(&self.shared, lane, accepted, self.operator.clone(), stop)
+    }
+
+    fn stop(&mut self, lane: usize, by: Option<StoppedBy>) {
+        if let Some((stop, by)) = self.stops.get(lane).zip(by) {
+            // Whoever asked first counts.
+            let _ = stop.set(by);
+        }
+    }
+
+    /// Tells the state of a lane if it is another one.
+    fn publish(&mut self, lane: usize) {
+        let Some(state) = self.floor.lanes().get(lane).map(LaneState::from) else { return };
+        let mut board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
+        match board.lanes.get_mut(lane) {
+            Some(known) if *known != state => *known = state.clone(),
+            _ => return,
+        }
+        board.listeners.tell(&News::Lane(state));
+    }
+
+    fn tell(&self, news: &News) {
+        self.board.lock().unwrap_or_else(PoisonError::into_inner).listeners.tell(news);
+    }
+}

@@ -1,0 +1,178 @@
+//! What works for one lane: a thread for its run, one for its hooks, one to save what was not saved. Each tells the
+//! engine how it went; none waits for another lane.
+
+use std::path::PathBuf;
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, OnceLock};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use halfrow::verdict::StoppedBy;
+
+use super::hooks;
+use super::{Heard, Input};
+use crate::floor::{Accepted, Event, Shown};
+use crate::lane::Message;
+use crate::run::{self, Order, RunError, Saved, Stage, Watch};
+use crate::settings::Settings;
+use crate::store::SharedStore;
+
+/// How long after a result could not be saved it is tried again.
+const AGAIN: Duration = Duration::from_secs(2);
+
+/// What all lanes have in common.
+#[derive(Debug)]
+pub(super) struct Shared {
+    pub(super) settings: Settings,
+    pub(super) store: SharedStore,
+    /// The program whose `lane` is started.
+    pub(super) program: PathBuf,
+    pub(super) inbox: Sender<Input>,
+}
+
+impl Shared {
+    fn tell(&self, lane: usize, heard: Heard) {
+        // An engine that has ended has seen all runs end before.
+        let _ = self.inbox.send(Input::Heard { lane, heard });
+    }
+}
+
+/// Who wants a run to end.
+pub(super) type StopAsked = Arc<OnceLock<StoppedBy>>;
+
+/// Begins the run of what was accepted in `lane`.
+pub(super) fn begin(
+    shared: &Arc<Shared>,
+    lane: usize,
+    accepted: Accepted,
+    operator: String,
+    stop: StopAsked,
+) -> std::io::Result<JoinHandle<()>> {
+    let shared = Arc::clone(shared);
+    thread::Builder::new().name(format!("run in lane {lane}")).spawn(move || {
+        let (event, is_stuck) = carried_out(&shared, lane, &accepted, &operator, stop);
+        shared.tell(lane, Heard::Happened(event));
+        if is_stuck {
+            shared.tell(lane, Heard::Happened(Event::Stuck));
+        }
+    })
+}
+
+/// What came of the run, and whether its process is still there.
+fn carried_out(
+    shared: &Shared,
+    lane: usize,
+    accepted: &Accepted,
+    operator: &str,
+    stop: StopAsked,
+) -> (Event, bool) {
+    let Settings { name, lanes, plans, silence, .. } = &shared.settings;
+    let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
+        return (Event::NotBegun { why: "the settings have no such lane or plan".to_owned() }, false);
+    };
+    let order = Order {
+        plan: &file.plan,
+        plan_file: &file.path,
+        serial: &accepted.serial,
+        target: &of.board,
+        station: name,
+        lane: &of.name,
+        operator,
+        program: &shared.program,
+        // A lane that owes its shift a check takes no other board.
+        counts: file.plan.counts(&accepted.serial),
+        silence: *silence,
+    };
+    let mut watched = Watched { shared, lane, run: String::new(), stop };
+    match run::run(&shared.store, &order, &mut watched) {
+        Ok(saved) => {
+            let is_stuck = saved.is_stuck;
+            (Event::Ended(shown(saved)), is_stuck)
+        }
+        Err(error @ RunError::Unsaved { .. }) => (Event::Unsaved { why: told(error) }, false),
+        Err(error) => (Event::NotBegun { why: told(error) }, false),
+    }
+}
+
+/// Tries in a while to save what became of `run`.
+pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io::Result<JoinHandle<()>> {
+    let shared = Arc::clone(shared);
+    thread::Builder::new().name(format!("recovery in lane {lane}")).spawn(move || {
+        thread::sleep(AGAIN);
+        let event = match shared.store.with(|store| run::recover_run(store, &run)) {
+            Ok(saved) => Event::Ended(shown(saved)),
+            Err(error) => Event::Unsaved { why: told(error) },
+        };
+        shared.tell(lane, Heard::Happened(event));
+    })
+}
+
+/// Starts the hooks for what is shown on `lane`, one after another.
+pub(super) fn hook(shared: &Arc<Shared>, lane: usize, shown: Shown) -> std::io::Result<JoinHandle<()>> {
+    let shared = Arc::clone(shared);
+    thread::Builder::new().name(format!("hooks of lane {lane}")).spawn(move || {
+        let name = shared.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
+        for hook in shared.settings.hooks.iter().filter(|hook| hook.on == shown.verdict) {
+            if let Err(error) = hooks::run(hook, name, &shown) {
+                shared.tell(lane, Heard::Hook { run: shown.run.clone(), said: told(error) });
+            }
+        }
+    })
+}
+
+fn told(error: impl Into<anyhow::Error>) -> String {
+    format!("{:#}", error.into())
+}
+
+fn shown(saved: Saved) -> Shown {
+    let Saved { record, stored, .. } = saved;
+    Shown {
+        run: record.run.id,
+        serial: record.run.serial,
+        verdict: record.conclusion.verdict,
+        record_sha256: stored.record_sha256,
+        headline: record.conclusion.headline,
+        remedy: record.conclusion.remedy,
+    }
+}
+
+/// A run whose way the engine hears of.
+struct Watched<'a> {
+    shared: &'a Shared,
+    lane: usize,
+    run: String,
+    stop: StopAsked,
+}
+
+impl Watch for Watched<'_> {
+    fn stop(&self) -> Option<StoppedBy> {
+        self.stop.get().copied()
+    }
+
+    fn hear(&mut self, stage: Stage<'_>) {
+        let heard = match stage {
+            Stage::Begun(run) => {
+                self.run.clone_from(&run.id);
+                Heard::Happened(Event::Begun { run: run.id.clone() })
+            }
+            Stage::Saving => Heard::Happened(Event::Saving),
+            Stage::Told(message) => match doing(message) {
+                Some((what, rows)) => Heard::Doing { run: self.run.clone(), what, rows },
+                None => return,
+            },
+        };
+        self.shared.tell(self.lane, heard);
+    }
+}
+
+/// What a lane does, for people, and its rows.
+fn doing(message: &Message) -> Option<(String, Option<(u64, u64)>)> {
+    match message {
+        Message::Step { name, .. } => Some((name.clone(), None)),
+        Message::Doing { what } => Some((what.clone(), None)),
+        Message::Rows { done, expected } => Some(("rows".to_owned(), Some((*done, *expected)))),
+        Message::Ended { step } => Some((format!("{} {}", step.name, step.outcome.name()), None)),
+        Message::Identified { board } => Some((format!("the board is {}", board.name), None)),
+        Message::Done | Message::Refused { .. } => None,
+    }
+}

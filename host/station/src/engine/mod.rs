@@ -1,0 +1,122 @@
+//! A station at work: several lanes at once, one store, and news for whoever listens.
+//!
+//! ```text
+//!  scans, buttons ──► ┌────────┐ ──► news
+//!  presence ────────► │ engine │ ──► a thread a run ──► a process a run
+//!  what runs tell ──► └────────┘ ──► hooks, recovery
+//!                     one thread, which owns the floor and waits for nothing but its inbox
+//! ```
+
+mod at_work;
+mod bay;
+mod hooks;
+mod news;
+
+use std::path::PathBuf;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+
+use halfrow::verdict::StoppedBy;
+
+pub use hooks::HookError;
+pub use news::{LaneState, News};
+
+use crate::floor::{Act, Event};
+use crate::settings::Settings;
+use crate::store::{SharedStore, Store};
+use at_work::AtWork;
+use bay::Shared;
+use news::Listeners;
+
+/// Something for the engine.
+#[derive(Debug)]
+enum Input {
+    Scan { number: u64, text: String, operator: String },
+    Act { number: u64, lane: usize, act: Act, operator: String },
+    Heard { lane: usize, heard: Heard },
+    Close(Option<StoppedBy>),
+}
+
+/// What comes from a lane.
+#[derive(Debug)]
+enum Heard {
+    Happened(Event),
+    Doing { run: String, what: String, rows: Option<(u64, u64)> },
+    Hook { run: String, said: String },
+}
+
+/// A station at work.
+#[derive(Debug)]
+pub struct Engine {
+    inbox: Sender<Input>,
+    board: Arc<Mutex<Board>>,
+    thread: JoinHandle<()>,
+}
+
+/// What everybody may look at: the lanes as they are, and who listens to what changes.
+#[derive(Debug, Default)]
+struct Board {
+    lanes: Vec<LaneState>,
+    listeners: Listeners,
+}
+
+impl Engine {
+    /// Starts the station of these settings with its store, in which nothing is open, and `program`, whose `lane` is
+    /// started for every run.
+    ///
+    /// # Errors
+    /// When the system has no thread for it.
+    pub fn start(settings: Settings, store: Store, program: PathBuf) -> std::io::Result<Self> {
+        let (inbox, received) = mpsc::channel();
+        let floor = settings.floor();
+        let lanes = floor.lanes().iter().map(LaneState::from).collect();
+        let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default() }));
+        let shared =
+            Arc::new(Shared { settings, store: SharedStore::new(store), program, inbox: inbox.clone() });
+        let at_work = AtWork::new(floor, shared, Arc::clone(&board));
+        let thread =
+            thread::Builder::new().name("engine".to_owned()).spawn(move || at_work.run(&received))?;
+        Ok(Self { inbox, board, thread })
+    }
+
+    /// Takes what `operator` scanned. What becomes of it is news with the same `number`.
+    pub fn scan(&self, number: u64, text: &str, operator: &str) {
+        let (text, operator) = (text.to_owned(), operator.to_owned());
+        self.put(Input::Scan { number, text, operator });
+    }
+
+    /// Does with the lane at this place what `operator` wants. What becomes of it is news as that of a scan is.
+    pub fn act(&self, number: u64, lane: usize, act: Act, operator: &str) {
+        self.put(Input::Act { number, lane, act, operator: operator.to_owned() });
+    }
+
+    /// All news from now on, behind the state of every lane as it is. A listener that is too far behind hears no more.
+    #[must_use]
+    pub fn listen(&self) -> Receiver<News> {
+        let mut board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
+        let lanes: Vec<_> = board.lanes.iter().cloned().map(News::Lane).collect();
+        board.listeners.add(lanes.into_iter())
+    }
+
+    /// The state of every lane.
+    #[must_use]
+    pub fn lanes(&self) -> Vec<LaneState> {
+        self.board.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
+    }
+
+    /// Ends the engine once all runs that are under way are over, and their results saved. `by` ends the runs, too;
+    /// without it they come to their own end.
+    pub fn close(self, by: Option<StoppedBy>) {
+        self.put(Input::Close(by));
+        if self.thread.join().is_err() {
+            tracing::error!("the engine ended early; look at what it said before");
+        }
+    }
+
+    fn put(&self, input: Input) {
+        if self.inbox.send(input).is_err() {
+            tracing::error!("the engine has ended; start the station again");
+        }
+    }
+}

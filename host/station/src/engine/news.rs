@@ -1,0 +1,129 @@
+//! What the engine tells those who listen: the state of every lane, what became of each scan, hooks that failed.
+
+use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
+
+use serde::Serialize;
+
+use crate::floor::{Lane, Shown, Word};
+
+/// How many pieces of news a listener may be behind. One that is further behind hears no more, and looks anew.
+const BACKLOG: usize = 1024;
+
+/// A piece of news.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(tag = "news", rename_all = "kebab-case")]
+pub enum News {
+    /// The state of a lane.
+    Lane(LaneState),
+    /// What a lane's run does.
+    Doing {
+        /// The lane.
+        lane: String,
+        /// The run.
+        run: String,
+        /// What, for people.
+        what: String,
+        /// Rows that came back, and how many are expected.
+        rows: Option<(u64, u64)>,
+    },
+    /// What became of a scan.
+    Scan {
+        /// The number that it came with.
+        number: u64,
+        /// What was scanned.
+        scanned: String,
+        /// Whether it was taken.
+        is_taken: bool,
+        /// The lane that it went to.
+        lane: Option<String>,
+        /// What was understood, or why it was refused.
+        said: String,
+    },
+    /// A hook did not do what it should have done. The verdict stands.
+    Hook {
+        /// The lane.
+        lane: String,
+        /// The run.
+        run: String,
+        /// What went wrong.
+        said: String,
+    },
+}
+
+/// The state of a lane.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct LaneState {
+    /// Its name.
+    pub lane: String,
+    /// Its state.
+    pub state: Word,
+    /// Whether a board is in it.
+    pub is_present: bool,
+    /// The serial number that it tests, that waits, or that it tested last.
+    pub serial: Option<String>,
+    /// The run that is under way, or not saved.
+    pub run: Option<String>,
+    /// The last verdict, which is saved.
+    pub shown: Option<Shown>,
+    /// Why it is out of service, why nothing was saved, why no run was begun.
+    pub note: Option<String>,
+}
+
+impl From<&Lane> for LaneState {
+    fn from(lane: &Lane) -> Self {
+        Self {
+            lane: lane.name().to_owned(),
+            state: lane.word(),
+            is_present: lane.is_present(),
+            serial: lane.serial().map(str::to_owned),
+            run: lane.run().map(str::to_owned),
+            shown: lane.shown().cloned(),
+            note: lane.note().map(str::to_owned),
+        }
+    }
+}
+
+/// Those who listen.
+#[derive(Debug, Default)]
+pub(super) struct Listeners(Vec<SyncSender<News>>);
+
+impl Listeners {
+    /// Another one, who hears `first` before all else.
+    pub(super) fn add(&mut self, first: impl Iterator<Item = News>) -> Receiver<News> {
+        let (sender, receiver) = mpsc::sync_channel(BACKLOG);
+        first.for_each(|news| drop(sender.try_send(news)));
+        self.0.push(sender);
+        receiver
+    }
+
+    /// Tells everybody. Nobody is waited for: who is too far behind is let go.
+    pub(super) fn tell(&mut self, news: &News) {
+        self.0.retain(|listener| match listener.try_send(news.clone()) {
+            Ok(()) => true,
+            Err(TrySendError::Full(_)) => {
+                tracing::warn!("a listener is {BACKLOG} pieces of news behind, and hears no more");
+                false
+            }
+            Err(TrySendError::Disconnected(_)) => false,
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slow_listener_is_let_go_and_the_others_hear_everything() {
+        let mut listeners = Listeners::default();
+        let news = || News::Hook { lane: "1".to_owned(), run: "r".to_owned(), said: "x".to_owned() };
+        let (slow, quick) = (listeners.add(std::iter::empty()), listeners.add(std::iter::once(news())));
+        quick.recv().unwrap();
+        for _ in 0..=BACKLOG {
+            listeners.tell(&news());
+            quick.recv().unwrap();
+        }
+        assert_eq!(slow.iter().count(), BACKLOG);
+        assert_eq!(listeners.0.len(), 1);
+    }
+}

@@ -1,0 +1,256 @@
+//! A lane's states: an event in, effects out, and nothing else touched.
+//!
+//! ```text
+//!  EMPTY ─ board ─► READY ─ serial number ─► RUNNING ─► SAVING ─► PASS | FAIL | ERROR ─ next serial number ─► …
+//!    └ serial number ─► WAITING ─ board or button ─┘        └ UNSAVED ─ the disk is well ─► ERROR
+//!  OUT: taken out of service, by a person or since a process of it cannot be killed
+//! ```
+
+use halfrow::Verdict;
+
+use super::words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Phase {
+    Out { why: String },
+    Idle,
+    Running { of: Accepted, run: Option<String> },
+    Saving { of: Accepted, run: Option<String> },
+    Ended,
+    Unsaved { of: Accepted, run: Option<String>, why: String },
+}
+
+/// A lane.
+#[derive(Clone, Debug)]
+pub struct Lane {
+    name: String,
+    starts: Starts,
+    phase: Phase,
+    is_present: bool,
+    waiting: Option<Accepted>,
+    shown: Option<Shown>,
+    note: Option<String>,
+    owes: Option<Owes>,
+}
+
+impl Lane {
+    /// A lane without a board.
+    #[must_use]
+    pub fn new(name: impl Into<String>, starts: Starts) -> Self {
+        let (is_present, waiting, shown, note, owes) = (false, None, None, None, None);
+        Self { name: name.into(), starts, phase: Phase::Idle, is_present, waiting, shown, note, owes }
+    }
+
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its state in one word.
+    #[must_use]
+    pub fn word(&self) -> Word {
+        match (&self.phase, self.shown.as_ref().map(|shown| shown.verdict)) {
+            (Phase::Out { .. }, _) => Word::Out,
+            (Phase::Running { .. }, _) => Word::Running,
+            (Phase::Saving { .. }, _) => Word::Saving,
+            (Phase::Unsaved { .. }, _) => Word::Unsaved,
+            (Phase::Idle | Phase::Ended, _) if self.owes.is_some() => Word::Out,
+            (Phase::Ended, Some(Verdict::Pass)) => Word::Pass,
+            (Phase::Ended, Some(Verdict::Fail)) => Word::Fail,
+            (Phase::Ended, Some(Verdict::Error)) => Word::Error,
+            _ if self.waiting.is_some() => Word::Waiting,
+            _ if self.is_present => Word::Ready,
+            _ => Word::Empty,
+        }
+    }
+
+    /// Whether a board is in it.
+    #[must_use]
+    pub fn is_present(&self) -> bool {
+        self.is_present
+    }
+
+    /// The serial number that it tests, that waits, or that it tested last.
+    #[must_use]
+    pub fn serial(&self) -> Option<&str> {
+        let under_test = self.under_test().map(|of| of.serial.as_str());
+        under_test.or_else(|| self.shown.as_ref().map(|shown| shown.serial.as_str()))
+    }
+
+    /// The board that it has in hand: tested, not saved yet, or waited for.
+    #[must_use]
+    pub fn under_test(&self) -> Option<&Accepted> {
+        match &self.phase {
+            Phase::Running { of, .. } | Phase::Saving { of, .. } | Phase::Unsaved { of, .. } => Some(of),
+            _ => self.waiting.as_ref(),
+        }
+    }
+
+    /// Its run that is under way or not saved.
+    #[must_use]
+    pub fn run(&self) -> Option<&str> {
+        match &self.phase {
+            Phase::Running { run, .. } | Phase::Saving { run, .. } | Phase::Unsaved { run, .. } => {
+                run.as_deref()
+            }
+            _ => None,
+        }
+    }
+
+    /// Its last verdict, which stays until the next serial number.
+    #[must_use]
+    pub fn shown(&self) -> Option<&Shown> {
+        self.shown.as_ref()
+    }
+
+    /// What else there is to say: why it is out of service, why nothing was saved, why no run was begun.
+    #[must_use]
+    pub fn note(&self) -> Option<&str> {
+        match &self.phase {
+            Phase::Out { why } | Phase::Unsaved { why, .. } => Some(why),
+            Phase::Idle | Phase::Ended if self.owes.is_some() => {
+                self.owes.as_ref().map(|owes| owes.why.as_str())
+            }
+            _ => self.note.as_deref(),
+        }
+    }
+
+    /// Takes an event.
+    ///
+    /// # Errors
+    /// [`Refusal`] when it cannot be now; nothing has changed then.
+    pub fn take(&mut self, event: Event) -> Result<Option<Effect>, Refusal> {
+        match event {
+            Event::Present(is_present) => Ok(self.present(is_present)),
+            Event::Given(accepted) => self.given(accepted),
+            Event::Start => self.start(),
+            Event::Abort => self.abort(),
+            Event::Out { why } => self.free().map(|()| {
+                self.waiting = None;
+                self.phase = Phase::Out { why };
+                None
+            }),
+            Event::In => self.back(),
+            Event::Owes(owes) => {
+                self.owes = owes;
+                Ok(None)
+            }
+            told => Ok(self.told(told)),
+        }
+    }
+
+    /// Whether it can have something new to do.
+    ///
+    /// # Errors
+    /// [`Refusal`] why not.
+    pub fn free(&self) -> Result<(), Refusal> {
+        let lane = self.name.clone();
+        match &self.phase {
+            Phase::Idle | Phase::Ended => Ok(()),
+            Phase::Out { why } => Err(Refusal::Out { lane, why: why.clone() }),
+            Phase::Running { of, .. } | Phase::Saving { of, .. } => {
+                Err(Refusal::Busy { lane, serial: of.serial.clone() })
+            }
+            Phase::Unsaved { of, .. } => Err(Refusal::Unsaved { lane, serial: of.serial.clone() }),
+        }
+    }
+
+    fn begin(&mut self, of: Accepted) -> Effect {
+        (self.waiting, self.shown, self.note) = (None, None, None);
+        self.phase = Phase::Running { of: of.clone(), run: None };
+        Effect::Begin(of)
+    }
+
+    fn present(&mut self, is_present: bool) -> Option<Effect> {
+        self.is_present = is_present;
+        if !is_present && !self.starts.presence {
+            // The serial number was of the board that is gone.
+            self.waiting = None;
+        }
+        let starts = is_present && self.starts.presence && self.phase == Phase::Idle;
+        let waiting = if starts { self.waiting.take() } else { None };
+        waiting.map(|of| self.begin(of))
+    }
+
+    fn given(&mut self, accepted: Accepted) -> Result<Option<Effect>, Refusal> {
+        self.free()?;
+        let is_owed = |owes: &Owes| {
+            (owes.plan, owes.serial.as_deref()) == (accepted.plan, Some(accepted.serial.as_str()))
+        };
+        if let Some(owes) = self.owes.as_ref().filter(|owes| !is_owed(owes)) {
+            return Err(Refusal::Owes { lane: self.name.clone(), why: owes.why.clone() });
+        }
+        if self.starts.scan && self.is_present {
+            return Ok(Some(self.begin(accepted)));
+        }
+        if !self.is_present && !self.starts.presence {
+            return Err(Refusal::NoBoard { lane: self.name.clone() });
+        }
+        (self.waiting, self.shown, self.note) = (Some(accepted), None, None);
+        self.phase = Phase::Idle;
+        Ok(None)
+    }
+
+    fn start(&mut self) -> Result<Option<Effect>, Refusal> {
+        self.free()?;
+        let lane = self.name.clone();
+        if !self.starts.button {
+            return Err(Refusal::NoButton { lane });
+        }
+        if !self.is_present {
+            return Err(Refusal::NoBoard { lane });
+        }
+        let waiting = self.waiting.take().ok_or(Refusal::NoSerial { lane })?;
+        Ok(Some(self.begin(waiting)))
+    }
+
+    fn abort(&mut self) -> Result<Option<Effect>, Refusal> {
+        let nothing = Refusal::NothingToAbort { lane: self.name.clone() };
+        match self.phase {
+            Phase::Running { .. } => Ok(Some(Effect::Stop)),
+            _ => self.waiting.take().map(|_| None).ok_or(nothing),
+        }
+    }
+
+    fn back(&mut self) -> Result<Option<Effect>, Refusal> {
+        if !matches!(self.phase, Phase::Out { .. }) {
+            return Err(Refusal::InService { lane: self.name.clone() });
+        }
+        self.phase = if self.shown.is_some() { Phase::Ended } else { Phase::Idle };
+        Ok(None)
+    }
+
+    /// What its run tells. What comes from no run that it has is late, and means nothing any more.
+    fn told(&mut self, event: Event) -> Option<Effect> {
+        let phase = std::mem::replace(&mut self.phase, Phase::Idle);
+        let (phase, effect) = match (phase, event) {
+            (Phase::Running { of, .. }, Event::Begun { run }) => {
+                (Phase::Running { of, run: Some(run) }, None)
+            }
+            (Phase::Running { of, run }, Event::Saving) => (Phase::Saving { of, run }, None),
+            (Phase::Running { .. } | Phase::Saving { .. }, Event::NotBegun { why }) => {
+                self.note = Some(why);
+                (Phase::Idle, None)
+            }
+            (Phase::Running { .. } | Phase::Saving { .. } | Phase::Unsaved { .. }, Event::Ended(shown)) => {
+                self.shown = Some(shown.clone());
+                (Phase::Ended, Some(Effect::Hooks(shown)))
+            }
+            (
+                Phase::Running { of, run } | Phase::Saving { of, run } | Phase::Unsaved { of, run, .. },
+                Event::Unsaved { why },
+            ) => {
+                let effect = run.clone().map(|run| Effect::Recover { run });
+                (Phase::Unsaved { of, run, why }, effect)
+            }
+            (Phase::Ended, Event::Stuck) => {
+                let why = "its process cannot be killed; restart the computer".to_owned();
+                (Phase::Out { why }, None)
+            }
+            (phase, _) => (phase, None),
+        };
+        self.phase = phase;
+        effect
+    }
+}

@@ -1,0 +1,272 @@
+//! The lanes of a station side by side, and which of them gets a scan. Pure data: events in, effects out.
+//!
+//! 1. The lane whose barcode was scanned before, for one scan.
+//! 2. The only lane there is.
+//! 3. With the order scan-then-plug: the next lane into which a board is plugged, within a minute.
+//!
+//! Never the first free one silently.
+
+mod lane;
+mod scan;
+mod words;
+
+use std::time::Duration;
+
+pub use lane::Lane;
+pub use scan::{Act, Scan, UnknownBarcode};
+pub use words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
+
+use crate::plan::serial::{SerialError, SerialRule};
+
+/// How long a serial number waits for a lane.
+const WAIT: Duration = Duration::from_secs(60);
+
+/// What a plan says of serial numbers.
+#[derive(Clone, Debug)]
+pub struct Rule {
+    /// The product.
+    pub product: String,
+    /// Which serial numbers it has.
+    pub serial: SerialRule,
+}
+
+/// A lane's place on the floor.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// Its name.
+    pub name: String,
+    /// How its runs are started.
+    pub starts: Starts,
+    /// Its plans, by their places in the station's list.
+    pub plans: Vec<usize>,
+}
+
+/// What a scan led to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Answer {
+    /// The lane, by its place, if it went to one.
+    pub lane: Option<usize>,
+    /// What is to be done there.
+    pub effect: Option<Effect>,
+    /// What was understood, for people.
+    pub said: String,
+}
+
+/// A scan that is refused. Nothing has changed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ScanError {
+    /// It is none of the station's barcodes.
+    #[error(transparent)]
+    Barcode(#[from] UnknownBarcode),
+    /// The scanner did not add what it always adds.
+    #[error("the scan came without what the scanner adds to every label; scan the label again")]
+    Incomplete,
+    /// There is no such lane.
+    #[error("there is no lane {lane}; the lanes are {known}")]
+    NoLane {
+        /// What was scanned.
+        lane: String,
+        /// What there is.
+        known: String,
+    },
+    /// Nobody knows for which lane it is.
+    #[error("there are {lanes} lanes; scan the barcode of one first, HR:LANE:NAME")]
+    WhichLane {
+        /// How many.
+        lanes: usize,
+    },
+    /// It is no serial number.
+    #[error(transparent)]
+    Serial(#[from] SerialError),
+    /// Two plans would take it.
+    #[error(
+        "`{serial}` is a serial number of {first} and of {second}; an engineer makes their patterns differ"
+    )]
+    Ambiguous {
+        /// What was scanned.
+        serial: String,
+        /// One product.
+        first: String,
+        /// Another.
+        second: String,
+    },
+    /// The board is somewhere else.
+    #[error("{serial} is in lane {lane} already; scan the label of the board that you hold")]
+    Elsewhere {
+        /// The serial number.
+        serial: String,
+        /// Where it is.
+        lane: String,
+    },
+    /// The lane cannot do it now.
+    #[error(transparent)]
+    Lane(#[from] Refusal),
+}
+
+/// The lanes of a station.
+#[derive(Clone, Debug)]
+pub struct Floor {
+    lanes: Vec<Lane>,
+    plans_of: Vec<Vec<usize>>,
+    rules: Vec<Rule>,
+    scan_then_plug: bool,
+    armed: Option<usize>,
+    /// A serial number that waits for a lane, and since when.
+    pending: Option<(String, Duration)>,
+}
+
+impl Floor {
+    /// With these lanes, and the rules of all plans. `scan_then_plug` is the third way of the head of this module.
+    #[must_use]
+    pub fn new(places: Vec<Place>, rules: Vec<Rule>, scan_then_plug: bool) -> Self {
+        let lanes = places.iter().map(|place| Lane::new(&place.name, place.starts)).collect();
+        let plans_of = places.into_iter().map(|place| place.plans).collect();
+        Self { lanes, plans_of, rules, scan_then_plug, armed: None, pending: None }
+    }
+
+    /// The lanes, in their order.
+    #[must_use]
+    pub fn lanes(&self) -> &[Lane] {
+        &self.lanes
+    }
+
+    /// The serial number that waits for a lane at the time `now`.
+    #[must_use]
+    pub fn pending(&self, now: Duration) -> Option<&str> {
+        let fresh = self.pending.as_ref().filter(|(_, since)| now.saturating_sub(*since) <= WAIT);
+        fresh.map(|(serial, _)| serial.as_str())
+    }
+
+    /// Takes what was scanned at the time `now`, by any clock that only goes on.
+    ///
+    /// # Errors
+    /// [`ScanError`] when it is refused; nothing has changed then.
+    pub fn scan(&mut self, text: &str, now: Duration) -> Result<Answer, ScanError> {
+        match Scan::read(text)? {
+            Scan::Lane(name) => {
+                let lane = self.named(&name)?;
+                self.armed = Some(lane);
+                Ok(Answer {
+                    lane: Some(lane),
+                    effect: None,
+                    said: format!("the next scan is for lane {name}"),
+                })
+            }
+            Scan::Act(act) => self.act(self.meant()?, act),
+            Scan::Serial(serial) => match self.meant() {
+                Ok(lane) => self.give(lane, &serial),
+                Err(_) if self.scan_then_plug => self.keep(serial, now),
+                Err(error) => Err(error),
+            },
+        }
+    }
+
+    /// Does with a lane what a barcode or a button says.
+    ///
+    /// # Errors
+    /// [`ScanError::Lane`] when it cannot be done now.
+    pub fn act(&mut self, lane: usize, act: Act) -> Result<Answer, ScanError> {
+        let (event, said) = match act {
+            Act::Start => (Event::Start, "starts"),
+            Act::Abort => (Event::Abort, "is told to end"),
+            Act::Out => (Event::Out { why: "taken out by a person".to_owned() }, "is out of service"),
+            Act::In => (Event::In, "is in service"),
+        };
+        let effect = self.lane(lane)?.take(event)?;
+        self.armed = None;
+        Ok(Answer { lane: Some(lane), effect, said: format!("lane {} {said}", self.name(lane)) })
+    }
+
+    /// Takes what happened to a lane at the time `now`. A serial number that waits goes to the lane that a board came to.
+    pub fn happened(&mut self, lane: usize, event: Event, now: Duration) -> Option<Effect> {
+        let came =
+            event == Event::Present(true) && self.lanes.get(lane).is_some_and(|lane| !lane.is_present());
+        let effect = self.lanes.get_mut(lane)?.take(event).ok()?;
+        if effect.is_some() || !came {
+            return effect;
+        }
+        let serial = self.pending(now)?.to_owned();
+        let answer = self.give(lane, &serial).ok()?;
+        self.pending = None;
+        // Plugging it in is what starts some lanes.
+        answer.effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
+    }
+
+    /// The lane that a scan is for.
+    fn meant(&self) -> Result<usize, ScanError> {
+        let only = (self.lanes.len() == 1).then_some(0);
+        self.armed.or(only).ok_or(ScanError::WhichLane { lanes: self.lanes.len() })
+    }
+
+    fn named(&self, name: &str) -> Result<usize, ScanError> {
+        self.lanes.iter().position(|lane| lane.name() == name).ok_or_else(|| {
+            let known: Vec<_> = self.lanes.iter().map(Lane::name).collect();
+            ScanError::NoLane { lane: name.to_owned(), known: known.join(", ") }
+        })
+    }
+
+    fn name(&self, lane: usize) -> &str {
+        self.lanes.get(lane).map_or("", Lane::name)
+    }
+
+    fn lane(&mut self, lane: usize) -> Result<&mut Lane, ScanError> {
+        let lanes = self.lanes.len();
+        self.lanes.get_mut(lane).ok_or(ScanError::WhichLane { lanes })
+    }
+
+    /// Gives a lane the serial number.
+    fn give(&mut self, lane: usize, serial: &str) -> Result<Answer, ScanError> {
+        let accepted = self.read(self.plans_of.get(lane).map_or(&[], Vec::as_slice), serial)?;
+        self.refuse_elsewhere(lane, &accepted)?;
+        let effect = self.lane(lane)?.take(Event::Given(accepted))?;
+        self.armed = None;
+        let does = if effect.is_some() { "is tested" } else { "waits" };
+        let said = format!("{serial} {does} in lane {}", self.name(lane));
+        Ok(Answer { lane: Some(lane), effect, said })
+    }
+
+    /// Keeps the serial number for the next lane into which a board is plugged.
+    fn keep(&mut self, serial: String, now: Duration) -> Result<Answer, ScanError> {
+        let all: Vec<usize> = (0..self.rules.len()).collect();
+        let accepted = self.read(&all, &serial)?;
+        self.refuse_elsewhere(usize::MAX, &accepted)?;
+        let instead = self.pending(now).map(|other| format!(", instead of {other}")).unwrap_or_default();
+        let said = format!("{serial} waits for the next board that is plugged in{instead}");
+        self.pending = Some((serial, now));
+        Ok(Answer { lane: None, effect: None, said })
+    }
+
+    /// The one of these plans that takes the serial number.
+    fn read(&self, plans: &[usize], serial: &str) -> Result<Accepted, ScanError> {
+        let (mut accepted, mut refused) = (None::<Accepted>, None);
+        for (plan, rule) in plans.iter().filter_map(|&plan| Some((plan, self.rules.get(plan)?))) {
+            match (rule.serial.read(serial), &accepted) {
+                (Ok(_), Some(first)) => {
+                    let (first, second) = (first.product.clone(), rule.product.clone());
+                    return Err(ScanError::Ambiguous { serial: serial.to_owned(), first, second });
+                }
+                (Ok(read), None) => {
+                    accepted = Some(Accepted { plan, product: rule.product.clone(), serial: read.text });
+                }
+                // A wrong check digit says more than a pattern of another product.
+                (Err(error @ SerialError::CheckDigit { .. }), _) => refused = Some(error),
+                (Err(error), _) => refused = refused.or(Some(error)),
+            }
+        }
+        accepted.ok_or_else(|| refused.unwrap_or(SerialError::Empty).into())
+    }
+
+    /// Refuses a board that another lane has in hand.
+    fn refuse_elsewhere(&self, lane: usize, accepted: &Accepted) -> Result<(), ScanError> {
+        let is_same =
+            |other: &Accepted| (&other.product, &other.serial) == (&accepted.product, &accepted.serial);
+        let has = |(place, other): &(usize, &Lane)| *place != lane && other.under_test().is_some_and(is_same);
+        match self.lanes.iter().enumerate().find(has) {
+            None => Ok(()),
+            Some((_, other)) => {
+                let (serial, lane) = (accepted.serial.clone(), other.name().to_owned());
+                Err(ScanError::Elsewhere { serial, lane })
+            }
+        }
+    }
+}

@@ -1,0 +1,208 @@
+//! What happens to a lane, what is to be done then, and what is said of it.
+
+use halfrow::Verdict;
+use serde::Serialize;
+
+/// How runs of a lane are started.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Starts {
+    /// By the serial number of the board that is in it.
+    pub scan: bool,
+    /// By a button, once the serial number is there.
+    pub button: bool,
+    /// By plugging the board in, once the serial number is there.
+    pub presence: bool,
+}
+
+/// A serial number that a plan of the lane takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Accepted {
+    /// The plan, by its place in the station's list.
+    pub plan: usize,
+    /// The product.
+    pub product: String,
+    /// The serial number.
+    pub serial: String,
+}
+
+/// A verdict that is saved, and may be shown. There is none without the hash of its record.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Shown {
+    /// The run.
+    pub run: String,
+    /// The serial number.
+    pub serial: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The hash of the record, as it was read back.
+    pub record_sha256: String,
+    /// Why, in one sentence.
+    pub headline: String,
+    /// What to do next.
+    pub remedy: Option<String>,
+}
+
+/// What a lane is called by those who look at it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "UPPERCASE")]
+pub enum Word {
+    /// No board.
+    Empty,
+    /// A board, and no serial number.
+    Ready,
+    /// A serial number that waits for its board, or for the button.
+    Waiting,
+    /// A run is under way.
+    Running,
+    /// It is over, and its result is being saved.
+    Saving,
+    /// The last run's verdict, until the next serial number.
+    Pass,
+    /// As above.
+    Fail,
+    /// As above.
+    Error,
+    /// The last run's result could not be saved: there is none.
+    Unsaved,
+    /// Out of service.
+    Out,
+}
+
+/// What happens to a lane.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// A board came, or is gone.
+    Present(bool),
+    /// A serial number for it.
+    Given(Accepted),
+    /// The button.
+    Start,
+    /// Somebody wants the run to end, or the serial number to be forgotten.
+    Abort,
+    /// Somebody takes it out of service.
+    Out {
+        /// Why.
+        why: String,
+    },
+    /// Somebody puts it back.
+    In,
+    /// Its run is in the store.
+    Begun {
+        /// The run.
+        run: String,
+    },
+    /// Its run could not even be entered; the board was not touched.
+    NotBegun {
+        /// Why.
+        why: String,
+    },
+    /// Its run's process has ended.
+    Saving,
+    /// Its run's verdict is saved.
+    Ended(Shown),
+    /// Its run's result is not saved.
+    Unsaved {
+        /// Why.
+        why: String,
+    },
+    /// Its process cannot be killed, and may still have the board.
+    Stuck,
+    /// What it is to do before its production counts, if anything.
+    Owes(Option<Owes>),
+}
+
+/// A unit that a lane is to test before any other.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Owes {
+    /// The plan, by its place in the station's list.
+    pub plan: usize,
+    /// The serial number of the unit; none when it cannot be told which.
+    pub serial: Option<String>,
+    /// Why.
+    pub why: String,
+}
+
+/// What is to be done.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Effect {
+    /// Begin a run.
+    Begin(Accepted),
+    /// Tell the run to end.
+    Stop,
+    /// Try to save what is not saved.
+    Recover {
+        /// The run.
+        run: String,
+    },
+    /// Light lamps, print labels.
+    Hooks(Shown),
+}
+
+/// Something that a lane cannot do now.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Refusal {
+    /// It is out of service.
+    #[error("lane {lane} is out of service: {why}; put it back with HR:IN, or take another lane")]
+    Out {
+        /// The lane.
+        lane: String,
+        /// Why.
+        why: String,
+    },
+    /// It was not checked in this shift.
+    #[error("lane {lane} is out of service: {why}")]
+    Owes {
+        /// The lane.
+        lane: String,
+        /// What is to be done.
+        why: String,
+    },
+    /// A run is under way.
+    #[error("lane {lane} is testing {serial}; wait until it is done, or abort it")]
+    Busy {
+        /// The lane.
+        lane: String,
+        /// What it tests.
+        serial: String,
+    },
+    /// Its last result is not saved.
+    #[error(
+        "lane {lane} holds {serial}, whose result is not saved; keep this board apart, and call an engineer"
+    )]
+    Unsaved {
+        /// The lane.
+        lane: String,
+        /// What it tested.
+        serial: String,
+    },
+    /// There is no board.
+    #[error("there is no board in lane {lane}; plug it in, and scan it again")]
+    NoBoard {
+        /// The lane.
+        lane: String,
+    },
+    /// There is no serial number.
+    #[error("lane {lane} has no serial number; scan the board's label")]
+    NoSerial {
+        /// The lane.
+        lane: String,
+    },
+    /// It has no button.
+    #[error("lane {lane} is not started by a button; see `start` in the station's settings")]
+    NoButton {
+        /// The lane.
+        lane: String,
+    },
+    /// Nothing is under way.
+    #[error("nothing is under way in lane {lane}")]
+    NothingToAbort {
+        /// The lane.
+        lane: String,
+    },
+    /// It is in service.
+    #[error("lane {lane} is in service already")]
+    InService {
+        /// The lane.
+        lane: String,
+    },
+}

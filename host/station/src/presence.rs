@@ -1,0 +1,119 @@
+//! Whether there is a board in a lane, as far as that can be seen without touching it: not even by libusb.
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use halfrow::target::Target;
+
+/// Where Linux tells of USB devices.
+pub(crate) const USB: &str = "/sys/bus/usb/devices";
+/// FTDI's number among the makers of USB devices.
+const FTDI: &str = "0403";
+/// How long a board must be away to be gone.
+const GONE: Duration = Duration::from_secs(1);
+
+/// A chip of FTDI's that is plugged in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Chip {
+    /// Where, as `1-2.3`.
+    pub(crate) place: String,
+    /// Its serial number.
+    serial: Option<String>,
+}
+
+/// The chips that the folder `devices` tells of, in the order of their places.
+pub(crate) fn chips(devices: &Path) -> Vec<Chip> {
+    let chip = |entry: fs::DirEntry| {
+        let read = |name| fs::read_to_string(entry.path().join(name)).ok().map(|text| text.trim().to_owned());
+        let is_ftdi = read("idVendor").as_deref() == Some(FTDI);
+        is_ftdi
+            .then(|| Chip { place: entry.file_name().to_string_lossy().into_owned(), serial: read("serial") })
+    };
+    let entries = fs::read_dir(devices).into_iter().flatten().filter_map(Result::ok);
+    let mut chips: Vec<_> = entries.filter_map(chip).collect();
+    chips.sort_by(|one, other| one.place.cmp(&other.place));
+    chips
+}
+
+/// Whether something is plugged in where `board` is; of what is not plugged in anywhere, as `tcp:` and `mock`, nothing
+/// else can be said than that it is there.
+#[must_use]
+pub(crate) fn is_there(board: &Target, devices: &Path) -> bool {
+    match (board.kind.as_str(), board.address.as_deref()) {
+        ("serial", Some(path)) => Path::new(path).exists(),
+        ("usb", Some(name)) => {
+            chips(devices).iter().any(|chip| chip.place == name || chip.serial.as_deref() == Some(name))
+        }
+        _ => true,
+    }
+}
+
+/// What is seen of a board, without what comes and goes while its system starts.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Presence {
+    is_there: bool,
+    away_since: Option<Duration>,
+}
+
+impl Presence {
+    /// Whether it came, or is gone: it was seen, or not, at the time `now`.
+    pub(crate) fn look(&mut self, is_seen: bool, now: Duration) -> Option<bool> {
+        let away_since = if is_seen { None } else { Some(self.away_since.unwrap_or(now)) };
+        self.away_since = away_since;
+        let is_there = match away_since {
+            None => true,
+            Some(since) => self.is_there && now.saturating_sub(since) < GONE,
+        };
+        let changed = (is_there != self.is_there).then_some(is_there);
+        self.is_there = is_there;
+        changed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_board_is_gone_when_it_was_away_for_a_second() {
+        let mut presence = Presence::default();
+        let looks = [
+            (0, false, None),
+            (500, true, Some(true)),
+            (1000, false, None),
+            (1500, true, None),
+            (2000, false, None),
+            (2999, false, None),
+            (3000, false, Some(false)),
+            (3500, false, None),
+            (4000, true, Some(true)),
+        ];
+        for (at, is_seen, change) in looks {
+            assert_eq!(presence.look(is_seen, Duration::from_millis(at)), change, "at {at} ms");
+        }
+    }
+
+    #[test]
+    fn a_chip_is_seen_by_its_place_and_by_its_number() {
+        let devices = tempfile::tempdir().unwrap();
+        for (place, vendor, serial) in
+            [("1-2.3", "0403", Some("FT3XYZ")), ("1-1", "046d", Some("MOUSE")), ("2-1", "0403", None)]
+        {
+            let folder = devices.path().join(place);
+            fs::create_dir(&folder).unwrap();
+            fs::write(folder.join("idVendor"), format!("{vendor}\n")).unwrap();
+            if let Some(serial) = serial {
+                fs::write(folder.join("serial"), format!("{serial}\n")).unwrap();
+            }
+        }
+        let seen = |target: &str| is_there(&target.parse().unwrap(), devices.path());
+        assert!(seen("usb:1-2.3") && seen("usb:FT3XYZ") && seen("usb:2-1"));
+        assert!(!seen("usb:1-1") && !seen("usb:MOUSE") && !seen("usb:1-2"));
+        let port = devices.path().join("port");
+        let target = format!("serial:{}", port.display());
+        assert!(!seen(&target));
+        fs::write(&port, "").unwrap();
+        assert!(seen(&target) && seen("mock") && seen("tcp:bench:3001"));
+    }
+}

@@ -1,0 +1,123 @@
+//! The settings of a station: its name, its folder, its lanes, its scanner, its hooks.
+
+mod read;
+mod stable;
+mod text;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use halfrow::Verdict;
+use halfrow::target::Target;
+
+use crate::floor::{Floor, Place, Rule, Starts};
+use crate::input_error::InputError;
+use crate::plan::Plan;
+
+/// The version of the settings' own format.
+pub const SCHEMA: u32 = 1;
+
+/// A station's settings, which were checked against each other and against what they name.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Its name.
+    pub name: String,
+    /// Its folder.
+    pub data: PathBuf,
+    /// How long a lane may be silent.
+    pub silence: Duration,
+    /// Whether a serial number that is scanned first goes to the next board that is plugged in.
+    pub scan_then_plug: bool,
+    /// What the scanner adds before and behind every label.
+    pub scanner: Scanner,
+    /// Every plan that a lane names.
+    pub plans: Vec<PlanFile>,
+    /// The lanes, at least one.
+    pub lanes: Vec<LaneSettings>,
+    /// What is started when a verdict is saved.
+    pub hooks: Vec<Hook>,
+}
+
+/// A plan with its file.
+#[derive(Clone, Debug)]
+pub struct PlanFile {
+    /// The file.
+    pub path: PathBuf,
+    /// The plan.
+    pub plan: Plan,
+}
+
+/// A `[[lane]]`.
+#[derive(Clone, Debug)]
+pub struct LaneSettings {
+    /// Its name.
+    pub name: String,
+    /// Its board, by a name that stays.
+    pub board: Target,
+    /// Its plans, by their places in [`Settings::plans`].
+    pub plans: Vec<usize>,
+    /// How its runs are started.
+    pub starts: Starts,
+}
+
+/// What the scanner adds.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Scanner {
+    /// Before.
+    pub prefix: String,
+    /// Behind.
+    pub suffix: String,
+}
+
+impl Scanner {
+    /// The label of what was scanned; none if the scanner did not add what it always adds.
+    #[must_use]
+    pub fn label<'a>(&self, scanned: &'a str) -> Option<&'a str> {
+        scanned.strip_prefix(self.prefix.as_str())?.strip_suffix(self.suffix.as_str())
+    }
+}
+
+/// A program that is started when a verdict of its kind is saved.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hook {
+    /// The verdict.
+    pub on: Verdict,
+    /// The program.
+    pub program: PathBuf,
+    /// Its arguments, with [`WORDS`] between braces.
+    pub arguments: Vec<String>,
+    /// How long it may take.
+    pub deadline: Duration,
+}
+
+/// What an argument of a hook may have between braces.
+pub const WORDS: [&str; 6] = ["lane", "serial", "verdict", "run", "record", "headline"];
+
+impl Settings {
+    /// The settings in the file `path`, whose own paths are relative to it.
+    ///
+    /// # Errors
+    /// [`InputError`], with the line.
+    pub fn load(path: &Path) -> Result<Self, InputError> {
+        let text = fs::read_to_string(path)
+            .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
+        read::settings(path, &text).map_err(|fault| fault.in_file(path, &text))
+    }
+
+    /// The lanes as they are before a board came.
+    #[must_use]
+    pub fn floor(&self) -> Floor {
+        let place = |lane: &LaneSettings| Place {
+            name: lane.name.clone(),
+            starts: lane.starts,
+            plans: lane.plans.clone(),
+        };
+        let rule = |PlanFile { plan, .. }: &PlanFile| Rule {
+            product: plan.product.clone(),
+            serial: plan.serial.clone(),
+        };
+        let places = self.lanes.iter().map(place).collect();
+        Floor::new(places, self.plans.iter().map(rule).collect(), self.scan_then_plug)
+    }
+}

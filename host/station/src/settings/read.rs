@@ -1,0 +1,182 @@
+//! What the parts of the settings mean together.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use halfrow::Verdict;
+use halfrow::target::Target;
+use toml::Spanned;
+
+use super::text::{HookText, LaneText, OrderText, SettingsText, StartText};
+use super::{Hook, LaneSettings, PlanFile, SCHEMA, Scanner, Settings, WORDS, stable};
+use crate::floor::Starts;
+use crate::input_error::Fault;
+use crate::plan::Plan;
+
+/// Where all keys are listed.
+const KEYS: &str = "docs/station.md lists every key and its values";
+/// How long a lane may be silent, in seconds.
+const SILENCE: f64 = 60.0;
+/// How long a hook may take, in seconds.
+const DEADLINE: f64 = 10.0;
+/// The longest of either.
+const MOST_SECONDS: f64 = 86_400.0;
+/// The most characters of a lane's name, which stands on a barcode and is read from afar.
+const MOST_NAME: usize = 16;
+
+/// The settings of `text` in the file `path`.
+pub(super) fn settings(path: &Path, text: &str) -> Result<Settings, Fault> {
+    let read: SettingsText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
+    if *read.schema.get_ref() != SCHEMA {
+        let what = format!("this program reads settings of schema {SCHEMA}, not {}", read.schema.get_ref());
+        let remedy = "take the halfrow-station that they were written for";
+        return Err(Fault::wrong(read.schema.span().start, what, remedy));
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let station = &read.station;
+    let (plans, lanes) = lanes(folder, &read)?;
+    Ok(Settings {
+        name: not_empty(&station.name)?,
+        data: folder.join(not_empty(&station.data)?),
+        silence: seconds(station.silence.as_ref(), SILENCE)?,
+        scan_then_plug: station.order == OrderText::ScanThenPlug,
+        scanner: Scanner { prefix: read.scanner.prefix.clone(), suffix: read.scanner.suffix.clone() },
+        plans,
+        lanes,
+        hooks: hooks(folder, &read)?,
+    })
+}
+
+fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
+    match word.get_ref().trim() {
+        "" => Err(Fault::wrong(word.span().start, "there is nothing here", "write a name")),
+        word => Ok(word.to_owned()),
+    }
+}
+
+fn seconds(text: Option<&Spanned<f64>>, default: f64) -> Result<Duration, Fault> {
+    let value = text.map_or(default, |text| *text.get_ref());
+    let at = text.map_or(0, |text| text.span().start);
+    if (0.1..=MOST_SECONDS).contains(&value) {
+        return Ok(Duration::from_secs_f64(value));
+    }
+    Err(Fault::wrong(at, format!("{value} s is no such time"), format!("give 0.1 to {MOST_SECONDS} seconds")))
+}
+
+/// The lanes, and every plan that they name, once.
+fn lanes(folder: &Path, read: &SettingsText) -> Result<(Vec<PlanFile>, Vec<LaneSettings>), Fault> {
+    if read.lane.is_empty() {
+        let remedy = "write a [[lane]] with name, board and plans";
+        return Err(Fault::wrong(read.schema.span().start, "the station has no lane", remedy));
+    }
+    let (mut plans, mut lanes) = (Vec::new(), Vec::<LaneSettings>::new());
+    for text in &read.lane {
+        let lane = lane(folder, text, &mut plans)?;
+        if lanes.iter().any(|other| other.name == lane.name) {
+            let what = format!("two lanes are called {}", lane.name);
+            return Err(Fault::wrong(text.name.span().start, what, "give each a name of its own"));
+        }
+        let is_same =
+            |other: &&LaneSettings| other.board.address.is_some() && is_same(&other.board, &lane.board);
+        if let Some(other) = lanes.iter().find(is_same) {
+            let what = format!("lane {} has the board `{}` already", other.name, text.board.get_ref());
+            return Err(Fault::wrong(text.board.span().start, what, "give each lane a board of its own"));
+        }
+        lanes.push(lane);
+    }
+    Ok((plans, lanes))
+}
+
+fn is_same(one: &Target, other: &Target) -> bool {
+    (&one.kind, &one.address) == (&other.kind, &other.address)
+}
+
+fn lane(folder: &Path, text: &LaneText, plans: &mut Vec<PlanFile>) -> Result<LaneSettings, Fault> {
+    let name = text.name.get_ref();
+    let is_name = (1..=MOST_NAME).contains(&name.len())
+        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
+    if !is_name {
+        let what = format!("`{name}` is no name for a lane");
+        let remedy =
+            format!("write 1 to {MOST_NAME} letters, digits and hyphens, which a barcode has room for");
+        return Err(Fault::wrong(text.name.span().start, what, remedy));
+    }
+    let at = text.board.span().start;
+    let board: Target = text.board.get_ref().parse().map_err(|error| Fault::input(at, "the board", error))?;
+    if halfrow::link::kinds::of(&board).is_none() {
+        let what = format!("`{}` is no kind of board", board.kind);
+        return Err(Fault::wrong(at, what, "write one as `halfrow boards` lists them"));
+    }
+    if let Some((what, remedy)) = stable::refused(&board) {
+        return Err(Fault::wrong(at, what, remedy));
+    }
+    if text.plans.get_ref().is_empty() {
+        let what = format!("lane {name} has no plan");
+        return Err(Fault::wrong(text.plans.span().start, what, "name the file of one"));
+    }
+    let mut of_lane = Vec::new();
+    for file in text.plans.get_ref() {
+        of_lane.push(plan(folder, file, plans)?);
+    }
+    Ok(LaneSettings { name: name.clone(), board, plans: of_lane, starts: starts(text)? })
+}
+
+/// The place of this plan among the station's.
+fn plan(folder: &Path, file: &Spanned<String>, plans: &mut Vec<PlanFile>) -> Result<usize, Fault> {
+    let path = folder.join(file.get_ref());
+    let path = std::path::absolute(&path).unwrap_or(path);
+    if let Some(known) = plans.iter().position(|known| known.path == path) {
+        return Ok(known);
+    }
+    let plan = Plan::load(&path)
+        .map_err(|error| Fault::input(file.span().start, format!("the plan {}", file.get_ref()), error))?;
+    plans.push(PlanFile { path, plan });
+    Ok(plans.len() - 1)
+}
+
+fn starts(text: &LaneText) -> Result<Starts, Fault> {
+    let Some(start) = &text.start else { return Ok(Starts { scan: true, ..Starts::default() }) };
+    let has = |kind| start.get_ref().contains(&kind);
+    if start.get_ref().is_empty() {
+        let remedy = "name scan, button or presence, or leave `start` out for scan";
+        return Err(Fault::wrong(start.span().start, "nothing starts this lane", remedy));
+    }
+    let [scan, button, presence] = [StartText::Scan, StartText::Button, StartText::Presence].map(has);
+    Ok(Starts { scan, button, presence })
+}
+
+fn hooks(folder: &Path, read: &SettingsText) -> Result<Vec<Hook>, Fault> {
+    let kinds =
+        [(Verdict::Pass, &read.on_pass), (Verdict::Fail, &read.on_fail), (Verdict::Error, &read.on_error)];
+    let all = kinds.into_iter().flat_map(|(on, texts)| texts.iter().map(move |text| hook(folder, on, text)));
+    all.collect()
+}
+
+fn hook(folder: &Path, on: Verdict, text: &HookText) -> Result<Hook, Fault> {
+    let written = not_empty(&text.program)?;
+    // A name without a folder is looked for where the shell looks.
+    let program = if written.contains('/') { folder.join(&written) } else { PathBuf::from(&written) };
+    if written.contains('/') && !program.is_file() {
+        let what = format!("there is no program {}", program.display());
+        return Err(Fault::wrong(
+            text.program.span().start,
+            what,
+            "check its name; it is relative to this file",
+        ));
+    }
+    for argument in &text.arguments {
+        if let Some(word) = unknown_word(argument.get_ref()) {
+            let what = format!("nothing is known that is called {{{word}}}");
+            let known = WORDS.map(|word| format!("{{{word}}}")).join(", ");
+            return Err(Fault::wrong(argument.span().start, what, format!("write one of {known}")));
+        }
+    }
+    let arguments = text.arguments.iter().map(|argument| argument.get_ref().clone()).collect();
+    Ok(Hook { on, program, arguments, deadline: seconds(text.deadline.as_ref(), DEADLINE)? })
+}
+
+/// The first word between braces that stands for nothing.
+fn unknown_word(argument: &str) -> Option<&str> {
+    let words = argument.split('{').skip(1).filter_map(|piece| piece.split_once('}'));
+    words.map(|(word, _)| word).find(|word| !WORDS.contains(word))
+}

@@ -1,0 +1,81 @@
+//! The settings as they stand in their file, each value with its place where an error may name it.
+
+use serde::Deserialize;
+use toml::Spanned;
+
+/// The whole file.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SettingsText {
+    pub(super) schema: Spanned<u32>,
+    pub(super) station: StationText,
+    #[serde(default)]
+    pub(super) scanner: ScannerText,
+    #[serde(default)]
+    pub(super) lane: Vec<LaneText>,
+    #[serde(default, rename = "on-pass")]
+    pub(super) on_pass: Vec<HookText>,
+    #[serde(default, rename = "on-fail")]
+    pub(super) on_fail: Vec<HookText>,
+    #[serde(default, rename = "on-error")]
+    pub(super) on_error: Vec<HookText>,
+}
+
+/// `[station]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StationText {
+    pub(super) name: Spanned<String>,
+    pub(super) data: Spanned<String>,
+    #[serde(default)]
+    pub(super) order: OrderText,
+    pub(super) silence: Option<Spanned<f64>>,
+}
+
+/// Which lane a scan is for when there are several.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(super) enum OrderText {
+    #[default]
+    LaneFirst,
+    ScanThenPlug,
+}
+
+/// `[scanner]`
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ScannerText {
+    #[serde(default)]
+    pub(super) prefix: String,
+    #[serde(default)]
+    pub(super) suffix: String,
+}
+
+/// A `[[lane]]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LaneText {
+    pub(super) name: Spanned<String>,
+    pub(super) board: Spanned<String>,
+    pub(super) plans: Spanned<Vec<Spanned<String>>>,
+    pub(super) start: Option<Spanned<Vec<StartText>>>,
+}
+
+/// What starts a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum StartText {
+    Scan,
+    Button,
+    Presence,
+}
+
+/// An `[[on-…]]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct HookText {
+    pub(super) program: Spanned<String>,
+    #[serde(default)]
+    pub(super) arguments: Vec<Spanned<String>>,
+    pub(super) deadline: Option<Spanned<f64>>,
+}

@@ -1,0 +1,287 @@
+//! Which device has which serial number: the FPGA's own number against the label on the board.
+
+use rusqlite::{Connection, OptionalExtension as _, Transaction, params};
+use serde::{Deserialize, Serialize};
+
+use super::{Store, StoreError, statements as sql};
+use crate::record::RunHead;
+use crate::{clock, ids};
+
+/// Why a run binds.
+pub(super) const BY_RUN: &str = "first judgement";
+/// What a change by a person is called in the audit.
+pub(super) const REBIND: &str = "rebind";
+
+/// What the store knows of a device under a serial number.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Admission {
+    /// Neither was seen before: they are bound when the board is judged.
+    New,
+    /// They belong together.
+    Known,
+    /// They do not, or the device is being tested elsewhere.
+    Refused {
+        /// Which board it is, and which was scanned.
+        why: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+}
+
+/// A change of what belongs together, by a person.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rebinding {
+    /// Its line in the audit, a UUID of version 7.
+    pub id: String,
+    /// When, in milliseconds since 1970, UTC.
+    pub at_ms: i64,
+    /// Who.
+    pub operator: String,
+    /// The unit, a UUID.
+    pub unit_id: String,
+    /// The device that the unit has from then on; none if the next judgement is to say it.
+    pub device: Option<String>,
+    /// Why.
+    pub reason: String,
+}
+
+/// What the audit keeps of a rebinding beside who, when and which unit.
+#[derive(Debug, Serialize, Deserialize)]
+struct Detail {
+    device: Option<String>,
+    reason: String,
+}
+
+impl Store {
+    /// Whether the board that says it is `device` may be judged as `run`'s. Until that run is over no other one may have
+    /// the device.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn admit(&mut self, run: &RunHead, device: &str) -> Result<Admission, StoreError> {
+        if self.admitted.get(device).is_some_and(|other| *other != run.id) {
+            let why = format!("device {device} is being tested in another lane");
+            return Ok(Admission::Refused { why, remedy: "Wait until that run is over." });
+        }
+        let known = || -> rusqlite::Result<Known> {
+            let unit = self.writer.query_row(sql::UNIT_OF_DEVICE, [device], |row| {
+                Ok(Unit { product: row.get(0)?, serial: row.get(1)? })
+            });
+            let device = self.writer.query_row(sql::DEVICE_OF_UNIT, [&run.unit_id], |row| row.get(0));
+            Ok(Known { unit: unit.optional()?, device: device.optional()? })
+        };
+        let known =
+            known().map_err(|error| self.refuses("to tell which device has which serial number", error))?;
+        let admission =
+            known.admits(&Unit { product: run.product.clone(), serial: run.serial.clone() }, device);
+        if !matches!(admission, Admission::Refused { .. }) {
+            self.admitted.insert(device.to_owned(), run.id.clone());
+        }
+        Ok(admission)
+    }
+
+    /// Ends what binds the unit of this serial number, and `device` if one is given; the two are bound then, and else
+    /// the next judgement of the unit binds it. The reason is kept.
+    ///
+    /// # Errors
+    /// [`RebindError`] when there is no such unit, or it is being tested.
+    pub fn rebind(&mut self, change: &Change<'_>) -> Result<Rebinding, RebindError> {
+        let unit_id = self.unit(change)?;
+        let open: Option<String> = self
+            .writer
+            .query_row(sql::OPEN_RUN_OF_UNIT, [&unit_id], |row| row.get(0))
+            .optional()
+            .map_err(|error| self.refuses("to tell its open runs", error))?;
+        if open.is_some() || change.device.is_some_and(|device| self.admitted.contains_key(device)) {
+            return Err(RebindError::UnderTest { serial: change.serial.to_owned() });
+        }
+        let at_ms = clock::now_ms();
+        let rebinding = Rebinding {
+            id: ids::new(at_ms)?.to_string(),
+            at_ms,
+            operator: change.operator.to_owned(),
+            unit_id,
+            device: change.device.map(str::to_owned),
+            reason: change.reason.to_owned(),
+        };
+        self.change("another binding", |to| audit(to, &rebinding).and_then(|()| rebind(to, &rebinding)))?;
+        Ok(rebinding)
+    }
+
+    /// The unit that is meant.
+    fn unit(&self, change: &Change<'_>) -> Result<String, RebindError> {
+        let read = || -> rusqlite::Result<Vec<(String, String)>> {
+            let mut statement = self.writer.prepare(sql::UNITS_OF_SERIAL)?;
+            statement.query_map([change.serial], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
+        };
+        let units = read().map_err(|error| self.refuses("to tell its units", error))?;
+        let is_meant = |product: &str| change.product.is_none_or(|meant| meant == product);
+        let mut meant = units.into_iter().filter(|(_, product)| is_meant(product));
+        let serial = || change.serial.to_owned();
+        match (meant.next(), meant.next()) {
+            (Some((unit, _)), None) => Ok(unit),
+            (None, _) => Err(RebindError::Unknown { serial: serial() }),
+            (Some((_, first)), Some((_, second))) => {
+                Err(RebindError::Several { serial: serial(), first, second })
+            }
+        }
+    }
+}
+
+/// What a person wants to be bound.
+#[derive(Clone, Copy, Debug)]
+pub struct Change<'a> {
+    /// The serial number.
+    pub serial: &'a str,
+    /// The product, where several have such a serial number.
+    pub product: Option<&'a str>,
+    /// The device that it is to have, as 16 hexadecimal digits; none for the one that is judged next.
+    pub device: Option<&'a str>,
+    /// Who wants it.
+    pub operator: &'a str,
+    /// Why.
+    pub reason: &'a str,
+}
+
+/// A binding that cannot be changed.
+#[derive(Debug, thiserror::Error)]
+pub enum RebindError {
+    /// Nothing of this serial number was ever tested.
+    #[error("no unit `{serial}` was ever tested here; check the serial number and the product")]
+    Unknown {
+        /// The serial number.
+        serial: String,
+    },
+    /// Several products have it.
+    #[error("`{serial}` is a serial number of {first} and of {second}; say which with --product")]
+    Several {
+        /// The serial number.
+        serial: String,
+        /// One product.
+        first: String,
+        /// Another.
+        second: String,
+    },
+    /// It is in a lane just now.
+    #[error("the unit `{serial}`, or its device, is being tested; wait until the run is over")]
+    UnderTest {
+        /// The serial number.
+        serial: String,
+    },
+    /// There is no id for it.
+    #[error(transparent)]
+    NoRandomness(#[from] ids::NoRandomness),
+    /// The store.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// A unit by its label.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Unit {
+    product: String,
+    serial: String,
+}
+
+/// What was bound before: the unit that has the device, and the device that the unit has.
+#[derive(Clone, Debug, Default)]
+struct Known {
+    unit: Option<Unit>,
+    device: Option<String>,
+}
+
+impl Known {
+    /// Whether the board that says it is `device` may be judged as the scanned unit.
+    fn admits(&self, scanned: &Unit, device: &str) -> Admission {
+        const MIXED_UP: &str =
+            "Scan the label of the board that is in the lane; an engineer binds anew what was repaired.";
+        let why = match (&self.unit, &self.device) {
+            (None, None) => return Admission::New,
+            (Some(unit), _) if unit == scanned => return Admission::Known,
+            (Some(unit), _) if unit.product != scanned.product => {
+                format!("this board is {} of {}; you scanned {}", unit.serial, unit.product, scanned.serial)
+            }
+            (Some(unit), _) => format!("this board is {}; you scanned {}", unit.serial, scanned.serial),
+            (None, Some(other)) => {
+                format!("{} is device {other}; the board in the lane is device {device}", scanned.serial)
+            }
+        };
+        Admission::Refused { why, remedy: MIXED_UP }
+    }
+}
+
+/// What a run binds that judged a device which was not known.
+pub(super) fn bind(to: &Transaction<'_>, run: &RunHead, device: &str, at_ms: i64) -> rusqlite::Result<usize> {
+    to.execute(sql::ADD_BINDING, params![run.id, device, run.unit_id, at_ms, run.operator, BY_RUN])
+}
+
+/// What a person changed.
+pub(super) fn rebind(to: &Transaction<'_>, change: &Rebinding) -> rusqlite::Result<()> {
+    let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
+    to.execute(sql::END_BINDINGS, params![at_ms, unit_id, device])?;
+    if let Some(device) = device {
+        to.execute(sql::ADD_BINDING, params![id, device, unit_id, at_ms, operator, reason])?;
+    }
+    Ok(())
+}
+
+fn audit(to: &Transaction<'_>, change: &Rebinding) -> rusqlite::Result<()> {
+    let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
+    let detail = Detail { device: device.clone(), reason: reason.clone() };
+    let detail = serde_json::to_string(&detail)
+        .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
+    to.execute(sql::ADD_AUDIT, params![id, at_ms, operator, REBIND, unit_id, detail]).map(drop)
+}
+
+/// Every change by a person, the earliest first.
+pub(super) fn rebindings(from: &Connection) -> rusqlite::Result<Vec<Rebinding>> {
+    let mut statement = from.prepare(sql::AUDIT_OF_ACT)?;
+    let one = |row: &rusqlite::Row<'_>| {
+        let text: String = row.get(4)?;
+        let Detail { device, reason } = serde_json::from_str(&text).map_err(|error| {
+            rusqlite::Error::FromSqlConversionFailure(4, rusqlite::types::Type::Text, Box::new(error))
+        })?;
+        let (id, at_ms, operator, unit_id) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
+        Ok(Rebinding { id, at_ms, operator, unit_id, device, reason })
+    };
+    statement.query_map([REBIND], one)?.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit(serial: &str) -> Unit {
+        Unit { product: "CAM-A".to_owned(), serial: serial.to_owned() }
+    }
+
+    fn refusal(known: &Known, serial: &str, device: &str) -> String {
+        match known.admits(&unit(serial), device) {
+            Admission::Refused { why, .. } => why,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    /// Each row of the table in docs/station.md.
+    #[test]
+    fn what_belongs_together_is_admitted_and_a_mix_up_is_refused() {
+        let nothing = Known::default();
+        assert_eq!(nothing.admits(&unit("CA17"), "d1"), Admission::New);
+        let both = Known { unit: Some(unit("CA17")), device: Some("d1".to_owned()) };
+        assert_eq!(both.admits(&unit("CA17"), "d1"), Admission::Known);
+        let of_another = Known { unit: Some(unit("CA17")), device: None };
+        assert_eq!(refusal(&of_another, "CA71", "d1"), "this board is CA17; you scanned CA71");
+        let crossed = Known { unit: Some(unit("CA17")), device: Some("d2".to_owned()) };
+        assert_eq!(refusal(&crossed, "CA71", "d1"), "this board is CA17; you scanned CA71");
+        let exchanged = Known { unit: None, device: Some("d2".to_owned()) };
+        assert_eq!(
+            refusal(&exchanged, "CA71", "d1"),
+            "CA71 is device d2; the board in the lane is device d1"
+        );
+        let other_product = Known {
+            unit: Some(Unit { product: "CAM-B".to_owned(), serial: "CA71".to_owned() }),
+            device: None,
+        };
+        assert_eq!(refusal(&other_product, "CA71", "d1"), "this board is CA71 of CAM-B; you scanned CA71");
+    }
+}
