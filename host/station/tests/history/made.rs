@@ -5,8 +5,8 @@ use std::path::Path;
 use halfrow::Verdict;
 use halfrow_station::plan::limits::{Blame, Limit, Maker, Measurement, SAMPLES_DIFFERING};
 use halfrow_station::record::{
-    Attachment, BoardSeen, Conclusion, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepOutcome,
-    StepRecord, SuspectRecord, judged,
+    Attachment, BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead, SCHEMA,
+    StepOutcome, StepRecord, SuspectRecord, judged,
 };
 use halfrow_station::store::{Folder, Snapshot, Store};
 use tempfile::TempDir;
@@ -161,6 +161,7 @@ fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
         plan,
         production: true,
         marginal: false,
+        device: DeviceSeen::NotChecked,
         board: verify.board.clone(),
         suspects: verify.suspects.clone(),
         steps: vec![identity, verify],
