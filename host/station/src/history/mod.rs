@@ -7,7 +7,7 @@
 //!  pareto   what fails most, by part and by check
 //! ```
 //!
-//! Each takes a [`Snapshot`](crate::store::Snapshot), so that what one page shows is of one moment.
+//! Each takes a [`Snapshot`], so that what one page shows is of one moment.
 
 pub mod pareto;
 pub mod rate;
