@@ -2,34 +2,24 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use tracing::level_filters::LevelFilter;
-
+use clap::Parser as _;
+use halfrow_program::{console, exit::Exit, guard, line, log};
 use halfrow_station::commands::{Cli, Failure};
-use halfrow_station::console;
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    log(cli.verbosity());
-    let exit = cli.run().unwrap_or_else(|Failure { exit, error }| {
-        console::error(&format_args!("{error:#}"));
-        exit
-    });
-    ExitCode::from(exit.code())
+    guard::end(program)
 }
 
-fn log(verbosity: u8) {
-    let level = match verbosity {
-        0 => LevelFilter::WARN,
-        1 => LevelFilter::INFO,
-        _ => LevelFilter::DEBUG,
+fn program() -> Exit {
+    let ended = match Cli::try_parse() {
+        Ok(cli) => {
+            log::to_stderr(cli.verbosity());
+            cli.run()
+        }
+        Err(told) => line::tell(&told).map_err(Failure::error),
     };
-    tracing_subscriber::fmt()
-        .with_max_level(level)
-        .with_writer(|| console::Log)
-        .log_internal_errors(false)
-        .with_ansi(false)
-        .without_time()
-        .with_target(false)
-        .init();
+    ended.unwrap_or_else(|Failure { exit, error }| {
+        console::error(&format_args!("{error:#}"));
+        exit
+    })
 }

@@ -69,7 +69,7 @@ impl Failure {
     }
 
     /// A failure that is not the caller's.
-    fn error(error: impl Into<anyhow::Error>) -> Self {
+    pub fn error(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Error, error: error.into() }
     }
 }

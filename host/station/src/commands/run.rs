@@ -111,7 +111,7 @@ struct Watched {
 
 impl Watch for Watched {
     fn stop(&self) -> Option<StoppedBy> {
-        signals::stopped_by(self.signal.load(Ordering::Relaxed))
+        Exit::stopped_by(self.signal.load(Ordering::Relaxed))
     }
 
     fn hear(&mut self, stage: Stage<'_>) {

@@ -6,6 +6,7 @@
 mod bench;
 mod checked;
 mod ends;
+mod faults;
 mod identity;
 mod killed;
 mod saved;

@@ -1,4 +1,4 @@
-//! The standard streams. Nothing else of the program writes to them, and a stream that takes nothing ends no run.
+//! The standard streams. Nothing else of a program writes to them, and a stream that takes nothing ends no run.
 //!
 //! A stream that is closed is one that nobody wants to read, as `/dev/null` is: Rust's start-up code puts that there.
 
@@ -10,7 +10,6 @@ use std::io::{self, IsTerminal as _, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anstream::AutoStream;
-use indicatif::ProgressDrawTarget;
 
 /// A result that stdout did not take.
 #[derive(Debug, thiserror::Error)]
@@ -29,7 +28,7 @@ pub fn print(text: &str) -> Result<(), Unprinted> {
 ///
 /// # Errors
 /// As [`print()`].
-pub fn print_raw(text: &str) -> Result<(), Unprinted> {
+pub(crate) fn print_raw(text: &str) -> Result<(), Unprinted> {
     let mut stdout = io::stdout().lock();
     // Put together first: the stripping of colours would write every piece of text by itself.
     let mut bytes = AutoStream::new(Vec::new(), AutoStream::choice(&stdout));
@@ -62,7 +61,7 @@ pub fn diagnose(what: &dyn Display) {
 }
 
 /// [`diagnose`] without a line's end of its own.
-pub fn diagnose_raw(text: &str) {
+pub(crate) fn diagnose_raw(text: &str) {
     // Nobody is left to be told that this cannot be told.
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
@@ -73,15 +72,9 @@ pub fn is_watched() -> bool {
     io::stderr().is_terminal()
 }
 
-/// Where a progress bar is drawn. Its library passes over what the terminal does not take.
-#[must_use]
-pub fn bar() -> ProgressDrawTarget {
-    ProgressDrawTarget::stderr_with_hz(10)
-}
-
 /// Where the log goes: stderr, which takes it or does not.
 #[derive(Clone, Copy, Debug)]
-pub struct Log;
+pub(crate) struct Log;
 
 impl Write for Log {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {

@@ -1,21 +1,31 @@
-//! Faults of the program itself: a panic ends a command with an error, never by itself.
+//! Faults of a program itself: a panic ends a command with an error, never by itself.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::process::ExitCode;
 use std::sync::Mutex;
 
 use crate::console;
+use crate::exit::Exit;
 
 /// A panic.
 #[derive(Debug, thiserror::Error)]
 #[error(
-    "halfrow itself has failed: {0}; nothing was judged, so run it again, and report this line with the call that led \
-     to it"
+    "the program itself has failed: {0}; run it again, and report this line with the call that led to it"
 )]
 pub struct InternalError(String);
 
 /// What the first panic was, for a panic that comes through other threads loses its place.
 static FIRST: Mutex<Option<String>> = Mutex::new(None);
+
+/// What `run` ends with, as the process's exit code; a panic is an error, which is told.
+pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
+    let exit = guarded(run).unwrap_or_else(|fault| {
+        console::error(&fault);
+        Exit::Error
+    });
+    ExitCode::from(exit.code())
+}
 
 /// What `run` returns.
 ///
