@@ -2,11 +2,10 @@
 
 pub mod commands;
 pub mod flags;
-pub mod json;
 mod progress;
 pub mod serve;
 pub mod settings;
 pub mod signals;
 pub mod text;
 
-pub use halfrow_program::{console, exit, guard};
+pub use halfrow_program::{console, exit, guard, json};

@@ -14,7 +14,10 @@ fn main() -> ExitCode {
 fn program() -> Exit {
     let cli = match Cli::read() {
         Ok(cli) => cli,
-        Err(told) => return tell(&told),
+        Err(told) => {
+            let told = line::tell(&told, &Cli::line());
+            return told.unwrap_or_else(|unprinted| explain(&Failure::error(unprinted), None));
+        }
     };
     log::to_stderr(cli.verbosity());
     let ended = guard::guarded(|| {
@@ -23,19 +26,6 @@ fn program() -> Exit {
     });
     let ended = ended.unwrap_or_else(|fault| Err(Failure::error(fault)));
     ended.unwrap_or_else(|failure| explain(&failure, cli.wants_json().then(|| cli.command_name())))
-}
-
-/// Tells what the command line's reader has to tell, and what is wrong with a call as JSON as well where that is asked for.
-fn tell(told: &clap::Error) -> Exit {
-    let exit = line::tell(told).unwrap_or_else(|unprinted| explain(&Failure::error(unprinted), None));
-    if exit == Exit::Usage {
-        let arguments: Vec<_> =
-            std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect();
-        if let Some(document) = commands::usage(told, &arguments) {
-            console::tell(&document);
-        }
-    }
-    exit
 }
 
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.

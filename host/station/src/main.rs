@@ -2,24 +2,32 @@
 
 use std::process::ExitCode;
 
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 use halfrow_program::{console, exit::Exit, guard, line, log};
-use halfrow_station::commands::{Cli, Failure};
+use halfrow_station::commands::{self, Cli, Failure};
 
 fn main() -> ExitCode {
     guard::end(program)
 }
 
 fn program() -> Exit {
-    let ended = match Cli::try_parse() {
-        Ok(cli) => {
-            log::to_stderr(cli.verbosity());
-            cli.run()
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(told) => {
+            let told = line::tell(&told, &Cli::command());
+            return told.unwrap_or_else(|unprinted| explain(&Failure::error(unprinted), None));
         }
-        Err(told) => line::tell(&told).map_err(Failure::error),
     };
-    ended.unwrap_or_else(|Failure { exit, error }| {
-        console::error(&format_args!("{error:#}"));
-        exit
-    })
+    log::to_stderr(cli.verbosity());
+    let ended = guard::guarded(|| cli.run()).unwrap_or_else(|fault| Err(Failure::error(fault)));
+    ended.unwrap_or_else(|failure| explain(&failure, cli.documented()))
+}
+
+/// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
+fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
+    console::error(&format_args!("{:#}", failure.error));
+    if let Some(command) = as_json_of {
+        console::tell(&commands::failure(command, failure));
+    }
+    failure.exit
 }

@@ -64,7 +64,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 /// The station's engine is gone.
 #[derive(Debug, thiserror::Error)]
 #[error("the station works no more, by a fault of its own that the log tells; start it again")]
-struct EngineEnded;
+pub(super) struct EngineEnded;
 
 /// The lines of stdin, counted, until its end.
 fn scans() -> io::Result<Receiver<(u64, String)>> {

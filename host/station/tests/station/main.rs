@@ -5,6 +5,7 @@
 
 mod common;
 mod compiled_once;
+mod documents;
 mod floor;
 mod history;
 mod lanes;

@@ -1,6 +1,6 @@
 //! Runs of the program, from the serial number to what is kept.
 
-mod bench;
+pub(crate) mod bench;
 mod checked;
 mod ends;
 mod faults;

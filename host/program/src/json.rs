@@ -1,6 +1,7 @@
 //! JSON with the exit code that goes with it, which the libraries do not know.
 
-use halfrow::result::{Document, Report};
+use halfrow::result::{Document, Problem, Report, Schema};
+use halfrow::verdict::Verdict;
 use serde::Serialize;
 
 use crate::exit::Exit;
@@ -22,6 +23,18 @@ pub fn report(report: &Report) -> Result<String, serde_json::Error> {
 pub fn document(document: &Document<'_, impl Serialize>, exit: Exit) -> Result<String, serde_json::Error> {
     indented(document, exit)
 }
+
+/// The document of a command that failed, indented.
+#[must_use]
+pub fn without_result(command: &str, exit: Exit, verdict: Option<Verdict>, problem: &Problem) -> String {
+    let error = Some(problem);
+    let document = Document { schema: Schema, command, verdict, board: None, error, rest: Nothing {} };
+    indented(&document, exit).unwrap_or_default()
+}
+
+/// What a document has beside what all have, when a command came to no result.
+#[derive(Serialize)]
+struct Nothing {}
 
 fn indented(document: &impl Serialize, exit: Exit) -> Result<String, serde_json::Error> {
     let mut value = serde_json::to_value(document)?;
