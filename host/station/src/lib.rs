@@ -12,9 +12,7 @@
 pub mod check;
 mod clock;
 pub mod commands;
-pub mod console;
 pub mod engine;
-pub mod exit;
 pub mod export;
 pub mod floor;
 pub mod history;
@@ -28,3 +26,5 @@ pub mod record;
 pub mod run;
 pub mod settings;
 pub mod store;
+
+pub use halfrow_program::{console, exit, guard};

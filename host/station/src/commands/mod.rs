@@ -1,6 +1,8 @@
 //! The command line: one file a command.
 
 mod check;
+mod codes;
+mod document;
 mod export;
 mod history;
 mod kept;
@@ -11,12 +13,15 @@ mod pareto;
 mod plan;
 mod rebind;
 mod run;
+mod schema;
 mod signals;
 mod unit;
 mod waive;
 mod yields;
 
 use clap::{ArgAction, Parser, Subcommand};
+
+pub use document::failure;
 
 use crate::console;
 use crate::exit::Exit;
@@ -50,6 +55,8 @@ enum Command {
     Plan(plan::Arguments),
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
+    Codes(codes::Arguments),
+    Schema(schema::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -69,7 +76,7 @@ impl Failure {
     }
 
     /// A failure that is not the caller's.
-    fn error(error: impl Into<anyhow::Error>) -> Self {
+    pub fn error(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Error, error: error.into() }
     }
 }
@@ -79,6 +86,17 @@ impl Cli {
     #[must_use]
     pub fn verbosity(&self) -> u8 {
         self.verbose
+    }
+
+    /// The command, if it was asked for a document.
+    #[must_use]
+    pub fn documented(&self) -> Option<&'static str> {
+        match &self.command {
+            Command::Run(run::Arguments { json: true, .. }) => Some("run"),
+            Command::Check(check::Arguments { json: true, .. }) => Some("check"),
+            Command::Codes(codes::Arguments { json: true }) => Some("codes"),
+            _ => None,
+        }
     }
 
     /// Carries the command out.
@@ -101,6 +119,8 @@ impl Cli {
             Command::Plan(arguments) => plan::run(arguments),
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
+            Command::Codes(arguments) => codes::run(arguments),
+            Command::Schema(arguments) => schema::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }
@@ -113,13 +133,14 @@ impl From<StoreError> for Failure {
     }
 }
 
-/// Closes what was under way when the station ended, and says so.
-fn recovered(store: &mut Store) -> Result<(), RunError> {
-    for Saved { record, .. } in runs::recover(store)? {
+/// Closes what was under way when the station ended, says so, and returns it.
+fn recovered(store: &mut Store) -> Result<Vec<Saved>, RunError> {
+    let recovered = runs::recover(store)?;
+    for Saved { record, .. } in &recovered {
         let (id, serial) = (&record.run.id, &record.run.serial);
         console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
     }
-    Ok(())
+    Ok(recovered)
 }
 
 /// Prints a result, which is the command's only one.

@@ -23,6 +23,7 @@ pub use hooks::HookError;
 pub use news::{LaneState, News};
 
 use crate::floor::{Act, Event};
+use crate::guard::guarded;
 use crate::settings::Settings;
 use crate::store::{SharedStore, Store};
 use at_work::AtWork;
@@ -76,7 +77,7 @@ impl Engine {
             Arc::new(Shared { settings, store: SharedStore::new(store), program, inbox: inbox.clone() });
         let at_work = AtWork::new(floor, shared, Arc::clone(&board));
         let thread =
-            thread::Builder::new().name("engine".to_owned()).spawn(move || at_work.run(&received))?;
+            thread::Builder::new().name("engine".to_owned()).spawn(move || work(at_work, &received))?;
         Ok(Self { inbox, board, thread })
     }
 
@@ -105,6 +106,12 @@ impl Engine {
         self.board.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
     }
 
+    /// Whether it still takes what is scanned. It ends early by a fault of the program alone, which is logged.
+    #[must_use]
+    pub fn is_at_work(&self) -> bool {
+        !self.thread.is_finished()
+    }
+
     /// Ends the engine once all runs that are under way are over, and their results saved. `by` ends the runs, too;
     /// without it they come to their own end.
     pub fn close(self, by: Option<StoppedBy>) {
@@ -118,5 +125,11 @@ impl Engine {
         if self.inbox.send(input).is_err() {
             tracing::error!("the engine has ended; start the station again");
         }
+    }
+}
+
+fn work(at_work: AtWork, inbox: &Receiver<Input>) {
+    if let Err(fault) = guarded(|| at_work.run(inbox)) {
+        tracing::error!("{fault}");
     }
 }

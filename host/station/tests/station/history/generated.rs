@@ -1,0 +1,247 @@
+//! A history of any length whose truth is known, since it is counted while it is made.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use halfrow::Verdict;
+use halfrow_station::history::pareto::{Of, pareto};
+use halfrow_station::history::runs::{Filter, Place, page};
+use halfrow_station::history::unit::units;
+use halfrow_station::history::yields::{By, Wanted, yields};
+use halfrow_station::store::{Folder, Snapshot, Store};
+use rusqlite::{Connection, Statement, params};
+
+use super::made::{BEGIN_MS, id};
+
+const LANES: u64 = 16;
+const PARTS: [&str; 5] = ["memory", "row factor", "clock", "samples", "kernel"];
+const PLANS: [(&str, &str); 3] = [("final", "6"), ("final", "7"), ("intake", "1")];
+
+/// SplitMix64, by Sebastiano Vigna: the same history every time.
+struct Draw(u64);
+
+impl Draw {
+    fn below(&mut self, most: u64) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+        (mixed ^ mixed >> 31) % most
+    }
+}
+
+/// What is true of the history.
+#[derive(Default)]
+struct Truth {
+    /// Every judgement of a unit under plans of one name, whether it passed, in order.
+    judged: BTreeMap<(u64, &'static str), Vec<bool>>,
+    runs: BTreeMap<&'static str, u64>,
+    errors: BTreeMap<&'static str, u64>,
+    parts: BTreeMap<&'static str, u64>,
+}
+
+struct Generated {
+    folder: Folder,
+    truth: Truth,
+    runs: u64,
+    _kept: tempfile::TempDir,
+}
+
+fn serial(unit: u64) -> String {
+    format!("CAT{unit:07}")
+}
+
+/// A history of so many runs.
+fn generate(runs: u64) -> Generated {
+    let kept = tempfile::tempdir().unwrap();
+    let folder = Folder::new(kept.path());
+    drop(Store::open(&folder).unwrap());
+    let mut database = Connection::open(folder.database()).unwrap();
+    database.execute_batch("PRAGMA synchronous = OFF; PRAGMA cache_size = -400000").unwrap();
+    let transaction = database.transaction().unwrap();
+    for (place, (name, version)) in PLANS.iter().enumerate() {
+        let text = "INSERT INTO plan VALUES ($1, $2, $3, 'CAM-T', '', 0)";
+        transaction.execute(text, params![plan_hash(place), name, version]).unwrap();
+    }
+    let mut to = Statements::of(&transaction);
+    let mut draw = Draw(1);
+    let mut truth = Truth::default();
+    for number in 0..runs {
+        to.enter(number, &mut draw, &mut truth);
+    }
+    drop(to);
+    transaction.commit().unwrap();
+    Generated { folder, truth, runs, _kept: kept }
+}
+
+fn plan_hash(place: usize) -> String {
+    format!("{place:064}")
+}
+
+/// What enters runs.
+struct Statements<'a> {
+    unit: Statement<'a>,
+    run: Statement<'a>,
+    step: Statement<'a>,
+    suspect: Statement<'a>,
+}
+
+impl<'a> Statements<'a> {
+    fn of(to: &'a Connection) -> Self {
+        let prepared = |text| to.prepare(text).unwrap();
+        Self {
+            unit: prepared("INSERT INTO unit VALUES ($1, 'CAM-T', $2, $3) ON CONFLICT DO NOTHING"),
+            run: prepared(
+                "INSERT INTO run (id, station, lane, unit_id, plan_sha256, variant, operator_id, target, nth, fence,
+                    started_ms, ended_ms, state, verdict, exit_code, cause, headline, record_sha256)
+                VALUES ($1, 'station 7', $2, $3, $4, '', $5, 'usb:1-2.3', $6, 1, $7, $8, 'final', $9, 0, $10,
+                    'all samples are as the reference has them, in 48 frames and at 3 timings', $11)",
+            ),
+            step: prepared("INSERT INTO step VALUES ($1, $2, 1, $3, $4, $5, $6, 'as it should be')"),
+            suspect: prepared("INSERT INTO suspect VALUES ($1, 1, $2, 'bit 3', 0.9)"),
+        }
+    }
+
+    /// Units come one after the other; one run in thirty is of an earlier unit.
+    fn enter(&mut self, number: u64, draw: &mut Draw, truth: &mut Truth) {
+        let is_again = number > 100 && draw.below(30) == 0;
+        let unit = if is_again { number - 1 - draw.below(100) } else { number };
+        let (place, lane) = (draw.below(3) as usize, number % LANES);
+        let plan = PLANS[place].0;
+        let (verdict, cause, outcome) = match draw.below(100) {
+            0..94 => ("PASS", "none", "passed"),
+            94..99 => ("FAIL", "board", "failed"),
+            _ => ("ERROR", "link", "error"),
+        };
+        let started_ms = started_ms(number);
+        let unit_id = id(BEGIN_MS + unit as i64, 0);
+        self.unit.execute(params![unit_id, serial(unit), started_ms]).unwrap();
+        let judged = truth.judged.entry((unit, plan)).or_default();
+        let nth = 1 + judged.len() as i64;
+        if verdict != "ERROR" {
+            judged.push(verdict == "PASS");
+        }
+        *truth.runs.entry(plan).or_default() += 1;
+        *truth.errors.entry(plan).or_default() += u64::from(verdict == "ERROR");
+        let run = id(started_ms, number as u32);
+        let operator = format!("operator {}", number / 500 % 20);
+        let (plan, record, ended_ms) = (plan_hash(place), format!("{number:064}"), started_ms + 20_000);
+        let lane = lane.to_string();
+        let row =
+            params![run, lane, unit_id, plan, operator, nth, started_ms, ended_ms, verdict, cause, record];
+        self.run.execute(row).unwrap();
+        for (seq, name, outcome) in [(1, "identity", "passed"), (2, "verify", outcome)] {
+            self.step.execute(params![run, seq, name, outcome, started_ms, ended_ms]).unwrap();
+        }
+        if verdict == "FAIL" {
+            let part = PARTS[draw.below(5).min(draw.below(5)) as usize];
+            *truth.parts.entry(part).or_default() += 1;
+            self.suspect.execute(params![run, part]).unwrap();
+        }
+    }
+}
+
+/// Five minutes after one another in each lane.
+fn started_ms(number: u64) -> i64 {
+    BEGIN_MS + (number / LANES) as i64 * 300_000 + (number % LANES) as i64 * 1000
+}
+
+impl Generated {
+    fn now(&self) -> Snapshot {
+        Snapshot::take(&self.folder).unwrap()
+    }
+
+    /// Compares all that is counted with the truth.
+    fn compare(&self) {
+        let now = self.now();
+        let found = yields(&now, &Wanted::default(), By::Plan).unwrap();
+        let mut flips = 0;
+        for line in &found.lines {
+            let plan = line.plan.plan.as_str();
+            let of_plan =
+                self.truth.judged.iter().filter(|((_, name), all)| *name == plan && !all.is_empty());
+            let units: Vec<_> = of_plan.map(|(_, all)| all).collect();
+            let count = |is: &dyn Fn(&Vec<bool>) -> bool| units.iter().filter(|all| is(all)).count() as u64;
+            let first = count(&|all| all[0]);
+            let last = count(&|all| all[all.len() - 1]);
+            let flipped = count(&|all| !all[0] && all[all.len() - 1]);
+            assert_eq!((line.first_pass.count, line.first_pass.of), (first, units.len() as u64), "{plan}");
+            assert_eq!((line.last.count, line.flipped), (last, flipped), "{plan}");
+            assert_eq!((line.errors.count, line.errors.of), (self.truth.errors[plan], self.truth.runs[plan]));
+            flips += flipped;
+        }
+        assert_eq!((found.lines.len(), found.flips.len() as u64), (2, flips));
+        assert!(flips > 0);
+        let parts = pareto(&now, &Wanted::default(), Of::Part).unwrap();
+        let parts: BTreeMap<_, _> =
+            parts.bars.iter().map(|bar| (bar.name.as_str(), bar.runs.count)).collect();
+        assert_eq!(parts, self.truth.parts);
+    }
+}
+
+#[test]
+fn all_that_is_counted_is_true() {
+    generate(6_000).compare();
+}
+
+/// The 95th percentile, and the longest.
+fn slowest(mut times: Vec<Duration>) -> (Duration, Duration) {
+    times.sort_unstable();
+    (times[times.len() * 95 / 100], times[times.len() - 1])
+}
+
+fn timed(act: impl FnOnce()) -> Duration {
+    let begun = Instant::now();
+    act();
+    begun.elapsed()
+}
+
+/// A filter, now and then of several conditions.
+fn filter(draw: &mut Draw, runs: u64) -> Filter {
+    let mut filter = Filter::default();
+    let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error];
+    filter.serial = (draw.below(5) == 0).then(|| serial(draw.below(runs)));
+    filter.verdict = (draw.below(3) == 0).then(|| verdicts[draw.below(3) as usize]);
+    filter.plan = (draw.below(3) == 0).then(|| ["final", "intake"][draw.below(2) as usize].to_owned());
+    filter.lane = (draw.below(3) == 0).then(|| draw.below(LANES).to_string());
+    filter.operator = (draw.below(3) == 0).then(|| format!("operator {}", draw.below(20)));
+    filter
+}
+
+/// Prints how long each look takes, with the database in the computer's memory, as a station's is.
+#[test]
+#[ignore = "for scripts/soak"]
+fn a_million_runs_are_looked_at_in_time() {
+    let runs = std::env::var("HALFROW_STATION_RUNS").map_or(1_000_000, |runs| runs.parse().unwrap());
+    let took = Instant::now();
+    let made = generate(runs);
+    let size = std::fs::metadata(made.folder.database()).unwrap().len() >> 20;
+    println!("{runs} runs, {size} MiB, made in {:.0} s", took.elapsed().as_secs_f64());
+    made.compare();
+    let mut draw = Draw(2);
+    let pages = (0..400).map(|_| {
+        let filter = filter(&mut draw, made.runs);
+        let started_ms = started_ms(draw.below(made.runs));
+        let after = Place { started_ms, id: id(started_ms, 0) };
+        timed(|| drop(page(&made.now(), &filter, Some(&after), 50).unwrap()))
+    });
+    let pages = slowest(pages.collect());
+    let all = slowest(
+        (0..400).map(|_| timed(|| drop(units(&made.now(), &serial(draw.below(made.runs)))))).collect(),
+    );
+    let yields =
+        slowest((0..9).map(|_| timed(|| drop(yields(&made.now(), &Wanted::default(), By::Day)))).collect());
+    let parts =
+        slowest((0..9).map(|_| timed(|| drop(pareto(&made.now(), &Wanted::default(), Of::Part)))).collect());
+    let checks =
+        slowest((0..9).map(|_| timed(|| drop(pareto(&made.now(), &Wanted::default(), Of::Check)))).collect());
+    for (name, (p95, most), limit) in [
+        ("page", pages, 50),
+        ("unit", all, 20),
+        ("yield", yields, 500),
+        ("pareto by part", parts, 100),
+        ("pareto by check", checks, 100),
+    ] {
+        println!("{name:15}  p95 {p95:9.2?}, longest {most:9.2?}, wanted {limit} ms");
+    }
+}

@@ -1,0 +1,13 @@
+//! What was judged, read back: pages, units, yields, what fails most; and what is kept.
+
+mod commands;
+mod exports;
+mod generated;
+mod kept;
+mod made;
+mod pages;
+mod pareto;
+mod units;
+mod waivers;
+mod wilson;
+mod yields;
