@@ -50,7 +50,7 @@ pub(super) fn serve(settings: Settings, access: Access) -> Result<Exit, Failure>
     recovered(&mut store)?;
     let engine = Engine::start(settings.clone(), store, program).map_err(Failure::error)?;
     let engine = Arc::new(engine);
-    let app = App::new(settings, Arc::clone(&engine), access.at(port));
+    let app = App::new(settings, Arc::clone(&engine), access.at(port)).map_err(Failure::error)?;
     let server = Server::start(&app, listener).map_err(Failure::error)?;
     console::tell(&format!("http://127.0.0.1:{port}/"));
     let by = loop {

@@ -14,6 +14,8 @@ mod guard;
 mod history;
 mod language;
 mod layout;
+mod live;
+mod operator;
 mod routes;
 mod serve;
 mod state;
