@@ -46,7 +46,7 @@ function scan(text, typed) {
     counts();
     if (became.counter !== undefined && became.counter !== counter) became = { is_taken: false, said: station.unsent };
     if ("armed" in became) arms(became.armed);
-    if (became.user) location.reload();
+    if (became.is_other) return location.reload();
     answer(became);
   });
 }

@@ -25,6 +25,12 @@ pub(super) struct Visit {
     pub(super) words: &'static Words,
     /// Who it is, if it is somebody.
     pub(super) user: Option<User>,
+    /// The value of the cookie that the visitor has, or is given.
+    pub(super) session: String,
+    /// Whether it is given.
+    pub(super) is_new: bool,
+    /// Whether people log in at this station.
+    pub(super) can_log_in: bool,
     /// What every form sends back in its field `csrf`.
     pub(super) csrf: String,
     /// The station's name.
@@ -64,7 +70,9 @@ impl App {
     pub(super) fn stranger(&self, headers: &HeaderMap) -> Visit {
         let words = language::of(cookie(headers, language::COOKIE), headers.get(header::ACCEPT_LANGUAGE));
         let is_script = headers.get(header::ACCEPT).is_some_and(|value| value == "application/json");
-        Visit { words, user: None, csrf: String::new(), station: self.station().to_owned(), is_script }
+        let station = self.station().to_owned();
+        let (session, csrf) = (String::new(), String::new());
+        Visit { words, user: None, session, is_new: true, can_log_in: false, csrf, station, is_script }
     }
 }
 

@@ -3,13 +3,14 @@
 use axum::Form;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
-use axum::http::header::CONTENT_TYPE;
+use axum::http::header::{CONTENT_TYPE, SET_COOKIE};
 use axum::response::{IntoResponse as _, Redirect, Response};
 use serde::{Deserialize, Serialize};
 
 use super::page;
 use crate::floor::{Act, Scan, ScanError};
 use crate::web::live::Became;
+use crate::web::login::logged_in;
 use crate::web::routes::Who;
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
@@ -40,6 +41,8 @@ pub(super) struct Answer {
     pub(super) said: String,
     /// The lane that the page's next scan is for.
     armed: Option<String>,
+    /// Whether it is somebody else's page from now on.
+    is_other: bool,
 }
 
 pub(super) async fn scan(
@@ -47,8 +50,29 @@ pub(super) async fn scan(
     visit: Visit,
     Form(scanned): Form<Scanned>,
 ) -> Result<Response, Trouble> {
+    if let Some(response) = badge(&app, &visit, &scanned).await? {
+        return Ok(response);
+    }
     let answer = understood(&app, &visit, &scanned).await?;
     if visit.is_script { Ok(json(&answer)) } else { page::answered(app, visit, answer).await }
+}
+
+/// The answer to a badge: who has it tests from then on, in the place of whoever did.
+async fn badge(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Option<Response>, Trouble> {
+    if !visit.can_log_in {
+        return Ok(None);
+    }
+    let label = app.settings().scanner.label(&scanned.text).unwrap_or(&scanned.text).to_owned();
+    let access = app.clone();
+    let Some(user) = app.blocking(visit, move || access.access().identify(&label, "")).await? else {
+        return Ok(None);
+    };
+    let said = visit.words.fill("login.now", &[("name", &user.name)]);
+    let cookie = logged_in(app, visit, user).await?;
+    // A badge is shown to nobody.
+    let answer = Answer { scanned: String::new(), is_other: true, ..scanned.answer(None, Ok(said), None) };
+    let response = if visit.is_script { json(&answer) } else { Redirect::to("/").into_response() };
+    Ok(Some(([(SET_COOKIE, cookie)], response).into_response()))
 }
 
 /// What the scan is for, and what became of it.
@@ -95,7 +119,15 @@ impl Scanned {
     fn answer(&self, lane: Option<String>, said: Result<String, String>, armed: Option<String>) -> Answer {
         let is_taken = said.is_ok();
         let said = said.unwrap_or_else(|refused| refused);
-        Answer { counter: self.counter, is_taken, scanned: self.text.clone(), lane, said, armed }
+        Answer {
+            counter: self.counter,
+            is_taken,
+            scanned: self.text.clone(),
+            lane,
+            said,
+            armed,
+            is_other: false,
+        }
     }
 }
 
@@ -145,6 +177,7 @@ async fn done(app: App, visit: Visit, lane: String, act: Act) -> Result<Response
             lane: became.lane,
             said: became.said,
             armed: None,
+            is_other: false,
         })),
         (false, true) => Ok(Redirect::to("/").into_response()),
         (false, false) => Err(Trouble::new(&visit, StatusCode::CONFLICT, became.said)),
