@@ -1,5 +1,6 @@
 //! `halfrow-station serve`
 
+use std::io;
 use std::path::{self, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -36,11 +37,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let settings = path::absolute(&arguments.settings).map_err(Failure::call)?;
     let settings = Settings::load(&settings).map_err(Failure::call)?;
     let everybody = User { name: arguments.operator.clone(), who: Who::Operator };
-    serve(&settings, everybody)
+    serve(Served { settings: &settings, everybody, hints: Vec::new() }, |_| Ok(()))
 }
 
-/// Serves the station until a signal comes. Where nobody logs in, everybody at the computer itself is `everybody`.
-pub(super) fn serve(settings: &Settings, everybody: User) -> Result<Exit, Failure> {
+/// What is served.
+pub(super) struct Served<'a> {
+    pub(super) settings: &'a Settings,
+    /// Who everybody at the computer itself is where nobody logs in.
+    pub(super) everybody: User,
+    /// Serial numbers that a visitor of a demonstration may type.
+    pub(super) hints: Vec<String>,
+}
+
+/// Serves the station until a signal comes; `begin` is called when it is at work.
+pub(super) fn serve(
+    served: Served<'_>,
+    begin: impl FnOnce(&Arc<Engine>) -> io::Result<()>,
+) -> Result<Exit, Failure> {
+    let Served { settings, everybody, hints } = served;
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = signals::last().map_err(Failure::error)?;
     let mut store = Store::open(&Folder::new(&settings.data))?;
@@ -50,10 +64,10 @@ pub(super) fn serve(settings: &Settings, everybody: User) -> Result<Exit, Failur
     recovered(&mut store)?;
     let engine = Engine::start(settings.clone(), store, program).map_err(Failure::error)?;
     let engine = Arc::new(engine);
-    let app =
-        App::new(settings.clone(), Arc::clone(&engine), access.at(at.port())).map_err(Failure::error)?;
-    let server = Server::start(&app, listener).map_err(Failure::error)?;
-    console::tell(&format!("the pages are at http://{at}/"));
+    let app = App::new(settings.clone(), Arc::clone(&engine), access.at(at.port()), hints);
+    let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
+    begin(&engine).map_err(Failure::error)?;
+    console::tell(&format!("The pages are at http://{at}/"));
     let by = loop {
         match signals::stopped_by(signal.load(Ordering::Relaxed)) {
             Some(by) => break by,
