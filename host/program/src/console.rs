@@ -55,6 +55,11 @@ pub fn error(what: &dyn Display) {
     diagnose(&format_args!("error: {what}"));
 }
 
+/// Asks on stderr for something that is typed behind it. Whoever types blind knows what is asked.
+pub fn ask(what: &str) {
+    diagnose_raw(&format!("{what}: "));
+}
+
 /// Writes a line to stderr, if that takes it.
 pub fn diagnose(what: &dyn Display) {
     diagnose_raw(&format!("{what}\n"));

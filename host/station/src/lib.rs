@@ -7,11 +7,14 @@
 //!                             record: one JSON file, by its hash ─► store: SQLite, its index
 //!
 //!  station.toml ─► settings ─► engine: scans in, news out; the floor says what is to be done, runs do it
+//!                                ▲ ▼
+//!                               web: the pages
 //! ```
 
 pub mod check;
 mod clock;
 pub mod commands;
+pub mod demo;
 pub mod engine;
 pub mod export;
 pub mod floor;
@@ -26,5 +29,6 @@ pub mod record;
 pub mod run;
 pub mod settings;
 pub mod store;
+pub mod web;
 
 pub use halfrow_program::{console, exit, guard};

@@ -51,7 +51,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
         match scans.recv_timeout(LOOK) {
             Ok((number, line)) => engine.scan(number, &line, &arguments.operator),
-            Err(RecvTimeoutError::Timeout) if engine.is_at_work() => {}
+            Err(RecvTimeoutError::Timeout) if engine.is_well() => {}
             Err(RecvTimeoutError::Timeout) => return Err(Failure::error(EngineEnded)),
             Err(RecvTimeoutError::Disconnected) => break None,
         }

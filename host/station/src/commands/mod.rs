@@ -3,6 +3,7 @@
 mod check;
 mod codes;
 mod document;
+mod demo;
 mod export;
 mod history;
 mod kept;
@@ -14,8 +15,10 @@ mod plan;
 mod rebind;
 mod run;
 mod schema;
+mod serve;
 mod signals;
 mod unit;
+mod user;
 mod waive;
 mod yields;
 
@@ -57,6 +60,9 @@ enum Command {
     Lanes(lanes::Arguments),
     Codes(codes::Arguments),
     Schema(schema::Arguments),
+    Serve(serve::Arguments),
+    Demo(demo::Arguments),
+    User(user::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -121,6 +127,9 @@ impl Cli {
             Command::Lanes(arguments) => lanes::run(arguments),
             Command::Codes(arguments) => codes::run(arguments),
             Command::Schema(arguments) => schema::run(arguments),
+            Command::Serve(arguments) => serve::run(arguments),
+            Command::Demo(arguments) => demo::run(arguments),
+            Command::User(arguments) => user::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }

@@ -16,6 +16,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
@@ -30,10 +31,14 @@ use at_work::AtWork;
 use bay::Shared;
 use news::Listeners;
 
+/// How long its thread may say nothing of itself. It works twice a second, and may wait for a slow disk.
+const SILENT: Duration = Duration::from_secs(5);
+
 /// Something for the engine.
 #[derive(Debug)]
 enum Input {
     Scan { number: u64, text: String, operator: String },
+    Label { number: u64, lane: Option<usize>, label: String, operator: String },
     Act { number: u64, lane: usize, act: Act, operator: String },
     Heard { lane: usize, heard: Heard },
     Close(Option<StoppedBy>),
@@ -52,7 +57,8 @@ enum Heard {
 pub struct Engine {
     inbox: Sender<Input>,
     board: Arc<Mutex<Board>>,
-    thread: JoinHandle<()>,
+    store: SharedStore,
+    thread: Mutex<Option<JoinHandle<()>>>,
 }
 
 /// What everybody may look at: the lanes as they are, and who listens to what changes.
@@ -60,6 +66,8 @@ pub struct Engine {
 struct Board {
     lanes: Vec<LaneState>,
     listeners: Listeners,
+    /// When the engine's thread was last seen to work.
+    worked: Option<Instant>,
 }
 
 impl Engine {
@@ -72,19 +80,25 @@ impl Engine {
         let (inbox, received) = mpsc::channel();
         let floor = settings.floor();
         let lanes = floor.lanes().iter().map(LaneState::from).collect();
-        let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default() }));
-        let shared =
-            Arc::new(Shared { settings, store: SharedStore::new(store), program, inbox: inbox.clone() });
+        let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default(), worked: None }));
+        let store = SharedStore::new(store);
+        let shared = Arc::new(Shared { settings, store: store.clone(), program, inbox: inbox.clone() });
         let at_work = AtWork::new(floor, shared, Arc::clone(&board));
         let thread =
             thread::Builder::new().name("engine".to_owned()).spawn(move || work(at_work, &received))?;
-        Ok(Self { inbox, board, thread })
+        Ok(Self { inbox, board, store, thread: Mutex::new(Some(thread)) })
     }
 
     /// Takes what `operator` scanned. What becomes of it is news with the same `number`.
     pub fn scan(&self, number: u64, text: &str, operator: &str) {
         let (text, operator) = (text.to_owned(), operator.to_owned());
         self.put(Input::Scan { number, text, operator });
+    }
+
+    /// As [`Self::scan`], of a label that the scanner added nothing to, or nothing any more. It is for `lane` if there is one.
+    pub fn label(&self, number: u64, lane: Option<usize>, label: &str, operator: &str) {
+        let (label, operator) = (label.to_owned(), operator.to_owned());
+        self.put(Input::Label { number, lane, label, operator });
     }
 
     /// Does with the lane at this place what `operator` wants. What becomes of it is news as that of a scan is.
@@ -106,17 +120,25 @@ impl Engine {
         self.board.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
     }
 
-    /// Whether it still takes what is scanned. It ends early by a fault of the program alone, which is logged.
+    /// Whether its thread works: it was seen to within the last seconds.
     #[must_use]
-    pub fn is_at_work(&self) -> bool {
-        !self.thread.is_finished()
+    pub fn is_well(&self) -> bool {
+        let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
+        board.worked.is_some_and(|worked| worked.elapsed() < SILENT)
+    }
+
+    /// The store, for what is neither a scan nor a run.
+    #[must_use]
+    pub fn store(&self) -> SharedStore {
+        self.store.clone()
     }
 
     /// Ends the engine once all runs that are under way are over, and their results saved. `by` ends the runs, too;
     /// without it they come to their own end.
-    pub fn close(self, by: Option<StoppedBy>) {
+    pub fn close(&self, by: Option<StoppedBy>) {
+        let Some(thread) = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
         self.put(Input::Close(by));
-        if self.thread.join().is_err() {
+        if thread.join().is_err() {
             tracing::error!("the engine ended early; look at what it said before");
         }
     }

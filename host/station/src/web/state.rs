@@ -1,0 +1,125 @@
+//! What all pages work with.
+
+use std::io;
+use std::sync::Arc;
+
+use tokio::task;
+
+use super::access::Access;
+use super::live::Live;
+use super::trouble::Trouble;
+use super::visit::Visit;
+use crate::engine::Engine;
+use crate::settings::Settings;
+use crate::store::{Snapshot, Store, StoreError};
+
+/// The station as its pages know it. A copy is the same one.
+#[derive(Clone, Debug)]
+pub struct App(Arc<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    settings: Settings,
+    engine: Arc<Engine>,
+    access: Access,
+    live: Arc<Live>,
+    hints: Vec<String>,
+}
+
+impl App {
+    /// The station of these settings, which the engine has at work, for those whom `access` lets in. A visitor of a
+    /// demonstration is told that the serial numbers `hints` may be typed.
+    ///
+    /// # Errors
+    /// When the system has no thread for its news.
+    pub fn new(
+        settings: Settings,
+        engine: Arc<Engine>,
+        access: Access,
+        hints: Vec<String>,
+    ) -> io::Result<Self> {
+        let live = Live::start(&engine)?;
+        Ok(Self(Arc::new(Parts { settings, engine, access, live, hints })))
+    }
+
+    /// Its name.
+    pub(super) fn station(&self) -> &str {
+        &self.0.settings.name
+    }
+
+    pub(super) fn settings(&self) -> &Settings {
+        &self.0.settings
+    }
+
+    pub(super) fn engine(&self) -> &Engine {
+        &self.0.engine
+    }
+
+    pub(super) fn access(&self) -> &Access {
+        &self.0.access
+    }
+
+    pub(super) fn hints(&self) -> &[String] {
+        &self.0.hints
+    }
+
+    pub(super) fn live(&self) -> &Live {
+        &self.0.live
+    }
+
+    /// Enters in the audit what the visitor is about to do. What cannot be entered is not done.
+    ///
+    /// # Errors
+    /// [`Trouble`] when the store does not take it.
+    pub(super) async fn audit(
+        &self,
+        visit: &Visit,
+        act: &'static str,
+        subject: &str,
+        detail: &str,
+    ) -> Result<(), Trouble> {
+        let [name, subject, detail] = [visit.name(), subject, detail].map(str::to_owned);
+        let entered = self.change(visit, move |store| store.note(&name, act, &subject, &detail)).await?;
+        entered.map_err(|error| Trouble::store(visit, error))
+    }
+
+    /// What `look` finds in the store as it is at one moment. Other requests go on meanwhile.
+    ///
+    /// # Errors
+    /// [`Trouble`] when the store cannot be read.
+    pub(super) async fn look<T: Send + 'static>(
+        &self,
+        visit: &Visit,
+        look: impl FnOnce(&Snapshot) -> Result<T, StoreError> + Send + 'static,
+    ) -> Result<T, Trouble> {
+        let folder = crate::store::Folder::new(&self.0.settings.data);
+        self.blocking(visit, move || Snapshot::take(&folder).and_then(|snapshot| look(&snapshot)))
+            .await?
+            .map_err(|error| Trouble::store(visit, error))
+    }
+
+    /// What `change` does with the store. Runs that end wait for it, so it is brief.
+    ///
+    /// # Errors
+    /// [`Trouble`] when it did not come to its end.
+    pub(super) async fn change<T: Send + 'static>(
+        &self,
+        visit: &Visit,
+        change: impl FnOnce(&mut Store) -> T + Send + 'static,
+    ) -> Result<T, Trouble> {
+        let store = self.0.engine.store();
+        self.blocking(visit, move || store.with(change)).await
+    }
+
+    /// What `work` returns, which may wait for a disk or compute for long.
+    ///
+    /// # Errors
+    /// [`Trouble`] when it did not come to its end.
+    pub(super) async fn blocking<T: Send + 'static>(
+        &self,
+        visit: &Visit,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T, Trouble> {
+        task::spawn_blocking(work).await.map_err(|error| Trouble::broken(visit, &error))
+    }
+}
