@@ -10,6 +10,7 @@ mod kept;
 mod lane;
 mod lanes;
 mod looking;
+mod notify;
 mod pareto;
 mod plan;
 mod rebind;

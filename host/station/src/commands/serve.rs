@@ -5,10 +5,11 @@ use std::path::{self, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::notify::Notify;
 use super::{Failure, recovered, signals};
 use crate::console;
 use crate::engine::Engine;
@@ -20,9 +21,12 @@ use crate::web::{Access, App, Server, User, Who};
 /// How often it is looked whether a signal came.
 const LOOK: Duration = Duration::from_millis(100);
 
+/// How often systemd is told that the engine works.
+const TELL: Duration = Duration::from_secs(1);
+
 /// Judge the boards in all lanes of a station, with pages in a browser
 ///
-/// Prints where the pages are. A signal ends the runs that are under way, and the program.
+/// Prints where the pages are. systemd is told when it is ready, and every second that it works. A signal ends the runs that are under way, and the program.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The station's settings
@@ -68,11 +72,18 @@ pub(super) fn serve(
     let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
     begin(&engine).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
+    let notify = Notify::of_environment();
+    notify.ready();
+    let mut told = Instant::now();
     let by = loop {
-        match Exit::stopped_by(signal.load(Ordering::Relaxed)) {
-            Some(by) => break by,
-            None => thread::sleep(LOOK),
+        if let Some(by) = Exit::stopped_by(signal.load(Ordering::Relaxed)) {
+            break by;
         }
+        if told.elapsed() >= TELL && engine.is_well() {
+            told = Instant::now();
+            notify.works();
+        }
+        thread::sleep(LOOK);
     };
     engine.close(Some(by));
     server.close();
