@@ -7,6 +7,8 @@
 //!                             record: one JSON file, by its hash ─► store: SQLite, its index
 //!
 //!  station.toml ─► settings ─► engine: scans in, news out; the floor says what is to be done, runs do it
+//!                                ▲ ▼
+//!                               web: the pages
 //! ```
 
 pub mod check;
@@ -28,3 +30,4 @@ pub mod record;
 pub mod run;
 pub mod settings;
 pub mod store;
+pub mod web;

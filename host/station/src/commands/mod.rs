@@ -11,6 +11,7 @@ mod pareto;
 mod plan;
 mod rebind;
 mod run;
+mod serve;
 mod signals;
 mod unit;
 mod waive;
@@ -50,6 +51,7 @@ enum Command {
     Plan(plan::Arguments),
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
+    Serve(serve::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -101,6 +103,7 @@ impl Cli {
             Command::Plan(arguments) => plan::run(arguments),
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
+            Command::Serve(arguments) => serve::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }

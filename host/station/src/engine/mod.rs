@@ -51,7 +51,8 @@ enum Heard {
 pub struct Engine {
     inbox: Sender<Input>,
     board: Arc<Mutex<Board>>,
-    thread: JoinHandle<()>,
+    store: SharedStore,
+    thread: Mutex<Option<JoinHandle<()>>>,
 }
 
 /// What everybody may look at: the lanes as they are, and who listens to what changes.
@@ -72,12 +73,12 @@ impl Engine {
         let floor = settings.floor();
         let lanes = floor.lanes().iter().map(LaneState::from).collect();
         let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default() }));
-        let shared =
-            Arc::new(Shared { settings, store: SharedStore::new(store), program, inbox: inbox.clone() });
+        let store = SharedStore::new(store);
+        let shared = Arc::new(Shared { settings, store: store.clone(), program, inbox: inbox.clone() });
         let at_work = AtWork::new(floor, shared, Arc::clone(&board));
         let thread =
             thread::Builder::new().name("engine".to_owned()).spawn(move || at_work.run(&received))?;
-        Ok(Self { inbox, board, thread })
+        Ok(Self { inbox, board, store, thread: Mutex::new(Some(thread)) })
     }
 
     /// Takes what `operator` scanned. What becomes of it is news with the same `number`.
@@ -105,11 +106,18 @@ impl Engine {
         self.board.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
     }
 
+    /// The store, for what is neither a scan nor a run.
+    #[must_use]
+    pub fn store(&self) -> SharedStore {
+        self.store.clone()
+    }
+
     /// Ends the engine once all runs that are under way are over, and their results saved. `by` ends the runs, too;
     /// without it they come to their own end.
-    pub fn close(self, by: Option<StoppedBy>) {
+    pub fn close(&self, by: Option<StoppedBy>) {
+        let Some(thread) = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
         self.put(Input::Close(by));
-        if self.thread.join().is_err() {
+        if thread.join().is_err() {
             tracing::error!("the engine ended early; look at what it said before");
         }
     }

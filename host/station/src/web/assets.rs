@@ -1,0 +1,28 @@
+//! Style sheets and scripts, which are part of the program.
+
+use axum::extract::Path;
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
+use axum::response::{IntoResponse as _, Response};
+
+use super::routes::{Route, Who, look};
+use super::trouble::Trouble;
+use super::visit::Visit;
+
+const CSS: &str = "text/css; charset=utf-8";
+
+/// Every file by its name.
+const ASSETS: [(&str, &str, &str); 2] = [
+    ("style.css", CSS, include_str!("../../assets/style.css")),
+    ("history.css", CSS, include_str!("../../assets/history.css")),
+];
+
+pub(super) fn routes() -> Vec<Route> {
+    vec![look("/assets/{name}", Who::Anyone, asset)]
+}
+
+async fn asset(visit: Visit, Path(name): Path<String>) -> Result<Response, Trouble> {
+    let found = ASSETS.into_iter().find(|(known, _, _)| *known == name);
+    let (_, kind, text) = found.ok_or_else(|| Trouble::missing(&visit))?;
+    // Another program may have other ones under the same names.
+    Ok(([(CONTENT_TYPE, kind), (CACHE_CONTROL, "no-cache")], text).into_response())
+}

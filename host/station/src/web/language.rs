@@ -1,0 +1,120 @@
+//! The languages of the pages: one file each, all with the same keys. Reports and records stay English.
+
+use std::collections::BTreeMap;
+use std::sync::LazyLock;
+
+use axum::http::HeaderValue;
+
+/// The cookie that keeps a visitor's choice.
+pub(super) const COOKIE: &str = "halfrow-language";
+
+/// The words of a language.
+#[derive(Debug)]
+pub(super) struct Words {
+    /// Its code, as in the attribute `lang`.
+    pub(super) code: &'static str,
+    words: BTreeMap<String, String>,
+}
+
+/// Every language: its code and its file. The first is for whoever wants none of them.
+const FILES: [(&str, &str); 3] = [
+    ("en", include_str!("../../lang/en.toml")),
+    ("de", include_str!("../../lang/de.toml")),
+    ("zh", include_str!("../../lang/zh.toml")),
+];
+
+static ALL: LazyLock<[Words; 3]> = LazyLock::new(|| FILES.map(|(code, text)| Words::read(code, text)));
+
+impl Words {
+    fn read(code: &'static str, text: &str) -> Self {
+        // The tests hold that all files can be read and have the same keys.
+        let tables: BTreeMap<String, BTreeMap<String, String>> = toml::from_str(text).unwrap_or_default();
+        let keys = tables.into_iter().flat_map(|(table, words)| {
+            words.into_iter().map(move |(key, words)| (format!("{table}.{key}"), words))
+        });
+        Self { code, words: keys.collect() }
+    }
+
+    /// The words of this key; the key itself, should a file lack it.
+    pub(super) fn say(&self, key: &'static str) -> &str {
+        self.words.get(key).map_or(key, String::as_str)
+    }
+
+    /// The words of this key with the values of their `{names}`.
+    pub(super) fn fill(&self, key: &'static str, values: &[(&str, &str)]) -> String {
+        values
+            .iter()
+            .fold(self.say(key).to_owned(), |text, (name, value)| text.replace(&format!("{{{name}}}"), value))
+    }
+}
+
+/// Every language, by its code and by the name that it gives itself.
+pub(super) fn all() -> impl Iterator<Item = (&'static str, &'static str)> {
+    ALL.iter().map(|words| (words.code, words.say("language.name")))
+}
+
+/// The words of the language that the visitor chose, or else of the first that the browser prefers.
+pub(super) fn of(chosen: Option<&str>, preferred: Option<&HeaderValue>) -> &'static Words {
+    let known = |code: &str| ALL.iter().find(|words| code.split('-').next() == Some(words.code));
+    let preferred = preferred.and_then(|value| value.to_str().ok()).unwrap_or_default();
+    // Browsers put the languages in the order of their weights.
+    let mut codes = preferred.split(',').map(|item| item.split(';').next().unwrap_or_default().trim());
+    let [first, ..] = &*ALL;
+    chosen.and_then(known).or_else(|| codes.find_map(known)).unwrap_or(first)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+    use std::fs;
+    use std::path::Path;
+
+    use super::*;
+
+    fn names(text: &str) -> BTreeSet<&str> {
+        text.split('{').skip(1).filter_map(|piece| piece.split_once('}')).map(|(name, _)| name).collect()
+    }
+
+    #[test]
+    fn all_languages_have_the_same_keys_with_the_same_names_in_them() {
+        let [english, others @ ..] = &*ALL;
+        assert!(english.words.len() > 20);
+        for other in others {
+            let (ours, theirs): (BTreeSet<_>, BTreeSet<_>) =
+                (english.words.keys().collect(), other.words.keys().collect());
+            let differing: Vec<_> = ours.symmetric_difference(&theirs).collect();
+            assert!(differing.is_empty(), "{} and en differ in {differing:?}", other.code);
+            for (key, words) in &english.words {
+                assert_eq!(names(words), names(&other.words[key]), "{key} in {}", other.code);
+            }
+        }
+    }
+
+    /// Every file below `folder`, as one text.
+    fn source(folder: &Path) -> String {
+        let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+        files
+            .map(|path| if path.is_dir() { source(&path) } else { fs::read_to_string(path).unwrap() })
+            .collect()
+    }
+
+    #[test]
+    fn the_pages_use_every_key_and_no_other() {
+        let source = source(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src/web"));
+        let used: BTreeSet<_> =
+            ["say(\"", "fill(\"", "key: \""].into_iter().flat_map(|call| source.split(call).skip(1));
+        let used: BTreeSet<_> = used.into_iter().filter_map(|rest| rest.split('"').next()).collect();
+        let known: BTreeSet<_> = ALL[0].words.keys().map(String::as_str).collect();
+        let missing: Vec<_> = used.difference(&known).collect();
+        let surplus: Vec<_> = known.difference(&used).collect();
+        assert!(missing.is_empty() && surplus.is_empty(), "missing {missing:?}, surplus {surplus:?}");
+    }
+
+    #[test]
+    fn a_choice_comes_before_what_the_browser_prefers() {
+        let preferred = HeaderValue::from_static("fr, de-AT;q=0.8, zh;q=0.5");
+        assert_eq!(of(None, Some(&preferred)).code, "de");
+        assert_eq!(of(Some("zh"), Some(&preferred)).code, "zh");
+        assert_eq!(of(Some("xx"), None).code, "en");
+    }
+}

@@ -1,0 +1,108 @@
+//! What all pages have in common.
+
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
+use axum::http::{HeaderValue, StatusCode};
+use axum::response::{IntoResponse as _, Response};
+use maud::{DOCTYPE, Markup, html};
+
+use super::language;
+use super::visit::Visit;
+
+/// A place of the navigation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Here {
+    /// None of it.
+    Elsewhere,
+    /// The lanes.
+    Lanes,
+    /// Runs.
+    History,
+    /// First-pass and final yield.
+    Yield,
+    /// What fails most.
+    Pareto,
+}
+
+impl Here {
+    /// Every place of the navigation, with its path and the key of its name.
+    const ALL: [(Self, &'static str, Label); 4] = [
+        (Self::Lanes, "/", Label { key: "nav.lanes" }),
+        (Self::History, "/history", Label { key: "nav.history" }),
+        (Self::Yield, "/yield", Label { key: "nav.yield" }),
+        (Self::Pareto, "/pareto", Label { key: "nav.pareto" }),
+    ];
+}
+
+struct Label {
+    key: &'static str,
+}
+
+/// A page: its place, its title, what is in its head beside the common style sheet, and its content.
+#[derive(Debug)]
+pub(super) struct Page<'a> {
+    pub(super) here: Here,
+    pub(super) title: &'a str,
+    pub(super) head: Markup,
+    pub(super) content: Markup,
+}
+
+impl Page<'_> {
+    /// As an answer to `visit`.
+    pub(super) fn answer(self, visit: &Visit) -> Response {
+        self.with_status(visit, StatusCode::OK)
+    }
+
+    /// As an answer with this status.
+    pub(super) fn with_status(self, visit: &Visit, status: StatusCode) -> Response {
+        let text = self.markup(visit).into_string();
+        let kind = HeaderValue::from_static("text/html; charset=utf-8");
+        let keep = HeaderValue::from_static("no-store");
+        (status, [(CONTENT_TYPE, kind), (CACHE_CONTROL, keep)], text).into_response()
+    }
+
+    fn markup(&self, visit: &Visit) -> Markup {
+        html! {
+            (DOCTYPE)
+            html lang=(visit.words.code) {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="color-scheme" content="light dark";
+                    title { (self.title) " – " (visit.station) }
+                    link rel="stylesheet" href="/assets/style.css";
+                    link rel="icon" href="data:,";
+                    (self.head)
+                }
+                body {
+                    (navigation(visit, self.here))
+                    main { (self.content) }
+                }
+            }
+        }
+    }
+}
+
+fn navigation(visit: &Visit, here: Here) -> Markup {
+    html! {
+        header.top {
+            span.station { (visit.say("nav.station")) " " b { (visit.station) } }
+            nav aria-label=(visit.say("nav.pages")) {
+                @for (place, path, Label { key }) in Here::ALL {
+                    a href=(path) aria-current=[(place == here).then_some("page")] { (visit.say(key)) }
+                }
+            }
+            (languages(visit))
+        }
+    }
+}
+
+fn languages(visit: &Visit) -> Markup {
+    html! {
+        form.languages method="post" action="/language" {
+            input type="hidden" name="csrf" value=(visit.csrf);
+            @for (code, name) in language::all() {
+                button name="language" value=(code) lang=(code) disabled[code == visit.words.code] { (name) }
+            }
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! The station's pages: what lanes do, while they do it, and what was judged.
+//!
+//! ```text
+//!  browser ──► serve ──► guard ──► a line of the table of routes ──► page or act
+//!              limits    Host, Origin, login, CSRF                    │        │
+//!                                                                     ▼        ▼
+//!                                                           snapshot of store  engine
+//!  engine's news ──► live ──► server-sent events of every page that is open
+//! ```
+
+mod access;
+mod assets;
+mod guard;
+mod history;
+mod language;
+mod layout;
+mod routes;
+mod serve;
+mod state;
+mod trouble;
+mod visit;
+
+pub use access::{Access, Address, AddressError};
+pub use routes::{Route, Who, routes};
+pub use serve::{ServeError, Server};
+pub use state::App;
+pub use visit::User;

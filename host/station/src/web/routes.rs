@@ -1,0 +1,70 @@
+//! Every route of the station, in one table. What is not in it is not served.
+
+use axum::Router;
+use axum::handler::Handler;
+use axum::http::Method;
+use axum::middleware;
+use axum::routing::{self, MethodRouter};
+
+use super::guard::{self, Guarded};
+use super::state::App;
+use super::{assets, history};
+
+/// Who may use a route.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Who {
+    /// Everybody: what is needed to log in.
+    Anyone,
+    /// Who may see what is tested: everybody at the station itself, whoever is logged in elsewhere.
+    Reader,
+    /// Who tests boards.
+    Operator,
+    /// Who answers for the station.
+    Engineer,
+}
+
+/// A line of the table.
+#[derive(Clone, Debug)]
+pub struct Route {
+    /// The method. Whatever changes something is a POST.
+    pub method: Method,
+    /// The path, with `{name}` for a part that varies.
+    pub path: &'static str,
+    /// Who may.
+    pub who: Who,
+    handler: MethodRouter<App>,
+}
+
+/// A page to look at.
+pub(super) fn look<H, T>(path: &'static str, who: Who, handler: H) -> Route
+where
+    H: Handler<T, App>,
+    T: 'static,
+{
+    Route { method: Method::GET, path, who, handler: routing::get(handler) }
+}
+
+/// An act, which changes something.
+pub(super) fn act<H, T>(path: &'static str, who: Who, handler: H) -> Route
+where
+    H: Handler<T, App>,
+    T: 'static,
+{
+    Route { method: Method::POST, path, who, handler: routing::post(handler) }
+}
+
+/// The table.
+#[must_use]
+pub fn routes() -> Vec<Route> {
+    [assets::routes(), history::routes()].concat()
+}
+
+/// The table as a service. What is common to all routes stands around it, what depends on their lines around each.
+pub(super) fn router(app: &App) -> Router {
+    let with = |router: Router<App>, Route { method, path, who, handler }: Route| {
+        let guarded = Guarded { app: app.clone(), who, is_act: method == Method::POST };
+        router.route(path, handler.layer(middleware::from_fn_with_state(guarded, guard::route)))
+    };
+    let router = routes().into_iter().fold(Router::new(), with).fallback(guard::nothing_here);
+    router.layer(middleware::from_fn_with_state(app.clone(), guard::every)).with_state(app.clone())
+}

@@ -1,0 +1,124 @@
+//! The connections: how many, how long each may take, and the thread that they are served on.
+
+use std::net::{SocketAddr, TcpListener};
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+use std::{io, pin::pin};
+
+use axum::Router;
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpStream;
+use tokio::runtime::{Builder, Runtime};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
+use tokio::time;
+
+use super::routes;
+use super::state::App;
+
+/// How many connections there are at once; another one waits for its turn.
+const CONNECTIONS: usize = 64;
+/// How long the head of a request may take.
+const HEAD: Duration = Duration::from_secs(10);
+/// The longest head, in bytes.
+const MOST_HEAD: usize = 16 * 1024;
+/// How long it is waited when the system has no room for another connection.
+const FULL: Duration = Duration::from_millis(100);
+/// How long work for a page may go on when the pages are closed.
+const LAST: Duration = Duration::from_secs(1);
+/// Threads for work that waits for the disk.
+const AT_THE_DISK: usize = 8;
+
+/// Pages that cannot be served.
+#[derive(Debug, thiserror::Error)]
+pub enum ServeError {
+    /// The address is not free.
+    #[error("nothing can be served at {address}; end what is there, or take another `listen`")]
+    Address {
+        /// The address.
+        address: SocketAddr,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The system has no thread or no timer for it.
+    #[error("the system has no room for the station's pages; end other programs")]
+    Room(#[source] io::Error),
+}
+
+/// The pages, which are served until they are closed.
+#[derive(Debug)]
+pub struct Server {
+    stop: oneshot::Sender<()>,
+    thread: JoinHandle<()>,
+}
+
+impl Server {
+    /// Listens on `address`; with port 0 the system chooses one.
+    ///
+    /// # Errors
+    /// [`ServeError::Address`]
+    pub fn listen(address: SocketAddr) -> Result<TcpListener, ServeError> {
+        TcpListener::bind(address).map_err(|source| ServeError::Address { address, source })
+    }
+
+    /// Serves the pages of `app`.
+    ///
+    /// # Errors
+    /// [`ServeError::Room`]
+    pub fn start(app: &App, listener: TcpListener) -> Result<Self, ServeError> {
+        listener.set_nonblocking(true).map_err(ServeError::Room)?;
+        let runtime = Builder::new_current_thread().enable_all().max_blocking_threads(AT_THE_DISK).build();
+        let (runtime, router) = (runtime.map_err(ServeError::Room)?, routes::router(app));
+        let (stop, stopped) = oneshot::channel();
+        let serve = move || serve(runtime, listener, router, stopped);
+        let thread =
+            thread::Builder::new().name("pages".to_owned()).spawn(serve).map_err(ServeError::Room)?;
+        Ok(Self { stop, thread })
+    }
+
+    /// Ends all connections.
+    pub fn close(self) {
+        let _ = self.stop.send(());
+        if self.thread.join().is_err() {
+            tracing::error!("the pages ended early; look at what was said before");
+        }
+    }
+}
+
+fn serve(runtime: Runtime, listener: TcpListener, router: Router, stopped: oneshot::Receiver<()>) {
+    runtime.block_on(async {
+        match tokio::net::TcpListener::from_std(listener) {
+            Ok(listener) => drop(tokio::spawn(accept(listener, router))),
+            Err(error) => tracing::error!("the pages cannot be served: {error}"),
+        }
+        let _ = stopped.await;
+    });
+    runtime.shutdown_timeout(LAST);
+}
+
+async fn accept(listener: tokio::net::TcpListener, router: Router) {
+    let places = Arc::new(Semaphore::new(CONNECTIONS));
+    while let Ok(place) = Arc::clone(&places).acquire_owned().await {
+        match listener.accept().await {
+            Ok((stream, _)) => drop(tokio::spawn(connection(stream, router.clone(), place))),
+            Err(error) => {
+                tracing::warn!("a connection was not taken: {error}");
+                time::sleep(FULL).await;
+            }
+        }
+    }
+}
+
+async fn connection(stream: TcpStream, router: Router, place: OwnedSemaphorePermit) {
+    // News are short, and each is waited for.
+    let _ = stream.set_nodelay(true);
+    let mut builder = http1::Builder::new();
+    builder.timer(TokioTimer::new()).header_read_timeout(HEAD).max_header_size(MOST_HEAD);
+    let served = builder.serve_connection(TokioIo::new(stream), TowerToHyperService::new(router));
+    if let Err(error) = pin!(served).await {
+        tracing::debug!("a connection ended: {error}");
+    }
+    drop(place);
+}

@@ -1,0 +1,88 @@
+//! What all pages work with.
+
+use std::sync::Arc;
+
+use tokio::task;
+
+use super::access::Access;
+use super::trouble::Trouble;
+use super::visit::Visit;
+use crate::engine::Engine;
+use crate::settings::Settings;
+use crate::store::{Snapshot, Store, StoreError};
+
+/// The station as its pages know it. A copy is the same one.
+#[derive(Clone, Debug)]
+pub struct App(Arc<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    settings: Settings,
+    engine: Arc<Engine>,
+    access: Access,
+}
+
+impl App {
+    /// The station of these settings, which the engine has at work, for those whom `access` lets in.
+    #[must_use]
+    pub fn new(settings: Settings, engine: Arc<Engine>, access: Access) -> Self {
+        Self(Arc::new(Parts { settings, engine, access }))
+    }
+
+    /// Its name.
+    pub(super) fn station(&self) -> &str {
+        &self.0.settings.name
+    }
+
+    pub(super) fn settings(&self) -> &Settings {
+        &self.0.settings
+    }
+
+    pub(super) fn engine(&self) -> &Engine {
+        &self.0.engine
+    }
+
+    pub(super) fn access(&self) -> &Access {
+        &self.0.access
+    }
+
+    /// What `look` finds in the store as it is at one moment. Other requests go on meanwhile.
+    ///
+    /// # Errors
+    /// [`Trouble`] when the store cannot be read.
+    pub(super) async fn look<T: Send + 'static>(
+        &self,
+        visit: &Visit,
+        look: impl FnOnce(&Snapshot) -> Result<T, StoreError> + Send + 'static,
+    ) -> Result<T, Trouble> {
+        let folder = crate::store::Folder::new(&self.0.settings.data);
+        self.blocking(visit, move || Snapshot::take(&folder).and_then(|snapshot| look(&snapshot)))
+            .await?
+            .map_err(|error| Trouble::store(visit, error))
+    }
+
+    /// What `change` does with the store. Runs that end wait for it, so it is brief.
+    ///
+    /// # Errors
+    /// [`Trouble`] when it did not come to its end.
+    pub(super) async fn change<T: Send + 'static>(
+        &self,
+        visit: &Visit,
+        change: impl FnOnce(&mut Store) -> T + Send + 'static,
+    ) -> Result<T, Trouble> {
+        let store = self.0.engine.store();
+        self.blocking(visit, move || store.with(change)).await
+    }
+
+    /// What `work` returns, which may wait for a disk or compute for long.
+    ///
+    /// # Errors
+    /// [`Trouble`] when it did not come to its end.
+    pub(super) async fn blocking<T: Send + 'static>(
+        &self,
+        visit: &Visit,
+        work: impl FnOnce() -> T + Send + 'static,
+    ) -> Result<T, Trouble> {
+        task::spawn_blocking(work).await.map_err(|error| Trouble::broken(visit, &error))
+    }
+}

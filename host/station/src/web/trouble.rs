@@ -1,0 +1,58 @@
+//! Why there is no page, or why an act was not done.
+
+use std::fmt::Display;
+
+use axum::http::StatusCode;
+use axum::response::{IntoResponse, Response};
+use maud::html;
+
+use super::layout::{Here, Page};
+use super::visit::Visit;
+use crate::store::StoreError;
+
+/// An answer that says what is wrong, and what to do.
+#[derive(Debug)]
+pub(super) struct Trouble {
+    status: StatusCode,
+    visit: Visit,
+    said: String,
+}
+
+impl Trouble {
+    /// What is wrong and what to do, with its status.
+    pub(super) fn new(visit: &Visit, status: StatusCode, said: impl Into<String>) -> Self {
+        Self { status, visit: visit.clone(), said: said.into() }
+    }
+
+    /// Nothing has this address.
+    pub(super) fn missing(visit: &Visit) -> Self {
+        Self::new(visit, StatusCode::NOT_FOUND, visit.say("trouble.missing"))
+    }
+
+    /// The request says what it cannot say.
+    pub(super) fn wrong(visit: &Visit, said: impl Into<String>) -> Self {
+        Self::new(visit, StatusCode::BAD_REQUEST, said)
+    }
+
+    /// The store does not do it. The reason is for the log and the engineer.
+    pub(super) fn store(visit: &Visit, error: StoreError) -> Self {
+        let said = format!("{:#}", anyhow::Error::from(error));
+        tracing::error!("{said}");
+        Self::new(visit, StatusCode::SERVICE_UNAVAILABLE, said)
+    }
+
+    /// Something of the program itself ended early.
+    pub(super) fn broken(visit: &Visit, error: &dyn Display) -> Self {
+        tracing::error!("a page was not made: {error}");
+        Self::new(visit, StatusCode::INTERNAL_SERVER_ERROR, visit.say("trouble.broken"))
+    }
+}
+
+impl IntoResponse for Trouble {
+    fn into_response(self) -> Response {
+        let Self { status, visit, said } = self;
+        let content = html! { section.trouble { h1 { (status.as_u16()) } p role="alert" { (said) } } };
+        let page = Page { here: Here::Elsewhere, title: visit.say("trouble.title"), head: html! {}, content };
+        page.with_status(&visit, status)
+    }
+}

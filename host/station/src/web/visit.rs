@@ -1,0 +1,68 @@
+//! Who asks for a page, and in which language.
+
+use axum::extract::FromRequestParts;
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, header};
+
+use super::language::{self, Words};
+use super::routes::Who;
+use super::state::App;
+use super::trouble::Trouble;
+
+/// Somebody who is known by name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct User {
+    /// The name, which stands in records and in the audit.
+    pub name: String,
+    /// What they may do: operator or engineer.
+    pub who: Who,
+}
+
+/// A request's circumstances, which the guard made out.
+#[derive(Clone, Debug)]
+pub(super) struct Visit {
+    /// The language's words.
+    pub(super) words: &'static Words,
+    /// Who it is, if it is somebody.
+    pub(super) user: Option<User>,
+    /// What every form sends back in its field `csrf`.
+    pub(super) csrf: String,
+    /// The station's name.
+    pub(super) station: String,
+}
+
+impl Visit {
+    /// The words of this key in the visitor's language.
+    pub(super) fn say(&self, key: &'static str) -> &'static str {
+        self.words.say(key)
+    }
+
+    /// Whether the visitor may do what `who` may.
+    pub(super) fn may(&self, who: Who) -> bool {
+        self.user.as_ref().is_some_and(|user| user.who >= who)
+    }
+}
+
+impl FromRequestParts<App> for Visit {
+    type Rejection = Trouble;
+
+    async fn from_request_parts(parts: &mut Parts, app: &App) -> Result<Self, Trouble> {
+        // The guard of the route left it there.
+        Ok(parts.extensions.get::<Self>().cloned().unwrap_or_else(|| app.stranger(&parts.headers)))
+    }
+}
+
+impl App {
+    /// A visit of somebody unknown.
+    pub(super) fn stranger(&self, headers: &HeaderMap) -> Visit {
+        let words = language::of(cookie(headers, language::COOKIE), headers.get(header::ACCEPT_LANGUAGE));
+        Visit { words, user: None, csrf: String::new(), station: self.station().to_owned() }
+    }
+}
+
+/// The cookie of this name.
+pub(super) fn cookie<'a>(headers: &'a HeaderMap, name: &str) -> Option<&'a str> {
+    let all = headers.get_all(header::COOKIE).into_iter().filter_map(|value| value.to_str().ok());
+    let pairs = all.flat_map(|value| value.split(';')).filter_map(|pair| pair.trim().split_once('='));
+    pairs.into_iter().find(|(known, _)| *known == name).map(|(_, value)| value)
+}
