@@ -37,6 +37,13 @@ pub fn error(what: &dyn Display) {
     let _ = writeln!(io::stderr().lock(), "error: {what}");
 }
 
+/// Asks on stderr for something that is typed behind it.
+pub fn ask(what: &str) {
+    let mut stderr = io::stderr().lock();
+    // Whoever types blind knows what is asked.
+    let _ = write!(stderr, "{what}: ").and_then(|()| stderr.flush());
+}
+
 /// Where the log goes: stderr, which takes it or does not.
 #[derive(Clone, Copy, Debug)]
 pub struct Log;

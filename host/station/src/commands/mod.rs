@@ -14,6 +14,7 @@ mod run;
 mod serve;
 mod signals;
 mod unit;
+mod user;
 mod waive;
 mod yields;
 
@@ -52,6 +53,7 @@ enum Command {
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
     Serve(serve::Arguments),
+    User(user::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -104,6 +106,7 @@ impl Cli {
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
             Command::Serve(arguments) => serve::run(arguments),
+            Command::User(arguments) => user::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }

@@ -14,7 +14,7 @@ use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::store::{Folder, Store};
-use crate::web::{Access, Address, App, Server, User, Who};
+use crate::web::{Access, App, Server, User, Who};
 
 /// How often it is looked whether a signal came.
 const LOOK: Duration = Duration::from_millis(100);
@@ -35,24 +35,25 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let settings = path::absolute(&arguments.settings).map_err(Failure::call)?;
     let settings = Settings::load(&settings).map_err(Failure::call)?;
-    let address = Address::new("127.0.0.1:8612", None, &[]).map_err(Failure::call)?;
-    let operator = User { name: arguments.operator.clone(), who: Who::Operator };
-    serve(settings, Access::open(address, operator))
+    let everybody = User { name: arguments.operator.clone(), who: Who::Operator };
+    serve(&settings, everybody)
 }
 
-/// Serves the station until a signal comes.
-pub(super) fn serve(settings: Settings, access: Access) -> Result<Exit, Failure> {
+/// Serves the station until a signal comes. Where nobody logs in, everybody at the computer itself is `everybody`.
+pub(super) fn serve(settings: &Settings, everybody: User) -> Result<Exit, Failure> {
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = signals::last().map_err(Failure::error)?;
-    let listener = Server::listen(access.listen()).map_err(Failure::call)?;
-    let port = listener.local_addr().map_err(Failure::error)?.port();
     let mut store = Store::open(&Folder::new(&settings.data))?;
+    let access = Access::of(settings, everybody).map_err(Failure::call)?;
+    let listener = Server::listen(access.listen()).map_err(Failure::call)?;
+    let at = listener.local_addr().map_err(Failure::error)?;
     recovered(&mut store)?;
     let engine = Engine::start(settings.clone(), store, program).map_err(Failure::error)?;
     let engine = Arc::new(engine);
-    let app = App::new(settings, Arc::clone(&engine), access.at(port));
+    let app =
+        App::new(settings.clone(), Arc::clone(&engine), access.at(at.port())).map_err(Failure::error)?;
     let server = Server::start(&app, listener).map_err(Failure::error)?;
-    console::tell(&format!("http://127.0.0.1:{port}/"));
+    console::tell(&format!("the pages are at http://{at}/"));
     let by = loop {
         match signals::stopped_by(signal.load(Ordering::Relaxed)) {
             Some(by) => break by,

@@ -52,14 +52,16 @@ impl AtWork {
     pub(super) fn run(mut self, inbox: &Receiver<Input>) {
         let (mut looked, mut is_closing) = (None::<Instant>, false);
         while !(is_closing && self.is_idle()) {
+            self.board.lock().unwrap_or_else(PoisonError::into_inner).worked = Some(Instant::now());
             if !is_closing && looked.is_none_or(|looked| looked.elapsed() >= LOOK) {
                 looked = Some(Instant::now());
                 self.look();
             }
             let Ok(input) = inbox.recv_timeout(LOOK) else { continue };
             match input {
-                Input::Scan { .. } | Input::Act { .. } if is_closing => {}
+                Input::Scan { .. } | Input::Label { .. } | Input::Act { .. } if is_closing => {}
                 Input::Scan { number, text, operator } => self.scan(number, text, operator),
+                Input::Label { number, lane, label, operator } => self.label(number, lane, label, operator),
                 Input::Act { number, lane, act, operator } => self.act(number, lane, act, operator),
                 Input::Heard { lane, heard } => self.heard(lane, heard),
                 Input::Close(by) => {
@@ -137,6 +139,16 @@ impl AtWork {
             None => Err(ScanError::Incomplete),
         };
         self.answer(number, text, answer);
+    }
+
+    fn label(&mut self, number: u64, lane: Option<usize>, label: String, operator: String) {
+        let now = self.now();
+        self.operator = operator;
+        let answer = match lane {
+            Some(lane) => self.floor.scan_for(lane, &label, now),
+            None => self.floor.scan(&label, now),
+        };
+        self.answer(number, label, answer);
     }
 
     fn act(&mut self, number: u64, lane: usize, act: Act, operator: String) {

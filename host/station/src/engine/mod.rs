@@ -16,6 +16,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
@@ -29,10 +30,14 @@ use at_work::AtWork;
 use bay::Shared;
 use news::Listeners;
 
+/// How long its thread may say nothing of itself. It works twice a second, and may wait for a slow disk.
+const SILENT: Duration = Duration::from_secs(5);
+
 /// Something for the engine.
 #[derive(Debug)]
 enum Input {
     Scan { number: u64, text: String, operator: String },
+    Label { number: u64, lane: Option<usize>, label: String, operator: String },
     Act { number: u64, lane: usize, act: Act, operator: String },
     Heard { lane: usize, heard: Heard },
     Close(Option<StoppedBy>),
@@ -60,6 +65,8 @@ pub struct Engine {
 struct Board {
     lanes: Vec<LaneState>,
     listeners: Listeners,
+    /// When the engine's thread was last seen to work.
+    worked: Option<Instant>,
 }
 
 impl Engine {
@@ -72,7 +79,7 @@ impl Engine {
         let (inbox, received) = mpsc::channel();
         let floor = settings.floor();
         let lanes = floor.lanes().iter().map(LaneState::from).collect();
-        let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default() }));
+        let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default(), worked: None }));
         let store = SharedStore::new(store);
         let shared = Arc::new(Shared { settings, store: store.clone(), program, inbox: inbox.clone() });
         let at_work = AtWork::new(floor, shared, Arc::clone(&board));
@@ -85,6 +92,12 @@ impl Engine {
     pub fn scan(&self, number: u64, text: &str, operator: &str) {
         let (text, operator) = (text.to_owned(), operator.to_owned());
         self.put(Input::Scan { number, text, operator });
+    }
+
+    /// As [`Self::scan`], of a label that the scanner added nothing to, or nothing any more. It is for `lane` if there is one.
+    pub fn label(&self, number: u64, lane: Option<usize>, label: &str, operator: &str) {
+        let (label, operator) = (label.to_owned(), operator.to_owned());
+        self.put(Input::Label { number, lane, label, operator });
     }
 
     /// Does with the lane at this place what `operator` wants. What becomes of it is news as that of a scan is.
@@ -104,6 +117,13 @@ impl Engine {
     #[must_use]
     pub fn lanes(&self) -> Vec<LaneState> {
         self.board.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
+    }
+
+    /// Whether its thread works: it was seen to within the last seconds.
+    #[must_use]
+    pub fn is_well(&self) -> bool {
+        let board = self.board.lock().unwrap_or_else(PoisonError::into_inner);
+        board.worked.is_some_and(|worked| worked.elapsed() < SILENT)
     }
 
     /// The store, for what is neither a scan nor a run.

@@ -14,6 +14,7 @@ use halfrow::target::Target;
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::input_error::InputError;
 use crate::plan::Plan;
+use crate::web::Address;
 
 /// The version of the settings' own format.
 pub const SCHEMA: u32 = 1;
@@ -37,6 +38,19 @@ pub struct Settings {
     pub lanes: Vec<LaneSettings>,
     /// What is started when a verdict is saved.
     pub hooks: Vec<Hook>,
+    /// Where the pages are.
+    pub address: Address,
+    /// Who may act on them; without it, everybody at the computer itself.
+    pub access: Option<AccessSettings>,
+}
+
+/// `[access]`
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AccessSettings {
+    /// The file of those who may act.
+    pub users: PathBuf,
+    /// How long somebody may be idle and stay logged in.
+    pub idle: Duration,
 }
 
 /// A plan with its file.

@@ -7,11 +7,12 @@ use halfrow::Verdict;
 use halfrow::target::Target;
 use toml::Spanned;
 
-use super::text::{HookText, LaneText, OrderText, SettingsText, StartText};
-use super::{Hook, LaneSettings, PlanFile, SCHEMA, Scanner, Settings, WORDS, stable};
+use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText};
+use super::{AccessSettings, Hook, LaneSettings, PlanFile, SCHEMA, Scanner, Settings, WORDS, stable};
 use crate::floor::Starts;
 use crate::input_error::Fault;
 use crate::plan::Plan;
+use crate::web::Address;
 
 /// Where all keys are listed.
 const KEYS: &str = "docs/station.md lists every key and its values";
@@ -19,6 +20,11 @@ const KEYS: &str = "docs/station.md lists every key and its values";
 const SILENCE: f64 = 60.0;
 /// How long a hook may take, in seconds.
 const DEADLINE: f64 = 10.0;
+/// Where the pages are.
+const LISTEN: &str = "127.0.0.1:8612";
+/// How long somebody may be idle and stay logged in, and the most.
+const HOURS: f64 = 8.0;
+const MOST_HOURS: f64 = 720.0;
 /// The longest of either.
 const MOST_SECONDS: f64 = 86_400.0;
 /// The most characters of a lane's name, which stands on a barcode and is read from afar.
@@ -44,7 +50,39 @@ pub(super) fn settings(path: &Path, text: &str) -> Result<Settings, Fault> {
         plans,
         lanes,
         hooks: hooks(folder, &read)?,
+        address: address(&read)?,
+        access: read.access.as_ref().map(|access| people(folder, access)).transpose()?,
     })
+}
+
+/// Where the pages are. Whatever others can reach has people who log in.
+fn address(read: &SettingsText) -> Result<Address, Fault> {
+    let WebText { listen, public, hosts } = &read.web;
+    let at = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.span().start);
+    let place = at(listen).or(at(public)).unwrap_or(0);
+    let text = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.get_ref().clone());
+    let listen = text(listen).unwrap_or_else(|| LISTEN.to_owned());
+    let address = Address::new(&listen, text(public).as_deref(), hosts)
+        .map_err(|error| Fault::input(place, "the address", error))?;
+    if address.is_private() || read.access.is_some() {
+        return Ok(address);
+    }
+    let what = "others can reach these pages, and nobody logs in";
+    Err(Fault::wrong(place, what, "write [access] with users, or listen on 127.0.0.1"))
+}
+
+fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {
+    let hours = text.hours.as_ref().map_or(HOURS, |hours| *hours.get_ref());
+    if !(0.01..=MOST_HOURS).contains(&hours) {
+        let at = text.hours.as_ref().map_or(0, |hours| hours.span().start);
+        return Err(Fault::wrong(
+            at,
+            format!("{hours} is no number of hours"),
+            format!("give 0.01 to {MOST_HOURS}"),
+        ));
+    }
+    let idle = Duration::from_secs_f64(3600.0 * hours);
+    Ok(AccessSettings { users: folder.join(not_empty(&text.users)?), idle })
 }
 
 fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {

@@ -12,6 +12,9 @@ pub(super) struct SettingsText {
     #[serde(default)]
     pub(super) scanner: ScannerText,
     #[serde(default)]
+    pub(super) web: WebText,
+    pub(super) access: Option<AccessText>,
+    #[serde(default)]
     pub(super) lane: Vec<LaneText>,
     #[serde(default, rename = "on-pass")]
     pub(super) on_pass: Vec<HookText>,
@@ -49,6 +52,24 @@ pub(super) struct ScannerText {
     pub(super) prefix: String,
     #[serde(default)]
     pub(super) suffix: String,
+}
+
+/// `[web]`
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WebText {
+    pub(super) listen: Option<Spanned<String>>,
+    pub(super) public: Option<Spanned<String>>,
+    #[serde(default)]
+    pub(super) hosts: Vec<String>,
+}
+
+/// `[access]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct AccessText {
+    pub(super) users: Spanned<String>,
+    pub(super) hours: Option<Spanned<f64>>,
 }
 
 /// A `[[lane]]`

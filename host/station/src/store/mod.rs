@@ -10,6 +10,7 @@
 //! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read
 //! it back.
 
+mod audit;
 mod bindings;
 mod error;
 mod keeping;

@@ -9,11 +9,18 @@ use super::trouble::Trouble;
 use super::visit::Visit;
 
 const CSS: &str = "text/css; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
 
 /// Every file by its name.
-const ASSETS: [(&str, &str, &str); 2] = [
+const ASSETS: [(&str, &str, &str); 8] = [
     ("style.css", CSS, include_str!("../../assets/style.css")),
     ("history.css", CSS, include_str!("../../assets/history.css")),
+    ("operator.css", CSS, include_str!("../../assets/operator.css")),
+    ("operator.js", SCRIPT, include_str!("../../assets/operator.js")),
+    ("scanner.js", SCRIPT, include_str!("../../assets/scanner.js")),
+    ("live.js", SCRIPT, include_str!("../../assets/live.js")),
+    ("floor.js", SCRIPT, include_str!("../../assets/floor.js")),
+    ("sound.js", SCRIPT, include_str!("../../assets/sound.js")),
 ];
 
 pub(super) fn routes() -> Vec<Route> {

@@ -2,20 +2,25 @@
 
 use std::time::Duration;
 
+use axum::body::{self, Body, Bytes};
 use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderName};
-use axum::http::{HeaderMap, HeaderValue, StatusCode};
+use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
-use axum::response::{IntoResponse as _, Response};
+use axum::response::{IntoResponse as _, Redirect, Response};
 use tokio::time;
 
 use super::routes::Who;
 use super::state::App;
 use super::trouble::Trouble;
-use super::visit::Visit;
+use super::visit::{Visit, cookie};
 
 /// How long an answer may take to begin.
 const PATIENCE: Duration = Duration::from_secs(30);
+/// The most bytes of a form.
+const MOST: usize = 64 * 1024;
+/// The field of every form that says for whom it was made.
+const MARK: &str = "csrf";
 
 /// What every answer carries. A page may load from the station alone, and stands in nobody's frame.
 ///
@@ -41,11 +46,11 @@ pub(super) struct Guarded {
 
 /// Around all: whether it is for this station at all, how long it may take, and what every answer carries.
 pub(super) async fn every(State(app): State<App>, request: Request, next: Next) -> Response {
-    let visit = app.stranger(request.headers());
-    let mut response = if host(request.headers()).is_some_and(|host| app.access().address().is_host(host)) {
-        let late =
-            || Trouble::new(&visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late")).into_response();
-        time::timeout(PATIENCE, next.run(request)).await.unwrap_or_else(|_| late())
+    let visit = app.visit(request.headers(), false);
+    let is_ours = host(request.headers()).is_some_and(|host| app.access().address().is_host(host));
+    let mut response = if is_ours {
+        let late = || Trouble::new(&visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late"));
+        time::timeout(PATIENCE, next.run(request)).await.unwrap_or_else(|_| late().into_response())
     } else {
         Trouble::new(&visit, StatusCode::MISDIRECTED_REQUEST, visit.say("trouble.host")).into_response()
     };
@@ -57,24 +62,118 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
 
 /// Around a route: who asks, and whether they may.
 pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next: Next) -> Response {
-    let Guarded { app, who, .. } = guarded;
-    let mut visit = app.stranger(request.headers());
-    visit.user = app.access().everybody().cloned();
-    if who > Who::Reader && !visit.may(who) {
-        return Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")).into_response();
+    let Guarded { app, who, is_act } = guarded;
+    let visit = app.visit(request.headers(), is_act);
+    let checked =
+        if is_act { act(&app, &visit, who, request).await } else { look(&app, &visit, who, request) };
+    match checked {
+        Err(refused) => *refused,
+        Ok(mut request) => {
+            let cookie = (visit.is_new && !is_act).then(|| app.access().cookie(&visit.session));
+            request.extensions_mut().insert(visit);
+            let mut response = next.run(request).await;
+            if let Some(cookie) = cookie.and_then(|cookie| HeaderValue::from_str(&cookie).ok()) {
+                response.headers_mut().insert(header::SET_COOKIE, cookie);
+            }
+            response
+        }
     }
-    let mut request = request;
-    request.extensions_mut().insert(visit);
-    next.run(request).await
+}
+
+/// A refusal on the way to a route.
+type Refused = Box<Response>;
+
+fn refused(visit: &Visit, status: StatusCode, said: &'static str) -> Refused {
+    Box::new(Trouble::new(visit, status, said).into_response())
+}
+
+/// A page: whoever may not see it logs in.
+fn look(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
+    if who == Who::Anyone || visit.user.is_some() && (who == Who::Reader || visit.may(who)) {
+        return Ok(request);
+    }
+    if who == Who::Reader && app.access().address().is_private() {
+        return Ok(request);
+    }
+    let wants_page = request
+        .headers()
+        .get(header::ACCEPT)
+        .is_some_and(|accept| accept.to_str().is_ok_and(|accept| accept.contains("text/html")));
+    match visit.user {
+        Some(_) => Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden"))),
+        None if wants_page => Err(Box::new(Redirect::to("/login").into_response())),
+        None => Err(refused(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login"))),
+    }
+}
+
+/// An act: from a page of the station, made for this browser, by somebody who may.
+async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
+    let headers = request.headers();
+    let is_own = host(headers).zip(only(headers, &header::ORIGIN));
+    if !is_own.is_some_and(|(host, origin)| app.access().address().is_origin(origin, host)) {
+        return Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.origin")));
+    }
+    if who > Who::Anyone && !visit.may(who) {
+        return Err(match visit.user {
+            None => refused(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
+            Some(_) => refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
+        });
+    }
+    let (parts, body) = request.into_parts();
+    let body = body::to_bytes(body, MOST).await;
+    let body = body.map_err(|_| refused(visit, StatusCode::PAYLOAD_TOO_LARGE, visit.say("trouble.large")))?;
+    let is_marked = mark(&body).is_some_and(|mark| app.access().is_form_mark(&visit.session, &mark));
+    if visit.is_new || !is_marked {
+        return Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.mark")));
+    }
+    Ok(Request::from_parts(parts, Body::from(body)))
+}
+
+/// The mark that a form carries.
+fn mark(body: &Bytes) -> Option<String> {
+    let text = std::str::from_utf8(body).ok()?;
+    let mut marks = text.split('&').filter_map(|pair| pair.split_once('=')).filter(|(name, _)| *name == MARK);
+    let (_, mark) = marks.next()?;
+    // Hexadecimal digits need no escapes, so none are undone.
+    marks.next().is_none().then(|| mark.to_owned())
 }
 
 /// Where nothing is.
-pub(super) async fn nothing_here(visit: Visit) -> Trouble {
+pub(super) async fn nothing_here(State(app): State<App>, method: Method, headers: HeaderMap) -> Trouble {
+    let visit = app.visit(&headers, false);
+    tracing::debug!("nothing is here for {method}");
     Trouble::missing(&visit)
 }
 
 fn host(headers: &HeaderMap) -> Option<&str> {
-    let mut hosts = headers.get_all(header::HOST).into_iter();
-    let host = hosts.next()?.to_str().ok()?;
-    hosts.next().is_none().then_some(host)
+    only(headers, &header::HOST)
+}
+
+/// The value of a header that is there once.
+fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
+    let mut values = headers.get_all(name).into_iter();
+    let value = values.next()?.to_str().ok()?;
+    values.next().is_none().then_some(value)
+}
+
+impl App {
+    /// Who asks, and in which language. Somebody without a cookie has one drawn.
+    fn visit(&self, headers: &HeaderMap, is_act: bool) -> Visit {
+        let access = self.access();
+        let sent = cookie(headers, &access.cookie_name()).map(str::to_owned);
+        let user = access.user(sent.as_deref(), is_act);
+        let is_new = sent.is_none();
+        let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
+        // A link on a page of another site comes without the cookie, which must not be put in the place of the one there is.
+        let is_from_elsewhere = only(headers, &HeaderName::from_static("sec-fetch-site"))
+            .is_some_and(|site| site == "cross-site");
+        Visit {
+            csrf: access.form_mark(&session),
+            user,
+            session,
+            is_new: is_new && !is_from_elsewhere,
+            can_log_in: access.has_people(),
+            ..self.stranger(headers)
+        }
+    }
 }

@@ -91,7 +91,27 @@ fn navigation(visit: &Visit, here: Here) -> Markup {
                     a href=(path) aria-current=[(place == here).then_some("page")] { (visit.say(key)) }
                 }
             }
+            (who(visit))
             (languages(visit))
+        }
+    }
+}
+
+/// Who is logged in, and the way in or out.
+fn who(visit: &Visit) -> Markup {
+    html! {
+        @match &visit.user {
+            Some(user) => {
+                span.who { (user.name) }
+                @if visit.can_log_in {
+                    form method="post" action="/logout" {
+                        input type="hidden" name="csrf" value=(visit.csrf);
+                        button { (visit.say("login.out")) }
+                    }
+                }
+            }
+            None if visit.can_log_in => { a.who href="/login" { (visit.say("login.title")) } }
+            None => {}
         }
     }
 }

@@ -14,13 +14,16 @@ mod guard;
 mod history;
 mod language;
 mod layout;
+mod live;
+mod login;
+mod operator;
 mod routes;
 mod serve;
 mod state;
 mod trouble;
 mod visit;
 
-pub use access::{Access, Address, AddressError};
+pub use access::{Access, Address, AddressError, Role, SecretError, UserError, Users, add_user};
 pub use routes::{Route, Who, routes};
 pub use serve::{ServeError, Server};
 pub use state::App;

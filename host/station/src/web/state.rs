@@ -1,10 +1,12 @@
 //! What all pages work with.
 
+use std::io;
 use std::sync::Arc;
 
 use tokio::task;
 
 use super::access::Access;
+use super::live::Live;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::engine::Engine;
@@ -20,13 +22,17 @@ struct Parts {
     settings: Settings,
     engine: Arc<Engine>,
     access: Access,
+    live: Arc<Live>,
 }
 
 impl App {
     /// The station of these settings, which the engine has at work, for those whom `access` lets in.
-    #[must_use]
-    pub fn new(settings: Settings, engine: Arc<Engine>, access: Access) -> Self {
-        Self(Arc::new(Parts { settings, engine, access }))
+    ///
+    /// # Errors
+    /// When the system has no thread for its news.
+    pub fn new(settings: Settings, engine: Arc<Engine>, access: Access) -> io::Result<Self> {
+        let live = Live::start(&engine)?;
+        Ok(Self(Arc::new(Parts { settings, engine, access, live })))
     }
 
     /// Its name.
@@ -44,6 +50,26 @@ impl App {
 
     pub(super) fn access(&self) -> &Access {
         &self.0.access
+    }
+
+    pub(super) fn live(&self) -> &Live {
+        &self.0.live
+    }
+
+    /// Enters in the audit what the visitor is about to do. What cannot be entered is not done.
+    ///
+    /// # Errors
+    /// [`Trouble`] when the store does not take it.
+    pub(super) async fn audit(
+        &self,
+        visit: &Visit,
+        act: &'static str,
+        subject: &str,
+        detail: &str,
+    ) -> Result<(), Trouble> {
+        let [name, subject, detail] = [visit.name(), subject, detail].map(str::to_owned);
+        let entered = self.change(visit, move |store| store.note(&name, act, &subject, &detail)).await?;
+        entered.map_err(|error| Trouble::store(visit, error))
     }
 
     /// What `look` finds in the store as it is at one moment. Other requests go on meanwhile.

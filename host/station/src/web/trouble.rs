@@ -3,8 +3,10 @@
 use std::fmt::Display;
 
 use axum::http::StatusCode;
+use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use maud::html;
+use serde_json::json;
 
 use super::layout::{Here, Page};
 use super::visit::Visit;
@@ -51,6 +53,10 @@ impl Trouble {
 impl IntoResponse for Trouble {
     fn into_response(self) -> Response {
         let Self { status, visit, said } = self;
+        if visit.is_script {
+            let text = json!({ "is_taken": false, "said": said }).to_string();
+            return (status, [(CONTENT_TYPE, "application/json")], text).into_response();
+        }
         let content = html! { section.trouble { h1 { (status.as_u16()) } p role="alert" { (said) } } };
         let page = Page { here: Here::Elsewhere, title: visit.say("trouble.title"), head: html! {}, content };
         page.with_status(&visit, status)

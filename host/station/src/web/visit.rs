@@ -25,16 +25,29 @@ pub(super) struct Visit {
     pub(super) words: &'static Words,
     /// Who it is, if it is somebody.
     pub(super) user: Option<User>,
+    /// The value of the cookie that the visitor has, or is given.
+    pub(super) session: String,
+    /// Whether it is given.
+    pub(super) is_new: bool,
+    /// Whether people log in at this station.
+    pub(super) can_log_in: bool,
     /// What every form sends back in its field `csrf`.
     pub(super) csrf: String,
     /// The station's name.
     pub(super) station: String,
+    /// Whether the page's script asks, which takes answers as JSON.
+    pub(super) is_script: bool,
 }
 
 impl Visit {
     /// The words of this key in the visitor's language.
     pub(super) fn say(&self, key: &'static str) -> &'static str {
         self.words.say(key)
+    }
+
+    /// The visitor's name, for records and the audit.
+    pub(super) fn name(&self) -> &str {
+        self.user.as_ref().map_or("", |user| user.name.as_str())
     }
 
     /// Whether the visitor may do what `who` may.
@@ -56,7 +69,10 @@ impl App {
     /// A visit of somebody unknown.
     pub(super) fn stranger(&self, headers: &HeaderMap) -> Visit {
         let words = language::of(cookie(headers, language::COOKIE), headers.get(header::ACCEPT_LANGUAGE));
-        Visit { words, user: None, csrf: String::new(), station: self.station().to_owned() }
+        let is_script = headers.get(header::ACCEPT).is_some_and(|value| value == "application/json");
+        let station = self.station().to_owned();
+        let (session, csrf) = (String::new(), String::new());
+        Visit { words, user: None, session, is_new: true, can_log_in: false, csrf, station, is_script }
     }
 }
 

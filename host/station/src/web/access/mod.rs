@@ -1,26 +1,70 @@
 //! Who may see and do what.
+//!
+//! A badge says who somebody is, and makes an operator; a password beside it makes an engineer. Who is logged in is known
+//! by a cookie, and every form carries a mark of that cookie, which no page of another site can know.
 
 mod address;
+mod key;
+mod sessions;
+mod users;
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
 pub use address::{Address, AddressError};
+pub use key::SecretError;
+pub use users::{Role, UserError, Users};
 
 use super::visit::User;
+use crate::settings::Settings;
+use key::Key;
+use sessions::{Failures, Sessions};
+
+/// What the marks of forms are told from others by.
+const FORM: &str = "form";
 
 /// Where the pages are, and who may see and do what there.
 #[derive(Debug)]
 pub struct Access {
     address: Address,
-    /// Who everybody is without having logged in.
-    everybody: Option<User>,
+    people: People,
+    key: Key,
+    sessions: Mutex<Sessions>,
+    failures: Mutex<Failures>,
+}
+
+/// Who may act.
+#[derive(Debug)]
+enum People {
+    /// Everybody who gets here.
+    Everybody(User),
+    /// Who is in the file and has logged in, until they have been idle for so long.
+    Listed { file: PathBuf, idle: Duration },
+}
+
+/// The station's key, in its folder.
+fn key_file(data: &Path) -> PathBuf {
+    data.join("station.key")
 }
 
 impl Access {
-    /// For pages at `address`, where everybody is `everybody`.
-    #[must_use]
-    pub fn open(address: Address, everybody: User) -> Self {
-        Self { address, everybody: Some(everybody) }
+    /// As the settings say. Without people in them everybody at the computer itself is `everybody`.
+    ///
+    /// # Errors
+    /// [`SecretError`] when the station's key or the file of people cannot be used.
+    pub fn of(settings: &Settings, everybody: User) -> Result<Self, SecretError> {
+        let people = match &settings.access {
+            None => People::Everybody(everybody),
+            Some(access) => {
+                Users::load(&access.users)?;
+                People::Listed { file: access.users.clone(), idle: access.idle }
+            }
+        };
+        let key = Key::load(&key_file(&settings.data))?;
+        let address = settings.address.clone();
+        Ok(Self { address, people, key, sessions: Mutex::default(), failures: Mutex::default() })
     }
 
     /// With the port that the system gave for port 0.
@@ -39,7 +83,108 @@ impl Access {
         &self.address
     }
 
-    pub(super) fn everybody(&self) -> Option<&User> {
-        self.everybody.as_ref()
+    /// Whether people log in here at all.
+    pub(super) fn has_people(&self) -> bool {
+        matches!(self.people, People::Listed { .. })
     }
+
+    /// Who has this cookie, or is everybody.
+    pub(super) fn user(&self, session: Option<&str>, is_act: bool) -> Option<User> {
+        match &self.people {
+            People::Everybody(user) => Some(user.clone()),
+            People::Listed { file, idle } => {
+                let session = session?;
+                let user = self.sessions().user(session, *idle, is_act, Instant::now())?;
+                // Whoever was taken from the file is nobody any more.
+                if Users::load(file).is_ok_and(|users| users.has(&user)) {
+                    return Some(user);
+                }
+                self.sessions().remove(session);
+                None
+            }
+        }
+    }
+
+    /// Who this badge and this password make, and nobody else. It takes a while.
+    pub(super) fn identify(&self, badge: &str, password: &str) -> Option<User> {
+        let People::Listed { file, .. } = &self.people else { return None };
+        match Users::load(file) {
+            Ok(users) => users.identify(&self.key, badge, password),
+            Err(error) => {
+                tracing::error!("{:#}", anyhow::Error::from(error));
+                None
+            }
+        }
+    }
+
+    /// A new session of `user`: the value of its cookie.
+    ///
+    /// # Errors
+    /// When the system has no randomness.
+    pub(super) fn begin(&self, user: Option<User>) -> Result<String, SecretError> {
+        let session = key::hex(&key::drawn().map_err(SecretError::NoRandomness)?);
+        if let Some(user) = user {
+            self.sessions().add(session.clone(), user, Instant::now());
+        }
+        Ok(session)
+    }
+
+    /// Ends the session of this cookie.
+    pub(super) fn end(&self, session: &str) {
+        self.sessions().remove(session);
+    }
+
+    /// What forms carry that were made for this cookie.
+    pub(super) fn form_mark(&self, session: &str) -> String {
+        self.key.mark(FORM, session)
+    }
+
+    /// Whether a form was made for this cookie.
+    pub(super) fn is_form_mark(&self, session: &str, mark: &str) -> bool {
+        self.key.is_mark(FORM, session, mark)
+    }
+
+    /// How long `peer` waits before it may log in.
+    pub(super) fn wait(&self, peer: IpAddr) -> Option<Duration> {
+        self.failures.lock().unwrap_or_else(PoisonError::into_inner).wait(peer, Instant::now())
+    }
+
+    /// Logging in failed.
+    pub(super) fn failed(&self, peer: IpAddr) {
+        self.failures.lock().unwrap_or_else(PoisonError::into_inner).add(peer, Instant::now());
+    }
+
+    /// The name of the cookie. Cookies do not tell ports apart.
+    pub(super) fn cookie_name(&self) -> String {
+        let prefix = if self.address.is_https() { "__Host-" } else { "" };
+        format!("{prefix}halfrow-{}", self.address.listen.port())
+    }
+
+    /// The cookie of this session, as it is set.
+    pub(super) fn cookie(&self, session: &str) -> String {
+        let secure = if self.address.is_https() { "; Secure" } else { "" };
+        format!("{}={session}; Path=/; HttpOnly; SameSite=Strict{secure}", self.cookie_name())
+    }
+
+    fn sessions(&self) -> MutexGuard<'_, Sessions> {
+        self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Adds somebody to the file of the settings' people.
+///
+/// # Errors
+/// [`UserError`]
+pub fn add_user(
+    settings: &Settings,
+    file: &Path,
+    who: (&str, Role),
+    badge: &str,
+    password: &str,
+) -> Result<(), UserError> {
+    let key = Key::load(&key_file(&settings.data))?;
+    let mut users = Users::load_or_none(file)?;
+    let badge = settings.scanner.label(badge).unwrap_or(badge);
+    users.add(&key, who.0, who.1, badge, password)?;
+    Ok(users.save(file)?)
 }

@@ -1,0 +1,233 @@
+//! The people who may act: a file of their names, badges and passwords, none of which can be read from it.
+
+use std::fs::{self, File};
+use std::io::{self, Write as _};
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use argon2::{Argon2, PasswordHasher as _, PasswordVerifier as _};
+use serde::{Deserialize, Serialize};
+
+use super::key::{self, Key, SecretError};
+use crate::web::routes::Who;
+use crate::web::visit::User;
+
+/// What the marks of badges are told from others by.
+const BADGE: &str = "badge";
+/// The fewest characters of a password.
+const FEWEST: usize = 8;
+
+/// What somebody may do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, clap::ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum Role {
+    /// Tests boards.
+    Operator,
+    /// Also waives, rebinds, and takes lanes out of service: with a password beside the badge.
+    Engineer,
+}
+
+/// Somebody, as the file has them.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Line {
+    name: String,
+    role: Role,
+    /// The mark of the badge under the station's key.
+    badge: String,
+    /// By Argon2id, as a PHC string.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    password: Option<String>,
+}
+
+/// Everybody.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Users {
+    #[serde(default)]
+    user: Vec<Line>,
+}
+
+/// Somebody who cannot be added or removed.
+#[derive(Debug, thiserror::Error)]
+pub enum UserError {
+    /// The name is taken, or none.
+    #[error("`{0}` cannot be the name of somebody else; give another one")]
+    Name(String),
+    /// The badge is somebody's, or empty.
+    #[error("this badge is {0}; give another one")]
+    Badge(String),
+    /// The password is too short.
+    #[error("an engineer needs a password of at least {FEWEST} characters; give a longer one")]
+    Short,
+    /// Nobody has this name.
+    #[error("nobody is called `{0}`; `halfrow-station user list` names everybody")]
+    Nobody(String),
+    /// The password cannot be hashed.
+    #[error("the password cannot be kept ({0}); give another one")]
+    Hash(String),
+    /// The file.
+    #[error(transparent)]
+    Secret(#[from] SecretError),
+}
+
+impl Users {
+    /// Everybody in the file `path`.
+    ///
+    /// # Errors
+    /// [`SecretError`]
+    pub fn load(path: &Path) -> Result<Self, SecretError> {
+        let wrong = |error: toml::de::Error| SecretError::Wrong {
+            path: path.to_owned(),
+            what: error.message().to_owned(),
+        };
+        toml::from_str(&key::secret(path)?).map_err(wrong)
+    }
+
+    /// As [`Self::load`]; nobody, if there is no file.
+    ///
+    /// # Errors
+    /// [`SecretError`]
+    pub fn load_or_none(path: &Path) -> Result<Self, SecretError> {
+        if path.exists() { Self::load(path) } else { Ok(Self::default()) }
+    }
+
+    /// Writes everybody to the file `path`, all or nothing.
+    ///
+    /// # Errors
+    /// [`SecretError::File`]
+    pub fn save(&self, path: &Path) -> Result<(), SecretError> {
+        let write = || {
+            let text = toml::to_string(self).map_err(io::Error::other)?;
+            let mut aside = PathBuf::from(path).into_os_string();
+            aside.push(".new");
+            let mut file =
+                File::options().write(true).create(true).truncate(true).mode(0o600).open(&aside)?;
+            file.write_all(text.as_bytes())?;
+            file.sync_all()?;
+            fs::rename(&aside, path)
+        };
+        write().map_err(|source| SecretError::File { path: path.to_owned(), source })
+    }
+
+    /// Adds somebody. An engineer has a password.
+    ///
+    /// # Errors
+    /// [`UserError`]
+    pub(crate) fn add(
+        &mut self,
+        key: &Key,
+        name: &str,
+        role: Role,
+        badge: &str,
+        password: &str,
+    ) -> Result<(), UserError> {
+        if name.is_empty()
+            || name.chars().any(char::is_control)
+            || self.user.iter().any(|user| user.name == name)
+        {
+            return Err(UserError::Name(name.to_owned()));
+        }
+        if badge.is_empty() {
+            return Err(UserError::Badge("empty".to_owned()));
+        }
+        if let Some(other) = self.of_badge(key, badge) {
+            return Err(UserError::Badge(format!("that of {}", other.name)));
+        }
+        let password = match role {
+            Role::Operator => None,
+            Role::Engineer if password.chars().count() < FEWEST => return Err(UserError::Short),
+            Role::Engineer => Some(hashed(password)?),
+        };
+        self.user.push(Line { name: name.to_owned(), role, badge: key.mark(BADGE, badge), password });
+        Ok(())
+    }
+
+    /// Removes somebody.
+    ///
+    /// # Errors
+    /// [`UserError::Nobody`]
+    pub fn remove(&mut self, name: &str) -> Result<(), UserError> {
+        let before = self.user.len();
+        self.user.retain(|user| user.name != name);
+        if self.user.len() < before { Ok(()) } else { Err(UserError::Nobody(name.to_owned())) }
+    }
+
+    /// Everybody's name and role.
+    pub fn names(&self) -> impl Iterator<Item = (&str, Role)> {
+        self.user.iter().map(|user| (user.name.as_str(), user.role))
+    }
+
+    fn of_badge(&self, key: &Key, badge: &str) -> Option<&Line> {
+        self.user.iter().find(|user| key.is_mark(BADGE, badge, &user.badge))
+    }
+
+    /// Who has this badge. The badge alone makes an operator of everybody; an engineer's password makes the engineer.
+    pub(crate) fn identify(&self, key: &Key, badge: &str, password: &str) -> Option<User> {
+        let user = self.of_badge(key, badge);
+        let known = user.and_then(|user| user.password.as_deref());
+        if password.is_empty() {
+            return user.map(|user| User { name: user.name.clone(), who: Who::Operator });
+        }
+        // Whoever guesses badges does not learn by the time that it takes whether there is such a one.
+        let is_right =
+            Argon2::default().verify_password(password.as_bytes(), known.unwrap_or(&NOBODYS)).is_ok();
+        user.filter(|_| is_right && known.is_some())
+            .map(|user| User { name: user.name.clone(), who: Who::Engineer })
+    }
+
+    /// Whether somebody of this name may be what `user` is.
+    pub(crate) fn has(&self, user: &User) -> bool {
+        let is = |known: &Line| {
+            known.name == user.name && (user.who < Who::Engineer || known.role == Role::Engineer)
+        };
+        self.user.iter().any(is)
+    }
+}
+
+/// The hash of a password that nobody has.
+static NOBODYS: LazyLock<String> = LazyLock::new(|| {
+    let drawn = key::drawn().map(|drawn| key::hex(&drawn)).unwrap_or_default();
+    hashed(&drawn).unwrap_or_default()
+});
+
+fn hashed(password: &str) -> Result<String, UserError> {
+    let salt = key::drawn().map_err(SecretError::NoRandomness)?;
+    let hash = Argon2::default().hash_password_with_salt(password.as_bytes(), &salt);
+    hash.map(|hash| hash.to_string()).map_err(|error| UserError::Hash(error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_badge_makes_an_operator_and_the_password_an_engineer() {
+        let folder = tempfile::tempdir().unwrap();
+        let key = Key::load(&folder.path().join("station.key")).unwrap();
+        let mut users = Users::default();
+        users.add(&key, "Weber", Role::Operator, "A17", "").unwrap();
+        assert!(matches!(users.add(&key, "Braun", Role::Engineer, "B22", "short"), Err(UserError::Short)));
+        users.add(&key, "Braun", Role::Engineer, "B22", "correct horse").unwrap();
+        assert!(matches!(users.add(&key, "Weber", Role::Operator, "C3", ""), Err(UserError::Name(_))));
+        assert!(matches!(users.add(&key, "Vogel", Role::Operator, "A17", ""), Err(UserError::Badge(_))));
+        let path = folder.path().join("users.toml");
+        users.save(&path).unwrap();
+        let users = Users::load(&path).unwrap();
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(!text.contains("A17") && !text.contains("horse") && text.contains("$argon2id$"), "{text}");
+        let who = |badge, password| users.identify(&key, badge, password).map(|user| user.who);
+        assert_eq!(who("A17", ""), Some(Who::Operator));
+        assert_eq!(who("A17", "correct horse"), None);
+        assert_eq!(who("B22", ""), Some(Who::Operator));
+        assert_eq!(who("B22", "correct horse"), Some(Who::Engineer));
+        assert_eq!(who("B22", "correct house"), None);
+        assert_eq!(who("B2", "correct horse"), None);
+        let braun = |who| User { name: "Braun".to_owned(), who };
+        assert!(users.has(&braun(Who::Engineer)));
+        let mut fewer = users.clone();
+        fewer.remove("Braun").unwrap();
+        assert!(!fewer.has(&braun(Who::Operator)));
+    }
+}

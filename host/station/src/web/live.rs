@@ -1,0 +1,169 @@
+//! The engine's news for every page that is open: what is, then what changes, and a beat each second.
+//!
+//! A page that hears no beat does not show verdicts as live. The beat stops with the engine's thread, too.
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+use std::time::{Duration, Instant};
+use std::{io, thread};
+
+use tokio::sync::{broadcast, oneshot};
+
+use crate::engine::{Engine, LaneState, News};
+
+/// How often there is a beat.
+const BEAT: Duration = Duration::from_secs(1);
+/// How much a page may be behind. One that is further behind is dropped, and opens anew.
+const BACKLOG: usize = 1024;
+
+/// What a lane's run does.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Doing {
+    pub(super) run: String,
+    pub(super) what: String,
+    pub(super) rows: Option<(u64, u64)>,
+}
+
+/// What became of a scan or of an act.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Became {
+    pub(super) number: u64,
+    pub(super) scanned: String,
+    pub(super) is_taken: bool,
+    pub(super) lane: Option<String>,
+    pub(super) said: String,
+}
+
+/// What pages are told.
+#[derive(Clone, Debug)]
+pub(super) enum What {
+    Beat,
+    Lane(Box<LaneState>),
+    Doing(String, Doing),
+    Scan(Became),
+    Hook { lane: String, said: String },
+}
+
+/// With its number. They follow each other without a gap.
+#[derive(Clone, Debug)]
+pub(super) struct Told {
+    pub(super) id: u64,
+    pub(super) what: What,
+}
+
+/// Everything as it is at one moment.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Now {
+    /// The number of the last that was told.
+    pub(super) id: u64,
+    pub(super) lanes: Vec<LaneState>,
+    pub(super) doing: BTreeMap<String, Doing>,
+}
+
+/// What is told to pages.
+#[derive(Debug)]
+pub(super) struct Live {
+    now: Mutex<Now>,
+    pages: broadcast::Sender<Told>,
+    asked: Mutex<HashMap<u64, oneshot::Sender<Became>>>,
+    numbers: AtomicU64,
+}
+
+impl Live {
+    /// What the engine tells, from now on.
+    ///
+    /// # Errors
+    /// When the system has no thread for it.
+    pub(super) fn start(engine: &Arc<Engine>) -> io::Result<Arc<Self>> {
+        let (now, pages) = (Now { lanes: engine.lanes(), ..Now::default() }, broadcast::Sender::new(BACKLOG));
+        let live = Arc::new(Self {
+            now: Mutex::new(now),
+            pages,
+            asked: Mutex::default(),
+            numbers: AtomicU64::new(0),
+        });
+        let (heard, engine, told) = (engine.listen(), Arc::clone(engine), Arc::downgrade(&live));
+        thread::Builder::new().name("live".to_owned()).spawn(move || listen(&engine, heard, &told))?;
+        Ok(live)
+    }
+
+    /// Everything as it is, and what is told after.
+    pub(super) fn follow(&self) -> (Now, broadcast::Receiver<Told>) {
+        let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        (now.clone(), self.pages.subscribe())
+    }
+
+    /// Everything as it is.
+    pub(super) fn now(&self) -> Now {
+        self.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// A number for a scan or an act, and what will become of it.
+    pub(super) fn ask(&self) -> (u64, oneshot::Receiver<Became>) {
+        let number = self.numbers.fetch_add(1, Ordering::Relaxed) + 1;
+        let (sender, receiver) = oneshot::channel();
+        let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+        asked.retain(|_, sender| !sender.is_closed());
+        asked.insert(number, sender);
+        (number, receiver)
+    }
+
+    fn hear(&self, news: News) {
+        let what = match news {
+            News::Lane(state) => What::Lane(Box::new(state)),
+            News::Doing { lane, run, what, rows } => What::Doing(lane, Doing { run, what, rows }),
+            News::Scan { number, scanned, is_taken, lane, said } => {
+                What::Scan(Became { number, scanned, is_taken, lane, said })
+            }
+            News::Hook { lane, said, .. } => What::Hook { lane, said },
+        };
+        let answered = if let What::Scan(became) = &what { Some(became.clone()) } else { None };
+        self.tell(what);
+        if let Some(became) = answered {
+            let mut asked = self.asked.lock().unwrap_or_else(PoisonError::into_inner);
+            // Nobody waits for what a page that is gone has scanned.
+            let _ = asked.remove(&became.number).map(|sender| sender.send(became));
+        }
+    }
+
+    fn tell(&self, what: What) {
+        let mut now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
+        match &what {
+            What::Lane(state) => {
+                let is_over = state.run.is_none();
+                if is_over {
+                    now.doing.remove(&state.lane);
+                }
+                if let Some(known) = now.lanes.iter_mut().find(|known| known.lane == state.lane) {
+                    known.clone_from(state);
+                }
+            }
+            What::Doing(lane, doing) => drop(now.doing.insert(lane.clone(), doing.clone())),
+            What::Beat | What::Scan(_) | What::Hook { .. } => {}
+        }
+        now.id += 1;
+        // Without a page nobody hears it.
+        let _ = self.pages.send(Told { id: now.id, what });
+    }
+}
+
+/// Tells what the engine tells until nobody is left to hear it.
+fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
+    let mut beat = Instant::now();
+    while let Some(live) = told.upgrade() {
+        match heard.recv_timeout(BEAT.saturating_sub(beat.elapsed())) {
+            Ok(news) => live.hear(news),
+            Err(RecvTimeoutError::Timeout) => {}
+            // It was too slow for the engine, and begins with all lanes again.
+            Err(RecvTimeoutError::Disconnected) => heard = engine.listen(),
+        }
+        if beat.elapsed() >= BEAT {
+            beat = Instant::now();
+            if engine.is_well() {
+                live.tell(What::Beat);
+            }
+        }
+    }
+}

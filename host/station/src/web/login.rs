@@ -1,0 +1,124 @@
+//! Logging in and out, and the choice of a language.
+
+use std::net::IpAddr;
+
+use axum::extract::State;
+use axum::http::{HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse as _, Redirect, Response};
+use axum::{Extension, Form};
+use maud::{Markup, html};
+use serde::Deserialize;
+
+use super::language;
+use super::layout::{Here, Page};
+use super::routes::{Route, Who, act, look};
+use super::state::App;
+use super::trouble::Trouble;
+use super::visit::{User, Visit};
+
+/// How long the choice of a language is kept, in seconds.
+const YEAR: u32 = 31_536_000;
+
+/// Where a request comes from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Peer(pub(super) IpAddr);
+
+pub(super) fn routes() -> Vec<Route> {
+    vec![
+        look("/login", Who::Anyone, page),
+        act("/login", Who::Anyone, log_in),
+        act("/logout", Who::Anyone, log_out),
+        act("/language", Who::Anyone, choose),
+    ]
+}
+
+async fn page(visit: Visit) -> Response {
+    Page { here: Here::Elsewhere, title: visit.say("login.title"), head: html! {}, content: form(&visit) }
+        .answer(&visit)
+}
+
+fn form(visit: &Visit) -> Markup {
+    html! {
+        section.login {
+            h1 { (visit.say("login.title")) }
+            form method="post" action="/login" autocomplete="off" {
+                input type="hidden" name="csrf" value=(visit.csrf);
+                label { (visit.say("login.badge")) input type="password" name="badge" required autofocus maxlength="200"; }
+                label { (visit.say("login.password")) input type="password" name="password" maxlength="200"; }
+                p { (visit.say("login.who")) }
+                button { (visit.say("login.title")) }
+            }
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct Login {
+    badge: String,
+    #[serde(default)]
+    password: String,
+}
+
+async fn log_in(
+    State(app): State<App>,
+    Extension(Peer(peer)): Extension<Peer>,
+    visit: Visit,
+    Form(Login { badge, password }): Form<Login>,
+) -> Result<Response, Trouble> {
+    if let Some(wait) = app.access().wait(peer) {
+        let seconds = (wait.as_secs() + 1).to_string();
+        let said = visit.words.fill("login.wait", &[("seconds", &seconds)]);
+        return Err(Trouble::new(&visit, StatusCode::TOO_MANY_REQUESTS, said));
+    }
+    let badge = app.settings().scanner.label(&badge).map(str::to_owned).unwrap_or(badge);
+    let access = app.clone();
+    let known = app.blocking(&visit, move || access.access().identify(&badge, &password)).await?;
+    let Some(user) = known else {
+        app.access().failed(peer);
+        app.audit(&visit, "login refused", &peer.to_string(), "").await?;
+        return Err(Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("login.refused")));
+    };
+    let cookie = logged_in(&app, &visit, user).await?;
+    Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
+}
+
+/// Logs `user` in, in the place of whoever was; returns the cookie to be set.
+pub(super) async fn logged_in(app: &App, visit: &Visit, user: User) -> Result<HeaderValue, Trouble> {
+    let now = Visit { user: Some(user.clone()), ..visit.clone() };
+    app.audit(&now, "login", if now.may(Who::Engineer) { "engineer" } else { "operator" }, "").await?;
+    app.access().end(&visit.session);
+    cookie(app, visit, Some(user))
+}
+
+async fn log_out(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    if visit.user.is_some() {
+        app.audit(&visit, "logout", "", "").await?;
+    }
+    app.access().end(&visit.session);
+    let cookie = cookie(&app, &visit, None)?;
+    Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
+}
+
+/// The cookie of a new session.
+pub(super) fn cookie(app: &App, visit: &Visit, user: Option<User>) -> Result<HeaderValue, Trouble> {
+    let session = app.access().begin(user).map_err(|error| Trouble::broken(visit, &error))?;
+    HeaderValue::from_str(&app.access().cookie(&session)).map_err(|error| Trouble::broken(visit, &error))
+}
+
+#[derive(Deserialize)]
+struct Choice {
+    language: String,
+}
+
+async fn choose(
+    State(app): State<App>,
+    visit: Visit,
+    Form(choice): Form<Choice>,
+) -> Result<Response, Trouble> {
+    let known = language::all().find(|(code, _)| *code == choice.language);
+    let (code, _) = known.ok_or_else(|| Trouble::wrong(&visit, visit.say("login.language")))?;
+    let secure = if app.access().address().is_https() { "; Secure" } else { "" };
+    let name = language::COOKIE;
+    let cookie = format!("{name}={code}; Path=/; Max-Age={YEAR}; HttpOnly; SameSite=Strict{secure}");
+    Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
+}

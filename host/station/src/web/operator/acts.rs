@@ -1,0 +1,189 @@
+//! Scans, and what is done with lanes.
+
+use axum::Form;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::http::header::{CONTENT_TYPE, SET_COOKIE};
+use axum::response::{IntoResponse as _, Redirect, Response};
+use serde::{Deserialize, Serialize};
+
+use super::page;
+use crate::floor::{Act, Scan, ScanError};
+use crate::web::live::Became;
+use crate::web::login::logged_in;
+use crate::web::routes::Who;
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// A scan as a page sends it.
+#[derive(Debug, Deserialize)]
+pub(super) struct Scanned {
+    /// The page's own number for it, which comes back.
+    #[serde(default)]
+    counter: u64,
+    text: String,
+    /// The lane whose barcode this page was given before.
+    #[serde(default)]
+    lane: String,
+    /// Whether a person may have typed it, without what the scanner adds.
+    #[serde(default)]
+    typed: bool,
+}
+
+/// What became of a scan, for the page that sent it.
+#[derive(Debug, Serialize)]
+pub(super) struct Answer {
+    counter: u64,
+    pub(super) is_taken: bool,
+    scanned: String,
+    lane: Option<String>,
+    pub(super) said: String,
+    /// The lane that the page's next scan is for.
+    armed: Option<String>,
+    /// Whether it is somebody else's page from now on.
+    is_other: bool,
+}
+
+pub(super) async fn scan(
+    State(app): State<App>,
+    visit: Visit,
+    Form(scanned): Form<Scanned>,
+) -> Result<Response, Trouble> {
+    if let Some(response) = badge(&app, &visit, &scanned).await? {
+        return Ok(response);
+    }
+    let answer = understood(&app, &visit, &scanned).await?;
+    if visit.is_script { Ok(json(&answer)) } else { page::answered(app, visit, answer).await }
+}
+
+/// The answer to a badge: who has it tests from then on, in the place of whoever did.
+async fn badge(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Option<Response>, Trouble> {
+    if !visit.can_log_in {
+        return Ok(None);
+    }
+    let label = app.settings().scanner.label(&scanned.text).unwrap_or(&scanned.text).to_owned();
+    let access = app.clone();
+    let Some(user) = app.blocking(visit, move || access.access().identify(&label, "")).await? else {
+        return Ok(None);
+    };
+    let said = visit.words.fill("login.now", &[("name", &user.name)]);
+    let cookie = logged_in(app, visit, user).await?;
+    // A badge is shown to nobody.
+    let answer = Answer { scanned: String::new(), is_other: true, ..scanned.answer(None, Ok(said), None) };
+    let response = if visit.is_script { json(&answer) } else { Redirect::to("/").into_response() };
+    Ok(Some(([(SET_COOKIE, cookie)], response).into_response()))
+}
+
+/// What the scan is for, and what became of it.
+async fn understood(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Answer, Trouble> {
+    let refused = |error: ScanError| Ok(scanned.answer(None, Err(error.to_string()), scanned.armed()));
+    let label = app.settings().scanner.label(&scanned.text).map(str::to_owned);
+    let Some(label) = label.or_else(|| scanned.typed.then(|| scanned.text.clone())) else {
+        return refused(ScanError::Incomplete);
+    };
+    let armed = match scanned.armed() {
+        None => None,
+        Some(name) => match place(app, &name) {
+            Ok(lane) => Some(lane),
+            Err(error) => return refused(error),
+        },
+    };
+    match Scan::read(&label) {
+        Ok(Scan::Lane(name)) => match place(app, &name) {
+            Ok(_) => {
+                let said = visit.words.fill("scan.armed", &[("lane", &name)]);
+                Ok(scanned.answer(Some(name.clone()), Ok(said), Some(name)))
+            }
+            Err(error) => refused(error),
+        },
+        Ok(Scan::Act(Act::Out | Act::In)) if !visit.may(Who::Engineer) => {
+            Ok(scanned.answer(None, Err(visit.say("scan.engineer").to_owned()), scanned.armed()))
+        }
+        _ => {
+            app.audit(visit, "scan", armed.map_or("", |(_, name)| name), &label).await?;
+            let (number, became) = app.live().ask();
+            app.engine().label(number, armed.map(|(place, _)| place), &label, visit.name());
+            let Became { is_taken, lane, said, .. } = heard(visit, became).await?;
+            let armed = if is_taken { None } else { scanned.armed() };
+            Ok(scanned.answer(lane, if is_taken { Ok(said) } else { Err(said) }, armed))
+        }
+    }
+}
+
+impl Scanned {
+    fn armed(&self) -> Option<String> {
+        (!self.lane.is_empty()).then(|| self.lane.clone())
+    }
+
+    fn answer(&self, lane: Option<String>, said: Result<String, String>, armed: Option<String>) -> Answer {
+        let is_taken = said.is_ok();
+        let said = said.unwrap_or_else(|refused| refused);
+        Answer {
+            counter: self.counter,
+            is_taken,
+            scanned: self.text.clone(),
+            lane,
+            said,
+            armed,
+            is_other: false,
+        }
+    }
+}
+
+/// The place of the lane of this name, and the name.
+fn place<'a>(app: &'a App, name: &str) -> Result<(usize, &'a str), ScanError> {
+    let lanes = &app.settings().lanes;
+    let found = lanes.iter().position(|lane| lane.name == name);
+    found.and_then(|place| Some((place, lanes.get(place)?.name.as_str()))).ok_or_else(|| {
+        let known: Vec<_> = lanes.iter().map(|lane| lane.name.as_str()).collect();
+        ScanError::NoLane { lane: name.to_owned(), known: known.join(", ") }
+    })
+}
+
+async fn heard(visit: &Visit, became: tokio::sync::oneshot::Receiver<Became>) -> Result<Became, Trouble> {
+    became.await.map_err(|error| Trouble::broken(visit, &error))
+}
+
+pub(super) async fn start(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
+    done(app.0, visit, lane.0, Act::Start).await
+}
+
+pub(super) async fn abort(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
+    done(app.0, visit, lane.0, Act::Abort).await
+}
+
+pub(super) async fn out(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
+    done(app.0, visit, lane.0, Act::Out).await
+}
+
+pub(super) async fn back(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
+    done(app.0, visit, lane.0, Act::In).await
+}
+
+/// Does it with the lane.
+async fn done(app: App, visit: Visit, lane: String, act: Act) -> Result<Response, Trouble> {
+    let (place, name) =
+        place(&app, &lane).map_err(|error| Trouble::new(&visit, StatusCode::NOT_FOUND, error.to_string()))?;
+    app.audit(&visit, "lane", name, &act.barcode()).await?;
+    let (number, became) = app.live().ask();
+    app.engine().act(number, place, act, visit.name());
+    let became = heard(&visit, became).await?;
+    match (visit.is_script, became.is_taken) {
+        (true, is_taken) => Ok(json(&Answer {
+            counter: 0,
+            is_taken,
+            scanned: became.scanned,
+            lane: became.lane,
+            said: became.said,
+            armed: None,
+            is_other: false,
+        })),
+        (false, true) => Ok(Redirect::to("/").into_response()),
+        (false, false) => Err(Trouble::new(&visit, StatusCode::CONFLICT, became.said)),
+    }
+}
+
+fn json(answer: &Answer) -> Response {
+    ([(CONTENT_TYPE, "application/json")], serde_json::to_string(answer).unwrap_or_default()).into_response()
+}

@@ -1,0 +1,77 @@
+//! The page's news, as server-sent events (HTML, section 9.2).
+
+use std::convert::Infallible;
+use std::fmt::Write as _;
+
+use axum::body::Body;
+use axum::extract::State;
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE, HeaderName};
+use axum::response::{IntoResponse as _, Response};
+use futures_util::stream;
+use serde::Serialize;
+use serde_json::json;
+use tokio::sync::broadcast::Receiver;
+
+use super::lane::LaneEvent;
+use crate::clock;
+use crate::web::live::{Now, Told, What};
+use crate::web::state::App;
+use crate::web::visit::Visit;
+
+/// What a proxy is told, so that it keeps nothing back.
+const UNBUFFERED: HeaderName = HeaderName::from_static("x-accel-buffering");
+
+/// Everything as it is, then what changes.
+pub(super) async fn events(State(app): State<App>, visit: Visit) -> Response {
+    let (now, told) = app.live().follow();
+    let first = snapshot(&visit, &now);
+    let news = stream::unfold((Some(first), told, visit), |(first, told, visit)| next(first, told, visit));
+    let headers = [(CONTENT_TYPE, "text/event-stream"), (CACHE_CONTROL, "no-store"), (UNBUFFERED, "no")];
+    (headers, Body::from_stream(news)).into_response()
+}
+
+type Item = (Result<String, Infallible>, (Option<String>, Receiver<Told>, Visit));
+
+/// The next event. A page that is too far behind gets none, and so opens anew.
+async fn next(first: Option<String>, mut told: Receiver<Told>, visit: Visit) -> Option<Item> {
+    let text = match first {
+        Some(first) => first,
+        None => news(&visit, &told.recv().await.ok()?),
+    };
+    Some((Ok(text), (None, told, visit)))
+}
+
+fn snapshot(visit: &Visit, now: &Now) -> String {
+    let event = |state| LaneEvent::new(visit, state, now.doing.get(&state.lane));
+    event_text(now.id, "snapshot", &now.lanes.iter().map(event).collect::<Vec<_>>())
+}
+
+fn news(visit: &Visit, told: &Told) -> String {
+    let id = told.id;
+    match &told.what {
+        What::Beat => event_text(id, "beat", &json!({ "ms": clock::now_ms() })),
+        What::Lane(state) => event_text(id, "lane", &LaneEvent::new(visit, state, None)),
+        What::Doing(lane, doing) => event_text(
+            id,
+            "doing",
+            &json!({ "lane": lane, "run": doing.run, "what": doing.what, "rows": doing.rows.map(|(done, of)| [done, of]) }),
+        ),
+        What::Scan(became) => event_text(
+            id,
+            "scan",
+            &json!({
+                "number": became.number, "scanned": became.scanned, "is_taken": became.is_taken,
+                "lane": became.lane, "said": became.said,
+            }),
+        ),
+        What::Hook { lane, said } => event_text(id, "hook", &json!({ "lane": lane, "said": said })),
+    }
+}
+
+fn event_text(id: u64, name: &str, data: &impl Serialize) -> String {
+    // JSON has no line's end in it, which would end the event.
+    let data = serde_json::to_string(data).unwrap_or_default();
+    let mut text = String::with_capacity(data.len() + 64);
+    let _ = write!(text, "id: {id}\nevent: {name}\ndata: {data}\n\n");
+    text
+}

@@ -1,0 +1,22 @@
+//! The operator's page: every lane with its state, and the box in which scans appear.
+
+mod acts;
+mod events;
+mod lane;
+mod page;
+mod shapes;
+
+use super::routes::{Route, Who, act, look};
+
+pub(super) fn routes() -> Vec<Route> {
+    vec![
+        look("/", Who::Reader, page::page),
+        look("/live", Who::Reader, events::events),
+        look("/today", Who::Reader, page::today),
+        act("/scan", Who::Operator, acts::scan),
+        act("/lanes/{lane}/start", Who::Operator, acts::start),
+        act("/lanes/{lane}/abort", Who::Operator, acts::abort),
+        act("/lanes/{lane}/out", Who::Engineer, acts::out),
+        act("/lanes/{lane}/in", Who::Engineer, acts::back),
+    ]
+}

@@ -1,0 +1,145 @@
+//! The page itself.
+
+use axum::extract::State;
+use axum::response::{Html, IntoResponse as _, Response};
+use jiff::Timestamp;
+use maud::{Markup, html};
+
+use super::acts::Answer;
+use super::lane::lane;
+use crate::history::Period;
+use crate::history::rate::Rate;
+use crate::history::yields::{By, Wanted, Yields, yields};
+use crate::web::layout::{Here, Page};
+use crate::web::live::Now;
+use crate::web::routes::Who;
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// How often the page comes anew without its script, in seconds.
+const ANEW: u32 = 5;
+/// Milliseconds of a day.
+const DAY_MS: i64 = 86_400_000;
+
+pub(super) async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    drawn(app, visit, None).await
+}
+
+/// The page with what became of a scan that came without a script.
+pub(super) async fn answered(app: App, visit: Visit, answer: Answer) -> Result<Response, Trouble> {
+    drawn(app, visit, Some(answer)).await
+}
+
+async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Response, Trouble> {
+    let (now, today) = (app.live().now(), counted(&app, &visit).await?);
+    let head = html! {
+        noscript { meta http-equiv="refresh" content={ (ANEW) "; url=/" }; }
+        link rel="stylesheet" href="/assets/operator.css";
+        script type="module" src="/assets/operator.js" {}
+    };
+    let content = html! {
+        section #station data-csrf=(visit.csrf) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
+            data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn")) {
+            @if visit.may(Who::Operator) { (scan_box(&visit, &now, answer.as_ref())) } @else { (log_in(&visit)) }
+            (floor(&visit, &now))
+            footer #today { (today) }
+            div #said .heard role="log" aria-live="assertive" {}
+        }
+    };
+    Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.answer(&visit))
+}
+
+/// Every lane.
+fn floor(visit: &Visit, now: &Now) -> Markup {
+    html! {
+        div #floor .floor.{ "of-" (shape_of(now.lanes.len())) } {
+            @for state in &now.lanes { (lane(visit, state, now.doing.get(&state.lane))) }
+        }
+    }
+}
+
+/// Which arrangement so many lanes have.
+fn shape_of(lanes: usize) -> usize {
+    [1, 2, 3, 4, 8].into_iter().find(|&most| lanes <= most).unwrap_or(16)
+}
+
+fn scan_box(visit: &Visit, now: &Now, answer: Option<&Answer>) -> Markup {
+    let class = answer.map_or("", |answer| if answer.is_taken { "taken" } else { "refused" });
+    html! {
+        div.scan {
+            span.scans { (visit.say("scan.scan")) }
+            output #typed .typed aria-label=(visit.say("scan.typed")) {}
+            span #armed .armed data-for=(visit.say("scan.for")) {}
+            output #answer .answer.(class) role="status" { @if let Some(answer) = answer { (answer.said) } }
+            span #counter .counter title=(visit.say("scan.counter")) {}
+            span.tools {
+                button #type type="button" hidden aria-pressed="false" { (visit.say("scan.type")) }
+                button #sound type="button" hidden aria-pressed="true" { (visit.say("scan.sound")) }
+            }
+            (live_lamp(visit))
+        }
+        (by_hand(visit, now))
+    }
+}
+
+fn live_lamp(visit: &Visit) -> Markup {
+    html! {
+        span #live .live role="status" { span #lamp { (visit.say("live.page")) } " " time #clock {} }
+    }
+}
+
+/// For people who type, and for browsers without scripts.
+fn by_hand(visit: &Visit, now: &Now) -> Markup {
+    html! {
+        form #hand .hand method="post" action="/scan" autocomplete="off" {
+            input type="hidden" name="csrf" value=(visit.csrf);
+            input type="hidden" name="typed" value="true";
+            @if now.lanes.len() > 1 {
+                label { (visit.say("hand.lane")) " "
+                    select name="lane" {
+                        option value="" { "–" }
+                        @for state in &now.lanes { option { (state.lane) } }
+                    }
+                }
+            }
+            label { (visit.say("hand.serial")) " " input #hand-text name="text" required maxlength="200" spellcheck="false"; }
+            button { (visit.say("hand.send")) }
+        }
+    }
+}
+
+fn log_in(visit: &Visit) -> Markup {
+    html! {
+        div.scan {
+            span.scans { a href="/login" { (visit.say("scan.login")) } }
+            span #answer .answer {}
+            (live_lamp(visit))
+        }
+    }
+}
+
+/// What was judged today, for whoever may look.
+pub(super) async fn today(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    Ok(Html(counted(&app, &visit).await?.into_string()).into_response())
+}
+
+async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
+    let now = Timestamp::now().as_millisecond();
+    let period = Period { from_ms: now - now.rem_euclid(DAY_MS), ..Period::default() };
+    let wanted = Wanted { period, ..Wanted::default() };
+    let counted = app.look(visit, move |snapshot| yields(snapshot, &wanted, By::Plan)).await?;
+    Ok(summed(visit, &counted))
+}
+
+fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {
+    let sum = |of: fn(&crate::history::yields::Yield) -> Rate| {
+        lines.iter().map(of).fold((0, 0), |(count, all), rate| (count + rate.count, all + rate.of))
+    };
+    let (passed, judged) = sum(|line| line.first_pass);
+    let (errors, _) = sum(|line| line.errors);
+    let (judged_text, errors) = (judged.to_string(), errors.to_string());
+    let first_pass = Rate::new(passed, judged).text();
+    let values = [("judged", judged_text.as_str()), ("first", &first_pass), ("errors", &errors)];
+    html! { (visit.words.fill("today.counted", &values)) }
+}
