@@ -114,7 +114,8 @@ pub fn units(of: &Snapshot, serial: &str) -> Result<Vec<Unit>, StoreError> {
             let (device, from_ms, to_ms) = (row.get(0)?, row.get(1)?, row.get(2)?);
             Ok(Binding { device, from_ms, to_ms, operator: row.get(3)?, reason: row.get(4)? })
         };
-        unit.bindings = of.rows("to tell a unit's devices", statements::UNIT_BINDINGS, &[&unit.id], binding)?;
+        unit.bindings =
+            of.rows("to tell a unit's devices", statements::UNIT_BINDINGS, &[&unit.id], binding)?;
     }
     Ok(units)
 }

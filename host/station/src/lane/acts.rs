@@ -11,7 +11,7 @@ use halfrow::result::{BoardReport, Identity, Problem};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
-use halfrow::{Progress, Report, RunOptions};
+use halfrow::{Finished, Progress, Report, RunOptions};
 use serde_json::Value;
 
 use super::Ruling;
@@ -225,8 +225,8 @@ impl Common<'_> {
             // The plan does not fit the board, which was not judged.
             Err(misfit) => return Try::error(Cause::Refused, &misfit),
         };
-        keep(self.spool, place, &finished.evidence);
-        let report = finished.report;
+        let Finished { report, evidence } = finished;
+        keep(self.spool, place, &report, &evidence);
         let seen = report.board.identity.as_ref().map(|identity| seen(report.board.kind, identity));
         if let Some(exchanged) = seen.as_ref().and_then(|seen| self.exchanged(seen)) {
             return exchanged;

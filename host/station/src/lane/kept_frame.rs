@@ -7,6 +7,7 @@ use std::path::Path;
 use halfrow::frames::png;
 use halfrow::frames::written_aside::{WriteAsideError, write_aside};
 use halfrow::model::{BitDepth, Frame, Phase};
+use halfrow::Report;
 use halfrow::result::Evidence;
 
 /// Frames that are kept of a try of a step.
@@ -76,10 +77,18 @@ impl KeptFrame {
     }
 }
 
-/// Keeps in `folder` the first frames of `evidence` that differ, as a try of a step left them. What cannot be kept is
+/// Keeps in `folder` the first frames of `evidence` that differ, each of another name in `report`, as a try of a step left them. What cannot be kept is
 /// told in the lane's log: no verdict hangs on it.
-pub(super) fn keep(folder: &Path, (seq, attempt): (u32, u32), evidence: &[Evidence]) {
-    for one in evidence.iter().filter(|one| one.found != one.expected).take(MOST_FRAMES) {
+pub(super) fn keep(folder: &Path, (seq, attempt): (u32, u32), report: &Report, evidence: &[Evidence]) {
+    let name = |one: &Evidence| report.frames.get(one.index).map(|frame| frame.name.as_str());
+    let mut names = Vec::new();
+    // The same picture again shows little more.
+    let mut is_other = |one: &&Evidence| {
+        let is_other = one.found != one.expected && !names.contains(&name(one));
+        names.extend(is_other.then(|| name(one)));
+        is_other
+    };
+    for one in evidence.iter().filter(|one| is_other(one)).take(MOST_FRAMES) {
         let (depth, phase) = (one.expected.depth(), one.expected.phase());
         let frame = KeptFrame { seq, attempt, index: one.index, depth, phase };
         if let Err(error) = all(folder, &frame, one) {
@@ -147,7 +156,8 @@ mod tests {
     /// A frame of which one sample is wrong, `index` in the report.
     fn wrong(index: usize) -> Evidence {
         let expected = Frame::new(8, BitDepth::Twelve, Phase::default(), vec![9; 32]).unwrap();
-        let found = Frame::new(8, BitDepth::Twelve, Phase::default(), [vec![9; 31], vec![7]].concat()).unwrap();
+        let found =
+            Frame::new(8, BitDepth::Twelve, Phase::default(), [vec![9; 31], vec![7]].concat()).unwrap();
         Evidence { index, input: expected.clone(), found, expected }
     }
 
@@ -156,7 +166,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let equal = Evidence { found: wrong(0).expected, ..wrong(0) };
         keep(folder.path(), (2, 1), &[equal, wrong(1), wrong(2), wrong(3)]);
-        let kept: Vec<_> = names(folder.path()).unwrap().iter().map(|name| KeptFrame::of(name).unwrap()).collect();
+        let kept: Vec<_> =
+            names(folder.path()).unwrap().iter().map(|name| KeptFrame::of(name).unwrap()).collect();
         let indices: Vec<_> = kept.iter().map(|(frame, _)| frame.index).collect();
         assert_eq!(indices, [1, 1, 1, 2, 2, 2], "two frames, each in three views");
         let (frame, _) = &kept[0];

@@ -121,7 +121,9 @@ mod tests {
     #[test]
     fn nothing_is_left_of_what_the_engines_call_differently() {
         for text in SCHEMAS.into_iter().chain(ALL).chain([SCHEMA_VERSION]) {
-            let text = ["{filters}", "{limit}", "{of}"].iter().fold(for_sqlite(text), |text, name| text.replace(name, "1"));
+            let text = ["{filters}", "{limit}", "{of}"]
+                .iter()
+                .fold(for_sqlite(text), |text, name| text.replace(name, "1"));
             assert!(!text.contains(['{', '}']), "{text}");
         }
     }

@@ -61,7 +61,12 @@ fn answer(visit: &Visit, picture: Option<Vec<u8>>) -> Result<Response, Trouble> 
 }
 
 /// The frames that were kept of a run, each as it went in, came out, should have, and where it differs.
-pub(super) fn of_run(visit: &Visit, run: &RunLine, record: Option<&Record>, kept: &[(Attachment, bool)]) -> Markup {
+pub(super) fn of_run(
+    visit: &Visit,
+    run: &RunLine,
+    record: Option<&Record>,
+    kept: &[(Attachment, bool)],
+) -> Markup {
     let here = || kept.iter().filter(|(_, is_here)| *is_here).map(|(one, _)| one);
     let hash = |frame: &KeptFrame, view| {
         let name = frame.name(view);
@@ -124,7 +129,8 @@ fn counted(visit: &Visit, known: &Value) -> Option<String> {
     let first = comparison.get("first")?;
     let [differing, samples] = ["differences", "samples"].map(|key| number(comparison, key));
     let [row, column, expected, found] = ["row", "column", "expected", "found"].map(|key| number(first, key));
-    let (differing, samples, row, column, expected, found) = (differing?, samples?, row?, column?, expected?, found?);
+    let (differing, samples, row, column, expected, found) =
+        (differing?, samples?, row?, column?, expected?, found?);
     let values = [
         ("differing", differing.as_str()),
         ("samples", &samples),

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::asked::unit_address;
 use super::{pictures, show};
 use crate::export;
-use crate::history::unit::{self, UnitRun};
+use crate::history::unit::{self as history, UnitRun};
 use crate::record::{Attachment, Measured, Record, StepRecord};
 use crate::store::{Snapshot, Waiver};
 use crate::web::layout::{Here, Page};
@@ -29,7 +29,7 @@ pub(super) async fn page(
     Path(id): Path<String>,
 ) -> Result<Response, Trouble> {
     let look = move |now: &Snapshot| {
-        let Some(mut run) = unit::run_of(now, &id)? else { return Ok(None) };
+        let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };
         let read = |hash: &String| match export::record(now.folder(), hash) {
             Ok((record, _)) => Ok(Box::new(record)),
             Err(error) => Err(format!("{:#}", anyhow::Error::from(error))),
@@ -43,7 +43,8 @@ pub(super) async fn page(
     };
     let found = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
     let content = content(&visit, &found);
-    let title = format!("{} {}", found.run.line.serial, found.run.line.verdict.as_deref().unwrap_or_default());
+    let title =
+        format!("{} {}", found.run.line.serial, found.run.line.verdict.as_deref().unwrap_or_default());
     Ok(Page { here: Here::History, title: &title, head: show::head(), content }.answer(&visit))
 }
 
@@ -73,7 +74,7 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
 }
 
 /// A suspected part in one sentence.
-pub(super) fn suspect(visit: &Visit, suspect: &unit::Suspect) -> Markup {
+pub(super) fn suspect(visit: &Visit, suspect: &history::Suspect) -> Markup {
     let share = format!("{:.0}", 100.0 * suspect.explained);
     let values = [("part", suspect.part.as_str()), ("place", &suspect.place), ("share", &share)];
     html! { p.suspect { (show::said(&visit.words.fill("run.suspect", &values))) } }
@@ -91,7 +92,8 @@ pub(super) fn waiver(visit: &Visit, waiver: &Waiver) -> Markup {
 
 /// The parts that are suspected, each with what a technician does about it.
 fn suspects(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
-    let advice = |place: usize| record.and_then(|record| record.suspects.get(place)).map(|one| &one.technician);
+    let advice =
+        |place: usize| record.and_then(|record| record.suspects.get(place)).map(|one| &one.technician);
     html! {
         @for (place, one) in run.suspects.iter().enumerate() {
             (suspect(visit, one))
@@ -105,7 +107,7 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
     let board = record.and_then(|record| record.board.as_ref());
     html! {
         dl.facts {
-            (show::pair(visit.say("history.began"), html! { (show::moment(line.started_ms)) " UTC" }))
+            (show::pair(visit.say("history.began"), show::moment(line.started_ms)))
             @if let Some(seconds) = record.and_then(|record| record.seconds) {
                 (show::pair(visit.say("run.took"), html! { (show::number(visit, (seconds * 10.0).round() / 10.0)) " s" }))
             }
@@ -172,8 +174,12 @@ fn outcome(visit: &Visit, name: &str) -> Markup {
 
 /// What the judge checked in each try of a step.
 fn checks(visit: &Visit, record: &Record) -> Markup {
-    let text = |value: &Value, key: &str| value.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
-    let all = record.steps.iter().filter_map(|step| Some((step, step.evidence.as_ref()?.get("checks")?.as_array()?)));
+    let text =
+        |value: &Value, key: &str| value.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
+    let all = record
+        .steps
+        .iter()
+        .filter_map(|step| Some((step, step.evidence.as_ref()?.get("checks")?.as_array()?)));
     html! {
         @for (step, checks) in all {
             h2 { (visit.say("run.checks")) ", " (show::said(&step.name)) }
@@ -187,7 +193,10 @@ fn checks(visit: &Visit, record: &Record) -> Markup {
 }
 
 fn measurements(visit: &Visit, record: &Record) -> Markup {
-    let of_steps = record.steps.iter().flat_map(|step| step.measurements.iter().map(move |one| (step.name.as_str(), one)));
+    let of_steps = record
+        .steps
+        .iter()
+        .flat_map(|step| step.measurements.iter().map(move |one| (step.name.as_str(), one)));
     let all: Vec<_> = of_steps.chain(record.measurements.iter().map(|one| ("", one))).collect();
     html! {
         @if !all.is_empty() {
@@ -204,18 +213,28 @@ fn measurements(visit: &Visit, record: &Record) -> Markup {
 }
 
 fn measured(visit: &Visit, step: &str, one: &Measured) -> Markup {
-    let side = |sign: &str, bound: Option<f64>| bound.map(|bound| format!("{sign} {}", show::number(visit, bound)));
+    let side =
+        |sign: &str, bound: Option<f64>| bound.map(|bound| format!("{sign} {}", show::number(visit, bound)));
     let limits = [side("≥", one.low), side("≤", one.high)].into_iter().flatten().collect::<Vec<_>>();
     html! {
         tr {
             th scope="row" { code { (show::said(&one.name)) } }
             td.number {
-                @if let Some(value) = one.value { (show::number(visit, value)) " " (show::said(&one.unit)) } @else { "–" }
+                @if let Some(value) = one.value { (show::number(visit, value)) " " (unit(&one.unit)) } @else { "–" }
             }
             td { (limits.join(", ")) @if !limits.is_empty() { " " span.soft { (one.blames.name()) } } }
             td { @if limits.is_empty() { span.soft { "–" } } @else { (outcome(visit, one.outcome.name())) } }
             td.soft { (show::said(step)) }
         }
+    }
+}
+
+/// A unit as people write it. What is counted has none.
+fn unit(name: &str) -> Markup {
+    match name {
+        "1" => html! {},
+        "us" => html! { "µs" },
+        name => show::said(name),
     }
 }
 

@@ -66,7 +66,8 @@ pub(super) fn of(rate: &Rate) -> Markup {
 
 /// A number with the language's decimal point, as short as it is exact.
 pub(super) fn number(visit: &Visit, value: f64) -> String {
-    let text = if value.abs() >= 1e6 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) };
+    let text =
+        if value.abs() >= 1e6 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) };
     text.replace('.', visit.say("history.decimal"))
 }
 

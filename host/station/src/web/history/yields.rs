@@ -135,7 +135,7 @@ fn row(visit: &Visit, line: &Yield) -> Markup {
             td.number { (line.flipped) }
             td.number { (line.waived) }
             td.number { (errors.of) }
-            td { (rate(visit, errors)) }
+            td { div.rate { (show::share(visit, errors)) " " span.soft { (show::of(errors)) } } }
             td.number { (line.crashes) }
         }
     }
