@@ -1,6 +1,6 @@
-// The station's news. Without a beat for three seconds nothing here is live; then they are opened anew every two.
+// The station's news. Without a beat for almost three seconds nothing here is live; then they are opened anew every two.
 
-const QUIET = 3000, AGAIN = 2000, LOOK = 200;
+const QUIET = 2800, AGAIN = 2000, LOOK = 100;
 const NAMES = ["snapshot", "lane", "doing", "scan", "hook", "beat"];
 
 export function live({ hear, show }) {

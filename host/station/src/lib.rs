@@ -15,6 +15,7 @@ pub mod check;
 mod clock;
 pub mod commands;
 pub mod console;
+pub mod demo;
 pub mod engine;
 pub mod exit;
 pub mod export;

@@ -1,12 +1,14 @@
 //! The command line: one file a command.
 
 mod check;
+mod demo;
 mod export;
 mod history;
 mod kept;
 mod lane;
 mod lanes;
 mod looking;
+mod notify;
 mod pareto;
 mod plan;
 mod rebind;
@@ -53,6 +55,7 @@ enum Command {
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
     Serve(serve::Arguments),
+    Demo(demo::Arguments),
     User(user::Arguments),
     Lane(lane::Arguments),
 }
@@ -106,6 +109,7 @@ impl Cli {
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
             Command::Serve(arguments) => serve::run(arguments),
+            Command::Demo(arguments) => demo::run(arguments),
             Command::User(arguments) => user::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }

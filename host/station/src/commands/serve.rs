@@ -1,13 +1,15 @@
 //! `halfrow-station serve`
 
+use std::io;
 use std::path::{self, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::notify::Notify;
 use super::{Failure, recovered, signals};
 use crate::console;
 use crate::engine::Engine;
@@ -19,9 +21,12 @@ use crate::web::{Access, App, Server, User, Who};
 /// How often it is looked whether a signal came.
 const LOOK: Duration = Duration::from_millis(100);
 
+/// How often systemd is told that the engine works.
+const TELL: Duration = Duration::from_secs(1);
+
 /// Judge the boards in all lanes of a station, with pages in a browser
 ///
-/// Prints where the pages are. A signal ends the runs that are under way, and the program.
+/// Prints where the pages are. systemd is told when it is ready, and every second that it works. A signal ends the runs that are under way, and the program.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The station's settings
@@ -36,11 +41,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let settings = path::absolute(&arguments.settings).map_err(Failure::call)?;
     let settings = Settings::load(&settings).map_err(Failure::call)?;
     let everybody = User { name: arguments.operator.clone(), who: Who::Operator };
-    serve(&settings, everybody)
+    serve(Served { settings: &settings, everybody, hints: Vec::new() }, |_| Ok(()))
 }
 
-/// Serves the station until a signal comes. Where nobody logs in, everybody at the computer itself is `everybody`.
-pub(super) fn serve(settings: &Settings, everybody: User) -> Result<Exit, Failure> {
+/// What is served.
+pub(super) struct Served<'a> {
+    pub(super) settings: &'a Settings,
+    /// Who everybody at the computer itself is where nobody logs in.
+    pub(super) everybody: User,
+    /// Serial numbers that a visitor of a demonstration may type.
+    pub(super) hints: Vec<String>,
+}
+
+/// Serves the station until a signal comes; `begin` is called when it is at work.
+pub(super) fn serve(
+    served: Served<'_>,
+    begin: impl FnOnce(&Arc<Engine>) -> io::Result<()>,
+) -> Result<Exit, Failure> {
+    let Served { settings, everybody, hints } = served;
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = signals::last().map_err(Failure::error)?;
     let mut store = Store::open(&Folder::new(&settings.data))?;
@@ -50,15 +68,22 @@ pub(super) fn serve(settings: &Settings, everybody: User) -> Result<Exit, Failur
     recovered(&mut store)?;
     let engine = Engine::start(settings.clone(), store, program).map_err(Failure::error)?;
     let engine = Arc::new(engine);
-    let app =
-        App::new(settings.clone(), Arc::clone(&engine), access.at(at.port())).map_err(Failure::error)?;
-    let server = Server::start(&app, listener).map_err(Failure::error)?;
-    console::tell(&format!("the pages are at http://{at}/"));
+    let app = App::new(settings.clone(), Arc::clone(&engine), access.at(at.port()), hints);
+    let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
+    begin(&engine).map_err(Failure::error)?;
+    console::tell(&format!("The pages are at http://{at}/"));
+    let notify = Notify::of_environment();
+    notify.ready();
+    let mut told = Instant::now();
     let by = loop {
-        match signals::stopped_by(signal.load(Ordering::Relaxed)) {
-            Some(by) => break by,
-            None => thread::sleep(LOOK),
+        if let Some(by) = signals::stopped_by(signal.load(Ordering::Relaxed)) {
+            break by;
         }
+        if told.elapsed() >= TELL && engine.is_well() {
+            told = Instant::now();
+            notify.works();
+        }
+        thread::sleep(LOOK);
     };
     engine.close(Some(by));
     server.close();

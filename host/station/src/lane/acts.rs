@@ -226,7 +226,9 @@ impl Common<'_> {
             Err(misfit) => return Try::error(Cause::Refused, &misfit),
         };
         let Finished { report, evidence } = finished;
-        keep(self.spool, place, &report, &evidence);
+        let name = |index: usize| report.frames.get(index).map_or("", |frame| frame.name.as_str());
+        let named: Vec<_> = evidence.iter().map(|one| (name(one.index), one)).collect();
+        keep(self.spool, place, &named);
         let seen = report.board.identity.as_ref().map(|identity| seen(report.board.kind, identity));
         if let Some(exchanged) = seen.as_ref().and_then(|seen| self.exchanged(seen)) {
             return exchanged;

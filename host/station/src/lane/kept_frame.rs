@@ -7,7 +7,6 @@ use std::path::Path;
 use halfrow::frames::png;
 use halfrow::frames::written_aside::{WriteAsideError, write_aside};
 use halfrow::model::{BitDepth, Frame, Phase};
-use halfrow::Report;
 use halfrow::result::Evidence;
 
 /// Frames that are kept of a try of a step.
@@ -77,18 +76,17 @@ impl KeptFrame {
     }
 }
 
-/// Keeps in `folder` the first frames of `evidence` that differ, each of another name in `report`, as a try of a step left them. What cannot be kept is
+/// Keeps in `folder` the first frames of `evidence` that differ, each of another name, as a try of a step left them. What cannot be kept is
 /// told in the lane's log: no verdict hangs on it.
-pub(super) fn keep(folder: &Path, (seq, attempt): (u32, u32), report: &Report, evidence: &[Evidence]) {
-    let name = |one: &Evidence| report.frames.get(one.index).map(|frame| frame.name.as_str());
+pub(super) fn keep(folder: &Path, (seq, attempt): (u32, u32), evidence: &[(&str, &Evidence)]) {
     let mut names = Vec::new();
     // The same picture again shows little more.
-    let mut is_other = |one: &&Evidence| {
-        let is_other = one.found != one.expected && !names.contains(&name(one));
-        names.extend(is_other.then(|| name(one)));
+    let mut is_other = |(name, one): &&(&str, &Evidence)| {
+        let is_other = one.found != one.expected && !names.contains(&(*name).to_owned());
+        names.extend(is_other.then(|| (*name).to_owned()));
         is_other
     };
-    for one in evidence.iter().filter(|one| is_other(one)).take(MOST_FRAMES) {
+    for (_, one) in evidence.iter().filter(|one| is_other(one)).take(MOST_FRAMES) {
         let (depth, phase) = (one.expected.depth(), one.expected.phase());
         let frame = KeptFrame { seq, attempt, index: one.index, depth, phase };
         if let Err(error) = all(folder, &frame, one) {
@@ -165,11 +163,15 @@ mod tests {
     fn what_differs_is_kept_and_reads_back_and_nothing_else_is() {
         let folder = tempfile::tempdir().unwrap();
         let equal = Evidence { found: wrong(0).expected, ..wrong(0) };
-        keep(folder.path(), (2, 1), &[equal, wrong(1), wrong(2), wrong(3)]);
+        keep(
+            folder.path(),
+            (2, 1),
+            &[("a", &equal), ("a", &wrong(1)), ("a", &wrong(2)), ("b", &wrong(3)), ("c", &wrong(4))],
+        );
         let kept: Vec<_> =
             names(folder.path()).unwrap().iter().map(|name| KeptFrame::of(name).unwrap()).collect();
         let indices: Vec<_> = kept.iter().map(|(frame, _)| frame.index).collect();
-        assert_eq!(indices, [1, 1, 1, 2, 2, 2], "two frames, each in three views");
+        assert_eq!(indices, [1, 1, 1, 3, 3, 3], "two frames of different names, each in three views");
         let (frame, _) = &kept[0];
         let bytes = fs::read(folder.path().join(frame.name(View::Out))).unwrap();
         let how = halfrow::frames::ReadOptions { depth: frame.depth, phase: frame.phase, raw: None };

@@ -5,7 +5,7 @@ use std::time::Duration;
 use axum::body::{self, Body, Bytes};
 use axum::extract::{Request, State};
 use axum::http::header::{self, HeaderName};
-use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
+use axum::http::{HeaderMap, HeaderValue, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Redirect, Response};
 use tokio::time;
@@ -46,7 +46,7 @@ pub(super) struct Guarded {
 
 /// Around all: whether it is for this station at all, how long it may take, and what every answer carries.
 pub(super) async fn every(State(app): State<App>, request: Request, next: Next) -> Response {
-    let visit = app.visit(request.headers(), false);
+    let visit = app.stranger(request.headers());
     let is_ours = host(request.headers()).is_some_and(|host| app.access().address().is_host(host));
     let mut response = if is_ours {
         let late = || Trouble::new(&visit, StatusCode::REQUEST_TIMEOUT, visit.say("trouble.late"));
@@ -89,10 +89,7 @@ fn refused(visit: &Visit, status: StatusCode, said: &'static str) -> Refused {
 
 /// A page: whoever may not see it logs in.
 fn look(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request, Refused> {
-    if who == Who::Anyone || visit.user.is_some() && (who == Who::Reader || visit.may(who)) {
-        return Ok(request);
-    }
-    if who == Who::Reader && app.access().address().is_private() {
+    if who == Who::Anyone || visit.may(who) || who == Who::Reader && app.access().is_open() {
         return Ok(request);
     }
     let wants_page = request
@@ -139,10 +136,8 @@ fn mark(body: &Bytes) -> Option<String> {
 }
 
 /// Where nothing is.
-pub(super) async fn nothing_here(State(app): State<App>, method: Method, headers: HeaderMap) -> Trouble {
-    let visit = app.visit(&headers, false);
-    tracing::debug!("nothing is here for {method}");
-    Trouble::missing(&visit)
+pub(super) async fn nothing_here(State(app): State<App>, headers: HeaderMap) -> Trouble {
+    Trouble::missing(&app.visit(&headers, false))
 }
 
 fn host(headers: &HeaderMap) -> Option<&str> {

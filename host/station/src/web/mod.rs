@@ -17,6 +17,7 @@ mod layout;
 mod live;
 mod login;
 mod operator;
+mod patient;
 mod routes;
 mod serve;
 mod state;

@@ -16,6 +16,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, oneshot};
 use tokio::time;
 
 use super::login::Peer;
+use super::patient::Patient;
 use super::routes;
 use super::state::App;
 
@@ -120,7 +121,8 @@ async fn connection(stream: TcpStream, router: Router, place: OwnedSemaphorePerm
     let _ = stream.set_nodelay(true);
     let mut builder = http1::Builder::new();
     builder.timer(TokioTimer::new()).header_read_timeout(HEAD).max_header_size(MOST_HEAD);
-    let served = builder.serve_connection(TokioIo::new(stream), TowerToHyperService::new(router));
+    let served =
+        builder.serve_connection(TokioIo::new(Patient::new(stream)), TowerToHyperService::new(router));
     if let Err(error) = pin!(served).await {
         tracing::debug!("a connection ended: {error}");
     }

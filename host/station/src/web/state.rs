@@ -23,16 +23,23 @@ struct Parts {
     engine: Arc<Engine>,
     access: Access,
     live: Arc<Live>,
+    hints: Vec<String>,
 }
 
 impl App {
-    /// The station of these settings, which the engine has at work, for those whom `access` lets in.
+    /// The station of these settings, which the engine has at work, for those whom `access` lets in. A visitor of a
+    /// demonstration is told that the serial numbers `hints` may be typed.
     ///
     /// # Errors
     /// When the system has no thread for its news.
-    pub fn new(settings: Settings, engine: Arc<Engine>, access: Access) -> io::Result<Self> {
+    pub fn new(
+        settings: Settings,
+        engine: Arc<Engine>,
+        access: Access,
+        hints: Vec<String>,
+    ) -> io::Result<Self> {
         let live = Live::start(&engine)?;
-        Ok(Self(Arc::new(Parts { settings, engine, access, live })))
+        Ok(Self(Arc::new(Parts { settings, engine, access, live, hints })))
     }
 
     /// Its name.
@@ -50,6 +57,10 @@ impl App {
 
     pub(super) fn access(&self) -> &Access {
         &self.0.access
+    }
+
+    pub(super) fn hints(&self) -> &[String] {
+        &self.0.hints
     }
 
     pub(super) fn live(&self) -> &Live {

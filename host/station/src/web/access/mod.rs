@@ -88,6 +88,11 @@ impl Access {
         matches!(self.people, People::Listed { .. })
     }
 
+    /// Whether everybody who gets here may see what is tested.
+    pub(super) fn is_open(&self) -> bool {
+        self.address.is_private()
+    }
+
     /// Who has this cookie, or is everybody.
     pub(super) fn user(&self, session: Option<&str>, is_act: bool) -> Option<User> {
         match &self.people {

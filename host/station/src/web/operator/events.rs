@@ -25,20 +25,36 @@ const UNBUFFERED: HeaderName = HeaderName::from_static("x-accel-buffering");
 pub(super) async fn events(State(app): State<App>, visit: Visit) -> Response {
     let (now, told) = app.live().follow();
     let first = snapshot(&visit, &now);
-    let news = stream::unfold((Some(first), told, visit), |(first, told, visit)| next(first, told, visit));
+    let news = stream::unfold((Some(first), Follower { app, visit, told }), |(first, of)| next(first, of));
     let headers = [(CONTENT_TYPE, "text/event-stream"), (CACHE_CONTROL, "no-store"), (UNBUFFERED, "no")];
     (headers, Body::from_stream(news)).into_response()
 }
 
-type Item = (Result<String, Infallible>, (Option<String>, Receiver<Told>, Visit));
+/// A page that is open.
+struct Follower {
+    app: App,
+    visit: Visit,
+    told: Receiver<Told>,
+}
 
-/// The next event. A page that is too far behind gets none, and so opens anew.
-async fn next(first: Option<String>, mut told: Receiver<Told>, visit: Visit) -> Option<Item> {
+/// The next event. A page that is too far behind gets none, and so opens anew; nor does one whose user has logged out.
+async fn next(
+    first: Option<String>,
+    mut of: Follower,
+) -> Option<(Result<String, Infallible>, (Option<String>, Follower))> {
     let text = match first {
         Some(first) => first,
-        None => news(&visit, &told.recv().await.ok()?),
+        None => {
+            let told = of.told.recv().await.ok()?;
+            let access = of.app.access();
+            let is_beat = matches!(told.what, What::Beat);
+            if is_beat && !access.is_open() && access.user(Some(&of.visit.session), false).is_none() {
+                return None;
+            }
+            news(&of.visit, &told)
+        }
     };
-    Some((Ok(text), (None, told, visit)))
+    Some((Ok(text), (None, of)))
 }
 
 fn snapshot(visit: &Visit, now: &Now) -> String {

@@ -53,7 +53,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
     let look = look(state.state);
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
     html! {
-        article.lane.(look.class) id={ "lane-" (state.lane) } data-lane=(state.lane)
+        article.lane.(look.class).(length(visit.say(look.key))) id={ "lane-" (state.lane) } data-lane=(state.lane)
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
                 h2 {
@@ -68,6 +68,15 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
             (says(visit, state, look))
             @if state.state == Word::Running { (progress(doing)) }
         }
+    }
+}
+
+/// How large the word can be: a class of the style sheet.
+fn length(word: &str) -> &'static str {
+    match word.chars().count() {
+        0..=5 => "short",
+        6..=9 => "middle",
+        _ => "long",
     }
 }
 

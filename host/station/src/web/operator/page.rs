@@ -42,12 +42,20 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
         section #station data-csrf=(visit.csrf) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
             data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn")) {
             @if visit.may(Who::Operator) { (scan_box(&visit, &now, answer.as_ref())) } @else { (log_in(&visit)) }
+            (hint(&app, &visit, &now))
             (floor(&visit, &now))
             footer #today { (today) }
             div #said .heard role="log" aria-live="assertive" {}
         }
     };
     Ok(Page { here: Here::Lanes, title: visit.say("nav.lanes"), head, content }.answer(&visit))
+}
+
+/// What a visitor of a demonstration may try.
+fn hint(app: &App, visit: &Visit, now: &Now) -> Markup {
+    let Some((serial, lane)) = app.hints().first().zip(now.lanes.last()) else { return html! {} };
+    let values = [("lane", lane.lane.as_str()), ("serial", serial)];
+    html! { p.hint { (visit.words.fill("demo.try", &values)) } }
 }
 
 /// Every lane.

@@ -1,0 +1,61 @@
+//! What systemd is told of a service (`sd_notify(3)`): that it is ready, and that it works.
+
+use std::os::linux::net::SocketAddrExt as _;
+use std::os::unix::net::{SocketAddr, UnixDatagram};
+
+/// Where systemd listens, if it does.
+#[derive(Debug, Default)]
+pub(super) struct Notify(Option<(UnixDatagram, SocketAddr)>);
+
+impl Notify {
+    /// The socket that the environment names.
+    pub(super) fn of_environment() -> Self {
+        Self(std::env::var("NOTIFY_SOCKET").ok().and_then(|name| {
+            let address = match name.strip_prefix('@') {
+                Some(name) => SocketAddr::from_abstract_name(name),
+                None => SocketAddr::from_pathname(&name),
+            };
+            Some((UnixDatagram::unbound().ok()?, address.ok()?))
+        }))
+    }
+
+    /// The station takes scans.
+    pub(super) fn ready(&self) {
+        self.tell("READY=1");
+    }
+
+    /// The engine works. What systemd does not hear for a while it starts again.
+    pub(super) fn works(&self) {
+        self.tell("WATCHDOG=1");
+    }
+
+    fn tell(&self, what: &str) {
+        if let Some((socket, address)) = &self.0
+            && let Err(error) = socket.send_to_addr(what.as_bytes(), address)
+        {
+            tracing::warn!("systemd was not told {what}: {error}");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_socket_hears_what_systemd_would() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("notify");
+        let systemd = UnixDatagram::bind(&path).unwrap();
+        let notify =
+            Notify(Some((UnixDatagram::unbound().unwrap(), SocketAddr::from_pathname(path).unwrap())));
+        notify.ready();
+        notify.works();
+        let mut heard = || {
+            let mut buffer = [0; 64];
+            let read = systemd.recv(&mut buffer).unwrap();
+            String::from_utf8(buffer[..read].to_vec()).unwrap()
+        };
+        assert_eq!([heard(), heard()], ["READY=1", "WATCHDOG=1"]);
+    }
+}

@@ -1,0 +1,151 @@
+//! Chromium without a window, over the pipes of its DevTools protocol: messages of JSON, each ended by a zero.
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{self, Receiver};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+/// How long something is waited for that must come: it ends hangs alone.
+const HANG: Duration = Duration::from_secs(120);
+/// How often it is looked.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// The browser's descriptors 3 and 4 are its ends of the pipes.
+const START: &str = "exec chromium --headless=new --no-sandbox --disable-gpu --no-first-run --disable-background-networking \
+    --disable-component-update --disable-default-apps --disable-sync --disable-background-timer-throttling \
+    --autoplay-policy=no-user-gesture-required --user-data-dir=\"$0\" --remote-debugging-pipe about:blank 3<&0 4>&1 >/dev/null 2>&1";
+
+/// A browser with one page.
+pub(super) struct Chromium {
+    child: Child,
+    to: ChildStdin,
+    from: Receiver<Value>,
+    session: Value,
+    number: u64,
+    /// Addresses of everything that the page asked for.
+    pub(super) asked: Vec<String>,
+    _profile: TempDir,
+}
+
+impl Chromium {
+    /// With the page at `address`.
+    pub(super) fn open(address: &str) -> Self {
+        let profile = tempfile::tempdir().unwrap();
+        let mut child = Command::new("sh")
+            .args(["-c", START])
+            .arg(profile.path())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut messages = BufReader::new(child.stdout.take().unwrap());
+        let (sender, from) = mpsc::channel();
+        thread::spawn(move || {
+            let mut message = Vec::new();
+            while messages.read_until(0, &mut message).is_ok_and(|read| read > 0) {
+                message.pop();
+                let _ = sender.send(serde_json::from_slice(&message).unwrap());
+                message.clear();
+            }
+        });
+        let to = child.stdin.take().unwrap();
+        let mut browser =
+            Self { child, to, from, session: Value::Null, number: 0, asked: Vec::new(), _profile: profile };
+        let pages = browser.call("Target.getTargets", json!({}));
+        let page =
+            pages["targetInfos"].as_array().unwrap().iter().find(|target| target["type"] == "page").unwrap();
+        let attach = json!({ "targetId": page["targetId"], "flatten": true });
+        browser.session = browser.call("Target.attachToTarget", attach)["sessionId"].clone();
+        browser.call("Network.enable", json!({}));
+        browser.call("Page.enable", json!({}));
+        let watch = "addEventListener('securitypolicyviolation', e => (window.violations ??= []).push(e.violatedDirective))";
+        browser.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": watch }));
+        browser.go(address);
+        browser
+    }
+
+    pub(super) fn go(&mut self, address: &str) {
+        self.call("Page.navigate", json!({ "url": address }));
+    }
+
+    /// Asks the browser for something; returns the number of the answer.
+    fn put(&mut self, method: &str, parameters: Value) -> u64 {
+        self.number += 1;
+        let mut message = json!({ "id": self.number, "method": method, "params": parameters });
+        if !self.session.is_null() {
+            message["sessionId"] = self.session.clone();
+        }
+        self.to.write_all(message.to_string().as_bytes()).unwrap();
+        self.to.write_all(&[0]).unwrap();
+        self.number
+    }
+
+    /// Waits for the answer of this number.
+    fn answer(&mut self, number: u64) -> Value {
+        loop {
+            let message = self.from.recv_timeout(HANG).expect("the browser answers");
+            if message["method"] == "Network.requestWillBeSent" {
+                self.asked.push(message["params"]["request"]["url"].as_str().unwrap().to_owned());
+            }
+            if message["id"] == number {
+                assert!(message["error"].is_null(), "{message}");
+                return message["result"].clone();
+            }
+        }
+    }
+
+    pub(super) fn call(&mut self, method: &str, parameters: Value) -> Value {
+        let number = self.put(method, parameters);
+        self.answer(number)
+    }
+
+    /// What the page's script says.
+    pub(super) fn evaluate(&mut self, script: &str) -> Value {
+        let parameters = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
+        let said = self.call("Runtime.evaluate", parameters);
+        assert!(said["exceptionDetails"].is_null(), "{script}: {said}");
+        said["result"]["value"].clone()
+    }
+
+    /// Waits until the page's script says yes.
+    pub(super) fn wait(&mut self, script: &str) {
+        let start = Instant::now();
+        while self.evaluate(script) != json!(true) {
+            if start.elapsed() > HANG {
+                let page = self.evaluate("document.body.innerText");
+                panic!("{script} did not come true; the page says {page}");
+            }
+            thread::sleep(LOOK);
+        }
+    }
+
+    /// Presses the keys of `text` and then `end`, so long apart, as a scanner does.
+    pub(super) fn scan(&mut self, text: &str, end: &str, apart: Duration) {
+        let keys: Vec<String> = text.chars().map(String::from).collect();
+        let mut last = 0;
+        for key in keys.iter().map(String::as_str).chain([end]) {
+            let typed = match key {
+                "Enter" => "\r",
+                "Tab" | "Escape" => "",
+                key => key,
+            };
+            self.put("Input.dispatchKeyEvent", json!({ "type": "keyDown", "key": key, "text": typed }));
+            last = self.put("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key }));
+            if !apart.is_zero() {
+                thread::sleep(apart);
+            }
+        }
+        self.answer(last);
+    }
+}
+
+impl Drop for Chromium {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

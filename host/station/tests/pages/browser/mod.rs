@@ -1,0 +1,6 @@
+//! The operator's page in Chromium.
+
+mod chromium;
+mod live;
+mod look;
+mod scans;

@@ -1,0 +1,103 @@
+//! A client that sends just what it is told to send.
+
+use std::collections::BTreeMap;
+use std::io::{Read as _, Write as _};
+use std::net::TcpStream;
+use std::time::Duration;
+
+/// How long an answer is waited for: it ends hangs alone.
+const HANG: Duration = Duration::from_secs(120);
+
+/// An answer.
+#[derive(Clone, Debug)]
+pub(crate) struct Answer {
+    pub(crate) status: u16,
+    pub(crate) headers: BTreeMap<String, String>,
+    pub(crate) body: String,
+}
+
+/// What comes back for these bytes, on a connection of their own; none if the connection ends without an answer.
+pub(crate) fn exchange(port: u16, bytes: &[u8]) -> Option<Answer> {
+    let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
+    stream.set_read_timeout(Some(HANG)).unwrap();
+    // A server that has heard enough closes before it has read all.
+    let _ = stream.write_all(bytes);
+    let mut head = Vec::new();
+    let mut byte = [0];
+    while !head.ends_with(b"\r\n\r\n") {
+        match stream.read(&mut byte) {
+            Ok(1) => head.push(byte[0]),
+            _ => return None,
+        }
+    }
+    let head = String::from_utf8(head).unwrap();
+    let mut lines = head.lines();
+    let status = lines.next().unwrap().split(' ').nth(1).unwrap().parse().unwrap();
+    let pairs = lines.filter_map(|line| line.split_once(": "));
+    let headers: BTreeMap<String, String> =
+        pairs.map(|(name, value)| (name.to_lowercase(), value.to_owned())).collect();
+    let body = headers.get("content-length").map(|length| {
+        let mut body = vec![0; length.parse().unwrap()];
+        // The head of an answer to HEAD tells of a body that does not come.
+        let _ = stream.read_exact(&mut body);
+        String::from_utf8_lossy(&body).into_owned()
+    });
+    Some(Answer { status, headers, body: body.unwrap_or_default() })
+}
+
+/// A request.
+#[derive(Clone, Debug)]
+pub(crate) struct Request {
+    pub(crate) port: u16,
+    pub(crate) method: String,
+    pub(crate) path: String,
+    pub(crate) headers: Vec<(String, String)>,
+    pub(crate) body: String,
+}
+
+impl Request {
+    /// Without any header.
+    pub(crate) fn bare(port: u16, method: &str, path: &str) -> Self {
+        Self {
+            port,
+            method: method.to_owned(),
+            path: path.to_owned(),
+            headers: Vec::new(),
+            body: String::new(),
+        }
+    }
+
+    pub(crate) fn with(mut self, name: &str, value: &str) -> Self {
+        self.headers.retain(|(known, _)| known != name);
+        self.headers.push((name.to_owned(), value.to_owned()));
+        self
+    }
+
+    pub(crate) fn without(mut self, name: &str) -> Self {
+        self.headers.retain(|(known, _)| known != name);
+        self
+    }
+
+    pub(crate) fn send(&self) -> Answer {
+        let mut text = format!("{} {} HTTP/1.1\r\n", self.method, self.path);
+        for (name, value) in &self.headers {
+            text += &format!("{name}: {value}\r\n");
+        }
+        if self.method == "POST" {
+            text += &format!(
+                "content-type: application/x-www-form-urlencoded\r\ncontent-length: {}\r\n",
+                self.body.len()
+            );
+        }
+        text += &format!("connection: close\r\n\r\n{}", self.body);
+        exchange(self.port, text.as_bytes()).unwrap_or_else(|| panic!("no answer to {self:?}"))
+    }
+}
+
+/// A value in a form.
+pub(crate) fn escaped(text: &str) -> String {
+    let escape = |byte: u8| {
+        if byte.is_ascii_alphanumeric() { char::from(byte).to_string() } else { format!("%{byte:02X}") }
+    };
+    text.bytes().map(escape).collect()
+}
