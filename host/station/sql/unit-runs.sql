@@ -5,5 +5,5 @@ SELECT run.id, run.started_ms, run.ended_ms, unit.product, unit.serial, plan.nam
 FROM run
 JOIN unit ON unit.id = run.unit_id
 JOIN plan ON plan.sha256 = run.plan_sha256
-WHERE run.unit_id = $1
+WHERE {of} = $1
 ORDER BY run.started_ms DESC, run.id DESC;

@@ -1,4 +1,4 @@
 SELECT step.run_id, step.seq, step.attempt, step.name, step.outcome, step.started_ms, step.ended_ms, step.detail
 FROM run JOIN step ON step.run_id = run.id
-WHERE run.unit_id = $1
+WHERE {of} = $1
 ORDER BY step.run_id, step.seq, step.attempt;

@@ -1,4 +1,4 @@
 SELECT waiver.run_id, waiver.at_ms, waiver.operator_id, waiver.reason
 FROM run JOIN waiver ON waiver.run_id = run.id
-WHERE run.unit_id = $1
+WHERE {of} = $1
 ORDER BY waiver.run_id, waiver.id;

@@ -1,3 +1,8 @@
-SELECT run.id, run.plan_sha256, run.station, run.lane, run.started_ms
+-- Waived FAILs, and whether the unit was judged once under plans of that name. The few waivers choose the runs.
+SELECT run.id, run.plan_sha256, run.station, run.lane, run.started_ms, NOT EXISTS (
+  SELECT 1 FROM retest
+  JOIN plan ON plan.sha256 = run.plan_sha256
+  WHERE retest.unit_id = run.unit_id AND retest.plan = plan.name
+)
 FROM waiver JOIN run ON run.id = waiver.run_id
-WHERE run.verdict = 'FAIL';
+WHERE coalesce(run.verdict, '') = 'FAIL';

@@ -4,7 +4,7 @@ mod folder;
 mod html;
 mod json;
 mod junit;
-mod pictures;
+pub mod pictures;
 pub mod wording;
 
 pub use folder::check as check_folder;

@@ -46,6 +46,22 @@ impl Picture {
     }
 }
 
+/// A frame developed for the screen, at most `max_width` columns wide, as a PNG.
+///
+/// # Errors
+/// The PNG encoder's.
+pub fn developed(frame: &Frame, max_width: usize) -> Result<Vec<u8>, EncodingError> {
+    Ok(Picture::new(&preview::thumbnail(frame, max_width))?.png)
+}
+
+/// A map of where two frames of one size differ and by how much, as a PNG: a pixel for each square of 8 samples.
+///
+/// # Errors
+/// The PNG encoder's.
+pub fn differences(expected: &Frame, found: &Frame) -> Result<Vec<u8>, EncodingError> {
+    Ok(difference_map(expected, found)?.png)
+}
+
 /// The frame as a picture of at most `max_width` columns and `most_bytes`, as large as that allows; none when not even
 /// [`MIN_WIDTH`] columns fit.
 ///

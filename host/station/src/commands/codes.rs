@@ -77,6 +77,7 @@ codes::codes! {
         Database [path, doing] => "database-refuses",
         NoLog [path, mode] => "database-without-log",
         Newer [path, found, known] => "database-newer",
+        Older [path, found, known] => "database-older",
         OtherSchema [path, version] => "database-of-other-schema",
         NotOpen [run] => "run-not-open",
         ReadsOtherwise [run] => "run-reads-otherwise",

@@ -15,7 +15,7 @@ pub mod runs;
 pub mod unit;
 pub mod yields;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
@@ -57,6 +57,11 @@ fn plans(of: &Snapshot) -> Result<BTreeMap<String, PlanName>, StoreError> {
         Ok((row.get(0)?, PlanName { product: row.get(1)?, plan: row.get(2)? }))
     })?;
     Ok(plans.into_iter().collect())
+}
+
+/// What is compared at this station, each once, in order.
+pub(crate) fn plan_names(of: &Snapshot) -> Result<BTreeSet<PlanName>, StoreError> {
+    Ok(plans(of)?.into_values().collect())
 }
 
 /// The hashes of the plans of this name.

@@ -1,11 +1,13 @@
 //! What fails most.
 
+use std::collections::BTreeMap;
+
 use rusqlite::ToSql;
 use serde::Serialize;
 
+use super::plans_named;
 use super::rate::Rate;
 use super::yields::Wanted;
-use super::{count, plans_named};
 use crate::store::{Snapshot, StoreError, statements};
 
 /// What failures are counted by.
@@ -46,11 +48,15 @@ pub struct Pareto {
 pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreError> {
     let plans = wanted.plan.as_deref().map(|name| plans_named(of, name)).transpose()?;
     let period = wanted.period;
-    let mut values: Vec<&dyn ToSql> = vec![&period.from_ms, &period.until_ms];
+    let kind = match by {
+        Of::Part => "part",
+        Of::Check => "check",
+    };
+    let mut values: Vec<&dyn ToSql> = vec![&kind, &period.from_ms, &period.until_ms];
     let mut filters = String::new();
     if let Some(lane) = &wanted.lane {
         values.push(lane);
-        filters.push_str(&format!("AND run.lane = ${}", values.len()));
+        filters.push_str(&format!("AND lane = ${}", values.len()));
     }
     if let Some(plans) = &plans {
         let named: Vec<_> =
@@ -58,19 +64,55 @@ pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreErr
         values.extend(plans.iter().map(|plan| plan as &dyn ToSql));
         // No plan of this name has no run.
         let named = if named.is_empty() { "NULL".to_owned() } else { named.join(", ") };
-        filters.push_str(&format!(" AND run.plan_sha256 IN ({named})"));
+        filters.push_str(&format!(" AND plan_sha256 IN ({named})"));
     }
-    let bars = match by {
-        Of::Part => statements::PARETO_PARTS,
-        Of::Check => statements::PARETO_CHECKS,
-    };
-    let doing = "to tell its failures";
-    let of_all = |row: &rusqlite::Row<'_>| Ok((count(row, 0)?, count(row, 1)?));
-    let all = of.rows(doing, &statements::FAILED.replace("{filters}", &filters), &values, of_all)?;
-    let (failed, units) = all.into_iter().next().unwrap_or_default();
-    let mut bars = of.rows(doing, &bars.replace("{filters}", &filters), &values, |row| {
-        Ok(Bar { name: row.get(0)?, runs: Rate::new(count(row, 1)?, failed), units: count(row, 2)? })
+    let mut counted = Counted::default();
+    let text = statements::FAILURES.replace("{filters}", &filters);
+    of.rows("to tell its failures", &text, &values, |row| {
+        counted.add(row.get_ref(0)?.as_str()?, row.get_ref(1)?.as_str()?, row.get_ref(2)?.as_str()?);
+        Ok(())
     })?;
-    bars.sort_by(|one, other| other.runs.count.cmp(&one.runs.count).then_with(|| one.name.cmp(&other.name)));
-    Ok(Pareto { failed, units, bars })
+    Ok(counted.pareto())
+}
+
+/// What was counted so far of failures that come unit after unit, and of a unit run after run.
+#[derive(Default)]
+struct Counted {
+    failed: u64,
+    units: u64,
+    unit: String,
+    run: String,
+    /// By name: runs, units, and the number of the last unit.
+    names: BTreeMap<String, (u64, u64, u64)>,
+}
+
+impl Counted {
+    fn add(&mut self, unit: &str, run: &str, name: &str) {
+        if self.unit != unit {
+            self.units += 1;
+            unit.clone_into(&mut self.unit);
+        }
+        if self.run != run {
+            self.failed += 1;
+            run.clone_into(&mut self.run);
+        }
+        if !self.names.contains_key(name) {
+            self.names.insert(name.to_owned(), (0, 0, 0));
+        }
+        if let Some((runs, units, last)) = self.names.get_mut(name) {
+            *runs += 1;
+            *units += u64::from(*last != self.units);
+            *last = self.units;
+        }
+    }
+
+    fn pareto(self) -> Pareto {
+        let Self { failed, units, names, .. } = self;
+        let bar = |(name, (runs, units, _))| Bar { name, runs: Rate::new(runs, failed), units };
+        let mut bars: Vec<_> = names.into_iter().map(bar).collect();
+        bars.sort_by(|one, other| {
+            other.runs.count.cmp(&one.runs.count).then_with(|| one.name.cmp(&other.name))
+        });
+        Pareto { failed, units, bars }
+    }
 }

@@ -22,6 +22,23 @@ pub struct Unit {
     pub first_seen_ms: i64,
     /// Its runs, the newest first.
     pub runs: Vec<UnitRun>,
+    /// The devices that it was bound to, the last one first.
+    pub bindings: Vec<Binding>,
+}
+
+/// A device under a serial number, from when to when.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Binding {
+    /// The FPGA's own number, in hexadecimal.
+    pub device: String,
+    /// Since when, in milliseconds since 1970, UTC.
+    pub from_ms: i64,
+    /// Until when; none of the one that holds.
+    pub to_ms: Option<i64>,
+    /// Who bound them.
+    pub operator: String,
+    /// Why.
+    pub reason: String,
 }
 
 /// A run of a unit.
@@ -89,20 +106,40 @@ pub struct Suspect {
 pub fn units(of: &Snapshot, serial: &str) -> Result<Vec<Unit>, StoreError> {
     let mut units = of.rows("to tell a unit", statements::UNITS_OF_SERIAL, &[&serial], |row| {
         let (id, product, serial, first_seen_ms) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
-        Ok(Unit { id, product, serial, first_seen_ms, runs: Vec::new() })
+        Ok(Unit { id, product, serial, first_seen_ms, runs: Vec::new(), bindings: Vec::new() })
     })?;
     for unit in &mut units {
-        unit.runs = runs(of, &unit.id)?;
+        unit.runs = runs(of, OF_UNIT, &unit.id)?;
+        let binding = |row: &Row<'_>| {
+            let (device, from_ms, to_ms) = (row.get(0)?, row.get(1)?, row.get(2)?);
+            Ok(Binding { device, from_ms, to_ms, operator: row.get(3)?, reason: row.get(4)? })
+        };
+        unit.bindings =
+            of.rows("to tell a unit's devices", statements::UNIT_BINDINGS, &[&unit.id], binding)?;
     }
     Ok(units)
 }
 
-fn runs(of: &Snapshot, unit: &str) -> Result<Vec<UnitRun>, StoreError> {
-    let mut runs = of.rows("to tell a unit's runs", statements::UNIT_RUNS, &[&unit], run)?;
-    let mut steps = by_run(of, unit, statements::UNIT_STEPS, step)?;
-    let mut suspects = by_run(of, unit, statements::UNIT_SUSPECTS, suspect)?;
-    let mut attachments = by_run(of, unit, statements::UNIT_ATTACHMENTS, attachment)?;
-    let mut waivers = by_run(of, unit, statements::UNIT_WAIVERS, waiver)?;
+/// The run of this id, open or over; none if there is none.
+///
+/// # Errors
+/// [`StoreError`] when the database cannot be read.
+pub fn run_of(of: &Snapshot, id: &str) -> Result<Option<UnitRun>, StoreError> {
+    Ok(runs(of, OF_RUN, id)?.into_iter().next())
+}
+
+/// The column by which the runs of a unit are found, and the one by which one run is.
+const OF_UNIT: &str = "run.unit_id";
+const OF_RUN: &str = "run.id";
+
+/// The runs whose `column` has this value, the newest first.
+fn runs(of: &Snapshot, column: &str, value: &str) -> Result<Vec<UnitRun>, StoreError> {
+    let text = |text: &str| text.replace("{of}", column);
+    let mut runs = of.rows("to tell a unit's runs", &text(statements::UNIT_RUNS), &[&value], run)?;
+    let mut steps = by_run(of, value, &text(statements::UNIT_STEPS), step)?;
+    let mut suspects = by_run(of, value, &text(statements::UNIT_SUSPECTS), suspect)?;
+    let mut attachments = by_run(of, value, &text(statements::UNIT_ATTACHMENTS), attachment)?;
+    let mut waivers = by_run(of, value, &text(statements::UNIT_WAIVERS), waiver)?;
     for run in &mut runs {
         let id = &run.line.id;
         run.steps = steps.remove(id).unwrap_or_default();
@@ -113,14 +150,14 @@ fn runs(of: &Snapshot, unit: &str) -> Result<Vec<UnitRun>, StoreError> {
     Ok(runs)
 }
 
-/// What `one` makes of the rows that belong to the runs of a unit, by the run, which is their first column.
+/// What `one` makes of the rows that belong to the runs that are asked for, by the run, which is their first column.
 fn by_run<T>(
     of: &Snapshot,
-    unit: &str,
+    value: &str,
     text: &str,
     one: impl Fn(&Row<'_>) -> rusqlite::Result<T>,
 ) -> Result<BTreeMap<String, Vec<T>>, StoreError> {
-    let rows = of.rows("to tell a unit's runs", text, &[&unit], |row| Ok((row.get(0)?, one(row)?)))?;
+    let rows = of.rows("to tell a unit's runs", text, &[&value], |row| Ok((row.get(0)?, one(row)?)))?;
     let mut by_run = BTreeMap::<String, Vec<T>>::new();
     for (run, one) in rows {
         by_run.entry(run).or_default().push(one);

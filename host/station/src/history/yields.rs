@@ -9,7 +9,8 @@
 //! | open | nowhere |
 //! | FAIL with a waiver | as the FAIL that it is; a unit whose last judgement it is counts as waived besides |
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
+use std::ops::Range;
 
 use jiff::civil::Date;
 use jiff::{SignedDuration, Timestamp, tz};
@@ -116,7 +117,7 @@ pub struct Yields {
 pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreError> {
     let plans = plans(of)?;
     let mut cells = cells(of, wanted, &plans)?;
-    let (again, of_many) = again(of, &plans)?;
+    let again = again(of, &plans)?;
     let waived = waived(of, &plans)?;
     let mut flips = Vec::new();
     for unit in &again {
@@ -129,10 +130,9 @@ pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreErr
             }
         }
     }
-    for (run, (cell, started_ms)) in &waived {
-        let is_only = !of_many.contains(run);
+    for (cell, started_ms, _) in waived.values().filter(|(.., is_only)| *is_only) {
         let is_wanted = wanted.is_wanted(cell) && wanted.period.holds(*started_ms);
-        if let Some(counts) = cells.get_mut(cell).filter(|_| is_only && is_wanted) {
+        if let Some(counts) = cells.get_mut(cell).filter(|_| is_wanted) {
             counts.waived += 1;
         }
     }
@@ -186,31 +186,49 @@ impl Counts {
     }
 }
 
-/// Every cell, with the units as their first judgement left them.
+/// Every cell, with the units as their first judgement left them: whole days as they were counted when their runs ended,
+/// and parts of days from the runs.
 fn cells(
     of: &Snapshot,
     wanted: &Wanted,
     plans: &BTreeMap<String, PlanName>,
 ) -> Result<BTreeMap<Cell, Counts>, StoreError> {
-    let Period { from_ms, until_ms } = wanted.period;
-    let rows = of.rows("to be counted", statements::YIELD_CELLS, &[&from_ms, &until_ms], |row| {
-        let (plan, station, lane, day): (String, _, _, _) =
-            (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
-        let [runs, errors, crashes, units, first] = [4, 5, 6, 7, 8].map(|column| count(row, column));
-        let (first, rest) = (first?, Counts::default());
-        let (runs, errors, crashes, units) = (runs?, errors?, crashes?, units?);
-        let counts = Counts { runs, errors, crashes, units, first, last: first, ..rest };
-        Ok((plan, station, lane, day, counts))
-    })?;
+    let (days, rest) = in_days(wanted.period);
+    let mut parts = vec![(statements::YIELD_DAYS, [days.start, days.end])];
+    parts.extend(rest.map(|part| (statements::YIELD_HOURS, [part.from_ms, part.until_ms])));
     let mut cells = BTreeMap::<_, Counts>::new();
-    for (plan, station, lane, day, counts) in rows {
-        let Some(plan) = plans.get(&plan).cloned() else { continue };
-        let cell = Cell { plan, station, lane, day };
-        if wanted.is_wanted(&cell) {
-            cells.entry(cell).or_default().add(&counts);
+    for (text, [from, until]) in parts.into_iter().filter(|(_, [from, until])| from < until) {
+        for (plan, station, lane, day, counts) in of.rows("to be counted", text, &[&from, &until], counted)? {
+            let Some(plan) = plans.get(&plan).cloned() else { continue };
+            let cell = Cell { plan, station, lane, day };
+            if wanted.is_wanted(&cell) {
+                cells.entry(cell).or_default().add(&counts);
+            }
         }
     }
     Ok(cells)
+}
+
+/// The whole days of a period, and what it has before and behind them.
+fn in_days(Period { from_ms, until_ms }: Period) -> (Range<i64>, [Period; 2]) {
+    let first = from_ms.div_euclid(DAY_MS) + i64::from(from_ms.rem_euclid(DAY_MS) > 0);
+    let end = until_ms.div_euclid(DAY_MS);
+    // What ends with the end of time has no part of a day behind it.
+    let end = if until_ms == i64::MAX { i64::MAX } else { end };
+    if first >= end {
+        return (0..0, [Period { from_ms, until_ms }, Period { from_ms: 0, until_ms: 0 }]);
+    }
+    let behind = end.saturating_mul(DAY_MS);
+    (first..end, [Period { from_ms, until_ms: first * DAY_MS }, Period { from_ms: behind, until_ms }])
+}
+
+/// Plan, station, lane and day of a row, and what was counted there.
+fn counted(row: &rusqlite::Row<'_>) -> rusqlite::Result<(String, String, String, i64, Counts)> {
+    let [runs, errors, crashes, units, first] = [4, 5, 6, 7, 8].map(|column| count(row, column));
+    let (first, rest) = (first?, Counts::default());
+    let (runs, errors, crashes, units) = (runs?, errors?, crashes?, units?);
+    let counts = Counts { runs, errors, crashes, units, first, last: first, ..rest };
+    Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?, counts))
 }
 
 /// A unit that was judged more than once.
@@ -244,42 +262,26 @@ impl Again {
     }
 }
 
-/// The units that were judged more than once, and all of their judgements.
-fn again(
-    of: &Snapshot,
-    plans: &BTreeMap<String, PlanName>,
-) -> Result<(Vec<Again>, BTreeSet<String>), StoreError> {
-    let passed = |verdict: String| verdict == halfrow::Verdict::Pass.to_string();
-    let rows = of.rows("to tell what was judged again", statements::YIELD_AGAIN, &[], |row| {
-        let (first_ms, theirs, ours): (i64, String, String) = (row.get(7)?, row.get(3)?, row.get(8)?);
-        // A unit has a first judgement under plans of each name.
-        let Some(plan) = plans.get(&ours).filter(|plan| plans.get(&theirs) == Some(plan)).cloned() else {
-            return Ok(None);
-        };
-        let cell = Cell { plan, station: row.get(9)?, lane: row.get(10)?, day: first_ms / DAY_MS };
-        Ok(Some(Again {
+/// The units that were judged more than once.
+fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>, StoreError> {
+    let is_pass = |verdict: &str| verdict == halfrow::Verdict::Pass.to_string();
+    let rows = of.rows("to tell what was judged again", statements::RETESTS, &[], |row| {
+        let (hash, first_ms): (String, i64) = (row.get(1)?, row.get(6)?);
+        let plan = plans.get(&hash).cloned().ok_or(rusqlite::Error::QueryReturnedNoRows)?;
+        let cell = Cell { plan, station: row.get(2)?, lane: row.get(3)?, day: first_ms / DAY_MS };
+        Ok(Again {
             cell,
-            unit: row.get(4)?,
+            unit: row.get(0)?,
+            judgements: count(row, 4)?,
             first: row.get(5)?,
             first_ms,
-            first_passed: passed(row.get(6)?),
-            last: row.get(0)?,
-            last_ms: row.get(2)?,
-            last_passed: passed(row.get(1)?),
-            judgements: 2,
-        }))
+            first_passed: is_pass(&row.get::<_, String>(7)?),
+            last: row.get(8)?,
+            last_ms: row.get(9)?,
+            last_passed: is_pass(&row.get::<_, String>(10)?),
+        })
     })?;
-    let mut of_many = BTreeSet::new();
-    let mut last = BTreeMap::<(String, PlanName), Again>::new();
-    for mut again in rows.into_iter().flatten() {
-        let key = (again.unit.clone(), again.cell.plan.clone());
-        of_many.extend([again.first.clone(), again.last.clone()]);
-        if let Some(before) = last.get(&key) {
-            again.judgements = before.judgements + 1;
-        }
-        last.insert(key, again);
-    }
-    Ok((last.into_values().collect(), of_many))
+    Ok(rows)
 }
 
 fn serial_of(of: &Snapshot, unit: &str) -> Result<String, StoreError> {
@@ -287,16 +289,16 @@ fn serial_of(of: &Snapshot, unit: &str) -> Result<String, StoreError> {
     Ok(serials.into_iter().next().unwrap_or_default())
 }
 
-/// Every waived FAIL with its cell, and when it began.
+/// Every waived FAIL with its cell, when it began, and whether its unit was judged only once.
 fn waived(
     of: &Snapshot,
     plans: &BTreeMap<String, PlanName>,
-) -> Result<BTreeMap<String, (Cell, i64)>, StoreError> {
+) -> Result<BTreeMap<String, (Cell, i64, bool)>, StoreError> {
     let rows = of.rows("to tell its waivers", statements::WAIVED, &[], |row| {
         let (hash, started_ms): (String, i64) = (row.get(1)?, row.get(4)?);
         let plan = plans.get(&hash).cloned().ok_or(rusqlite::Error::QueryReturnedNoRows)?;
         let cell = Cell { plan, station: row.get(2)?, lane: row.get(3)?, day: started_ms / DAY_MS };
-        Ok((row.get(0)?, (cell, started_ms)))
+        Ok((row.get(0)?, (cell, started_ms, row.get(5)?)))
     })?;
     Ok(rows.into_iter().collect())
 }

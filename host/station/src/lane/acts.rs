@@ -1,6 +1,7 @@
 //! What the steps of a plan do with a board.
 
 use std::error::Error;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use halfrow::board::{Board, OpenOptions, Stop};
@@ -10,10 +11,11 @@ use halfrow::result::{BoardReport, Identity, Problem};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
-use halfrow::{Progress, Report, RunOptions};
+use halfrow::{Finished, Progress, Report, RunOptions};
 use serde_json::Value;
 
 use super::Ruling;
+use super::kept_frame::keep;
 use crate::exit::Exit;
 use crate::plan::limits::{Limit, Maker, SAMPLES_DIFFERING};
 use crate::plan::{DeviceRule, Judging, Plan};
@@ -103,6 +105,8 @@ pub(super) struct Common<'a> {
     /// Asks the station whether the board may be judged under the serial number; says who wants the run to end instead.
     pub(super) rule: &'a dyn Fn(&BoardSeen) -> Result<Ruling, StoppedBy>,
     pub(super) limits: &'a [Limit],
+    /// Where frames that are wrong are kept.
+    pub(super) spool: &'a Path,
     /// The board that the run began with.
     pub(super) first: Option<BoardSeen>,
 }
@@ -192,7 +196,13 @@ impl Common<'_> {
     }
 
     /// Judges the board.
-    pub(super) fn verify(&self, judging: &Judging, within: Duration, progress: &dyn Progress) -> Try {
+    /// Frames that are wrong are kept under the step's place and the try.
+    pub(super) fn verify(
+        &self,
+        judging: &Judging,
+        (within, place): (Duration, (u32, u32)),
+        progress: &dyn Progress,
+    ) -> Try {
         let begun = Instant::now();
         let candidate = match self.candidate() {
             Ok(candidate) => candidate,
@@ -215,7 +225,10 @@ impl Common<'_> {
             // The plan does not fit the board, which was not judged.
             Err(misfit) => return Try::error(Cause::Refused, &misfit),
         };
-        let report = finished.report;
+        let Finished { report, evidence } = finished;
+        let name = |index: usize| report.frames.get(index).map_or("", |frame| frame.name.as_str());
+        let named: Vec<_> = evidence.iter().map(|one| (name(one.index), one)).collect();
+        keep(self.spool, place, &named);
         let seen = report.board.identity.as_ref().map(|identity| seen(report.board.kind, identity));
         if let Some(exchanged) = seen.as_ref().and_then(|seen| self.exchanged(seen)) {
             return exchanged;

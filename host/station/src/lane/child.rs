@@ -103,7 +103,8 @@ fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn F
         tell(&Message::Identified { board: board.clone() });
         heeded.ruling()
     };
-    let mut common = Common { plan, target, seed: job.seed, stop: &stop, rule: &rule, limits, first: None };
+    let (seed, spool, first) = (job.seed, job.spool.as_path(), None);
+    let mut common = Common { plan, target, seed, stop: &stop, rule: &rule, limits, spool, first };
     for (step, seq) in selected.steps.iter().zip(1..) {
         let mut attempt = 1;
         let passed = loop {
@@ -138,7 +139,7 @@ fn tried(
     let came = match &step.act {
         Act::Identity => common.identity(within),
         Act::Link { each } => common.link(*each, within),
-        Act::Verify(judging) => common.verify(judging, within, &Told::by(tell)),
+        Act::Verify(judging) => common.verify(judging, (within, (seq, attempt)), &Told::by(tell)),
     };
     let Try { outcome, cause, exit, detail, remedy, measurements, suspects, board, evidence } = came;
     StepRecord {

@@ -25,6 +25,8 @@ pub struct Job {
     pub variant: String,
     /// The seed of the run.
     pub seed: u64,
+    /// The folder for what is kept of the run.
+    pub spool: PathBuf,
 }
 
 /// What the lane reads after it.

@@ -9,6 +9,7 @@
 
 mod acts;
 pub mod child;
+pub(crate) mod kept_frame;
 mod message;
 mod progress;
 pub mod supervisor;

@@ -18,7 +18,7 @@ pub use crate::ids::NoRandomness;
 pub use recovered::{recover, recover_run};
 
 use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG, Patience, supervise};
-use crate::lane::{Job, Message, Ruling};
+use crate::lane::{Job, Message, Ruling, kept_frame};
 use crate::plan::limits::Maker;
 use crate::plan::serial::SerialError;
 use crate::plan::{Act, Plan, Selected, Step};
@@ -138,6 +138,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let head = head.map_err(|error| RunError::NotBegun(Box::new(error)))?;
     watch.hear(Stage::Begun(&head));
     let begun = Instant::now();
+    let spool = store.with(|store| store.folder().spool(&head.id));
     let job = Job {
         run: head.id.clone(),
         target: head.target.clone(),
@@ -146,8 +147,8 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         sha256: plan.sha256.clone(),
         variant: head.variant.clone(),
         seed: ids::seed(id),
+        spool: spool.clone(),
     };
-    let spool = store.with(|store| store.folder().spool(&head.id));
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
     let heard = supervise(order.program, &job, &spool, patience(order, selected), &mut attending);
     attending.watch.hear(Stage::Saving);
@@ -291,8 +292,12 @@ fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Resu
 /// What a lane wrote down, as evidence.
 fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     let mut attachments = Vec::new();
-    for (name, media_type) in [(EVENTS, "application/jsonl"), (LOG, "text/plain; charset=utf-8")] {
-        let path = spool.join(name);
+    let told = [(EVENTS, "application/jsonl"), (LOG, "text/plain; charset=utf-8")];
+    let told = told.map(|(name, media_type)| (name.to_owned(), media_type));
+    // Without a folder there is nothing in it.
+    let frames = kept_frame::names(spool).unwrap_or_default().into_iter().map(|name| (name, "image/png"));
+    for (name, media_type) in told.into_iter().chain(frames) {
+        let path = spool.join(&name);
         let bytes = match fs::read(&path) {
             Ok(bytes) if bytes.is_empty() => continue,
             Ok(bytes) => bytes,
@@ -300,8 +305,8 @@ fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> 
             Err(source) => return Err(BlobError::Read { path, source }.into()),
         };
         let sha256 = blobs.put(&bytes)?;
-        let (name, media_type) = (name.to_owned(), media_type.to_owned());
-        attachments.push(Attachment { name, sha256, bytes: bytes.len() as u64, media_type });
+        let (bytes, media_type) = (bytes.len() as u64, media_type.to_owned());
+        attachments.push(Attachment { name, sha256, bytes, media_type });
     }
     Ok(attachments)
 }

@@ -57,6 +57,20 @@ pub enum StoreError {
         /// The newest that is known.
         known: i64,
     },
+    /// It is of an older program, and whoever only looks changes nothing.
+    #[error(
+        "the database {} has version {found} and this program reads {known}; start the station on it once, which \
+         brings it up to date and keeps a copy",
+        path.display()
+    )]
+    Older {
+        /// The file.
+        path: PathBuf,
+        /// Its version.
+        found: i64,
+        /// The one that is read.
+        known: i64,
+    },
     /// It was made by another text of the same version.
     #[error("version {version} of the database {} is not this program's; restore it from a copy", path.display())]
     OtherSchema {

@@ -77,6 +77,9 @@ pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusql
     for one in &record.attachments {
         to.execute(sql::ADD_ATTACHMENT, params![id, one.name, one.sha256, one.bytes as i64, one.media_type])?;
     }
+    for counted in [sql::ADD_DAY_COUNT, sql::ADD_RETEST, sql::ADD_FAILURES] {
+        to.execute(counted, [id])?;
+    }
     Ok(changed)
 }
 

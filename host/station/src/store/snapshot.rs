@@ -7,7 +7,7 @@ use super::{Folder, OpenRun, Rebinding, StoreError, bindings, migrations, open_r
 use crate::record::{PlanRecord, Record};
 
 /// The tables that follow from the records and the audit, each with its key.
-pub const TABLES: [(&str, &str); 8] = [
+pub const TABLES: [(&str, &str); 11] = [
     ("plan", "sha256"),
     ("unit", "id"),
     ("binding", "id"),
@@ -16,6 +16,9 @@ pub const TABLES: [(&str, &str); 8] = [
     ("measurement", "run_id, seq, attempt, name"),
     ("suspect", "run_id, rank"),
     ("attachment", "run_id, name"),
+    ("day_count", "plan_sha256, station, lane, day"),
+    ("retest", "unit_id, plan"),
+    ("failure", "run_id, kind, name"),
 ];
 
 /// A row, each value as text with its column.
@@ -35,11 +38,12 @@ impl Snapshot {
     /// [`StoreError`] when the database is not there or cannot be read.
     pub fn take(folder: &Folder) -> Result<Self, StoreError> {
         let snapshot = Self { folder: folder.clone(), reader: folder.reader()? };
-        snapshot.read("to be read", |reader| {
+        let found = snapshot.read("to be read", |reader| {
             reader.execute_batch("BEGIN")?;
             // It begins with the first look.
-            reader.query_row("SELECT max(n) FROM schema_version", [], |_| Ok(()))
+            reader.query_row("SELECT max(n) FROM schema_version", [], |row| row.get(0))
         })?;
+        migrations::is_known(&folder.database(), found)?;
         Ok(snapshot)
     }
 

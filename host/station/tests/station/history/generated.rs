@@ -1,17 +1,18 @@
 //! A history of any length whose truth is known, since it is counted while it is made.
 
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use halfrow::Verdict;
 use halfrow_station::history::pareto::{Of, pareto};
 use halfrow_station::history::runs::{Filter, Place, page};
 use halfrow_station::history::unit::units;
-use halfrow_station::history::yields::{By, Wanted, yields};
-use halfrow_station::store::{Folder, Snapshot, Store};
+use halfrow_station::history::yields::{By, Wanted, Yield, yields};
+use halfrow_station::store::{Folder, Snapshot};
 use rusqlite::{Connection, Statement, params};
 
-use super::made::{BEGIN_MS, id};
+use super::made::{BEGIN_MS, DAY_MS, End, Made, Run, id};
 
 const LANES: u64 = 16;
 const PARTS: [&str; 5] = ["memory", "row factor", "clock", "samples", "kernel"];
@@ -41,24 +42,22 @@ struct Truth {
 }
 
 struct Generated {
-    folder: Folder,
+    made: Made,
     truth: Truth,
     runs: u64,
-    _kept: tempfile::TempDir,
 }
 
 fn serial(unit: u64) -> String {
     format!("CAT{unit:07}")
 }
 
-/// A history of so many runs.
+/// A history of so many runs, in a database as the first program made it, which the station then brings up to date.
 fn generate(runs: u64) -> Generated {
     let kept = tempfile::tempdir().unwrap();
-    let folder = Folder::new(kept.path());
-    drop(Store::open(&folder).unwrap());
-    let mut database = Connection::open(folder.database()).unwrap();
+    let mut database = Connection::open(Folder::new(kept.path()).database()).unwrap();
     database.execute_batch("PRAGMA synchronous = OFF; PRAGMA cache_size = -400000").unwrap();
     let transaction = database.transaction().unwrap();
+    first_schema(&transaction);
     for (place, (name, version)) in PLANS.iter().enumerate() {
         let text = "INSERT INTO plan VALUES ($1, $2, $3, 'CAM-T', '', 0)";
         transaction.execute(text, params![plan_hash(place), name, version]).unwrap();
@@ -71,7 +70,21 @@ fn generate(runs: u64) -> Generated {
     }
     drop(to);
     transaction.commit().unwrap();
-    Generated { folder, truth, runs, _kept: kept }
+    drop(database);
+    Generated { made: Made::at(kept), truth, runs }
+}
+
+/// The tables of the first version.
+fn first_schema(to: &Connection) {
+    let sqlite = |text: &str| {
+        text.replace("{int}", "INTEGER").replace("{real}", "REAL").replace("{strict}", " STRICT")
+    };
+    let (first, version) =
+        (include_str!("../../../sql/schema-1.sql"), include_str!("../../../sql/schema-version.sql"));
+    to.execute_batch(&sqlite(version)).unwrap();
+    to.execute_batch(&sqlite(first)).unwrap();
+    let note = "INSERT INTO schema_version VALUES (1, $1, 0)";
+    to.execute(note, [halfrow::result::sha256([first])]).unwrap();
 }
 
 fn plan_hash(place: usize) -> String {
@@ -148,7 +161,7 @@ fn started_ms(number: u64) -> i64 {
 
 impl Generated {
     fn now(&self) -> Snapshot {
-        Snapshot::take(&self.folder).unwrap()
+        self.made.now()
     }
 
     /// Compares all that is counted with the truth.
@@ -184,16 +197,58 @@ fn all_that_is_counted_is_true() {
     generate(6_000).compare();
 }
 
-/// The 95th percentile, and the longest.
-fn slowest(mut times: Vec<Duration>) -> (Duration, Duration) {
-    times.sort_unstable();
-    (times[times.len() * 95 / 100], times[times.len() - 1])
+/// What was counted when the database was brought up to date, and what is counted with each run, are one.
+#[test]
+fn what_was_entered_before_and_after_is_counted_together() {
+    let mut all = generate(300);
+    let count = |all: &Generated| {
+        let wanted = Wanted { plan: Some("final".to_owned()), ..Wanted::default() };
+        let found = yields(&all.now(), &wanted, By::Plan).unwrap();
+        let of = |line: &Yield| (line.first_pass.of, line.first_pass.count, line.last.count, line.flipped);
+        let failed = pareto(&all.now(), &wanted, Of::Check).unwrap().failed;
+        (found.lines.iter().map(of).collect::<Vec<_>>(), failed)
+    };
+    let (before, failed) = count(&all);
+    let fresh = |serial: &str, end, day| Run { started_ms: BEGIN_MS + day * DAY_MS, ..Run::of(serial, end) };
+    for (serial, end, day) in
+        [("NEW1", End::Fail(&["clock"]), 50), ("NEW1", End::Pass, 51), ("NEW2", End::Pass, 51)]
+    {
+        all.made.run(&fresh(serial, end, day));
+    }
+    let (after, failed_after) = count(&all);
+    assert_eq!(failed_after, failed + 1);
+    let [(units, first, last, flipped)] = before[..] else { panic!("{before:?}") };
+    assert_eq!(after, [(units + 2, first + 1, last + 2, flipped + 1)]);
 }
 
-fn timed(act: impl FnOnce()) -> Duration {
-    let begun = Instant::now();
+/// The 95th and the 99th percentile, and the longest.
+fn slowest(mut times: Vec<Duration>) -> [Duration; 3] {
+    times.sort_unstable();
+    let at = |per_cent: usize| times[(times.len() * per_cent / 100).min(times.len() - 1)];
+    [at(95), at(99), at(100)]
+}
+
+/// How long something took, and how long the processor was at it.
+type Took = (Duration, Duration);
+
+fn timed(act: impl FnOnce()) -> Took {
+    let (begun, busy) = (Instant::now(), on_processor());
     act();
-    begun.elapsed()
+    (begun.elapsed(), on_processor() - busy)
+}
+
+/// How long this thread has had the processor.
+fn on_processor() -> Duration {
+    let said = std::fs::read_to_string("/proc/thread-self/schedstat").unwrap();
+    Duration::from_nanos(said.split(' ').next().unwrap().parse().unwrap())
+}
+
+fn told(name: &str, times: Vec<Took>, wanted: &str) {
+    let (wall, processor): (Vec<_>, Vec<_>) = times.into_iter().unzip();
+    let ([p95, p99, most], [of_processor, ..]) = (slowest(wall), slowest(processor));
+    println!(
+        "{name:15}  p95 {p95:9.2?}, p99 {p99:9.2?}, longest {most:9.2?}, processor p95 {of_processor:9.2?}; {wanted}"
+    );
 }
 
 /// A filter, now and then of several conditions.
@@ -214,34 +269,64 @@ fn filter(draw: &mut Draw, runs: u64) -> Filter {
 fn a_million_runs_are_looked_at_in_time() {
     let runs = std::env::var("HALFROW_STATION_RUNS").map_or(1_000_000, |runs| runs.parse().unwrap());
     let took = Instant::now();
-    let made = generate(runs);
-    let size = std::fs::metadata(made.folder.database()).unwrap().len() >> 20;
+    let mut made = generate(runs);
+    let size = std::fs::metadata(made.made.folder().database()).unwrap().len() >> 20;
     println!("{runs} runs, {size} MiB, made in {:.0} s", took.elapsed().as_secs_f64());
     made.compare();
     let mut draw = Draw(2);
-    let pages = (0..400).map(|_| {
+    let mut look = || {
         let filter = filter(&mut draw, made.runs);
         let started_ms = started_ms(draw.below(made.runs));
         let after = Place { started_ms, id: id(started_ms, 0) };
         timed(|| drop(page(&made.now(), &filter, Some(&after), 50).unwrap()))
-    });
-    let pages = slowest(pages.collect());
-    let all = slowest(
-        (0..400).map(|_| timed(|| drop(units(&made.now(), &serial(draw.below(made.runs)))))).collect(),
-    );
-    let yields =
-        slowest((0..9).map(|_| timed(|| drop(yields(&made.now(), &Wanted::default(), By::Day)))).collect());
-    let parts =
-        slowest((0..9).map(|_| timed(|| drop(pareto(&made.now(), &Wanted::default(), Of::Part)))).collect());
-    let checks =
-        slowest((0..9).map(|_| timed(|| drop(pareto(&made.now(), &Wanted::default(), Of::Check)))).collect());
-    for (name, (p95, most), limit) in [
-        ("page", pages, 50),
-        ("unit", all, 20),
-        ("yield", yields, 500),
-        ("pareto by part", parts, 100),
-        ("pareto by check", checks, 100),
-    ] {
-        println!("{name:15}  p95 {p95:9.2?}, longest {most:9.2?}, wanted {limit} ms");
+    };
+    told("page", (0..400).map(|_| look()).collect(), "wanted p95 50 ms");
+    let mut look = || {
+        let serial = serial(draw.below(made.runs));
+        timed(|| drop(units(&made.now(), &serial).unwrap()))
+    };
+    told("unit", (0..400).map(|_| look()).collect(), "wanted p95 20 ms");
+    let all = Wanted::default();
+    for (name, by) in [("yield by day", By::Day), ("yield by plan", By::Plan)] {
+        let look = |_| timed(|| drop(yields(&made.now(), &all, by).unwrap()));
+        told(name, (0..20).map(look).collect(), "wanted 500 ms");
     }
+    for (name, by) in [("pareto by part", Of::Part), ("pareto by check", Of::Check)] {
+        let look = |_| timed(|| drop(pareto(&made.now(), &all, by).unwrap()));
+        told(name, (0..20).map(look).collect(), "wanted 100 ms");
+    }
+    let (begun, ended) = commits(&mut made);
+    told("begin", begun, "wanted p99 50 ms, while two look at all there is");
+    told("end", ended, "wanted p99 50 ms, the record's bytes among it");
+}
+
+/// Runs that are begun and ended while two others look at all there is.
+fn commits(of: &mut Generated) -> (Vec<Took>, Vec<Took>) {
+    let (folder, all) = (of.made.folder(), Wanted::default());
+    let is_over = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        for by in [Of::Part, Of::Check] {
+            let (folder, all, is_over) = (&folder, &all, &is_over);
+            scope.spawn(move || {
+                while !is_over.load(Ordering::Relaxed) {
+                    let now = Snapshot::take(folder).unwrap();
+                    drop(yields(&now, all, By::Day).unwrap());
+                    drop(pareto(&now, all, by).unwrap());
+                    drop(page(&now, &Filter::default(), None, 50).unwrap());
+                }
+            });
+        }
+        let last = started_ms(of.runs);
+        let commit = |number: i64| {
+            let end = if number % 20 == 0 { End::Fail(&["memory"]) } else { End::Pass };
+            let run = Run { started_ms: last + number * 1000, ..Run::of(&format!("NEW{number}"), end) };
+            let mut head = None;
+            let begun = timed(|| head = Some(of.made.begin(&run)));
+            let (head, plan) = head.unwrap();
+            (begun, timed(|| of.made.finish(&run, head, plan)))
+        };
+        let times = (0..500).map(commit).unzip();
+        is_over.store(true, Ordering::Relaxed);
+        times
+    })
 }

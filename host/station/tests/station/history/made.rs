@@ -13,6 +13,7 @@ use tempfile::TempDir;
 
 /// 1 November 2026, midnight UTC.
 pub(crate) const BEGIN_MS: i64 = 1_793_491_200_000;
+pub(crate) const DAY_MS: i64 = 24 * HOUR_MS;
 pub(crate) const HOUR_MS: i64 = 3_600_000;
 pub(crate) const PRODUCT: &str = "CAM-T";
 
@@ -59,7 +60,11 @@ pub(crate) struct Made {
 
 impl Made {
     pub(crate) fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        Self::at(tempfile::tempdir().unwrap())
+    }
+
+    /// With what is in this folder already.
+    pub(crate) fn at(folder: TempDir) -> Self {
         let store = Store::open(&Folder::new(folder.path())).unwrap();
         Self { folder, store, entered: 0 }
     }
@@ -79,15 +84,25 @@ impl Made {
 
     /// Enters a run and returns its id.
     pub(crate) fn run(&mut self, run: &Run) -> String {
-        self.entered += 1;
-        let plan = plan(run.plan);
-        let head = self.store.begin(self.head(run), &plan).unwrap();
+        let (head, plan) = self.begin(run);
         let id = head.id.clone();
         if run.end != End::Open {
-            let attachments = self.attached(run);
-            self.store.finish(&Record { attachments, ..record(head, plan, run) }, 2).unwrap();
+            self.finish(run, head, plan);
         }
         id
+    }
+
+    /// Begins a run.
+    pub(crate) fn begin(&mut self, run: &Run) -> (RunHead, PlanRecord) {
+        self.entered += 1;
+        let plan = plan(run.plan);
+        (self.store.begin(self.head(run), &plan).unwrap(), plan)
+    }
+
+    /// Ends it.
+    pub(crate) fn finish(&mut self, run: &Run, head: RunHead, plan: PlanRecord) {
+        let attachments = self.attached(run);
+        self.store.finish(&Record { attachments, ..record(head, plan, run) }, 2).unwrap();
     }
 
     fn attached(&self, run: &Run) -> Vec<Attachment> {

@@ -10,7 +10,7 @@ use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 /// `O` open; then the plan's name and version if they are other ones. Beside them what counts for the plan `final`:
 ///
 /// units, first pass, in the end, waived, flipped; runs, errors, crashes.
-const CASES: [(&str, [u64; 8]); 40] = [
+pub(crate) const CASES: [(&str, [u64; 8]); 41] = [
     ("A:P", [1, 1, 1, 0, 0, 1, 0, 0]),
     ("A:F", [1, 0, 0, 0, 0, 1, 0, 0]),
     // An ERROR is no judgement.
@@ -47,6 +47,7 @@ const CASES: [(&str, [u64; 8]); 40] = [
     ("A:W A:E", [1, 0, 0, 1, 0, 2, 1, 0]),
     ("A:W A:W", [1, 0, 0, 1, 0, 2, 0, 0]),
     ("A:W A:P A:W", [1, 0, 0, 1, 0, 3, 0, 0]),
+    ("A:F A:W A:P", [1, 0, 1, 0, 1, 3, 0, 0]),
     // What is open has not come to anything.
     ("A:F A:O", [1, 0, 0, 0, 0, 1, 0, 0]),
     // Units are counted each for itself.
@@ -61,7 +62,7 @@ const CASES: [(&str, [u64; 8]); 40] = [
 ];
 
 /// Enters one word of a story.
-fn enter(made: &mut Made, word: &str, hour: i64) {
+pub(crate) fn enter(made: &mut Made, word: &str, hour: i64) {
     let (word, plan) = word.split_once('@').unwrap_or((word, "final,1"));
     let (serial, end) = word.split_once(':').unwrap();
     let plan = match plan {

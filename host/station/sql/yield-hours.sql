@@ -1,4 +1,4 @@
--- What is counted, by plan, lane and day. An ERROR has a number, too, and is no judgement.
+-- The same in a part of a day. An ERROR has a number, too, and is no judgement.
 SELECT plan_sha256, station, lane, started_ms / 86400000,
   count(*),
   count(*) FILTER (WHERE verdict = 'ERROR'),
@@ -6,5 +6,5 @@ SELECT plan_sha256, station, lane, started_ms / 86400000,
   count(*) FILTER (WHERE verdict <> 'ERROR' AND nth = 1),
   count(*) FILTER (WHERE verdict = 'PASS' AND nth = 1)
 FROM run
-WHERE verdict IS NOT NULL AND +started_ms >= $1 AND +started_ms < $2
+WHERE coalesce(verdict, '') <> '' AND started_ms >= $1 AND started_ms < $2
 GROUP BY plan_sha256, station, lane, started_ms / 86400000;

@@ -1,0 +1,3 @@
+SELECT unit_id, first_plan_sha256, station, lane, judgements, first_run, first_ms, first_verdict, last_run, last_ms,
+  last_verdict
+FROM retest;

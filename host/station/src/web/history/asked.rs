@@ -1,0 +1,163 @@
+//! What a query asks for, and the query that asks for it.
+
+use form_urlencoded::Serializer;
+use halfrow::Verdict;
+use jiff::civil::Date;
+use jiff::{Timestamp, ToSpan as _, tz::TimeZone};
+use serde::Deserialize;
+
+use crate::history::Period;
+use crate::history::runs::{Filter, Place};
+use crate::history::yields::Wanted;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// The fields of every form of the history. What is empty asks for nothing.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Asked {
+    pub(super) serial: String,
+    pub(super) verdict: String,
+    pub(super) plan: String,
+    pub(super) lane: String,
+    pub(super) operator: String,
+    /// The first day, or moment.
+    pub(super) from: String,
+    /// The last day, or the first moment after.
+    pub(super) until: String,
+    /// Plan, day or lane of a yield; part or check of failures.
+    pub(super) by: String,
+    /// The place after which the page begins.
+    after: String,
+}
+
+impl Asked {
+    /// As a filter of runs.
+    ///
+    /// # Errors
+    /// [`Trouble`] when a value is none.
+    pub(super) fn filter(&self, visit: &Visit) -> Result<Filter, Trouble> {
+        let verdict = match self.verdict.as_str() {
+            "" => None,
+            "PASS" => Some(Verdict::Pass),
+            "FAIL" => Some(Verdict::Fail),
+            "ERROR" => Some(Verdict::Error),
+            other => return Err(wrong(visit, other)),
+        };
+        Ok(Filter {
+            serial: some(&self.serial),
+            verdict,
+            plan: some(&self.plan),
+            lane: some(&self.lane),
+            operator: some(&self.operator),
+            period: self.period(visit)?,
+        })
+    }
+
+    /// As what is to be counted.
+    ///
+    /// # Errors
+    /// As [`Self::filter`].
+    pub(super) fn wanted(&self, visit: &Visit) -> Result<Wanted, Trouble> {
+        Ok(Wanted { plan: some(&self.plan), lane: some(&self.lane), period: self.period(visit)? })
+    }
+
+    /// The place after which the page begins.
+    ///
+    /// # Errors
+    /// As [`Self::filter`].
+    pub(super) fn after(&self, visit: &Visit) -> Result<Option<Place>, Trouble> {
+        some(&self.after).map(|after| after.parse().map_err(|_| wrong(visit, &after))).transpose()
+    }
+
+    /// The first of `choices` that `by` names; the first of all when it names none.
+    ///
+    /// # Errors
+    /// As [`Self::filter`].
+    pub(super) fn by<T: Copy>(&self, visit: &Visit, choices: &[(&str, T)]) -> Result<(usize, T), Trouble> {
+        let named = |name: &str| self.by == name || self.by.is_empty();
+        let found = choices.iter().enumerate().find(|(_, (name, _))| named(name));
+        found.map(|(place, (_, choice))| (place, *choice)).ok_or_else(|| wrong(visit, &self.by))
+    }
+
+    fn period(&self, visit: &Visit) -> Result<Period, Trouble> {
+        let all = Period::default();
+        let moment = |text: &str, days| moment(text, days).ok_or_else(|| wrong(visit, text));
+        Ok(Period {
+            from_ms: some(&self.from).map_or(Ok(all.from_ms), |from| moment(&from, 0))?,
+            until_ms: some(&self.until).map_or(Ok(all.until_ms), |until| moment(&until, 1))?,
+        })
+    }
+
+    /// The address at `path` that asks for the same, from the run after `after` on.
+    pub(super) fn address(&self, path: &str, after: Option<&Place>) -> String {
+        let after = after.map(ToString::to_string).unwrap_or_default();
+        let Self { serial, verdict, plan, lane, operator, from, until, by, after: _ } = self;
+        let all = [
+            ("serial", serial),
+            ("verdict", verdict),
+            ("plan", plan),
+            ("lane", lane),
+            ("operator", operator),
+            ("from", from),
+            ("until", until),
+            ("by", by),
+            ("after", &after),
+        ];
+        let mut query = Serializer::new(String::new());
+        query.extend_pairs(all.into_iter().filter(|(_, value)| !value.is_empty()));
+        match query.finish() {
+            query if query.is_empty() => path.to_owned(),
+            query => format!("{path}?{query}"),
+        }
+    }
+
+    /// Whether it asks for a page that is not the first.
+    pub(super) fn is_further(&self) -> bool {
+        !self.after.is_empty()
+    }
+}
+
+/// The address of the page of a serial number.
+pub(super) fn unit_address(serial: &str) -> String {
+    Asked { serial: serial.to_owned(), ..Asked::default() }.address("/unit", None)
+}
+
+fn some(text: &str) -> Option<String> {
+    Some(text.trim().to_owned()).filter(|text| !text.is_empty())
+}
+
+fn wrong(visit: &Visit, value: &str) -> Trouble {
+    Trouble::wrong(visit, visit.words.fill("history.wrong", &[("value", value)]))
+}
+
+/// Milliseconds since 1970 of a moment, or of the midnight UTC that begins the day so many after a date.
+fn moment(text: &str, days: i64) -> Option<i64> {
+    let midnight = |date: Date| date.checked_add(days.days()).and_then(|date| date.to_zoned(TimeZone::UTC));
+    let date = || text.parse::<Date>().and_then(midnight).map(|zoned| zoned.timestamp());
+    let moment = text.parse::<Timestamp>().or_else(|_| date());
+    moment.map(Timestamp::as_millisecond).ok().filter(|ms| *ms >= 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_last_day_is_among_what_is_wanted_and_a_moment_is_the_first_after() {
+        // 22 November 2026, midnight UTC.
+        let day = 1_795_305_600_000;
+        assert_eq!((moment("2026-11-22", 0), moment("2026-11-22", 1)), (Some(day), Some(day + 86_400_000)));
+        assert_eq!(moment("2026-11-22T01:00:00+01:00", 1), Some(day));
+        for wrong in ["", "yesterday", "2026-13-01", "1969-01-01"] {
+            assert_eq!(moment(wrong, 0), None, "{wrong}");
+        }
+    }
+
+    #[test]
+    fn an_address_asks_for_what_was_asked_for() {
+        let asked = Asked { serial: "A&B=ü#".to_owned(), lane: "1".to_owned(), ..Asked::default() };
+        assert_eq!(asked.address("/history", None), "/history?serial=A%26B%3D%C3%BC%23&lane=1");
+        assert_eq!(Asked::default().address("/history", None), "/history");
+    }
+}

@@ -1,0 +1,106 @@
+//! Evidence and exports of a run. Nothing that a board or a scanner said is ever served as a page.
+
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::response::{IntoResponse as _, Response};
+
+use crate::export::{self, ExportError, Format, Table};
+use crate::history::unit::{self, UnitRun};
+use crate::record::Attachment;
+use crate::store::{Folder, Snapshot};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// What has a hash for its address never changes.
+pub(super) const FOR_EVER: &str = "private, max-age=31536000, immutable";
+/// Text of any kind is shown as text.
+const TEXT: &str = "text/plain; charset=utf-8";
+
+/// An attachment of a run by its hash.
+pub(super) async fn attachment(
+    State(app): State<App>,
+    visit: Visit,
+    Path((run, hash)): Path<(String, String)>,
+) -> Result<Response, Trouble> {
+    let (bytes, attachment) = attached(&app, &visit, run, hash).await?;
+    let (kind, how) = served_as(&attachment.media_type);
+    let headers = [(CONTENT_TYPE, kind), (CACHE_CONTROL, FOR_EVER), (CONTENT_DISPOSITION, how)];
+    Ok((headers, bytes).into_response())
+}
+
+/// The bytes of an attachment that this run has, and what is known of it.
+///
+/// # Errors
+/// [`Trouble`] when the run has none of this hash, or it is not there any more.
+pub(super) async fn attached(
+    app: &App,
+    visit: &Visit,
+    run: String,
+    hash: String,
+) -> Result<(Vec<u8>, Attachment), Trouble> {
+    let look = move |now: &Snapshot| {
+        let Some(UnitRun { attachments, .. }) = unit::run_of(now, &run)? else { return Ok(None) };
+        let Some(one) = attachments.into_iter().find(|one| one.sha256 == hash) else { return Ok(None) };
+        match now.folder().blobs().get(&one.sha256) {
+            Err(error) if error.is_gone() => Ok(None),
+            bytes => Ok(Some((bytes?, one))),
+        }
+    };
+    app.look(visit, look).await?.ok_or_else(|| Trouble::missing(visit))
+}
+
+/// The media type that is told to browsers, and whether they show it: pictures and text, and nothing that could do
+/// anything.
+fn served_as(media_type: &str) -> (&'static str, &'static str) {
+    match media_type.split(';').next().unwrap_or_default().trim() {
+        "image/png" => ("image/png", "inline"),
+        "text/plain" | "application/json" | "application/jsonl" => (TEXT, "inline"),
+        _ => ("application/octet-stream", "attachment"),
+    }
+}
+
+/// A run as another program takes it.
+pub(super) async fn export(
+    State(app): State<App>,
+    visit: Visit,
+    Path((run, format)): Path<(String, String)>,
+) -> Result<Response, Trouble> {
+    let (format, kind, ending) = match format.as_str() {
+        "record" => (Some(Format::Record), "application/json", Format::Record.ending()),
+        "junit" => (Some(Format::Junit), "application/xml", Format::Junit.ending()),
+        "openhtf" => (Some(Format::OpenHtf), "application/json", Format::OpenHtf.ending()),
+        "csv" => (None, "text/csv; charset=utf-8", ".csv"),
+        _ => return Err(Trouble::missing(&visit)),
+    };
+    let look = move |now: &Snapshot| {
+        let run = unit::run_of(now, &run)?;
+        let found = run.and_then(|run| Some((run.line.id, run.line.record_sha256?)));
+        Ok(found.map(|(id, hash)| (id, written(now.folder(), &hash, format))))
+    };
+    let (id, written) = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
+    let bytes = written.map_err(|error| refused(&visit, error))?;
+    let how = format!("attachment; filename=\"{id}{ending}\"");
+    let headers = [(CONTENT_TYPE, kind), (CACHE_CONTROL, FOR_EVER), (CONTENT_DISPOSITION, how.as_str())];
+    Ok((headers, bytes).into_response())
+}
+
+fn written(folder: &Folder, hash: &str, format: Option<Format>) -> Result<Vec<u8>, ExportError> {
+    let Some(format) = format else {
+        let mut table = Table::begin(Vec::new())?;
+        table.add(&export::record(folder, hash)?.0)?;
+        return Ok(table.end());
+    };
+    export::run(folder, hash, format)
+}
+
+fn refused(visit: &Visit, error: ExportError) -> Trouble {
+    match error {
+        ExportError::Store(error) => Trouble::store(visit, error),
+        error => {
+            let said = format!("{:#}", anyhow::Error::from(error));
+            Trouble::new(visit, StatusCode::INTERNAL_SERVER_ERROR, said)
+        }
+    }
+}

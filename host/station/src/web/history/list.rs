@@ -1,0 +1,131 @@
+//! The list of runs.
+
+use std::collections::BTreeSet;
+
+use axum::extract::{Query, State};
+use axum::response::Response;
+use maud::{Markup, html};
+
+use super::asked::{Asked, unit_address};
+use super::show;
+use crate::history::runs::{self, RunLine};
+use crate::history::{self, PlanName};
+use crate::store::Snapshot;
+use crate::web::layout::{Here, Page};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// Runs of a page.
+const RUNS: u32 = 50;
+
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Query(asked): Query<Asked>,
+) -> Result<Response, Trouble> {
+    let (filter, after) = (asked.filter(&visit)?, asked.after(&visit)?);
+    let look = move |now: &Snapshot| {
+        Ok((runs::page(now, &filter, after.as_ref(), RUNS)?, history::plan_names(now)?))
+    };
+    let (found, plans) = app.look(&visit, look).await?;
+    let content = html! {
+        h1 { (visit.say("history.title")) }
+        (form(&visit, &asked, &lanes(&app), &plans))
+        @if found.runs.is_empty() {
+            p.nothing { (visit.say("history.none")) }
+        } @else {
+            (table(&visit, &found.runs))
+        }
+        p.pages {
+            @if asked.is_further() {
+                a href=(asked.address("/history", None)) { (visit.say("history.newest")) }
+            }
+            @if let Some(next) = &found.next {
+                a rel="next" href=(asked.address("/history", Some(next))) { (visit.say("history.older")) }
+            }
+        }
+    };
+    let page = Page { here: Here::History, title: visit.say("history.title"), head: show::head(), content };
+    Ok(page.answer(&visit))
+}
+
+/// The names of the lanes that the station has.
+pub(super) fn lanes(app: &App) -> Vec<String> {
+    app.settings().lanes.iter().map(|lane| lane.name.clone()).collect()
+}
+
+fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+    html! {
+        form.filters method="get" action="/history" {
+            (field(visit.say("history.serial"), "serial", "search", &asked.serial))
+            label { span { (visit.say("history.verdict")) }
+                select name="verdict" {
+                    option value="" { (visit.say("history.any")) }
+                    @for word in ["PASS", "FAIL", "ERROR"] {
+                        option value=(word) selected[asked.verdict == word] { (word) }
+                    }
+                }
+            }
+            (common(visit, asked, lanes, plans))
+            (field(visit.say("history.operator"), "operator", "search", &asked.operator))
+            span.acts {
+                button { (visit.say("history.show")) }
+                " " a href="/history" { (visit.say("history.all")) }
+            }
+        }
+    }
+}
+
+/// The fields that runs, yields and failures have in common: plan, lane, first and last day.
+pub(super) fn common(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+    html! {
+        label { span { (visit.say("history.plan")) }
+            input type="search" name="plan" value=(asked.plan) list="plans";
+        }
+        datalist #plans { @for plan in plans { option value=(plan.plan) { (show::said(&plan.product)) } } }
+        label { span { (visit.say("history.lane")) }
+            input.short type="search" name="lane" value=(asked.lane) list="lanes";
+        }
+        datalist #lanes { @for lane in lanes { option value=(lane) {} } }
+        (day(visit.say("history.from"), "from", &asked.from))
+        (day(visit.say("history.until"), "until", &asked.until))
+    }
+}
+
+fn field(label: &str, name: &str, kind: &str, value: &str) -> Markup {
+    html! { label { span { (label) } input type=(kind) name=(name) value=(value); } }
+}
+
+/// A day; a moment that the address names is kept as text.
+fn day(label: &str, name: &str, value: &str) -> Markup {
+    field(label, name, if value.len() > 10 { "text" } else { "date" }, value)
+}
+
+fn table(visit: &Visit, runs: &[RunLine]) -> Markup {
+    html! {
+        table.runs {
+            thead { tr {
+                th { (visit.say("history.began")) } th { (visit.say("history.serial")) }
+                th { (visit.say("history.verdict")) } th { (visit.say("history.plan")) }
+                th { (visit.say("history.lane")) } th { (visit.say("history.operator")) }
+                th { (visit.say("history.result")) }
+            } }
+            tbody { @for run in runs { (row(visit, run)) } }
+        }
+    }
+}
+
+fn row(visit: &Visit, run: &RunLine) -> Markup {
+    html! {
+        tr {
+            td.when { a href=(show::run_address(&run.id)) { (show::moment(run.started_ms)) } }
+            td.serial { a href=(unit_address(&run.serial)) { (show::said(&run.serial)) } }
+            td.outcome { (show::outcome(visit, run)) }
+            td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }
+            td.lane { (show::said(&run.lane)) }
+            td.operator { (show::said(&run.operator)) }
+            td.headline { @if let Some(headline) = &run.headline { (show::said(headline)) } }
+        }
+    }
+}

@@ -1,0 +1,82 @@
+//! What fails most.
+
+use std::collections::BTreeSet;
+
+use axum::extract::{Query, State};
+use axum::response::Response;
+use maud::{Markup, html};
+
+use super::asked::Asked;
+use super::{bars, list, show, yields};
+use crate::history::pareto::{self, Bar, Of, Pareto};
+use crate::history::{self, PlanName};
+use crate::store::Snapshot;
+use crate::web::layout::{Here, Page};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Query(asked): Query<Asked>,
+) -> Result<Response, Trouble> {
+    let wanted = asked.wanted(&visit)?;
+    let (_, by) = asked.by(&visit, &[("part", Of::Part), ("check", Of::Check)])?;
+    let look = move |now: &Snapshot| Ok((pareto::pareto(now, &wanted, by)?, history::plan_names(now)?));
+    let (found, plans) = app.look(&visit, look).await?;
+    let counts = [("runs", found.failed.to_string()), ("units", found.units.to_string())];
+    let counts = counts.each_ref().map(|(name, count)| (*name, count.as_str()));
+    let content = html! {
+        h1 { (visit.say("pareto.title")) }
+        (form(&visit, &asked, &list::lanes(&app), &plans))
+        @if found.failed == 0 {
+            p.nothing { (visit.say("pareto.none")) }
+        } @else {
+            p.soft {
+                (visit.words.fill("pareto.failed", &counts)) " "
+                @if by == Of::Check { (visit.say("pareto.several")) }
+            }
+            (table(&visit, &found))
+        }
+    };
+    let page = Page { here: Here::Pareto, title: visit.say("pareto.title"), head: show::head(), content };
+    Ok(page.answer(&visit))
+}
+
+fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+    let choices = [("part", visit.say("pareto.part")), ("check", visit.say("pareto.check"))];
+    html! {
+        form.filters method="get" action="/pareto" {
+            (yields::by(visit, asked, &choices))
+            (list::common(visit, asked, lanes, plans))
+            span.acts { button { (visit.say("history.show")) } " " a href="/pareto" { (visit.say("history.all")) } }
+        }
+    }
+}
+
+fn table(visit: &Visit, found: &Pareto) -> Markup {
+    let most = found.bars.first().map_or(0, |bar| bar.runs.count);
+    html! {
+        div.wide { table.pareto {
+            thead { tr {
+                th { (visit.say("pareto.what")) } th { (visit.say("pareto.runs")) }
+                th { (visit.say("pareto.share")) } th.number { (visit.say("yield.units")) }
+            } }
+            tbody { @for bar in &found.bars { (row(visit, bar, most)) } }
+        } }
+    }
+}
+
+fn row(visit: &Visit, bar: &Bar, most: u64) -> Markup {
+    html! {
+        tr {
+            th scope="row" {
+                @if bar.name.is_empty() { (visit.say("pareto.nothing")) } @else { (show::said(&bar.name)) }
+            }
+            td { (bars::length(bar.runs.count, most)) " " (bar.runs.count) }
+            td { (show::share(visit, &bar.runs)) }
+            td.number { (bar.units) }
+        }
+    }
+}

@@ -1,0 +1,143 @@
+//! Pictures of frames that a run failed with. They are made from the evidence when somebody looks, so no verdict waits
+//! for them.
+
+use axum::extract::{Path, State};
+use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
+use axum::response::{IntoResponse as _, Response};
+use halfrow::frames::{self, ReadOptions};
+use halfrow::model::Frame;
+use halfrow::report::pictures;
+use maud::{Markup, html};
+use serde_json::Value;
+
+use super::evidence::{FOR_EVER, attached};
+use super::show;
+use crate::history::runs::RunLine;
+use crate::lane::kept_frame::{KeptFrame, View};
+use crate::record::{Attachment, Record};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// The widest preview, in pixels.
+const WIDTH: usize = 960;
+
+/// A frame of the evidence, developed for the screen.
+pub(super) async fn preview(
+    State(app): State<App>,
+    visit: Visit,
+    Path((run, hash)): Path<(String, String)>,
+) -> Result<Response, Trouble> {
+    let frame = attached(&app, &visit, run, hash).await?;
+    let picture = app.blocking(&visit, move || pictures::developed(&decoded(&frame)?, WIDTH).ok()).await?;
+    answer(&visit, picture)
+}
+
+/// Where two frames of the evidence differ.
+pub(super) async fn difference(
+    State(app): State<App>,
+    visit: Visit,
+    Path((run, found, expected)): Path<(String, String, String)>,
+) -> Result<Response, Trouble> {
+    let found = attached(&app, &visit, run.clone(), found).await?;
+    let expected = attached(&app, &visit, run, expected).await?;
+    let made = move || {
+        let (found, expected) = (decoded(&found)?, decoded(&expected)?);
+        pictures::differences(&expected, &found).ok()
+    };
+    let picture = app.blocking(&visit, made).await?;
+    answer(&visit, picture)
+}
+
+/// The frame that an attachment is, if it is one.
+fn decoded((bytes, attachment): &(Vec<u8>, Attachment)) -> Option<Frame> {
+    let (KeptFrame { depth, phase, .. }, _) = KeptFrame::of(&attachment.name)?;
+    frames::decode(bytes, &ReadOptions { depth, phase, raw: None }).ok()
+}
+
+fn answer(visit: &Visit, picture: Option<Vec<u8>>) -> Result<Response, Trouble> {
+    let picture = picture.ok_or_else(|| Trouble::missing(visit))?;
+    Ok(([(CONTENT_TYPE, "image/png"), (CACHE_CONTROL, FOR_EVER)], picture).into_response())
+}
+
+/// The frames that were kept of a run, each as it went in, came out, should have, and where it differs.
+pub(super) fn of_run(
+    visit: &Visit,
+    run: &RunLine,
+    record: Option<&Record>,
+    kept: &[(Attachment, bool)],
+) -> Markup {
+    let here = || kept.iter().filter(|(_, is_here)| *is_here).map(|(one, _)| one);
+    let hash = |frame: &KeptFrame, view| {
+        let name = frame.name(view);
+        here().find(|one| one.name == name).map(|one| one.sha256.as_str())
+    };
+    let frames = here().filter_map(|one| KeptFrame::of(&one.name)).filter(|(_, view)| *view == View::In);
+    html! {
+        @for (frame, _) in frames {
+            @if let [Some(input), Some(found), Some(expected)] = KeptFrame::VIEWS.map(|view| hash(&frame, view)) {
+                (section(visit, run, (&frame, record), [input, found, expected]))
+            }
+        }
+    }
+}
+
+fn section(
+    visit: &Visit,
+    run: &RunLine,
+    (frame, record): (&KeptFrame, Option<&Record>),
+    [input, found, expected]: [&str; 3],
+) -> Markup {
+    let address = show::run_address(&run.id);
+    let preview = |hash: &str| format!("{address}/preview/{hash}");
+    let all = [
+        (preview(input), visit.say("pictures.input")),
+        (preview(found), visit.say("pictures.found")),
+        (preview(expected), visit.say("pictures.expected")),
+        (format!("{address}/difference/{found}/{expected}"), visit.say("pictures.difference")),
+    ];
+    let known = record.and_then(|record| of_frame(record, frame));
+    html! {
+        section.pictures {
+            h2 {
+                (visit.say("pictures.title"))
+                @if let Some(name) = known.and_then(|known| known.get("name")?.as_str()) { " " (show::said(name)) }
+            }
+            @if let Some(said) = known.and_then(|known| counted(visit, known)) { p.soft { (said) } }
+            div.four {
+                @for (address, caption) in all {
+                    figure {
+                        a href=(address) { img src=(address) alt=(caption) loading="lazy"; }
+                        figcaption { (caption) }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What the report says of a frame.
+fn of_frame<'a>(record: &'a Record, frame: &KeptFrame) -> Option<&'a Value> {
+    let step = record.steps.iter().find(|step| (step.seq, step.attempt) == (frame.seq, frame.attempt))?;
+    step.evidence.as_ref()?.get("frames")?.get(frame.index)
+}
+
+/// How many samples differ, and the first of them.
+fn counted(visit: &Visit, known: &Value) -> Option<String> {
+    let comparison = known.get("comparison")?;
+    let number = |of: &Value, key: &str| Some(of.get(key)?.as_u64()?.to_string());
+    let first = comparison.get("first")?;
+    let [differing, samples] = ["differences", "samples"].map(|key| number(comparison, key));
+    let [row, column, expected, found] = ["row", "column", "expected", "found"].map(|key| number(first, key));
+    let (differing, samples, row, column, expected, found) =
+        (differing?, samples?, row?, column?, expected?, found?);
+    let values = [
+        ("differing", differing.as_str()),
+        ("samples", &samples),
+        ("row", &row),
+        ("column", &column),
+        ("expected", &expected),
+        ("found", &found),
+    ];
+    Some(visit.words.fill("pictures.differing", &values))
+}

@@ -1,0 +1,262 @@
+//! One run: its verdict and all that it stands on.
+
+use axum::extract::{Path, State};
+use axum::response::Response;
+use maud::{Markup, html};
+use serde_json::Value;
+
+use super::asked::unit_address;
+use super::{pictures, show};
+use crate::export;
+use crate::history::unit::{self as history, UnitRun};
+use crate::record::{Attachment, Measured, Record, StepRecord};
+use crate::store::{Snapshot, Waiver};
+use crate::web::layout::{Here, Page};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// A run, its record or why that cannot be read, and the attachments that are still there.
+struct Found {
+    run: UnitRun,
+    record: Option<Result<Box<Record>, String>>,
+    kept: Vec<(Attachment, bool)>,
+}
+
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Path(id): Path<String>,
+) -> Result<Response, Trouble> {
+    let look = move |now: &Snapshot| {
+        let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };
+        let read = |hash: &String| match export::record(now.folder(), hash) {
+            Ok((record, _)) => Ok(Box::new(record)),
+            Err(error) => Err(format!("{:#}", anyhow::Error::from(error))),
+        };
+        let record = run.line.record_sha256.as_ref().map(read);
+        let blobs = now.folder().blobs();
+        let is_here = |one: Attachment| (blobs.path(&one.sha256).is_file(), one);
+        let kept = std::mem::take(&mut run.attachments).into_iter().map(is_here);
+        let kept = kept.map(|(is_here, one)| (one, is_here)).collect();
+        Ok(Some(Found { run, record, kept }))
+    };
+    let found = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
+    let content = content(&visit, &found);
+    let title =
+        format!("{} {}", found.run.line.serial, found.run.line.verdict.as_deref().unwrap_or_default());
+    Ok(Page { here: Here::History, title: &title, head: show::head(), content }.answer(&visit))
+}
+
+fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
+    let line = &run.line;
+    let read = record.as_ref().and_then(|record| record.as_ref().ok());
+    html! {
+        article.run {
+            h1 { (show::outcome(visit, line)) " " a href=(unit_address(&line.serial)) { (show::said(&line.serial)) } }
+            @if let Some(headline) = &line.headline { p.headline { (show::said(headline)) } }
+            @if let Some(remedy) = read.and_then(|record| record.conclusion.remedy.as_ref()) {
+                p.remedy { (show::said(remedy)) }
+            }
+            @if let Some(Err(why)) = record { p.trouble role="alert" { (show::said(why)) } }
+            @for one in &run.waivers { (waiver(visit, one)) }
+            (suspects(visit, run, read.map(AsRef::as_ref)))
+            (pictures::of_run(visit, line, read.map(AsRef::as_ref), kept))
+            (facts(visit, run, read.map(AsRef::as_ref)))
+            @if let Some(record) = read {
+                (steps(visit, record))
+                (checks(visit, record))
+                (measurements(visit, record))
+            }
+            (files(visit, run, kept))
+        }
+    }
+}
+
+/// A suspected part in one sentence.
+pub(super) fn suspect(visit: &Visit, suspect: &history::Suspect) -> Markup {
+    let share = format!("{:.0}", 100.0 * suspect.explained);
+    let values = [("part", suspect.part.as_str()), ("place", &suspect.place), ("share", &share)];
+    html! { p.suspect { (show::said(&visit.words.fill("run.suspect", &values))) } }
+}
+
+/// A waiver in one sentence.
+pub(super) fn waiver(visit: &Visit, waiver: &Waiver) -> Markup {
+    html! {
+        p.waiver {
+            b { (visit.say("history.waived")) } " " (show::moment(waiver.at_ms)) " · " (show::said(&waiver.operator))
+            ": " (show::said(&waiver.reason))
+        }
+    }
+}
+
+/// The parts that are suspected, each with what a technician does about it.
+fn suspects(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
+    let advice =
+        |place: usize| record.and_then(|record| record.suspects.get(place)).map(|one| &one.technician);
+    html! {
+        @for (place, one) in run.suspects.iter().enumerate() {
+            (suspect(visit, one))
+            @if let Some(advice) = advice(place) { p.advice { (show::said(advice)) } }
+        }
+    }
+}
+
+fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
+    let line = &run.line;
+    let board = record.and_then(|record| record.board.as_ref());
+    html! {
+        dl.facts {
+            (show::pair(visit.say("history.began"), show::moment(line.started_ms)))
+            @if let Some(seconds) = record.and_then(|record| record.seconds) {
+                (show::pair(visit.say("run.took"), html! { (show::number(visit, (seconds * 10.0).round() / 10.0)) " s" }))
+            }
+            (show::pair(visit.say("history.plan"), html! {
+                (show::said(&line.product)) " · " (show::said(&line.plan)) " " (show::said(&line.version))
+                @if !run.variant.is_empty() { " · " (show::said(&run.variant)) }
+            }))
+            (show::pair(visit.say("history.lane"), html! { (show::said(&line.station)) " · " (show::said(&line.lane)) }))
+            (show::pair(visit.say("history.operator"), show::said(&line.operator)))
+            @if matches!(line.verdict.as_deref(), Some("PASS" | "FAIL")) {
+                (show::pair(visit.say("run.judgement"), line.nth))
+            }
+            (show::pair(visit.say("run.board"), html! {
+                (show::said(&run.target))
+                @if let Some(board) = board { " · " (show::said(&board.name)) " (" (show::said(&board.kind)) ")" }
+            }))
+            @if let Some(device) = &run.device { (show::pair(visit.say("history.device"), html! { code { (device) } })) }
+            @if let Some(build) = &run.build { (show::pair(visit.say("run.build"), html! { code { (build) } })) }
+            @if let Some(record) = record {
+                (show::pair(visit.say("run.production"), visit.say(if record.production { "run.yes" } else { "run.no" })))
+                (show::pair(visit.say("run.program"), show::said(&record.program)))
+            }
+            (show::pair(visit.say("run.id"), html! { code { (line.id) } }))
+            @if let Some(hash) = &line.record_sha256 {
+                (show::pair(visit.say("run.record"), html! { code { (hash) } }))
+            }
+        }
+    }
+}
+
+fn steps(visit: &Visit, record: &Record) -> Markup {
+    html! {
+        h2 { (visit.say("run.steps")) }
+        div.wide { table.steps { tbody { @for step in &record.steps { (step_row(visit, step)) } } } }
+    }
+}
+
+fn step_row(visit: &Visit, step: &StepRecord) -> Markup {
+    let seconds = (step.ended_ms - step.started_ms) as f64 / 1000.0;
+    html! {
+        tr {
+            td.number { (step.seq) }
+            th scope="row" {
+                (show::said(&step.name))
+                @if step.attempt > 1 { " " (visit.words.fill("run.attempt", &[("number", &step.attempt.to_string())])) }
+            }
+            td { (outcome(visit, step.outcome.name())) }
+            td.number { (show::number(visit, seconds)) " s" }
+            td { (show::said(&step.detail)) @if let Some(remedy) = &step.remedy { br; span.soft { (show::said(remedy)) } } }
+        }
+    }
+}
+
+/// How a step, a check or a measurement came out: a word with a shape.
+fn outcome(visit: &Visit, name: &str) -> Markup {
+    let (class, shape, word) = match name {
+        "passed" => ("came passed", "✔", visit.say("run.passed")),
+        "failed" => ("came failed", "✖", visit.say("run.failed")),
+        "error" | "unset" => ("came error", "⚠", visit.say("run.error")),
+        _ => ("came", "–", visit.say("run.skipped")),
+    };
+    html! { span class=(class) { span aria-hidden="true" { (shape) } " " (word) } }
+}
+
+/// What the judge checked in each try of a step.
+fn checks(visit: &Visit, record: &Record) -> Markup {
+    let text =
+        |value: &Value, key: &str| value.get(key).and_then(Value::as_str).unwrap_or_default().to_owned();
+    let all = record
+        .steps
+        .iter()
+        .filter_map(|step| Some((step, step.evidence.as_ref()?.get("checks")?.as_array()?)));
+    html! {
+        @for (step, checks) in all {
+            h2 { (visit.say("run.checks")) ", " (show::said(&step.name)) }
+            div.wide { table.checks { tbody { @for check in checks { tr {
+                th scope="row" { (show::said(&text(check, "name"))) }
+                td { (outcome(visit, &text(check, "outcome"))) }
+                td { (show::said(&text(check, "detail"))) }
+            } } } } }
+        }
+    }
+}
+
+fn measurements(visit: &Visit, record: &Record) -> Markup {
+    let of_steps = record
+        .steps
+        .iter()
+        .flat_map(|step| step.measurements.iter().map(move |one| (step.name.as_str(), one)));
+    let all: Vec<_> = of_steps.chain(record.measurements.iter().map(|one| ("", one))).collect();
+    html! {
+        @if !all.is_empty() {
+            h2 { (visit.say("run.measurements")) }
+            div.wide { table.measurements {
+                thead { tr {
+                    th { (visit.say("run.measurement")) } th.number { (visit.say("run.value")) } th { (visit.say("run.limit")) }
+                    th { (visit.say("run.came")) } th { (visit.say("run.step")) }
+                } }
+                tbody { @for (step, one) in all { (measured(visit, step, one)) } }
+            } }
+        }
+    }
+}
+
+fn measured(visit: &Visit, step: &str, one: &Measured) -> Markup {
+    let side =
+        |sign: &str, bound: Option<f64>| bound.map(|bound| format!("{sign} {}", show::number(visit, bound)));
+    let limits = [side("≥", one.low), side("≤", one.high)].into_iter().flatten().collect::<Vec<_>>();
+    html! {
+        tr {
+            th scope="row" { code { (show::said(&one.name)) } }
+            td.number {
+                @if let Some(value) = one.value { (show::number(visit, value)) " " (unit(&one.unit)) } @else { "–" }
+            }
+            td { (limits.join(", ")) @if !limits.is_empty() { " " span.soft { (one.blames.name()) } } }
+            td { @if limits.is_empty() { span.soft { "–" } } @else { (outcome(visit, one.outcome.name())) } }
+            td.soft { (show::said(step)) }
+        }
+    }
+}
+
+/// A unit as people write it. What is counted has none.
+fn unit(name: &str) -> Markup {
+    match name {
+        "1" => html! {},
+        "us" => html! { "µs" },
+        name => show::said(name),
+    }
+}
+
+/// Exports and evidence.
+fn files(visit: &Visit, run: &UnitRun, kept: &[(Attachment, bool)]) -> Markup {
+    let address = show::run_address(&run.line.id);
+    html! {
+        @if run.line.record_sha256.is_some() {
+            h2 { (visit.say("run.exports")) }
+            p.exports {
+                @for (format, name) in [("record", "JSON"), ("junit", "JUnit"), ("csv", "CSV"), ("openhtf", "OpenHTF")] {
+                    a href=(format!("{address}/export/{format}")) download { (name) } " "
+                }
+            }
+        }
+        @if !kept.is_empty() {
+            h2 { (visit.say("run.evidence")) }
+            ul.evidence { @for (one, is_here) in kept { li {
+                @if *is_here { a href=(format!("{address}/evidence/{}", one.sha256)) { (show::said(&one.name)) } }
+                @else { (show::said(&one.name)) " " span.soft { (visit.say("run.removed")) } }
+                " " span.soft { (halfrow::report::wording::bytes(one.bytes)) " · SHA-256 " code { (one.sha256) } }
+            } } }
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! How moments, verdicts and shares are shown on every page of the history.
+
+use halfrow::report::wording::plain;
+use jiff::Timestamp;
+use maud::{Markup, html};
+
+use crate::history::rate::Rate;
+use crate::history::runs::RunLine;
+use crate::web::visit::Visit;
+
+/// What a page of the history has in its head.
+pub(super) fn head() -> Markup {
+    html! { link rel="stylesheet" href="/assets/history.css"; }
+}
+
+/// A moment to the second, UTC.
+pub(super) fn moment(ms: i64) -> Markup {
+    let Ok(moment) = Timestamp::from_millisecond(ms) else { return html! { (ms) } };
+    html! { time datetime=(format!("{moment:.3}")) { (moment.strftime("%Y-%m-%d %H:%M:%S")) } }
+}
+
+/// What a scanner, a board or a person said, without the control characters that would turn the page's text around.
+pub(super) fn said(text: &str) -> Markup {
+    html! { (plain(text)) }
+}
+
+/// A verdict as word, shape and colour; that a run is open.
+pub(super) fn verdict(visit: &Visit, verdict: Option<&str>) -> Markup {
+    let (class, shape) = match verdict {
+        Some("PASS") => ("verdict pass", "✔"),
+        Some("FAIL") => ("verdict fail", "✖"),
+        Some("ERROR") => ("verdict error", "⚠"),
+        _ => return html! { span.verdict.open { "▶ " (visit.say("history.open")) } },
+    };
+    html! { span class=(class) { span aria-hidden="true" { (shape) " " } (verdict.unwrap_or_default()) } }
+}
+
+/// The verdict of a run, and that its FAIL is waived.
+pub(super) fn outcome(visit: &Visit, run: &RunLine) -> Markup {
+    html! {
+        (verdict(visit, run.verdict.as_deref()))
+        @if run.waived { " " span.waived { (visit.say("history.waived")) } }
+    }
+}
+
+/// The address of a run's page.
+pub(super) fn run_address(id: &str) -> String {
+    format!("/runs/{id}")
+}
+
+/// A share in per cent, never without its interval.
+pub(super) fn share(visit: &Visit, rate: &Rate) -> Markup {
+    let point = visit.say("history.decimal");
+    let text = |value: f64| format!("{:.1}", 100.0 * value).replace('.', point);
+    let Some((share, [low, high])) = rate.share.zip(rate.interval) else { return html! { "–" } };
+    html! {
+        span.share { (text(share)) " %" }
+        " " span.interval { "(" (text(low)) "–" (text(high)) ")" }
+    }
+}
+
+/// So many of so many.
+pub(super) fn of(rate: &Rate) -> Markup {
+    html! { (rate.count) "/" (rate.of) }
+}
+
+/// A number with the language's decimal point, as short as it is exact.
+pub(super) fn number(visit: &Visit, value: f64) -> String {
+    let text =
+        if value.abs() >= 1e6 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) };
+    text.replace('.', visit.say("history.decimal"))
+}
+
+/// A term with what it is.
+pub(super) fn pair(term: &str, value: impl maud::Render) -> Markup {
+    html! { div { dt { (term) } dd { (value) } } }
+}

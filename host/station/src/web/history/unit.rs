@@ -1,0 +1,118 @@
+//! All that is known of a serial number.
+
+use axum::extract::{Query, State};
+use axum::response::Response;
+use maud::{Markup, html};
+
+use super::asked::Asked;
+use super::show;
+use crate::history::unit::{self, Binding, Unit, UnitRun};
+use crate::web::layout::{Here, Page};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// Runs that are shown; a unit that checks shifts has thousands.
+const MOST_RUNS: usize = 200;
+
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Query(asked): Query<Asked>,
+) -> Result<Response, Trouble> {
+    let serial = asked.serial.clone();
+    let units = app.look(&visit, move |now| unit::units(now, &serial)).await?;
+    if units.is_empty() {
+        return Err(Trouble::missing(&visit));
+    }
+    let content = html! { @for unit in &units { (of(&visit, &asked, unit)) } };
+    let page = Page { here: Here::History, title: &asked.serial, head: show::head(), content };
+    Ok(page.answer(&visit))
+}
+
+fn of(visit: &Visit, asked: &Asked, unit: &Unit) -> Markup {
+    let more = unit.runs.len().saturating_sub(MOST_RUNS);
+    html! {
+        section.unit {
+            h1 { (show::said(&unit.serial)) " " small { (show::said(&unit.product)) } }
+            dl.facts {
+                @if let Some(newest) = unit.runs.iter().find(|run| run.line.verdict.is_some()) {
+                    (show::pair(visit.say("history.last"), show::outcome(visit, &newest.line)))
+                }
+                (show::pair(visit.say("history.seen"), show::moment(unit.first_seen_ms)))
+                (show::pair(visit.say("history.runs"), unit.runs.len()))
+            }
+            (flips(visit, unit))
+            (devices(visit, &unit.bindings))
+            h2 { (visit.say("history.every")) }
+            ol.story { @for run in unit.runs.iter().take(MOST_RUNS) { (story(visit, run)) } }
+            @if more > 0 {
+                p.pages { a href=(asked.address("/history", None)) { (visit.say("history.further")) " (" (more) ")" } }
+            }
+        }
+    }
+}
+
+/// The plans under which the unit first failed and passed in the end.
+fn flips(visit: &Visit, unit: &Unit) -> Markup {
+    let judged = |run: &&UnitRun| matches!(run.line.verdict.as_deref(), Some("PASS" | "FAIL"));
+    let mut plans: Vec<_> = unit.runs.iter().filter(judged).map(|run| run.line.plan.as_str()).collect();
+    plans.sort_unstable();
+    plans.dedup();
+    let verdict_of = |run: Option<&UnitRun>| run.and_then(|run| run.line.verdict.clone());
+    let is_flip = |plan: &&str| {
+        let of_plan: Vec<_> = unit.runs.iter().filter(judged).filter(|run| run.line.plan == *plan).collect();
+        verdict_of(of_plan.last().copied()).as_deref() == Some("FAIL")
+            && verdict_of(of_plan.first().copied()).as_deref() == Some("PASS")
+    };
+    html! {
+        @for plan in plans.into_iter().filter(is_flip) {
+            p.flip { (visit.words.fill("history.flipped_plan", &[("plan", plan)])) }
+        }
+    }
+}
+
+fn devices(visit: &Visit, bindings: &[Binding]) -> Markup {
+    html! {
+        @if !bindings.is_empty() {
+            h2 { (visit.say("history.devices")) }
+            table.bindings {
+                thead { tr {
+                    th { (visit.say("history.device")) } th { (visit.say("history.from")) }
+                    th { (visit.say("history.to")) } th { (visit.say("history.operator")) }
+                    th { (visit.say("history.reason")) }
+                } }
+                tbody { @for one in bindings { tr {
+                    td { code { (one.device) } }
+                    td { (show::moment(one.from_ms)) }
+                    td { @if let Some(to) = one.to_ms { (show::moment(to)) } @else { (visit.say("history.holds")) } }
+                    td { (show::said(&one.operator)) }
+                    td { (show::said(&one.reason)) }
+                } } }
+            }
+        }
+    }
+}
+
+/// A run in the story of its unit.
+fn story(visit: &Visit, run: &UnitRun) -> Markup {
+    let line = &run.line;
+    html! {
+        li {
+            p.line {
+                (show::outcome(visit, line)) " "
+                a href=(show::run_address(&line.id)) { (show::moment(line.started_ms)) }
+                span.soft {
+                    " · " (show::said(&line.plan)) " " (show::said(&line.version))
+                    " · " (visit.say("history.lane")) " " (show::said(&line.lane)) " · " (show::said(&line.operator))
+                    @if matches!(line.verdict.as_deref(), Some("PASS" | "FAIL")) {
+                        " · " (visit.words.fill("history.nth", &[("number", &line.nth.to_string())]))
+                    }
+                }
+            }
+            @if let Some(headline) = &line.headline { p { (show::said(headline)) } }
+            @for suspect in &run.suspects { (super::run::suspect(visit, suspect)) }
+            @for waiver in &run.waivers { (super::run::waiver(visit, waiver)) }
+        }
+    }
+}

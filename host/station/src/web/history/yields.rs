@@ -1,0 +1,181 @@
+//! First-pass and final yield.
+
+use std::collections::BTreeSet;
+
+use axum::extract::{Query, State};
+use axum::response::Response;
+use maud::{Markup, html};
+
+use super::asked::{Asked, unit_address};
+use super::{bars, list, show};
+use crate::history::rate::Rate;
+use crate::history::yields::{self, By, Flip, Yield, Yields};
+use crate::history::{self, PlanName};
+use crate::store::Snapshot;
+use crate::web::layout::{Here, Page};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// Flips that are listed.
+const MOST_FLIPS: usize = 200;
+/// Days that are drawn.
+const MOST_DAYS: usize = 60;
+/// Lines that are listed.
+const MOST_LINES: usize = 400;
+/// With fewer units a share says little.
+const FEW: u64 = 30;
+
+pub(super) async fn page(
+    State(app): State<App>,
+    visit: Visit,
+    Query(asked): Query<Asked>,
+) -> Result<Response, Trouble> {
+    let wanted = asked.wanted(&visit)?;
+    let (_, by) = asked.by(&visit, &[("plan", By::Plan), ("day", By::Day), ("lane", By::Lane)])?;
+    let look = move |now: &Snapshot| Ok((yields::yields(now, &wanted, by)?, history::plan_names(now)?));
+    let (Yields { mut lines, mut flips }, plans) = app.look(&visit, look).await?;
+    // The newest day first; lane 10 behind lane 9.
+    let place = |line: &Yield| line.lane.as_ref().map(|lane| (lane.len(), lane.clone()));
+    lines.sort_by_cached_key(|line| (line.plan.clone(), std::cmp::Reverse(line.day), place(line)));
+    flips.sort_by_key(|flip| std::cmp::Reverse(flip.passed_ms));
+    let content = html! {
+        h1 { (visit.say("yield.title")) }
+        p.soft { (visit.say("yield.about")) }
+        (form(&visit, &asked, &list::lanes(&app), &plans))
+        @if lines.is_empty() {
+            p.nothing { (visit.say("history.none")) }
+        } @else {
+            @if by == By::Day { (drawn(&visit, &lines)) }
+            (table(&visit, &lines))
+        }
+        (flipped(&visit, &flips))
+    };
+    let page = Page { here: Here::Yield, title: visit.say("yield.title"), head: show::head(), content };
+    Ok(page.answer(&visit))
+}
+
+fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
+    let choices = [
+        ("plan", visit.say("history.plan")),
+        ("day", visit.say("yield.day")),
+        ("lane", visit.say("history.lane")),
+    ];
+    html! {
+        form.filters method="get" action="/yield" {
+            (by(visit, asked, &choices))
+            (list::common(visit, asked, lanes, plans))
+            span.acts { button { (visit.say("history.show")) } " " a href="/yield" { (visit.say("history.all")) } }
+        }
+    }
+}
+
+/// What the lines are for.
+pub(super) fn by(visit: &Visit, asked: &Asked, choices: &[(&str, &str)]) -> Markup {
+    html! {
+        label { span { (visit.say("history.by")) }
+            select name="by" {
+                @for (value, name) in choices { option value=(value) selected[asked.by == *value] { (name) } }
+            }
+        }
+    }
+}
+
+/// First pass by day, the plans one below the other.
+fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
+    html! {
+        @for of_plan in lines.chunk_by(|one, other| one.plan == other.plan) {
+            figure.days {
+                figcaption { (visit.say("yield.first")) ", " (show::said(&of_plan[0].plan.plan)) }
+                div.wide { (bars::days(&named_days(of_plan))) }
+            }
+        }
+    }
+}
+
+/// The newest days of a plan, whose lines begin with the newest, the earliest of them first.
+fn named_days(of_plan: &[Yield]) -> Vec<(String, Rate)> {
+    let named = |line: &Yield| {
+        let day = line.day.map(|day| day.to_string()).unwrap_or_default();
+        (format!("{day}: {}", line.first_pass.text()), line.first_pass)
+    };
+    of_plan.iter().take(MOST_DAYS).rev().map(named).collect()
+}
+
+fn table(visit: &Visit, lines: &[Yield]) -> Markup {
+    html! {
+        div.wide { table.yields {
+            thead { tr {
+                th { (visit.say("history.plan")) } th.number { (visit.say("yield.units")) }
+                th { (visit.say("yield.first")) } th { (visit.say("yield.last")) }
+                th.number { (visit.say("yield.flipped")) } th.number { (visit.say("history.waived")) }
+                th.number { (visit.say("history.runs")) } th { (visit.say("yield.errors")) }
+                th.number { (visit.say("yield.crashes")) }
+            } }
+            tbody { @for line in lines.iter().take(MOST_LINES) { (row(visit, line)) } }
+        } }
+        @if lines.len() > MOST_LINES { p.soft { (visit.say("yield.narrow")) } }
+    }
+}
+
+fn row(visit: &Visit, line: &Yield) -> Markup {
+    let Yield { plan, first_pass, last, errors, .. } = line;
+    html! {
+        tr {
+            td.name {
+                @if let Some(day) = line.day { b { (day) } " " }
+                @if let Some(lane) = &line.lane {
+                    b { (visit.say("history.lane")) " " (show::said(lane)) } " "
+                }
+                span.soft { (show::said(&plan.product)) " " (show::said(&plan.plan)) }
+            }
+            td.number { (first_pass.of) }
+            td { (bars::share(first_pass)) (rate(visit, first_pass)) }
+            td { (bars::share(last)) (rate(visit, last)) }
+            td.number { (line.flipped) }
+            td.number { (line.waived) }
+            td.number { (errors.of) }
+            td { div.rate { (show::share(visit, errors)) " " span.soft { (show::of(errors)) } } }
+            td.number { (line.crashes) }
+        }
+    }
+}
+
+/// A share with its interval and its counts; of few units, it says that they are few.
+fn rate(visit: &Visit, rate: &Rate) -> Markup {
+    html! {
+        div.rate {
+            (show::share(visit, rate)) " " span.soft { (show::of(rate)) }
+            @if rate.of > 0 && rate.of < FEW { " " span.few { (visit.say("yield.few")) } }
+        }
+    }
+}
+
+fn flipped(visit: &Visit, flips: &[Flip]) -> Markup {
+    html! {
+        h2 { (visit.say("yield.flips")) " (" (flips.len()) ")" }
+        @if flips.is_empty() { p.soft { (visit.say("yield.no_flips")) } } @else {
+            p.soft { (visit.say("yield.flips_about")) }
+            table.flips {
+                thead { tr {
+                    th { (visit.say("history.serial")) } th { (visit.say("history.plan")) }
+                    th { "FAIL" } th { "PASS" } th.number { (visit.say("yield.judgements")) }
+                } }
+                tbody { @for flip in flips.iter().take(MOST_FLIPS) { (flip_row(flip)) } }
+            }
+            @if flips.len() > MOST_FLIPS { p.soft { (visit.say("yield.narrow")) } }
+        }
+    }
+}
+
+fn flip_row(flip: &Flip) -> Markup {
+    html! {
+        tr {
+            td.serial { a href=(unit_address(&flip.serial)) { (show::said(&flip.serial)) } }
+            td { (show::said(&flip.plan.product)) " " (show::said(&flip.plan.plan)) }
+            td { a href=(show::run_address(&flip.failed)) { (show::moment(flip.failed_ms)) } }
+            td { a href=(show::run_address(&flip.passed)) { (show::moment(flip.passed_ms)) } }
+            td.number { (flip.judgements) }
+        }
+    }
+}
