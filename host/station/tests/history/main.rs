@@ -4,6 +4,7 @@
 #![allow(clippy::panic, clippy::unwrap_used)]
 
 mod commands;
+mod counted;
 mod exports;
 mod generated;
 mod kept;

@@ -123,7 +123,7 @@ fn row(visit: &Visit, run: &RunLine) -> Markup {
             td.serial { a href=(unit_address(&run.serial)) { (show::said(&run.serial)) } }
             td.outcome { (show::outcome(visit, run)) }
             td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }
-            td.lane { (show::said(&run.lane)) }
+            td.lane { span.of-card { (visit.say("history.lane")) " " } (show::said(&run.lane)) }
             td.operator { (show::said(&run.operator)) }
             td.headline { @if let Some(headline) = &run.headline { (show::said(headline)) } }
         }

@@ -22,7 +22,7 @@ const MOST_FLIPS: usize = 200;
 /// Days that are drawn.
 const MOST_DAYS: usize = 60;
 /// Lines that are listed.
-const MOST_LINES: usize = 400;
+const MOST_LINES: usize = 120;
 /// With fewer units a share says little.
 const FEW: u64 = 30;
 
@@ -94,10 +94,11 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
 }
 
 /// The newest days of a plan, whose lines begin with the newest, the earliest of them first.
-fn named_days(of_plan: &[Yield]) -> Vec<(String, Rate)> {
+fn named_days(of_plan: &[Yield]) -> Vec<(String, String, Rate)> {
     let named = |line: &Yield| {
         let day = line.day.map(|day| day.to_string()).unwrap_or_default();
-        (format!("{day}: {}", line.first_pass.text()), line.first_pass)
+        let said = format!("{day}: {}", line.first_pass.text());
+        (day, said, line.first_pass)
     };
     of_plan.iter().take(MOST_DAYS).rev().map(named).collect()
 }
