@@ -2,8 +2,8 @@
 
 mod check;
 mod codes;
-mod document;
 mod demo;
+mod document;
 mod export;
 mod history;
 mod kept;

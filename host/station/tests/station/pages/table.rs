@@ -4,13 +4,13 @@ use std::collections::BTreeSet;
 
 use halfrow_station::web::{Who, routes};
 
-use crate::http::Request;
-use crate::station::{Browser, PUBLIC, Station};
+use crate::pages::http::Request;
+use crate::pages::station::{Browser, PUBLIC, Station};
 
 /// A route as this table has it: method, path, who may, a path that there is, and the fields of a form that is right.
 type Row = (&'static str, &'static str, Who, &'static str, &'static [(&'static str, &'static str)]);
 
-const ROWS: [Row; 14] = [
+const ROWS: [Row; 23] = [
     ("GET", "/assets/{name}", Who::Anyone, "/assets/style.css", &[]),
     ("GET", "/login", Who::Anyone, "/login", &[]),
     ("POST", "/login", Who::Anyone, "/login", &[("badge", "A-0017")]),
@@ -19,6 +19,15 @@ const ROWS: [Row; 14] = [
     ("GET", "/", Who::Reader, "/", &[]),
     ("GET", "/live", Who::Reader, "/live", &[]),
     ("GET", "/today", Who::Reader, "/today", &[]),
+    ("GET", "/history", Who::Reader, "/history", &[]),
+    ("GET", "/runs/{run}", Who::Reader, "/runs/1", &[]),
+    ("GET", "/runs/{run}/export/{format}", Who::Reader, "/runs/1/export/csv", &[]),
+    ("GET", "/runs/{run}/evidence/{hash}", Who::Reader, "/runs/1/evidence/2", &[]),
+    ("GET", "/runs/{run}/preview/{hash}", Who::Reader, "/runs/1/preview/2", &[]),
+    ("GET", "/runs/{run}/difference/{found}/{expected}", Who::Reader, "/runs/1/difference/2/3", &[]),
+    ("GET", "/unit", Who::Reader, "/unit?serial=1", &[]),
+    ("GET", "/yield", Who::Reader, "/yield", &[]),
+    ("GET", "/pareto", Who::Reader, "/pareto", &[]),
     ("POST", "/scan", Who::Operator, "/scan", &[("text", "nothing")]),
     ("POST", "/lanes/{lane}/start", Who::Operator, "/lanes/1/start", &[]),
     ("POST", "/lanes/{lane}/abort", Who::Operator, "/lanes/1/abort", &[]),

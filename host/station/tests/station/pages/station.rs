@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-use crate::http::{Answer, Request, escaped};
+use super::http::{Answer, Request, escaped};
 
 const PLAN: &str = include_str!("plan.toml");
 
