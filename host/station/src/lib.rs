@@ -14,10 +14,8 @@
 pub mod check;
 mod clock;
 pub mod commands;
-pub mod console;
 pub mod demo;
 pub mod engine;
-pub mod exit;
 pub mod export;
 pub mod floor;
 pub mod history;
@@ -32,3 +30,5 @@ pub mod run;
 pub mod settings;
 pub mod store;
 pub mod web;
+
+pub use halfrow_program::{console, exit, guard};

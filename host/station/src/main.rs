@@ -2,34 +2,32 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use tracing::level_filters::LevelFilter;
-
-use halfrow_station::commands::{Cli, Failure};
-use halfrow_station::console;
+use clap::{CommandFactory as _, Parser as _};
+use halfrow_program::{console, exit::Exit, guard, line, log};
+use halfrow_station::commands::{self, Cli, Failure};
 
 fn main() -> ExitCode {
-    let cli = Cli::parse();
-    log(cli.verbosity());
-    let exit = cli.run().unwrap_or_else(|Failure { exit, error }| {
-        console::error(&format_args!("{error:#}"));
-        exit
-    });
-    ExitCode::from(exit.code())
+    guard::end(program)
 }
 
-fn log(verbosity: u8) {
-    let level = match verbosity {
-        0 => LevelFilter::WARN,
-        1 => LevelFilter::INFO,
-        _ => LevelFilter::DEBUG,
+fn program() -> Exit {
+    let cli = match Cli::try_parse() {
+        Ok(cli) => cli,
+        Err(told) => {
+            let told = line::tell(&told, &Cli::command());
+            return told.unwrap_or_else(|unprinted| explain(&Failure::error(unprinted), None));
+        }
     };
-    tracing_subscriber::fmt()
-        .with_max_level(level)
-        .with_writer(|| console::Log)
-        .log_internal_errors(false)
-        .with_ansi(false)
-        .without_time()
-        .with_target(false)
-        .init();
+    log::to_stderr(cli.verbosity());
+    let ended = guard::guarded(|| cli.run()).unwrap_or_else(|fault| Err(Failure::error(fault)));
+    ended.unwrap_or_else(|failure| explain(&failure, cli.documented()))
+}
+
+/// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
+fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
+    console::error(&format_args!("{:#}", failure.error));
+    if let Some(command) = as_json_of {
+        console::tell(&commands::failure(command, failure));
+    }
+    failure.exit
 }

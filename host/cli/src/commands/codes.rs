@@ -3,17 +3,15 @@
 use std::error::Error;
 
 use clap::Args;
-use clap::error::ErrorKind;
 use halfrow_mock::{ConnectError, OptionError};
 use halfrow_pipe::{FaultError, TargetError as BoardTargetError, ValueError};
+use halfrow_program::codes::{self as program, parameters};
 use serde_json::{Value, json};
 
 use super::call_error::CallError;
 use super::document::print_result;
 use super::{Context, Failure, print};
-use crate::console::Unprinted;
 use crate::exit::Exit;
-use crate::guard::InternalError;
 use crate::serve::ServeError;
 use crate::settings::SettingsError;
 use halfrow::result::codes::{self, CodeList, Coded};
@@ -133,53 +131,16 @@ codes::codes! {
         NoDepth => "board-without-depth",
         = Value,
     }
-    ;
-    Unprinted => "result-not-printed"
-    ;
-    InternalError => "program-failed"
 }
-
-/// Of a call that contradicts itself or its input, in a sentence that says how.
-const REFUSED: &str = "call-refused";
-/// Of a command that could not be carried out, in a sentence that says why.
-const FAILED: &str = "command-failed";
-/// Of command lines that cannot be read.
-const USAGE: [&str; 6] = [
-    "usage-argument-unknown",
-    "usage-value-wrong",
-    "usage-argument-missing",
-    "usage-arguments-conflict",
-    "usage-command-unknown",
-    "usage-wrong",
-];
 
 fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
     // Those of other crates hold errors of the library, which it knows.
-    lookup(error).filter(|coded| coded.code != codes::FOREIGN).or_else(|| codes::lookup(error))
+    lookup(error).filter(|coded| coded.code != codes::FOREIGN).or_else(|| program::known(error))
 }
 
 /// Why a command came to no result.
 pub(super) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
-    let problem = Problem::by(error.as_ref(), known);
-    if problem.code != codes::FOREIGN {
-        return problem;
-    }
-    Problem { code: if exit == Exit::Usage { REFUSED } else { FAILED }.to_owned(), ..problem }
-}
-
-/// The code of a command line that cannot be read.
-pub(super) fn of_usage(kind: ErrorKind) -> &'static str {
-    USAGE[match kind {
-        ErrorKind::UnknownArgument => 0,
-        ErrorKind::InvalidValue | ErrorKind::ValueValidation | ErrorKind::InvalidUtf8 => 1,
-        ErrorKind::MissingRequiredArgument
-        | ErrorKind::NoEquals
-        | ErrorKind::TooFewValues
-        | ErrorKind::WrongNumberOfValues => 2,
-        ErrorKind::ArgumentConflict | ErrorKind::TooManyValues => 3,
-        ErrorKind::InvalidSubcommand | ErrorKind::MissingSubcommand => 4,
-        _ => 5,
-    }]
+    program::problem(exit, error, known)
 }
 
 pub(super) fn run(_: &Arguments, context: &Context) -> Result<Exit, Failure> {
@@ -192,18 +153,13 @@ pub(super) fn run(_: &Arguments, context: &Context) -> Result<Exit, Failure> {
 }
 
 fn error_lists() -> impl Iterator<Item = &'static CodeList> {
-    codes::LISTS.into_iter().chain([LISTS]).flatten()
+    codes::LISTS.into_iter().chain([LISTS, program::lists()]).flatten()
 }
 
 /// Codes of errors that have no type of their own.
 fn other_codes() -> impl Iterator<Item = &'static str> {
-    codes::IO_CODES.into_iter().chain(USAGE).chain([
-        RECORDING_LOST,
-        REPORT_LOST,
-        REFUSED,
-        FAILED,
-        codes::FOREIGN,
-    ])
+    let lost = [RECORDING_LOST, REPORT_LOST];
+    codes::IO_CODES.into_iter().chain(program::USAGE).chain(lost).chain(program::UNTYPED)
 }
 
 /// Every code with the names of its parameters.
@@ -255,12 +211,7 @@ fn page() -> String {
         text += &format!("* `{code}`{}: {}\n", parameters(names.keys()), part.words());
     }
     text += "\n## Errors\n\nTheir sentence is in `message`, and what to do in `remedy` and at its end.\n";
-    for list in error_lists().filter(|list| !list.codes.is_empty()) {
-        text += &format!("\n{}:\n\n", list.error);
-        for (code, names) in list.codes {
-            text += &format!("* `{code}`{}\n", parameters(names.iter()));
-        }
-    }
+    text += &program::page(error_lists());
     text += "\nOf the system (`os_error` is its own number), of command lines, and of what has no code of its own:\n\n";
     other_codes().for_each(|code| text += &format!("* `{code}`\n"));
     text
@@ -273,8 +224,3 @@ stable: none changes its meaning or its parameters' names within a schema number
 are made from them and may change.
 `halfrow codes` prints this page; a test holds the two equal. Sentences are those of an example.
 ";
-
-fn parameters(names: impl Iterator<Item = impl AsRef<str>>) -> String {
-    let names: Vec<_> = names.map(|name| format!("`{}`", name.as_ref())).collect();
-    if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
-}

@@ -41,7 +41,7 @@ use halfrow::run::Misfit;
 
 use line::{Command, Line};
 
-pub use document::{failure, usage};
+pub use document::failure;
 
 /// What every command is given beside its own arguments.
 pub struct Context {
@@ -110,6 +110,12 @@ impl Cli {
     /// What is wrong with the call, or the help or version that it asks for.
     pub fn read() -> Result<Self, clap::Error> {
         Line::read().map(Self)
+    }
+
+    /// What its command line is made of.
+    #[must_use]
+    pub fn line() -> clap::Command {
+        Line::<Command>::command()
     }
 
     /// How much to log: 0 for errors and warnings alone.

@@ -79,12 +79,14 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let recording = arguments.board.recording(settings)?;
-    let (plan, options) = arguments.planned(recording.as_ref(), settings)?;
+    let frames = arguments.frames(settings)?;
+    let files = arguments.input_files(&frames, settings);
+    let (plan, options) = arguments.planned(recording.as_ref(), frames, &files, settings)?;
     if arguments.list {
         arguments.board.candidate_of(settings, recording)?;
         return list(&plan, context.json);
     }
-    let outputs = arguments.outputs(context)?;
+    let outputs = arguments.outputs(files, context)?;
     let mut candidate = arguments.board.candidate_of(settings, recording)?;
     let mut lost = Lost::default();
     if let Some(file) = outputs.recording {
@@ -181,6 +183,8 @@ impl Arguments {
     fn planned(
         &self,
         recording: Option<&Recording>,
+        frames: Vec<FrameName>,
+        files: &[PathBuf],
         settings: &Settings,
     ) -> Result<(Plan, RunOptions), Failure> {
         let (plan, options) = match recording {
@@ -190,7 +194,7 @@ impl Arguments {
                 let require_hardware = self.requires_hardware(settings);
                 (plan, RunOptions { require_hardware, stop: self.board.stop(settings)?, ..options })
             }
-            None => self.plan(settings)?,
+            None => self.plan(frames, files, settings)?,
         };
         self.board.check_fault(settings, &plan)?;
         plan.check_length().map_err(Failure::call)?;
@@ -198,23 +202,24 @@ impl Arguments {
     }
 
     /// What the options say is to be streamed, and where it comes from.
-    fn plan(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
-        let frames = FrameName::all(&self.frame_names(settings)).map_err(Failure::call)?;
-        let files: Vec<_> = frames.iter().filter_map(FrameName::file).map(PathBuf::from).collect();
-        if files.is_empty() {
+    fn plan(
+        &self,
+        frames: Vec<FrameName>,
+        files: &[PathBuf],
+        settings: &Settings,
+    ) -> Result<(Plan, RunOptions), Failure> {
+        if frames.iter().all(|frame| frame.file().is_none()) {
             self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
         }
-        let lens = self.lens.file().map(PathBuf::from);
-        // Each file is hashed, too.
-        let inputs = self.input_files(settings)?;
-        inputs.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
+        // Each is read more than once, since its hash is reported.
+        files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
         let tables = self.tables.read(&self.given, &self.lens, settings)?;
         let kernel = self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
-        let table_file = tables.as_ref().map(|tables| tables.path.clone());
+        let passed_over = self.tables.path(settings).filter(|_| tables.is_none());
+        let files = files.iter().filter(|path| Some(*path) != passed_over);
+        let is_free = tables.is_none() && frames.is_empty();
         let chosen = optics::choose(tables, &self.lens, kernel)?;
-        let is_free = table_file.is_none() && frames.is_empty();
         let plan = Plan { vary: self.vary(is_free), ..self.plan_of(chosen, frames, settings)? };
-        let files = table_file.iter().chain(&lens).chain(&files);
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
             files: files.map(|path| file_hash(path)).collect::<Result<_, _>>().map_err(Failure::call)?,
@@ -269,13 +274,13 @@ impl Arguments {
     }
 
     /// Looks at all that is read and written, and takes the places of what is written.
-    fn outputs(&self, context: &Context) -> Result<Outputs, Failure> {
+    fn outputs(&self, inputs: Vec<PathBuf>, context: &Context) -> Result<Outputs, Failure> {
         let settings = &context.settings;
         let overwrite = self.overwrite || settings.overwrite.unwrap_or(false);
         let report = self.report.as_deref().or(settings.report.as_deref());
         Files::new(overwrite)
             .reads(&context.settings_file)
-            .reads(self.input_files(settings)?)
+            .reads(inputs)
             .reads_kernel(self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new)))
             .reads(self.board.replayed(settings)?)
             .writes_claimed("--record", self.record.as_deref())
@@ -297,19 +302,20 @@ impl Arguments {
         })
     }
 
-    /// Frames, lens and tables that are files.
-    fn input_files(&self, settings: &Settings) -> Result<Vec<PathBuf>, Failure> {
-        let frames = FrameName::all(&self.frame_names(settings)).map_err(Failure::call)?;
-        let frames = frames.iter().filter_map(FrameName::file).map(PathBuf::from);
-        let lens = self.lens.file().map(PathBuf::from);
-        Ok(frames.chain(lens).chain(self.tables.path(settings).cloned()).collect())
+    /// The frames that are named; none stands for the built-in ones.
+    fn frames(&self, settings: &Settings) -> Result<Vec<FrameName>, Failure> {
+        match settings.frame.as_deref() {
+            Some(names) if self.frame.is_empty() => FrameName::all(names),
+            _ => FrameName::all(&self.frame),
+        }
+        .map_err(Failure::call)
     }
 
-    fn frame_names(&self, settings: &Settings) -> Vec<OsString> {
-        match settings.frame.as_deref() {
-            Some(names) if self.frame.is_empty() => names.iter().map(OsString::from).collect(),
-            _ => self.frame.clone(),
-        }
+    /// Tables, lens and frames that are files.
+    fn input_files(&self, frames: &[FrameName], settings: &Settings) -> Vec<PathBuf> {
+        let frames = frames.iter().filter_map(FrameName::file);
+        let tables = self.tables.path(settings).map(PathBuf::as_path);
+        tables.into_iter().chain(self.lens.file()).chain(frames).map(PathBuf::from).collect()
     }
 
     fn has_report(&self, settings: &Settings) -> bool {

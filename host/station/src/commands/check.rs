@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use serde_json::json;
 
-use super::Failure;
-use crate::check;
+use super::{Failure, codes, document};
+use crate::check::{self, Checked};
 use crate::console;
 use crate::exit::Exit;
 use crate::store::Folder;
@@ -19,10 +20,27 @@ pub(super) struct Arguments {
     /// The station's folder
     #[arg(long, value_name = "FOLDER", env = "HALFROW_STATION_DATA")]
     data: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let checked = check::check(&Folder::new(&arguments.data))?;
+    let exit = if checked.faults.is_empty() { Exit::Pass } else { Exit::Error };
+    console::tell(&if arguments.json { document(&checked, exit)? } else { text(&checked) });
+    Ok(exit)
+}
+
+fn document(checked: &Checked, exit: Exit) -> Result<String, Failure> {
+    let Checked { runs, open, evidence, pruned, faults } = checked;
+    let faults: Vec<_> = faults.iter().map(codes::of_fault).collect();
+    let rest =
+        json!({ "runs": runs, "open": open, "evidence": evidence, "pruned": pruned, "faults": faults });
+    document::text("check", exit, None, rest)
+}
+
+fn text(checked: &Checked) -> String {
     let mut lines: Vec<_> = checked.faults.iter().map(|fault| format!("fault: {fault}")).collect();
     if checked.open > 0 {
         lines.push(format!("{} runs are open; the next start of the station closes them", checked.open));
@@ -32,6 +50,5 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let (runs, evidence, faults) = (checked.runs, checked.evidence, checked.faults.len());
     lines.push(format!("{runs} runs and {evidence} pieces of evidence were read, {faults} faults found"));
-    console::tell(&lines.join("\n"));
-    Ok(if faults == 0 { Exit::Pass } else { Exit::Error })
+    lines.join("\n")
 }

@@ -46,12 +46,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let printer = printer.map_err(Failure::error)?;
     let scans = scans().map_err(Failure::error)?;
     let by = loop {
-        if let Some(by) = signals::stopped_by(signal.load(Ordering::Relaxed)) {
+        if let Some(by) = Exit::stopped_by(signal.load(Ordering::Relaxed)) {
             break Some(by);
         }
         match scans.recv_timeout(LOOK) {
             Ok((number, line)) => engine.scan(number, &line, &arguments.operator),
-            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Timeout) if engine.is_well() => {}
+            Err(RecvTimeoutError::Timeout) => return Err(Failure::error(EngineEnded)),
             Err(RecvTimeoutError::Disconnected) => break None,
         }
     };
@@ -59,6 +60,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let _ = printer.join();
     Ok(by.map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }
+
+/// The station's engine is gone.
+#[derive(Debug, thiserror::Error)]
+#[error("the station works no more, by a fault of its own that the log tells; start it again")]
+pub(super) struct EngineEnded;
 
 /// The lines of stdin, counted, until its end.
 fn scans() -> io::Result<Receiver<(u64, String)>> {

@@ -1,7 +1,9 @@
 //! The command line: one file a command.
 
 mod check;
+mod codes;
 mod demo;
+mod document;
 mod export;
 mod history;
 mod kept;
@@ -13,6 +15,7 @@ mod pareto;
 mod plan;
 mod rebind;
 mod run;
+mod schema;
 mod serve;
 mod signals;
 mod unit;
@@ -21,6 +24,8 @@ mod waive;
 mod yields;
 
 use clap::{ArgAction, Parser, Subcommand};
+
+pub use document::failure;
 
 use crate::console;
 use crate::exit::Exit;
@@ -54,6 +59,8 @@ enum Command {
     Plan(plan::Arguments),
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
+    Codes(codes::Arguments),
+    Schema(schema::Arguments),
     Serve(serve::Arguments),
     Demo(demo::Arguments),
     User(user::Arguments),
@@ -76,7 +83,7 @@ impl Failure {
     }
 
     /// A failure that is not the caller's.
-    fn error(error: impl Into<anyhow::Error>) -> Self {
+    pub fn error(error: impl Into<anyhow::Error>) -> Self {
         Self { exit: Exit::Error, error: error.into() }
     }
 }
@@ -86,6 +93,17 @@ impl Cli {
     #[must_use]
     pub fn verbosity(&self) -> u8 {
         self.verbose
+    }
+
+    /// The command, if it was asked for a document.
+    #[must_use]
+    pub fn documented(&self) -> Option<&'static str> {
+        match &self.command {
+            Command::Run(run::Arguments { json: true, .. }) => Some("run"),
+            Command::Check(check::Arguments { json: true, .. }) => Some("check"),
+            Command::Codes(codes::Arguments { json: true }) => Some("codes"),
+            _ => None,
+        }
     }
 
     /// Carries the command out.
@@ -108,6 +126,8 @@ impl Cli {
             Command::Plan(arguments) => plan::run(arguments),
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
+            Command::Codes(arguments) => codes::run(arguments),
+            Command::Schema(arguments) => schema::run(arguments),
             Command::Serve(arguments) => serve::run(arguments),
             Command::Demo(arguments) => demo::run(arguments),
             Command::User(arguments) => user::run(arguments),
@@ -123,13 +143,14 @@ impl From<StoreError> for Failure {
     }
 }
 
-/// Closes what was under way when the station ended, and says so.
-fn recovered(store: &mut Store) -> Result<(), RunError> {
-    for Saved { record, .. } in runs::recover(store)? {
+/// Closes what was under way when the station ended, says so, and returns it.
+fn recovered(store: &mut Store) -> Result<Vec<Saved>, RunError> {
+    let recovered = runs::recover(store)?;
+    for Saved { record, .. } in &recovered {
         let (id, serial) = (&record.run.id, &record.run.serial);
         console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
     }
-    Ok(())
+    Ok(recovered)
 }
 
 /// Prints a result, which is the command's only one.

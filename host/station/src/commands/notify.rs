@@ -51,7 +51,7 @@ mod tests {
             Notify(Some((UnixDatagram::unbound().unwrap(), SocketAddr::from_pathname(path).unwrap())));
         notify.ready();
         notify.works();
-        let mut heard = || {
+        let heard = || {
             let mut buffer = [0; 64];
             let read = systemd.recv(&mut buffer).unwrap();
             String::from_utf8(buffer[..read].to_vec()).unwrap()

@@ -10,13 +10,15 @@ use clap::Args;
 use halfrow::Verdict;
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
+use serde_json::json;
 
-use super::{Failure, recovered, signals};
+use super::{Failure, document, recovered, signals};
 use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::lane::Message;
 use crate::plan::Plan;
+use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::store::{Folder, SharedStore, Store};
 
@@ -55,6 +57,9 @@ pub(super) struct Arguments {
     /// Kill the lane when it tells nothing for so long
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
     silence: Duration,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {
@@ -69,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = signals::last().map_err(Failure::error)?;
     let mut store = Store::open(&Folder::new(&arguments.data))?;
-    recovered(&mut store)?;
+    let recovered = recovered(&mut store)?;
     let station = arguments.station.clone().unwrap_or_else(this_computer);
     let owed = store.folder().owed(&station, &arguments.lane, &plan, clock::now_ms())?;
     let order = Order {
@@ -87,12 +92,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     // Closing the database takes a while, and the verdict does not wait for it.
     let store = SharedStore::new(store);
     let ended = run::run(&store, &order, &mut Watched { signal });
-    if let Err(RunError::Unsaved { .. }) = &ended {
+    if let Err(RunError::Unsaved { .. }) = &ended
+        && !arguments.json
+    {
         console::tell(&format!("UNSAVED {}: keep this board apart; it has no verdict", arguments.serial));
     }
     let saved = ended?;
-    console::tell(&text(&saved));
-    Ok(exit(&saved))
+    let exit = exit(&saved);
+    console::tell(&if arguments.json { document(&saved, &recovered, exit)? } else { text(&saved) });
+    Ok(exit)
 }
 
 impl From<RunError> for Failure {
@@ -111,7 +119,7 @@ struct Watched {
 
 impl Watch for Watched {
     fn stop(&self) -> Option<StoppedBy> {
-        signals::stopped_by(self.signal.load(Ordering::Relaxed))
+        Exit::stopped_by(self.signal.load(Ordering::Relaxed))
     }
 
     fn hear(&mut self, stage: Stage<'_>) {
@@ -131,6 +139,32 @@ fn log(message: &Message) {
         Message::Identified { board } => tracing::info!("the board says it is {}", board.name),
         Message::Rows { .. } | Message::Done | Message::Refused { .. } => {}
     }
+}
+
+fn document(saved: &Saved, recovered: &[Saved], exit: Exit) -> Result<String, Failure> {
+    let Saved { record, stored, .. } = saved;
+    let (ended, plan) = (&record.conclusion, &record.plan);
+    let recovered: Vec<_> = recovered
+        .iter()
+        .map(|Saved { record: Record { run, .. }, .. }| json!({ "run": run.id, "serial": run.serial }))
+        .collect();
+    let rest = json!({
+        "run": record.run,
+        "plan": { "name": plan.name, "version": plan.version, "sha256": plan.sha256 },
+        "cause": ended.cause,
+        "headline": ended.headline,
+        "remedy": ended.remedy,
+        "device": record.device,
+        "production": record.production,
+        "marginal": record.marginal,
+        "nth": stored.nth,
+        "ended_ms": record.ended_ms,
+        "seconds": record.seconds,
+        "suspects": record.suspects,
+        "record_sha256": stored.record_sha256,
+        "recovered": recovered,
+    });
+    document::text("run", exit, Some(ended.verdict), rest)
 }
 
 fn text(saved: &Saved) -> String {

@@ -76,7 +76,7 @@ pub(super) fn serve(
     notify.ready();
     let mut told = Instant::now();
     let by = loop {
-        if let Some(by) = signals::stopped_by(signal.load(Ordering::Relaxed)) {
+        if let Some(by) = Exit::stopped_by(signal.load(Ordering::Relaxed)) {
             break by;
         }
         if told.elapsed() >= TELL && engine.is_well() {

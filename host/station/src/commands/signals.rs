@@ -4,7 +4,6 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
-use halfrow::verdict::StoppedBy;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 
@@ -17,10 +16,4 @@ pub(super) fn last() -> io::Result<Arc<AtomicUsize>> {
         flag::register_usize(signal, Arc::clone(&last), exit.code().into())?;
     }
     Ok(last)
-}
-
-/// Who wants it to end, of the exit code of the last signal.
-pub(super) fn stopped_by(code: usize) -> Option<StoppedBy> {
-    let by = [StoppedBy::Person, StoppedBy::System, StoppedBy::Disconnection];
-    by.into_iter().find(|&by| usize::from(Exit::from(halfrow::Cause::Stopped(by)).code()) == code)
 }

@@ -12,6 +12,7 @@ use halfrow::verdict::StoppedBy;
 use super::hooks;
 use super::{Heard, Input};
 use crate::floor::{Accepted, Event, Shown};
+use crate::guard::guarded;
 use crate::lane::Message;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::settings::Settings;
@@ -50,7 +51,8 @@ pub(super) fn begin(
 ) -> std::io::Result<JoinHandle<()>> {
     let shared = Arc::clone(shared);
     thread::Builder::new().name(format!("run in lane {lane}")).spawn(move || {
-        let (event, is_stuck) = carried_out(&shared, lane, &accepted, &operator, stop);
+        let run = || carried_out(&shared, lane, &accepted, &operator, stop);
+        let (event, is_stuck) = guarded(run).unwrap_or_else(|fault| (unsaved(fault), false));
         shared.tell(lane, Heard::Happened(event));
         if is_stuck {
             shared.tell(lane, Heard::Happened(Event::Stuck));
@@ -89,7 +91,7 @@ fn carried_out(
             let is_stuck = saved.is_stuck;
             (Event::Ended(shown(saved)), is_stuck)
         }
-        Err(error @ RunError::Unsaved { .. }) => (Event::Unsaved { why: told(error) }, false),
+        Err(error @ RunError::Unsaved { .. }) => (unsaved(error), false),
         Err(error) => (Event::NotBegun { why: told(error) }, false),
     }
 }
@@ -99,11 +101,11 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
     let shared = Arc::clone(shared);
     thread::Builder::new().name(format!("recovery in lane {lane}")).spawn(move || {
         thread::sleep(AGAIN);
-        let event = match shared.store.with(|store| run::recover_run(store, &run)) {
+        let event = guarded(|| match shared.store.with(|store| run::recover_run(store, &run)) {
             Ok(saved) => Event::Ended(shown(saved)),
-            Err(error) => Event::Unsaved { why: told(error) },
-        };
-        shared.tell(lane, Heard::Happened(event));
+            Err(error) => unsaved(error),
+        });
+        shared.tell(lane, Heard::Happened(event.unwrap_or_else(unsaved)));
     })
 }
 
@@ -113,11 +115,19 @@ pub(super) fn hook(shared: &Arc<Shared>, lane: usize, shown: Shown) -> std::io::
     thread::Builder::new().name(format!("hooks of lane {lane}")).spawn(move || {
         let name = shared.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
         for hook in shared.settings.hooks.iter().filter(|hook| hook.on == shown.verdict) {
-            if let Err(error) = hooks::run(hook, name, &shown) {
-                shared.tell(lane, Heard::Hook { run: shown.run.clone(), said: told(error) });
-            }
+            let said = match guarded(|| hooks::run(hook, name, &shown)) {
+                Ok(Ok(())) => continue,
+                Ok(Err(error)) => told(error),
+                Err(fault) => told(fault),
+            };
+            shared.tell(lane, Heard::Hook { run: shown.run.clone(), said });
         }
     })
+}
+
+/// Nothing is known of a run but what is in the store, which the recovery looks at.
+fn unsaved(error: impl Into<anyhow::Error>) -> Event {
+    Event::Unsaved { why: told(error) }
 }
 
 fn told(error: impl Into<anyhow::Error>) -> String {

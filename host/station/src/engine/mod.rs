@@ -24,6 +24,7 @@ pub use hooks::HookError;
 pub use news::{LaneState, News};
 
 use crate::floor::{Act, Event};
+use crate::guard::guarded;
 use crate::settings::Settings;
 use crate::store::{SharedStore, Store};
 use at_work::AtWork;
@@ -84,7 +85,7 @@ impl Engine {
         let shared = Arc::new(Shared { settings, store: store.clone(), program, inbox: inbox.clone() });
         let at_work = AtWork::new(floor, shared, Arc::clone(&board));
         let thread =
-            thread::Builder::new().name("engine".to_owned()).spawn(move || at_work.run(&received))?;
+            thread::Builder::new().name("engine".to_owned()).spawn(move || work(at_work, &received))?;
         Ok(Self { inbox, board, store, thread: Mutex::new(Some(thread)) })
     }
 
@@ -146,5 +147,11 @@ impl Engine {
         if self.inbox.send(input).is_err() {
             tracing::error!("the engine has ended; start the station again");
         }
+    }
+}
+
+fn work(at_work: AtWork, inbox: &Receiver<Input>) {
+    if let Err(fault) = guarded(|| at_work.run(inbox)) {
+        tracing::error!("{fault}");
     }
 }

@@ -209,7 +209,7 @@ impl Common<'_> {
             Err(result) => return *result,
         };
         let circumstances = Circumstances {
-            arguments: std::env::args().collect(),
+            arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
             files: self.plan.files.clone(),
             draws: Draws::draw(),
         };

@@ -101,9 +101,8 @@ mod tests {
     #[test]
     fn the_pages_use_every_key_and_no_other() {
         let source = source(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src/web"));
-        let used: BTreeSet<_> =
-            ["say(\"", "fill(\"", "key: \""].into_iter().flat_map(|call| source.split(call).skip(1));
-        let used: BTreeSet<_> = used.into_iter().filter_map(|rest| rest.split('"').next()).collect();
+        let calls = ["say(\"", "fill(\"", "key: \""].into_iter().flat_map(|call| source.split(call).skip(1));
+        let used: BTreeSet<_> = calls.filter_map(|rest| rest.split('"').next()).collect();
         let known: BTreeSet<_> = ALL[0].words.keys().map(String::as_str).collect();
         let missing: Vec<_> = used.difference(&known).collect();
         let surplus: Vec<_> = known.difference(&used).collect();

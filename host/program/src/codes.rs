@@ -1,0 +1,95 @@
+//! The codes of errors that both programs have, and how a page tells codes.
+
+use std::error::Error;
+
+use clap::error::ErrorKind;
+use halfrow::result::Problem;
+use halfrow::result::codes::{self, CodeList, Coded};
+
+use crate::console::Unprinted;
+use crate::exit::Exit;
+use crate::guard::InternalError;
+
+codes::codes! {
+    ;
+    Unprinted => "result-not-printed"
+    ;
+    InternalError => "program-failed"
+}
+
+/// Of a call that contradicts itself or its input, in a sentence that says how.
+const REFUSED: &str = "call-refused";
+/// Of a command that could not be carried out, in a sentence that says why.
+const FAILED: &str = "command-failed";
+/// Of what has no type of its own.
+pub const UNTYPED: [&str; 3] = [REFUSED, FAILED, codes::FOREIGN];
+/// Of command lines that cannot be read.
+pub const USAGE: [&str; 6] = [
+    "usage-argument-unknown",
+    "usage-value-wrong",
+    "usage-argument-missing",
+    "usage-arguments-conflict",
+    "usage-command-unknown",
+    "usage-wrong",
+];
+
+/// The codes of the types of errors that both programs have.
+#[must_use]
+pub fn lists() -> &'static [CodeList] {
+    LISTS
+}
+
+/// The code of an error of both programs, of the library, or of the system.
+#[must_use]
+pub fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
+    lookup(error).or_else(|| codes::lookup(error))
+}
+
+/// Why a command came to no result, by the codes that `known` knows.
+#[must_use]
+pub fn problem(
+    exit: Exit,
+    error: &anyhow::Error,
+    known: fn(&(dyn Error + 'static)) -> Option<Coded>,
+) -> Problem {
+    let problem = Problem::by(error.as_ref(), known);
+    if problem.code != codes::FOREIGN {
+        return problem;
+    }
+    Problem { code: if exit == Exit::Usage { REFUSED } else { FAILED }.to_owned(), ..problem }
+}
+
+/// The code of a command line that cannot be read.
+#[must_use]
+pub fn of_usage(kind: ErrorKind) -> &'static str {
+    USAGE[match kind {
+        ErrorKind::UnknownArgument => 0,
+        ErrorKind::InvalidValue | ErrorKind::ValueValidation | ErrorKind::InvalidUtf8 => 1,
+        ErrorKind::MissingRequiredArgument
+        | ErrorKind::NoEquals
+        | ErrorKind::TooFewValues
+        | ErrorKind::WrongNumberOfValues => 2,
+        ErrorKind::ArgumentConflict | ErrorKind::TooManyValues => 3,
+        ErrorKind::InvalidSubcommand | ErrorKind::MissingSubcommand => 4,
+        _ => 5,
+    }]
+}
+
+/// Lists of codes in Markdown, each under the name of its type.
+pub fn page<'a>(lists: impl Iterator<Item = &'a CodeList>) -> String {
+    let mut text = String::new();
+    for list in lists.filter(|list| !list.codes.is_empty()) {
+        text += &format!("\n{}:\n\n", list.error);
+        for (code, names) in list.codes {
+            text += &format!("* `{code}`{}\n", parameters(names.iter()));
+        }
+    }
+    text
+}
+
+/// The names of a code's parameters in Markdown.
+#[must_use]
+pub fn parameters(names: impl Iterator<Item = impl AsRef<str>>) -> String {
+    let names: Vec<_> = names.map(|name| format!("`{}`", name.as_ref())).collect();
+    if names.is_empty() { String::new() } else { format!(" ({})", names.join(", ")) }
+}

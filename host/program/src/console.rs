@@ -1,0 +1,93 @@
+//! The standard streams. Nothing else of a program writes to them, and a stream that takes nothing ends no run.
+//!
+//! A stream that is closed is one that nobody wants to read, as `/dev/null` is: Rust's start-up code puts that there.
+
+// Here alone.
+#![allow(clippy::disallowed_methods)]
+
+use std::fmt::Display;
+use std::io::{self, IsTerminal as _, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anstream::AutoStream;
+
+/// A result that stdout did not take.
+#[derive(Debug, thiserror::Error)]
+#[error("the result cannot be written to stdout; free some space where it goes, or send it elsewhere")]
+pub struct Unprinted(#[source] io::Error);
+
+/// Prints a result and a line's end to stdout. A reader that went away, as `head` does, has seen enough.
+///
+/// # Errors
+/// [`Unprinted`] when stdout does not take it.
+pub fn print(text: &str) -> Result<(), Unprinted> {
+    print_raw(&format!("{text}\n"))
+}
+
+/// [`print()`] without a line's end of its own.
+///
+/// # Errors
+/// As [`print()`].
+pub(crate) fn print_raw(text: &str) -> Result<(), Unprinted> {
+    let mut stdout = io::stdout().lock();
+    // Put together first: the stripping of colours would write every piece of text by itself.
+    let mut bytes = AutoStream::new(Vec::new(), AutoStream::choice(&stdout));
+    let styled = bytes.write_all(text.as_bytes());
+    match styled.and_then(|()| stdout.write_all(&bytes.into_inner())).and_then(|()| stdout.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        written => written.map_err(Unprinted),
+    }
+}
+
+/// Prints what is not the only result of a command: its files or its exit code say it, too. If stdout does not take it,
+/// stderr says so, once.
+pub fn tell(text: &str) {
+    static SAID: AtomicBool = AtomicBool::new(false);
+    if let Err(unprinted) = print(text)
+        && !SAID.swap(true, Ordering::Relaxed)
+    {
+        error(&format_args!("{:#}; the exit code stands", anyhow::Error::from(unprinted)));
+    }
+}
+
+/// Says on stderr what went wrong, if it can be said.
+pub fn error(what: &dyn Display) {
+    diagnose(&format_args!("error: {what}"));
+}
+
+/// Asks on stderr for something that is typed behind it. Whoever types blind knows what is asked.
+pub fn ask(what: &str) {
+    diagnose_raw(&format!("{what}: "));
+}
+
+/// Writes a line to stderr, if that takes it.
+pub fn diagnose(what: &dyn Display) {
+    diagnose_raw(&format!("{what}\n"));
+}
+
+/// [`diagnose`] without a line's end of its own.
+pub(crate) fn diagnose_raw(text: &str) {
+    // Nobody is left to be told that this cannot be told.
+    let _ = anstream::stderr().lock().write_all(text.as_bytes());
+}
+
+/// Whether somebody watches stderr.
+#[must_use]
+pub fn is_watched() -> bool {
+    io::stderr().is_terminal()
+}
+
+/// Where the log goes: stderr, which takes it or does not.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Log;
+
+impl Write for Log {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let _ = io::stderr().lock().write_all(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

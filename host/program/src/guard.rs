@@ -1,0 +1,69 @@
+//! Faults of a program itself: a panic ends a command with an error, never by itself.
+
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
+use std::process::ExitCode;
+use std::sync::Mutex;
+
+use crate::console;
+use crate::exit::Exit;
+
+/// A panic.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the program itself has failed: {0}; run it again, and report this line with the call that led to it"
+)]
+pub struct InternalError(String);
+
+/// What the first panic was, for a panic that comes through other threads loses its place.
+static FIRST: Mutex<Option<String>> = Mutex::new(None);
+
+/// What `run` ends with, as the process's exit code; a panic is an error, which is told.
+pub fn end(run: impl FnOnce() -> Exit) -> ExitCode {
+    let exit = guarded(run).unwrap_or_else(|fault| {
+        console::error(&fault);
+        Exit::Error
+    });
+    ExitCode::from(exit.code())
+}
+
+/// What `run` returns.
+///
+/// # Errors
+/// [`InternalError`] when it panics, on whatever thread that it waits for.
+pub fn guarded<T>(run: impl FnOnce() -> T) -> Result<T, InternalError> {
+    panic::set_hook(Box::new(note));
+    let ended = panic::catch_unwind(AssertUnwindSafe(run));
+    ended.map_err(|_| {
+        let first = FIRST.lock().ok().and_then(|mut first| first.take());
+        InternalError(first.unwrap_or_else(|| "for no reason that is known".to_owned()))
+    })
+}
+
+/// Keeps what a panic says, and writes its backtrace where one is asked for with `RUST_BACKTRACE`.
+fn note(panic: &PanicHookInfo<'_>) {
+    let message = panic.payload_as_str().unwrap_or("a panic without a message");
+    let place = panic.location().map_or_else(String::new, |place| format!(" ({place})"));
+    if let Ok(mut first) = FIRST.lock() {
+        first.get_or_insert_with(|| format!("{message}{place}"));
+    }
+    let trace = Backtrace::capture();
+    if trace.status() == BacktraceStatus::Captured {
+        console::diagnose(&format_args!("{message}{place}\n{trace}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_an_error_that_says_what_and_where() {
+        assert_eq!(guarded(|| 7).unwrap(), 7);
+        let said = guarded(|| panic!("the sky fell")).map(|()| 0).unwrap_err().to_string();
+        assert!(said.contains("the sky fell (") && said.contains("guard.rs:"), "{said}");
+        let behind = || std::thread::scope(|scope| scope.spawn(|| panic!("below ground")).join().is_ok());
+        let said = guarded(|| assert!(behind())).unwrap_err().to_string();
+        assert!(said.contains("below ground"), "{said}");
+    }
+}

@@ -1,0 +1,16 @@
+//! What the programs `halfrow` and `halfrow-station` stand on, so that scripts and people find the same in both.
+//!
+//! * [`exit`]: the exit codes.
+//! * [`console`]: the one place that writes to stdout and stderr.
+//! * [`log`]: what goes to stderr when somebody wants to know.
+//! * [`guard`]: a panic is an error with exit code 3, never 101.
+//! * [`json`]: what documents of both programs begin with, and [`codes`]: why there is no result.
+//! * [`line`]: what a command line that asks for help, or is wrong, is told.
+
+pub mod codes;
+pub mod console;
+pub mod exit;
+pub mod guard;
+pub mod json;
+pub mod line;
+pub mod log;

@@ -1,0 +1,41 @@
+//! Command lines that lead to no command.
+
+use clap::Command;
+use clap::error::ErrorKind;
+use halfrow::result::Problem;
+
+use crate::console::{self, Unprinted};
+use crate::exit::Exit;
+use crate::{codes, json};
+
+/// Tells what the reader of the command line of `program` has to tell: help and version on stdout, what is wrong with a call on
+/// stderr, and as JSON on stdout where that is asked for.
+///
+/// # Errors
+/// [`Unprinted`] when somebody asked for help or version, and stdout does not take it.
+pub fn tell(told: &clap::Error, program: &Command) -> Result<Exit, Unprinted> {
+    let text = told.render().ansi().to_string();
+    if !told.use_stderr() {
+        return console::print_raw(&text).map(|()| Exit::Pass);
+    }
+    console::diagnose_raw(&text);
+    let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+    let options: Vec<_> = arguments.take_while(|argument| argument != "--").collect();
+    if options.iter().any(|option| option == "--json") {
+        console::tell(&document(told, program, &options));
+    }
+    Ok(Exit::Usage)
+}
+
+fn document(told: &clap::Error, program: &Command, options: &[String]) -> String {
+    let known = |name: &&String| program.find_subcommand(name).is_some();
+    let command = options.iter().find(known).map_or(program.get_name(), String::as_str);
+    let message = told.render().to_string();
+    let message = message.trim_start_matches("error: ").split("\n\nUsage:").next().unwrap_or_default().trim();
+    let mut problem = Problem::new(codes::of_usage(told.kind()), message);
+    if told.kind() != ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        let name = program.get_name();
+        problem.remedy = Some(format!("See `{name} help` and `{name} COMMAND --help`."));
+    }
+    json::without_result(command, Exit::Usage, None, &problem)
+}

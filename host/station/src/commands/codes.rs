@@ -1,0 +1,194 @@
+//! `halfrow-station codes`, and the codes of the station's own errors.
+
+use std::error::Error;
+
+use clap::Args;
+use halfrow::result::Problem;
+use halfrow::result::codes::{self, CodeList, Coded};
+use halfrow_program::codes as program;
+use serde_json::{Value, json};
+
+use super::lanes::EngineEnded;
+use super::{Failure, document, print};
+use crate::check::Fault;
+use crate::engine::HookError;
+use crate::exit::Exit;
+use crate::export::ExportError;
+use crate::floor::{Refusal, ScanError, UnknownBarcode};
+use crate::input_error::InputError;
+use crate::kept::CopyError;
+use crate::plan::serial::SerialError;
+use crate::record::{BlobError, RecordError};
+use crate::run::{NoRandomness, RunError};
+use crate::store::{NoWaiver, RebindError, StoreError};
+
+/// Print the page of all codes of the station's errors
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
+}
+
+codes::codes! {
+    InputError {
+        Unreadable [path] => "station-input-unreadable",
+        Wrong [path, line, what] => "station-input-wrong",
+        Input [path, line, what] => "station-input-names-unusable",
+    }
+    SerialError {
+        Empty => "serial-empty",
+        TooLong [characters] => "serial-too-long",
+        Character [character, place] => "serial-character-wrong",
+        Reserved [serial] => "serial-reserved",
+        Pattern [serial, pattern] => "serial-of-no-product",
+        CheckDigit [serial] => "serial-check-digit-wrong",
+    }
+    ScanError {
+        Incomplete => "scan-incomplete",
+        NoLane [lane, known] => "lane-unknown",
+        WhichLane [lanes] => "lane-not-named",
+        Ambiguous [serial, first, second] => "serial-of-two-products",
+        Elsewhere [serial, lane] => "serial-in-other-lane",
+        = Barcode,
+        = Serial,
+        = Lane,
+    }
+    Refusal {
+        Out [lane, why] => "lane-out",
+        Owes [lane, why] => "lane-not-checked",
+        Busy [lane, serial] => "lane-busy",
+        Unsaved [lane, serial] => "lane-unsaved",
+        NoBoard [lane] => "lane-empty",
+        NoSerial [lane] => "lane-without-serial",
+        NoButton [lane] => "lane-without-button",
+        NothingToAbort [lane] => "lane-idle",
+        InService [lane] => "lane-in-service",
+    }
+    RunError {
+        NotBegun => "run-not-begun",
+        Unsaved [run] => "run-unsaved",
+        = Serial,
+        = NoRandomness,
+    }
+    StoreError {
+        InUse [folder] => "store-in-use",
+        Folder [folder] => "store-folder-unusable",
+        Database [path, doing] => "database-refuses",
+        NoLog [path, mode] => "database-without-log",
+        Newer [path, found, known] => "database-newer",
+        Older [path, found, known] => "database-older",
+        OtherSchema [path, version] => "database-of-other-schema",
+        NotOpen [run] => "run-not-open",
+        ReadsOtherwise [run] => "run-reads-otherwise",
+        = Blob,
+        = Record,
+        = NoRandomness,
+    }
+    BlobError {
+        Folder [path] => "evidence-folder-unusable",
+        Write => "evidence-not-written",
+        Read [path] => "evidence-unreadable",
+        Damaged [path, found] => "evidence-damaged",
+    }
+    RecordError {
+        NotANumber [name, value] => "record-without-number",
+        Incomplete [seq, steps] => "record-incomplete",
+        Json => "record-unreadable",
+    }
+    Fault {
+        Database [said] => "database-damaged",
+        Evidence [run] => "run-evidence-wrong",
+        Record [run] => "run-record-wrong",
+        Contradiction [run] => "run-contradicts",
+        Audit [id] => "audit-contradicts",
+        Plan [run] => "run-plan-wrong",
+        Differs [table, key, column, stored, rebuilt] => "table-row-differs",
+        Missing [table, key] => "table-row-missing",
+        Surplus [table, key] => "table-row-surplus",
+    }
+    RebindError {
+        Unknown [serial] => "unit-unknown",
+        Several [serial, first, second] => "unit-of-two-products",
+        UnderTest [serial] => "unit-under-test",
+        = NoRandomness,
+        = Store,
+    }
+    NoWaiver {
+        NoRun [run] => "waiver-without-run",
+        NoFail [run, verdict] => "waiver-without-fail",
+        Waived [run] => "waiver-given-already",
+        Empty => "waiver-without-reason",
+        = NoRandomness,
+        = Store,
+    }
+    CopyError {
+        Exists [path] => "copy-would-overwrite",
+        UnderWay [path] => "copy-of-runs-under-way",
+        Io [path] => "copy-not-written",
+        Faulty [path, faults, first] => "copy-faulty",
+        = Store,
+    }
+    ExportError {
+        Xml => "export-not-encoded-as-xml",
+        Json => "export-not-encoded-as-json",
+        Write => "export-not-written",
+        = Store,
+    }
+    HookError {
+        Start [program] => "hook-not-started",
+        Failed [program, said] => "hook-failed",
+        Late [program, deadline] => "hook-late",
+    }
+    ;
+    UnknownBarcode [text] => "barcode-unknown"
+    ;
+    NoRandomness => "no-randomness"
+    ;
+    EngineEnded => "engine-ended"
+}
+
+fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
+    lookup(error).or_else(|| program::known(error))
+}
+
+/// Why a command came to no result.
+pub(super) fn problem(exit: Exit, error: &anyhow::Error) -> Problem {
+    program::problem(exit, error, known)
+}
+
+/// What is wrong with what was kept.
+pub(super) fn of_fault(fault: &Fault) -> Problem {
+    Problem::by(fault, known)
+}
+
+fn lists() -> impl Iterator<Item = &'static CodeList> {
+    LISTS.iter().filter(|list| !list.codes.is_empty())
+}
+
+/// Every code that a document of the station may have.
+pub(super) fn all() -> Vec<Value> {
+    let library = codes::LISTS.into_iter().flatten().chain(program::lists());
+    let typed = lists().chain(library).flat_map(|list| list.codes).map(|(code, _)| *code);
+    let others = codes::IO_CODES.into_iter().chain(program::USAGE).chain(program::UNTYPED);
+    typed.chain(others).map(Value::from).collect()
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    if arguments.json {
+        let entries = lists().flat_map(|list| list.codes);
+        let codes: Vec<_> =
+            entries.map(|(code, names)| json!({ "code": code, "parameters": names })).collect();
+        return print(&document::text("codes", Exit::Pass, None, json!({ "codes": codes }))?);
+    }
+    print(format!("{HEAD}{}", program::page(lists())).trim_end())
+}
+
+const HEAD: &str = "# Codes of the station
+
+Every error of `halfrow-station` in JSON has a code and parameters, and so has every fault that `check` finds. Codes are
+stable: none changes its meaning or its parameters' names within a schema number, and new ones may come. Their sentence
+is in `message`, and what to do in `remedy` and at its end.
+`halfrow-station codes` prints this page; a test holds the two equal. Errors of boards, links, files, the system and of
+command lines have the codes of [`halfrow`](CODES.md).
+";

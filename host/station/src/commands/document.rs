@@ -1,0 +1,27 @@
+//! Results of commands as JSON documents, which begin as those of `halfrow` do, and why there are none.
+
+use halfrow::Verdict;
+use halfrow::result::{Document, Schema};
+use halfrow_program::json;
+use serde::Serialize;
+
+use super::{Failure, codes};
+use crate::exit::Exit;
+
+/// The result of a command.
+pub(super) fn text(
+    command: &str,
+    exit: Exit,
+    verdict: Option<Verdict>,
+    rest: impl Serialize,
+) -> Result<String, Failure> {
+    let document = Document { schema: Schema, command, verdict, board: None, error: None, rest };
+    json::document(&document, exit).map_err(Failure::error)
+}
+
+/// The document of a command that failed. It has no verdict, for none is saved.
+#[must_use]
+pub fn failure(command: &str, failure: &Failure) -> String {
+    let Failure { exit, error } = failure;
+    json::without_result(command, *exit, None, &codes::problem(*exit, error))
+}

@@ -1,0 +1,74 @@
+//! What all tests stand on: a plan, serial numbers, the program, and a look at what it kept.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// A plan whose runs take a moment.
+pub(crate) const PLAN: &str = r#"schema = 1
+[plan]
+name = "quick"
+version = "1"
+product = "CAM-T"
+[serial]
+pattern = "^CAT[0-9]{5}$"
+check = "none"
+[board]
+require_hardware = false
+builds = ["00000000"]
+device = "if-present"
+[tables]
+radius = 10.0
+width = 64
+height = 8
+[[step]]
+kind = "verify"
+frames = ["builtin:noise"]
+timeout = 60
+"#;
+
+/// [`PLAN`] for a product whose serial numbers are `letters` before a number that guards itself as an ISBN-10 does.
+pub(crate) fn guarded_plan(product: &str, letters: &str) -> String {
+    let pattern = format!("^{letters}(?<number>[0-9]{{9}}[0-9X])$");
+    PLAN.replace("CAM-T", product).replace("^CAT[0-9]{5}$", &pattern).replace("\"none\"", "\"mod11\"")
+}
+
+/// Serial numbers whose check digits publishers computed: ISBNs of printed books, The C Programming Language and TeX:
+/// The Program among them.
+pub(crate) const SERIALS: [&str; 4] = ["CA0131103628", "CA0201134373", "CA080442957X", "CA0306406152"];
+
+pub(crate) fn program() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_halfrow-station"))
+}
+
+/// What the program did.
+#[derive(Debug)]
+pub(crate) struct Did {
+    pub(crate) code: Option<i32>,
+    pub(crate) said: String,
+    pub(crate) complained: String,
+}
+
+impl From<Output> for Did {
+    fn from(output: Output) -> Self {
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        Self { code: output.status.code(), said: text(output.stdout), complained: text(output.stderr) }
+    }
+}
+
+/// What `check` says of this folder.
+pub(crate) fn check(data: &Path) -> Did {
+    Command::new(program()).arg("check").arg("--data").arg(data).output().unwrap().into()
+}
+
+/// A look at the database of this folder that is not the program's: one value of each row.
+pub(crate) fn query(data: &Path, text: &str) -> Vec<String> {
+    let database = rusqlite::Connection::open(data.join("station.db")).unwrap();
+    let mut statement = database.prepare(text).unwrap();
+    let rows = statement.query_map([], |row| row.get::<_, rusqlite::types::Value>(0)).unwrap();
+    let text = |value| match value {
+        rusqlite::types::Value::Text(text) => text,
+        rusqlite::types::Value::Integer(number) => number.to_string(),
+        other => format!("{other:?}"),
+    };
+    rows.map(|row| text(row.unwrap())).collect()
+}

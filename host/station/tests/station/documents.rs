@@ -1,0 +1,130 @@
+//! What is printed as JSON: it is as the schema in the repository says, and every error has a code.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::common::{Did, PLAN, program};
+use crate::runs::bench::Station;
+
+const SCHEMA: &str = include_str!("../../schema/station-1.json");
+
+fn did(arguments: &[&str]) -> Did {
+    Command::new(program()).args(arguments).output().unwrap().into()
+}
+
+/// What was printed, which is as the schema says, with the process's own exit code.
+fn document(did: &Did) -> Value {
+    let said: Value = serde_json::from_str(&did.said).unwrap_or_else(|error| panic!("{error}: {did:?}"));
+    let schema = jsonschema::validator_for(&serde_json::from_str(SCHEMA).unwrap()).unwrap();
+    let wrong: Vec<_> = schema.iter_errors(&said).map(|error| error.to_string()).collect();
+    assert!(wrong.is_empty(), "not as the schema says: {wrong:?}\n{said:#}");
+    assert_eq!(said["exit_code"].as_i64(), did.code.map(i64::from), "{did:?}");
+    said
+}
+
+fn run(station: &Station, serial: &str, board: &str) -> Did {
+    let mut arguments = station.run_arguments(serial, board);
+    arguments.push("--json".to_owned());
+    Command::new(program()).args(arguments).output().unwrap().into()
+}
+
+#[test]
+fn a_run_is_a_document_whatever_it_comes_to() {
+    let station = Station::with(PLAN);
+    for (serial, board, verdict, cause) in [
+        ("CAT00001", "mock,serial=17", "PASS", "none"),
+        ("CAT00002", "mock,fault=stuck-data", "FAIL", "board"),
+        ("CAT00003", "tcp:127.0.0.1:1", "ERROR", "station"),
+        ("CAT00004", "mock,serial=17", "ERROR", "operator"),
+    ] {
+        let said = document(&run(&station, serial, board));
+        assert_eq!((&said["verdict"], &said["cause"]), (&verdict.into(), &cause.into()), "{said:#}");
+        assert_eq!(said["run"]["serial"], serial);
+        let hash = said["record_sha256"].as_str().unwrap();
+        assert_eq!(crate::runs::bench::sha256sum(&station.store().blobs().path(hash)), hash);
+    }
+    let recorded = station.query("SELECT id FROM run ORDER BY id");
+    rusqlite::Connection::open(station.store().database())
+        .unwrap()
+        .execute_batch(
+            "UPDATE run SET state = 'open', verdict = NULL, cause = NULL, exit_code = NULL, headline = NULL,
+             ended_ms = NULL, record_sha256 = NULL WHERE cause = 'operator'",
+        )
+        .unwrap();
+    let said = document(&run(&station, "CAT00005", "mock"));
+    assert_eq!(said["recovered"], serde_json::json!([{ "run": recorded[3], "serial": "CAT00004" }]));
+}
+
+#[test]
+fn what_has_no_verdict_is_a_document_with_a_code() {
+    let station = Station::with(PLAN);
+    let said = document(&run(&station, "CAT1", "mock"));
+    assert_eq!((&said["error"]["code"], &said["exit_code"]), (&"serial-of-no-product".into(), &2.into()));
+    assert_eq!(said["error"]["parameters"]["serial"], "CAT1");
+    station.plan(&PLAN.replace("schema = 1", "schema = 9"));
+    let said = document(&run(&station, "CAT00001", "mock"));
+    assert_eq!(
+        (&said["error"]["code"], &said["error"]["parameters"]["line"]),
+        (&"station-input-wrong".into(), &1.into())
+    );
+    station.plan(PLAN);
+    station.run("CAT00001", "mock");
+    fs::remove_dir_all(station.data().join("blobs")).unwrap();
+    fs::write(station.data().join("blobs"), "").unwrap();
+    let said = document(&run(&station, "CAT00001", "mock"));
+    assert_eq!((&said["error"]["code"], &said["verdict"]), (&"run-unsaved".into(), &Value::Null), "{said:#}");
+    let usage = document(&did(&["run", "--json", "--moon"]));
+    assert_eq!(
+        (&usage["error"]["code"], &usage["command"]),
+        (&"usage-argument-unknown".into(), &"run".into())
+    );
+}
+
+#[test]
+fn what_check_finds_has_codes() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    let data = station.data().display().to_string();
+    let check = || document(&did(&["check", "--json", "--data", &data]));
+    let well = check();
+    assert_eq!(
+        (&well["runs"], &well["faults"], &well["exit_code"]),
+        (&1.into(), &Value::Array(vec![]), &0.into())
+    );
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    database.execute("UPDATE plan SET version = '2'", []).unwrap();
+    let found = check();
+    assert_eq!((&found["faults"][0]["code"], &found["exit_code"]), (&"table-row-differs".into(), &3.into()));
+    assert_eq!(found["faults"][0]["parameters"]["column"], "version");
+    let nowhere = document(&did(&["check", "--json", "--data", "/nowhere"]));
+    assert_eq!(
+        (&nowhere["error"]["code"], &nowhere["command"]),
+        (&"database-refuses".into(), &"check".into())
+    );
+}
+
+#[test]
+#[should_panic(expected = "not as the schema says")]
+fn a_document_with_a_key_that_the_schema_does_not_know_is_refused() {
+    let did = did(&["codes", "--json"]);
+    document(&Did { said: did.said.replacen("\"codes\"", "\"moons\"", 2), ..did });
+}
+
+#[test]
+fn schema_and_page_are_those_in_the_repository_and_no_code_stands_twice() {
+    assert_eq!(did(&["schema"]).said, SCHEMA);
+    assert_eq!(did(&["codes"]).said, include_str!("../../../../docs/STATION-CODES.md"));
+    let codes = document(&did(&["codes", "--json"]));
+    let codes: Vec<_> =
+        codes["codes"].as_array().unwrap().iter().map(|entry| entry["code"].as_str().unwrap()).collect();
+    assert_eq!(codes.iter().collect::<BTreeSet<_>>().len(), codes.len());
+    let of_halfrow = include_str!("../../../../docs/CODES.md");
+    for code in codes {
+        assert!(code.chars().all(|letter| letter.is_ascii_lowercase() || letter == '-'), "{code}");
+        let theirs = of_halfrow.contains(&format!("* `{code}`"));
+        assert!(!theirs, "{code} is a code of halfrow's, too");
+    }
+}

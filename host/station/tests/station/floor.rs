@@ -1,0 +1,279 @@
+//! The lanes' states and the way of a scan, without a board.
+
+use std::time::Duration;
+
+use halfrow::Verdict;
+use halfrow_station::floor::{Act, Effect, Event, Floor, Place, Rule, ScanError, Shown, Starts, Word};
+use halfrow_station::plan::Plan;
+use halfrow_station::plan::serial::SerialRule;
+
+use crate::common::{SERIALS, guarded_plan};
+
+const SCAN: Starts = Starts { scan: true, button: false, presence: false };
+const BUTTON: Starts = Starts { scan: false, button: true, presence: false };
+const PLUG: Starts = Starts { scan: false, button: false, presence: true };
+
+/// The rule of a product whose serial numbers guard themselves as ISBN-10 do.
+fn rule(product: &str, letters: &str) -> Rule {
+    let plan = guarded_plan(product, letters);
+    let serial: SerialRule = Plan::parse("plan.toml".as_ref(), plan).unwrap().serial;
+    Rule { product: product.to_owned(), serial }
+}
+
+fn floor(starts: &[Starts], scan_then_plug: bool) -> Floor {
+    let place = |(number, starts): (usize, &Starts)| Place {
+        name: (number + 1).to_string(),
+        starts: *starts,
+        plans: vec![0, 1],
+    };
+    let places = starts.iter().enumerate().map(place).collect();
+    Floor::new(places, vec![rule("CAM-A", "CA"), rule("CAM-B", "CB")], scan_then_plug)
+}
+
+fn at(seconds: u64) -> Duration {
+    Duration::from_secs(seconds)
+}
+
+fn words(floor: &Floor) -> Vec<Word> {
+    floor.lanes().iter().map(halfrow_station::floor::Lane::word).collect()
+}
+
+fn serial(number: usize) -> String {
+    SERIALS[number].to_owned()
+}
+
+fn shown(verdict: Verdict) -> Shown {
+    let [run, serial, record_sha256, headline] = ["r", "CA", "h", "w"].map(str::to_owned);
+    Shown { run, serial, verdict, record_sha256, headline, remedy: None }
+}
+
+fn plug(floor: &mut Floor, lane: usize) -> Option<Effect> {
+    floor.happened(lane, Event::Present(true), at(0))
+}
+
+#[test]
+fn a_run_goes_from_the_scan_to_a_verdict_that_stays() {
+    let mut floor = floor(&[SCAN], false);
+    assert_eq!(words(&floor), [Word::Empty]);
+    assert!(matches!(floor.scan(&serial(0), at(0)), Err(ScanError::Lane(_))), "there is no board");
+    assert_eq!(plug(&mut floor, 0), None);
+    assert_eq!(words(&floor), [Word::Ready]);
+    let begun = floor.scan(&serial(0), at(0)).unwrap();
+    let Some(Effect::Begin(accepted)) = begun.effect else { panic!("{begun:?}") };
+    assert_eq!((accepted.plan, accepted.product.as_str(), accepted.serial), (0, "CAM-A", serial(0)));
+    assert_eq!(words(&floor), [Word::Running]);
+    assert!(floor.scan(&serial(1), at(0)).unwrap_err().to_string().contains("is testing"), "busy");
+    floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
+    assert_eq!(floor.lanes()[0].run(), Some("r"));
+    floor.happened(0, Event::Saving, at(0));
+    assert_eq!(words(&floor), [Word::Saving]);
+    let hooks = floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(0));
+    assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Pass))));
+    floor.happened(0, Event::Present(false), at(0));
+    assert_eq!(words(&floor), [Word::Pass], "it stays until the next serial number");
+    plug(&mut floor, 0);
+    floor.scan(&serial(1), at(0)).unwrap();
+    assert_eq!((words(&floor), floor.lanes()[0].shown()), (vec![Word::Running], None));
+}
+
+#[test]
+fn every_verdict_has_its_word() {
+    for (verdict, word) in
+        [(Verdict::Pass, Word::Pass), (Verdict::Fail, Word::Fail), (Verdict::Error, Word::Error)]
+    {
+        let mut floor = floor(&[SCAN], false);
+        plug(&mut floor, 0);
+        floor.scan(&serial(0), at(0)).unwrap();
+        floor.happened(0, Event::Ended(shown(verdict)), at(0));
+        assert_eq!(words(&floor), [word]);
+    }
+}
+
+#[test]
+fn what_is_not_saved_blocks_its_lane_until_it_is_known() {
+    let mut floor = floor(&[SCAN, SCAN], false);
+    plug(&mut floor, 0);
+    floor.scan("HR:LANE:1", at(0)).unwrap();
+    floor.scan(&serial(0), at(0)).unwrap();
+    floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
+    floor.happened(0, Event::Saving, at(0));
+    let full = || Event::Unsaved { why: "full".to_owned() };
+    let recover = Some(Effect::Recover { run: "r".to_owned() });
+    assert_eq!(floor.happened(0, full(), at(0)), recover);
+    assert_eq!((words(&floor)[0], floor.lanes()[0].shown()), (Word::Unsaved, None));
+    floor.scan("HR:LANE:1", at(0)).unwrap();
+    assert!(floor.scan(&serial(1), at(0)).unwrap_err().to_string().contains("is not saved"));
+    assert!(floor.scan("HR:OUT", at(0)).is_err());
+    assert_eq!(floor.happened(0, full(), at(0)), recover, "it is tried again");
+    floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
+    assert_eq!(words(&floor)[0], Word::Error);
+}
+
+#[test]
+fn a_lane_whose_process_cannot_be_killed_is_out() {
+    let mut floor = floor(&[SCAN], false);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), at(0)).unwrap();
+    floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
+    floor.happened(0, Event::Stuck, at(0));
+    assert_eq!(words(&floor), [Word::Out]);
+    assert!(floor.scan(&serial(1), at(0)).unwrap_err().to_string().contains("restart the computer"));
+    floor.scan("HR:IN", at(0)).unwrap();
+    assert_eq!(words(&floor), [Word::Error]);
+}
+
+#[test]
+fn a_lane_starts_as_its_settings_say() {
+    let mut button = floor(&[BUTTON], false);
+    plug(&mut button, 0);
+    assert!(button.scan("HR:START", at(0)).is_err(), "no serial number");
+    assert_eq!(button.scan(&serial(0), at(0)).unwrap().effect, None);
+    assert_eq!(words(&button), [Word::Waiting]);
+    assert!(matches!(button.scan("HR:START", at(0)).unwrap().effect, Some(Effect::Begin(_))));
+    let mut gone = floor(&[BUTTON], false);
+    plug(&mut gone, 0);
+    gone.scan(&serial(0), at(0)).unwrap();
+    gone.happened(0, Event::Present(false), at(0));
+    assert_eq!(words(&gone), [Word::Empty], "the number goes with its board");
+    let mut plugged = floor(&[PLUG], false);
+    assert_eq!(plugged.scan(&serial(0), at(0)).unwrap().effect, None);
+    assert_eq!(words(&plugged), [Word::Waiting]);
+    assert!(plugged.scan("HR:START", at(0)).is_err(), "it has no button");
+    assert!(matches!(plug(&mut plugged, 0), Some(Effect::Begin(_))));
+}
+
+#[test]
+fn a_run_is_stopped_and_a_waiting_number_forgotten() {
+    let mut floor = floor(&[Starts { button: true, ..SCAN }], false);
+    assert!(floor.scan("HR:ABORT", at(0)).is_err(), "nothing is under way");
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), at(0)).unwrap();
+    assert_eq!(floor.act(0, Act::Abort).unwrap().effect, Some(Effect::Stop));
+    assert_eq!(words(&floor), [Word::Running], "until it has ended");
+    let mut waits = self::floor(&[BUTTON], false);
+    plug(&mut waits, 0);
+    waits.scan(&serial(0), at(0)).unwrap();
+    waits.scan("HR:ABORT", at(0)).unwrap();
+    assert_eq!(words(&waits), [Word::Ready]);
+}
+
+#[test]
+fn a_scan_goes_to_the_lane_that_was_scanned_and_never_to_a_guess() {
+    let mut floor = floor(&[SCAN, SCAN, SCAN], false);
+    (0..3).for_each(|lane| assert_eq!(plug(&mut floor, lane), None));
+    assert_eq!(floor.scan(&serial(0), at(0)), Err(ScanError::WhichLane { lanes: 3 }));
+    assert!(matches!(floor.scan("HR:LANE:4", at(0)), Err(ScanError::NoLane { .. })));
+    floor.scan("HR:LANE:2", at(0)).unwrap();
+    assert_eq!(floor.scan(&serial(0), at(0)).unwrap().lane, Some(1));
+    assert_eq!(words(&floor), [Word::Ready, Word::Running, Word::Ready]);
+    assert_eq!(floor.scan(&serial(1), at(0)), Err(ScanError::WhichLane { lanes: 3 }), "once");
+    floor.scan("HR:LANE:3", at(0)).unwrap();
+    let elsewhere = floor.scan(&serial(0), at(0)).unwrap_err();
+    assert_eq!(elsewhere, ScanError::Elsewhere { serial: serial(0), lane: "2".to_owned() });
+    // A misread label uses up nothing.
+    assert!(floor.scan("CA0131103629", at(0)).is_err());
+    assert_eq!(floor.scan(&serial(1), at(0)).unwrap().lane, Some(2));
+}
+
+#[test]
+fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
+    let mut floor = floor(&[PLUG, PLUG], true);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), at(10)).unwrap();
+    let instead = floor.scan(&serial(1), at(20)).unwrap();
+    assert!(instead.said.ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
+    let effect = floor.happened(1, Event::Present(true), at(80));
+    assert!(matches!(effect, Some(Effect::Begin(accepted)) if accepted.serial == serial(1)));
+    assert_eq!(words(&floor), [Word::Ready, Word::Running]);
+}
+
+#[test]
+fn a_number_waits_a_minute_for_its_board() {
+    for (seconds, word) in [(60, Word::Running), (61, Word::Ready)] {
+        let mut floor = floor(&[SCAN, SCAN], true);
+        floor.scan(&serial(0), at(0)).unwrap();
+        floor.happened(0, Event::Present(true), at(seconds));
+        assert_eq!(words(&floor)[0], word);
+    }
+}
+
+#[test]
+fn a_board_that_was_there_already_takes_no_number() {
+    let mut floor = floor(&[SCAN, SCAN], true);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), at(0)).unwrap();
+    assert_eq!(plug(&mut floor, 0), None);
+    assert_eq!(words(&floor), [Word::Ready, Word::Empty]);
+}
+
+#[test]
+fn a_product_chooses_its_plan() {
+    let mut floor = floor(&[SCAN], false);
+    plug(&mut floor, 0);
+    let begun = floor.scan(&SERIALS[0].replace("CA", "CB"), at(0)).unwrap();
+    assert!(matches!(begun.effect, Some(Effect::Begin(accepted)) if accepted.plan == 1));
+    let place = Place { name: "1".to_owned(), starts: SCAN, plans: vec![0, 1] };
+    let mut both = Floor::new(vec![place], vec![rule("CAM-A", "CA"), rule("CAM-B", "C[AB]")], false);
+    plug(&mut both, 0);
+    assert!(matches!(both.scan(&serial(0), at(0)), Err(ScanError::Ambiguous { .. })));
+}
+
+/// Misread labels of twelve kinds, made of a right one; another board's label is refused where its number is known
+/// (runs/identity.rs, lanes/refused.rs).
+fn misread(right: &str, other: &str, place: usize) -> Vec<(&'static str, String)> {
+    let digits = 2..right.len() - 1;
+    let at = digits.start + place % (digits.len() - 1);
+    let (head, tail) = right.split_at(at);
+    let (digit, rest) = tail.split_at(1);
+    let changed = (digit.parse::<u32>().unwrap() + 1 + (place / 8) as u32 % 9) % 10;
+    let check = if right.ends_with('X') { "0" } else { "X" };
+    let swapped = format!("{head}{}{digit}{}", &rest[..1], &rest[1..]);
+    let lower = right.to_lowercase();
+    vec![
+        ("a digit is missing", format!("{head}{rest}")),
+        ("a digit is doubled", format!("{head}{digit}{digit}{rest}")),
+        ("a digit is changed", format!("{head}{changed}{rest}")),
+        ("neighbours are exchanged", swapped),
+        ("the check digit is wrong", format!("{}{check}", &right[..right.len() - 1])),
+        ("lower case", lower),
+        ("a control character", format!("{head}\u{1d}{tail}")),
+        ("a blank before", format!(" {right}")),
+        ("a blank behind", format!("{right} ")),
+        ("two labels run together", format!("{right}{other}")),
+        ("another product", right.replacen("CA", "CD", 1)),
+        ("half a label", head.to_owned()),
+    ]
+}
+
+/// Every class `times` times; right labels between them are taken every time.
+fn misreads(times: usize) {
+    let (mut refused, mut taken) = (0, 0);
+    for place in 0..times {
+        let (right, other) = (serial(place % SERIALS.len()), serial((place + 1) % SERIALS.len()));
+        for (class, wrong) in misread(&right, &other, place) {
+            let mut floor = floor(&[SCAN], false);
+            plug(&mut floor, 0);
+            // Two neighbours that are alike are exchanged by nobody.
+            if wrong != right {
+                let error = floor.scan(&wrong, at(0));
+                assert!(matches!(error, Err(ScanError::Serial(_))), "{class}: {wrong:?}: {error:?}");
+                assert_eq!(words(&floor), [Word::Ready], "{class}");
+                refused += 1;
+            }
+            assert!(floor.scan(&right, at(0)).unwrap().effect.is_some(), "{right}");
+            taken += 1;
+        }
+    }
+    assert!(taken == 12 * times && refused >= 11 * times, "{refused} of {taken}");
+}
+
+#[test]
+fn no_misread_label_begins_a_run_and_every_right_one_does() {
+    misreads(9);
+}
+
+#[test]
+#[ignore = "for scripts/soak"]
+fn no_misread_label_begins_a_run_at_any_place() {
+    misreads(100);
+}

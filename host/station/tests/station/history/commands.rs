@@ -1,0 +1,123 @@
+//! The commands that look at results.
+
+use std::path::Path;
+use std::process::Command;
+
+use halfrow_station::record::RunCause;
+use serde_json::Value;
+
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use crate::common::program;
+
+/// What a command says, and its exit code.
+pub(crate) fn did(made: &impl AsRef<Path>, arguments: &[&str]) -> (i32, String, String) {
+    let output = Command::new(program())
+        .args(arguments)
+        .arg("--data")
+        .arg(made.as_ref())
+        .env("USER", "weber")
+        .output()
+        .unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
+}
+
+fn said(made: &impl AsRef<Path>, arguments: &[&str]) -> String {
+    let (code, said, complained) = did(made, arguments);
+    assert_eq!((code, complained.as_str()), (0, ""), "{said}");
+    said
+}
+
+fn json(made: &impl AsRef<Path>, arguments: &[&str]) -> Value {
+    serde_json::from_str(&said(made, &[arguments, &["--json"]].concat())).unwrap()
+}
+
+fn made() -> Made {
+    let mut made = Made::new();
+    for (serial, end, hour) in [
+        ("S1", End::Fail(&["memory"]), 0),
+        ("S1", End::Pass, 1),
+        ("S2", End::Error(RunCause::Crash), 2),
+        ("S3", End::Pass, 24),
+    ] {
+        made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of(serial, end) });
+    }
+    made
+}
+
+#[test]
+fn history_goes_on_where_a_page_ends() {
+    let made = made();
+    let first = said(&made, &["history", "--limit", "3"]);
+    assert!(first.trim_start().starts_with("began "), "{first}");
+    assert!(first.contains("2026-11-02T00:00:00Z"), "{first}");
+    let next = first.lines().last().unwrap().strip_prefix("more: --after ").unwrap();
+    let second = json(&made, &["history", "--limit", "3", "--after", next]);
+    assert_eq!(second["runs"][0]["serial"], "S1");
+    assert_eq!(second["runs"][0]["verdict"], "FAIL");
+    assert_eq!((second["runs"].as_array().unwrap().len(), &second["next"]), (1, &Value::Null));
+}
+
+#[test]
+fn history_takes_each_filter() {
+    let made = made();
+    let runs = |arguments: &[&str]| {
+        let page = json(&made, &[&["history"], arguments].concat());
+        page["runs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|run| run["serial"].as_str().unwrap().to_owned())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(runs(&["--serial", "S1"]), ["S1", "S1"]);
+    assert_eq!(runs(&["--verdict", "ERROR"]), ["S2"]);
+    assert_eq!(runs(&["--lane", "2"]), Vec::<String>::new());
+    assert_eq!(runs(&["--plan", "final", "--operator", "weber", "--from", "2026-11-02"]), ["S3"]);
+    assert_eq!(runs(&["--until", "2026-11-01T02:00:00+01:00"]), ["S1"]);
+    let (code, _, complained) = did(&made, &["history", "--from", "yesterday"]);
+    assert_eq!(code, 2);
+    assert!(complained.contains("give a date as 2026-11-22"), "{complained}");
+}
+
+#[test]
+fn a_unit_is_told_with_its_steps_and_suspects() {
+    let made = made();
+    let text = said(&made, &["unit", "S1"]);
+    for words in ["S1, CAM-T, first seen 2026-11-01T00:00:00Z", "suspect   memory, bit 3: explains 75 %"] {
+        assert!(text.contains(words), "{text}");
+    }
+    assert_eq!(json(&made, &["unit", "S1"])[0]["runs"][1]["steps"][1]["outcome"], "failed");
+    let (code, _, complained) = did(&made, &["unit", "S9"]);
+    assert_eq!(code, 2);
+    assert!(complained.contains("no unit S9 was tested here"), "{complained}");
+}
+
+#[test]
+fn no_percentage_is_told_without_its_interval() {
+    let made = made();
+    let text = said(&made, &["yield"]);
+    // Wilson for 1 of 2, by hand: (1 ± z / sqrt(2 + z²)) / 2, for the centre is 1/2.
+    assert!(text.contains("50.0 % (9.5–90.5)"), "{text}");
+    assert!(text.matches(" % ").count() == text.matches(" % (").count(), "{text}");
+    assert!(text.contains("first FAIL, in the end PASS"), "{text}");
+    let lines = json(&made, &["yield", "--by", "day"]);
+    assert_eq!(lines["lines"][1]["day"], "2026-11-02");
+    assert_eq!(lines["lines"][0]["errors"]["count"], 1);
+    let failures = said(&made, &["pareto"]);
+    assert!(failures.contains("memory") && failures.contains("100.0 % (20.7–100.0)"), "{failures}");
+}
+
+#[test]
+fn a_waiver_is_seen_by_everyone() {
+    let made = made();
+    let run = json(&made, &["history", "--verdict", "fail"])["runs"][0]["id"].as_str().unwrap().to_owned();
+    let (code, _, complained) = did(&made, &["waive", &run, "--reason", "it is"]);
+    assert_eq!(code, 4, "this test writes: {complained}");
+    let folder = made.closed();
+    assert!(said(&folder, &["waive", &run, "--reason", "used as it is"]).contains("waived by weber"));
+    assert_eq!(did(&folder, &["waive", &run, "--reason", "again"]).0, 2);
+    assert!(said(&folder, &["history"]).contains("FAIL, waived"));
+    assert!(said(&folder, &["unit", "S1"]).contains("by weber: used as it is"));
+    assert_eq!(did(&folder, &["check"]).0, 0);
+}

@@ -1,0 +1,152 @@
+//! Backups, and evidence that is removed.
+
+use std::fs;
+
+use halfrow_station::check::{Checked, check};
+use halfrow_station::history::runs::{Filter, Page, page};
+use halfrow_station::kept::{Copied, CopyError, Pruned, backup, prune, restore};
+use halfrow_station::store::{Folder, Snapshot};
+use tempfile::TempDir;
+
+use super::commands::did;
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+
+/// A PASS, two FAILs with evidence, of which the later one shares one piece with the first, and an open run.
+fn made() -> Made {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    for (serial, evidence, hour) in [("S2", vec!["old", "shared"], 1), ("S3", vec!["new", "shared"], 48)] {
+        let started_ms = BEGIN_MS + hour * HOUR_MS;
+        made.run(&Run { started_ms, evidence, ..Run::of(serial, End::Fail(&["memory"])) });
+    }
+    made.run(&Run { started_ms: BEGIN_MS + 49 * HOUR_MS, ..Run::of("S4", End::Open) });
+    made
+}
+
+fn runs(folder: &Folder) -> Page {
+    page(&Snapshot::take(folder).unwrap(), &Filter::default(), None, 100).unwrap()
+}
+
+/// Runs over, runs open, pieces of evidence, pieces that were removed.
+fn sound(folder: &Folder) -> [usize; 4] {
+    let Checked { runs, open, evidence, pruned, faults } = check(folder).unwrap();
+    assert!(faults.is_empty(), "{faults:?}");
+    [runs, open, evidence, pruned]
+}
+
+fn hash_of(bytes: &str) -> String {
+    halfrow::result::sha256([bytes.as_bytes()])
+}
+
+#[test]
+fn a_backup_is_of_its_moment_while_runs_go_on() {
+    let mut made = made();
+    let place = tempfile::tempdir().unwrap();
+    let to = place.path().join("copy");
+    assert_eq!(backup(&made.folder(), &to).unwrap(), Copied { runs: 3, evidence: 6 });
+    let copy = Folder::new(&to);
+    let then = runs(&made.folder());
+    made.run(&Run { lane: "2".to_owned(), ..Run::of("S5", End::Pass) });
+    assert_eq!(sound(&copy), [3, 1, 7, 0], "the shared piece is looked at with each of its runs");
+    assert_eq!(runs(&copy), then);
+    assert_ne!(runs(&made.folder()), then);
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1, "nothing else is left there");
+}
+
+#[test]
+fn a_restored_folder_is_the_one_that_was_saved() {
+    let made = made();
+    let place = tempfile::tempdir().unwrap();
+    let (copy, again) = (place.path().join("copy"), place.path().join("again"));
+    backup(&made.folder(), &copy).unwrap();
+    restore(&Folder::new(&copy), &again).unwrap();
+    assert_eq!(sound(&Folder::new(&again)), [3, 1, 7, 0]);
+    assert_eq!(runs(&Folder::new(&again)), runs(&made.folder()));
+    // The folder can be worked in: the open run is closed and another one begun.
+    let mut store = halfrow_station::store::Store::open(&Folder::new(&again)).unwrap();
+    assert_eq!(halfrow_station::run::recover(&mut store).unwrap().len(), 1);
+}
+
+#[test]
+fn nothing_is_overwritten_and_damage_is_not_copied() {
+    let made = made();
+    let place = tempfile::tempdir().unwrap();
+    let full = place.path().join("full");
+    fs::create_dir(&full).unwrap();
+    fs::write(full.join("thesis.txt"), "years").unwrap();
+    assert!(matches!(backup(&made.folder(), &full), Err(CopyError::Exists { .. })));
+    assert_eq!(fs::read_dir(&full).unwrap().count(), 1);
+    let copy = place.path().join("copy");
+    backup(&made.folder(), &copy).unwrap();
+    fs::write(Folder::new(&copy).blobs().path(&hash_of("new")), "other").unwrap();
+    let again = place.path().join("again");
+    let refused = restore(&Folder::new(&copy), &again).unwrap_err();
+    assert!(matches!(refused, CopyError::Faulty { faults: 1, .. }), "{refused:?}");
+    assert!(refused.to_string().contains("holds other bytes"), "{refused}");
+    let refused = backup(&Folder::new(&copy), &again).unwrap_err();
+    assert!(matches!(refused, CopyError::Store(_)), "{refused:?}");
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2, "what was begun is removed");
+}
+
+#[test]
+fn old_evidence_is_removed_and_no_record_or_row() {
+    let mut made = made();
+    let before = runs(&made.folder());
+    let first = prune(&mut made.store, BEGIN_MS + 24 * HOUR_MS, "engel").unwrap();
+    assert_eq!(first, Pruned { pieces: 1, bytes: 3 });
+    let blobs = made.folder().blobs();
+    assert!(!blobs.path(&hash_of("old")).exists());
+    assert!(blobs.path(&hash_of("shared")).exists(), "a later run has it, too");
+    assert_eq!(sound(&made.folder()), [3, 1, 6, 1]);
+    assert_eq!(runs(&made.folder()), before);
+    let rest = prune(&mut made.store, BEGIN_MS + 72 * HOUR_MS, "engel").unwrap();
+    assert_eq!(rest.pieces, 2);
+    assert_eq!(sound(&made.folder()), [3, 1, 3, 4]);
+    let place = tempfile::tempdir().unwrap();
+    let to = place.path().join("copy");
+    assert_eq!(backup(&made.folder(), &to).unwrap(), Copied { runs: 3, evidence: 3 });
+    assert_eq!(sound(&Folder::new(&to)), [3, 1, 3, 4]);
+}
+
+/// The control: without the line in the audit it is lost.
+#[test]
+fn evidence_that_was_not_removed_by_age_is_missed() {
+    let made = made();
+    fs::remove_file(made.folder().blobs().path(&hash_of("old"))).unwrap();
+    assert_eq!(check(&made.folder()).unwrap().faults.len(), 1);
+    let place = tempfile::tempdir().unwrap();
+    assert!(backup(&made.folder(), &place.path().join("copy")).is_err());
+}
+
+#[test]
+fn a_record_is_kept_even_where_a_row_calls_it_an_attachment() {
+    let mut made = made();
+    let record = runs(&made.folder()).runs.last().unwrap().record_sha256.clone().unwrap();
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let text =
+        "INSERT INTO attachment SELECT id, 'x', record_sha256, 1, 'x' FROM run WHERE record_sha256 = $1";
+    assert_eq!(database.execute(text, [&record]).unwrap(), 1);
+    assert_eq!(prune(&mut made.store, i64::MAX, "engel").unwrap().pieces, 3);
+    assert!(made.folder().blobs().get(&record).is_ok());
+}
+
+#[test]
+fn the_commands_say_what_they_did() {
+    let made = made();
+    let place = tempfile::tempdir().unwrap();
+    let copy = place.path().join("copy");
+    let copy_name = copy.to_str().unwrap();
+    let (code, said, _) = did(&made, &["backup", copy_name]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.starts_with("3 runs and 6 pieces of evidence are in "), "{said}");
+    assert_eq!(did(&made, &["backup", copy_name]).0, 2, "it is there already");
+    let restored: TempDir = tempfile::tempdir().unwrap();
+    let (code, said, complained) = did(&restored, &["restore", copy_name]);
+    assert_eq!((code, complained.as_str()), (0, ""), "{said}");
+    let (code, said, _) = did(&restored, &["prune", "--older-than", "1"]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.ends_with("every record is kept\n"), "{said}");
+    let (code, said, _) = did(&restored, &["check"]);
+    assert_eq!(code, 0, "{said}");
+    assert_eq!(did(&made, &["prune", "--older-than", "1"]).0, 4, "this test writes");
+}

@@ -1,0 +1,310 @@
+//! The history's pages over HTTP, against what was entered.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+
+use halfrow::frames::{ReadOptions, decode};
+use halfrow_station::record::{Record, RunCause};
+
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use super::served::{PLAN, Served};
+use super::yields::{CASES, enter};
+
+/// Sixty runs of seven units in four lanes by two operators, an hour after one another.
+fn many() -> (Served, Vec<(String, Run)>) {
+    let mut made = Made::new();
+    let ends = [End::Pass, End::Fail(&["memory"]), End::Error(RunCause::Link), End::Pass];
+    let mut entered = Vec::new();
+    for number in 0_usize..60 {
+        let mut run = Run::of(&format!("S{}", number % 7), ends[number % 4]);
+        run.started_ms = BEGIN_MS + HOUR_MS * number as i64;
+        run.lane = (number % 3).to_string();
+        run.operator = ["weber", "lang"][number / 2 % 2].to_owned();
+        entered.push((made.run(&run), run));
+    }
+    (Served::of(made), entered)
+}
+
+/// What stands behind each `before` up to `end`.
+fn all_between(page: &str, before: &str, end: char) -> Vec<String> {
+    page.split(before).skip(1).map(|rest| rest.split(end).next().unwrap().to_owned()).collect()
+}
+
+/// The runs that a list shows, in its order.
+fn listed(page: &str) -> Vec<String> {
+    all_between(page, "<td class=\"when\"><a href=\"/runs/", '"')
+}
+
+/// The runs of the list at `path` and of all pages behind it.
+fn walked(served: &Served, path: &str) -> Vec<String> {
+    let mut runs = Vec::new();
+    let mut path = path.to_owned();
+    loop {
+        let page = served.page(&path);
+        runs.extend(listed(&page));
+        match all_between(&page, "<a rel=\"next\" href=\"", '"').first() {
+            Some(next) => path = next.replace("&amp;", "&"),
+            None => return runs,
+        }
+    }
+}
+
+#[test]
+fn lists_are_what_was_entered_page_by_page_whatever_is_asked_for() {
+    let (served, entered) = many();
+    let wanted = |is: &dyn Fn(&Run) -> bool| -> Vec<String> {
+        entered.iter().rev().filter(|(_, run)| is(run)).map(|(id, _)| id.clone()).collect()
+    };
+    assert_eq!(listed(&served.page("/history")).len(), 50, "a page has an end");
+    assert_eq!(walked(&served, "/history"), wanted(&|_| true));
+    assert_eq!(walked(&served, "/history?serial=S3"), wanted(&|run| run.serial == "S3"));
+    assert_eq!(
+        walked(&served, "/history?lane=2&verdict=PASS"),
+        wanted(&|run| { run.lane == "2" && run.end == End::Pass })
+    );
+    assert_eq!(
+        walked(&served, "/history?operator=lang&verdict=ERROR&plan=final"),
+        wanted(&|run| { run.operator == "lang" && matches!(run.end, End::Error(_)) })
+    );
+    assert_eq!(
+        walked(&served, "/history?from=2026-11-02&until=2026-11-02"),
+        wanted(&|run| { (24..48).contains(&((run.started_ms - BEGIN_MS) / HOUR_MS)) })
+    );
+    assert_eq!(walked(&served, "/history?plan=other"), Vec::<String>::new());
+    for wrong in ["verdict=GOOD", "from=yesterday", "until=2026-02-30", "after=7"] {
+        let answer = served.get(&format!("/history?{wrong}"));
+        assert_eq!(answer.status, 400, "{wrong}");
+    }
+}
+
+/// The numbers of a line of the yield: units; first pass and in the end; flipped and waived; runs; errors; crashes.
+fn yield_line(served: &Served) -> Vec<u64> {
+    let page = served.page("/yield?plan=final");
+    let Some((_, row)) = page.split_once("<td class=\"name\">") else { return Vec::new() };
+    let row = row.split("</tr>").next().unwrap();
+    let counts = all_between(row, "<span class=\"soft\">", '<');
+    let counts: Vec<Vec<u64>> = counts
+        .iter()
+        .filter_map(|count| count.split_once('/'))
+        .map(|(count, of)| vec![count.parse().unwrap(), of.parse().unwrap()])
+        .collect();
+    let numbers = all_between(row, "<td class=\"number\">", '<');
+    let [units, flipped, waived, runs, crashes] =
+        numbers.iter().map(|number| number.parse().unwrap()).collect::<Vec<u64>>()[..]
+    else {
+        panic!("{row}")
+    };
+    // Of no unit there is no share.
+    let rate = |place: usize| counts.get(place).map_or([0, 0], |rate| [rate[0], rate[1]]);
+    let [first, last, errors] = [rate(0), rate(1), rate(2)];
+    assert_eq!((first[1], last[1], errors[1]), (units, units, runs));
+    vec![units, first[0], last[0], waived, flipped, runs, errors[0], crashes]
+}
+
+#[test]
+fn the_yield_s_page_says_what_was_worked_by_hand() {
+    for (story, right) in CASES {
+        let mut made = Made::new();
+        for (word, hour) in story.split(' ').zip(0..) {
+            enter(&mut made, word, hour);
+        }
+        let served = Served::of(made);
+        // What the program finds open it closes as a crash.
+        if story.contains(":O") {
+            continue;
+        }
+        assert_eq!(yield_line(&served), right, "{story}");
+    }
+}
+
+#[test]
+fn no_share_of_a_yield_stands_without_its_interval_and_flips_are_listed_by_unit() {
+    let (served, entered) = many();
+    for by in ["plan", "day", "lane"] {
+        let page = served.page(&format!("/yield?by={by}"));
+        let shares = page.matches("<span class=\"share\">").count();
+        assert!(shares > 0);
+        assert_eq!(shares, page.matches("</span> <span class=\"interval\">").count());
+    }
+    let page = served.page("/yield");
+    let judged = |serial: &str| -> Vec<End> {
+        let of_unit = entered.iter().map(|(_, run)| run).filter(|run| run.serial == serial);
+        of_unit.map(|run| run.end).filter(|end| !matches!(end, End::Error(_))).collect()
+    };
+    let serials: BTreeSet<_> = entered.iter().map(|(_, run)| run.serial.clone()).collect();
+    let is_flip = |serial: &&String| {
+        let judged = judged(serial);
+        judged[0] != End::Pass && *judged.last().unwrap() == End::Pass
+    };
+    let right: BTreeSet<_> = serials.iter().filter(is_flip).cloned().collect();
+    assert!(!right.is_empty() && right.len() < serials.len());
+    let told: BTreeSet<_> = all_between(&page, "<a href=\"/unit?serial=", '"').into_iter().collect();
+    assert_eq!(told, right);
+}
+
+#[test]
+fn failures_have_bars_by_part_and_by_check() {
+    let (served, _) = many();
+    let row = |page: &str, name: &str| {
+        let (_, row) = page.split_once(&format!("<th scope=\"row\">{name}</th>")).unwrap();
+        row.split("</tr>").next().unwrap().to_owned()
+    };
+    assert!(row(&served.page("/pareto"), "memory").contains("</svg> 15</td>"));
+    assert!(row(&served.page("/pareto?by=check"), "verify").contains("</svg> 15</td>"));
+    assert!(served.page("/pareto?plan=none").contains("Nothing failed that fits."));
+}
+
+#[test]
+fn what_a_scanner_or_a_person_said_is_never_markup() {
+    let mut made = Made::new();
+    let script = "<script>alert(1)</script>\"'&";
+    let mut run = Run::of(script, End::Fail(&["memory<b>"]));
+    run.operator = script.to_owned();
+    run.lane = "<i>".to_owned();
+    let failed = made.run(&run);
+    run.started_ms += HOUR_MS;
+    run.end = End::Pass;
+    made.run(&run);
+    made.store.waive(&failed, script, script).unwrap();
+    let served = Served::of(made);
+    let unit = "/unit?serial=%3Cscript%3Ealert(1)%3C%2Fscript%3E%22%27%26";
+    let query = "/history?serial=%3Cscript%3E&operator=%22%3E%3Cscript%3E";
+    for path in ["/history", "/yield?by=lane", "/pareto", unit, query, &format!("/runs/{failed}")] {
+        let page = served.page(path);
+        let markup = page.to_lowercase();
+        let body = markup.split_once("<main").unwrap().1;
+        for wrong in ["<script", "<i>", "<b>a", "\"'&\""] {
+            assert!(!body.contains(wrong), "{path} has {wrong}");
+        }
+        assert!(path == "/pareto" || body.contains("&lt;"), "{path}");
+    }
+    assert_eq!(served.get(&query.replace('?', "/x?")).status, 404);
+}
+
+#[test]
+fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
+    let mut made = Made::new();
+    let run = Run { evidence: vec!["<h1>told</h1>"], ..Run::of("S1", End::Fail(&["memory", "clock"])) };
+    let id = made.run(&run);
+    made.store.waive(&id, "engel", "used as it is").unwrap();
+    let served = Served::of(made);
+    let page = served.page(&format!("/runs/{id}"));
+    for said in [
+        "Suspected: memory, bit 3. It explains 75 % of what is wrong.",
+        "Look at it.",
+        "used as it is",
+        "0123456789abcdef",
+        "frames.samples_differing",
+        "≤ 1004",
+        "verify &quot;failed&quot;, &lt;board&gt;",
+    ] {
+        assert!(page.contains(said), "{said} is missing in\n{page}");
+    }
+    let hash = halfrow::result::sha256([b"<h1>told</h1>"]);
+    let evidence = served.get(&format!("/runs/{id}/evidence/{hash}"));
+    assert_eq!((evidence.status, evidence.body.as_slice()), (200, b"<h1>told</h1>".as_slice()));
+    assert_eq!(evidence.header("content-type"), Some("text/plain; charset=utf-8"));
+    assert_eq!(evidence.header("x-content-type-options"), Some("nosniff"));
+    assert!(evidence.header("cache-control").unwrap().contains("immutable"));
+    // The record has a hash, too, and is no attachment of the run; nor is what another run has.
+    let stored = served.folder().verdict_of(&id).unwrap().unwrap();
+    for wrong in [stored.record_sha256.as_str(), &"0".repeat(64), "..%2F..%2Fstation.db", "x"] {
+        for at in ["evidence", "preview"] {
+            assert_eq!(served.get(&format!("/runs/{id}/{at}/{wrong}")).status, 404, "{at} {wrong}");
+        }
+    }
+    // What is there and no picture is no picture.
+    assert_eq!(served.get(&format!("/runs/{id}/preview/{hash}")).status, 404);
+    let record = served.get(&format!("/runs/{id}/export/record"));
+    assert_eq!(record.body, served.folder().blobs().get(&stored.record_sha256).unwrap());
+    for (format, begins) in [("junit", "<?xml"), ("csv", "run,"), ("openhtf", "{")] {
+        let answer = served.get(&format!("/runs/{id}/export/{format}"));
+        assert!(answer.text().starts_with(begins), "{format}: {}", answer.text());
+        assert!(answer.header("content-disposition").unwrap().starts_with("attachment; "));
+    }
+    for missing in ["/runs/x", "/unit?serial=S2", "/unit", &format!("/runs/{id}/export/pdf")] {
+        assert_eq!(served.get(missing).status, 404, "{missing}");
+    }
+}
+
+/// Judges a board of the mock's by a plan of a moment, and returns the exit code.
+fn judge(folder: &Path, board: &str, serial: &str) -> Option<i32> {
+    let plan = folder.join("plan.toml");
+    let tables = "[tables]\nradius = 10.0\nwidth = 64\nheight = 8\n[[step]]";
+    std::fs::write(&plan, PLAN.replace("[[step]]", tables)).unwrap();
+    let arguments = ["run", "--serial", serial, "--board", board, "--operator", "weber"];
+    let mut run = Command::new(env!("CARGO_BIN_EXE_halfrow-station"));
+    run.args(arguments).arg("--data").arg(folder).arg("--plan").arg(plan);
+    run.output().unwrap().status.code()
+}
+
+/// The samples of a frame that was kept, and how they hash.
+fn samples(served: &Served, run: &str, name: &str, record: &Record) -> (Vec<u16>, String) {
+    let attached = record.attachments.iter().find(|one| one.name.ends_with(name)).unwrap();
+    let answer = served.get(&format!("/runs/{run}/evidence/{}", attached.sha256));
+    assert_eq!(answer.header("content-type"), Some("image/png"));
+    let samples = decode(&answer.body, &ReadOptions::default()).unwrap().samples().to_vec();
+    let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    (samples, halfrow::result::sha256([bytes]))
+}
+
+#[test]
+fn a_fail_keeps_the_frames_that_are_wrong_and_shows_them() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(judge(folder.path(), "mock,fault=stuck-data,bit=7", "CAT00001"), Some(1));
+    assert_eq!(judge(folder.path(), "mock", "CAT00002"), Some(0));
+    let served = Served::of(Made::at(folder));
+    let runs = listed(&served.page("/history"));
+    let [passed, failed] = &runs[..] else { panic!("{runs:?}") };
+    let stored = served.folder().verdict_of(failed).unwrap().unwrap();
+    let record = Record::parse(&served.folder().blobs().get(&stored.record_sha256).unwrap()).unwrap();
+    let told = &record.steps.last().unwrap().evidence.as_ref().unwrap()["frames"][0];
+    let [input, found, expected] =
+        ["-in.png", "-out.png", "-should.png"].map(|name| samples(&served, failed, name, &record));
+    // What the judge counted and hashed while it had the frame.
+    let differing = found.0.iter().zip(&expected.0).filter(|(found, expected)| found != expected).count();
+    assert_eq!(Some(differing as u64), told["comparison"]["differences"].as_u64());
+    assert_eq!(Some(input.1.as_str()), told["sha256"].as_str());
+    let page = served.page(&format!("/runs/{failed}"));
+    let pictures = all_between(&page, "<img src=\"", '"');
+    assert_eq!(pictures.len(), 4, "{page}");
+    for picture in &pictures {
+        let answer = served.get(picture);
+        assert_eq!((answer.status, answer.header("content-type")), (200, Some("image/png")), "{picture}");
+        assert!(answer.body.starts_with(b"\x89PNG"));
+        // It is evidence of that run, and of no other.
+        assert_eq!(served.get(&picture.replace(failed, passed)).status, 404);
+    }
+    assert!(!served.page(&format!("/runs/{passed}")).contains("<img"));
+}
+
+#[test]
+fn a_run_whose_record_is_damaged_is_told_as_such() {
+    let mut made = Made::new();
+    let id = made.run(&Run::of("S1", End::Pass));
+    let hash = made.folder().verdict_of(&id).unwrap().unwrap().record_sha256;
+    std::fs::write(made.folder().blobs().path(&hash), "{}").unwrap();
+    let served = Served::of(made);
+    assert!(served.page(&format!("/runs/{id}")).contains("holds other bytes than its name says"));
+    assert_eq!(served.get(&format!("/runs/{id}/export/record")).status, 503);
+}
+
+#[test]
+fn a_unit_s_page_tells_its_story_in_every_language() {
+    let mut made = Made::new();
+    for (end, hour) in [End::Error(RunCause::Link), End::Fail(&["memory"]), End::Pass].into_iter().zip(0..) {
+        made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S1", end) });
+    }
+    let served = Served::of(made);
+    for (language, flip) in [
+        ("en", "First FAIL, in the end PASS under final"),
+        ("de", "Erst FAIL, am Ende PASS nach final"),
+        ("zh", "先 FAIL，最终 PASS"),
+    ] {
+        let page = served.get_in("/unit?serial=S1", language).text();
+        assert!(page.contains(flip), "{page}");
+        let verdicts: Vec<_> = all_between(&page, "<p class=\"line\"><span class=\"verdict ", '"');
+        assert_eq!(verdicts, ["pass", "fail", "error"]);
+    }
+}

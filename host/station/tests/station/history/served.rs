@@ -1,0 +1,127 @@
+//! The station's own program, with its pages for whoever looks.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Read as _, Write as _};
+use std::net::{SocketAddr, TcpStream};
+use std::process::{Child, Command, Stdio};
+
+use tempfile::TempDir;
+
+use super::made::Made;
+
+/// A plan of the tests' product.
+pub(crate) const PLAN: &str = r#"schema = 1
+[plan]
+name = "final"
+version = "1"
+product = "CAM-T"
+[serial]
+pattern = "^CAT[0-9]{5}$"
+check = "none"
+[board]
+require_hardware = false
+builds = ["00000000"]
+device = "if-present"
+[[step]]
+kind = "verify"
+frames = ["builtin:noise"]
+"#;
+
+/// A station that is served until this goes.
+pub(crate) struct Served {
+    station: Child,
+    address: SocketAddr,
+    data: TempDir,
+    _settings: TempDir,
+}
+
+/// An answer.
+pub(crate) struct Answer {
+    pub(crate) status: u16,
+    head: String,
+    pub(crate) body: Vec<u8>,
+}
+
+impl Answer {
+    pub(crate) fn text(&self) -> String {
+        String::from_utf8(self.body.clone()).unwrap()
+    }
+
+    /// The value of a header.
+    pub(crate) fn header(&self, name: &str) -> Option<&str> {
+        let lines = self.head.lines().filter_map(|line| line.split_once(": "));
+        lines.into_iter().find(|(known, _)| known.eq_ignore_ascii_case(name)).map(|(_, value)| value)
+    }
+}
+
+impl Served {
+    /// Serves what was made.
+    pub(crate) fn of(made: Made) -> Self {
+        let (data, settings) = (made.closed(), tempfile::tempdir().unwrap());
+        fs::write(settings.path().join("plan.toml"), PLAN).unwrap();
+        let text = format!(
+            "schema = 1\n[station]\nname = \"station 7\"\ndata = {:?}\n[web]\nlisten = \"127.0.0.1:0\"\n\
+             [[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n",
+            data.path()
+        );
+        let file = settings.path().join("station.toml");
+        fs::write(&file, text).unwrap();
+        let mut station = Command::new(env!("CARGO_BIN_EXE_halfrow-station"))
+            .args(["serve", "--settings"])
+            .arg(&file)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        let mut lines = BufReader::new(station.stdout.take().unwrap()).lines();
+        let address = lines.by_ref().map(Result::unwrap).find_map(|line| {
+            let (_, rest) = line.split_once("http://")?;
+            rest.split('/').next()?.parse().ok()
+        });
+        // What else it says must not fill the pipe.
+        std::thread::spawn(move || lines.for_each(drop));
+        Self { station, address: address.expect("the station says where it is"), data, _settings: settings }
+    }
+
+    pub(crate) fn folder(&self) -> halfrow_station::store::Folder {
+        halfrow_station::store::Folder::new(self.data.path())
+    }
+
+    /// What is at `path`.
+    pub(crate) fn get(&self, path: &str) -> Answer {
+        self.get_in(path, "en")
+    }
+
+    /// What is at `path` for a browser that prefers `language`.
+    pub(crate) fn get_in(&self, path: &str, language: &str) -> Answer {
+        let address = self.address;
+        let mut stream = TcpStream::connect(address).unwrap();
+        let head = format!(
+            "GET {path} HTTP/1.1\r\nHost: {address}\r\nAccept-Language: {language}\r\nConnection: close\r\n\r\n"
+        );
+        stream.write_all(head.as_bytes()).unwrap();
+        let mut bytes = Vec::new();
+        stream.read_to_end(&mut bytes).unwrap();
+        let end = bytes.windows(4).position(|window| window == b"\r\n\r\n").unwrap();
+        let head = String::from_utf8(bytes[..end].to_vec()).unwrap();
+        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        assert_ne!(head.to_lowercase().find("content-length"), None, "{head}");
+        Answer { status, head, body: bytes[end + 4..].to_vec() }
+    }
+
+    /// The page at `path`, which is there.
+    pub(crate) fn page(&self, path: &str) -> String {
+        let answer = self.get(path);
+        assert_eq!(answer.status, 200, "{path}\n{}", answer.text());
+        assert_eq!(answer.header("content-type"), Some("text/html; charset=utf-8"));
+        answer.text()
+    }
+}
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        let _ = self.station.kill();
+        let _ = self.station.wait();
+    }
+}

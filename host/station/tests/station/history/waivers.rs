@@ -1,0 +1,51 @@
+//! Waivers stand beside a FAIL, with an audit.
+
+use halfrow_station::record::RunCause;
+use halfrow_station::store::NoWaiver;
+
+use super::made::{End, Made, Run};
+
+fn rows(made: &Made, text: &str) -> Vec<String> {
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let mut statement = database.prepare(text).unwrap();
+    statement.query_map([], |row| row.get(0)).unwrap().map(Result::unwrap).collect()
+}
+
+#[test]
+fn a_waiver_changes_no_verdict_and_is_audited() {
+    let mut made = Made::new();
+    let run = made.run(&Run::of("S1", End::Fail(&[])));
+    let before = made.folder().verdict_of(&run).unwrap();
+    let waiver = made.store.waive(&run, " engel ", " used as it is ").unwrap();
+    assert_eq!((waiver.operator.as_str(), waiver.reason.as_str()), ("engel", "used as it is"));
+    assert_eq!(made.folder().verdict_of(&run).unwrap(), before);
+    assert_eq!(
+        rows(&made, "SELECT run_id || ' ' || operator_id || ': ' || reason FROM waiver"),
+        [format!("{run} engel: used as it is")]
+    );
+    assert_eq!(
+        rows(&made, "SELECT act || ' ' || subject || ' ' || operator_id || ': ' || detail FROM audit"),
+        [format!("waive {run} engel: used as it is")]
+    );
+}
+
+#[test]
+fn what_is_no_fail_or_has_a_waiver_or_no_reason_is_not_waived() {
+    let mut made = Made::new();
+    let passed = made.run(&Run::of("S1", End::Pass));
+    let error = made.run(&Run::of("S2", End::Error(RunCause::Crash)));
+    let open = made.run(&Run::of("S3", End::Open));
+    let failed = made.run(&Run { lane: "2".to_owned(), ..Run::of("S4", End::TooLate) });
+    let mut waive = |run: &str, operator: &str, reason: &str| made.store.waive(run, operator, reason);
+    assert!(matches!(waive(&passed, "engel", "x"), Err(NoWaiver::NoFail { .. })));
+    assert!(matches!(waive(&error, "engel", "x"), Err(NoWaiver::NoFail { .. })));
+    assert!(matches!(waive(&open, "engel", "x"), Err(NoWaiver::NoRun { .. })));
+    assert!(matches!(waive("nothing", "engel", "x"), Err(NoWaiver::NoRun { .. })));
+    assert!(matches!(waive(&failed, "engel", " "), Err(NoWaiver::Empty)));
+    assert!(matches!(waive(&failed, "", "x"), Err(NoWaiver::Empty)));
+    waive(&failed, "engel", "x").unwrap();
+    let again = waive(&failed, "lang", "y").unwrap_err();
+    assert!(again.to_string().contains("by engel: x"), "{again}");
+    assert_eq!(rows(&made, "SELECT operator_id FROM waiver"), ["engel"]);
+    assert_eq!(rows(&made, "SELECT operator_id FROM audit"), ["engel"]);
+}

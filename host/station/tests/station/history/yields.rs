@@ -1,0 +1,181 @@
+//! Yields, against cases that were worked by hand.
+
+use halfrow_station::history::Period;
+use halfrow_station::history::yields::{By, Wanted, Yields, yields};
+use halfrow_station::record::RunCause;
+
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+
+/// Runs in their order: the unit, then `P` PASS, `F` FAIL, `W` a FAIL that is waived, `E` ERROR, `C` a crash, `R` refused,
+/// `O` open; then the plan's name and version if they are other ones. Beside them what counts for the plan `final`:
+///
+/// units, first pass, in the end, waived, flipped; runs, errors, crashes.
+pub(crate) const CASES: [(&str, [u64; 8]); 41] = [
+    ("A:P", [1, 1, 1, 0, 0, 1, 0, 0]),
+    ("A:F", [1, 0, 0, 0, 0, 1, 0, 0]),
+    // An ERROR is no judgement.
+    ("A:E", [0, 0, 0, 0, 0, 1, 1, 0]),
+    ("A:C", [0, 0, 0, 0, 0, 1, 1, 1]),
+    ("A:R", [0, 0, 0, 0, 0, 1, 1, 0]),
+    // A retest does not change the first pass.
+    ("A:F A:P", [1, 0, 1, 0, 1, 2, 0, 0]),
+    ("A:P A:F", [1, 1, 0, 0, 0, 2, 0, 0]),
+    ("A:P A:P", [1, 1, 1, 0, 0, 2, 0, 0]),
+    ("A:F A:F", [1, 0, 0, 0, 0, 2, 0, 0]),
+    ("A:F A:F A:P", [1, 0, 1, 0, 1, 3, 0, 0]),
+    ("A:F A:P A:F", [1, 0, 0, 0, 0, 3, 0, 0]),
+    ("A:P A:F A:P", [1, 1, 1, 0, 0, 3, 0, 0]),
+    ("A:F A:P A:F A:P", [1, 0, 1, 0, 1, 4, 0, 0]),
+    // An ERROR before a judgement uses up no first pass, and one after it takes nothing back.
+    ("A:E A:P", [1, 1, 1, 0, 0, 2, 1, 0]),
+    ("A:E A:F", [1, 0, 0, 0, 0, 2, 1, 0]),
+    ("A:F A:E", [1, 0, 0, 0, 0, 2, 1, 0]),
+    ("A:P A:E", [1, 1, 1, 0, 0, 2, 1, 0]),
+    ("A:F A:E A:P", [1, 0, 1, 0, 1, 3, 1, 0]),
+    ("A:E A:E A:E", [0, 0, 0, 0, 0, 3, 3, 0]),
+    ("A:C A:P", [1, 1, 1, 0, 0, 2, 1, 1]),
+    ("A:P A:C", [1, 1, 1, 0, 0, 2, 1, 1]),
+    ("A:F A:C A:F", [1, 0, 0, 0, 0, 3, 1, 1]),
+    ("A:F A:C A:P A:C", [1, 0, 1, 0, 1, 4, 2, 2]),
+    ("A:R A:R A:P", [1, 1, 1, 0, 0, 3, 2, 0]),
+    // A waiver makes no FAIL a PASS. It counts while its FAIL is the last judgement.
+    ("A:W", [1, 0, 0, 1, 0, 1, 0, 0]),
+    ("A:W A:P", [1, 0, 1, 0, 1, 2, 0, 0]),
+    ("A:W A:F", [1, 0, 0, 0, 0, 2, 0, 0]),
+    ("A:F A:W", [1, 0, 0, 1, 0, 2, 0, 0]),
+    ("A:P A:W", [1, 1, 0, 1, 0, 2, 0, 0]),
+    ("A:W A:E", [1, 0, 0, 1, 0, 2, 1, 0]),
+    ("A:W A:W", [1, 0, 0, 1, 0, 2, 0, 0]),
+    ("A:W A:P A:W", [1, 0, 0, 1, 0, 3, 0, 0]),
+    ("A:F A:W A:P", [1, 0, 1, 0, 1, 3, 0, 0]),
+    // What is open has not come to anything.
+    ("A:F A:O", [1, 0, 0, 0, 0, 1, 0, 0]),
+    // Units are counted each for itself.
+    ("A:P B:F", [2, 1, 1, 0, 0, 2, 0, 0]),
+    ("A:F B:F A:P", [2, 0, 1, 0, 1, 3, 0, 0]),
+    ("A:W B:P C:E D:F D:P", [3, 1, 2, 1, 1, 5, 1, 0]),
+    // Another version of the plan is compared, another plan is not.
+    ("A:F A:P@final,2", [1, 0, 1, 0, 1, 2, 0, 0]),
+    ("A:F@final,2 A:W", [1, 0, 0, 1, 0, 2, 0, 0]),
+    ("A:F A:P@intake,1", [1, 0, 0, 0, 0, 1, 0, 0]),
+    ("A:P@intake,1 A:F@intake,1 A:P", [1, 1, 1, 0, 0, 1, 0, 0]),
+];
+
+/// Enters one word of a story.
+pub(crate) fn enter(made: &mut Made, word: &str, hour: i64) {
+    let (word, plan) = word.split_once('@').unwrap_or((word, "final,1"));
+    let (serial, end) = word.split_once(':').unwrap();
+    let plan = match plan {
+        "final,1" => ("final", "1"),
+        "final,2" => ("final", "2"),
+        _ => ("intake", "1"),
+    };
+    let ends = match end {
+        "P" => End::Pass,
+        "F" | "W" => End::Fail(&["memory"]),
+        "E" => End::Error(RunCause::Link),
+        "C" => End::Error(RunCause::Crash),
+        "R" => End::Error(RunCause::Refused),
+        "O" => End::Open,
+        other => panic!("{other}"),
+    };
+    let run = Run { plan, started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of(serial, ends) };
+    let id = made.run(&run);
+    if end == "W" {
+        made.store.waive(&id, "engel", "used as it is").unwrap();
+    }
+}
+
+fn told(story: &str) -> Yields {
+    let mut made = Made::new();
+    for (word, hour) in story.split(' ').zip(0..) {
+        enter(&mut made, word, hour);
+    }
+    let wanted = Wanted { plan: Some("final".to_owned()), ..Wanted::default() };
+    yields(&made.now(), &wanted, By::Plan).unwrap()
+}
+
+#[test]
+fn every_run_counts_where_it_belongs() {
+    for (story, right) in CASES {
+        let found = told(story);
+        let [line] = &found.lines[..] else { panic!("{story}: {found:?}") };
+        let (first, last, errors) = (line.first_pass, line.last, line.errors);
+        assert_eq!(first.of, last.of, "{story}");
+        let counted = [
+            first.of,
+            first.count,
+            last.count,
+            line.waived,
+            line.flipped,
+            errors.of,
+            errors.count,
+            line.crashes,
+        ];
+        assert_eq!(counted, right, "{story}");
+        assert_eq!(found.flips.len() as u64, right[4], "{story}");
+    }
+}
+
+#[test]
+fn what_is_open_has_no_yield() {
+    assert_eq!(told("A:O").lines, Vec::new());
+}
+
+#[test]
+fn what_flipped_is_listed_by_unit() {
+    let found = told("A:F B:F C:F B:F B:P A:P C:F");
+    let flips: Vec<_> = found
+        .flips
+        .iter()
+        .map(|flip| (flip.serial.as_str(), flip.judgements, flip.failed_ms, flip.passed_ms))
+        .collect();
+    let hour = |hour: i64| BEGIN_MS + hour * HOUR_MS;
+    assert_eq!(flips, [("A", 2, hour(0), hour(5)), ("B", 3, hour(1), hour(4))]);
+}
+
+/// A fails in lane 1 on the first day and passes in lane 2 on the second, where B passes at once.
+fn of_two_days() -> Made {
+    let mut made = Made::new();
+    for (serial, end, lane, hour) in [
+        ("A", End::Fail(&["memory"]), "1", 0),
+        ("A", End::Error(RunCause::Link), "2", 23),
+        ("A", End::Pass, "2", 24),
+        ("B", End::Pass, "2", 25),
+    ] {
+        let (lane, started_ms) = (lane.to_owned(), BEGIN_MS + hour * HOUR_MS);
+        made.run(&Run { lane, started_ms, ..Run::of(serial, end) });
+    }
+    made
+}
+
+/// The name of each line with units, first pass, in the end; runs, errors.
+fn lines(made: &Made, wanted: &Wanted, by: By) -> Vec<(String, [u64; 5])> {
+    let found = yields(&made.now(), wanted, by).unwrap();
+    let line = |line: &halfrow_station::history::yields::Yield| {
+        let day = line.day.map(|day| day.to_string());
+        let name = day.or_else(|| line.lane.clone()).unwrap_or_default();
+        let (first, last, errors) = (line.first_pass, line.last, line.errors);
+        (name, [first.of, first.count, last.count, errors.of, errors.count])
+    };
+    found.lines.iter().map(line).collect()
+}
+
+#[test]
+fn a_unit_belongs_to_the_lane_and_the_day_of_its_first_judgement() {
+    let made = of_two_days();
+    let of = |lines: &[(&str, [u64; 5])]| {
+        lines.iter().map(|(name, counts)| ((*name).to_owned(), *counts)).collect::<Vec<_>>()
+    };
+    let all = Wanted::default();
+    let by_day = of(&[("2026-11-01", [1, 0, 1, 2, 1]), ("2026-11-02", [1, 1, 1, 2, 0])]);
+    assert_eq!(lines(&made, &all, By::Day), by_day);
+    assert_eq!(lines(&made, &all, By::Lane), of(&[("1", [1, 0, 1, 1, 0]), ("2", [1, 1, 1, 3, 1])]));
+    assert_eq!(lines(&made, &all, By::Plan), of(&[("", [2, 1, 2, 4, 1])]));
+    let first = Wanted { lane: Some("1".to_owned()), ..Wanted::default() };
+    assert_eq!(lines(&made, &first, By::Plan), of(&[("", [1, 0, 1, 1, 0])]));
+    let period = Period { from_ms: BEGIN_MS + 24 * HOUR_MS, ..Period::default() };
+    let second = Wanted { period, ..Wanted::default() };
+    assert_eq!(lines(&made, &second, By::Plan), of(&[("", [1, 1, 1, 2, 0])]));
+    assert_eq!(yields(&made.now(), &second, By::Plan).unwrap().flips, Vec::new());
+}

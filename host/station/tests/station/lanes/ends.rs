@@ -1,0 +1,147 @@
+//! Every way in which runs in several lanes end.
+
+use std::io::Read as _;
+use std::net::TcpListener;
+use std::thread;
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use serde_json::Value;
+
+use super::floor::{Running, SERIALS, Station};
+
+/// A board that takes the connection and says nothing.
+fn silent_board() -> (TcpListener, String) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    (listener, target)
+}
+
+/// Waits until the lane has connected, and keeps the connection.
+fn connected(listener: &TcpListener) {
+    let (mut connection, _) = listener.accept().unwrap();
+    assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
+    thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});
+}
+
+/// The process of the lane of this run.
+fn lane_of(station: &Station, run: &Value) -> i32 {
+    let noted = station.path("data/spool").join(run.as_str().unwrap()).join("lane.pid");
+    std::fs::read_to_string(noted).unwrap().split_whitespace().next().unwrap().parse().unwrap()
+}
+
+#[test]
+fn lanes_judge_at_once_and_every_verdict_has_its_record() {
+    let station = Station::with(&["mock,serial=1", "mock,serial=2,fault=stuck-data", "tcp:127.0.0.1:1"], "");
+    let mut running = station.start();
+    for (lane, serial) in ["1", "2", "3"].into_iter().zip(SERIALS) {
+        running.test(lane, serial);
+    }
+    let (code, heard) = running.end();
+    assert_eq!(code, Some(0));
+    let last =
+        |lane: &str| heard.iter().rfind(|news| news["news"] == "lane" && news["lane"] == lane).unwrap();
+    for (lane, verdict) in [("1", "PASS"), ("2", "FAIL"), ("3", "ERROR")] {
+        let state = last(lane);
+        assert_eq!(
+            (&state["state"], &state["shown"]["verdict"]),
+            (&verdict.into(), &verdict.into()),
+            "{state}"
+        );
+        let run = state["shown"]["run"].as_str().unwrap();
+        let stored =
+            format!("SELECT verdict || record_sha256 FROM run WHERE id = '{run}' AND lane = '{lane}'");
+        let hash = state["shown"]["record_sha256"].as_str().unwrap();
+        assert_eq!(station.query(&stored), [format!("{verdict}{hash}")]);
+    }
+    let words = |lane: &str| -> Vec<String> {
+        let of = heard.iter().filter(|news| news["news"] == "lane" && news["lane"] == lane);
+        let mut words: Vec<_> = of.map(|news| news["state"].as_str().unwrap().to_owned()).collect();
+        words.dedup();
+        words
+    };
+    assert_eq!(words("1"), ["EMPTY", "READY", "RUNNING", "SAVING", "PASS"]);
+    station.assert_well();
+}
+
+/// The board of a hung lane is that of nobody else, and a lane beside goes on.
+#[test]
+fn a_lane_that_hangs_is_killed_and_recorded_and_the_others_do_not_notice() {
+    let (listener, target) = silent_board();
+    let station = Station::with(&[&target, "mock,serial=1"], "");
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    connected(&listener);
+    let hung = running.wait("a step", |news| news["news"] == "doing")["run"].clone();
+    let lane = lane_of(&station, &hung);
+    kill(Pid::from_raw(lane), Signal::SIGSTOP).unwrap();
+    running.test("2", SERIALS[1]);
+    running.state("2", "PASS");
+    let ended = running.state("1", "ERROR");
+    assert!(ended["shown"]["headline"].as_str().unwrap().contains("told nothing for 5 s"), "{ended}");
+    assert!(kill(Pid::from_raw(lane), None).is_err(), "it is gone");
+    assert_eq!(station.query("SELECT cause FROM run WHERE lane = '1'"), ["crash"]);
+    running.test("2", SERIALS[1]);
+    running.state("2", "RUNNING");
+    running.state("2", "PASS");
+    assert_eq!(running.end().0, Some(0));
+    station.assert_well();
+}
+
+#[test]
+fn a_run_is_ended_by_a_barcode() {
+    let (listener, target) = silent_board();
+    let station = Station::with(&[&target, "mock"], "");
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    connected(&listener);
+    running.test("1", "HR:ABORT");
+    let ended = running.state("1", "ERROR");
+    assert_eq!(station.query("SELECT cause FROM run"), ["operator"], "{ended}");
+    running.end();
+    station.assert_well();
+}
+
+#[test]
+fn a_signal_ends_all_runs_in_order() {
+    let (listener, target) = silent_board();
+    let station = Station::with(&[&target], "");
+    let mut running = station.start();
+    running.scan(SERIALS[0]);
+    connected(&listener);
+    kill(Pid::from_raw(running.id() as i32), Signal::SIGTERM).unwrap();
+    running.state("1", "ERROR");
+    assert_eq!(running.end().0, Some(143));
+    assert_eq!(station.query("SELECT verdict || ' ' || cause FROM run"), ["ERROR station"]);
+    station.assert_well();
+}
+
+/// The evidence of a run cannot be laid down, and then it can: the program goes on all the time.
+#[test]
+fn what_cannot_be_saved_blocks_its_lane_until_the_disk_is_well() {
+    let station = Station::with(&["mock,serial=1", "mock,serial=2"], "");
+    let mut running = station.start();
+    running.state("1", "READY");
+    let blobs = station.path("data/blobs");
+    std::fs::remove_dir(&blobs).unwrap();
+    std::fs::write(&blobs, "no folder").unwrap();
+    running.test("1", SERIALS[0]);
+    let unsaved = running.state("1", "UNSAVED");
+    assert!(unsaved["shown"].is_null() && unsaved["note"].as_str().unwrap().contains("could not be saved"));
+    assert_eq!(station.query("SELECT state FROM run"), ["open"]);
+    running.test("1", SERIALS[1]);
+    assert!(running.answer(SERIALS[1]).1.contains("is not saved"));
+    std::fs::remove_file(&blobs).unwrap();
+    std::fs::create_dir(&blobs).unwrap();
+    let ended = running.state("1", "ERROR");
+    assert!(ended["shown"]["headline"].as_str().unwrap().contains("could not be saved"), "{ended}");
+    assert_eq!(station.query("SELECT verdict || ' ' || cause FROM run"), ["ERROR crash"]);
+    test_again(&mut running);
+    station.assert_well();
+}
+
+fn test_again(running: &mut Running) {
+    running.test("1", SERIALS[0]);
+    running.state("1", "RUNNING");
+    running.state("1", "PASS");
+}

@@ -1,0 +1,148 @@
+//! A station in a folder of its own, and its program at work.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::PathBuf;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{self, Receiver};
+use std::thread;
+use std::time::Duration;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::common;
+
+pub(crate) use crate::common::SERIALS;
+
+/// A plan whose serial numbers are [`SERIALS`].
+pub(crate) fn plan() -> String {
+    common::guarded_plan("CAM-T", "CA")
+}
+
+/// How long something is waited for that must come: it ends hangs alone.
+const HANG: Duration = Duration::from_secs(120);
+
+/// A folder with settings.
+pub(crate) struct Station {
+    folder: TempDir,
+}
+
+impl Station {
+    /// With a lane for each of these boards, called 1, 2, and so on, and more settings behind them.
+    pub(crate) fn with(boards: &[&str], more: &str) -> Self {
+        let station = Self { folder: tempfile::tempdir().unwrap() };
+        fs::write(station.path("plan.toml"), plan()).unwrap();
+        let lanes = boards.iter().zip(1..).map(|(board, name)| {
+            format!("[[lane]]\nname = \"{name}\"\nboard = \"{board}\"\nplans = [\"plan.toml\"]\n")
+        });
+        let lanes: String = lanes.collect();
+        let text =
+            format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\nsilence = 5\n{lanes}{more}");
+        fs::write(station.path("station.toml"), text).unwrap();
+        station
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The station at work.
+    pub(crate) fn start(&self) -> Running {
+        let mut child = Command::new(common::program())
+            .args(["lanes", "--operator", "weber", "--settings"])
+            .arg(self.path("station.toml"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::inherit())
+            .spawn()
+            .unwrap();
+        let (sender, news) = mpsc::channel();
+        let stdout = BufReader::new(child.stdout.take().unwrap());
+        thread::spawn(move || {
+            for line in stdout.lines() {
+                let _ = sender.send(serde_json::from_str(&line.unwrap()).unwrap());
+            }
+        });
+        Running { stdin: child.stdin.take(), child, news, heard: Vec::new() }
+    }
+
+    /// A look at the database that is not the program's: one value of each row.
+    pub(crate) fn query(&self, text: &str) -> Vec<String> {
+        common::query(&self.path("data"), text)
+    }
+
+    /// Everything that it kept is as it was written.
+    pub(crate) fn assert_well(&self) {
+        let did = common::check(&self.path("data"));
+        assert_eq!(did.code, Some(0), "{did:?}");
+    }
+}
+
+/// The program at work.
+pub(crate) struct Running {
+    child: Child,
+    stdin: Option<ChildStdin>,
+    news: Receiver<Value>,
+    /// All news so far.
+    pub(crate) heard: Vec<Value>,
+}
+
+impl Running {
+    pub(crate) fn scan(&mut self, text: &str) {
+        writeln!(self.stdin.as_mut().unwrap(), "{text}").unwrap();
+    }
+
+    /// Scans the lane's barcode and the serial number.
+    pub(crate) fn test(&mut self, lane: &str, serial: &str) {
+        self.scan(&format!("HR:LANE:{lane}"));
+        self.scan(serial);
+    }
+
+    /// The next piece of news that is wanted.
+    pub(crate) fn wait(&mut self, what: &str, is_wanted: impl Fn(&Value) -> bool) -> Value {
+        loop {
+            let news = self.news.recv_timeout(HANG);
+            let news = news.unwrap_or_else(|_| panic!("no {what}; heard {:#?}", self.heard));
+            self.heard.push(news.clone());
+            if is_wanted(&news) {
+                return news;
+            }
+        }
+    }
+
+    /// The lane in this state.
+    pub(crate) fn state(&mut self, lane: &str, state: &str) -> Value {
+        self.wait(&format!("{state} in lane {lane}"), |news| {
+            news["news"] == "lane" && news["lane"] == lane && news["state"] == state
+        })
+    }
+
+    /// What became of a scan.
+    pub(crate) fn answer(&mut self, scanned: &str) -> (bool, String) {
+        let answer = self.wait(&format!("answer to {scanned}"), |news| {
+            news["news"] == "scan" && news["scanned"] == scanned
+        });
+        (answer["is_taken"].as_bool().unwrap(), answer["said"].as_str().unwrap().to_owned())
+    }
+
+    /// Its process.
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// Ends the scans; returns the exit code and all news.
+    pub(crate) fn end(mut self) -> (Option<i32>, Vec<Value>) {
+        drop(self.stdin.take());
+        let status = self.child.wait().unwrap();
+        self.heard.extend(self.news.iter());
+        (status.code(), std::mem::take(&mut self.heard))
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

@@ -1,0 +1,59 @@
+//! Lamps, printers and relays.
+
+use super::floor::{SERIALS, Station};
+
+/// A hook that writes down what it was told, and fails if the record is not there by then.
+#[test]
+fn hooks_are_told_after_the_commit() {
+    let settings = r#"
+[[on-pass]]
+program = "./lamp"
+arguments = ["{lane}", "{serial}", "{verdict}", "{record}"]
+[[on-fail]]
+program = "./lamp"
+arguments = ["{lane}", "{serial}", "{verdict}", "{record}"]
+"#;
+    let station = Station::with(&["mock", "mock,fault=stuck-data"], settings);
+    let lamp = station.path("lamp");
+    let script = "#!/bin/sh\necho \"$1 $2 $3\" > \"$(dirname \"$0\")/lamp-$1\"\n\
+                  find \"$(dirname \"$0\")/data/blobs\" -name \"$4\" | grep -q . || exit 1\n";
+    std::fs::write(&lamp, script).unwrap();
+    std::fs::set_permissions(&lamp, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    running.test("2", SERIALS[1]);
+    let (code, heard) = running.end();
+    assert_eq!(code, Some(0));
+    assert_eq!(heard.iter().filter(|news| news["news"] == "hook").count(), 0, "{heard:#?}");
+    let lamp = |lane: &str| std::fs::read_to_string(station.path(&format!("lamp-{lane}"))).unwrap();
+    assert_eq!(lamp("1").trim(), format!("1 {} PASS", SERIALS[0]));
+    assert_eq!(lamp("2").trim(), format!("2 {} FAIL", SERIALS[1]));
+}
+
+#[test]
+fn a_hook_that_fails_or_hangs_is_shown_and_changes_no_verdict() {
+    let settings = r#"
+[[on-pass]]
+program = "sh"
+arguments = ["-c", "echo no paper >&2; exit 3"]
+[[on-pass]]
+program = "sleep"
+arguments = ["1000"]
+deadline = 0.5
+[[on-pass]]
+program = "no-such-program"
+"#;
+    let station = Station::with(&["mock"], settings);
+    let mut running = station.start();
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    for said in ["no paper", "was killed after 0.5 s", "cannot be started"] {
+        let news = running.wait(said, |news| news["news"] == "hook");
+        assert!(news["said"].as_str().unwrap().contains(said), "{news}");
+    }
+    let (code, heard) = running.end();
+    assert_eq!(code, Some(0));
+    let last = heard.iter().rfind(|news| news["news"] == "lane").unwrap();
+    assert_eq!(last["state"], "PASS");
+    assert_eq!(station.query("SELECT verdict FROM run"), ["PASS"]);
+}

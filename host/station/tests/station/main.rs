@@ -1,0 +1,15 @@
+//! The station, by its library and by its program; one program of tests, which is linked once.
+
+// A helper that cannot go on fails the test.
+#![allow(clippy::panic, clippy::unwrap_used)]
+
+mod common;
+mod compiled_once;
+mod documents;
+mod floor;
+mod history;
+mod lanes;
+mod pages;
+mod plans;
+mod runs;
+mod settings;

@@ -1,0 +1,99 @@
+//! Badges, passwords, cookies, and where pages may be.
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+
+use crate::pages::http::{Request, exchange};
+use crate::pages::station::{PUBLIC, SERIALS, Station};
+
+#[test]
+fn what_others_can_reach_needs_people() {
+    let open = Station::with(1, "[web]\nlisten = \"0.0.0.0:0\"");
+    let said = open.refused();
+    assert!(said.contains("station.toml:6:") && said.contains("nobody logs in"), "{said}");
+    let proxied = Station::with(1, "[web]\npublic = \"https://station12.example\"");
+    assert!(proxied.refused().contains("nobody logs in"));
+    let people = Station::public(1);
+    fs::set_permissions(people.path("users.toml"), fs::Permissions::from_mode(0o644)).unwrap();
+    assert!(people.refused().contains("chmod 600"));
+    fs::remove_file(people.path("users.toml")).unwrap();
+    assert!(people.refused().contains("users.toml cannot be read"));
+}
+
+#[test]
+fn a_badge_logs_in_and_nobody_may_guess_for_long() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let browser = serving.browser(PUBLIC);
+    for wrong in 0..10 {
+        let guess = format!("A-1{wrong:03}");
+        assert_eq!(browser.post("/login", &[("badge", &guess)]).send().status, 403, "{guess}");
+    }
+    let right = browser.post("/login", &[("badge", "A-0017")]).send();
+    assert_eq!(right.status, 429, "the eleventh waits, even if it is right");
+    assert_eq!(station.query("SELECT act FROM audit"), ["login refused"; 10]);
+}
+
+#[test]
+fn a_cookie_is_the_browsers_alone_and_ends_with_its_owner() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let given = serving.browser(PUBLIC).get("/login").without("cookie").send().headers["set-cookie"].clone();
+    for part in ["__Host-halfrow-", "HttpOnly", "SameSite=Strict", "Secure", "Path=/"] {
+        assert!(given.contains(part), "{given}");
+    }
+    let (operator, before) = (serving.operator(), serving.browser(PUBLIC));
+    assert_ne!(operator.cookie, before.cookie, "logging in draws another one");
+    assert_eq!(operator.get("/").send().status, 200);
+    assert!(station.user(&["remove", "Weber"], "").status.success());
+    assert_eq!(operator.get("/").send().status, 401, "whoever was removed is logged out");
+    let engineer = serving.engineer();
+    assert_eq!(engineer.post("/logout", &[]).send().status, 303);
+    assert_eq!(engineer.get("/").send().status, 401);
+}
+
+#[test]
+fn the_badge_of_another_operator_is_no_scan() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let mut browser = serving.operator();
+    let answer = browser.post("/scan", &[("text", "B-0022")]).with("accept", "application/json").send();
+    assert!(answer.body.contains("Braun tests from now on") && !answer.body.contains("B-0022"), "{answer:?}");
+    browser.learn(&answer);
+    browser.learn(&browser.get("/").send());
+    let out = browser.post("/lanes/1/out", &[]).send();
+    assert_eq!(out.status, 403, "without the password an engineer is an operator");
+    let scan = browser.post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json").send();
+    assert!(scan.body.contains("\"is_taken\":true"), "{scan:?}");
+    assert_eq!(
+        station.query("SELECT operator_id || ' ' || act || ' ' || detail FROM audit ORDER BY id"),
+        ["Weber login ", "Braun login ", &format!("Braun scan {}", SERIALS[0])]
+    );
+}
+
+#[test]
+fn nobody_sends_more_than_a_form_and_nobody_holds_a_place_for_long() {
+    let station = Station::private(1);
+    let mut serving = station.serve();
+    let here = serving.here();
+    let large = here.post("/scan", &[("text", &"x".repeat(70_000))]).send();
+    assert_eq!(large.status, 413);
+    // RFC 9112, section 6.3: two lengths, or a length beside chunks, may be read in two ways.
+    let host = format!("host: 127.0.0.1:{}\r\n", serving.port);
+    for lengths in [
+        "content-length: 3\r\ncontent-length: 5\r\n",
+        "content-length: 3\r\ntransfer-encoding: chunked, identity\r\n",
+    ] {
+        let text =
+            format!("POST /scan HTTP/1.1\r\n{host}{lengths}\r\n0\r\n\r\nGET /smuggled HTTP/1.1\r\n\r\n");
+        let status = exchange(serving.port, text.as_bytes()).map(|answer| answer.status);
+        assert!(status.is_none_or(|status| status == 400), "{lengths}: {status:?}");
+    }
+    let two_hosts = here.get("/");
+    let two = Request {
+        headers: [two_hosts.headers.clone(), vec![("host".to_owned(), "evil.example".to_owned())]].concat(),
+        ..two_hosts
+    };
+    assert_eq!(two.send().status, 421);
+    assert!(serving.is_alive());
+}

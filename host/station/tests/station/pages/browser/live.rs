@@ -1,0 +1,113 @@
+//! What is shown is live, or says that it is not.
+
+use serde_json::json;
+
+use super::chromium::Chromium;
+use crate::pages::station::{SERIALS, Serving, Station};
+
+/// The most milliseconds from the last beat until the page says that it is not live, beside what a busy machine takes.
+const NOT_LIVE: f64 = 3000.0;
+
+/// Keeps when the page was last seen to beat, and when it turned live or not, by the page's own clock.
+const WATCH: &str = "new Promise(done => {
+    window.beat = window.died = window.rose = 0;
+    new MutationObserver(() => window.beat = performance.now()).observe(document.getElementById('clock'), {childList: true});
+    new MutationObserver(() => {
+        const is_dead = document.body.classList.contains('dead');
+        if (is_dead && !window.died) window.died = performance.now();
+        if (!is_dead && window.died && !window.rose) window.rose = performance.now();
+    }).observe(document.body, {attributes: true});
+    done(true);
+})";
+
+fn open(serving: &Serving) -> Chromium {
+    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    page
+}
+
+#[test]
+fn a_verdict_is_shown_with_its_record_and_stays_when_the_page_comes_anew() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let mut page = open(&serving);
+    page.scan("HR:LANE:2", "Enter", std::time::Duration::ZERO);
+    page.scan(SERIALS[0], "Enter", std::time::Duration::ZERO);
+    page.wait("document.querySelector('#lane-2.pass') !== null");
+    let shown = "const lane = document.getElementById('lane-2').dataset; `${lane.run} ${lane.record}`";
+    let stored = station.query("SELECT id || ' ' || record_sha256 FROM run WHERE verdict = 'PASS'");
+    assert_eq!(page.evaluate(shown), json!(stored[0]));
+    page.go(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    assert_eq!(page.evaluate(&format!("{{ {shown} }}")), json!(stored[0]));
+    // What a page of somebody else could learn, or be given.
+    let own = format!("http://127.0.0.1:{}/", serving.port);
+    assert!(page.asked.len() > 8, "{:?}", page.asked);
+    let others: Vec<_> =
+        page.asked.iter().filter(|url| !url.starts_with(&own) && !url.starts_with("data:")).collect();
+    assert_eq!(others, Vec::<&String>::new());
+    assert_eq!(page.evaluate("window.violations ?? []"), json!([]));
+}
+
+/// The page's own judgement, of events as the station would never send them.
+#[test]
+fn a_verdict_without_its_record_is_not_drawn() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = open(&serving);
+    let draw = |event: &str| {
+        format!(
+            "import('/assets/floor.js').then(floor => floor.draw({{lane: '1', html: '<article id=lane-1 class=lane>drawn</article>', {event}}}))"
+        )
+    };
+    let hash = "0f".repeat(32);
+    for refused in [
+        "state: 'PASS'".to_owned(),
+        "state: 'PASS', verdict: 'PASS', run: 'r'".to_owned(),
+        format!("state: 'PASS', verdict: 'PASS', record_sha256: '{hash}'"),
+        format!("state: 'PASS', verdict: 'FAIL', run: 'r', record_sha256: '{hash}'"),
+        format!("state: 'FAIL', verdict: 'FAIL', run: 'r', record_sha256: '{}'", &hash[1..]),
+    ] {
+        assert_eq!(page.evaluate(&draw(&refused)), json!(false), "{refused}");
+    }
+    assert_eq!(page.evaluate("document.getElementById('lane-1').textContent === 'drawn'"), json!(false));
+    let whole = format!("state: 'PASS', verdict: 'PASS', run: 'r', record_sha256: '{hash}'");
+    assert_eq!(page.evaluate(&draw(&whole)), json!(true));
+}
+
+#[test]
+fn without_the_station_nothing_is_live_and_with_it_everything_again() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let port = serving.port;
+    let mut page = open(&serving);
+    page.evaluate(WATCH);
+    page.wait("window.beat > 0");
+    drop(serving);
+    page.wait("window.died > 0");
+    let silent = page.evaluate("window.died - window.beat").as_f64().unwrap();
+    println!("not live {silent:.0} ms after the last beat");
+    assert!(silent < 2.0 * NOT_LIVE, "not live after {silent} ms");
+    assert!(
+        page.evaluate("document.getElementById('lamp').textContent")
+            .as_str()
+            .unwrap()
+            .starts_with("NOT LIVE")
+    );
+    page.scan(SERIALS[0], "Enter", std::time::Duration::ZERO);
+    page.wait("document.getElementById('answer').textContent.includes('did not arrive')");
+    let settings = std::fs::read_to_string(station.path("station.toml")).unwrap();
+    std::fs::write(
+        station.path("station.toml"),
+        settings.replace("127.0.0.1:0", &format!("127.0.0.1:{port}")),
+    )
+    .unwrap();
+    let _again = station.serve();
+    let back = page.evaluate("performance.now()").as_f64().unwrap();
+    page.wait("window.rose > 0");
+    let rose = page.evaluate("window.rose").as_f64().unwrap() - back;
+    println!("live again {rose:.0} ms after it was back");
+    page.wait("!document.body.classList.contains('dead')");
+    page.scan(SERIALS[0], "Enter", std::time::Duration::ZERO);
+    page.wait("document.querySelector('.lane.pass') !== null");
+}

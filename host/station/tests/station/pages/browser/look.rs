@@ -1,0 +1,108 @@
+//! Whether what is shown can be read.
+
+use serde_json::json;
+
+use super::chromium::Chromium;
+use crate::pages::station::Station;
+
+/// WCAG 2.1, success criterion 1.4.3.
+const LEAST: f64 = 4.5;
+
+/// The least contrast of a text with what is behind it, and where, with the lane in each state.
+const CONTRAST: &str = "(() => {
+    const light = ([r, g, b]) => {
+        const [x, y, z] = [r, g, b].map(c => (c /= 255) <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
+        return 0.2126 * x + 0.7152 * y + 0.0722 * z;
+    };
+    const numbers = colour => colour.match(/[\\d.]+/g).map(Number);
+    const ground = element => {
+        for (let at = element; at; at = at.parentElement) {
+            const colour = numbers(getComputedStyle(at).backgroundColor);
+            if (colour.length < 4 || colour[3] === 1) return colour;
+        }
+        return [255, 255, 255];
+    };
+    let least = {ratio: 99, looked: 0};
+    const lane = document.querySelector('.lane');
+    const states = ['empty', 'ready', 'waiting', 'running', 'saving', 'pass', 'fail', 'error', 'unsaved', 'out'];
+    document.getElementById('answer').textContent = 'said';
+    for (const state of states) for (const answer of ['taken', 'refused']) for (const dead of [false, true]) {
+        document.body.classList.toggle('dead', dead);
+        document.getElementById('answer').className = `answer ${answer}`;
+        lane.className = `lane ${state}`;
+        for (const element of document.querySelectorAll('body *')) {
+            const texts = [...element.childNodes].filter(node => node.nodeType === 3 && node.data.trim());
+            if (!texts.length || !element.checkVisibility() || element.closest('.heard')) continue;
+            const [one, other] = [light(numbers(getComputedStyle(element).color)), light(ground(element))].sort((a, b) => b - a);
+            const ratio = (one + 0.05) / (other + 0.05);
+            least.looked += 1;
+            if (ratio < least.ratio) Object.assign(least, {ratio, where: `${state} ${element.tagName}.${element.className}`});
+        }
+    }
+    return least;
+})()";
+
+#[test]
+fn every_text_can_be_told_from_what_is_behind_it() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    for scheme in ["light", "dark"] {
+        let media = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
+        page.call("Emulation.setEmulatedMedia", media);
+        let least = page.evaluate(CONTRAST);
+        println!("{scheme}: {least}");
+        assert!(least["looked"].as_u64().unwrap() > 200, "{least}");
+        assert!(least["ratio"].as_f64().unwrap() >= LEAST, "{scheme}: {least}");
+    }
+}
+
+/// With one lane the word fills the screen, and of sixteen each can be read from three metres: 4 % of the height.
+#[test]
+fn words_are_large_and_nothing_lies_upon_another() {
+    for lanes in [1, 4, 16] {
+        let station = Station::private(lanes);
+        let serving = station.serve();
+        let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
+        for (width, height, is_phone) in [(1280, 720, false), (390, 844, true)] {
+            let size =
+                json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_phone });
+            page.call("Emulation.setDeviceMetricsOverride", size);
+            page.wait("document.getElementById('lamp')?.textContent === 'live' && document.querySelector('.lane.ready') !== null");
+            let word =
+                page.evaluate("parseFloat(getComputedStyle(document.querySelector('.word')).fontSize)");
+            let least = if lanes == 1 { 0.12 } else { 0.04 };
+            let word = word.as_f64().unwrap();
+            assert!(is_phone || word >= least * f64::from(height), "{lanes} lanes: {word} px");
+            let wide = page.evaluate("document.documentElement.scrollWidth > innerWidth");
+            assert_eq!(wide, json!(false), "{lanes} lanes at {width}");
+            let over = page.evaluate(OVER);
+            assert_eq!(over, json!([]), "{lanes} lanes at {width}");
+        }
+    }
+}
+
+/// Parts of a lane, in every state, that overlap each other or stand out of it.
+const OVER: &str = "(() => {
+    const found = [];
+    const long = 'a headline that says at some length what was found in which row and what is to be done about it';
+    const lane = document.querySelector('.lane');
+    const [before, state] = [lane.innerHTML, lane.className];
+    for (const state of ['running', 'pass', 'error']) {
+        lane.className = `lane ${state} ${state === 'running' ? 'middle' : 'short'}`;
+        const more = state === 'running' ? '<p class=doing>rows</p><progress></progress>' : `<p class=why>${long}</p>`;
+        lane.innerHTML = before + (state === 'pass' ? '' : more);
+        lane.querySelector('.word span').textContent = state.toUpperCase();
+        lane.querySelector('.serial').textContent = 'CA080442957X';
+        const parts = [...lane.children].filter(part => part.checkVisibility()).map(part => [part, part.getBoundingClientRect()]);
+        const all = lane.getBoundingClientRect();
+        for (const [i, [part, box]] of parts.entries()) {
+            if (box.bottom > all.bottom + 1) found.push(`${state}: ${part.className} stands out`);
+            const next = parts[i + 1];
+            if (next && next[1].top < box.bottom - 1) found.push(`${state}: ${next[0].className} on ${part.className}`);
+        }
+    }
+    [lane.innerHTML, lane.className] = [before, state];
+    return found;
+})()";

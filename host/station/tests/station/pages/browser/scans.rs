@@ -1,0 +1,87 @@
+//! Scans by real keys, at the speeds of scanners, wherever the focus is.
+
+use std::time::Duration;
+
+use super::chromium::Chromium;
+use crate::pages::station::Station;
+
+/// Milliseconds between two keys.
+const SPEEDS: [u64; 4] = [0, 1, 8, 20];
+const LANES: usize = 4;
+
+/// The serial number of this number, with its check digit as ISO 2108:1992 computes it for an ISBN.
+fn serial(number: usize) -> String {
+    let digits = format!("{number:09}");
+    let sum: usize = digits.bytes().zip(1..).map(|(digit, place)| usize::from(digit - b'0') * place).sum();
+    format!("CA{digits}{}", if sum % 11 == 10 { "X".to_owned() } else { (sum % 11).to_string() })
+}
+
+/// Where the focus is put before a scan.
+const FOCUS: [&str; 5] = [
+    "document.activeElement.blur()",
+    "document.querySelector('nav a').focus()",
+    "document.getElementById('sound').focus()",
+    "document.querySelector('.lane .name').focus()",
+    "document.querySelector('.lane .act button')?.focus()",
+];
+
+/// So many scans at each speed: what the station was sent is what was scanned, each for its lane and in its order.
+fn scanned(counts: [usize; 4]) {
+    let station = Station::private(LANES);
+    let serving = station.serve();
+    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.body.classList.contains('dead') === false && document.getElementById('lamp')?.textContent === 'live'");
+    let mut expected = Vec::new();
+    for (milliseconds, count) in SPEEDS.into_iter().zip(counts) {
+        let apart = Duration::from_millis(milliseconds);
+        for _ in 0..count {
+            let number = expected.len();
+            let (serial, lane) = (serial(number), number % LANES + 1);
+            page.evaluate(FOCUS[number % FOCUS.len()]);
+            page.scan(&format!("HR:LANE:{lane}"), "Enter", apart);
+            page.scan(&serial, if number.is_multiple_of(2) { "Enter" } else { "Tab" }, apart);
+            expected.push(format!("{lane} {serial}"));
+        }
+    }
+    let all = 2 * expected.len();
+    page.wait(&format!("document.getElementById('counter').textContent === '{all} / {all}'"));
+    let sent = station.query("SELECT subject || ' ' || detail FROM audit WHERE act = 'scan' ORDER BY id");
+    assert_eq!(sent, expected);
+    let others = station.query("SELECT act FROM audit WHERE act <> 'scan'");
+    assert_eq!(others, Vec::<String>::new(), "no key pressed a button");
+}
+
+#[test]
+fn no_scan_is_lost_or_changed_or_goes_to_another_lane() {
+    scanned([12, 12, 8, 4]);
+}
+
+#[test]
+#[ignore = "ten thousand scans take an hour"]
+fn none_of_ten_thousand_scans_is_lost_or_changed_or_goes_to_another_lane() {
+    scanned([2500; 4]);
+}
+
+#[test]
+fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    let apart = Duration::ZERO;
+    let refused = "document.getElementById('answer').className === 'answer refused'";
+    page.scan("CA01311", "Escape", apart);
+    // Two labels without an end between them, one letter in lower case, a control character.
+    for (number, wrong) in
+        ["CA0131103628CA0201134373", "cA0131103628", "CA0131103629", "CA013110362 8"].into_iter().enumerate()
+    {
+        page.scan(wrong, "Enter", apart);
+        page.wait(&format!("document.getElementById('counter').textContent === '{0} / {0}'", number + 1));
+        page.wait(refused);
+    }
+    page.evaluate("document.querySelector('.lane .name').focus()");
+    page.scan("CA0131103628", "Enter", apart);
+    page.scan("", "Enter", apart);
+    page.wait("document.querySelector('.lane.pass') !== null");
+    assert_eq!(station.query("SELECT count(*) || '' FROM run"), ["1"]);
+}

@@ -1,0 +1,129 @@
+//! What the operator's page says and does, without a browser.
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::net::TcpStream;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::pages::station::{SERIALS, Serving, Station};
+
+/// The page's news.
+struct Live(BufReader<TcpStream>);
+
+impl Live {
+    fn of(serving: &Serving) -> Self {
+        let mut stream = TcpStream::connect(("127.0.0.1", serving.port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(120))).unwrap();
+        write!(stream, "GET /live HTTP/1.1\r\nhost: 127.0.0.1:{}\r\n\r\n", serving.port).unwrap();
+        Self(BufReader::new(stream))
+    }
+
+    /// The next event: its number, its name, what it says.
+    fn next(&mut self) -> (u64, String, Value) {
+        let (mut id, mut name, mut line) = (0, String::new(), String::new());
+        loop {
+            line.clear();
+            assert!(self.0.read_line(&mut line).unwrap() > 0, "the news end");
+            if let Some(text) = line.strip_prefix("id: ") {
+                id = text.trim().parse().unwrap();
+            } else if let Some(text) = line.strip_prefix("event: ") {
+                name = text.trim().to_owned();
+            } else if let Some(text) = line.strip_prefix("data: ") {
+                return (id, name, serde_json::from_str(text).unwrap());
+            }
+        }
+    }
+}
+
+#[test]
+fn news_begin_with_everything_and_have_no_gap_and_every_verdict_has_its_record() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let mut live = Live::of(&serving);
+    let (mut last, name, lanes) = live.next();
+    assert_eq!((name.as_str(), lanes.as_array().unwrap().len()), ("snapshot", 2));
+    let here = serving.here();
+    let scan = |text: &str, lane: &str| {
+        let answer = here
+            .post("/scan", &[("text", text), ("lane", lane), ("counter", "7")])
+            .with("accept", "application/json");
+        serde_json::from_str::<Value>(&answer.send().body).unwrap()
+    };
+    let armed = scan("HR:LANE:2", "");
+    assert_eq!((&armed["armed"], &armed["counter"]), (&"2".into(), &7.into()), "{armed}");
+    assert!(!scan(SERIALS[0], "")["is_taken"].as_bool().unwrap(), "nobody knows for which lane");
+    let taken = scan(SERIALS[0], "2");
+    assert_eq!(
+        (&taken["is_taken"], &taken["lane"], &taken["armed"]),
+        (&true.into(), &"2".into(), &Value::Null)
+    );
+    let (mut beats, mut verdict) = (0, None);
+    while beats < 2 || verdict.is_none() {
+        let (id, name, said) = live.next();
+        assert_eq!(id, last + 1, "{name}");
+        last = id;
+        beats += u32::from(name == "beat");
+        if name == "lane" && said["state"] == "PASS" {
+            verdict = Some(said);
+        }
+    }
+    let verdict = verdict.unwrap();
+    let run = verdict["run"].as_str().unwrap();
+    let stored = station.query(&format!("SELECT verdict || record_sha256 FROM run WHERE id = '{run}'"));
+    assert_eq!(stored, [format!("PASS{}", verdict["record_sha256"].as_str().unwrap())]);
+    assert!(verdict["html"].as_str().unwrap().contains(SERIALS[0]));
+}
+
+#[test]
+fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    let page = here.get("/").send().body;
+    assert!(
+        page.contains("<noscript><meta http-equiv=\"refresh\" content=\"5; url=/\"></noscript>"),
+        "{page}"
+    );
+    let answer = here.post("/scan", &[("text", SERIALS[1]), ("typed", "true")]).send();
+    assert_eq!(answer.status, 200);
+    assert!(answer.body.contains(&format!("{} is tested in lane 1", SERIALS[1])), "{}", answer.body);
+    let refused = here.post("/scan", &[("text", "CA0201134374"), ("typed", "true")]).send().body;
+    assert!(refused.contains("class=\"answer refused\""), "{refused}");
+}
+
+#[test]
+fn every_language_says_it_in_its_words() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    for (preferred, word) in [("de-AT", "BEREIT"), ("zh", "就绪"), ("fr", "READY")] {
+        let mut seen = String::new();
+        // The board is seen when the station has looked for it.
+        while !seen.contains("lane ready") {
+            seen = serving.here().get("/").with("accept-language", preferred).send().body;
+        }
+        assert!(seen.contains(word), "{preferred}: {seen}");
+    }
+    let here = serving.here();
+    let answer = here.post("/language", &[("language", "de")]).send();
+    assert!(answer.headers["set-cookie"].starts_with("halfrow-language=de;"), "{answer:?}");
+}
+
+/// A scan is for the lane that its page names, whatever another page scans in between.
+#[test]
+fn two_pages_do_not_get_each_others_lanes() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let [one, other] = [serving.here(), serving.here()];
+    let scan = |browser: &crate::pages::station::Browser, text: &str, lane: &str| {
+        let answer = browser
+            .post("/scan", &[("text", text), ("lane", lane)])
+            .with("accept", "application/json")
+            .send();
+        serde_json::from_str::<Value>(&answer.body).unwrap()
+    };
+    scan(&one, "HR:LANE:1", "");
+    scan(&other, "HR:LANE:2", "");
+    assert_eq!(scan(&one, SERIALS[0], "1")["lane"], "1");
+    assert_eq!(scan(&other, SERIALS[1], "2")["lane"], "2");
+}

@@ -1,0 +1,199 @@
+//! A station with its pages at work.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+
+use tempfile::TempDir;
+
+use super::http::{Answer, Request, escaped};
+
+const PLAN: &str = include_str!("plan.toml");
+
+/// Serial numbers whose check digits publishers computed: ISBNs of printed books.
+pub(crate) const SERIALS: [&str; 4] = ["CA0131103628", "CA0201134373", "CA080442957X", "CA0306406152"];
+
+/// Where browsers find the station that others can reach.
+pub(crate) const PUBLIC: &str = "station12.example";
+
+/// The people of a station that has people: name, role, badge, password.
+const PEOPLE: [(&str, &str, &str, &str); 2] =
+    [("Weber", "operator", "A-0017", ""), ("Braun", "engineer", "B-0022", "correct horse")];
+
+/// A folder with settings.
+pub(crate) struct Station {
+    folder: TempDir,
+}
+
+impl Station {
+    /// With so many mock boards, and more settings before them.
+    pub(crate) fn with(lanes: usize, more: &str) -> Self {
+        let station = Self { folder: tempfile::tempdir().unwrap() };
+        fs::write(station.path("plan.toml"), PLAN).unwrap();
+        let lane = |name| {
+            format!("[[lane]]\nname = \"{name}\"\nboard = \"mock,serial={name}\"\nplans = [\"plan.toml\"]\n")
+        };
+        let lanes: String = (1..=lanes).map(lane).collect();
+        let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{more}\n{lanes}");
+        fs::write(station.path("station.toml"), text).unwrap();
+        station
+    }
+
+    /// At the computer itself, where nobody logs in.
+    pub(crate) fn private(lanes: usize) -> Self {
+        Self::with(lanes, "[web]\nlisten = \"127.0.0.1:0\"")
+    }
+
+    /// Behind a proxy that speaks TLS, with people who log in.
+    pub(crate) fn public(lanes: usize) -> Self {
+        let web = format!("[web]\nlisten = \"127.0.0.1:0\"\npublic = \"https://{PUBLIC}\"");
+        let station = Self::with(lanes, &format!("{web}\n[access]\nusers = \"users.toml\""));
+        for (name, role, badge, password) in PEOPLE {
+            let added = station.user(&["add", name, "--role", role], &format!("{badge}\n{password}\n"));
+            assert!(added.status.success(), "{}", String::from_utf8_lossy(&added.stderr));
+        }
+        station
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// `halfrow-station user` with these words on stdin.
+    pub(crate) fn user(&self, arguments: &[&str], said: &str) -> Output {
+        let mut child = Command::new(program())
+            .arg("user")
+            .args(arguments)
+            .arg("--settings")
+            .arg(self.path("station.toml"))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // A call that is refused reads nothing.
+        let _ = child.stdin.take().unwrap().write_all(said.as_bytes());
+        child.wait_with_output().unwrap()
+    }
+
+    pub(crate) fn serve(&self) -> Serving {
+        let mut child = self.command().stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
+        let said = lines.find_map(|line| line.split("http://127.0.0.1:").nth(1).map(str::to_owned));
+        let port = said.expect("it says where its pages are").trim_end_matches('/').parse().unwrap();
+        Serving { child, port }
+    }
+
+    /// What `serve` says when it does not.
+    pub(crate) fn refused(&self) -> String {
+        let output = self.command().output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8(output.stderr).unwrap()
+    }
+
+    fn command(&self) -> Command {
+        let mut command = Command::new(program());
+        command.args(["serve", "--operator", "weber", "--settings"]).arg(self.path("station.toml"));
+        command
+    }
+
+    /// A look at the database that is not the program's.
+    pub(crate) fn query(&self, text: &str) -> Vec<String> {
+        let database = rusqlite::Connection::open(self.path("data/station.db")).unwrap();
+        let mut statement = database.prepare(text).unwrap();
+        let rows = statement.query_map([], |row| row.get(0)).unwrap();
+        rows.map(Result::unwrap).collect()
+    }
+}
+
+/// The pages at work.
+pub(crate) struct Serving {
+    child: Child,
+    pub(crate) port: u16,
+}
+
+impl Serving {
+    /// Whether the program goes on.
+    pub(crate) fn is_alive(&mut self) -> bool {
+        self.child.try_wait().unwrap().is_none()
+    }
+
+    /// A browser that was never here.
+    pub(crate) fn browser(&self, host: &str) -> Browser {
+        let mut browser =
+            Browser { port: self.port, host: host.to_owned(), cookie: String::new(), csrf: String::new() };
+        browser.learn(&browser.get("/login").send());
+        browser
+    }
+
+    /// A browser at the computer itself.
+    pub(crate) fn here(&self) -> Browser {
+        self.browser(&format!("127.0.0.1:{}", self.port))
+    }
+
+    /// A browser elsewhere in which somebody has logged in.
+    pub(crate) fn logged_in(&self, badge: &str, password: &str) -> Browser {
+        let mut browser = self.browser(PUBLIC);
+        let answer = browser.post("/login", &[("badge", badge), ("password", password)]).send();
+        assert_eq!(answer.status, 303, "{}", answer.body);
+        browser.learn(&answer);
+        browser.learn(&browser.get("/").with("accept", "text/html").send());
+        browser
+    }
+
+    pub(crate) fn operator(&self) -> Browser {
+        self.logged_in("A-0017", "")
+    }
+
+    pub(crate) fn engineer(&self) -> Browser {
+        self.logged_in("B-0022", "correct horse")
+    }
+}
+
+impl Drop for Serving {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// What a browser knows of the station.
+#[derive(Clone, Debug)]
+pub(crate) struct Browser {
+    port: u16,
+    host: String,
+    pub(crate) cookie: String,
+    csrf: String,
+}
+
+impl Browser {
+    /// Keeps the cookie that it was given, and the mark of the forms.
+    pub(crate) fn learn(&mut self, answer: &Answer) {
+        if let Some(cookie) = answer.headers.get("set-cookie") {
+            self.cookie = cookie.split(';').next().unwrap().to_owned();
+        }
+        if let Some(mark) = answer.body.split("name=\"csrf\" value=\"").nth(1) {
+            self.csrf = mark.split('"').next().unwrap().to_owned();
+        }
+    }
+
+    pub(crate) fn get(&self, path: &str) -> Request {
+        let request = Request::bare(self.port, "GET", path).with("host", &self.host);
+        if self.cookie.is_empty() { request } else { request.with("cookie", &self.cookie) }
+    }
+
+    /// With all that an act of one of the station's own pages has.
+    pub(crate) fn post(&self, path: &str, fields: &[(&str, &str)]) -> Request {
+        let scheme = if self.host == PUBLIC { "https" } else { "http" };
+        let mut request = self.get(path).with("origin", &format!("{scheme}://{}", self.host));
+        request.method = "POST".to_owned();
+        let fields = fields.iter().copied().chain([("csrf", self.csrf.as_str())]);
+        let pairs: Vec<_> = fields.map(|(name, value)| format!("{name}={}", escaped(value))).collect();
+        Request { body: pairs.join("&"), ..request }
+    }
+}
+
+fn program() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_halfrow-station"))
+}

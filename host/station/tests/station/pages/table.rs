@@ -1,0 +1,121 @@
+//! Every route refuses whoever may not. A route that is new has no row here, and fails.
+
+use std::collections::BTreeSet;
+
+use halfrow_station::web::{Who, routes};
+
+use crate::pages::http::Request;
+use crate::pages::station::{Browser, PUBLIC, Station};
+
+/// A route as this table has it: method, path, who may, a path that there is, and the fields of a form that is right.
+type Row = (&'static str, &'static str, Who, &'static str, &'static [(&'static str, &'static str)]);
+
+const ROWS: [Row; 23] = [
+    ("GET", "/assets/{name}", Who::Anyone, "/assets/style.css", &[]),
+    ("GET", "/login", Who::Anyone, "/login", &[]),
+    ("POST", "/login", Who::Anyone, "/login", &[("badge", "A-0017")]),
+    ("POST", "/logout", Who::Anyone, "/logout", &[]),
+    ("POST", "/language", Who::Anyone, "/language", &[("language", "de")]),
+    ("GET", "/", Who::Reader, "/", &[]),
+    ("GET", "/live", Who::Reader, "/live", &[]),
+    ("GET", "/today", Who::Reader, "/today", &[]),
+    ("GET", "/history", Who::Reader, "/history", &[]),
+    ("GET", "/runs/{run}", Who::Reader, "/runs/1", &[]),
+    ("GET", "/runs/{run}/export/{format}", Who::Reader, "/runs/1/export/csv", &[]),
+    ("GET", "/runs/{run}/evidence/{hash}", Who::Reader, "/runs/1/evidence/2", &[]),
+    ("GET", "/runs/{run}/preview/{hash}", Who::Reader, "/runs/1/preview/2", &[]),
+    ("GET", "/runs/{run}/difference/{found}/{expected}", Who::Reader, "/runs/1/difference/2/3", &[]),
+    ("GET", "/unit", Who::Reader, "/unit?serial=1", &[]),
+    ("GET", "/yield", Who::Reader, "/yield", &[]),
+    ("GET", "/pareto", Who::Reader, "/pareto", &[]),
+    ("POST", "/scan", Who::Operator, "/scan", &[("text", "nothing")]),
+    ("POST", "/lanes/{lane}/start", Who::Operator, "/lanes/1/start", &[]),
+    ("POST", "/lanes/{lane}/abort", Who::Operator, "/lanes/1/abort", &[]),
+    ("POST", "/lanes/{lane}/out", Who::Engineer, "/lanes/1/out", &[]),
+    ("POST", "/lanes/{lane}/in", Who::Engineer, "/lanes/1/in", &[]),
+    // What the station's own pages refuse before they look at who asks.
+    ("GET", "", Who::Anyone, "/nothing/here", &[]),
+];
+
+/// What a refusal has for a status.
+const REFUSALS: [u16; 4] = [303, 401, 403, 421];
+
+#[test]
+fn every_route_has_a_row() {
+    let known: BTreeSet<_> =
+        ROWS.iter().filter(|row| !row.1.is_empty()).map(|row| (row.0.to_owned(), row.1, row.2)).collect();
+    let there: BTreeSet<_> =
+        routes().iter().map(|route| (route.method.to_string(), route.path, route.who)).collect();
+    assert_eq!(known, there, "a route has no row in this table, or another one");
+    for route in routes() {
+        let changes = route.method == "POST";
+        assert!(changes || route.method == "GET", "{route:?} is neither a page nor an act");
+    }
+}
+
+fn status(request: &Request) -> u16 {
+    request.send().status
+}
+
+/// The request of a row, as `browser` sends it.
+fn request(browser: &Browser, row: &Row) -> Request {
+    if row.0 == "POST" { browser.post(row.3, row.4) } else { browser.get(row.3) }
+}
+
+#[test]
+fn who_may_not_is_refused_at_every_route() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let (stranger, operator, engineer) = (serving.browser(PUBLIC), serving.operator(), serving.engineer());
+    for row in ROWS {
+        let (who, what) = (row.2, format!("{} {}", row.0, row.3));
+        let [stranger, operator, engineer] =
+            [&stranger, &operator, &engineer].map(|browser| request(browser, &row));
+        // The control: whoever may is not refused.
+        let right = match who {
+            Who::Anyone => stranger.clone(),
+            Who::Reader | Who::Operator => operator.clone(),
+            Who::Engineer => engineer.clone(),
+        };
+        let other = right.clone().with("host", "evil.example").with("origin", "https://evil.example");
+        assert_eq!(status(&other), 421, "{what} under another name");
+        if who > Who::Anyone {
+            assert_eq!(status(&stranger), 401, "{what} by a stranger");
+        }
+        if who == Who::Engineer {
+            assert_eq!(status(&operator), 403, "{what} by an operator");
+        }
+        if row.0 == "POST" {
+            assert_eq!(
+                status(&right.clone().with("origin", "https://evil.example")),
+                403,
+                "{what} from elsewhere"
+            );
+            assert_eq!(status(&right.clone().with("origin", "null")), 403, "{what} from nowhere");
+            assert_eq!(status(&right.clone().without("origin")), 403, "{what} without an origin");
+            let unmarked = Request { body: right.body.replace("csrf=", "crsf="), ..right.clone() };
+            assert_eq!(status(&unmarked), 403, "{what} without its mark");
+            let foreign = request(&serving.browser(PUBLIC), &row).body;
+            assert_eq!(
+                status(&Request { body: foreign, ..right.clone() }),
+                403,
+                "{what} with another's mark"
+            );
+        }
+        let control = right.send();
+        let is_done = row.0 == "POST" && control.status == 303;
+        assert!(is_done || !REFUSALS.contains(&control.status), "{what}: {control:?}");
+        assert!(
+            control.headers["content-security-policy"].starts_with("default-src 'none'; script-src 'self'")
+        );
+        assert_eq!(control.headers["x-content-type-options"], "nosniff");
+    }
+}
+
+#[test]
+fn a_page_asked_for_by_a_stranger_leads_to_the_login() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let answer = serving.browser(PUBLIC).get("/").with("accept", "text/html").send();
+    assert_eq!((answer.status, answer.headers["location"].as_str()), (303, "/login"));
+}

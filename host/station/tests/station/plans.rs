@@ -1,0 +1,313 @@
+//! Plans: what is taken, and what is refused with its line and a remedy.
+
+use std::fs;
+use std::path::Path;
+
+use halfrow_station::plan::limits::{Blame, MEASUREMENTS};
+use halfrow_station::plan::{Act, JSON_SCHEMA, Plan, Seed};
+use serde_json::Value;
+
+/// A plan that uses every key.
+const WHOLE: &str = r#"schema = 1
+[plan]
+name = "cam-a-final"
+version = "7"
+product = "CAM-A"
+[serial]
+pattern = "^CA(?<variant>[WN])(?<number>[0-9]{9}[0-9X])$"
+check = "mod11"
+[board]
+require_hardware = false
+builds = ["99bff58a", "00000000"]
+device = "if-present"
+[tables]
+radius = 20.0
+width = 64
+height = 16
+bits = 10
+phase = "rggb"
+rows = "equation-9"
+kernel = "hermite"
+[[step]]
+kind = "link"
+seconds = 0.5
+retries = 1
+[[step]]
+kind = "verify"
+frames = ["builtin:noise", "chart.pgm"]
+repeat = 2
+seed = "run"
+timeout = 60
+[[step]]
+kind = "verify"
+name = "diagnostic tables"
+tables = { kernel = "keys" }
+frames = ["builtin:noise"]
+seed = 7
+[limits]
+"latency.clocks" = { most = 1004, blames = "board" }
+"link.together" = { least = 1.1e6, unit = "B/s", blames = "station" }
+"run.seconds" = { most = 60 }
+[variant.W]
+tables = { radius = 30.0 }
+limits = { "latency.clocks" = { most = 1010 } }
+[shift]
+good = "CAW080442957X"
+bad = "CAN0306406152"
+hours = 8.0
+"#;
+
+fn load(text: &str) -> Result<Plan, String> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("chart.pgm"), chart(64)).unwrap();
+    fs::write(folder.path().join("wide.pgm"), chart(128)).unwrap();
+    let path = folder.path().join("plan.toml");
+    fs::write(&path, text).unwrap();
+    let place = format!("{}/", folder.path().display());
+    let told = |error: &dyn std::error::Error| {
+        let chain = std::iter::successors(Some(error), |error| error.source());
+        chain.map(ToString::to_string).collect::<Vec<_>>().join(": ").replace(&place, "")
+    };
+    Plan::load(&path).map_err(|error| told(&error))
+}
+
+/// A PGM of 16 rows.
+fn chart(width: usize) -> Vec<u8> {
+    let mut bytes = format!("P5\n{width} 16\n1023\n").into_bytes();
+    bytes.resize(bytes.len() + 2 * width * 16, 1);
+    bytes
+}
+
+#[test]
+fn a_plan_says_what_is_done_with_each_variant() {
+    let plan = load(WHOLE).unwrap();
+    assert_eq!(
+        (plan.name.as_str(), plan.version.as_str(), plan.product.as_str()),
+        ("cam-a-final", "7", "CAM-A")
+    );
+    let steps = |serial: &str| {
+        let (serial, selected) = plan.select(serial).unwrap();
+        (serial.variant, selected)
+    };
+    let (narrow, of_narrow) = steps("CAN080442957X");
+    let (wide, of_wide) = steps("CAW080442957X");
+    assert_eq!((narrow.as_str(), wide.as_str()), ("N", "W"));
+    let names: Vec<_> = of_narrow.steps.iter().map(|step| (step.name.as_str(), step.retries)).collect();
+    assert_eq!(names, [("identity", 0), ("link", 1), ("verify", 0), ("diagnostic tables", 0)]);
+    let latency = |limits: &[halfrow_station::plan::limits::Limit]| {
+        let limit = limits.iter().find(|limit| limit.measurement.name == "latency.clocks").unwrap();
+        (limit.most, limit.blames)
+    };
+    assert_eq!(latency(&of_narrow.limits), (Some(1004.0), Blame::Board));
+    assert_eq!(latency(&of_wide.limits), (Some(1010.0), Blame::Board));
+    let judging = |selected: &halfrow_station::plan::Selected, step: usize| match &selected.steps[step].act {
+        Act::Verify(judging) => judging.clone(),
+        act => panic!("{}", act.name()),
+    };
+    assert_ne!(judging(of_narrow, 2).chosen.tables, judging(of_wide, 2).chosen.tables);
+    assert_ne!(judging(of_narrow, 2).chosen.kernel, judging(of_narrow, 3).chosen.kernel);
+    assert_eq!((judging(of_wide, 2).seed, judging(of_wide, 3).seed), (Seed::Run, Seed::Fixed(7)));
+}
+
+/// The hash is of the text and of what it names, by a calculation of its own: `sha256sum` of the same bytes.
+#[test]
+fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
+    let plan = load(WHOLE).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("chart.pgm"), chart(64)).unwrap();
+    let sum = |bytes: &[u8]| {
+        let path = folder.path().join("bytes");
+        fs::write(&path, bytes).unwrap();
+        let output = std::process::Command::new("sha256sum").arg(&path).output().unwrap();
+        String::from_utf8(output.stdout).unwrap()[..64].to_owned()
+    };
+    let expected = sum(format!("{WHOLE}\nchart.pgm\0{}", sum(&chart(64))).as_bytes());
+    assert_eq!(plan.sha256, expected);
+    assert_ne!(load(&WHOLE.replace("version = \"7\"", "version = \"8\"")).unwrap().sha256, expected);
+    fs::write(folder.path().join("plan.toml"), WHOLE).unwrap();
+    let mut other = chart(64);
+    *other.last_mut().unwrap() ^= 1;
+    fs::write(folder.path().join("chart.pgm"), other).unwrap();
+    assert_ne!(Plan::load(&folder.path().join("plan.toml")).unwrap().sha256, expected);
+}
+
+/// What is replaced in the plan, by what, and what is said then.
+const BAD: [(&str, &str, &str); 36] = [
+    ("schema = 1", "schema = 2", "plan.toml:1: this program reads plans of schema 1, not 2; take the"),
+    ("schema = 1", "schema = 1\nschma = 1", "plan.toml:2: unknown field `schma`"),
+    ("version = \"7\"", "version = \"7\"\nversion = \"8\"", "plan.toml:5: duplicate key"),
+    (
+        "version = \"7\"",
+        "version = 7",
+        "plan.toml:4: invalid type: integer `7`, expected a string; correct the line",
+    ),
+    ("product = \"CAM-A\"", "product = \" \"", "plan.toml:5: there is no name here; write one"),
+    ("version = \"7\"\n", "", "plan.toml:2: missing field `version`; correct the line"),
+    ("pattern = \"^", "pattern = \"", "plan.toml:7: the pattern CA(?<variant>"),
+    ("[0-9]{9}", "[0-9{9}", "plan.toml:7: "),
+    (
+        "check = \"mod11\"",
+        "check = \"mod12\"",
+        "plan.toml:8: unknown variant `mod12`, expected one of `none`, `mod11`",
+    ),
+    (
+        "require_hardware = false",
+        "require_hardware = 0",
+        "plan.toml:10: invalid type: integer `0`, expected a boolean",
+    ),
+    (
+        "builds = [\"99bff58a\", \"00000000\"]",
+        "builds = []",
+        "plan.toml:11: no build of the board may be judged; name the",
+    ),
+    ("99bff58a", "99BFF58A", "plan.toml:11: `99BFF58A` is no build; write the eight"),
+    ("if-present", "perhaps", "plan.toml:12: unknown variant `perhaps`, expected one of `required`"),
+    ("radius = 20.0", "radius = -1.0", "plan.toml:14: what the plan says of tables cannot be used: "),
+    (
+        "radius = 20.0",
+        "radius = 20.0\nlens = \"l.yml\"",
+        "plan.toml:14: tables are said by `lens` and by `radius`; keep one",
+    ),
+    ("radius = 20.0", "file = \"t.json\"", "plan.toml:15: a file of tables has a size of its own; leave"),
+    ("width = 64", "width = 63", "plan.toml:14: what the plan says of tables cannot be used: "),
+    ("bits = 10", "bits = 9", "plan.toml:17: a sample has no 9 bits; write 8, 10 or 12"),
+    ("kernel = \"hermite\"", "kernel = \"hermit\"", "plan.toml:20: the file hermit cannot be read: No such"),
+    ("seconds = 0.5", "seconds = 0", "plan.toml:23: 0 seconds are none that a step can take; write a number"),
+    ("retries = 1", "retries = 11", "plan.toml:24: 11 is out of range; write a whole number from 0 to 10"),
+    (
+        "seconds = 0.5",
+        "frames = [\"builtin:noise\"]",
+        "plan.toml:23: a step `link` has no `frames`; leave it out",
+    ),
+    ("\"builtin:noise\", \"chart.pgm\"", "\"builtin:nose\"", "plan.toml:27: `builtin:nose` cannot be used: "),
+    ("chart.pgm", "no.pgm", "plan.toml:27: the file no.pgm cannot be read: No such"),
+    (
+        "chart.pgm",
+        "wide.pgm",
+        "plan.toml:27: wide.pgm is 128 x 16, and the tables are for 64 x 16; name a frame",
+    ),
+    ("seed = \"run\"", "seed = \"rum\"", "plan.toml:29: `rum` is no seed; write \"run\""),
+    ("name = \"diagnostic tables\"\n", "", "plan.toml:32: two steps are called verify; give each a `name`"),
+    (
+        "\"latency.clocks\" = { most = 1004",
+        "\"latency.clock\" = { most = 1004",
+        "plan.toml:38: nothing is measured that is called latency.clock; name",
+    ),
+    (
+        "\"run.seconds\" = { most = 60 }",
+        "\"frames.samples_differing\" = { most = 3 }",
+        "plan.toml:40: no sample may differ, whatever",
+    ),
+    (
+        "unit = \"B/s\"",
+        "unit = \"kB/s\"",
+        "plan.toml:39: link.together is measured in B/s, not in kB/s; write",
+    ),
+    ("least = 1.1e6", "least = nan", "plan.toml:39: NaN is no limit; write a number"),
+    (
+        "{ most = 60 }",
+        "{ most = 60, least = 61 }",
+        "plan.toml:40: nothing is at least 61 and at most 60; exchange",
+    ),
+    (
+        "(?<variant>[WN])",
+        "[WN]",
+        "plan.toml:41: no serial number says that it is of the variant W; give the pattern",
+    ),
+    (
+        "bad = \"CAN0306406152\"",
+        "bad = \"CAN0306406153\"",
+        "plan.toml:46: the unit that checks a shift cannot be used: the check digit of `CAN0306406153` is wrong",
+    ),
+    (
+        "bad = \"CAN0306406152\"",
+        "bad = \"CAW080442957X\"",
+        "plan.toml:46: one unit is both good and bad; name",
+    ),
+    ("hours = 8.0", "hours = 0.0", "plan.toml:47: no shift has 0 hours; write 0.1 to 168 hours"),
+];
+
+#[test]
+fn every_bad_plan_is_refused_with_file_line_and_remedy() {
+    for (good, bad, expected) in BAD {
+        assert!(WHOLE.contains(good), "{good}");
+        let said = load(&WHOLE.replacen(good, bad, 1)).map(|plan| plan.name).unwrap_err();
+        assert!(said.starts_with(expected), "{bad}\n  said     {said}\n  expected {expected}");
+        assert!(said.contains("; "), "no remedy: {said}");
+    }
+}
+
+#[test]
+fn limits_need_a_step_that_measures_and_a_plan_one_that_judges() {
+    let link = "[[step]]\nkind = \"link\"\nseconds = 0.5\nretries = 1\n";
+    let said = load(&WHOLE.replace(link, "")).map(|plan| plan.name).unwrap_err();
+    assert!(said.starts_with("plan.toml:35: no step of the plan measures link.together; add"), "{said}");
+    let without = &WHOLE[..WHOLE.find("[[step]]\nkind = \"verify\"").unwrap()];
+    let said = load(without).map(|plan| plan.name).unwrap_err();
+    assert!(said.starts_with("plan.toml:22: no step judges the board; add"), "{said}");
+    let without = &WHOLE[..WHOLE.find("[[step]]").unwrap()];
+    let said = load(without).map(|plan| plan.name).unwrap_err();
+    assert!(said.starts_with("plan.toml:1: the plan has no step; write"), "{said}");
+    let open =
+        load(&WHOLE.replace("{ most = 60 }", "{ blames = \"nobody\" }")).map(|plan| plan.name).unwrap_err();
+    assert!(open.starts_with("plan.toml:40: a limit without `least` and `most` limits nothing"), "{open}");
+}
+
+#[test]
+fn a_plan_that_is_not_there_is_named() {
+    let said = Plan::load(Path::new("no/plan.toml")).unwrap_err().to_string();
+    assert_eq!(said, "no/plan.toml cannot be read; check its name, and who may read it");
+}
+
+fn as_json(text: &str) -> Option<Value> {
+    serde_json::to_value(toml::from_str::<toml::Value>(text).ok()?).ok()
+}
+
+/// The schema takes what the program takes, and refuses what is wrong by its shape alone.
+#[test]
+fn the_schema_says_of_plans_what_the_program_does() {
+    let schema: Value = serde_json::from_str(JSON_SCHEMA).unwrap();
+    let validator = jsonschema::validator_for(&schema).unwrap();
+    let whole = as_json(WHOLE).unwrap();
+    assert_eq!(
+        validator.iter_errors(&whole).map(|error| error.to_string()).collect::<Vec<_>>(),
+        Vec::<String>::new()
+    );
+    let by_shape = [
+        "unknown field",
+        "unknown variant",
+        "invalid type",
+        "missing field",
+        "is out of range",
+        "is no build",
+        "no build of the board",
+        "has no 9 bits",
+        "is no seed",
+        "has no `frames`",
+        "nothing is measured",
+        "no sample may",
+        "is measured in",
+    ];
+    let by_shape = |said: &&(&str, &str, &str)| by_shape.iter().any(|part| said.2.contains(part));
+    let bad: Vec<_> = BAD.iter().filter(by_shape).collect();
+    assert_eq!(bad.len(), 15);
+    for (good, bad, said) in bad {
+        let plan = as_json(&WHOLE.replacen(good, bad, 1)).unwrap();
+        assert!(!validator.is_valid(&plan), "{bad}: {said}");
+    }
+    let limits = schema["$defs"]["limits"]["properties"].as_object().unwrap();
+    let known: Vec<_> =
+        MEASUREMENTS.iter().map(|known| known.name).filter(|name| limits.contains_key(*name)).collect();
+    assert_eq!(known.len(), limits.len());
+    assert_eq!(known.len(), MEASUREMENTS.len() - 1, "all but the samples that differ");
+}
+
+#[test]
+fn the_plan_of_the_page_is_one_by_the_schema() {
+    let page = include_str!("../../../../docs/station.md");
+    let plan = page.split("```toml\n").nth(1).unwrap().split("```").next().unwrap();
+    let validator = jsonschema::validator_for(&serde_json::from_str(JSON_SCHEMA).unwrap()).unwrap();
+    let errors: Vec<_> =
+        validator.iter_errors(&as_json(plan).unwrap()).map(|error| error.to_string()).collect();
+    assert_eq!(errors, Vec::<String>::new());
+}

@@ -1,0 +1,94 @@
+//! `check` finds whatever is not as it was written.
+
+use std::fs;
+use std::path::PathBuf;
+
+use super::bench::{PLAN, Station};
+
+/// A station with a PASS, a FAIL and an ERROR.
+fn station() -> Station {
+    let station = Station::with(PLAN);
+    for (serial, board) in
+        [("CAT00001", "mock"), ("CAT00002", "mock,fault=stuck-data"), ("CAT00003", "tcp:127.0.0.1:1")]
+    {
+        station.run(serial, board);
+    }
+    let did = station.check();
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert!(did.said.contains("3 runs and 5 pieces of evidence were read, 0 faults found"), "{did:?}");
+    station
+}
+
+/// Every file of evidence.
+pub(crate) fn evidence(station: &Station) -> Vec<PathBuf> {
+    let folders = fs::read_dir(station.data().join("blobs")).unwrap();
+    folders
+        .flat_map(|folder| fs::read_dir(folder.unwrap().path()).unwrap())
+        .map(|file| file.unwrap().path())
+        .collect()
+}
+
+#[test]
+fn a_flipped_bit_in_any_piece_of_evidence_is_found() {
+    let station = station();
+    let all = evidence(&station);
+    assert_eq!(all.len(), 5);
+    for path in all {
+        let right = fs::read(&path).unwrap();
+        for place in [0, right.len() / 2, right.len() - 1] {
+            let mut wrong = right.clone();
+            wrong[place] ^= 1;
+            fs::write(&path, wrong).unwrap();
+            let did = station.check();
+            assert_eq!(did.code, Some(3), "{did:?}");
+            assert!(did.said.contains("holds other bytes than its name says"), "{did:?}");
+        }
+        fs::remove_file(&path).unwrap();
+        assert!(station.check().said.contains("cannot be read"));
+        fs::write(&path, right).unwrap();
+    }
+    assert_eq!(station.check().code, Some(0));
+}
+
+/// Each change is one that the schema allows.
+#[test]
+fn a_changed_row_is_found_in_every_table() {
+    for (change, table) in [
+        ("UPDATE plan SET version = '2'", "plan"),
+        ("UPDATE unit SET serial = 'CAT99999' WHERE serial = 'CAT00002'", "unit"),
+        ("UPDATE run SET verdict = 'PASS', cause = 'none' WHERE verdict = 'FAIL'", "run"),
+        ("UPDATE run SET nth = 7 WHERE verdict = 'FAIL'", "run"),
+        ("UPDATE step SET outcome = 'passed' WHERE outcome = 'failed'", "step"),
+        ("UPDATE measurement SET value = value + 1 WHERE name = 'latency.clocks'", "measurement"),
+        ("DELETE FROM suspect WHERE rank = 1", "suspect"),
+        ("UPDATE attachment SET bytes = bytes + 1", "attachment"),
+        ("INSERT INTO unit VALUES ('017f22e2-79b0-7cc3-98c4-dc0c0c07398f', 'CAM-T', 'CAT77777', 1)", "unit"),
+    ] {
+        let station = station();
+        let database = rusqlite::Connection::open(station.store().database()).unwrap();
+        assert!(database.execute(change, []).unwrap() > 0, "{change}");
+        let did = station.check();
+        assert_eq!(did.code, Some(3), "{change}: {did:?}");
+        assert!(did.said.contains(&format!("fault: table {table}")), "{change}: {did:?}");
+    }
+}
+
+/// The schema itself holds what no program may write.
+#[test]
+fn the_tables_take_no_result_that_cannot_be() {
+    let station = station();
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    database.execute_batch("PRAGMA foreign_keys = ON").unwrap();
+    for refused in [
+        "UPDATE run SET verdict = NULL",
+        "UPDATE run SET verdict = 'GREEN'",
+        "UPDATE run SET verdict = 'PASS' WHERE verdict = 'FAIL'",
+        "UPDATE run SET record_sha256 = NULL",
+        "UPDATE run SET cause = 'none' WHERE verdict = 'ERROR'",
+        "UPDATE run SET state = 'open'",
+        "UPDATE run SET unit_id = 'nobody'",
+        "UPDATE measurement SET value = 'much'",
+    ] {
+        assert!(database.execute(refused, []).is_err(), "{refused}");
+    }
+}

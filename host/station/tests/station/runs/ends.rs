@@ -1,0 +1,262 @@
+//! Every way in which a run can end.
+
+use std::io::Read as _;
+use std::net::TcpListener;
+use std::process::{Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use super::bench::{Did, PLAN, Station, program};
+
+#[test]
+fn a_sound_board_passes_and_its_record_reads_back() {
+    let station = Station::with(PLAN);
+    let did = station.run("CAT00001", "mock");
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert!(did.said.starts_with("PASS CAT00001: "), "{did:?}");
+    assert!(did.said.contains("identity not checked") || did.said.contains("device "), "{did:?}");
+    assert!(did.said.contains("counts as no production"), "{did:?}");
+    let (stored, record, json) = station.saved(&did);
+    assert_eq!((stored.verdict.as_str(), stored.nth), ("PASS", 1));
+    assert!(did.said.contains(&stored.record_sha256));
+    assert_eq!(
+        super::bench::sha256sum(&station.store().blobs().path(&stored.record_sha256)),
+        stored.record_sha256
+    );
+    let steps: Vec<_> = record.steps.iter().map(|step| (step.name.as_str(), step.outcome.name())).collect();
+    assert_eq!(steps, [("identity", "passed"), ("verify", "passed")]);
+    assert_eq!(record.plan.text, PLAN);
+    assert_eq!(json["run"]["operator"], "weber");
+    assert_eq!(json["steps"][1]["evidence"]["verdict"], "PASS");
+    // W/2 + L of DATAPATH.md, and the mock's L is 12.
+    assert_eq!(json["steps"][1]["measurements"][0]["value"], 32.0 + f64::from(latency(&json)));
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+fn latency(record: &serde_json::Value) -> u8 {
+    serde_json::from_value(record["steps"][1]["evidence"]["board"]["identity"]["latency"].clone()).unwrap()
+}
+
+#[test]
+fn a_broken_board_fails_with_a_suspect_and_evidence() {
+    let station = Station::with(PLAN);
+    let did = station.run("CAT00001", "mock,fault=stuck-data");
+    assert_eq!(did.code, Some(1), "{did:?}");
+    assert!(did.said.starts_with("FAIL CAT00001: "), "{did:?}");
+    let (stored, record, _) = station.saved(&did);
+    assert_eq!((stored.verdict.as_str(), record.suspects.is_empty()), ("FAIL", false));
+    assert_eq!(record.attachments[0].name, "events.jsonl");
+    assert_eq!(station.query("SELECT part FROM suspect WHERE rank = 1"), [record.suspects[0].part.clone()]);
+    assert_eq!(station.query("SELECT cause FROM run"), ["board"]);
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+#[test]
+fn a_board_that_is_not_there_is_an_error_of_the_link() {
+    let plan = PLAN.replace("timeout = 60", "timeout = 60\nretries = 1");
+    let station = Station::with(&plan);
+    let closed = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+    let did = station.run("CAT00001", &format!("tcp:{closed}"));
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(did.said.starts_with("ERROR CAT00001: "), "{did:?}");
+    assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), ["error", "skipped"]);
+    assert_eq!(station.query("SELECT verdict FROM run"), ["ERROR"]);
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+#[test]
+fn a_build_that_the_plan_does_not_name_is_refused_before_a_frame_is_sent() {
+    let station = Station::with(&PLAN.replace("\"00000000\"", "\"99bff58a\""));
+    let did = station.run("CAT00001", "mock");
+    assert_eq!(did.code, Some(6), "{did:?}");
+    assert!(did.said.contains("the plan takes 99bff58a"), "{did:?}");
+    let station = Station::with(&PLAN.replace("require_hardware = false", "require_hardware = true"));
+    let did = station.run("CAT00001", "mock");
+    assert_eq!(
+        (did.code, station.query("SELECT cause FROM run")),
+        (Some(6), vec!["refused".to_owned()]),
+        "{did:?}"
+    );
+    assert!(did.said.contains("the board is a mock, and the plan takes hardware alone"), "{did:?}");
+}
+
+/// Which of the three blames turns a PASS into what.
+#[test]
+fn a_limit_that_is_missed_blames_whom_the_plan_says() {
+    for (blames, code, verdict) in [("board", 1, "FAIL"), ("station", 3, "ERROR"), ("nobody", 0, "PASS")] {
+        let limit = format!("[limits]\n\"latency.clocks\" = {{ most = 10, blames = \"{blames}\" }}\n");
+        let station = Station::with(&format!("{PLAN}{limit}"));
+        let did = station.run("CAT00001", "mock");
+        assert_eq!(did.code, Some(code), "{blames}: {did:?}");
+        assert!(did.said.starts_with(verdict), "{did:?}");
+        let measured = "SELECT outcome FROM measurement WHERE name = 'latency.clocks'";
+        assert_eq!(station.query(measured), ["failed"]);
+    }
+}
+
+#[test]
+fn a_limit_on_what_nobody_can_measure_is_no_pass() {
+    let plan = PLAN.replace("[[step]]", "[[step]]\nkind = \"link\"\nseconds = 0.01\n[[step]]");
+    let limit = "[limits]\n\"link.to_board\" = { least = 1, blames = \"station\" }\n";
+    let station = Station::with(&format!("{plan}{limit}"));
+    let did = station.run("CAT00001", "mock");
+    // The wire of a mock takes no time.
+    assert_eq!(did.code, Some(6), "{did:?}");
+    assert!(did.said.contains("link.to_board could not be measured"), "{did:?}");
+    assert_eq!(station.query("SELECT outcome FROM step ORDER BY seq"), ["passed", "error", "skipped"]);
+}
+
+#[test]
+fn the_unit_counts_its_judgements_and_errors_use_up_none() {
+    let station = Station::with(PLAN);
+    for board in ["mock,fault=stuck-data", "tcp:127.0.0.1:1", "mock"] {
+        station.run("CAT00001", board);
+    }
+    station.run("CAT00002", "mock");
+    assert_eq!(station.query("SELECT nth FROM run ORDER BY id"), ["1", "2", "2", "1"]);
+    assert_eq!(station.query("SELECT fence FROM run ORDER BY id"), ["1", "2", "3", "4"]);
+    assert_eq!(station.query("SELECT count(*) FROM unit"), ["2"]);
+    assert_eq!(station.query("SELECT count(*) FROM plan"), ["1"]);
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+#[test]
+fn a_call_that_is_wrong_begins_no_run() {
+    let station = Station::with(PLAN);
+    let did = station.run("CAT1", "mock");
+    assert_eq!(did.code, Some(2), "{did:?}");
+    assert!(did.complained.contains("`CAT1` is no serial number of this product"), "{did:?}");
+    station.plan(&PLAN.replace("schema = 1", "schema = 9"));
+    assert_eq!(station.run("CAT00001", "mock").code, Some(2));
+    assert!(!station.data().exists());
+}
+
+/// A board that takes the connection and says nothing keeps the lane busy for some seconds.
+fn silent_board() -> (TcpListener, String) {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    (listener, target)
+}
+
+/// The process of the lane, as soon as it has connected to the board and the station has heard of it.
+fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
+    let (mut connection, _) = listener.accept().unwrap();
+    assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
+    // Held open, so that the lane waits for an answer.
+    thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});
+    let spool = std::fs::read_dir(station.data().join("spool")).unwrap().next().unwrap().unwrap().path();
+    let begun = Instant::now();
+    loop {
+        let read = |name| std::fs::read_to_string(spool.join(name)).unwrap_or_default();
+        let has_told = read("events.jsonl").ends_with('\n');
+        if let Some(Ok(id)) = read("lane.pid").split_whitespace().next().map(str::parse).filter(|_| has_told)
+        {
+            return id;
+        }
+        assert!(begun.elapsed() < Duration::from_secs(60), "no lane");
+    }
+}
+
+fn signal(process: i32, signal: nix::sys::signal::Signal) {
+    nix::sys::signal::kill(nix::unistd::Pid::from_raw(process), signal).unwrap();
+}
+
+fn exists(process: i32) -> bool {
+    nix::sys::signal::kill(nix::unistd::Pid::from_raw(process), None).is_ok()
+}
+
+#[test]
+fn a_lane_that_hangs_is_killed_and_recorded() {
+    use nix::sys::signal::Signal;
+    let station = Station::with(PLAN);
+    let (listener, target) = silent_board();
+    let mut arguments = station.run_arguments("CAT00001", &target);
+    arguments.extend(["--silence".to_owned(), "1".to_owned()]);
+    let running = Command::new(program())
+        .args(arguments)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let lane = lane_of(&station, &listener);
+    signal(lane, Signal::SIGSTOP);
+    let did = Did::from(running.wait_with_output().unwrap());
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(did.said.contains("the lane told nothing for 1 s"), "{did:?}");
+    assert!(!exists(lane), "the lane is gone");
+    assert_eq!(station.query("SELECT cause FROM run"), ["crash"]);
+    assert_eq!(station.run("CAT00001", "mock").code, Some(0));
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+#[test]
+fn a_lane_that_dies_is_recorded() {
+    use nix::sys::signal::Signal;
+    let station = Station::with(PLAN);
+    let (listener, target) = silent_board();
+    let running = Command::new(program())
+        .args(station.run_arguments("CAT00001", &target))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    signal(lane_of(&station, &listener), Signal::SIGKILL);
+    let did = Did::from(running.wait_with_output().unwrap());
+    assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(did.said.contains("the lane ended before it was done (signal: 9"), "{did:?}");
+    assert_eq!(station.query("SELECT cause FROM run"), ["crash"]);
+}
+
+#[test]
+fn a_run_that_is_stopped_ends_in_order() {
+    use nix::sys::signal::Signal;
+    let station = Station::with(PLAN);
+    let (listener, target) = silent_board();
+    let running = Command::new(program())
+        .args(station.run_arguments("CAT00001", &target))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    lane_of(&station, &listener);
+    signal(running.id() as i32, Signal::SIGINT);
+    let did = Did::from(running.wait_with_output().unwrap());
+    assert_eq!(did.code, Some(130), "{did:?}");
+    assert_eq!(station.query("SELECT cause FROM run"), ["operator"]);
+}
+
+/// The station is killed in the middle of a run: its lane ends with it, and the run is ERROR at the next start.
+#[test]
+fn a_run_that_is_found_open_is_an_error() {
+    use nix::sys::signal::Signal;
+    let station = Station::with(PLAN);
+    let (listener, target) = silent_board();
+    let mut running = Command::new(program())
+        .args(station.run_arguments("CAT00001", &target))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let lane = lane_of(&station, &listener);
+    signal(running.id() as i32, Signal::SIGKILL);
+    running.wait().unwrap();
+    let begun = Instant::now();
+    while exists(lane) {
+        assert!(begun.elapsed() < Duration::from_secs(60), "the lane outlives its station");
+        thread::sleep(Duration::from_millis(5));
+    }
+    assert_eq!(station.query("SELECT state FROM run"), ["open"]);
+    let checked = station.check();
+    assert_eq!(checked.code, Some(0), "{checked:?}");
+    assert!(checked.said.contains("1 runs are open"), "{checked:?}");
+    let did = station.run("CAT00002", "mock");
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert!(did.complained.contains("of CAT00001 was found open, and is ERROR"), "{did:?}");
+    assert_eq!(
+        station.query("SELECT verdict || ' ' || cause FROM run ORDER BY id"),
+        ["ERROR crash", "PASS none"]
+    );
+    let attached = "SELECT name FROM attachment";
+    assert_eq!(station.query(attached), ["events.jsonl"]);
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}

@@ -1,0 +1,59 @@
+//! Faults of the program itself and of its surroundings: the exit code is one of those that are documented.
+
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::os::unix::ffi::OsStrExt as _;
+use std::process::Command;
+
+use super::bench::{Did, PLAN, Station, program};
+
+/// Rust's hash maps panic on a system without randomness: a panic that any program can be brought to.
+fn without_randomness(arguments: &[&str]) -> Did {
+    Command::new("strace")
+        .args(["-f", "-qq", "-o", "/dev/null", "-e", "inject=getrandom:error=EIO"])
+        .arg(program())
+        .args(arguments)
+        .env_remove("RUST_BACKTRACE")
+        .output()
+        .unwrap()
+        .into()
+}
+
+#[test]
+fn a_panic_is_an_error_that_says_what_happened() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    let (data, plan) =
+        (station.data().display().to_string(), station.path("plan.toml").display().to_string());
+    for call in [["check", "--data", &data], ["plan", "check", &plan]] {
+        let did = without_randomness(&call);
+        assert_eq!(did.code, Some(3), "{did:?}");
+        assert!(
+            did.complained
+                .starts_with("error: the program itself has failed: failed to generate random data (")
+        );
+        assert!(did.complained.ends_with("report this line with the call that led to it\n"), "{did:?}");
+    }
+}
+
+#[test]
+fn help_that_stdout_does_not_take_is_an_error() {
+    for (stdout, code) in [("/dev/full", 3), ("/dev/null", 0)] {
+        let stdout = File::options().write(true).open(stdout).unwrap();
+        let did: Did = Command::new(program()).arg("--help").stdout(stdout).output().unwrap().into();
+        assert_eq!(did.code, Some(code), "{did:?}");
+    }
+}
+
+/// A lane that reads its own name as text would panic.
+#[test]
+fn a_program_whose_folder_is_no_text_judges_boards() {
+    let station = Station::with(PLAN);
+    let folder = station.path("").join(OsStr::from_bytes(b"m\xf6bel"));
+    fs::create_dir(&folder).unwrap();
+    let copy = folder.join("halfrow-station");
+    fs::copy(program(), &copy).unwrap();
+    let did: Did =
+        Command::new(copy).args(station.run_arguments("CAT00001", "mock")).output().unwrap().into();
+    assert_eq!(did.code, Some(0), "{did:?}");
+}

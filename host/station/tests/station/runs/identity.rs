@@ -1,0 +1,148 @@
+//! The serial number on the board against the FPGA's own number.
+
+use std::process::Command;
+
+use super::bench::{Did, PLAN, Station, program};
+
+/// The mock board whose FPGA has this number.
+fn device(number: u64) -> String {
+    format!("mock,serial={number}")
+}
+
+fn rebind(station: &Station, arguments: &[&str]) -> Did {
+    Command::new(program())
+        .arg("rebind")
+        .arg("--data")
+        .arg(station.data())
+        .args(arguments)
+        .args(["--operator", "engineer"])
+        .output()
+        .unwrap()
+        .into()
+}
+
+/// Refused, and not a frame was sent.
+fn assert_refused(station: &Station, did: &Did, said: &str) {
+    assert_eq!(did.code, Some(6), "{did:?}");
+    assert!(did.said.starts_with("ERROR ") && did.said.contains(said), "{did:?}");
+    let last = "SELECT outcome FROM step WHERE run_id = (SELECT max(id) FROM run) ORDER BY seq";
+    assert_eq!(station.query(last), ["error", "skipped"], "{did:?}");
+    assert_eq!(station.query("SELECT cause FROM run ORDER BY id DESC LIMIT 1"), ["operator"]);
+}
+
+fn assert_well(station: &Station) {
+    let checked = station.check();
+    assert_eq!(checked.code, Some(0), "{checked:?}");
+}
+
+#[test]
+fn a_board_and_its_label_stay_together_from_the_first_judgement_on() {
+    let station = Station::with(PLAN);
+    let first = station.run("CAT00017", &device(0x11));
+    assert_eq!(first.code, Some(0), "{first:?}");
+    assert!(first.said.contains("device 0000000000000011, seen for the first time"), "{first:?}");
+    assert!(!first.said.contains("identity not checked"), "{first:?}");
+    assert_eq!(station.run("CAT00017", &device(0x11)).code, Some(0));
+    assert_eq!(station.query("SELECT device || ' ' || by_operator FROM binding"), ["0000000000000011 weber"]);
+    // A FAIL binds, too; a run that judges nothing does not.
+    assert_eq!(station.run("CAT00071", &format!("{},fault=stuck-data", device(0x22))).code, Some(1));
+    assert_refused(
+        &station,
+        &station.run("CAT00071", &device(0x11)),
+        "this board is CAT00017; you scanned CAT00071",
+    );
+    assert_refused(
+        &station,
+        &station.run("CAT00017", &device(0x22)),
+        "this board is CAT00071; you scanned CAT00017",
+    );
+    assert_refused(
+        &station,
+        &station.run("CAT00017", &device(0x33)),
+        "CAT00017 is device 0000000000000011; the board in the lane is device 0000000000000033",
+    );
+    assert_refused(&station, &station.run("CAT00099", &device(0x11)), "this board is CAT00017");
+    assert_eq!(station.query("SELECT count(*) FROM binding"), ["2"]);
+    assert_eq!(station.run("CAT00017", &device(0x11)).code, Some(0));
+    assert_well(&station);
+}
+
+#[test]
+fn a_board_without_a_number_says_so_in_its_pass() {
+    let station = Station::with(PLAN);
+    let did = station.run("CAT00001", "mock");
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert!(did.said.lines().next().unwrap().ends_with("identity not checked"), "{did:?}");
+    let unchecked = Station::with(&PLAN.replace("if-present", "not-checked"));
+    let did = unchecked.run("CAT00001", &device(7));
+    assert!(did.said.lines().next().unwrap().ends_with("identity not checked"), "{did:?}");
+    assert_eq!(unchecked.query("SELECT count(*) FROM binding"), ["0"]);
+    let demanded = Station::with(&PLAN.replace("if-present", "required"));
+    assert_eq!(demanded.run("CAT00001", "mock").code, Some(6));
+    assert_eq!(demanded.run("CAT00001", &device(7)).code, Some(0));
+}
+
+#[test]
+fn a_run_that_judged_nothing_binds_nothing() {
+    let limit = "[limits]\n\"run.seconds\" = { most = 0.0, blames = \"station\" }\n";
+    let station = Station::with(&format!("{PLAN}{limit}"));
+    assert_eq!(station.run("CAT00001", &device(7)).code, Some(3));
+    assert_eq!(station.query("SELECT count(*) FROM binding"), ["0"]);
+    assert_well(&station);
+}
+
+#[test]
+fn an_engineer_binds_anew_with_a_reason_that_is_kept() {
+    let station = Station::with(PLAN);
+    station.run("CAT00017", &device(0x11));
+    station.run("CAT00071", &device(0x22));
+    let did = rebind(&station, &["--serial", "CAT00017", "--reason", "FPGA exchanged"]);
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert_eq!(station.run("CAT00017", &device(0x33)).code, Some(0));
+    assert_refused(&station, &station.run("CAT00017", &device(0x11)), "CAT00017 is device 0000000000000033");
+    // Labels that were exchanged: the device of one under the number of the other.
+    let device_33 = "0000000000000033";
+    let did = rebind(&station, &["--serial", "CAT00071", "--device", device_33, "--reason", "labels"]);
+    assert_eq!(did.code, Some(0), "{did:?}");
+    assert_eq!(station.run("CAT00071", &device(0x33)).code, Some(0));
+    assert_eq!(
+        station.query("SELECT operator_id || ' ' || act || ' ' || detail FROM audit ORDER BY id"),
+        [
+            r#"engineer rebind {"device":null,"reason":"FPGA exchanged"}"#,
+            r#"engineer rebind {"device":"0000000000000033","reason":"labels"}"#
+        ]
+    );
+    assert_eq!(station.query("SELECT count(*) FROM binding WHERE to_ms IS NULL"), ["1"]);
+    assert_well(&station);
+    let database = rusqlite::Connection::open(station.store().database()).unwrap();
+    database.execute("UPDATE binding SET to_ms = NULL WHERE device = '0000000000000022'", []).unwrap_err();
+    database.execute("UPDATE binding SET device = '0000000000000044' WHERE to_ms IS NULL", []).unwrap();
+    let checked = station.check();
+    assert!(checked.code == Some(3) && checked.said.contains("fault: table binding"), "{checked:?}");
+}
+
+#[test]
+fn a_change_that_means_nothing_is_refused() {
+    let station = Station::with(PLAN);
+    station.run("CAT00017", &device(0x11));
+    let unknown = rebind(&station, &["--serial", "CAT00018", "--reason", "x"]);
+    assert_eq!(unknown.code, Some(2), "{unknown:?}");
+    assert!(unknown.complained.contains("no unit `CAT00018` was ever tested here"), "{unknown:?}");
+    for wrong in [
+        vec!["--serial", "CAT00017"],
+        vec!["--serial", "CAT00017", "--reason", " "],
+        vec!["--serial", "CAT00017", "--reason", "x", "--device", "11"],
+        vec!["--serial", "CAT00017", "--reason", "x", "--device", "0000000000000000"],
+    ] {
+        assert_eq!(rebind(&station, &wrong).code, Some(2), "{wrong:?}");
+    }
+    station.plan(&PLAN.replace("CAM-T", "CAM-U"));
+    station.run("CAT00017", &device(0x12));
+    let several = rebind(&station, &["--serial", "CAT00017", "--reason", "x"]);
+    assert!(several.complained.contains("of CAM-T and of CAM-U"), "{several:?}");
+    assert_eq!(
+        rebind(&station, &["--serial", "CAT00017", "--product", "CAM-U", "--reason", "x"]).code,
+        Some(0)
+    );
+    assert_well(&station);
+}

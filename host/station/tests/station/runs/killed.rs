@@ -1,0 +1,90 @@
+//! The program is killed at every call by which something gets to the disk or to the screen.
+
+use super::bench::{PLAN, Station};
+use super::checked::evidence;
+use super::unsaved::{Call, calls, injected};
+
+/// Whatever changes the disk, and what says something.
+const CALLS: &str =
+    "write,pwrite64,fdatasync,fsync,rename,renameat,renameat2,link,linkat,unlink,unlinkat,ftruncate,mkdir";
+
+/// Kills a run at each of these calls, and looks each time at what the next start finds. Returns how often the lane had
+/// judged the board good and the store has no PASS.
+fn sweep(points: &[Call]) -> usize {
+    let station = Station::with(PLAN);
+    station.run("CAT00000", "mock");
+    let (mut judged_only, mut greens, mut serials) = (0, 0, 0);
+    for point @ (name, number) in points {
+        serials += 1;
+        let serial = format!("CAT{serials:05}");
+        let did = injected(&station, &serial, &format!("{name}:signal=KILL:when={number}"));
+        let is_green = did.said.contains("PASS");
+        let of_unit = |what: &str| {
+            station.query(&format!(
+                "SELECT {what} FROM run JOIN unit ON unit.id = unit_id WHERE serial = '{serial}'"
+            ))
+        };
+        let judged = spooled(&station)
+            .contains("\"evidence\":{\"schema\":1,\"command\":\"verify\",\"verdict\":\"PASS\"");
+        // The next start, which is a start after a crash.
+        let next = station.run("CAT00000", "mock");
+        assert_eq!(next.code, Some(0), "after {point:?}: {next:?}");
+        let verdicts = of_unit("verdict");
+        assert!(verdicts.len() <= 1, "{point:?}: {verdicts:?}");
+        assert_eq!(of_unit("state").iter().filter(|state| *state == "open").count(), 0, "{point:?}");
+        if is_green {
+            assert_eq!(verdicts, ["PASS"], "{point:?}: green without a row");
+            greens += 1;
+        }
+        judged_only += usize::from(judged && verdicts != ["PASS"]);
+    }
+    let checked = station.check();
+    assert_eq!(checked.code, Some(0), "{checked:?}");
+    assert!(0 < greens && greens < serials, "{greens} of {serials} were green");
+    assert_eq!(half_written(&station), Vec::<String>::new());
+    judged_only
+}
+
+/// What the lane of the run that is open has told.
+fn spooled(station: &Station) -> String {
+    let runs = std::fs::read_dir(station.data().join("spool")).unwrap();
+    let events =
+        runs.map(|run| std::fs::read_to_string(run.unwrap().path().join("events.jsonl")).unwrap_or_default());
+    events.collect()
+}
+
+/// What lies among the evidence and is none.
+fn half_written(station: &Station) -> Vec<String> {
+    let names =
+        evidence(station).into_iter().map(|path| path.file_name().unwrap().to_string_lossy().into_owned());
+    names.filter(|name| name.len() != 64).collect()
+}
+
+fn all_points() -> Vec<Call> {
+    let station = Station::with(PLAN);
+    station.run("CAT00000", "mock");
+    let all = calls(&station, "CAT00001", CALLS);
+    assert!(all.len() >= 40, "{all:?}");
+    all
+}
+
+/// The control is in it: had the verdict been shown when the lane told it, and not when it was saved, some of these runs would
+/// have been green without a row.
+#[test]
+fn no_green_is_lost_wherever_the_program_is_killed() {
+    let all = all_points();
+    // Results are saved in the last half.
+    let one_in = |number| if 2 * number > all.len() { 4 } else { 12 };
+    let few = all.iter().enumerate().filter(|(number, _)| number % one_in(*number) == 0);
+    let judged_only = sweep(&few.map(|(_, call)| call.clone()).collect::<Vec<_>>());
+    assert!(judged_only > 0, "the control");
+}
+
+/// At every one of them.
+#[test]
+#[ignore = "for scripts/soak"]
+fn no_green_is_lost_at_any_point() {
+    let all = all_points();
+    let judged_only = sweep(&all);
+    assert!(judged_only > 5, "the control, of {} calls: {judged_only}", all.len());
+}

@@ -1,0 +1,85 @@
+//! A result that cannot be saved is none.
+
+use std::collections::BTreeMap;
+use std::process::Command;
+
+use super::bench::{Did, PLAN, Station, program};
+
+/// A run under strace, in which calls fail or end the program.
+pub(crate) fn injected(station: &Station, serial: &str, inject: &str) -> Did {
+    Command::new("strace")
+        .args(["-qq", "-o", "/dev/null", "-e"])
+        .arg(format!("inject={inject}"))
+        .arg(program())
+        .args(station.run_arguments(serial, "mock"))
+        .output()
+        .unwrap()
+        .into()
+}
+
+/// A system call of a run: its name, and the how-manieth of that name it is.
+pub(crate) type Call = (String, usize);
+
+/// The calls of these names that a run makes, in their order.
+pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> Vec<Call> {
+    let trace = station.path("calls");
+    let traced = Command::new("strace")
+        .args(["-qq", "-e", &format!("trace={names}"), "-e", "signal=none", "-o"])
+        .arg(&trace)
+        .arg(program())
+        .args(station.run_arguments(serial, "mock"))
+        .output()
+        .unwrap();
+    assert!(traced.status.success(), "{traced:?}");
+    let text = std::fs::read_to_string(&trace).unwrap();
+    let mut counts = BTreeMap::new();
+    let names = text.lines().filter_map(|line| line.split_once('(')).map(|(name, _)| name.to_owned());
+    let numbered = names.map(|name| {
+        let count = counts.entry(name.clone()).or_insert(0);
+        *count += 1;
+        (name, *count)
+    });
+    numbered.collect()
+}
+
+/// Whatever fails, and from which of `all` calls on as `places` chooses: there is a verdict on the screen only if it is
+/// in the store, and the station is well as soon as the disk is.
+fn starve(places: impl Fn(usize) -> Vec<usize>) {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock");
+    let mut unsaved = 0;
+    for (call, error) in [("pwrite64", "ENOSPC"), ("fsync", "EIO"), ("pwrite64", "EROFS")] {
+        let all = calls(&station, "CAT00001", call).len();
+        assert!(all > 2, "{all} calls of {call}");
+        for first in places(all) {
+            let place = format!("{call}:error={error}:when={first}+");
+            let did = injected(&station, "CAT00002", &place);
+            let is_shown = did.said.contains("PASS");
+            let stored = station.query(
+                "SELECT count(*) FROM run JOIN unit ON unit.id = unit_id
+                WHERE serial = 'CAT00002' AND verdict = 'PASS'",
+            );
+            assert_eq!(is_shown, did.code == Some(0), "{did:?}");
+            assert!(!is_shown || stored != ["0"], "{place}: {did:?}");
+            assert!(is_shown || did.code == Some(3), "{place}: {did:?}");
+            unsaved += usize::from(did.said.contains("UNSAVED CAT00002: keep this board apart"));
+            let after = station.run("CAT00003", "mock");
+            assert_eq!(after.code, Some(0), "{place}: {after:?}");
+        }
+    }
+    assert!(unsaved >= 4, "only {unsaved} runs came to their end and were not saved");
+    assert_eq!(station.query("SELECT count(*) FROM run WHERE state = 'open'"), ["0"]);
+    assert_eq!(station.check().code, Some(0), "{:?}", station.check());
+}
+
+#[test]
+fn no_verdict_is_shown_that_the_disk_did_not_take() {
+    starve(|all| [1, all / 3, all / 2, 2 * all / 3, all - 1, all].map(|place| place.max(1)).to_vec());
+}
+
+/// From every call on.
+#[test]
+#[ignore = "for scripts/soak"]
+fn no_verdict_is_shown_wherever_the_disk_begins_to_fail() {
+    starve(|all| (1..=all).collect());
+}

@@ -1,0 +1,113 @@
+//! Settings: what is taken, and what is refused with its line and a remedy.
+
+use std::fs;
+use std::time::Duration;
+
+use halfrow::Verdict;
+use halfrow_station::floor::Starts;
+use halfrow_station::settings::Settings;
+
+use crate::common::PLAN;
+
+/// Settings that use every key.
+const WHOLE: &str = r#"schema = 1
+[station]
+name = "12"
+data = "data"
+order = "scan-then-plug"
+silence = 30.0
+[scanner]
+prefix = "]C1"
+suffix = "!"
+[[lane]]
+name = "1"
+board = "usb:1-2.3"
+plans = ["a.toml", "b.toml"]
+start = ["scan", "button"]
+[[lane]]
+name = "left"
+board = "mock,serial=1"
+plans = ["b.toml"]
+[[on-pass]]
+program = "lamp"
+arguments = ["{lane}", "green"]
+[[on-error]]
+program = "./print"
+deadline = 2.5
+"#;
+
+fn load(text: &str) -> Result<Settings, String> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.toml"), PLAN).unwrap();
+    fs::write(folder.path().join("b.toml"), PLAN.replace("CAT", "CBT").replace("CAM-T", "CAM-B")).unwrap();
+    fs::write(folder.path().join("print"), "").unwrap();
+    let path = folder.path().join("station.toml");
+    fs::write(&path, text).unwrap();
+    let place = format!("{}/", folder.path().display());
+    let told = |error: &dyn std::error::Error| {
+        let chain = std::iter::successors(Some(error), |error| error.source());
+        chain.map(ToString::to_string).collect::<Vec<_>>().join(": ").replace(&place, "")
+    };
+    Settings::load(&path).map_err(|error| told(&error))
+}
+
+#[test]
+fn every_key_means_what_it_says() {
+    let settings = load(WHOLE).unwrap();
+    assert_eq!((settings.name.as_str(), settings.silence), ("12", Duration::from_secs(30)));
+    assert!(settings.data.ends_with("data") && settings.data.is_absolute() && settings.scan_then_plug);
+    assert_eq!(settings.scanner.label("]C1CAT1!"), Some("CAT1"));
+    assert_eq!(settings.scanner.label("]C1CAT1"), None);
+    let names: Vec<_> = settings.plans.iter().map(|file| file.plan.product.as_str()).collect();
+    assert_eq!(names, ["CAM-T", "CAM-B"]);
+    let [first, second] = settings.lanes.as_slice() else { panic!("{settings:?}") };
+    assert_eq!((first.name.as_str(), first.board.to_string()), ("1", "usb:1-2.3".to_owned()));
+    assert_eq!((first.plans.as_slice(), second.plans.as_slice()), ([0, 1].as_slice(), [1].as_slice()));
+    assert_eq!(first.starts, Starts { scan: true, button: true, presence: false });
+    assert_eq!(second.starts, Starts { scan: true, button: false, presence: false });
+    let hooks: Vec<_> = settings.hooks.iter().map(|hook| (hook.on, hook.deadline.as_secs_f64())).collect();
+    assert_eq!(hooks, [(Verdict::Pass, 10.0), (Verdict::Error, 2.5)]);
+    assert_eq!(settings.hooks[0].program.to_string_lossy(), "lamp", "looked for where the shell looks");
+    assert!(settings.hooks[1].program.is_absolute());
+}
+
+/// A change of [`WHOLE`], and what the error says, which names the line.
+const WRONG: &[(&str, &str, &str)] = &[
+    ("schema = 1", "schema = 9", "station.toml:1: this program reads settings of schema 1, not 9; take the"),
+    ("name = \"12\"", "name = \" \"", "station.toml:3: there is nothing here; write a name"),
+    ("order = \"scan", "order = \"plug", "station.toml:5: unknown variant `plug-then-plug`"),
+    ("silence = 30.0", "silence = 0.0", "station.toml:6: 0 s is no such time; give 0.1 to 86400 seconds"),
+    ("silence = 30.0", "silense = 30.0", "station.toml:6: unknown field `silense`"),
+    ("name = \"1\"", "name = \"1 2\"", "station.toml:11: `1 2` is no name for a lane; write 1 to 16 letters"),
+    ("name = \"1\"", "name = \"left\"", "station.toml:16: two lanes are called left; give each"),
+    ("usb:1-2.3", "usb", "station.toml:12: `usb` is whichever board is plugged in; write usb:"),
+    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:12: `serial:/dev/ttyUSB0` is another board when"),
+    ("usb:1-2.3", "usv:1-2.3", "station.toml:12: `usv` is no kind of board; write one as `halfrow boards`"),
+    ("usb:1-2.3", "", "station.toml:12: the board cannot be used: an empty target names no board"),
+    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:17: lane 1 has the board"),
+    ("[\"b.toml\"]", "[]", "station.toml:18: lane left has no plan; name the file of one"),
+    (
+        "[\"b.toml\"]",
+        "[\"c.toml\"]",
+        "station.toml:18: the plan c.toml cannot be used: c.toml cannot be read",
+    ),
+    (
+        "[\"scan\", \"button\"]",
+        "[]",
+        "station.toml:14: nothing starts this lane; name scan, button or presence",
+    ),
+    ("{lane}", "{line}", "station.toml:21: nothing is known that is called {line}; write one of {lane}"),
+    ("./print", "./brint", "there is no program"),
+    ("deadline = 2.5", "deadline = -1.0", "station.toml:24: -1 s is no such time"),
+];
+
+#[test]
+fn what_is_wrong_is_told_with_its_line_and_a_remedy() {
+    for (from, to, said) in WRONG {
+        assert!(WHOLE.contains(from), "{from}");
+        let error = load(&WHOLE.replacen(from, to, 1)).unwrap_err();
+        assert!(error.contains(said), "{from} -> {to}: {error}");
+    }
+    let error = load("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n").unwrap_err();
+    assert_eq!(error, "station.toml:1: the station has no lane; write a [[lane]] with name, board and plans");
+}
