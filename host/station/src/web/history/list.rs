@@ -24,7 +24,8 @@ pub(super) async fn page(
     visit: Visit,
     Query(asked): Query<Asked>,
 ) -> Result<Response, Trouble> {
-    let (filter, after) = (asked.filter(&visit)?, asked.after(&visit)?);
+    let asking = asked.filter().and_then(|filter| Ok((filter, asked.after()?)));
+    let (filter, after) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| {
         Ok((runs::page(now, &filter, after.as_ref(), RUNS)?, history::plan_names(now)?))
     };

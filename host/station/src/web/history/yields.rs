@@ -31,8 +31,9 @@ pub(super) async fn page(
     visit: Visit,
     Query(asked): Query<Asked>,
 ) -> Result<Response, Trouble> {
-    let wanted = asked.wanted(&visit)?;
-    let (_, by) = asked.by(&visit, &[("plan", By::Plan), ("day", By::Day), ("lane", By::Lane)])?;
+    let choices = [("plan", By::Plan), ("day", By::Day), ("lane", By::Lane)];
+    let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
+    let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((yields::yields(now, &wanted, by)?, history::plan_names(now)?));
     let (Yields { mut lines, mut flips }, plans) = app.look(&visit, look).await?;
     // The newest day first; lane 10 behind lane 9.
