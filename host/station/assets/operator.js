@@ -115,4 +115,4 @@ if (by("hand")) {
   by("sound").setAttribute("aria-pressed", isOn());
   by("sound").addEventListener("click", () => { turn(!isOn()); by("sound").setAttribute("aria-pressed", isOn()); play("PASS"); });
 }
-setInterval(today, 10000);
+setInterval(today, 5000);

@@ -16,14 +16,14 @@ use crate::store::StoreError;
 #[derive(Debug)]
 pub(super) struct Trouble {
     status: StatusCode,
-    visit: Visit,
+    visit: Box<Visit>,
     said: String,
 }
 
 impl Trouble {
     /// What is wrong and what to do, with its status.
     pub(super) fn new(visit: &Visit, status: StatusCode, said: impl Into<String>) -> Self {
-        Self { status, visit: visit.clone(), said: said.into() }
+        Self { status, visit: Box::new(visit.clone()), said: said.into() }
     }
 
     /// Nothing has this address.

@@ -9,6 +9,7 @@ mod documents;
 mod floor;
 mod history;
 mod lanes;
+mod pages;
 mod plans;
 mod runs;
 mod settings;

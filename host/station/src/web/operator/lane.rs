@@ -4,7 +4,7 @@ use halfrow::Verdict;
 use maud::{Markup, html};
 use serde::Serialize;
 
-use super::shapes::{Look, look};
+use super::shapes::{class, does, said, shape};
 use crate::engine::LaneState;
 use crate::floor::Word;
 use crate::web::live::Doing;
@@ -29,7 +29,7 @@ impl LaneEvent {
     pub(super) fn new(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> Self {
         let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
         let serial = state.serial.as_deref().unwrap_or_default();
-        let word = visit.say(look(state.state).key);
+        let word = said(visit, state.state);
         Self {
             lane: state.lane.clone(),
             state: state.state,
@@ -50,10 +50,10 @@ fn is_verdict(word: Word) -> bool {
 
 /// The lane.
 pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> Markup {
-    let look = look(state.state);
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
+    let word = said(visit, state.state);
     html! {
-        article.lane.(look.class).(length(visit.say(look.key))) id={ "lane-" (state.lane) } data-lane=(state.lane)
+        article.lane.(class(state.state)).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane)
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
                 h2 {
@@ -63,9 +63,9 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
                 }
                 (acts(visit, state))
             }
-            p.word { (look.shape()) span { (visit.say(look.key)) } }
+            p.word { (shape(state.state)) span { (word) } }
             p.serial { (state.serial.as_deref().unwrap_or_default()) }
-            (says(visit, state, look))
+            (says(visit, state))
             @if state.state == Word::Running { (progress(doing)) }
         }
     }
@@ -81,10 +81,10 @@ fn length(word: &str) -> &'static str {
 }
 
 /// What the operator does now, and why.
-fn says(visit: &Visit, state: &LaneState, look: Look) -> Markup {
+fn says(visit: &Visit, state: &LaneState) -> Markup {
     let shown = state.shown.as_ref().filter(|_| matches!(state.state, Word::Fail | Word::Error));
     html! {
-        p.does { (visit.say(look.does)) }
+        p.does { (does(visit, state.state)) }
         @if let Some(note) = &state.note { p.why lang="en" { (note) } }
         @if let Some(shown) = shown {
             p.why lang="en" title=(shown.remedy.as_deref().unwrap_or_default()) { (shown.headline) }

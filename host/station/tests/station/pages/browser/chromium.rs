@@ -87,7 +87,8 @@ impl Chromium {
     /// Waits for the answer of this number.
     fn answer(&mut self, number: u64) -> Value {
         loop {
-            let message = self.from.recv_timeout(HANG).expect("the browser answers");
+            let message =
+                self.from.recv_timeout(HANG).unwrap_or_else(|_| panic!("the browser does not answer"));
             if message["method"] == "Network.requestWillBeSent" {
                 self.asked.push(message["params"]["request"]["url"].as_str().unwrap().to_owned());
             }

@@ -7,7 +7,7 @@ use std::process::{Child, Command, Output, Stdio};
 
 use tempfile::TempDir;
 
-use crate::http::{Answer, Request, escaped};
+use super::http::{Answer, Request, escaped};
 
 const PLAN: &str = include_str!("plan.toml");
 
@@ -81,7 +81,11 @@ impl Station {
         let mut child = self.command().stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
         let said = lines.find_map(|line| line.split("http://127.0.0.1:").nth(1).map(str::to_owned));
-        let port = said.expect("it says where its pages are").trim_end_matches('/').parse().unwrap();
+        let port = said
+            .unwrap_or_else(|| panic!("it does not say where its pages are"))
+            .trim_end_matches('/')
+            .parse()
+            .unwrap();
         Serving { child, port }
     }
 

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::station::{SERIALS, Serving, Station};
+use crate::pages::station::{SERIALS, Serving, Station};
 
 /// The page's news.
 struct Live(BufReader<TcpStream>);
@@ -115,7 +115,7 @@ fn two_pages_do_not_get_each_others_lanes() {
     let station = Station::private(2);
     let serving = station.serve();
     let [one, other] = [serving.here(), serving.here()];
-    let scan = |browser: &crate::station::Browser, text: &str, lane: &str| {
+    let scan = |browser: &crate::pages::station::Browser, text: &str, lane: &str| {
         let answer = browser
             .post("/scan", &[("text", text), ("lane", lane)])
             .with("accept", "application/json")

@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::chromium::Chromium;
-use crate::station::{SERIALS, Serving, Station};
+use crate::pages::station::{SERIALS, Serving, Station};
 
 /// The most milliseconds from the last beat until the page says that it is not live, beside what a busy machine takes.
 const NOT_LIVE: f64 = 3000.0;

@@ -3,8 +3,8 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 
-use crate::http::{Request, exchange};
-use crate::station::{PUBLIC, SERIALS, Station};
+use crate::pages::http::{Request, exchange};
+use crate::pages::station::{PUBLIC, SERIALS, Station};
 
 #[test]
 fn what_others_can_reach_needs_people() {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::chromium::Chromium;
-use crate::station::Station;
+use crate::pages::station::Station;
 
 /// Milliseconds between two keys.
 const SPEEDS: [u64; 4] = [0, 1, 8, 20];

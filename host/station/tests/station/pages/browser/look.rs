@@ -3,7 +3,7 @@
 use serde_json::json;
 
 use super::chromium::Chromium;
-use crate::station::Station;
+use crate::pages::station::Station;
 
 /// WCAG 2.1, success criterion 1.4.3.
 const LEAST: f64 = 4.5;

@@ -6,8 +6,8 @@ use halfrow_station::web::routes;
 use rand::TryRng as _;
 use rand::rngs::SysRng;
 
-use crate::http::{Request, exchange};
-use crate::station::{SERIALS, Station};
+use crate::pages::http::{Request, exchange};
+use crate::pages::station::{SERIALS, Station};
 
 /// How long it goes on, unless `HALFROW_FUZZ_SECONDS` says otherwise.
 const SHORT: u64 = 5;
