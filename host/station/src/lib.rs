@@ -12,6 +12,7 @@
 pub mod check;
 mod clock;
 pub mod commands;
+pub mod disk;
 pub mod engine;
 pub mod export;
 pub mod floor;

@@ -25,6 +25,8 @@ pub struct Job {
     pub variant: String,
     /// The seed of the run.
     pub seed: u64,
+    /// How much memory the lane may have, in MiB of addresses.
+    pub memory_mib: u64,
 }
 
 /// What the lane reads after it.

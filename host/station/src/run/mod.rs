@@ -55,6 +55,8 @@ pub struct Order<'a> {
     pub counts: bool,
     /// How long the lane may be silent, beside the link tests of the plan.
     pub silence: Duration,
+    /// How much memory the lane may have, in MiB of addresses.
+    pub memory_mib: u64,
 }
 
 /// A run whose verdict is saved.
@@ -146,6 +148,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         sha256: plan.sha256.clone(),
         variant: head.variant.clone(),
         seed: ids::seed(id),
+        memory_mib: order.memory_mib,
     };
     let spool = store.with(|store| store.folder().spool(&head.id));
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
