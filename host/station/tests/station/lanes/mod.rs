@@ -2,6 +2,7 @@
 
 mod again;
 mod ends;
+mod flat;
 pub(crate) mod floor;
 mod hooks;
 mod refused;

@@ -7,6 +7,7 @@ mod ends;
 mod faults;
 mod identity;
 mod killed;
+mod killed_lane;
 mod limited;
 mod saved;
 mod unsaved;

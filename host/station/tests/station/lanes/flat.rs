@@ -1,0 +1,166 @@
+//! A long shift: what the station holds does not grow with its runs.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::net::TcpListener;
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use serde_json::Value;
+
+use super::ends::{connected, lane_of, silent_board};
+use super::floor::{Running, Station};
+use crate::common::PLAN;
+
+/// What a process holds.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    files: usize,
+    threads: u64,
+    resident_kib: u64,
+}
+
+fn held(process: u32) -> Held {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let number = |name: &str| {
+        let line = status.lines().find_map(|line| line.strip_prefix(name)).unwrap();
+        line.trim_start_matches(':').split_whitespace().next().unwrap().parse().unwrap()
+    };
+    let files = fs::read_dir(format!("/proc/{process}/fd")).unwrap().count();
+    Held { files, threads: number("Threads"), resident_kib: number("VmRSS") }
+}
+
+/// The one in the middle by `key`.
+fn middle(of: &[Held], key: impl Fn(&Held) -> u64) -> u64 {
+    let mut all: Vec<_> = of.iter().map(key).collect();
+    all.sort_unstable();
+    all[all.len() / 2]
+}
+
+/// Boards in three lanes, one after the other, until so many were judged; how long each took.
+fn judged(running: &mut Running, serials: &mut u32, runs: u32) -> Vec<Duration> {
+    let (mut given, mut took) = (0, Vec::new());
+    let mut begun = BTreeMap::new();
+    let mut give = |running: &mut Running, lane: &str, begun: &mut BTreeMap<String, Instant>| {
+        if given < runs {
+            given += 1;
+            *serials += 1;
+            begun.insert(format!("CAT{serials:05}"), Instant::now());
+            running.test(lane, &format!("CAT{serials:05}"));
+        }
+    };
+    ["1", "2", "3"].into_iter().for_each(|lane| give(running, lane, &mut begun));
+    while took.len() < runs as usize {
+        let news = running.wait("a verdict", |news| news["news"] == "lane" && !news["shown"].is_null());
+        let serial = news["shown"]["serial"].as_str().unwrap();
+        let Some(since) = begun.remove(serial) else { continue };
+        assert_eq!(news["shown"]["verdict"], "PASS", "{news}");
+        took.push(since.elapsed());
+        let lane = news["lane"].as_str().unwrap().to_owned();
+        give(running, &lane, &mut begun);
+        // The rest is of no use, and would be many.
+        running.heard.retain(|news| news["lane"] == "4" && !news["shown"].is_null());
+    }
+    took
+}
+
+/// The run in lane 4, whose board says nothing, comes to its end by `signal`; returns how long that took.
+fn ended_by(
+    signal: Signal,
+    station: &Station,
+    running: &mut Running,
+    listener: &TcpListener,
+    serials: &mut u32,
+    meanwhile: impl FnOnce(&mut Running, &mut u32),
+) -> Duration {
+    *serials += 1;
+    let serial = format!("CAT{serials:05}");
+    running.heard.clear();
+    running.test("4", &serial);
+    connected(listener);
+    let run = running.wait("a step", |news| news["news"] == "doing" && news["lane"] == "4")["run"].clone();
+    kill(Pid::from_raw(lane_of(station, &run)), signal).unwrap();
+    let begun = Instant::now();
+    let is_ended = |news: &Value| news["lane"] == "4" && news["shown"]["serial"] == serial.as_str();
+    if signal == Signal::SIGKILL {
+        running.wait("its end", is_ended);
+        return begun.elapsed();
+    }
+    meanwhile(running, serials);
+    let heard = running.heard.iter().any(is_ended);
+    if !heard {
+        running.wait("its end", is_ended);
+    }
+    begun.elapsed()
+}
+
+/// What a shift came to.
+#[derive(Default)]
+struct Shift {
+    /// What the station held, now and then.
+    samples: Vec<Held>,
+    /// How long runs took.
+    alone: Vec<Duration>,
+    /// And beside a hung lane.
+    beside: Vec<Duration>,
+    /// How long it took at the longest until a hung lane was recorded.
+    longest: Duration,
+}
+
+/// A thousand runs, of which 20 are killed and 10 hang; returns how many they were.
+fn worked(shift: &mut Shift, station: &Station, running: &mut Running, listener: &TcpListener) -> u32 {
+    let mut serials = 0;
+    for round in 0..20 {
+        shift.alone.extend(judged(running, &mut serials, 48));
+        ended_by(Signal::SIGKILL, station, running, listener, &mut serials, |_, _| {});
+        if round % 2 == 1 {
+            let beside = &mut shift.beside;
+            let took =
+                ended_by(Signal::SIGSTOP, station, running, listener, &mut serials, |running, serials| {
+                    beside.extend(judged(running, serials, 6));
+                });
+            shift.longest = shift.longest.max(took);
+        }
+        shift.samples.push(held(running.id()));
+    }
+    serials
+}
+
+/// The time in the middle, in seconds.
+fn median(all: &mut [Duration]) -> f64 {
+    all.sort_unstable();
+    all[all.len() / 2].as_secs_f64()
+}
+
+#[test]
+#[ignore = "for scripts/soak"]
+fn a_thousand_runs_with_kills_and_hung_lanes_leave_nothing_behind() {
+    let (listener, target) = silent_board();
+    let station = Station::with(&["mock", "mock", "mock", &target], "");
+    fs::write(station.path("plan.toml"), PLAN).unwrap();
+    let mut running = station.start();
+    let mut shift = Shift::default();
+    let runs = worked(&mut shift, &station, &mut running, &listener);
+    let (alone, beside) = (median(&mut shift.alone), median(&mut shift.beside));
+    let longest = shift.longest.as_secs_f64();
+    println!(
+        "{runs} runs; one takes {alone:.3} s, and {beside:.3} s beside a hung lane, which is recorded in {longest:.1} s"
+    );
+    let samples = &shift.samples;
+    println!("first {:?}\nlast  {:?}", samples[0], samples[19]);
+    let (first, last) = (&samples[2..9], &samples[13..]);
+    let files = |held: &Held| held.files as u64;
+    assert_eq!(middle(first, files), middle(last, files), "{samples:?}");
+    // A thread of a run may be about to end.
+    let threads = |held: &Held| held.threads;
+    assert!(middle(last, threads) <= middle(first, threads) + 1, "{samples:?}");
+    let (early, late) = (middle(first, |held| held.resident_kib), middle(last, |held| held.resident_kib));
+    assert!(late <= early + early / 10, "{early} KiB became {late} KiB: {samples:?}");
+    assert_eq!(running.end().0, Some(0));
+    let crashes = "SELECT count(*) FROM run WHERE verdict = 'ERROR' AND cause = 'crash' AND lane = '4'";
+    assert_eq!(station.query(crashes), ["30"]);
+    let passes = "SELECT count(*) FROM run WHERE verdict = 'PASS'";
+    assert_eq!(station.query(passes), [(runs - 30).to_string()]);
+    station.assert_well();
+}
