@@ -27,7 +27,7 @@ use clap::{ArgAction, Parser, Subcommand};
 
 pub use document::failure;
 
-use crate::console;
+use crate::console::{self, Unprinted};
 use crate::exit::Exit;
 use crate::run::{self as runs, RunError, Saved};
 use crate::store::{Store, StoreError};
@@ -136,6 +136,12 @@ impl Cli {
     }
 }
 
+impl From<Unprinted> for Failure {
+    fn from(error: Unprinted) -> Self {
+        Self::error(error)
+    }
+}
+
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
         let exit = if matches!(error, StoreError::InUse { .. }) { Exit::Busy } else { Exit::Error };
@@ -155,6 +161,6 @@ fn recovered(store: &mut Store) -> Result<Vec<Saved>, RunError> {
 
 /// Prints a result, which is the command's only one.
 fn print(text: &str) -> Result<Exit, Failure> {
-    console::print(text).map_err(Failure::error)?;
+    console::print(text)?;
     Ok(Exit::Pass)
 }

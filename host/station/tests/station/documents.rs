@@ -37,7 +37,7 @@ fn a_run_is_a_document_whatever_it_comes_to() {
     for (serial, board, verdict, cause) in [
         ("CAT00001", "mock,serial=17", "PASS", "none"),
         ("CAT00002", "mock,fault=stuck-data", "FAIL", "board"),
-        ("CAT00003", "tcp:127.0.0.1:1", "ERROR", "station"),
+        ("CAT00003", "tcp:127.0.0.1:1", "ERROR", "link"),
         ("CAT00004", "mock,serial=17", "ERROR", "operator"),
     ] {
         let said = document(&run(&station, serial, board));
@@ -71,9 +71,11 @@ fn what_has_no_verdict_is_a_document_with_a_code() {
         (&"station-input-wrong".into(), &1.into())
     );
     station.plan(PLAN);
-    station.run("CAT00001", "mock");
-    fs::remove_dir_all(station.data().join("blobs")).unwrap();
-    fs::write(station.data().join("blobs"), "").unwrap();
+    // There is no folder for any record.
+    fs::create_dir_all(station.data().join("blobs")).unwrap();
+    for first in 0..=255 {
+        fs::write(station.data().join(format!("blobs/{first:02x}")), "no folder").unwrap();
+    }
     let said = document(&run(&station, "CAT00001", "mock"));
     assert_eq!((&said["error"]["code"], &said["verdict"]), (&"run-unsaved".into(), &Value::Null), "{said:#}");
     let usage = document(&did(&["run", "--json", "--moon"]));

@@ -1,6 +1,5 @@
 //! The process of a lane is killed at its calls, while another lane of the same station works.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::path::{Path, PathBuf};
@@ -17,7 +16,7 @@ use halfrow_station::run::{Order, Saved, Stage, Watch, run};
 use halfrow_station::store::{SharedStore, Store};
 
 use super::bench::{PLAN, Station, program};
-use super::unsaved::Call;
+use super::unsaved::{Call, numbered};
 
 /// Nobody ends the run, or looks at it.
 struct Unwatched;
@@ -51,33 +50,26 @@ fn run_in(store: &SharedStore, station: &Station, lane: &str, serial: &str, prog
     run(store, &order, &mut Unwatched).unwrap()
 }
 
-/// The program, traced: strace ends as what it traces has ended.
-fn traced(station: &Station, options: &str) -> PathBuf {
+/// The program, traced with the options that stand in a file beside it: strace ends as what it traces has ended.
+fn traced(station: &Station) -> PathBuf {
     let path = station.path("traced");
-    let script = format!("#!/bin/sh\nexec strace -qq {options} {} \"$@\"\n", program().display());
-    // Written aside: a file that somebody still executes cannot be written to.
-    let aside = station.path("traced.new");
-    fs::write(&aside, script).unwrap();
-    fs::set_permissions(&aside, fs::Permissions::from_mode(0o755)).unwrap();
-    fs::rename(aside, &path).unwrap();
+    let options = station.path("options");
+    // A script that were written anew for every run could not be executed while another thread starts a process.
+    let script =
+        format!("#!/bin/sh\nexec strace -qq $(cat {}) {} \"$@\"\n", options.display(), program().display());
+    fs::write(&path, script).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
     path
 }
 
 /// Every call of the lane's first thread, in order, from the first one of the program itself on.
-fn all_calls(station: &Station, store: &SharedStore) -> Vec<Call> {
+fn all_calls(station: &Station, store: &SharedStore, lane: &Path) -> Vec<Call> {
     let log = station.path("calls");
-    let lane = traced(station, &format!("-e signal=none -o {}", log.display()));
-    assert_eq!(run_in(store, station, "1", "CAT00001", &lane).record.conclusion.verdict, Verdict::Pass);
-    let mut counts = BTreeMap::new();
-    let text = fs::read_to_string(log).unwrap();
-    let names = text.lines().filter_map(|line| line.split_once('(')).map(|(name, _)| name.to_owned());
-    let numbered = names.map(|name| {
-        let count = counts.entry(name.clone()).or_insert(0);
-        *count += 1;
-        (name, *count)
-    });
+    fs::write(station.path("options"), format!("-e signal=none -o {}", log.display())).unwrap();
+    assert_eq!(run_in(store, station, "1", "CAT00001", lane).record.conclusion.verdict, Verdict::Pass);
+    let all = numbered(&fs::read_to_string(log).unwrap());
     // strace cannot end a call that does not return, nor the one by which the program begins.
-    numbered.filter(|(name, _)| !["execve", "exit_group"].contains(&name.as_str())).collect()
+    all.into_iter().filter(|(name, _)| !["execve", "exit_group"].contains(&name.as_str())).collect()
 }
 
 /// Ends what goes on beside, also when the test fails.
@@ -89,11 +81,33 @@ impl Drop for Over<'_> {
     }
 }
 
-/// Kills the lane at each of these calls. Returns how often that was in time.
-fn sweep(choose: impl Fn(Vec<Call>) -> Vec<Call>) -> usize {
+/// Whether the lane, killed at this call, had not told all yet: then its run is ERROR.
+fn killed_at(
+    (name, number): (&str, usize),
+    store: &SharedStore,
+    station: &Station,
+    lane: &Path,
+    serial: &str,
+) -> bool {
+    let options = format!("-o /dev/null -e inject={name}:signal=KILL:when={number}");
+    fs::write(station.path("options"), options).unwrap();
+    let saved = run_in(store, station, "1", serial, lane);
+    let ended = &saved.record.conclusion;
+    if ended.verdict == Verdict::Pass {
+        return false;
+    }
+    assert_eq!((ended.verdict, ended.cause), (Verdict::Error, RunCause::Crash), "{name} {number}: {ended:?}");
+    assert!(ended.headline.contains("signal: 9"), "{name} {number}: {ended:?}");
+    true
+}
+
+/// Kills the lane at each of these calls. Returns how often that was in time, and how often it had told
+/// all before.
+fn sweep(choose: impl Fn(Vec<Call>) -> Vec<Call>) -> (usize, usize) {
     let station = Station::with(PLAN);
     let store = SharedStore::new(Store::open(&station.store()).unwrap());
-    let all = all_calls(&station, &store);
+    let lane = traced(&station);
+    let all = all_calls(&station, &store, &lane);
     assert!(all.len() > 100, "{all:?}");
     let points = choose(all);
     let is_over = AtomicBool::new(false);
@@ -110,36 +124,27 @@ fn sweep(choose: impl Fn(Vec<Call>) -> Vec<Call>) -> usize {
         });
         let over = Over(&is_over);
         for ((name, number), serial) in points.iter().zip(10_000..) {
-            let options = format!("-o /dev/null -e inject={name}:signal=KILL:when={number}");
-            let saved = run_in(&store, &station, "1", &format!("CAT{serial}"), &traced(&station, &options));
-            let ended = &saved.record.conclusion;
-            match ended.verdict {
-                // It had told all before it came to this call.
-                Verdict::Pass => done += 1,
-                Verdict::Error => {
-                    assert_eq!(ended.cause, RunCause::Crash, "{name} {number}: {ended:?}");
-                    assert!(ended.headline.contains("signal: 9"), "{name} {number}: {ended:?}");
-                    killed += 1;
-                }
-                Verdict::Fail => panic!("{name} {number}: {ended:?}"),
+            if killed_at((name, *number), &store, &station, &lane, &format!("CAT{serial}")) {
+                killed += 1;
+            } else {
+                done += 1;
             }
         }
         drop(over);
         assert!(beside.join().unwrap() > 0);
     });
     drop(store);
-    println!("{} calls: the lane was killed in time at {killed}, and had told all at {done}", points.len());
     let doubled = "SELECT unit_id FROM run WHERE lane = '1' GROUP BY unit_id HAVING count(*) <> 1";
     assert_eq!(station.query(doubled), Vec::<String>::new());
     assert_eq!(station.query("SELECT count(*) FROM run WHERE state = 'open'"), ["0"]);
     assert_eq!(station.query("SELECT count(*) FROM run WHERE verdict = 'ERROR'"), [killed.to_string()]);
     assert_eq!(station.check().code, Some(0), "{:?}", station.check());
-    killed
+    (killed, done)
 }
 
 #[test]
 fn a_lane_that_is_killed_anywhere_is_an_error_and_the_lane_beside_goes_on() {
-    let killed = sweep(|all| {
+    let (killed, _) = sweep(|all| {
         let one_in = all.len() / 24;
         all.into_iter().enumerate().filter(|(number, _)| number % one_in == 0).map(|(_, call)| call).collect()
     });
@@ -150,6 +155,7 @@ fn a_lane_that_is_killed_anywhere_is_an_error_and_the_lane_beside_goes_on() {
 #[test]
 #[ignore = "for scripts/soak"]
 fn a_lane_that_is_killed_at_any_call_is_an_error_and_the_lane_beside_goes_on() {
-    let killed = sweep(|all| all);
+    let (killed, done) = sweep(|all| all);
+    println!("the lane was killed at {killed} calls, and had told all before {done} others");
     assert!(killed > 100, "{killed}");
 }

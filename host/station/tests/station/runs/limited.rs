@@ -38,9 +38,12 @@ fn a_lane_has_one_thread_to_judge_with_and_so_much_memory() {
 
 #[test]
 fn a_lane_that_needs_more_memory_ends_alone_and_is_recorded() {
-    let station = Station::with(PLAN);
+    let large =
+        PLAN.replace("width = 64\nheight = 8", "width = 2048\nheight = 2048").replace("10.0", "1500.0");
+    let station = Station::with(&large);
     let did = with(&station, &["--memory", "64"]);
     assert_eq!(did.code, Some(3), "{did:?}");
+    assert!(did.said.contains("the lane ended before it was done"), "{did:?}");
     assert_eq!(station.query("SELECT verdict || ' ' || cause FROM run"), ["ERROR crash"], "{did:?}");
     assert_eq!(with(&station, &[]).code, Some(0));
     assert_eq!(station.check().code, Some(0));

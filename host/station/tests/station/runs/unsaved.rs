@@ -31,9 +31,13 @@ pub(crate) fn calls(station: &Station, serial: &str, names: &str) -> Vec<Call> {
         .output()
         .unwrap();
     assert!(traced.status.success(), "{traced:?}");
-    let text = std::fs::read_to_string(&trace).unwrap();
+    numbered(&std::fs::read_to_string(&trace).unwrap())
+}
+
+/// The calls that strace has written down, in their order.
+pub(crate) fn numbered(trace: &str) -> Vec<Call> {
     let mut counts = BTreeMap::new();
-    let names = text.lines().filter_map(|line| line.split_once('(')).map(|(name, _)| name.to_owned());
+    let names = trace.lines().filter_map(|line| line.split_once('(')).map(|(name, _)| name.to_owned());
     let numbered = names.map(|name| {
         let count = counts.entry(name.clone()).or_insert(0);
         *count += 1;
