@@ -60,8 +60,7 @@ pub fn problem(
 }
 
 /// The code of a command line that cannot be read.
-#[must_use]
-pub fn of_usage(kind: ErrorKind) -> &'static str {
+pub(crate) fn of_usage(kind: ErrorKind) -> &'static str {
     USAGE[match kind {
         ErrorKind::UnknownArgument => 0,
         ErrorKind::InvalidValue | ErrorKind::ValueValidation | ErrorKind::InvalidUtf8 => 1,

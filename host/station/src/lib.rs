@@ -15,6 +15,7 @@ pub mod check;
 mod clock;
 pub mod commands;
 pub mod demo;
+pub mod disk;
 pub mod engine;
 pub mod export;
 pub mod floor;

@@ -5,14 +5,14 @@ use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_quick, of_boards, plug, run_al
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn every_sixth_of_the_small_ones_behind_an_ft2232h() {
+fn every_tenth_of_the_small_ones_behind_an_ft2232h() {
     let quick = all().filter(is_quick);
-    run_all(quick.step_by(6), "usb", true, plug);
+    run_all(quick.step_by(10), "usb", true, plug);
 }
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn every_twelfth_of_the_small_ones_behind_qemu_s_chip() {
+fn every_twentieth_of_the_small_ones_behind_qemu_s_chip() {
     let quick = of_boards().filter(is_quick);
-    run_all(quick.step_by(12), QEMU_CHIP, true, QemuBoard::new);
+    run_all(quick.step_by(20), QEMU_CHIP, true, QemuBoard::new);
 }

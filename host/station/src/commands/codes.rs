@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 use super::lanes::EngineEnded;
 use super::{Failure, document, print};
 use crate::check::Fault;
+use crate::disk::DiskError;
 use crate::engine::HookError;
 use crate::exit::Exit;
 use crate::export::ExportError;
@@ -20,7 +21,7 @@ use crate::kept::CopyError;
 use crate::plan::serial::SerialError;
 use crate::record::{BlobError, RecordError};
 use crate::run::{NoRandomness, RunError};
-use crate::store::{NoWaiver, RebindError, StoreError};
+use crate::store::{AgainError, NoWaiver, RebindError, StoreError};
 
 /// Print the page of all codes of the station's errors
 #[derive(Debug, Args)]
@@ -90,6 +91,14 @@ codes::codes! {
         Write => "evidence-not-written",
         Read [path] => "evidence-unreadable",
         Damaged [path, found] => "evidence-damaged",
+    }
+    AgainError {
+        Refused [serial, when] => "unit-passed-already",
+        Asked [serial, when] => "unit-passed-already-asks",
+    }
+    DiskError {
+        Refused [folder, what] => "disk-refused",
+        Untold [folder] => "disk-unknown",
     }
     RecordError {
         NotANumber [name, value] => "record-without-number",

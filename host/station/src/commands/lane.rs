@@ -5,6 +5,7 @@ use std::process;
 use std::thread;
 
 use clap::Args;
+use nix::sys::resource::{Resource, getrlimit, setrlimit};
 
 use super::Failure;
 use crate::console;
@@ -24,6 +25,7 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
         let why = anyhow::Error::from(error);
         Failure::call(why.context("the first line is no job; `halfrow-station run` starts lanes, not people"))
     })?;
+    limit(job.memory_mib).map_err(Failure::error)?;
     let (orders, heeded) = orders();
     thread::Builder::new().name("stdin".to_owned()).spawn(move || heed(&orders)).map_err(Failure::error)?;
     carry_out(&job, &heeded, &|message: &Message| {
@@ -33,6 +35,14 @@ pub(super) fn run(_: &Arguments) -> Result<Exit, Failure> {
         }
     });
     Ok(Exit::Pass)
+}
+
+/// Lets the process have no more than so many MiB of addresses, or what it was allowed before if that is less. What needs more
+/// ends it, and not the station or another lane.
+fn limit(mib: u64) -> nix::Result<()> {
+    let (_, most) = getrlimit(Resource::RLIMIT_AS)?;
+    let bytes = mib.saturating_mul(1 << 20).min(most);
+    setrlimit(Resource::RLIMIT_AS, bytes, bytes)
 }
 
 /// Heeds what the station says until it is gone, and the lane with it.

@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use clap::Args;
 
+use super::looking::Disk;
 use super::{Failure, recovered, signals};
 use crate::console;
 use crate::engine::{Engine, News};
@@ -31,6 +32,8 @@ pub(super) struct Arguments {
     /// Who tests
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
     operator: String,
+    #[command(flatten)]
+    disk: Disk,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -38,6 +41,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let settings = Settings::load(&settings).map_err(Failure::call)?;
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = signals::last().map_err(Failure::error)?;
+    arguments.disk.takes(&settings.data)?;
     let mut store = Store::open(&Folder::new(&settings.data))?;
     recovered(&mut store)?;
     let engine = Engine::start(settings, store, program).map_err(Failure::error)?;

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::limits::Limit;
-use crate::plan::{Act, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
+use crate::plan::{Act, Again, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
 
 /// Look at plans
 #[derive(Debug, Args)]
@@ -60,6 +60,12 @@ fn head(plan: &Plan) -> String {
     if let Some(Shift { good, bad, lasts }) = &plan.shift {
         let hours = lasts.as_secs_f64() / 3600.0;
         lines.push(format!("shift     {good} passes and {bad} fails in each lane every {hours} hours"));
+    }
+    match plan.again {
+        Again::Allow => {}
+        Again::Ask => lines
+            .push("again     a unit that passed is tested when somebody says that it is meant".to_owned()),
+        Again::Refuse => lines.push("again     a unit that passed is refused".to_owned()),
     }
     if !plan.require_hardware {
         lines.push("any kind of board is judged, so no run counts as production".to_owned());

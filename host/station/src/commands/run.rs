@@ -12,15 +12,16 @@ use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 use serde_json::json;
 
+use super::looking::Disk;
 use super::{Failure, document, recovered, signals};
 use crate::clock;
 use crate::console;
 use crate::exit::Exit;
-use crate::lane::Message;
+use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
 use crate::plan::Plan;
 use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
-use crate::store::{Folder, SharedStore, Store};
+use crate::store::{AgainError, Folder, SharedStore, Store};
 
 /// What a run says that is no production.
 const NO_PRODUCTION: &str = "it counts as no production: its plan takes any kind of board, or the unit checks shifts, or \
@@ -57,6 +58,14 @@ pub(super) struct Arguments {
     /// Kill the lane when it tells nothing for so long
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
     silence: Duration,
+    /// How much memory the lane may have, in MiB of addresses
+    #[arg(long, value_name = "MIB", default_value_t = MEMORY_MIB, value_parser = memory)]
+    memory: u64,
+    /// Test the board again although it passed already; for plans with `again = "ask"`
+    #[arg(long)]
+    again: bool,
+    #[command(flatten)]
+    disk: Disk,
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
@@ -67,15 +76,22 @@ fn seconds(text: &str) -> Result<Duration, String> {
     seconds.map(Duration::from_secs_f64).ok_or_else(|| "give a number of seconds, 0.1 to 86400".to_owned())
 }
 
+fn memory(text: &str) -> Result<u64, String> {
+    let mib = text.parse().ok().filter(|mib| MEMORIES_MIB.contains(mib));
+    mib.ok_or_else(|| format!("give {} to {} MiB", MEMORIES_MIB.start(), MEMORIES_MIB.end()))
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plan_file = path::absolute(&arguments.plan).map_err(Failure::call)?;
     let plan = Plan::load(&plan_file).map_err(Failure::call)?;
     plan.select(&arguments.serial).map_err(Failure::call)?;
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = signals::last().map_err(Failure::error)?;
+    arguments.disk.takes(&arguments.data)?;
     let mut store = Store::open(&Folder::new(&arguments.data))?;
     let recovered = recovered(&mut store)?;
     let station = arguments.station.clone().unwrap_or_else(this_computer);
+    refused_again(store.folder(), &plan, arguments)?;
     let owed = store.folder().owed(&station, &arguments.lane, &plan, clock::now_ms())?;
     let order = Order {
         plan: &plan,
@@ -88,6 +104,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         program: &program,
         counts: plan.counts(&arguments.serial) && owed.is_none(),
         silence: arguments.silence,
+        memory_mib: arguments.memory,
     };
     // Closing the database takes a while, and the verdict does not wait for it.
     let store = SharedStore::new(store);
@@ -101,6 +118,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let exit = exit(&saved);
     console::tell(&if arguments.json { document(&saved, &recovered, exit)? } else { text(&saved) });
     Ok(exit)
+}
+
+fn refused_again(folder: &Folder, plan: &Plan, arguments: &Arguments) -> Result<(), Failure> {
+    match folder.again(plan, &arguments.serial, "say --again")? {
+        None => Ok(()),
+        Some(AgainError::Asked { .. }) if arguments.again => Ok(()),
+        Some(error) => Err(Failure::call(error)),
+    }
 }
 
 impl From<RunError> for Failure {

@@ -14,8 +14,8 @@ use super::{Board, Heard, Input};
 use crate::clock;
 use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
 use crate::presence::{Presence, USB, is_there};
-use crate::settings::Settings;
-use crate::store::Folder;
+use crate::settings::{PlanFile, Settings};
+use crate::store::{AgainError, Folder};
 
 /// How often boards are looked for.
 const LOOK: Duration = Duration::from_millis(500);
@@ -27,6 +27,8 @@ pub(super) struct AtWork {
     board: Arc<Mutex<Board>>,
     presence: Vec<Presence>,
     stops: Vec<StopAsked>,
+    /// The unit of each lane that passed already, of which somebody was asked whether it is meant.
+    asked: Vec<Option<String>>,
     /// Who scanned last.
     operator: String,
     threads: Vec<JoinHandle<()>>,
@@ -42,6 +44,7 @@ impl AtWork {
             board,
             presence: vec![Presence::default(); lanes],
             stops: vec![StopAsked::default(); lanes],
+            asked: vec![None; lanes],
             operator: String::new(),
             threads: Vec::new(),
             begun: Instant::now(),
@@ -159,10 +162,13 @@ impl AtWork {
 
     /// Tells what became of a scan, and does what it asks for.
     fn answer(&mut self, number: u64, scanned: String, answer: Result<Answer, ScanError>) {
-        let is_taken = answer.is_ok();
-        let (lane, effect, said) = match answer {
-            Ok(Answer { lane, effect, said }) => (lane, effect, said),
-            Err(error) => (None, None, error.to_string()),
+        let (is_taken, lane, effect, said) = match answer {
+            Ok(Answer { lane: Some(lane), effect, said }) => match self.unless_passed(lane, effect) {
+                Ok(effect) => (true, Some(lane), effect, said),
+                Err(why) => (false, Some(lane), None, why),
+            },
+            Ok(Answer { lane: None, effect, said }) => (true, None, effect, said),
+            Err(error) => (false, None, None, error.to_string()),
         };
         let name = lane.and_then(|lane| Some(self.floor.lanes().get(lane)?.name().to_owned()));
         self.tell(&News::Scan { number, scanned, is_taken, lane: name, said });
@@ -189,8 +195,34 @@ impl AtWork {
 
     fn happened(&mut self, lane: usize, event: Event) {
         let effect = self.floor.happened(lane, event, self.now());
+        // A run that a plug has started says in its lane why it was not begun.
+        let effect = self.unless_passed(lane, effect).ok().flatten();
         self.publish(lane);
         self.effect(lane, effect);
+    }
+
+    /// What is to be done, unless it is to test a unit again that passed already: then why not, which the lane says too.
+    fn unless_passed(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, String> {
+        let Some(Effect::Begin(of)) = &effect else { return Ok(effect) };
+        let Some(PlanFile { plan, .. }) = self.shared.settings.plans.get(of.plan) else { return Ok(effect) };
+        let asked = self.asked.get_mut(lane).and_then(Option::take);
+        let folder = Folder::new(&self.shared.settings.data);
+        let why = match folder.again(plan, &of.serial, "scan it once more") {
+            Ok(None) => return Ok(effect),
+            Ok(Some(error @ AgainError::Asked { .. })) => {
+                if asked.as_deref() == Some(of.serial.as_str()) {
+                    return Ok(effect);
+                }
+                if let Some(asked) = self.asked.get_mut(lane) {
+                    *asked = Some(of.serial.clone());
+                }
+                error.to_string()
+            }
+            Ok(Some(error)) => error.to_string(),
+            Err(error) => format!("{:#}", anyhow::Error::from(error)),
+        };
+        self.floor.happened(lane, Event::NotBegun { why: why.clone() }, self.now());
+        Err(why)
     }
 
     /// Does what is to be done. The state is told before: a lamp says nothing that the screen does not.

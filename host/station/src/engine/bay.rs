@@ -68,7 +68,7 @@ fn carried_out(
     operator: &str,
     stop: StopAsked,
 ) -> (Event, bool) {
-    let Settings { name, lanes, plans, silence, .. } = &shared.settings;
+    let Settings { name, lanes, plans, silence, memory_mib, .. } = &shared.settings;
     let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
         return (Event::NotBegun { why: "the settings have no such lane or plan".to_owned() }, false);
     };
@@ -84,6 +84,7 @@ fn carried_out(
         // A lane that owes its shift a check takes no other board.
         counts: file.plan.counts(&accepted.serial),
         silence: *silence,
+        memory_mib: *memory_mib,
     };
     let mut watched = Watched { shared, lane, run: String::new(), stop };
     match run::run(&shared.store, &order, &mut watched) {

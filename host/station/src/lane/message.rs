@@ -27,6 +27,8 @@ pub struct Job {
     pub seed: u64,
     /// The folder for what is kept of the run.
     pub spool: PathBuf,
+    /// How much memory the lane may have, in MiB of addresses.
+    pub memory_mib: u64,
 }
 
 /// What the lane reads after it.

@@ -14,4 +14,10 @@ mod message;
 mod progress;
 pub mod supervisor;
 
+/// How much memory a lane may have that nobody limits, in MiB of addresses: it takes some 60 MiB of them at work, and its threads'
+/// stacks and arenas are addresses, too.
+pub const MEMORY_MIB: u64 = 4096;
+/// How much it may be given.
+pub const MEMORIES_MIB: std::ops::RangeInclusive<u64> = 64..=1_048_576;
+
 pub use message::{Control, Job, Message, Ruling, Stopper};

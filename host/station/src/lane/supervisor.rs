@@ -29,6 +29,9 @@ pub const LOG: &str = "lane.log";
 /// Its process id, and when it began.
 const PROCESS: &str = "lane.pid";
 
+/// How many threads a lane judges with, for those who want another number than one.
+const THREADS: &str = "RAYON_NUM_THREADS";
+
 /// How long a lane is waited for.
 #[derive(Clone, Copy, Debug)]
 pub struct Patience {
@@ -102,8 +105,11 @@ impl Lane {
     fn start(program: &Path, job: &Job, spool: &Path) -> io::Result<Self> {
         fs::create_dir_all(spool)?;
         let events = File::create(spool.join(EVENTS))?;
+        // Lanes are many, and the board is what they wait for.
+        let threads = std::env::var_os(THREADS).unwrap_or_else(|| "1".into());
         let mut child = Command::new(program)
             .arg("lane")
+            .env(THREADS, threads)
             .process_group(0)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())

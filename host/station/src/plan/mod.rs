@@ -49,6 +49,19 @@ pub enum DeviceRule {
     NotChecked,
 }
 
+/// Whether a unit is tested again whose last judgement under the same plan is PASS.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Again {
+    /// It is.
+    #[default]
+    Allow,
+    /// When somebody says that it is meant.
+    Ask,
+    /// It never is.
+    Refuse,
+}
+
 /// A plan that can be carried out.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -70,6 +83,8 @@ pub struct Plan {
     pub builds: Vec<String>,
     /// Whether a board must say which device it is.
     pub device: DeviceRule,
+    /// Whether a unit is tested again that passed.
+    pub again: Again,
     /// The units that check every lane in each shift; none if production counts without.
     pub shift: Option<Shift>,
     /// The files that it names, in order.

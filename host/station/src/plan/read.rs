@@ -54,6 +54,7 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
         require_hardware: read.board.require_hardware,
         builds,
         device: read.board.device,
+        again: read.board.again,
         shift,
         files,
         base,

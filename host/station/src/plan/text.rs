@@ -53,6 +53,8 @@ pub(super) struct BoardText {
     pub(super) require_hardware: bool,
     pub(super) builds: Spanned<Vec<Spanned<String>>>,
     pub(super) device: super::DeviceRule,
+    #[serde(default)]
+    pub(super) again: super::Again,
 }
 
 /// `[shift]`

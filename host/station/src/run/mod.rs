@@ -55,6 +55,8 @@ pub struct Order<'a> {
     pub counts: bool,
     /// How long the lane may be silent, beside the link tests of the plan.
     pub silence: Duration,
+    /// How much memory the lane may have, in MiB of addresses.
+    pub memory_mib: u64,
 }
 
 /// A run whose verdict is saved.
@@ -134,21 +136,12 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         started_ms,
     };
     let planned = plan_record(plan);
-    let head = store.with(|store| store.begin(head, &planned));
-    let head = head.map_err(|error| RunError::NotBegun(Box::new(error)))?;
+    let begun = store.with(|store| store.begin(head, &planned));
+    let head = begun.map_err(|error| RunError::NotBegun(Box::new(error)))?;
     watch.hear(Stage::Begun(&head));
     let begun = Instant::now();
     let spool = store.with(|store| store.folder().spool(&head.id));
-    let job = Job {
-        run: head.id.clone(),
-        target: head.target.clone(),
-        plan: order.plan_file.to_owned(),
-        text: plan.text.clone(),
-        sha256: plan.sha256.clone(),
-        variant: head.variant.clone(),
-        seed: ids::seed(id),
-        spool: spool.clone(),
-    };
+    let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
     let heard = supervise(order.program, &job, &spool, patience(order, selected), &mut attending);
     attending.watch.hear(Stage::Saving);
@@ -156,6 +149,21 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let record = record(head, planned, order, selected, (heard, device), begun.elapsed());
     let saved = store.with(|store| save(store, record, &spool, selected.steps.len() as u32))?;
     Ok(Saved { is_stuck, ..saved })
+}
+
+/// What the lane is told.
+fn job(head: &RunHead, order: &Order<'_>, seed: u64, spool: &Path) -> Job {
+    Job {
+        run: head.id.clone(),
+        target: head.target.clone(),
+        plan: order.plan_file.to_owned(),
+        text: order.plan.text.clone(),
+        sha256: order.plan.sha256.clone(),
+        variant: head.variant.clone(),
+        seed,
+        spool: spool.to_owned(),
+        memory_mib: order.memory_mib,
+    }
 }
 
 /// Attends to the lane of a run: answers from the store which device may have the serial number.

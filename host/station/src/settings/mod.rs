@@ -28,6 +28,8 @@ pub struct Settings {
     pub data: PathBuf,
     /// How long a lane may be silent.
     pub silence: Duration,
+    /// How much memory a lane may have, in MiB of addresses.
+    pub memory_mib: u64,
     /// Whether a serial number that is scanned first goes to the next board that is plugged in.
     pub scan_then_plug: bool,
     /// What the scanner adds before and behind every label.

@@ -11,6 +11,7 @@ use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, Start
 use super::{AccessSettings, Hook, LaneSettings, PlanFile, SCHEMA, Scanner, Settings, WORDS, stable};
 use crate::floor::Starts;
 use crate::input_error::Fault;
+use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
 use crate::plan::Plan;
 use crate::web::Address;
 
@@ -45,6 +46,7 @@ pub(super) fn settings(path: &Path, text: &str) -> Result<Settings, Fault> {
         name: not_empty(&station.name)?,
         data: folder.join(not_empty(&station.data)?),
         silence: seconds(station.silence.as_ref(), SILENCE)?,
+        memory_mib: memory(station.memory.as_ref())?,
         scan_then_plug: station.order == OrderText::ScanThenPlug,
         scanner: Scanner { prefix: read.scanner.prefix.clone(), suffix: read.scanner.suffix.clone() },
         plans,
@@ -99,6 +101,17 @@ fn seconds(text: Option<&Spanned<f64>>, default: f64) -> Result<Duration, Fault>
         return Ok(Duration::from_secs_f64(value));
     }
     Err(Fault::wrong(at, format!("{value} s is no such time"), format!("give 0.1 to {MOST_SECONDS} seconds")))
+}
+
+fn memory(text: Option<&Spanned<u64>>) -> Result<u64, Fault> {
+    let Some(text) = text else { return Ok(MEMORY_MIB) };
+    let what = format!("{} MiB are no memory for a lane", text.get_ref());
+    let remedy = format!("give {} to {} MiB", MEMORIES_MIB.start(), MEMORIES_MIB.end());
+    if MEMORIES_MIB.contains(text.get_ref()) {
+        Ok(*text.get_ref())
+    } else {
+        Err(Fault::wrong(text.span().start, what, remedy))
+    }
 }
 
 /// The lanes, and every plan that they name, once.

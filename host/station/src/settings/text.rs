@@ -33,6 +33,7 @@ pub(super) struct StationText {
     #[serde(default)]
     pub(super) order: OrderText,
     pub(super) silence: Option<Spanned<f64>>,
+    pub(super) memory: Option<Spanned<u64>>,
 }
 
 /// Which lane a scan is for when there are several.

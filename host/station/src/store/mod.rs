@@ -10,6 +10,7 @@
 //! A run is in the store, open, before its board is touched, and its verdict is shown when a second connection has read
 //! it back.
 
+mod again;
 mod audit;
 mod bindings;
 mod error;
@@ -29,6 +30,7 @@ use std::time::Duration;
 
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, TransactionBehavior};
 
+pub use again::AgainError;
 pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub use error::StoreError;
 pub use shared::SharedStore;

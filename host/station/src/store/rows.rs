@@ -71,6 +71,13 @@ pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusql
         )?;
     }
     measurements(to, record)?;
+    rest(to, record)?;
+    Ok(changed)
+}
+
+/// What hangs on the run and its steps, and what is counted of it all.
+fn rest(to: &Connection, record: &Record) -> rusqlite::Result<()> {
+    let id = &record.run.id;
     for (suspect, rank) in record.suspects.iter().zip(1..) {
         to.execute(sql::ADD_SUSPECT, params![id, rank, suspect.part, suspect.place, suspect.explained])?;
     }
@@ -80,7 +87,7 @@ pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusql
     for counted in [sql::ADD_DAY_COUNT, sql::ADD_RETEST, sql::ADD_FAILURES] {
         to.execute(counted, [id])?;
     }
-    Ok(changed)
+    Ok(())
 }
 
 fn measurements(to: &Connection, record: &Record) -> rusqlite::Result<()> {

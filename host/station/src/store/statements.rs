@@ -47,6 +47,7 @@ pub(super) const UNIT_OF_DEVICE: &str = include_str!("../../sql/unit-of-device.s
 pub(super) const DEVICE_OF_UNIT: &str = include_str!("../../sql/device-of-unit.sql");
 pub(super) const AUDIT_OF_ACT: &str = include_str!("../../sql/audit-of-act.sql");
 pub(super) const LAST_JUDGEMENT: &str = include_str!("../../sql/last-judgement.sql");
+pub(super) const PASSED: &str = include_str!("../../sql/passed.sql");
 pub(super) const OPEN_RUN_OF_UNIT: &str = include_str!("../../sql/open-run-of-unit.sql");
 
 /// The text as SQLite takes it.
@@ -58,7 +59,7 @@ pub(super) fn for_sqlite(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [&str; 43] = [
+    const ALL: [&str; 44] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -101,6 +102,7 @@ mod tests {
         DEVICE_OF_UNIT,
         AUDIT_OF_ACT,
         OPEN_RUN_OF_UNIT,
+        PASSED,
         LAST_JUDGEMENT,
     ];
 

@@ -3,6 +3,8 @@
 use std::path::Path;
 use std::process::{Command, Output};
 
+use tempfile::TempDir;
+
 /// A plan whose runs take a moment.
 pub(crate) const PLAN: &str = r#"schema = 1
 [plan]
@@ -30,6 +32,11 @@ timeout = 60
 pub(crate) fn guarded_plan(product: &str, letters: &str) -> String {
     let pattern = format!("^{letters}(?<number>[0-9]{{9}}[0-9X])$");
     PLAN.replace("CAM-T", product).replace("^CAT[0-9]{5}$", &pattern).replace("\"none\"", "\"mod11\"")
+}
+
+/// A folder for a station, on a disk: where others keep temporary files may be memory.
+pub(crate) fn folder() -> TempDir {
+    tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap()
 }
 
 /// Serial numbers whose check digits publishers computed: ISBNs of printed books, The C Programming Language and TeX:

@@ -16,6 +16,7 @@ name = "12"
 data = "data"
 order = "scan-then-plug"
 silence = 30.0
+memory = 512
 [scanner]
 prefix = "]C1"
 suffix = "!"
@@ -54,7 +55,10 @@ fn load(text: &str) -> Result<Settings, String> {
 #[test]
 fn every_key_means_what_it_says() {
     let settings = load(WHOLE).unwrap();
-    assert_eq!((settings.name.as_str(), settings.silence), ("12", Duration::from_secs(30)));
+    assert_eq!(
+        (settings.name.as_str(), settings.silence, settings.memory_mib),
+        ("12", Duration::from_secs(30), 512)
+    );
     assert!(settings.data.ends_with("data") && settings.data.is_absolute() && settings.scan_then_plug);
     assert_eq!(settings.scanner.label("]C1CAT1!"), Some("CAT1"));
     assert_eq!(settings.scanner.label("]C1CAT1"), None);
@@ -78,27 +82,28 @@ const WRONG: &[(&str, &str, &str)] = &[
     ("order = \"scan", "order = \"plug", "station.toml:5: unknown variant `plug-then-plug`"),
     ("silence = 30.0", "silence = 0.0", "station.toml:6: 0 s is no such time; give 0.1 to 86400 seconds"),
     ("silence = 30.0", "silense = 30.0", "station.toml:6: unknown field `silense`"),
-    ("name = \"1\"", "name = \"1 2\"", "station.toml:11: `1 2` is no name for a lane; write 1 to 16 letters"),
-    ("name = \"1\"", "name = \"left\"", "station.toml:16: two lanes are called left; give each"),
-    ("usb:1-2.3", "usb", "station.toml:12: `usb` is whichever board is plugged in; write usb:"),
-    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:12: `serial:/dev/ttyUSB0` is another board when"),
-    ("usb:1-2.3", "usv:1-2.3", "station.toml:12: `usv` is no kind of board; write one as `halfrow boards`"),
-    ("usb:1-2.3", "", "station.toml:12: the board cannot be used: an empty target names no board"),
-    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:17: lane 1 has the board"),
-    ("[\"b.toml\"]", "[]", "station.toml:18: lane left has no plan; name the file of one"),
+    ("memory = 512", "memory = 1", "station.toml:7: 1 MiB are no memory for a lane; give 64 to 1048576 MiB"),
+    ("name = \"1\"", "name = \"1 2\"", "station.toml:12: `1 2` is no name for a lane; write 1 to 16 letters"),
+    ("name = \"1\"", "name = \"left\"", "station.toml:17: two lanes are called left; give each"),
+    ("usb:1-2.3", "usb", "station.toml:13: `usb` is whichever board is plugged in; write usb:"),
+    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:13: `serial:/dev/ttyUSB0` is another board when"),
+    ("usb:1-2.3", "usv:1-2.3", "station.toml:13: `usv` is no kind of board; write one as `halfrow boards`"),
+    ("usb:1-2.3", "", "station.toml:13: the board cannot be used: an empty target names no board"),
+    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:18: lane 1 has the board"),
+    ("[\"b.toml\"]", "[]", "station.toml:19: lane left has no plan; name the file of one"),
     (
         "[\"b.toml\"]",
         "[\"c.toml\"]",
-        "station.toml:18: the plan c.toml cannot be used: c.toml cannot be read",
+        "station.toml:19: the plan c.toml cannot be used: c.toml cannot be read",
     ),
     (
         "[\"scan\", \"button\"]",
         "[]",
-        "station.toml:14: nothing starts this lane; name scan, button or presence",
+        "station.toml:15: nothing starts this lane; name scan, button or presence",
     ),
-    ("{lane}", "{line}", "station.toml:21: nothing is known that is called {line}; write one of {lane}"),
+    ("{lane}", "{line}", "station.toml:22: nothing is known that is called {line}; write one of {lane}"),
     ("./print", "./brint", "there is no program"),
-    ("deadline = 2.5", "deadline = -1.0", "station.toml:24: -1 s is no such time"),
+    ("deadline = 2.5", "deadline = -1.0", "station.toml:25: -1 s is no such time"),
 ];
 
 #[test]

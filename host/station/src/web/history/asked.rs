@@ -31,18 +31,29 @@ pub(super) struct Asked {
     after: String,
 }
 
+/// A value that nothing can be looked for by.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Wrong(String);
+
+impl Wrong {
+    /// It in the visitor's language.
+    pub(super) fn told(self, visit: &Visit) -> Trouble {
+        Trouble::wrong(visit, visit.words.fill("history.wrong", &[("value", &self.0)]))
+    }
+}
+
 impl Asked {
     /// As a filter of runs.
     ///
     /// # Errors
-    /// [`Trouble`] when a value is none.
-    pub(super) fn filter(&self, visit: &Visit) -> Result<Filter, Trouble> {
+    /// [`Wrong`] when a value is none.
+    pub(super) fn filter(&self) -> Result<Filter, Wrong> {
         let verdict = match self.verdict.as_str() {
             "" => None,
             "PASS" => Some(Verdict::Pass),
             "FAIL" => Some(Verdict::Fail),
             "ERROR" => Some(Verdict::Error),
-            other => return Err(wrong(visit, other)),
+            other => return Err(Wrong(other.to_owned())),
         };
         Ok(Filter {
             serial: some(&self.serial),
@@ -50,7 +61,7 @@ impl Asked {
             plan: some(&self.plan),
             lane: some(&self.lane),
             operator: some(&self.operator),
-            period: self.period(visit)?,
+            period: self.period()?,
         })
     }
 
@@ -58,31 +69,31 @@ impl Asked {
     ///
     /// # Errors
     /// As [`Self::filter`].
-    pub(super) fn wanted(&self, visit: &Visit) -> Result<Wanted, Trouble> {
-        Ok(Wanted { plan: some(&self.plan), lane: some(&self.lane), period: self.period(visit)? })
+    pub(super) fn wanted(&self) -> Result<Wanted, Wrong> {
+        Ok(Wanted { plan: some(&self.plan), lane: some(&self.lane), period: self.period()? })
     }
 
     /// The place after which the page begins.
     ///
     /// # Errors
     /// As [`Self::filter`].
-    pub(super) fn after(&self, visit: &Visit) -> Result<Option<Place>, Trouble> {
-        some(&self.after).map(|after| after.parse().map_err(|_| wrong(visit, &after))).transpose()
+    pub(super) fn after(&self) -> Result<Option<Place>, Wrong> {
+        some(&self.after).map(|after| after.parse().map_err(|_| Wrong(after.clone()))).transpose()
     }
 
     /// The first of `choices` that `by` names; the first of all when it names none.
     ///
     /// # Errors
     /// As [`Self::filter`].
-    pub(super) fn by<T: Copy>(&self, visit: &Visit, choices: &[(&str, T)]) -> Result<(usize, T), Trouble> {
+    pub(super) fn by<T: Copy>(&self, choices: &[(&str, T)]) -> Result<T, Wrong> {
         let named = |name: &str| self.by == name || self.by.is_empty();
-        let found = choices.iter().enumerate().find(|(_, (name, _))| named(name));
-        found.map(|(place, (_, choice))| (place, *choice)).ok_or_else(|| wrong(visit, &self.by))
+        let found = choices.iter().find(|(name, _)| named(name));
+        found.map(|(_, choice)| *choice).ok_or_else(|| Wrong(self.by.clone()))
     }
 
-    fn period(&self, visit: &Visit) -> Result<Period, Trouble> {
+    fn period(&self) -> Result<Period, Wrong> {
         let all = Period::default();
-        let moment = |text: &str, days| moment(text, days).ok_or_else(|| wrong(visit, text));
+        let moment = |text: &str, days| moment(text, days).ok_or_else(|| Wrong(text.to_owned()));
         Ok(Period {
             from_ms: some(&self.from).map_or(Ok(all.from_ms), |from| moment(&from, 0))?,
             until_ms: some(&self.until).map_or(Ok(all.until_ms), |until| moment(&until, 1))?,
@@ -125,10 +136,6 @@ pub(super) fn unit_address(serial: &str) -> String {
 
 fn some(text: &str) -> Option<String> {
     Some(text.trim().to_owned()).filter(|text| !text.is_empty())
-}
-
-fn wrong(visit: &Visit, value: &str) -> Trouble {
-    Trouble::wrong(visit, visit.words.fill("history.wrong", &[("value", value)]))
 }
 
 /// Milliseconds since 1970 of a moment, or of the midnight UTC that begins the day so many after a date.

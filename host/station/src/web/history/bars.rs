@@ -30,24 +30,45 @@ pub(super) fn length(count: u64, most: u64) -> Markup {
     }
 }
 
-/// A column for each day of a yield: share and interval, the earliest first. `days` says what a column is.
-pub(super) fn days(days: &[(String, Rate)]) -> Markup {
-    let step = 12;
-    let width = days.len() * step;
-    let y = |share: f64| format!("{:.1}", 4.0 + 100.0 * (1.0 - share));
+/// Pixels of a day, of what stands beside the days, and of a chart's height.
+const DAY: usize = 12;
+const BESIDE: usize = 52;
+const HEIGHT: usize = 130;
+
+/// A column for each day of a yield: share and interval, the earliest first. Each day has its name and what stands there
+/// when it is pointed at.
+pub(super) fn days(days: &[(String, String, Rate)]) -> Markup {
+    let least = days.iter().filter_map(|(.., rate)| rate.interval).map(|[low, _]| low).fold(1.0, f64::min);
+    // Where shares are high, what is below would be empty.
+    let floor = [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least).unwrap_or(0.0);
+    let width = days.len() * DAY + BESIDE;
+    let y = |share: f64| 8.0 + 100.0 * (1.0 - share) / (1.0 - floor);
+    let last = days.len().saturating_sub(1);
     html! {
-        svg.days viewBox=(format!("0 0 {} 108", width.max(step))) height="108" width=(width) role="img" {
-            @for share in [0.0, 0.5, 1.0] { rect.grid x="0" y=(y(share)) width=(width) height="0.5" {} }
-            @for (place, (name, rate)) in days.iter().enumerate() {
-                @if let Some((share, [low, high])) = rate.share.zip(rate.interval) {
-                    g {
-                        title { (name) }
-                        rect.interval x=(place * step + 5) y=(y(high)) width="2"
-                            height=(format!("{:.1}", (100.0 * (high - low)).max(1.0))) {}
-                        circle.point cx=(place * step + 6) cy=(y(share)) r="3" {}
-                    }
+        svg.days viewBox=(format!("0 0 {width} {HEIGHT}")) height=(HEIGHT) width=(width) role="img" {
+            @for share in [1.0, f64::midpoint(1.0, floor), floor] {
+                rect.grid x="0" y=(format!("{:.1}", y(share))) width=(days.len() * DAY) height="1" {}
+                text x=(days.len() * DAY + 4) y=(format!("{:.1}", y(share) + 4.0)) { (100.0 * share) " %" }
+            }
+            @for (place, (name, said, rate)) in days.iter().enumerate() {
+                (day(place * DAY, said, rate, &y))
+                @if place == 0 { text x="0" y=(HEIGHT - 4) { (name) } }
+                @if place == last && last > 14 {
+                    text x=(days.len() * DAY) y=(HEIGHT - 4) text-anchor="end" { (name) }
                 }
             }
+        }
+    }
+}
+
+fn day(x: usize, said: &str, rate: &Rate, y: &dyn Fn(f64) -> f64) -> Markup {
+    let Some((share, [low, high])) = rate.share.zip(rate.interval) else { return html! {} };
+    html! {
+        g {
+            title { (said) }
+            rect.interval x=(x + 5) y=(format!("{:.1}", y(high))) width="2"
+                height=(format!("{:.1}", (y(low) - y(high)).max(1.0))) {}
+            circle.point cx=(x + 6) cy=(format!("{:.1}", y(share))) r="3" {}
         }
     }
 }

@@ -24,7 +24,8 @@ pub(super) async fn page(
     visit: Visit,
     Query(asked): Query<Asked>,
 ) -> Result<Response, Trouble> {
-    let (filter, after) = (asked.filter(&visit)?, asked.after(&visit)?);
+    let asking = asked.filter().and_then(|filter| Ok((filter, asked.after()?)));
+    let (filter, after) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| {
         Ok((runs::page(now, &filter, after.as_ref(), RUNS)?, history::plan_names(now)?))
     };
@@ -123,7 +124,7 @@ fn row(visit: &Visit, run: &RunLine) -> Markup {
             td.serial { a href=(unit_address(&run.serial)) { (show::said(&run.serial)) } }
             td.outcome { (show::outcome(visit, run)) }
             td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }
-            td.lane { (show::said(&run.lane)) }
+            td.lane { span.of-card { (visit.say("history.lane")) " " } (show::said(&run.lane)) }
             td.operator { (show::said(&run.operator)) }
             td.headline { @if let Some(headline) = &run.headline { (show::said(headline)) } }
         }

@@ -21,8 +21,9 @@ pub(super) async fn page(
     visit: Visit,
     Query(asked): Query<Asked>,
 ) -> Result<Response, Trouble> {
-    let wanted = asked.wanted(&visit)?;
-    let (_, by) = asked.by(&visit, &[("part", Of::Part), ("check", Of::Check)])?;
+    let choices = [("part", Of::Part), ("check", Of::Check)];
+    let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
+    let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((pareto::pareto(now, &wanted, by)?, history::plan_names(now)?));
     let (found, plans) = app.look(&visit, look).await?;
     let counts = [("runs", found.failed.to_string()), ("units", found.units.to_string())];

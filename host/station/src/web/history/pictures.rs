@@ -30,7 +30,7 @@ pub(super) async fn preview(
 ) -> Result<Response, Trouble> {
     let frame = attached(&app, &visit, run, hash).await?;
     let picture = app.blocking(&visit, move || pictures::developed(&decoded(&frame)?, WIDTH).ok()).await?;
-    answer(&visit, picture)
+    picture.map(answer).ok_or_else(|| Trouble::missing(&visit))
 }
 
 /// Where two frames of the evidence differ.
@@ -46,7 +46,7 @@ pub(super) async fn difference(
         pictures::differences(&expected, &found).ok()
     };
     let picture = app.blocking(&visit, made).await?;
-    answer(&visit, picture)
+    picture.map(answer).ok_or_else(|| Trouble::missing(&visit))
 }
 
 /// The frame that an attachment is, if it is one.
@@ -55,9 +55,8 @@ fn decoded((bytes, attachment): &(Vec<u8>, Attachment)) -> Option<Frame> {
     frames::decode(bytes, &ReadOptions { depth, phase, raw: None }).ok()
 }
 
-fn answer(visit: &Visit, picture: Option<Vec<u8>>) -> Result<Response, Trouble> {
-    let picture = picture.ok_or_else(|| Trouble::missing(visit))?;
-    Ok(([(CONTENT_TYPE, "image/png"), (CACHE_CONTROL, FOR_EVER)], picture).into_response())
+fn answer(picture: Vec<u8>) -> Response {
+    ([(CONTENT_TYPE, "image/png"), (CACHE_CONTROL, FOR_EVER)], picture).into_response()
 }
 
 /// The frames that were kept of a run, each as it went in, came out, should have, and where it differs.

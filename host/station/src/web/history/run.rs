@@ -127,7 +127,7 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
             @if let Some(device) = &run.device { (show::pair(visit.say("history.device"), html! { code { (device) } })) }
             @if let Some(build) = &run.build { (show::pair(visit.say("run.build"), html! { code { (build) } })) }
             @if let Some(record) = record {
-                (show::pair(visit.say("run.production"), visit.say(if record.production { "run.yes" } else { "run.no" })))
+                (show::pair(visit.say("run.production"), if record.production { visit.say("run.yes") } else { visit.say("run.no") }))
                 (show::pair(visit.say("run.program"), show::said(&record.program)))
             }
             (show::pair(visit.say("run.id"), html! { code { (line.id) } }))

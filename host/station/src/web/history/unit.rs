@@ -67,7 +67,7 @@ fn flips(visit: &Visit, unit: &Unit) -> Markup {
     };
     html! {
         @for plan in plans.into_iter().filter(is_flip) {
-            p.flip { (visit.words.fill("history.flipped_plan", &[("plan", plan)])) }
+            p.flip { (show::said(&visit.words.fill("history.flipped_plan", &[("plan", plan)]))) }
         }
     }
 }

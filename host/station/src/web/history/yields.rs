@@ -22,7 +22,7 @@ const MOST_FLIPS: usize = 200;
 /// Days that are drawn.
 const MOST_DAYS: usize = 60;
 /// Lines that are listed.
-const MOST_LINES: usize = 400;
+const MOST_LINES: usize = 120;
 /// With fewer units a share says little.
 const FEW: u64 = 30;
 
@@ -31,8 +31,9 @@ pub(super) async fn page(
     visit: Visit,
     Query(asked): Query<Asked>,
 ) -> Result<Response, Trouble> {
-    let wanted = asked.wanted(&visit)?;
-    let (_, by) = asked.by(&visit, &[("plan", By::Plan), ("day", By::Day), ("lane", By::Lane)])?;
+    let choices = [("plan", By::Plan), ("day", By::Day), ("lane", By::Lane)];
+    let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
+    let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((yields::yields(now, &wanted, by)?, history::plan_names(now)?));
     let (Yields { mut lines, mut flips }, plans) = app.look(&visit, look).await?;
     // The newest day first; lane 10 behind lane 9.
@@ -94,10 +95,11 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
 }
 
 /// The newest days of a plan, whose lines begin with the newest, the earliest of them first.
-fn named_days(of_plan: &[Yield]) -> Vec<(String, Rate)> {
+fn named_days(of_plan: &[Yield]) -> Vec<(String, String, Rate)> {
     let named = |line: &Yield| {
         let day = line.day.map(|day| day.to_string()).unwrap_or_default();
-        (format!("{day}: {}", line.first_pass.text()), line.first_pass)
+        let said = format!("{day}: {}", line.first_pass.text());
+        (day, said, line.first_pass)
     };
     of_plan.iter().take(MOST_DAYS).rev().map(named).collect()
 }

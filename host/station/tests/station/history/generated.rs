@@ -13,6 +13,7 @@ use halfrow_station::store::{Folder, Snapshot};
 use rusqlite::{Connection, Statement, params};
 
 use super::made::{BEGIN_MS, DAY_MS, End, Made, Run, id};
+use super::served::Served;
 
 const LANES: u64 = 16;
 const PARTS: [&str; 5] = ["memory", "row factor", "clock", "samples", "kernel"];
@@ -75,7 +76,7 @@ fn generate(runs: u64) -> Generated {
 }
 
 /// The tables of the first version.
-fn first_schema(to: &Connection) {
+pub(crate) fn first_schema(to: &Connection) {
     let sqlite = |text: &str| {
         text.replace("{int}", "INTEGER").replace("{real}", "REAL").replace("{strict}", " STRICT")
     };
@@ -298,6 +299,33 @@ fn a_million_runs_are_looked_at_in_time() {
     let (begun, ended) = commits(&mut made);
     told("begin", begun, "wanted p99 50 ms, while two look at all there is");
     told("end", ended, "wanted p99 50 ms, the record's bytes among it");
+    served(made, &mut draw);
+}
+
+/// The same through the station's own program, without a browser.
+fn served(Generated { made, runs, .. }: Generated, draw: &mut Draw) {
+    let served = Served::of(made);
+    let get = |path: &str| timed(|| drop(served.page(path)));
+    let mut list = || {
+        let started_ms = started_ms(draw.below(runs));
+        let lane = if draw.below(2) == 0 { format!("&lane={}", draw.below(LANES)) } else { String::new() };
+        get(&format!("/history?after={started_ms}.{}{lane}", id(started_ms, 0)))
+    };
+    told("/history", (0..400).map(|_| list()).collect(), "wanted p95 50 ms");
+    // A unit is made by its first run; some numbers are of none.
+    let units = (0..400).map(|_| {
+        let path = format!("/unit?serial={}", serial(draw.below(runs)));
+        timed(|| drop(served.get(&path)))
+    });
+    told("/unit", units.collect(), "wanted p95 20 ms");
+    for (path, wanted) in [
+        ("/yield", "wanted 500 ms"),
+        ("/yield?by=day", "wanted 500 ms"),
+        ("/pareto", "wanted 100 ms"),
+        ("/pareto?by=check", "wanted 100 ms"),
+    ] {
+        told(path, (0..20).map(|_| get(path)).collect(), wanted);
+    }
 }
 
 /// Runs that are begun and ended while two others look at all there is.

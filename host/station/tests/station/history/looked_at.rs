@@ -1,11 +1,14 @@
 //! The history's pages over HTTP, against what was entered.
 
 use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
 
-use halfrow_station::record::RunCause;
+use halfrow::frames::{ReadOptions, decode};
+use halfrow_station::record::{Record, RunCause};
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
-use super::served::Served;
+use super::served::{PLAN, Served};
 use super::yields::{CASES, enter};
 
 /// Sixty runs of seven units in four lanes by two operators, an hour after one another.
@@ -223,6 +226,57 @@ fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
     for missing in ["/runs/x", "/unit?serial=S2", "/unit", &format!("/runs/{id}/export/pdf")] {
         assert_eq!(served.get(missing).status, 404, "{missing}");
     }
+}
+
+/// Judges a board of the mock's by a plan of a moment, and returns the exit code.
+fn judge(folder: &Path, board: &str, serial: &str) -> Option<i32> {
+    let plan = folder.join("plan.toml");
+    let tables = "[tables]\nradius = 10.0\nwidth = 64\nheight = 8\n[[step]]";
+    std::fs::write(&plan, PLAN.replace("[[step]]", tables)).unwrap();
+    let arguments = ["run", "--serial", serial, "--board", board, "--operator", "weber"];
+    let mut run = Command::new(env!("CARGO_BIN_EXE_halfrow-station"));
+    run.args(arguments).arg("--data").arg(folder).arg("--plan").arg(plan);
+    run.output().unwrap().status.code()
+}
+
+/// The samples of a frame that was kept, and how they hash.
+fn samples(served: &Served, run: &str, name: &str, record: &Record) -> (Vec<u16>, String) {
+    let attached = record.attachments.iter().find(|one| one.name.ends_with(name)).unwrap();
+    let answer = served.get(&format!("/runs/{run}/evidence/{}", attached.sha256));
+    assert_eq!(answer.header("content-type"), Some("image/png"));
+    let samples = decode(&answer.body, &ReadOptions::default()).unwrap().samples().to_vec();
+    let bytes: Vec<u8> = samples.iter().flat_map(|sample| sample.to_le_bytes()).collect();
+    (samples, halfrow::result::sha256([bytes]))
+}
+
+#[test]
+fn a_fail_keeps_the_frames_that_are_wrong_and_shows_them() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(judge(folder.path(), "mock,fault=stuck-data,bit=7", "CAT00001"), Some(1));
+    assert_eq!(judge(folder.path(), "mock", "CAT00002"), Some(0));
+    let served = Served::of(Made::at(folder));
+    let runs = listed(&served.page("/history"));
+    let [passed, failed] = &runs[..] else { panic!("{runs:?}") };
+    let stored = served.folder().verdict_of(failed).unwrap().unwrap();
+    let record = Record::parse(&served.folder().blobs().get(&stored.record_sha256).unwrap()).unwrap();
+    let told = &record.steps.last().unwrap().evidence.as_ref().unwrap()["frames"][0];
+    let [input, found, expected] =
+        ["-in.png", "-out.png", "-should.png"].map(|name| samples(&served, failed, name, &record));
+    // What the judge counted and hashed while it had the frame.
+    let differing = found.0.iter().zip(&expected.0).filter(|(found, expected)| found != expected).count();
+    assert_eq!(Some(differing as u64), told["comparison"]["differences"].as_u64());
+    assert_eq!(Some(input.1.as_str()), told["sha256"].as_str());
+    let page = served.page(&format!("/runs/{failed}"));
+    let pictures = all_between(&page, "<img src=\"", '"');
+    assert_eq!(pictures.len(), 4, "{page}");
+    for picture in &pictures {
+        let answer = served.get(picture);
+        assert_eq!((answer.status, answer.header("content-type")), (200, Some("image/png")), "{picture}");
+        assert!(answer.body.starts_with(b"\x89PNG"));
+        // It is evidence of that run, and of no other.
+        assert_eq!(served.get(&picture.replace(failed, passed)).status, 404);
+    }
+    assert!(!served.page(&format!("/runs/{passed}")).contains("<img"));
 }
 
 #[test]

@@ -9,7 +9,8 @@ use tempfile::TempDir;
 
 use super::made::Made;
 
-const PLAN: &str = r#"schema = 1
+/// A plan of the tests' product.
+pub(crate) const PLAN: &str = r#"schema = 1
 [plan]
 name = "final"
 version = "1"

@@ -11,21 +11,21 @@ use serde_json::Value;
 use super::floor::{Running, SERIALS, Station};
 
 /// A board that takes the connection and says nothing.
-fn silent_board() -> (TcpListener, String) {
+pub(super) fn silent_board() -> (TcpListener, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     (listener, target)
 }
 
 /// Waits until the lane has connected, and keeps the connection.
-fn connected(listener: &TcpListener) {
+pub(super) fn connected(listener: &TcpListener) {
     let (mut connection, _) = listener.accept().unwrap();
     assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
     thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});
 }
 
 /// The process of the lane of this run.
-fn lane_of(station: &Station, run: &Value) -> i32 {
+pub(super) fn lane_of(station: &Station, run: &Value) -> i32 {
     let noted = station.path("data/spool").join(run.as_str().unwrap()).join("lane.pid");
     std::fs::read_to_string(noted).unwrap().split_whitespace().next().unwrap().parse().unwrap()
 }

@@ -31,7 +31,7 @@ pub(crate) struct Station {
 impl Station {
     /// With a lane for each of these boards, called 1, 2, and so on, and more settings behind them.
     pub(crate) fn with(boards: &[&str], more: &str) -> Self {
-        let station = Self { folder: tempfile::tempdir().unwrap() };
+        let station = Self { folder: common::folder() };
         fs::write(station.path("plan.toml"), plan()).unwrap();
         let lanes = boards.iter().zip(1..).map(|(board, name)| {
             format!("[[lane]]\nname = \"{name}\"\nboard = \"{board}\"\nplans = [\"plan.toml\"]\n")

@@ -1,7 +1,9 @@
 //! A station with several lanes, by its program: scans in, news out.
 
+mod again;
 mod ends;
-mod floor;
+mod flat;
+pub(crate) mod floor;
 mod hooks;
 mod refused;
 mod shift;

@@ -21,7 +21,7 @@ pub(crate) struct Station {
 impl Station {
     /// With this plan.
     pub(crate) fn with(plan: &str) -> Self {
-        let station = Self { folder: tempfile::tempdir().unwrap() };
+        let station = Self { folder: common::folder() };
         station.plan(plan);
         station
     }

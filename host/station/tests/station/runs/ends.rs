@@ -132,14 +132,14 @@ fn a_call_that_is_wrong_begins_no_run() {
 }
 
 /// A board that takes the connection and says nothing keeps the lane busy for some seconds.
-fn silent_board() -> (TcpListener, String) {
+pub(crate) fn silent_board() -> (TcpListener, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     (listener, target)
 }
 
 /// The process of the lane, as soon as it has connected to the board and the station has heard of it.
-fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
+pub(crate) fn lane_of(station: &Station, listener: &TcpListener) -> i32 {
     let (mut connection, _) = listener.accept().unwrap();
     assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
     // Held open, so that the lane waits for an answer.

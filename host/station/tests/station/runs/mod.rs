@@ -1,10 +1,13 @@
 //! Runs of the program, from the serial number to what is kept.
 
+mod again;
 pub(crate) mod bench;
 mod checked;
 mod ends;
 mod faults;
 mod identity;
 mod killed;
+mod killed_lane;
+mod limited;
 mod saved;
 mod unsaved;

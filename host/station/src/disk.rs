@@ -1,0 +1,111 @@
+//! Whether a disk keeps what it was given: what stands in memory alone, or in another computer, may not.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use nix::sys::statfs::statfs;
+
+/// File systems that may lose what was brought to the disk, by their numbers in statfs(2).
+const REFUSED: [(i64, &str); 11] = [
+    (0x0102_1994, "tmpfs, which is memory"),
+    (0x8584_58F6, "ramfs, which is memory"),
+    (0x6969, "NFS, which is another computer's"),
+    (0x517B, "SMB, which is another computer's"),
+    (0xFE53_4D42, "SMB, which is another computer's"),
+    (0xFF53_4D42, "CIFS, which is another computer's"),
+    (0x5346_414F, "AFS, which is another computer's"),
+    (0x7375_7245, "Coda, which is another computer's"),
+    (0x00C3_6400, "Ceph, which is another computer's"),
+    (0x0102_1997, "9P, which is another computer's"),
+    (0x6573_5546, "FUSE, behind which anything may be"),
+];
+/// What containers stand on. It hands on what is brought to the disk, unless it is mounted as `volatile`.
+const OVERLAY: i64 = 0x794C_7630;
+
+/// A folder that a station cannot have.
+#[derive(Debug, thiserror::Error)]
+pub enum DiskError {
+    /// It is on no disk of this computer.
+    #[error(
+        "the folder {} is on {what}; put the station's folder on a disk of this computer, or take this one with --any-disk",
+        folder.display()
+    )]
+    Refused {
+        /// The folder.
+        folder: PathBuf,
+        /// The file system.
+        what: &'static str,
+    },
+    /// The system does not tell.
+    #[error("the system does not say what the folder {} is on; check its name, and who may read it", folder.display())]
+    Untold {
+        /// The folder.
+        folder: PathBuf,
+        /// Its reason.
+        source: io::Error,
+    },
+}
+
+/// Refuses the folder, which need not be there yet, if its file system may lose what was brought to the disk.
+///
+/// # Errors
+/// [`DiskError`]
+pub fn keeps(folder: &Path) -> Result<(), DiskError> {
+    let is_there = |place: &&Path| place.exists();
+    let place = folder.ancestors().find(is_there).unwrap_or(Path::new("."));
+    let untold = |source| DiskError::Untold { folder: folder.to_owned(), source };
+    let number = statfs(place).map_err(|error| untold(error.into()))?.filesystem_type().0;
+    let refused = |what| Err(DiskError::Refused { folder: folder.to_owned(), what });
+    if let Some((_, what)) = REFUSED.into_iter().find(|(known, _)| *known == number) {
+        return refused(what);
+    }
+    if number == OVERLAY {
+        let mounts = fs::read_to_string("/proc/self/mountinfo").map_err(untold)?;
+        if is_volatile(&mounts, &place.canonicalize().map_err(untold)?) {
+            return refused("an overlay that is volatile");
+        }
+        tracing::warn!(
+            "{} is on an overlay, and goes with its container; mount a disk there",
+            folder.display()
+        );
+    }
+    Ok(())
+}
+
+/// Whether the mount that has `place` is volatile, by proc_pid_mountinfo(5): the fifth word is where, the last one how.
+fn is_volatile(mounts: &str, place: &Path) -> bool {
+    let mount = |line: &str| {
+        let mut words = line.split(' ');
+        let (at, how) = (words.nth(4)?.to_owned(), words.next_back()?.to_owned());
+        Some((at, how))
+    };
+    let over = mounts.lines().filter_map(mount).filter(|(at, _)| place.starts_with(at));
+    // Of mounts in one place the last one covers the others.
+    let nearest = over.max_by_key(|(at, _)| at.len());
+    nearest.is_some_and(|(_, how)| how.split(',').any(|option| option == "volatile"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_refused_and_a_disk_is_taken() {
+        let refused = keeps("/dev/shm/station/data".as_ref()).unwrap_err().to_string();
+        assert!(refused.contains("is on tmpfs, which is memory; put"), "{refused}");
+        keeps(concat!(env!("CARGO_MANIFEST_DIR"), "/not-there/data").as_ref()).unwrap();
+    }
+
+    #[test]
+    fn an_overlay_is_asked_whether_it_is_volatile() {
+        let mounts = "36 35 98:0 / / rw,noatime shared:1 - ext4 /dev/root rw,errors=continue\n\
+                      40 36 0:32 / /a rw - overlay overlay rw,lowerdir=/l,upperdir=/u,workdir=/w,volatile\n\
+                      41 40 0:33 / /a/b rw - overlay overlay rw,lowerdir=/l,upperdir=/u,workdir=/w\n";
+        for (place, volatile) in
+            [("/x", false), ("/a", true), ("/a/c", true), ("/a/b/c", false), ("/ab", false)]
+        {
+            assert_eq!(is_volatile(mounts, place.as_ref()), volatile, "{place}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Whether a unit that passed already is tested again.
+
+use halfrow::Verdict;
+use jiff::Timestamp;
+use rusqlite::{OptionalExtension as _, params};
+
+use super::{Folder, StoreError, statements as sql};
+use crate::plan::{Again, Plan};
+
+/// Why a unit is not tested again.
+#[derive(Debug, thiserror::Error)]
+pub enum AgainError {
+    /// The plan wants it so.
+    #[error("{serial} passed already under this plan, at {when}; put it with the boards that passed")]
+    Refused {
+        /// The serial number.
+        serial: String,
+        /// When it passed, UTC.
+        when: String,
+    },
+    /// Nobody has said yet that it is meant.
+    #[error("{serial} passed already under this plan, at {when}; {how} to test it again")]
+    Asked {
+        /// The serial number.
+        serial: String,
+        /// When it passed, UTC.
+        when: String,
+        /// How it is said that it is meant.
+        how: &'static str,
+    },
+}
+
+impl Folder {
+    /// Why the unit of this serial number is not tested again just so: its last judgement under just this plan is PASS.
+    /// `how` is what somebody does who means it. Units that check shifts are always tested.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn again(
+        &self,
+        plan: &Plan,
+        serial: &str,
+        how: &'static str,
+    ) -> Result<Option<AgainError>, StoreError> {
+        if plan.again == Again::Allow || plan.is_reference(serial) {
+            return Ok(None);
+        }
+        let of = params![plan.product, serial, plan.sha256];
+        let last: Option<(String, i64)> = self
+            .reader()?
+            .query_row(sql::PASSED, of, |row| Ok((row.get(0)?, row.get(1)?)))
+            .optional()
+            .map_err(|source| StoreError::Database {
+                path: self.database(),
+                doing: "to tell whether a unit passed",
+                source,
+            })?;
+        let Some((_, ms)) = last.filter(|(verdict, _)| *verdict == Verdict::Pass.to_string()) else {
+            return Ok(None);
+        };
+        let when =
+            Timestamp::from_millisecond(ms).map_or_else(|_| ms.to_string(), |when| format!("{when:.0}"));
+        let serial = serial.to_owned();
+        Ok(Some(match plan.again {
+            Again::Ask => AgainError::Asked { serial, when, how },
+            Again::Refuse | Again::Allow => AgainError::Refused { serial, when },
+        }))
+    }
+}

@@ -1,0 +1,48 @@
+//! What is counted when a run ends: brought up to date where the database is older, and checked against the records.
+
+use halfrow_station::check::check;
+use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
+use rusqlite::Connection;
+
+use super::generated::first_schema;
+use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+
+#[test]
+fn a_database_is_brought_up_to_date_with_a_copy_beside_it_by_who_writes_alone() {
+    let kept = tempfile::tempdir().unwrap();
+    let folder = Folder::new(kept.path());
+    first_schema(&Connection::open(folder.database()).unwrap());
+    let refused = Snapshot::take(&folder).unwrap_err();
+    assert!(matches!(refused, StoreError::Older { found: 1, known: 2, .. }), "{refused:?}");
+    // What an earlier attempt left half written is in nobody's way.
+    std::fs::write(kept.path().join("station.before-2.partial"), "half").unwrap();
+    drop(Store::open(&folder).unwrap());
+    assert!(Snapshot::take(&folder).is_ok());
+    let copy = Connection::open(kept.path().join("station.before-2.db")).unwrap();
+    let version: i64 = copy.query_row("SELECT max(n) FROM schema_version", [], |row| row.get(0)).unwrap();
+    assert_eq!(version, 1);
+    assert!(!kept.path().join("station.before-2.partial").exists());
+}
+
+/// What is counted when a run ends follows from the records like all else.
+#[test]
+fn what_was_counted_wrong_is_told_by_check() {
+    let mut made = Made::new();
+    for (end, hour) in [End::Fail(&["memory"]), End::Pass].into_iter().zip(0..) {
+        made.run(&Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of("S1", end) });
+    }
+    let faults = || check(&made.folder()).unwrap().faults.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(faults(), Vec::<String>::new());
+    let database = Connection::open(made.folder().database()).unwrap();
+    for (change, told) in [
+        ("UPDATE day_count SET passed = passed + 1", "passed is `1`, and the records say `0`"),
+        ("UPDATE retest SET last_verdict = 'FAIL'", "last_verdict is `FAIL`, and the records say `PASS`"),
+        ("DELETE FROM failure WHERE kind = 'check'", "table failure has no row"),
+    ] {
+        let before = faults().len();
+        database.execute_batch(change).unwrap();
+        let after = faults();
+        assert_eq!(after.len(), before + 1, "{after:?}");
+        assert!(after.iter().any(|fault| fault.contains(told)), "{after:?}");
+    }
+}

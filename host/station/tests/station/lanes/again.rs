@@ -1,0 +1,53 @@
+//! Units that passed already, in lanes.
+
+use std::fs;
+
+use super::floor::{SERIALS, Station, plan};
+
+fn station(again: &str) -> Station {
+    let station = Station::with(&["mock"], "");
+    let plan = plan().replace("device = ", &format!("again = \"{again}\"\ndevice = "));
+    fs::write(station.path("plan.toml"), plan).unwrap();
+    station
+}
+
+#[test]
+fn a_unit_that_passed_is_scanned_once_more_if_it_is_meant() {
+    let station = station("ask");
+    let mut running = station.start();
+    let serial = SERIALS[0];
+    for _ in 0..2 {
+        running.scan(serial);
+        running.answer(serial);
+        running.state("1", "PASS");
+        running.scan(serial);
+        let (is_taken, said) = running.answer(serial);
+        assert!(!is_taken && said.contains("passed already under this plan"), "{said}");
+        assert!(said.ends_with("scan it once more to test it again"), "{said}");
+        let ready = running.state("1", "READY");
+        assert_eq!(ready["note"].as_str(), Some(said.as_str()));
+    }
+    // Another unit between the two, so that the second scan is a first one.
+    running.scan(SERIALS[1]);
+    running.state("1", "PASS");
+    running.scan(serial);
+    assert!(!running.answer(serial).0);
+    assert_eq!(running.end().0, Some(0));
+    assert_eq!(station.query("SELECT count(*) FROM run"), ["3"]);
+    station.assert_well();
+}
+
+#[test]
+fn a_plan_may_refuse_units_that_passed() {
+    let station = station("refuse");
+    let mut running = station.start();
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    for _ in 0..2 {
+        running.scan(SERIALS[0]);
+        let (is_taken, said) = running.answer(SERIALS[0]);
+        assert!(!is_taken && said.ends_with("put it with the boards that passed"), "{said}");
+    }
+    assert_eq!(running.end().0, Some(0));
+    assert_eq!(station.query("SELECT count(*) FROM run"), ["1"]);
+}

@@ -1,0 +1,37 @@
+//! Units that passed already.
+
+use std::process::Command;
+
+use super::bench::{Did, PLAN, Station, program};
+
+fn plan(again: &str) -> String {
+    PLAN.replace("device = ", &format!("again = \"{again}\"\ndevice = "))
+}
+
+fn meant(station: &Station, serial: &str) -> Did {
+    let mut arguments = station.run_arguments(serial, "mock");
+    arguments.push("--again".to_owned());
+    Command::new(program()).args(arguments).output().unwrap().into()
+}
+
+#[test]
+fn a_unit_that_passed_is_tested_again_as_the_plan_says() {
+    for (again, plain, said) in [("allow", 0, 0), ("ask", 2, 0), ("refuse", 2, 2)] {
+        let station = Station::with(&plan(again));
+        for board in ["mock,fault=stuck-data", "mock"] {
+            assert_ne!(station.run("CAT00001", board).code, Some(2), "it has not passed yet");
+        }
+        let did = station.run("CAT00001", "mock");
+        assert_eq!(did.code, Some(plain), "{again}: {did:?}");
+        let complaint = "CAT00001 passed already under this plan, at 20";
+        assert_eq!(did.complained.contains(complaint), plain != 0, "{did:?}");
+        assert_eq!(did.complained.contains("say --again to test it again"), again == "ask", "{did:?}");
+        assert_eq!(meant(&station, "CAT00001").code, Some(said), "{again}");
+        assert_eq!(station.run("CAT00002", "mock").code, Some(0), "another unit");
+        // Under another plan it has not passed.
+        station.plan(&plan(again).replace("version = \"1\"", "version = \"2\""));
+        assert_eq!(station.run("CAT00001", "mock").code, Some(0), "{again}");
+        let runs = 2 + i32::from(plain == 0) + i32::from(said == 0) + 2;
+        assert_eq!(station.query("SELECT count(*) FROM run"), [runs.to_string()], "{again}");
+    }
+}

@@ -1,0 +1,73 @@
+"""A station at work, for scripts: boards in, verdicts out."""
+import json
+import subprocess
+
+# A plan whose runs take a moment.
+PLAN = """schema = 1
+[plan]
+name = "quick"
+version = "1"
+product = "CAM-T"
+[serial]
+pattern = "^CAT[0-9]{5}$"
+check = "none"
+[board]
+require_hardware = false
+builds = ["00000000"]
+device = "if-present"
+[tables]
+radius = 10.0
+width = 64
+height = 8
+[[step]]
+kind = "verify"
+frames = ["builtin:noise"]
+"""
+
+
+class Station:
+    """A station's settings in a folder, with a lane for each board, and its program."""
+
+    def __init__(self, program, folder, data, boards, plan=PLAN):
+        self.program, self.data = program, data
+        (folder / "plan.toml").write_text(plan)
+        text = f'schema = 1\n[station]\nname = "12"\ndata = "{data}"\n'
+        for number, board in enumerate(boards, 1):
+            text += f'[[lane]]\nname = "{number}"\nboard = "{board}"\nplans = ["plan.toml"]\n'
+        self.settings = folder / "station.toml"
+        self.settings.write_text(text)
+
+    def start(self, **streams):
+        return subprocess.Popen([self.program, "lanes", "--settings", self.settings], text=True, **streams)
+
+    def judge(self, runs, seen=lambda: None, at_end=lambda process: None):
+        """Judges so many boards, in all lanes at once; returns each verdict that was shown, with what `seen` returned then."""
+        station = self.start(stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+        shown, given, busy = {}, 0, set()
+        for line in station.stdout:
+            news = json.loads(line)
+            if news["news"] != "lane":
+                continue
+            lane, verdict = news["lane"], news["shown"]
+            if verdict and verdict["run"] not in shown:
+                shown[verdict["run"]] = (verdict, seen())
+                busy.discard(lane)
+            if given < runs and lane not in busy and (verdict or news["state"] == "READY"):
+                given += 1
+                busy.add(lane)
+                station.stdin.write(f"HR:LANE:{lane}\nCAT{given:05}\n")
+                station.stdin.flush()
+            if len(shown) == runs and not station.stdin.closed:
+                at_end(station)
+                station.stdin.close()
+        assert station.wait() == 0 and len(shown) == runs, f"{len(shown)} of {runs} boards were judged"
+        return list(shown.values())
+
+    def restarts(self):
+        """Nothing when it starts on what it finds, and nothing is wrong there then; else what it said."""
+        started = self.start(stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        _, complaints = started.communicate()
+        checked = subprocess.run([self.program, "check", "--data", self.data], capture_output=True, text=True)
+        if started.returncode == 0 and checked.returncode == 0 and "are open" not in checked.stdout:
+            return ""
+        return complaints + checked.stdout + checked.stderr
