@@ -244,6 +244,8 @@ fn on_processor() -> Duration {
     Duration::from_nanos(said.split(' ').next().unwrap().parse().unwrap())
 }
 
+/// Prints what whoever measures looks at.
+#[allow(clippy::print_stdout)]
 fn told(name: &str, times: Vec<Took>, wanted: &str) {
     let (wall, processor): (Vec<_>, Vec<_>) = times.into_iter().unzip();
     let ([p95, p99, most], [of_processor, ..]) = (slowest(wall), slowest(processor));

@@ -81,7 +81,7 @@ impl Served {
         });
         // What else it says must not fill the pipe.
         std::thread::spawn(move || lines.for_each(drop));
-        Self { station, address: address.expect("the station says where it is"), data, _settings: settings }
+        Self { station, address: address.unwrap(), data, _settings: settings }
     }
 
     pub(crate) fn folder(&self) -> halfrow_station::store::Folder {

@@ -73,7 +73,7 @@ impl Chromium {
     }
 
     /// Asks the browser for something; returns the number of the answer.
-    fn put(&mut self, method: &str, parameters: Value) -> u64 {
+    fn put(&mut self, method: &str, parameters: &Value) -> u64 {
         self.number += 1;
         let mut message = json!({ "id": self.number, "method": method, "params": parameters });
         if !self.session.is_null() {
@@ -99,8 +99,8 @@ impl Chromium {
         }
     }
 
-    pub(super) fn call(&mut self, method: &str, parameters: Value) -> Value {
-        let number = self.put(method, parameters);
+    pub(super) fn call(&mut self, method: &str, parameters: impl Into<Value>) -> Value {
+        let number = self.put(method, &parameters.into());
         self.answer(number)
     }
 
@@ -134,8 +134,8 @@ impl Chromium {
                 "Tab" | "Escape" => "",
                 key => key,
             };
-            self.put("Input.dispatchKeyEvent", json!({ "type": "keyDown", "key": key, "text": typed }));
-            last = self.put("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key }));
+            self.put("Input.dispatchKeyEvent", &json!({ "type": "keyDown", "key": key, "text": typed }));
+            last = self.put("Input.dispatchKeyEvent", &json!({ "type": "keyUp", "key": key }));
             if !apart.is_zero() {
                 thread::sleep(apart);
             }
