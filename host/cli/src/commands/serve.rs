@@ -9,7 +9,6 @@ use super::{Failure, print};
 use crate::exit::Exit;
 use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
 use crate::signals;
-use halfrow::link;
 use halfrow::target::Target;
 
 #[derive(Debug, Args)]
@@ -35,7 +34,7 @@ fn door(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let mut board = Hosted::new(link::open(&arguments.board)?.link);
+    let mut board = Hosted::open(&arguments.board)?;
     let signal = signals::stop();
     let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;
     let served = match &arguments.tcp {

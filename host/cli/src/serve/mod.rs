@@ -16,7 +16,8 @@ use std::time::{Duration, Instant};
 
 use crate::exit::Exit;
 use halfrow::link::descriptor::{Gone, Pump, is_ready, send};
-use halfrow::link::{Link, LinkError};
+use halfrow::link::{Link, LinkError, OpenError, open};
+use halfrow::target::Target;
 use halfrow_protocol::Decoder;
 
 pub use pty::{Name, Pty};
@@ -102,6 +103,17 @@ pub struct Hosted {
 }
 
 impl Hosted {
+    /// The board that `target` names, switched on now.
+    ///
+    /// # Errors
+    /// [`OpenError`] as [`open`] has it.
+    pub fn open(target: &Target) -> Result<Self, OpenError> {
+        let mut target = target.clone();
+        // The board is kept at the wall's time here: a link that sleeps as well would never catch up.
+        target.options.retain(|(key, value)| (key.as_str(), value.as_str()) != ("pace", "real"));
+        Ok(Self::new(open(&target)?.link))
+    }
+
     /// The board behind `link`, switched on now.
     #[must_use]
     pub fn new(link: Box<dyn Link>) -> Self {

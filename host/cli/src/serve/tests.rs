@@ -89,6 +89,12 @@ fn second_host_is_told(ago: Duration) -> Option<RefusalCode> {
 }
 
 #[test]
+fn a_board_whose_link_is_paced_is_paced_once() {
+    let hosted = Hosted::open(&"mock,pace=real,speed=1000".parse().unwrap()).unwrap();
+    assert_eq!(hosted.link.name(), "the mock board's wire (1000 bytes/s, virtual clock)");
+}
+
+#[test]
 fn a_host_that_was_silent_while_nobody_was_served_holds_the_board_no_longer() {
     assert_eq!(second_host_is_told(Duration::from_secs(15)), None);
     assert_eq!(second_host_is_told(Duration::from_secs(1)), Some(RefusalCode::Held));
