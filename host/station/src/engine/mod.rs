@@ -141,6 +141,8 @@ impl Engine {
         if thread.join().is_err() {
             tracing::error!("the engine ended early; look at what it said before");
         }
+        // There is no more news, which ends whoever listens.
+        self.board.lock().unwrap_or_else(PoisonError::into_inner).listeners = Listeners::default();
     }
 
     fn put(&self, input: Input) {
