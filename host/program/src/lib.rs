@@ -5,7 +5,7 @@
 //! * [`log`]: what goes to stderr when somebody wants to know.
 //! * [`guard`]: a panic is an error with exit code 3, never 101.
 //! * [`json`]: what documents of both programs begin with, and [`codes`]: why there is no result.
-//! * [`line`]: what a command line that asks for help, or is wrong, is told.
+//! * [`mod@line`]: what a command line that asks for help, or is wrong, is told.
 
 pub mod codes;
 pub mod console;
