@@ -8,8 +8,9 @@ use halfrow::frames::{ReadOptions, decode};
 use halfrow_station::record::{Record, RunCause};
 
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
-use super::served::{PLAN, Served};
+use super::served::{self, Served};
 use super::yields::{CASES, enter};
+use crate::common::program;
 
 /// Sixty runs of seven units in four lanes by two operators, an hour after one another.
 fn many() -> (Served, Vec<(String, Run)>) {
@@ -231,10 +232,9 @@ fn a_run_s_page_says_all_of_it_and_gives_it_to_others() {
 /// Judges a board of the mock's by a plan of a moment, and returns the exit code.
 fn judge(folder: &Path, board: &str, serial: &str) -> Option<i32> {
     let plan = folder.join("plan.toml");
-    let tables = "[tables]\nradius = 10.0\nwidth = 64\nheight = 8\n[[step]]";
-    std::fs::write(&plan, PLAN.replace("[[step]]", tables)).unwrap();
+    std::fs::write(&plan, served::plan()).unwrap();
     let arguments = ["run", "--serial", serial, "--board", board, "--operator", "weber"];
-    let mut run = Command::new(env!("CARGO_BIN_EXE_halfrow-station"));
+    let mut run = Command::new(program());
     run.args(arguments).arg("--data").arg(folder).arg("--plan").arg(plan);
     run.output().unwrap().status.code()
 }

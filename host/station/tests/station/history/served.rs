@@ -8,24 +8,12 @@ use std::process::{Child, Command, Stdio};
 use tempfile::TempDir;
 
 use super::made::Made;
+use crate::common::{PLAN, program};
 
-/// A plan of the tests' product.
-pub(crate) const PLAN: &str = r#"schema = 1
-[plan]
-name = "final"
-version = "1"
-product = "CAM-T"
-[serial]
-pattern = "^CAT[0-9]{5}$"
-check = "none"
-[board]
-require_hardware = false
-builds = ["00000000"]
-device = "if-present"
-[[step]]
-kind = "verify"
-frames = ["builtin:noise"]
-"#;
+/// A plan of what was made.
+pub(crate) fn plan() -> String {
+    PLAN.replace("quick", "final")
+}
 
 /// A station that is served until this goes.
 pub(crate) struct Served {
@@ -58,7 +46,7 @@ impl Served {
     /// Serves what was made.
     pub(crate) fn of(made: Made) -> Self {
         let (data, settings) = (made.closed(), tempfile::tempdir().unwrap());
-        fs::write(settings.path().join("plan.toml"), PLAN).unwrap();
+        fs::write(settings.path().join("plan.toml"), plan()).unwrap();
         let text = format!(
             "schema = 1\n[station]\nname = \"station 7\"\ndata = {:?}\n[web]\nlisten = \"127.0.0.1:0\"\n\
              [[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n",
@@ -66,7 +54,7 @@ impl Served {
         );
         let file = settings.path().join("station.toml");
         fs::write(&file, text).unwrap();
-        let mut station = Command::new(env!("CARGO_BIN_EXE_halfrow-station"))
+        let mut station = Command::new(program())
             .args(["serve", "--settings"])
             .arg(&file)
             .stdin(Stdio::null())

@@ -2,17 +2,14 @@
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Child, Command, Output, Stdio};
 
 use tempfile::TempDir;
 
 use super::http::{Answer, Request, escaped};
-
-const PLAN: &str = include_str!("plan.toml");
-
-/// Serial numbers whose check digits publishers computed: ISBNs of printed books.
-pub(crate) const SERIALS: [&str; 4] = ["CA0131103628", "CA0201134373", "CA080442957X", "CA0306406152"];
+pub(crate) use crate::common::SERIALS;
+use crate::common::{self, guarded_plan, program};
 
 /// Where browsers find the station that others can reach.
 pub(crate) const PUBLIC: &str = "station12.example";
@@ -30,7 +27,8 @@ impl Station {
     /// With so many mock boards, and more settings before them.
     pub(crate) fn with(lanes: usize, more: &str) -> Self {
         let station = Self { folder: tempfile::tempdir().unwrap() };
-        fs::write(station.path("plan.toml"), PLAN).unwrap();
+        let plan = guarded_plan("CAM-T", "CA").replace("if-present", "not-checked");
+        fs::write(station.path("plan.toml"), plan).unwrap();
         let lane = |name| {
             format!("[[lane]]\nname = \"{name}\"\nboard = \"mock,serial={name}\"\nplans = [\"plan.toml\"]\n")
         };
@@ -104,10 +102,7 @@ impl Station {
 
     /// A look at the database that is not the program's.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
-        let database = rusqlite::Connection::open(self.path("data/station.db")).unwrap();
-        let mut statement = database.prepare(text).unwrap();
-        let rows = statement.query_map([], |row| row.get(0)).unwrap();
-        rows.map(Result::unwrap).collect()
+        common::query(&self.path("data"), text)
     }
 }
 
@@ -196,8 +191,4 @@ impl Browser {
         let pairs: Vec<_> = fields.map(|(name, value)| format!("{name}={}", escaped(value))).collect();
         Request { body: pairs.join("&"), ..request }
     }
-}
-
-fn program() -> &'static Path {
-    Path::new(env!("CARGO_BIN_EXE_halfrow-station"))
 }

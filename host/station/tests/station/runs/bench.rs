@@ -2,7 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Child, Command, Stdio};
 
 use halfrow_station::record::Record;
 use halfrow_station::store::{Folder, Stored};
@@ -54,6 +54,13 @@ impl Station {
 
     pub(crate) fn run(&self, serial: &str, board: &str) -> Did {
         Command::new(program()).args(self.run_arguments(serial, board)).output().unwrap().into()
+    }
+
+    /// A run that goes on, with its streams.
+    pub(crate) fn begin(&self, serial: &str, board: &str, more: &[&str]) -> Child {
+        let mut run = Command::new(program());
+        run.args(self.run_arguments(serial, board)).args(more);
+        run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
     }
 
     pub(crate) fn check(&self) -> Did {

@@ -2,11 +2,10 @@
 
 use std::io::Read as _;
 use std::net::TcpListener;
-use std::process::{Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::bench::{Did, PLAN, Station, program};
+use super::bench::{Did, PLAN, Station};
 
 #[test]
 fn a_sound_board_passes_and_its_record_reads_back() {
@@ -170,14 +169,7 @@ fn a_lane_that_hangs_is_killed_and_recorded() {
     use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
-    let mut arguments = station.run_arguments("CAT00001", &target);
-    arguments.extend(["--silence".to_owned(), "1".to_owned()]);
-    let running = Command::new(program())
-        .args(arguments)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let running = station.begin("CAT00001", &target, &["--silence", "1"]);
     let lane = lane_of(&station, &listener);
     signal(lane, Signal::SIGSTOP);
     let did = Did::from(running.wait_with_output().unwrap());
@@ -194,12 +186,7 @@ fn a_lane_that_dies_is_recorded() {
     use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
-    let running = Command::new(program())
-        .args(station.run_arguments("CAT00001", &target))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let running = station.begin("CAT00001", &target, &[]);
     signal(lane_of(&station, &listener), Signal::SIGKILL);
     let did = Did::from(running.wait_with_output().unwrap());
     assert_eq!(did.code, Some(3), "{did:?}");
@@ -212,12 +199,7 @@ fn a_run_that_is_stopped_ends_in_order() {
     use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
-    let running = Command::new(program())
-        .args(station.run_arguments("CAT00001", &target))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let running = station.begin("CAT00001", &target, &[]);
     lane_of(&station, &listener);
     signal(running.id() as i32, Signal::SIGINT);
     let did = Did::from(running.wait_with_output().unwrap());
@@ -231,12 +213,7 @@ fn a_run_that_is_found_open_is_an_error() {
     use nix::sys::signal::Signal;
     let station = Station::with(PLAN);
     let (listener, target) = silent_board();
-    let mut running = Command::new(program())
-        .args(station.run_arguments("CAT00001", &target))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut running = station.begin("CAT00001", &target, &[]);
     let lane = lane_of(&station, &listener);
     signal(running.id() as i32, Signal::SIGKILL);
     running.wait().unwrap();
