@@ -5,11 +5,11 @@ use std::path::{self, PathBuf};
 use clap::Args;
 
 use super::Failure;
+use super::beginning::{Disk, settings};
 use super::serve::{Served, serve};
 use crate::console;
 use crate::demo::{Demo, MOST_LANES, serials};
 use crate::exit::Exit;
-use crate::settings::Settings;
 use crate::web::{User, Who};
 
 /// Show a station at work: mock boards, some of them broken, and its pages in a browser
@@ -26,6 +26,8 @@ pub(super) struct Arguments {
     /// A new folder for all of it, which is kept [default: one that is removed at the end]
     #[arg(long, value_name = "FOLDER")]
     folder: Option<PathBuf>,
+    #[command(flatten)]
+    disk: Disk,
 }
 
 fn lanes(text: &str) -> Result<usize, String> {
@@ -37,6 +39,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let aside = tempfile::tempdir().map_err(Failure::error)?;
     let folder = arguments.folder.clone().unwrap_or_else(|| aside.path().to_owned());
     let folder = path::absolute(folder).map_err(Failure::call)?;
+    // What goes with the program has nothing to lose, wherever it lies.
+    let disk = arguments.disk.unless(arguments.folder.is_none());
+    disk.takes(&folder)?;
     let demo =
         Demo::new(&folder, arguments.lanes, arguments.port).map_err(|error| {
             Failure::call(anyhow::Error::from(error).context(format!(
@@ -44,10 +49,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
                 folder.display()
             )))
         })?;
-    let settings = Settings::load(&demo.settings).map_err(Failure::call)?;
+    let settings = settings(&demo.settings)?;
     console::tell("A demonstration: no board is real. Ctrl-C ends it.");
     // Whoever looks at it may do all that there is to do.
     let everybody = User { name: "visitor".to_owned(), who: Who::Engineer };
     let hints = serials(&settings);
-    serve(Served { settings: &settings, everybody, hints }, |engine| demo.start(engine, &settings))
+    let served = Served { settings: &settings, disk: &disk, everybody, hints };
+    serve(served, |engine| demo.start(engine, &settings))
 }

@@ -1,21 +1,18 @@
 //! `halfrow-station lanes`
 
 use std::io::{self, BufRead as _};
-use std::path::{self, PathBuf};
-use std::sync::atomic::Ordering;
+use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
 use clap::Args;
 
-use super::looking::Disk;
-use super::{Failure, recovered, signals};
+use super::Failure;
+use super::beginning::{Disk, Ready, settings};
 use crate::console;
-use crate::engine::{Engine, News};
+use crate::engine::News;
 use crate::exit::Exit;
-use crate::settings::Settings;
-use crate::store::{Folder, Store};
 
 /// How often it is looked whether a signal came.
 const LOOK: Duration = Duration::from_millis(100);
@@ -37,20 +34,16 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let settings = path::absolute(&arguments.settings).map_err(Failure::call)?;
-    let settings = Settings::load(&settings).map_err(Failure::call)?;
-    let program = std::env::current_exe().map_err(Failure::error)?;
-    let signal = signals::last().map_err(Failure::error)?;
-    arguments.disk.takes(&settings.data)?;
-    let mut store = Store::open(&Folder::new(&settings.data))?;
-    recovered(&mut store)?;
-    let engine = Engine::start(settings, store, program).map_err(Failure::error)?;
+    let settings = settings(&arguments.settings)?;
+    let ready = Ready::of(&settings, &arguments.disk)?;
+    let signal = ready.signal.clone();
+    let engine = ready.start()?;
     let news = engine.listen();
     let printer = thread::Builder::new().name("news".to_owned()).spawn(move || print(&news));
     let printer = printer.map_err(Failure::error)?;
     let scans = scans().map_err(Failure::error)?;
     let by = loop {
-        if let Some(by) = Exit::stopped_by(signal.load(Ordering::Relaxed)) {
+        if let Some(by) = signal.by() {
             break Some(by);
         }
         match scans.recv_timeout(LOOK) {

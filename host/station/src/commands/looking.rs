@@ -1,6 +1,6 @@
 //! What the commands that look at results have in common.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
@@ -11,7 +11,6 @@ use jiff::{Timestamp, tz::TimeZone};
 use serde::Serialize;
 
 use super::{Failure, print};
-use crate::disk;
 use crate::exit::Exit;
 use crate::history::Period;
 use crate::history::runs::Filter;
@@ -35,21 +34,6 @@ impl Data {
     /// The results at this moment.
     pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
         Ok(Snapshot::take(&self.folder())?)
-    }
-}
-
-/// Which disks are taken for new results.
-#[derive(Debug, Args)]
-pub(super) struct Disk {
-    /// Take any disk for the station's folder, memory and networks too, although it may lose results
-    #[arg(long, env = "HALFROW_STATION_ANY_DISK")]
-    any_disk: bool,
-}
-
-impl Disk {
-    /// Refuses a folder that may lose results.
-    pub(super) fn takes(&self, folder: &Path) -> Result<(), Failure> {
-        if self.any_disk { Ok(()) } else { disk::keeps(folder).map_err(Failure::call) }
     }
 }
 

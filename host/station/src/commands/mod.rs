@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod beginning;
 mod check;
 mod codes;
 mod demo;
@@ -29,8 +30,7 @@ pub use document::failure;
 
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
-use crate::run::{self as runs, RunError, Saved};
-use crate::store::{Store, StoreError};
+use crate::store::StoreError;
 
 /// Judges boards on a production line by plans, and keeps every result.
 #[derive(Debug, Parser)]
@@ -147,16 +147,6 @@ impl From<StoreError> for Failure {
         let exit = if matches!(error, StoreError::InUse { .. }) { Exit::Busy } else { Exit::Error };
         Self { exit, error: error.into() }
     }
-}
-
-/// Closes what was under way when the station ended, says so, and returns it.
-fn recovered(store: &mut Store) -> Result<Vec<Saved>, RunError> {
-    let recovered = runs::recover(store)?;
-    for Saved { record, .. } in &recovered {
-        let (id, serial) = (&record.run.id, &record.run.serial);
-        console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
-    }
-    Ok(recovered)
 }
 
 /// Prints a result, which is the command's only one.

@@ -2,8 +2,6 @@
 
 use std::fs;
 use std::path::{self, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use clap::Args;
@@ -12,8 +10,8 @@ use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 use serde_json::json;
 
-use super::looking::Disk;
-use super::{Failure, document, recovered, signals};
+use super::beginning::{Disk, Signal, recovered};
+use super::{Failure, document};
 use crate::clock;
 use crate::console;
 use crate::exit::Exit;
@@ -21,7 +19,7 @@ use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
 use crate::plan::Plan;
 use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
-use crate::store::{AgainError, Folder, SharedStore, Store};
+use crate::store::{AgainError, Folder, SharedStore};
 
 /// What a run says that is no production.
 const NO_PRODUCTION: &str = "it counts as no production: its plan takes any kind of board, or the unit checks shifts, or \
@@ -86,9 +84,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plan = Plan::load(&plan_file).map_err(Failure::call)?;
     plan.select(&arguments.serial).map_err(Failure::call)?;
     let program = std::env::current_exe().map_err(Failure::error)?;
-    let signal = signals::last().map_err(Failure::error)?;
-    arguments.disk.takes(&arguments.data)?;
-    let mut store = Store::open(&Folder::new(&arguments.data))?;
+    let signal = Signal::heed()?;
+    let mut store = arguments.disk.opens(&arguments.data)?;
     let recovered = recovered(&mut store)?;
     let station = arguments.station.clone().unwrap_or_else(this_computer);
     refused_again(store.folder(), &plan, arguments)?;
@@ -139,12 +136,12 @@ impl From<RunError> for Failure {
 
 /// A run that signals end, and whose log is for those who want to know.
 struct Watched {
-    signal: Arc<AtomicUsize>,
+    signal: Signal,
 }
 
 impl Watch for Watched {
     fn stop(&self) -> Option<StoppedBy> {
-        Exit::stopped_by(self.signal.load(Ordering::Relaxed))
+        self.signal.by()
     }
 
     fn hear(&mut self, stage: Stage<'_>) {

@@ -1,21 +1,20 @@
 //! `halfrow-station serve`
 
 use std::io;
-use std::path::{self, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::Ordering;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::Failure;
+use super::beginning::{Disk, Ready, settings};
 use super::notify::Notify;
-use super::{Failure, recovered, signals};
 use crate::console;
 use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::settings::Settings;
-use crate::store::{Folder, Store};
 use crate::web::{Access, App, Server, User, Who};
 
 /// How often it is looked whether a signal came.
@@ -35,18 +34,22 @@ pub(super) struct Arguments {
     /// Who tests, at a station where nobody logs in
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
     operator: String,
+    #[command(flatten)]
+    disk: Disk,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let settings = path::absolute(&arguments.settings).map_err(Failure::call)?;
-    let settings = Settings::load(&settings).map_err(Failure::call)?;
+    let settings = settings(&arguments.settings)?;
     let everybody = User { name: arguments.operator.clone(), who: Who::Operator };
-    serve(Served { settings: &settings, everybody, hints: Vec::new() }, |_| Ok(()))
+    let served = Served { settings: &settings, disk: &arguments.disk, everybody, hints: Vec::new() };
+    serve(served, |_| Ok(()))
 }
 
 /// What is served.
 pub(super) struct Served<'a> {
     pub(super) settings: &'a Settings,
+    /// Which disks are taken for its folder.
+    pub(super) disk: &'a Disk,
     /// Who everybody at the computer itself is where nobody logs in.
     pub(super) everybody: User,
     /// Serial numbers that a visitor of a demonstration may type.
@@ -58,16 +61,13 @@ pub(super) fn serve(
     served: Served<'_>,
     begin: impl FnOnce(&Arc<Engine>) -> io::Result<()>,
 ) -> Result<Exit, Failure> {
-    let Served { settings, everybody, hints } = served;
-    let program = std::env::current_exe().map_err(Failure::error)?;
-    let signal = signals::last().map_err(Failure::error)?;
-    let mut store = Store::open(&Folder::new(&settings.data))?;
+    let Served { settings, disk, everybody, hints } = served;
+    let ready = Ready::of(settings, disk)?;
+    let signal = ready.signal.clone();
     let access = Access::of(settings, everybody).map_err(Failure::call)?;
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
-    recovered(&mut store)?;
-    let engine = Engine::start(settings.clone(), store, program).map_err(Failure::error)?;
-    let engine = Arc::new(engine);
+    let engine = Arc::new(ready.start()?);
     let app = App::new(settings.clone(), Arc::clone(&engine), access.at(at.port()), hints);
     let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
     begin(&engine).map_err(Failure::error)?;
@@ -76,7 +76,7 @@ pub(super) fn serve(
     notify.ready();
     let mut told = Instant::now();
     let by = loop {
-        if let Some(by) = Exit::stopped_by(signal.load(Ordering::Relaxed)) {
+        if let Some(by) = signal.by() {
             break by;
         }
         if told.elapsed() >= TELL && engine.is_well() {

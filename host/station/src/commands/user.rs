@@ -2,15 +2,14 @@
 
 use std::io::{self, BufRead as _, IsTerminal as _};
 use std::os::fd::AsRawFd as _;
-use std::path::{self, PathBuf};
+use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use nix::sys::termios::{self, LocalFlags, SetArg};
 
-use super::{Failure, print};
+use super::{Failure, beginning, print};
 use crate::console;
 use crate::exit::Exit;
-use crate::settings::Settings;
 use crate::web::{Role, UserError, Users, add_user};
 
 /// Say who may act on the pages
@@ -52,8 +51,7 @@ enum What {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = path::absolute(settings).map_err(Failure::call)?;
-    let settings = Settings::load(&settings).map_err(Failure::call)?;
+    let settings = beginning::settings(settings)?;
     let no_file = "the settings name no file of users; write [access] with users = \"users.toml\"";
     let access = settings.access.as_ref().ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;
     match what {

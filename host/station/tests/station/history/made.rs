@@ -60,7 +60,7 @@ pub(crate) struct Made {
 
 impl Made {
     pub(crate) fn new() -> Self {
-        Self::at(tempfile::tempdir().unwrap())
+        Self::at(crate::common::folder())
     }
 
     /// With what is in this folder already.

@@ -1,14 +1,13 @@
 //! The station's own program, with its pages for whoever looks.
 
 use std::fs;
-use std::io::{BufRead as _, BufReader, Read as _, Write as _};
-use std::net::{SocketAddr, TcpStream};
-use std::process::{Child, Command, Stdio};
 
 use tempfile::TempDir;
 
 use super::made::Made;
-use crate::common::{PLAN, program};
+use crate::common::PLAN;
+use crate::pages::http::{Answer, Request};
+use crate::pages::station::{Serving, command};
 
 /// A plan of what was made.
 pub(crate) fn plan() -> String {
@@ -17,29 +16,9 @@ pub(crate) fn plan() -> String {
 
 /// A station that is served until this goes.
 pub(crate) struct Served {
-    station: Child,
-    address: SocketAddr,
+    serving: Serving,
     data: TempDir,
     _settings: TempDir,
-}
-
-/// An answer.
-pub(crate) struct Answer {
-    pub(crate) status: u16,
-    head: String,
-    pub(crate) body: Vec<u8>,
-}
-
-impl Answer {
-    pub(crate) fn text(&self) -> String {
-        String::from_utf8(self.body.clone()).unwrap()
-    }
-
-    /// The value of a header.
-    pub(crate) fn header(&self, name: &str) -> Option<&str> {
-        let lines = self.head.lines().filter_map(|line| line.split_once(": "));
-        lines.into_iter().find(|(known, _)| known.eq_ignore_ascii_case(name)).map(|(_, value)| value)
-    }
 }
 
 impl Served {
@@ -54,22 +33,7 @@ impl Served {
         );
         let file = settings.path().join("station.toml");
         fs::write(&file, text).unwrap();
-        let mut station = Command::new(program())
-            .args(["serve", "--settings"])
-            .arg(&file)
-            .stdin(Stdio::null())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(station.stdout.take().unwrap()).lines();
-        let address = lines.by_ref().map(Result::unwrap).find_map(|line| {
-            let (_, rest) = line.split_once("http://")?;
-            rest.split('/').next()?.parse().ok()
-        });
-        // What else it says must not fill the pipe.
-        std::thread::spawn(move || lines.for_each(drop));
-        Self { station, address: address.unwrap(), data, _settings: settings }
+        Self { serving: Serving::of(&mut command(&file)), data, _settings: settings }
     }
 
     pub(crate) fn folder(&self) -> halfrow_station::store::Folder {
@@ -83,19 +47,11 @@ impl Served {
 
     /// What is at `path` for a browser that prefers `language`.
     pub(crate) fn get_in(&self, path: &str, language: &str) -> Answer {
-        let address = self.address;
-        let mut stream = TcpStream::connect(address).unwrap();
-        let head = format!(
-            "GET {path} HTTP/1.1\r\nHost: {address}\r\nAccept-Language: {language}\r\nConnection: close\r\n\r\n"
-        );
-        stream.write_all(head.as_bytes()).unwrap();
-        let mut bytes = Vec::new();
-        stream.read_to_end(&mut bytes).unwrap();
-        let end = bytes.windows(4).position(|window| window == b"\r\n\r\n").unwrap();
-        let head = String::from_utf8(bytes[..end].to_vec()).unwrap();
-        let status = head.split(' ').nth(1).unwrap().parse().unwrap();
-        assert_ne!(head.to_lowercase().find("content-length"), None, "{head}");
-        Answer { status, head, body: bytes[end + 4..].to_vec() }
+        let port = self.serving.port;
+        let request = Request::bare(port, "GET", path).with("host", &format!("127.0.0.1:{port}"));
+        let answer = request.with("accept-language", language).send();
+        assert!(answer.header("content-length").is_some(), "{path}: {:?}", answer.headers);
+        answer
     }
 
     /// The page at `path`, which is there.
@@ -104,12 +60,5 @@ impl Served {
         assert_eq!(answer.status, 200, "{path}\n{}", answer.text());
         assert_eq!(answer.header("content-type"), Some("text/html; charset=utf-8"));
         answer.text()
-    }
-}
-
-impl Drop for Served {
-    fn drop(&mut self) {
-        let _ = self.station.kill();
-        let _ = self.station.wait();
     }
 }

@@ -13,7 +13,19 @@ const HANG: Duration = Duration::from_secs(120);
 pub(crate) struct Answer {
     pub(crate) status: u16,
     pub(crate) headers: BTreeMap<String, String>,
-    pub(crate) body: String,
+    pub(crate) body: Vec<u8>,
+}
+
+impl Answer {
+    /// The body, which is text.
+    pub(crate) fn text(&self) -> String {
+        String::from_utf8(self.body.clone()).unwrap()
+    }
+
+    /// The value of the header of this name, in lower case.
+    pub(crate) fn header(&self, name: &str) -> Option<&str> {
+        self.headers.get(name).map(String::as_str)
+    }
 }
 
 /// What comes back for these bytes, on a connection of their own; none if the connection ends without an answer.
@@ -37,10 +49,10 @@ pub(crate) fn exchange(port: u16, bytes: &[u8]) -> Option<Answer> {
     let headers: BTreeMap<String, String> =
         pairs.map(|(name, value)| (name.to_lowercase(), value.to_owned())).collect();
     let body = headers.get("content-length").map(|length| {
-        let mut body = vec![0; length.parse().unwrap()];
+        let mut body = Vec::new();
         // The head of an answer to HEAD tells of a body that does not come.
-        let _ = stream.read_exact(&mut body);
-        String::from_utf8_lossy(&body).into_owned()
+        let _ = stream.take(length.parse().unwrap()).read_to_end(&mut body);
+        body
     });
     Some(Answer { status, headers, body: body.unwrap_or_default() })
 }

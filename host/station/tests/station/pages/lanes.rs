@@ -48,7 +48,7 @@ fn news_begin_with_everything_and_have_no_gap_and_every_verdict_has_its_record()
         let answer = here
             .post("/scan", &[("text", text), ("lane", lane), ("counter", "7")])
             .with("accept", "application/json");
-        serde_json::from_str::<Value>(&answer.send().body).unwrap()
+        serde_json::from_str::<Value>(&answer.send().text()).unwrap()
     };
     let armed = scan("HR:LANE:2", "");
     assert_eq!((&armed["armed"], &armed["counter"]), (&"2".into(), &7.into()), "{armed}");
@@ -80,15 +80,15 @@ fn without_a_script_the_page_says_the_states_and_takes_a_serial_number() {
     let station = Station::private(1);
     let serving = station.serve();
     let here = serving.here();
-    let page = here.get("/").send().body;
+    let page = here.get("/").send().text();
     assert!(
         page.contains("<noscript><meta http-equiv=\"refresh\" content=\"5; url=/\"></noscript>"),
         "{page}"
     );
     let answer = here.post("/scan", &[("text", SERIALS[1]), ("typed", "true")]).send();
     assert_eq!(answer.status, 200);
-    assert!(answer.body.contains(&format!("{} is tested in lane 1", SERIALS[1])), "{}", answer.body);
-    let refused = here.post("/scan", &[("text", "CA0201134374"), ("typed", "true")]).send().body;
+    assert!(answer.text().contains(&format!("{} is tested in lane 1", SERIALS[1])), "{}", answer.text());
+    let refused = here.post("/scan", &[("text", "CA0201134374"), ("typed", "true")]).send().text();
     assert!(refused.contains("class=\"answer refused\""), "{refused}");
 }
 
@@ -100,7 +100,7 @@ fn every_language_says_it_in_its_words() {
         let mut seen = String::new();
         // The board is seen when the station has looked for it.
         while !seen.contains("lane ready") {
-            seen = serving.here().get("/").with("accept-language", preferred).send().body;
+            seen = serving.here().get("/").with("accept-language", preferred).send().text();
         }
         assert!(seen.contains(word), "{preferred}: {seen}");
     }
@@ -120,7 +120,7 @@ fn two_pages_do_not_get_each_others_lanes() {
             .post("/scan", &[("text", text), ("lane", lane)])
             .with("accept", "application/json")
             .send();
-        serde_json::from_str::<Value>(&answer.body).unwrap()
+        serde_json::from_str::<Value>(&answer.text()).unwrap()
     };
     scan(&one, "HR:LANE:1", "");
     scan(&other, "HR:LANE:2", "");

@@ -3,7 +3,7 @@
 mod access;
 mod browser;
 mod fuzz;
-mod http;
+pub(crate) mod http;
 mod lanes;
-mod station;
+pub(crate) mod station;
 mod table;

@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
+use std::thread;
 
 use tempfile::TempDir;
 
@@ -26,7 +27,7 @@ pub(crate) struct Station {
 impl Station {
     /// With so many mock boards, and more settings before them.
     pub(crate) fn with(lanes: usize, more: &str) -> Self {
-        let station = Self { folder: tempfile::tempdir().unwrap() };
+        let station = Self { folder: common::folder() };
         let plan = guarded_plan("CAM-T", "CA").replace("if-present", "not-checked");
         fs::write(station.path("plan.toml"), plan).unwrap();
         let lane = |name| {
@@ -76,15 +77,7 @@ impl Station {
     }
 
     pub(crate) fn serve(&self) -> Serving {
-        let mut child = self.command().stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
-        let said = lines.find_map(|line| line.split("http://127.0.0.1:").nth(1).map(str::to_owned));
-        let port = said
-            .unwrap_or_else(|| panic!("it does not say where its pages are"))
-            .trim_end_matches('/')
-            .parse()
-            .unwrap();
-        Serving { child, port }
+        Serving::of(&mut self.command())
     }
 
     /// What `serve` says when it does not.
@@ -95,15 +88,20 @@ impl Station {
     }
 
     fn command(&self) -> Command {
-        let mut command = Command::new(program());
-        command.args(["serve", "--operator", "weber", "--settings"]).arg(self.path("station.toml"));
-        command
+        command(&self.path("station.toml"))
     }
 
     /// A look at the database that is not the program's.
     pub(crate) fn query(&self, text: &str) -> Vec<String> {
         common::query(&self.path("data"), text)
     }
+}
+
+/// The program that serves a station of these settings.
+pub(crate) fn command(settings: &Path) -> Command {
+    let mut command = Command::new(program());
+    command.args(["serve", "--operator", "weber", "--settings"]).arg(settings);
+    command
 }
 
 /// The pages at work.
@@ -113,6 +111,18 @@ pub(crate) struct Serving {
 }
 
 impl Serving {
+    /// What `command` serves.
+    pub(crate) fn of(command: &mut Command) -> Self {
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
+        let mut child = command.spawn().unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
+        let said = lines.find_map(|line| line.split("http://127.0.0.1:").nth(1).map(str::to_owned));
+        let said = said.unwrap_or_else(|| panic!("it does not say where its pages are"));
+        // What else it says must not fill the pipe.
+        thread::spawn(move || lines.for_each(drop));
+        Self { child, port: said.trim_end_matches('/').parse().unwrap() }
+    }
+
     /// Whether the program goes on.
     pub(crate) fn is_alive(&mut self) -> bool {
         self.child.try_wait().unwrap().is_none()
@@ -135,7 +145,7 @@ impl Serving {
     pub(crate) fn logged_in(&self, badge: &str, password: &str) -> Browser {
         let mut browser = self.browser(PUBLIC);
         let answer = browser.post("/login", &[("badge", badge), ("password", password)]).send();
-        assert_eq!(answer.status, 303, "{}", answer.body);
+        assert_eq!(answer.status, 303, "{}", answer.text());
         browser.learn(&answer);
         browser.learn(&browser.get("/").with("accept", "text/html").send());
         browser
@@ -172,7 +182,7 @@ impl Browser {
         if let Some(cookie) = answer.headers.get("set-cookie") {
             self.cookie = cookie.split(';').next().unwrap().to_owned();
         }
-        if let Some(mark) = answer.body.split("name=\"csrf\" value=\"").nth(1) {
+        if let Some(mark) = answer.text().split("name=\"csrf\" value=\"").nth(1) {
             self.csrf = mark.split('"').next().unwrap().to_owned();
         }
     }

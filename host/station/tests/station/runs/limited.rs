@@ -5,6 +5,7 @@ use std::process::{Command, Stdio};
 
 use super::bench::{Did, PLAN, Station, program};
 use super::ends::{lane_of, silent_board};
+use crate::pages::station as pages;
 
 fn with(station: &Station, more: &[&str]) -> Did {
     Command::new(program())
@@ -69,4 +70,38 @@ fn a_folder_that_is_memory_is_refused_before_anything_is_made() {
     );
     assert!(!data.exists());
     assert_eq!(run(&["--any-disk"]).code, Some(0));
+}
+
+/// All commands that keep results ask for the disk, in the same words.
+#[test]
+fn whatever_keeps_results_refuses_a_folder_that_is_memory() {
+    let memory = tempfile::tempdir_in("/dev/shm").unwrap();
+    let data = memory.path().join("data");
+    let station = pages::Station::private(1);
+    let settings = station.path("station.toml");
+    let text = fs::read_to_string(&settings).unwrap();
+    fs::write(&settings, text.replace("\"data\"", &format!("{data:?}"))).unwrap();
+    let demo = memory.path().join("demo");
+    let calls =
+        [("lanes", "--settings", &settings), ("serve", "--settings", &settings), ("demo", "--folder", &demo)];
+    for (command, option, path) in calls {
+        let mut call = Command::new(program());
+        let call = call.args([command, option]).arg(path).stdin(Stdio::null());
+        let did: Did = call.output().unwrap().into();
+        assert_eq!(did.code, Some(2), "{command}: {did:?}");
+        let refused = "is on tmpfs, which is memory; put the station's folder on a disk";
+        assert!(did.complained.contains(refused), "{command}: {did:?}");
+    }
+    assert_eq!(fs::read_dir(memory.path()).unwrap().count(), 0, "nothing was made");
+    drop(pages::Serving::of(pages::command(&settings).arg("--any-disk")));
+    assert!(data.join("station.db").exists());
+}
+
+/// What a demonstration makes without a folder goes with it, so it may lie in memory.
+#[test]
+fn a_demonstration_that_is_not_kept_may_be_in_memory() {
+    let memory = tempfile::tempdir_in("/dev/shm").unwrap();
+    let mut demo = Command::new(program());
+    let demo = demo.args(["demo", "--lanes", "1", "--port", "0"]).env("TMPDIR", memory.path());
+    drop(pages::Serving::of(demo));
 }

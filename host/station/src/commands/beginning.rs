@@ -1,0 +1,98 @@
+//! What all commands begin with that keep new results: the disk is asked, the store opened, what was left open closed.
+
+use std::path::{self, Path};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use clap::Args;
+use halfrow::verdict::StoppedBy;
+
+use super::{Failure, signals};
+use crate::console;
+use crate::disk;
+use crate::engine::Engine;
+use crate::exit::Exit;
+use crate::run::{self as runs, Saved};
+use crate::settings::Settings;
+use crate::store::{Folder, Store};
+
+/// Which disks are taken for new results.
+#[derive(Debug, Args)]
+pub(super) struct Disk {
+    /// Take any disk for the station's folder, memory and networks too, although it may lose results
+    #[arg(long, env = "HALFROW_STATION_ANY_DISK")]
+    any_disk: bool,
+}
+
+impl Disk {
+    /// Refuses a folder that may lose results.
+    pub(super) fn takes(&self, folder: &Path) -> Result<(), Failure> {
+        if self.any_disk { Ok(()) } else { disk::keeps(folder).map_err(Failure::call) }
+    }
+
+    /// The same, which takes any disk when what is kept there `goes` with the program.
+    pub(super) fn unless(&self, goes: bool) -> Self {
+        Self { any_disk: self.any_disk || goes }
+    }
+
+    /// The store in `folder`, which is made if the disk is taken.
+    pub(super) fn opens(&self, folder: &Path) -> Result<Store, Failure> {
+        self.takes(folder)?;
+        Ok(Store::open(&Folder::new(folder))?)
+    }
+}
+
+/// The settings in the file `path`.
+pub(super) fn settings(path: &Path) -> Result<Settings, Failure> {
+    let path = path::absolute(path).map_err(Failure::call)?;
+    Settings::load(&path).map_err(Failure::call)
+}
+
+/// The last signal, which ends what is under way.
+#[derive(Clone, Debug)]
+pub(super) struct Signal(Arc<AtomicUsize>);
+
+impl Signal {
+    /// Those from now on.
+    pub(super) fn heed() -> Result<Self, Failure> {
+        signals::last().map(Self).map_err(Failure::error)
+    }
+
+    /// Who wants the program to end.
+    pub(super) fn by(&self) -> Option<StoppedBy> {
+        Exit::stopped_by(self.0.load(Ordering::Relaxed))
+    }
+}
+
+/// A station that can go to work: signals are heeded, and nobody else has its store.
+#[derive(Debug)]
+pub(super) struct Ready<'a> {
+    settings: &'a Settings,
+    store: Store,
+    pub(super) signal: Signal,
+}
+
+impl<'a> Ready<'a> {
+    /// The station of these settings, if `disk` takes its folder.
+    pub(super) fn of(settings: &'a Settings, disk: &Disk) -> Result<Self, Failure> {
+        let signal = Signal::heed()?;
+        Ok(Self { store: disk.opens(&settings.data)?, settings, signal })
+    }
+
+    /// At work, with nothing left open.
+    pub(super) fn start(mut self) -> Result<Engine, Failure> {
+        let program = std::env::current_exe().map_err(Failure::error)?;
+        recovered(&mut self.store)?;
+        Engine::start(self.settings.clone(), self.store, program).map_err(Failure::error)
+    }
+}
+
+/// Closes what was under way when the station ended, says so, and returns it.
+pub(super) fn recovered(store: &mut Store) -> Result<Vec<Saved>, Failure> {
+    let recovered = runs::recover(store)?;
+    for Saved { record, .. } in &recovered {
+        let (id, serial) = (&record.run.id, &record.run.serial);
+        console::error(&format_args!("the run {id} of {serial} was found open, and is ERROR; test it again"));
+    }
+    Ok(recovered)
+}
