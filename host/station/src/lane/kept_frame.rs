@@ -1,7 +1,7 @@
 //! Frames that a board gave wrong, kept whole for whoever looks at the run.
 
-use std::fs;
-use std::io;
+use std::fs::{self, File};
+use std::io::{self, Write as _};
 use std::path::Path;
 
 use halfrow::frames::png;
@@ -15,6 +15,19 @@ const MOST_FRAMES: usize = 2;
 const MOST_BYTES: u64 = 32 << 20;
 /// How the names of the files end, and no other file of a lane.
 const ENDING: &str = ".png";
+/// The file that names what is not kept, and why.
+pub(crate) const NOT_KEPT: &str = "not-kept.txt";
+
+/// Why a picture is not kept.
+#[derive(Debug, thiserror::Error)]
+enum NotKept {
+    #[error("it cannot be written as PNG; report this with the plan and the board")]
+    Encode(#[source] io::Error),
+    #[error("the frames of the run take more than {MOST_BYTES} bytes; let its steps have smaller frames")]
+    NoRoom,
+    #[error(transparent)]
+    Write(#[from] WriteAsideError),
+}
 
 /// One of the three views of a kept frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,8 +90,15 @@ impl KeptFrame {
 }
 
 /// Keeps in `folder` the first frames of `evidence` that differ, each of another name, as a try of a step left them. What cannot be kept is
-/// told in the lane's log: no verdict hangs on it.
-pub(super) fn keep(folder: &Path, (seq, attempt): (u32, u32), evidence: &[(&str, &Evidence)]) {
+/// told in the lane's log and named in [`NOT_KEPT`]: no verdict hangs on it.
+pub(super) fn keep(folder: &Path, place: (u32, u32), evidence: &[(&str, &Evidence)]) {
+    keep_as(folder, place, evidence, &encoded);
+}
+
+/// How a frame becomes a file.
+type Encode<'a> = &'a dyn Fn(&Frame) -> io::Result<Vec<u8>>;
+
+fn keep_as(folder: &Path, (seq, attempt): (u32, u32), evidence: &[(&str, &Evidence)], encode: Encode<'_>) {
     let mut names = Vec::new();
     // The same picture again shows little more.
     let mut is_other = |(name, one): &&(&str, &Evidence)| {
@@ -89,33 +109,38 @@ pub(super) fn keep(folder: &Path, (seq, attempt): (u32, u32), evidence: &[(&str,
     for (_, one) in evidence.iter().filter(|one| is_other(one)).take(MOST_FRAMES) {
         let (depth, phase) = (one.expected.depth(), one.expected.phase());
         let frame = KeptFrame { seq, attempt, index: one.index, depth, phase };
-        if let Err(error) = all(folder, &frame, one) {
-            tracing::warn!("frame {} is not kept: {:#}", one.index, anyhow::Error::from(error));
+        let pictures = [&one.input, &one.found, &one.expected].map(encode);
+        let bytes: usize = pictures.iter().flatten().map(Vec::len).sum();
+        let has_room = kept(folder) + bytes as u64 <= MOST_BYTES;
+        for (view, picture) in KeptFrame::VIEWS.into_iter().zip(pictures) {
+            let name = frame.name(view);
+            let picture = picture.map_err(NotKept::Encode);
+            let picture = picture.and_then(|png| if has_room { Ok(png) } else { Err(NotKept::NoRoom) });
+            if let Err(error) = picture.and_then(|png| written(&folder.join(&name), &png)) {
+                tell(folder, &name, error);
+            }
         }
     }
 }
 
-fn all(folder: &Path, frame: &KeptFrame, evidence: &Evidence) -> Result<(), WriteAsideError> {
-    let Evidence { input, found, expected, .. } = evidence;
-    let pictures = [input, found, expected].map(encoded);
-    let bytes: u64 = pictures.iter().map(|png| png.len() as u64).sum();
-    if kept(folder) + bytes > MOST_BYTES {
-        tracing::warn!("frame {} is not kept: the run has no room for it", frame.index);
-        return Ok(());
-    }
-    for (view, png) in KeptFrame::VIEWS.into_iter().zip(pictures) {
-        write_aside(&folder.join(frame.name(view)), true, |file| file.write_all(&png))?;
-    }
-    Ok(())
+fn written(path: &Path, png: &[u8]) -> Result<(), NotKept> {
+    Ok(write_aside(path, true, |file| file.write_all(png))?)
 }
 
-/// A frame as a PNG. Memory takes whatever the encoder writes.
-fn encoded(frame: &Frame) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    if let Err(error) = png::encode(frame, &mut bytes) {
-        tracing::warn!("a frame cannot be written as PNG: {error}");
+/// Tells that a picture is not kept, where those look who look for it.
+fn tell(folder: &Path, name: &str, error: NotKept) {
+    let why = format!("{name} is not kept: {:#}", anyhow::Error::from(error));
+    tracing::warn!("{why}");
+    let list = File::options().create(true).append(true).open(folder.join(NOT_KEPT));
+    if let Err(error) = list.and_then(|mut list| writeln!(list, "{why}")) {
+        tracing::warn!("{NOT_KEPT} cannot be written: {error}");
     }
-    bytes
+}
+
+/// A frame as a PNG.
+fn encoded(frame: &Frame) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    png::encode(frame, &mut bytes).map(|()| bytes).map_err(io::Error::other)
 }
 
 /// The bytes of the frames in `folder`.
@@ -176,5 +201,30 @@ mod tests {
         let bytes = fs::read(folder.path().join(frame.name(View::Out))).unwrap();
         let how = halfrow::frames::ReadOptions { depth: frame.depth, phase: frame.phase, raw: None };
         assert_eq!(halfrow::frames::decode(&bytes, &how).unwrap(), wrong(1).found);
+    }
+
+    #[test]
+    fn a_picture_that_cannot_be_kept_is_named_and_leaves_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        // The one of the three with another sample finds a full disk.
+        let encode = |frame: &Frame| match frame.samples().contains(&7) {
+            true => png::encode(frame, &mut [0_u8; 16].as_mut_slice())
+                .map(|()| Vec::new())
+                .map_err(io::Error::other),
+            false => encoded(frame),
+        };
+        keep_as(folder.path(), (2, 1), &[("a", &wrong(1)), ("b", &wrong(3))], &encode);
+        let kept: Vec<_> =
+            names(folder.path()).unwrap().iter().map(|name| KeptFrame::of(name).unwrap()).collect();
+        let views: Vec<_> = kept.iter().map(|(frame, view)| (frame.index, *view)).collect();
+        assert_eq!(views, [(1, View::In), (1, View::Should), (3, View::In), (3, View::Should)]);
+        let told = fs::read_to_string(folder.path().join(NOT_KEPT)).unwrap();
+        for (line, index) in told.lines().zip([1, 3]) {
+            let frame =
+                KeptFrame { seq: 2, attempt: 1, index, depth: BitDepth::Twelve, phase: Phase::default() };
+            let said = format!("{} is not kept: it cannot be written as PNG", frame.name(View::Out));
+            assert!(line.starts_with(&said), "{line}");
+        }
+        assert_eq!(told.lines().count(), 2);
     }
 }

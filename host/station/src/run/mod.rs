@@ -300,7 +300,8 @@ fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Resu
 /// What a lane wrote down, as evidence.
 fn attached(blobs: &Blobs, spool: &Path) -> Result<Vec<Attachment>, StoreError> {
     let mut attachments = Vec::new();
-    let told = [(EVENTS, "application/jsonl"), (LOG, "text/plain; charset=utf-8")];
+    let text = "text/plain; charset=utf-8";
+    let told = [(EVENTS, "application/jsonl"), (LOG, text), (kept_frame::NOT_KEPT, text)];
     let told = told.map(|(name, media_type)| (name.to_owned(), media_type));
     // Without a folder there is nothing in it.
     let frames = kept_frame::names(spool).unwrap_or_default().into_iter().map(|name| (name, "image/png"));
