@@ -5,4 +5,4 @@ SELECT run.id, run.plan_sha256, run.station, run.lane, run.started_ms, NOT EXIST
   WHERE retest.unit_id = run.unit_id AND retest.plan = plan.name
 )
 FROM waiver JOIN run ON run.id = waiver.run_id
-WHERE coalesce(run.verdict, '') = 'FAIL';
+WHERE coalesce(run.verdict, '') = 'FAIL' AND run.nth > 0;

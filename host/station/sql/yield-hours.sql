@@ -6,5 +6,5 @@ SELECT plan_sha256, station, lane, started_ms / 86400000,
   count(*) FILTER (WHERE verdict <> 'ERROR' AND nth = 1),
   count(*) FILTER (WHERE verdict = 'PASS' AND nth = 1)
 FROM run
-WHERE coalesce(verdict, '') <> '' AND started_ms >= $1 AND started_ms < $2
+WHERE coalesce(verdict, '') <> '' AND nth > 0 AND started_ms >= $1 AND started_ms < $2
 GROUP BY plan_sha256, station, lane, started_ms / 86400000;

@@ -9,6 +9,7 @@ use halfrow_program::codes as program;
 use serde_json::{Value, json};
 
 use super::lanes::EngineEnded;
+use super::run::NoMock;
 use super::{Failure, document, print};
 use crate::check::Fault;
 use crate::disk::DiskError;
@@ -58,6 +59,7 @@ codes::codes! {
     Refusal {
         Out [lane, why] => "lane-out",
         Owes [lane, why] => "lane-not-checked",
+        NoMock [lane] => "lane-owes-no-mock",
         Busy [lane, serial] => "lane-busy",
         Unsaved [lane, serial] => "lane-unsaved",
         NoBoard [lane] => "lane-empty",
@@ -155,6 +157,8 @@ codes::codes! {
     NoRandomness => "no-randomness"
     ;
     EngineEnded => "engine-ended"
+    ;
+    NoMock => "plan-without-mock"
 }
 
 fn known(error: &(dyn Error + 'static)) -> Option<Coded> {

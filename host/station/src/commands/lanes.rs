@@ -19,7 +19,7 @@ const LOOK: Duration = Duration::from_millis(100);
 
 /// Judge the boards in all lanes of a station, with scans from stdin
 ///
-/// Every line of stdin is a scan: a serial number, or HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN. What happens is
+/// Every line of stdin is a scan: a serial number, or HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN, HR:MOCK. What happens is
 /// printed, one JSON object a line. At the end of stdin the runs that are under way come to theirs; a signal ends them.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {

@@ -7,7 +7,7 @@ use clap::{Args, Subcommand};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::limits::Limit;
-use crate::plan::{Act, Again, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
+use crate::plan::{Act, Again, Bad, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
 
 /// Look at plans
 #[derive(Debug, Args)]
@@ -59,6 +59,10 @@ fn head(plan: &Plan) -> String {
     lines.extend(plan.files.iter().map(|file| format!("file      {} {}", file.path, file.sha256)));
     if let Some(Shift { good, bad, lasts }) = &plan.shift {
         let hours = lasts.as_secs_f64() / 3600.0;
+        let bad = match bad {
+            Bad::Unit(serial) => serial.as_str(),
+            Bad::Mock => "the mock board with a drawn fault",
+        };
         lines.push(format!("shift     {good} passes and {bad} fails in each lane every {hours} hours"));
     }
     match plan.again {

@@ -16,7 +16,7 @@ use crate::clock;
 use crate::console;
 use crate::exit::Exit;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
-use crate::plan::Plan;
+use crate::plan::{Bad, Plan, mock};
 use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::store::{AgainError, Folder, SharedStore};
@@ -39,11 +39,14 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE")]
     plan: PathBuf,
     /// The board's serial number
-    #[arg(long)]
-    serial: String,
+    #[arg(long, required_unless_present = "mock")]
+    serial: Option<String>,
     /// The board, as `halfrow boards` names it
-    #[arg(long, value_name = "TARGET")]
-    board: Target,
+    #[arg(long, value_name = "TARGET", required_unless_present = "mock")]
+    board: Option<Target>,
+    /// Judge the mock board with a drawn fault instead, to check the shift; for plans with `bad = "HR:MOCK"`
+    #[arg(long, conflicts_with_all = ["serial", "board"])]
+    mock: bool,
     /// The lane that the board is in
     #[arg(long, default_value = "1")]
     lane: String,
@@ -82,24 +85,24 @@ fn memory(text: &str) -> Result<u64, String> {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plan_file = path::absolute(&arguments.plan).map_err(Failure::call)?;
     let plan = Plan::load(&plan_file).map_err(Failure::call)?;
-    plan.select(&arguments.serial).map_err(Failure::call)?;
+    let (serial, target) = arguments.subject(&plan)?;
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = Signal::heed()?;
     let mut store = arguments.disk.opens(&arguments.data)?;
     let recovered = recovered(&mut store)?;
     let station = arguments.station.clone().unwrap_or_else(this_computer);
-    refused_again(store.folder(), &plan, arguments)?;
-    let owed = store.folder().owed(&station, &arguments.lane, &plan, clock::now_ms())?;
+    refused_again(store.folder(), &plan, &serial, arguments)?;
+    let owed = store.folder().owed(&station, &arguments.lane, &plan, clock::now_ms())?.owed;
     let order = Order {
         plan: &plan,
         plan_file: &plan_file,
-        serial: &arguments.serial,
-        target: &arguments.board,
+        serial: &serial,
+        target: &target,
         station: &station,
         lane: &arguments.lane,
         operator: &arguments.operator,
         program: &program,
-        counts: plan.counts(&arguments.serial) && owed.is_none(),
+        counts: plan.counts(&serial) && owed.is_none(),
         silence: arguments.silence,
         memory_mib: arguments.memory,
     };
@@ -109,7 +112,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if let Err(RunError::Unsaved { .. }) = &ended
         && !arguments.json
     {
-        console::tell(&format!("UNSAVED {}: keep this board apart; it has no verdict", arguments.serial));
+        console::tell(&format!("UNSAVED {serial}: keep this board apart; it has no verdict"));
     }
     let saved = ended?;
     let exit = exit(&saved);
@@ -117,8 +120,33 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     Ok(exit)
 }
 
-fn refused_again(folder: &Folder, plan: &Plan, arguments: &Arguments) -> Result<(), Failure> {
-    match folder.again(plan, &arguments.serial, "say --again")? {
+impl Arguments {
+    /// The serial number and the board, which the plan takes, or those of the mock.
+    fn subject(&self, plan: &Plan) -> Result<(String, Target), Failure> {
+        let is_checked_by_mock = plan.shift.as_ref().is_some_and(|shift| shift.bad == Bad::Mock);
+        match (&self.serial, &self.board) {
+            (Some(serial), Some(board)) => {
+                plan.select(serial).map_err(Failure::call)?;
+                Ok((serial.clone(), board.clone()))
+            }
+            _ if is_checked_by_mock => {
+                Ok((mock::serial(&self.lane), "mock".parse().map_err(Failure::error)?))
+            }
+            _ => Err(Failure::call(NoMock)),
+        }
+    }
+}
+
+/// A plan whose shifts no mock checks.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no mock board checks the shifts of this plan; write bad = \"{}\" into its [shift], or give --serial and --board",
+    mock::BARCODE
+)]
+pub(super) struct NoMock;
+
+fn refused_again(folder: &Folder, plan: &Plan, serial: &str, arguments: &Arguments) -> Result<(), Failure> {
+    match folder.again(plan, serial, "say --again")? {
         None => Ok(()),
         Some(AgainError::Asked { .. }) if arguments.again => Ok(()),
         Some(error) => Err(Failure::call(error)),

@@ -15,7 +15,7 @@ use crate::clock;
 use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
 use crate::presence::{Presence, USB, is_there};
 use crate::settings::{PlanFile, Settings};
-use crate::store::{AgainError, Folder};
+use crate::store::{AgainError, Folder, Owed};
 
 /// How often boards are looked for.
 const LOOK: Duration = Duration::from_millis(500);
@@ -29,6 +29,9 @@ pub(super) struct AtWork {
     stops: Vec<StopAsked>,
     /// The unit of each lane that passed already, of which somebody was asked whether it is meant.
     asked: Vec<Option<String>>,
+    /// The last moment, in milliseconds since 1970, at which it is known what each lane owes its shift; none where that
+    /// could not be told.
+    known_until: Vec<Option<i64>>,
     /// Who scanned last.
     operator: String,
     threads: Vec<JoinHandle<()>>,
@@ -45,6 +48,7 @@ impl AtWork {
             presence: vec![Presence::default(); lanes],
             stops: vec![StopAsked::default(); lanes],
             asked: vec![None; lanes],
+            known_until: vec![None; lanes],
             operator: String::new(),
             threads: Vec::new(),
             begun: Instant::now(),
@@ -61,6 +65,8 @@ impl AtWork {
                 self.look();
             }
             let Ok(input) = inbox.recv_timeout(LOOK) else { continue };
+            // A shift whose hours ended a moment ago takes no board any more.
+            self.check_due();
             match input {
                 Input::Scan { .. } | Input::Label { .. } | Input::Act { .. } if is_closing => {}
                 Input::Scan { number, text, operator } => self.scan(number, text, operator),
@@ -101,9 +107,9 @@ impl AtWork {
 
     /// Looks which boards are there.
     fn look(&mut self) {
+        self.check_due();
         let now = self.now();
         for lane in 0..self.presence.len() {
-            self.check(lane);
             let Some(settings) = self.shared.settings.lanes.get(lane) else { continue };
             let is_seen = is_there(&settings.board, Path::new(USB));
             let changed = self.presence.get_mut(lane).and_then(|presence| presence.look(is_seen, now));
@@ -113,25 +119,48 @@ impl AtWork {
         }
     }
 
-    /// What a lane owes to the shift, as the store says; it is out of service while that cannot be told.
-    fn owed(&self, lane: usize) -> Option<Owes> {
+    /// What a lane owes to its shift, as the store says, and until when that is so; it is out of service while that cannot
+    /// be told.
+    fn owed(&self, lane: usize) -> (Option<Owes>, Option<i64>) {
         let Settings { name, data, lanes, plans, .. } = &self.shared.settings;
-        let settings = lanes.get(lane)?;
-        settings.plans.iter().find_map(|&plan| {
-            let of = &plans.get(plan)?.plan;
-            match Folder::new(data).owed(name, &settings.name, of, clock::now_ms()) {
-                Ok(owed) => owed.map(|owed| Owes { plan, serial: Some(owed.serial), why: owed.why }),
+        let mut until_ms = i64::MAX;
+        let Some(lane) = lanes.get(lane) else { return (None, Some(until_ms)) };
+        for &plan in &lane.plans {
+            let Some(PlanFile { plan: of, .. }) = plans.get(plan) else { continue };
+            match Folder::new(data).owed(name, &lane.name, of, clock::now_ms()) {
+                Ok(checked) => {
+                    until_ms = until_ms.min(checked.until_ms);
+                    if let Some(Owed { serial, why }) = checked.owed {
+                        return (Some(Owes { plan, serial: Some(serial), why }), Some(until_ms));
+                    }
+                }
                 Err(error) => {
                     let why = format!("{:#}", anyhow::Error::from(error));
-                    Some(Owes { plan, serial: None, why })
+                    return (Some(Owes { plan, serial: None, why }), None);
                 }
             }
-        })
+        }
+        (None, Some(until_ms))
     }
 
     fn check(&mut self, lane: usize) {
-        let owed = self.owed(lane);
+        let (owed, until_ms) = self.owed(lane);
+        if let Some(known) = self.known_until.get_mut(lane) {
+            *known = until_ms;
+        }
         self.happened(lane, Event::Owes(owed));
+    }
+
+    /// Asks what lanes owe of which it is not known any more. Runs of this station alone change it meanwhile, and each is
+    /// followed by a look.
+    fn check_due(&mut self) {
+        let now_ms = clock::now_ms();
+        for lane in 0..self.known_until.len() {
+            let known = self.known_until.get(lane).copied().flatten();
+            if known.is_none_or(|until_ms| now_ms > until_ms) {
+                self.check(lane);
+            }
+        }
     }
 
     fn scan(&mut self, number: u64, text: String, operator: String) {

@@ -8,6 +8,8 @@
 
 use halfrow::Verdict;
 
+use crate::plan::mock::is_mock;
+
 use super::words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,6 +89,20 @@ impl Lane {
         }
     }
 
+    /// The plan and the serial number of the mock board, if that is what it is to test now.
+    ///
+    /// # Errors
+    /// [`Refusal`] when it is to test something else, or anything.
+    pub fn owed_mock(&self) -> Result<(usize, String), Refusal> {
+        self.free()?;
+        let lane = self.name.clone();
+        match &self.owes {
+            Some(Owes { plan, serial: Some(serial), .. }) if is_mock(serial) => Ok((*plan, serial.clone())),
+            Some(owes) => Err(Refusal::Owes { lane, why: owes.why.clone() }),
+            None => Err(Refusal::NoMock { lane }),
+        }
+    }
+
     /// Its run that is under way or not saved.
     #[must_use]
     pub fn run(&self) -> Option<&str> {
@@ -133,6 +149,9 @@ impl Lane {
             }),
             Event::In => self.back(),
             Event::Owes(owes) => {
+                // What waits was accepted before, and would start without another question.
+                let is_owed = |of: &Accepted| owes.as_ref().is_none_or(|owes| owes.is(of));
+                self.waiting = self.waiting.take().filter(is_owed);
                 self.owes = owes;
                 Ok(None)
             }
@@ -175,13 +194,11 @@ impl Lane {
 
     fn given(&mut self, accepted: Accepted) -> Result<Option<Effect>, Refusal> {
         self.free()?;
-        let is_owed = |owes: &Owes| {
-            (owes.plan, owes.serial.as_deref()) == (accepted.plan, Some(accepted.serial.as_str()))
-        };
-        if let Some(owes) = self.owes.as_ref().filter(|owes| !is_owed(owes)) {
+        if let Some(owes) = self.owes.as_ref().filter(|owes| !owes.is(&accepted)) {
             return Err(Refusal::Owes { lane: self.name.clone(), why: owes.why.clone() });
         }
-        if self.starts.scan && self.is_present {
+        // The mock needs no fixture.
+        if self.starts.scan && self.is_present || is_mock(&accepted.serial) {
             return Ok(Some(self.begin(accepted)));
         }
         if !self.is_present && !self.starts.presence {

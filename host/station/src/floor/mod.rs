@@ -153,6 +153,7 @@ impl Floor {
                 })
             }
             Scan::Act(act) => self.act(self.meant()?, act),
+            Scan::Mock => self.mock(self.meant()?),
             Scan::Serial(serial) => match self.meant() {
                 Ok(lane) => self.give(lane, &serial),
                 Err(_) if self.scan_then_plug => self.keep(serial, now),
@@ -233,6 +234,16 @@ impl Floor {
         self.armed = None;
         let does = if effect.is_some() { "is tested" } else { "waits" };
         let said = format!("{serial} {does} in lane {}", self.name(lane));
+        Ok(Answer { lane: Some(lane), effect, said })
+    }
+
+    /// Has a lane judge the mock board that it owes its shift.
+    fn mock(&mut self, lane: usize) -> Result<Answer, ScanError> {
+        let (plan, serial) = self.lane(lane)?.owed_mock()?;
+        let product = self.rules.get(plan).map_or_else(String::new, |rule| rule.product.clone());
+        let effect = self.lane(lane)?.take(Event::Given(Accepted { plan, product, serial }))?;
+        self.armed = None;
+        let said = format!("the mock board with a drawn fault is judged in lane {}", self.name(lane));
         Ok(Answer { lane: Some(lane), effect, said })
     }
 

@@ -1,5 +1,6 @@
 //! What a scanner reads: the station's own barcodes, and serial numbers.
 
+use crate::plan::mock::BARCODE;
 use crate::plan::serial::RESERVED;
 
 /// What was scanned.
@@ -9,6 +10,8 @@ pub enum Scan {
     Lane(String),
     /// `HR:START`, `HR:ABORT`, `HR:OUT`, `HR:IN`: something is to be done with the lane.
     Act(Act),
+    /// `HR:MOCK`: the mock board with a drawn fault is to be judged in the place of a unit that is known to be bad.
+    Mock,
     /// Anything else, as it is.
     Serial(String),
 }
@@ -41,7 +44,9 @@ impl Act {
 
 /// A barcode that begins as the station's own do, and is none.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{text}` is no barcode of the station; scan HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT or HR:IN")]
+#[error(
+    "`{text}` is no barcode of the station; scan HR:LANE:NAME, HR:START, HR:ABORT, HR:OUT, HR:IN or HR:MOCK"
+)]
 pub struct UnknownBarcode {
     /// What was scanned.
     pub text: String,
@@ -56,6 +61,9 @@ impl Scan {
         let Some(own) = text.strip_prefix(RESERVED) else { return Ok(Self::Serial(text.to_owned())) };
         if let Some(lane) = own.strip_prefix("LANE:").filter(|lane| !lane.is_empty()) {
             return Ok(Self::Lane(lane.to_owned()));
+        }
+        if text == BARCODE {
+            return Ok(Self::Mock);
         }
         let act = Act::ALL.into_iter().find(|(word, _)| *word == own);
         act.map(|(_, act)| Self::Act(act)).ok_or_else(|| UnknownBarcode { text: text.to_owned() })

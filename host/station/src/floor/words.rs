@@ -122,6 +122,14 @@ pub struct Owes {
     pub why: String,
 }
 
+impl Owes {
+    /// Whether this is the unit.
+    #[must_use]
+    pub fn is(&self, of: &Accepted) -> bool {
+        (self.plan, self.serial.as_deref()) == (of.plan, Some(of.serial.as_str()))
+    }
+}
+
 /// What is to be done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Effect {
@@ -156,6 +164,12 @@ pub enum Refusal {
         lane: String,
         /// What is to be done.
         why: String,
+    },
+    /// It owes its shift no mock board.
+    #[error("lane {lane} is to be checked by no mock board now; scan the label of the board in it")]
+    NoMock {
+        /// The lane.
+        lane: String,
     },
     /// A run is under way.
     #[error("lane {lane} is testing {serial}; wait until it is done, or abort it")]

@@ -100,6 +100,8 @@ impl Try {
 pub(super) struct Common<'a> {
     pub(super) plan: &'a Plan,
     pub(super) target: &'a Target,
+    /// Whether it is the mock in the place of a unit that is known to be bad, of which the plan's demands on boards say nothing.
+    pub(super) is_mock: bool,
     pub(super) seed: u64,
     pub(super) stop: &'a Stop,
     /// Asks the station whether the board may be judged under the serial number; says who wants the run to end instead.
@@ -127,6 +129,9 @@ impl Common<'_> {
 
     /// Why the plan takes no such board.
     fn not_allowed(&self, kind: BoardKind, seen: &BoardSeen) -> Option<Try> {
+        if self.is_mock {
+            return None;
+        }
         let Plan { require_hardware, builds, device, .. } = self.plan;
         if *require_hardware && kind != BoardKind::Hardware {
             let detail = format!("the board is a {kind}, and the plan takes hardware alone");
@@ -216,7 +221,7 @@ impl Common<'_> {
         let options = RunOptions {
             timeout: Some(within),
             stop: self.stop.clone().within(Some(within)),
-            require_hardware: self.plan.require_hardware,
+            require_hardware: self.plan.require_hardware && !self.is_mock,
             circumstances,
             ..RunOptions::default()
         };

@@ -98,13 +98,14 @@ fn prepared(job: &Job) -> Result<(Plan, Target), String> {
 
 fn steps(job: &Job, plan: &Plan, target: &Target, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
     let selected = plan.variant(&job.variant);
-    let (stop, limits) = (heeded.stop(), selected.limits.as_slice());
+    let (stop, is_mock) = (heeded.stop(), job.is_mock);
+    let limits = if is_mock { &[] } else { selected.limits.as_slice() };
     let rule = |board: &BoardSeen| {
         tell(&Message::Identified { board: board.clone() });
         heeded.ruling()
     };
     let (seed, spool, first) = (job.seed, job.spool.as_path(), None);
-    let mut common = Common { plan, target, seed, stop: &stop, rule: &rule, limits, spool, first };
+    let mut common = Common { plan, target, is_mock, seed, stop: &stop, rule: &rule, limits, spool, first };
     for (step, seq) in selected.steps.iter().zip(1..) {
         let mut attempt = 1;
         let passed = loop {

@@ -25,6 +25,9 @@ pub struct Job {
     pub variant: String,
     /// The seed of the run.
     pub seed: u64,
+    /// Whether the board is the mock in the place of a unit that is known to be bad: it is neither hardware nor of a build that
+    /// was released, and limits say nothing of it.
+    pub is_mock: bool,
     /// The folder for what is kept of the run.
     pub spool: PathBuf,
     /// How much memory the lane may have, in MiB of addresses.

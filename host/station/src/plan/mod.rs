@@ -11,6 +11,7 @@
 pub mod check_digit;
 mod files;
 pub mod limits;
+pub mod mock;
 mod read;
 pub mod serial;
 mod tables;
@@ -100,10 +101,30 @@ pub struct Plan {
 pub struct Shift {
     /// The serial number of a unit that must pass.
     pub good: String,
-    /// That of one that must fail.
-    pub bad: String,
+    /// What must fail.
+    pub bad: Bad,
     /// How long the two count.
     pub lasts: Duration,
+}
+
+/// What is known to be bad.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Bad {
+    /// The unit of this serial number.
+    Unit(String),
+    /// The [mock](mock) board, with a fault that is drawn for every run.
+    Mock,
+}
+
+impl Bad {
+    /// The serial number that its runs in this lane have.
+    #[must_use]
+    pub fn serial(&self, lane: &str) -> String {
+        match self {
+            Self::Unit(serial) => serial.clone(),
+            Self::Mock => mock::serial(lane),
+        }
+    }
 }
 
 /// What is done with one board.
@@ -210,7 +231,9 @@ impl Plan {
     /// Whether the unit of this serial number checks shifts, and is no product.
     #[must_use]
     pub fn is_reference(&self, serial: &str) -> bool {
-        self.shift.as_ref().is_some_and(|shift| shift.good == serial || shift.bad == serial)
+        let is_bad = |bad: &Bad| matches!(bad, Bad::Unit(bad) if bad == serial);
+        let checks = |shift: &Shift| shift.good == serial || is_bad(&shift.bad);
+        mock::is_mock(serial) || self.shift.as_ref().is_some_and(checks)
     }
 
     /// Whether a run of this serial number can count as production.

@@ -7,12 +7,13 @@ use toml::Spanned;
 
 use super::files::Files;
 use super::limits::{Limit, MEASUREMENTS, Maker, Measurement, SAMPLES_DIFFERING};
+use super::mock::BARCODE;
 use super::serial::SerialRule;
 use super::tables;
 use super::text::{
     BoardText, LimitText, LimitsText, PlanText, SeedText, ShiftText, StepKindText, StepText, TablesText,
 };
-use super::{Act, Judging, Plan, SCHEMA, Seed, Selected, Shift, Step};
+use super::{Act, Bad, Judging, Plan, SCHEMA, Seed, Selected, Shift, Step};
 use crate::input_error::Fault;
 
 /// Where all keys are listed.
@@ -76,7 +77,12 @@ fn check_schema(read: &PlanText) -> Result<(), Fault> {
 
 /// The units that check a shift, whose serial numbers are the product's.
 fn shift(text: &ShiftText, rule: &SerialRule) -> Result<Shift, Fault> {
-    for unit in [&text.good, &text.bad] {
+    let bad = match text.bad.get_ref().as_str() {
+        BARCODE => Bad::Mock,
+        serial => Bad::Unit(serial.to_owned()),
+    };
+    let units = [Some(&text.good), (bad != Bad::Mock).then_some(&text.bad)];
+    for unit in units.into_iter().flatten() {
         rule.read(unit.get_ref())
             .map_err(|error| Fault::input(unit.span().start, "the unit that checks a shift", error))?;
     }
@@ -89,8 +95,7 @@ fn shift(text: &ShiftText, rule: &SerialRule) -> Result<Shift, Fault> {
         let remedy = format!("write 0.1 to {MOST_SHIFT_HOURS} hours");
         return Err(Fault::wrong(text.hours.span().start, format!("no shift has {hours} hours"), remedy));
     }
-    let [good, bad] = [&text.good, &text.bad].map(|unit| unit.get_ref().clone());
-    Ok(Shift { good, bad, lasts: Duration::from_secs_f64(3600.0 * hours) })
+    Ok(Shift { good: text.good.get_ref().clone(), bad, lasts: Duration::from_secs_f64(3600.0 * hours) })
 }
 
 /// What is done with the boards of each variant that is named.

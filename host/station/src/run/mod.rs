@@ -7,6 +7,7 @@
 
 mod recovered;
 
+use std::borrow::Cow;
 use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -20,8 +21,8 @@ pub use recovered::{recover, recover_run};
 use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG, Patience, supervise};
 use crate::lane::{Job, Message, Ruling, kept_frame};
 use crate::plan::limits::Maker;
-use crate::plan::serial::SerialError;
-use crate::plan::{Act, Plan, Selected, Step};
+use crate::plan::serial::{Serial, SerialError};
+use crate::plan::{Act, Plan, Selected, Step, mock};
 use crate::record::{
     Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead,
     SCHEMA, StepRecord, judged,
@@ -39,7 +40,8 @@ pub struct Order<'a> {
     pub plan: &'a Plan,
     /// Its file.
     pub plan_file: &'a Path,
-    /// The serial number, as it was scanned.
+    /// The serial number, as it was scanned; that of [the mock in this lane](crate::plan::mock) has the mock judged instead of the
+    /// board.
     pub serial: &'a str,
     /// The board.
     pub target: &'a Target,
@@ -119,9 +121,9 @@ pub enum RunError {
 /// [`RunError`] when there is no verdict that may be shown.
 pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Result<Saved, RunError> {
     let Order { plan, .. } = order;
-    let (serial, selected) = plan.select(order.serial)?;
     let started_ms = clock::now_ms();
     let id = ids::new(started_ms)?;
+    let Subject { serial, selected, target } = Subject::of(order, ids::seed(id))?;
     let head = RunHead {
         id: id.to_string(),
         station: order.station.to_owned(),
@@ -131,7 +133,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         serial: serial.text,
         variant: serial.variant,
         operator: order.operator.to_owned(),
-        target: order.target.to_string(),
+        target,
         fence: 0,
         started_ms,
     };
@@ -143,12 +145,36 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let spool = store.with(|store| store.folder().spool(&head.id));
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
-    let heard = supervise(order.program, &job, &spool, patience(order, selected), &mut attending);
+    let heard = supervise(order.program, &job, &spool, patience(order, &selected), &mut attending);
     attending.watch.hear(Stage::Saving);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
-    let record = record(head, planned, order, selected, (heard, device), begun.elapsed());
+    let record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
     let saved = store.with(|store| save(store, record, &spool, selected.steps.len() as u32))?;
     Ok(Saved { is_stuck, ..saved })
+}
+
+/// What is judged.
+struct Subject<'a> {
+    serial: Serial,
+    selected: Cow<'a, Selected>,
+    target: String,
+}
+
+impl<'a> Subject<'a> {
+    /// The board of the order, or the mock with a fault that is drawn by `seed`. Limits are about boards, and a clock or a link
+    /// that is none could only miss them: the mock has none.
+    fn of(order: &Order<'a>, seed: u64) -> Result<Self, SerialError> {
+        if !mock::is_mock(order.serial) {
+            let (serial, selected) = order.plan.select(order.serial)?;
+            let selected = Cow::Borrowed(selected);
+            return Ok(Self { serial, selected, target: order.target.to_string() });
+        }
+        let selected = order.plan.variant("");
+        let target = mock::target(seed, selected);
+        let serial = Serial { text: order.serial.to_owned(), variant: String::new() };
+        let selected = Selected { limits: Vec::new(), ..selected.clone() };
+        Ok(Self { serial, selected: Cow::Owned(selected), target })
+    }
 }
 
 /// What the lane is told.
@@ -161,6 +187,7 @@ fn job(head: &RunHead, order: &Order<'_>, seed: u64, spool: &Path) -> Job {
         sha256: order.plan.sha256.clone(),
         variant: head.variant.clone(),
         seed,
+        is_mock: mock::is_mock(&head.serial),
         spool: spool.to_owned(),
         memory_mib: order.memory_mib,
     }

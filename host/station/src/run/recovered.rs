@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::clock;
 use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind};
+use crate::plan::mock::is_mock;
 use crate::record::{Conclusion, DeviceSeen, PlanRecord, Record, RunCause, SCHEMA, StepRecord};
 use crate::store::{OpenRun, Store};
 
@@ -64,7 +65,7 @@ fn closed(store: &mut Store, open: OpenRun, why: &str) -> Result<Saved, RunError
         ended_ms: clock::now_ms().max(run.started_ms),
         seconds: None,
         conclusion: Conclusion::error(RunCause::Crash, headline),
-        production: takes_hardware_alone(&text),
+        production: takes_hardware_alone(&text) && !is_mock(&run.serial),
         plan: PlanRecord { sha256: plan_sha256, name, version, text, files: None },
         marginal: steps.iter().any(|step| step.attempt > 1),
         board: steps.iter().find_map(|step| step.board.clone()),

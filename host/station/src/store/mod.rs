@@ -34,7 +34,7 @@ pub use again::AgainError;
 pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub use error::StoreError;
 pub use shared::SharedStore;
-pub use shift::Owed;
+pub use shift::{Checked, Owed};
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
 pub use waivers::{NoWaiver, Waiver};
 

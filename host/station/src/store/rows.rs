@@ -3,6 +3,7 @@
 use rusqlite::{Connection, Transaction, params};
 
 use super::{bindings, statements as sql};
+use crate::plan::mock::is_mock;
 use crate::record::{PlanRecord, Record, RunHead};
 
 /// Unit, plan and open run. Returns the unit's id and the fence; the unit that is named is made if there is none of
@@ -52,6 +53,7 @@ pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusql
             board.map(|board| &board.kind),
             board.and_then(|board| board.device.as_ref()),
             board.map(|board| &board.build),
+            i64::from(is_mock(&record.run.serial)),
             id,
             record.run.fence,
         ],

@@ -1,10 +1,11 @@
-//! Whether a lane was checked in this shift, by a unit that is known to be good and one that is known to be bad.
+//! Whether a lane was checked in this shift, by a unit that is known to be good and by what is known to be bad.
 
 use halfrow::Verdict;
 use rusqlite::{OptionalExtension as _, params};
 
 use super::{Folder, StoreError, statements as sql};
-use crate::plan::Plan;
+use crate::plan::mock::BARCODE;
+use crate::plan::{Bad, Plan, Shift};
 
 /// What a lane is to do before its production counts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,46 +16,77 @@ pub struct Owed {
     pub why: String,
 }
 
+/// What a lane owes to its shift.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checked {
+    /// What it is to do; nothing if it was checked.
+    pub owed: Option<Owed>,
+    /// The last moment at which that is so without another run in the lane, in milliseconds since 1970, UTC.
+    pub until_ms: i64,
+}
+
+/// The last judgement of a unit.
+struct Judged {
+    verdict: String,
+    started_ms: i64,
+    target: String,
+}
+
 impl Folder {
     /// What this lane of this station still owes to the shift at `now_ms` before boards are judged by `plan`: that the
-    /// last judgement of the good unit is PASS, and then that of the bad one FAIL. An ERROR checks nothing.
+    /// last judgement of the good unit is PASS, and that of what is known to be bad FAIL. An ERROR checks nothing.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn owed(
-        &self,
-        station: &str,
-        lane: &str,
-        plan: &Plan,
-        now_ms: i64,
-    ) -> Result<Option<Owed>, StoreError> {
-        let Some(shift) = &plan.shift else { return Ok(None) };
+    pub fn owed(&self, station: &str, lane: &str, plan: &Plan, now_ms: i64) -> Result<Checked, StoreError> {
+        let mut until_ms = i64::MAX;
+        let Some(shift) = &plan.shift else { return Ok(Checked { owed: None, until_ms }) };
         let lasts = i64::try_from(shift.lasts.as_millis()).unwrap_or(i64::MAX);
         let reader = self.reader()?;
-        for (serial, expected, name) in
-            [(&shift.good, Verdict::Pass, "good"), (&shift.bad, Verdict::Fail, "bad")]
-        {
+        let units = [(shift.good.clone(), Verdict::Pass), (shift.bad.serial(lane), Verdict::Fail)];
+        for (serial, expected) in units {
             let since = now_ms.saturating_sub(lasts);
             let of = params![station, lane, plan.sha256, plan.product, serial, since];
-            let last: Option<String> = reader
-                .query_row(sql::LAST_JUDGEMENT, of, |row| row.get(0))
-                .optional()
-                .map_err(|source| StoreError::Database {
-                    path: self.database(),
-                    doing: "to tell who checked a shift",
-                    source,
-                })?;
-            let why = match last {
-                Some(verdict) if verdict == expected.to_string() => continue,
-                Some(verdict) => {
-                    format!("the {name} unit {serial} came to {verdict}; an engineer looks at the lane")
-                }
-                None => {
-                    format!("the {name} unit {serial} is to come to {expected} first, to check this shift")
-                }
+            let judged = |row: &rusqlite::Row<'_>| {
+                Ok(Judged { verdict: row.get(0)?, started_ms: row.get(1)?, target: row.get(2)? })
             };
-            return Ok(Some(Owed { serial: serial.clone(), why }));
+            let last = reader.query_row(sql::LAST_JUDGEMENT, of, judged).optional();
+            let last = last.map_err(|source| StoreError::Database {
+                path: self.database(),
+                doing: "to tell who checked a shift",
+                source,
+            })?;
+            if let Some(Judged { started_ms, .. }) = &last {
+                until_ms = until_ms.min(started_ms.saturating_add(lasts));
+            }
+            if last.as_ref().is_none_or(|last| last.verdict != expected.to_string()) {
+                let why = why(shift, expected, last);
+                return Ok(Checked { owed: Some(Owed { serial, why }), until_ms });
+            }
         }
-        Ok(None)
+        Ok(Checked { owed: None, until_ms })
+    }
+}
+
+/// Why a lane waits for what is to come to `expected`, and came to something else or to nothing.
+fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> String {
+    let unit = match (expected, &shift.bad) {
+        (Verdict::Pass, _) => format!("the good unit {}", shift.good),
+        (_, Bad::Unit(serial)) => format!("the bad unit {serial}"),
+        (_, Bad::Mock) => {
+            return match last {
+                None => format!(
+                    "the mock board with a drawn fault is to come to {expected} first, to check this shift; scan {BARCODE}"
+                ),
+                Some(Judged { verdict, target, .. }) => format!(
+                    "{target} came to {verdict}, so the plan does not find this fault; an engineer looks at the plan, \
+                     and {BARCODE} draws another one"
+                ),
+            };
+        }
+    };
+    match last {
+        Some(Judged { verdict, .. }) => format!("{unit} came to {verdict}; an engineer looks at the lane"),
+        None => format!("{unit} is to come to {expected} first, to check this shift"),
     }
 }

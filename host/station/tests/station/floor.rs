@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use halfrow::Verdict;
-use halfrow_station::floor::{Act, Effect, Event, Floor, Place, Rule, ScanError, Shown, Starts, Word};
+use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, Rule, ScanError, Shown, Starts, Word};
 use halfrow_station::plan::Plan;
 use halfrow_station::plan::serial::SerialRule;
 
@@ -243,6 +243,38 @@ fn misread(right: &str, other: &str, place: usize) -> Vec<(&'static str, String)
         ("another product", right.replacen("CA", "CD", 1)),
         ("half a label", head.to_owned()),
     ]
+}
+
+/// The lane's shift ends while a serial number waits for the button: it does not start any more.
+#[test]
+fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
+    let mut floor = floor(&[BUTTON], false);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), at(0)).unwrap();
+    let owes = Owes { plan: 0, serial: Some(serial(1)), why: "the shift is over".to_owned() };
+    floor.happened(0, Event::Owes(Some(owes)), at(1));
+    assert_eq!(words(&floor), [Word::Out]);
+    assert!(floor.act(0, Act::Start).is_err());
+    assert_eq!(floor.happened(0, Event::Present(true), at(1)), None);
+    floor.scan(&serial(1), at(2)).unwrap();
+    let begun = floor.act(0, Act::Start).unwrap().effect;
+    assert!(matches!(begun, Some(Effect::Begin(of)) if of.serial == serial(1)), "what is owed may wait");
+}
+
+#[test]
+fn the_mock_is_judged_where_it_is_owed_without_a_board_and_nowhere_else() {
+    let mut floor = floor(&[SCAN, BUTTON], false);
+    assert!(floor.scan("HR:MOCK", at(0)).is_err(), "no lane is named");
+    assert!(floor.scan_for(0, "HR:MOCK", at(0)).unwrap_err().to_string().contains("no mock board"));
+    assert!(floor.scan_for(0, "HR:MOCK:1", at(0)).is_err(), "its serial number is no barcode");
+    for lane in 0..2 {
+        let serial = Some(format!("HR:MOCK:{}", lane + 1));
+        let owes = Owes { plan: 1, serial: serial.clone(), why: "the mock first".to_owned() };
+        floor.happened(lane, Event::Owes(Some(owes)), at(0));
+        let begun = floor.scan_for(lane, "HR:MOCK", at(0)).unwrap().effect;
+        let Some(Effect::Begin(of)) = begun else { panic!("{begun:?}") };
+        assert_eq!((of.plan, of.product.as_str(), Some(of.serial)), (1, "CAM-B", serial));
+    }
 }
 
 /// Every class `times` times; right labels between them are taken every time.

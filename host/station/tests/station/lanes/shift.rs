@@ -1,8 +1,12 @@
 //! A unit that is known to be good and one that is known to be bad check a lane before its production counts.
 
 use std::fs;
+use std::process::Command;
 
-use super::floor::{SERIALS, Station, plan};
+use serde_json::Value;
+
+use super::floor::{Running, SERIALS, Station, plan};
+use crate::common::{Did, program};
 
 const SHIFT: &str = "[shift]\ngood = \"CA0131103628\"\nbad = \"CA0201134373\"\nhours = 8\n[tables]";
 
@@ -71,5 +75,189 @@ fn a_checked_lane_takes_products_until_the_check_is_over() {
     let mut running = station.start();
     let out = running.state("1", "OUT");
     assert!(out["note"].as_str().unwrap().contains("the good unit"), "{out}");
+    running.end();
+}
+
+/// [`SHIFT`] with the mock in the place of the bad unit.
+fn with_mock() -> String {
+    plan().replace("[tables]", &SHIFT.replace(SERIALS[1], "HR:MOCK"))
+}
+
+/// Has the lane judge the good unit; the state behind it, in which the mock is owed.
+fn good_passes(running: &mut Running, lane: &str) -> Value {
+    running.test(lane, SERIALS[0]);
+    running.wait("the mock", |news| {
+        news["lane"] == lane && news["note"].as_str().is_some_and(|note| note.contains("scan HR:MOCK"))
+    })
+}
+
+/// Has the lane judge the mock until a fault is drawn that the plan finds, as nearly all are.
+fn mock_fails(running: &mut Running, lane: &str) -> Value {
+    loop {
+        running.test(lane, "HR:MOCK");
+        let (is_taken, said) = running.answer("HR:MOCK");
+        assert!(is_taken, "{said}");
+        let is_over = |news: &Value| {
+            news["lane"] == lane
+                && news["shown"]["serial"].as_str().is_some_and(|of| of.starts_with("HR:MOCK"))
+        };
+        let ended = running.wait("a verdict on the mock", is_over);
+        if ended["shown"]["verdict"] == "FAIL" {
+            return running.state(lane, "FAIL");
+        }
+    }
+}
+
+#[test]
+fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
+    let station = Station::with(&["mock", "mock"], "");
+    fs::write(station.path("plan.toml"), with_mock()).unwrap();
+    let product = SERIALS[2];
+    let mut running = station.start();
+    running.test("1", "HR:MOCK");
+    assert!(running.answer("HR:MOCK").1.contains("the good unit"), "the good one is first");
+    for lane in ["1", "2"] {
+        assert_eq!(good_passes(&mut running, lane)["state"], "OUT");
+    }
+    running.test("1", product);
+    assert!(running.answer(product).1.contains("the mock board with a drawn fault is to come to FAIL first"));
+    let failed = mock_fails(&mut running, "1");
+    assert_eq!(failed["shown"]["serial"], "HR:MOCK:1");
+    running.test("1", "HR:MOCK");
+    assert!(running.answer("HR:MOCK").1.contains("by no mock board now"));
+    running.test("1", product);
+    running.state("1", "PASS");
+    // The other lane is not checked by it.
+    running.test("2", SERIALS[3]);
+    assert!(!running.answer(SERIALS[3]).0);
+    running.end();
+    let mocks = "FROM run JOIN unit ON unit.id = unit_id WHERE serial = 'HR:MOCK:1'";
+    let targets = station.query(&format!("SELECT target {mocks}"));
+    assert!(
+        !targets.is_empty() && targets.iter().all(|target| target.starts_with("mock,fault=")),
+        "{targets:?}"
+    );
+    assert_eq!(station.query(&format!("SELECT sum(nth) {mocks}")), ["0"], "it is no judgement of a unit");
+    assert_eq!(station.query(&format!("SELECT count(device) {mocks}")), ["0"], "it is bound to nothing");
+    assert_eq!(station.query("SELECT sum(runs) FROM day_count"), ["3"], "two good units and the product");
+    assert_eq!(station.query("SELECT count(*) FROM failure"), ["0"]);
+    // A part of a day is counted by another statement than a whole one.
+    let began: i64 = station.query("SELECT min(started_ms) FROM run")[0].parse().unwrap();
+    let [from, until] = [began - 1, began + 3_600_000]
+        .map(|moment| jiff::Timestamp::from_millisecond(moment).unwrap().to_string());
+    let mut call = Command::new(program());
+    let call = call.args(["yield", "--json", "--from", &from, "--until", &until, "--data"]);
+    let did: Did = call.arg(station.path("data")).output().unwrap().into();
+    let yielded: Value = serde_json::from_str(&did.said).unwrap();
+    assert_eq!(yielded["lines"][0]["errors"]["of"], 3, "{yielded}");
+    station.assert_well();
+}
+
+/// `run` judges the mock in lane 1.
+fn run_mock(station: &Station) -> Did {
+    let mut call = Command::new(program());
+    let call = call.args(["run", "--mock", "--station", "12", "--data"]).arg(station.path("data"));
+    call.arg("--plan").arg(station.path("plan.toml")).output().unwrap().into()
+}
+
+/// Of this plan's frames no draw is known to go unfound, so the verdict is changed by a hand that is not the program's.
+#[test]
+fn a_drawn_fault_that_the_plan_does_not_find_keeps_the_lane_out() {
+    let station = Station::with(&["mock"], "");
+    fs::write(station.path("plan.toml"), with_mock()).unwrap();
+    let did = run_mock(&station);
+    assert_eq!(did.code, Some(1), "{did:?}");
+    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
+    database.execute("UPDATE run SET verdict = 'PASS', cause = 'none', exit_code = 0", []).unwrap();
+    drop(database);
+    let target = station.query("SELECT target FROM run")[0].clone();
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    let said = format!("{target} came to PASS, so the plan does not find this fault");
+    let wants = |news: &Value| news["note"].as_str().is_some_and(|note| note.contains(&said));
+    assert_eq!(running.wait("a mock that passed", wants)["state"], "OUT");
+    running.test("1", SERIALS[2]);
+    assert!(!running.answer(SERIALS[2]).0);
+    mock_fails(&mut running, "1");
+    running.test("1", SERIALS[2]);
+    running.state("1", "PASS");
+    running.end();
+}
+
+/// What the plan demands of boards, of their clocks and of their links, is not asked of the mock.
+#[test]
+fn a_plan_for_hardware_judges_the_mock_by_its_frames_alone() {
+    let station = Station::with(&["mock"], "");
+    let hardware = with_mock()
+        .replace("require_hardware = false", "require_hardware = true")
+        .replace("00000000", "99bff58a")
+        .replace("if-present", "required")
+        .replace("[[step]]", "[[step]]\nkind = \"link\"\nseconds = 0.01\n[[step]]");
+    let limits = "[limits]\n\"link.together\" = { least = 1e15, unit = \"B/s\", blames = \"station\" }\n\
+                  \"latency.clocks\" = { most = 1, blames = \"board\" }\n\
+                  \"run.seconds\" = { most = 1e-9, blames = \"station\" }\n";
+    fs::write(station.path("plan.toml"), format!("{hardware}{limits}")).unwrap();
+    let did = run_mock(&station);
+    assert_eq!(did.code, Some(1), "{did:?}");
+    assert!(did.said.contains("HR:MOCK:1") && did.said.contains("counts as no production"), "{did:?}");
+    fs::write(station.path("plan.toml"), plan()).unwrap();
+    let did = run_mock(&station);
+    assert_eq!(did.code, Some(2), "{did:?}");
+    assert!(did.complained.contains("no mock board checks the shifts of this plan"), "{did:?}");
+}
+
+/// The second lane shows that the station has looked at its lanes meanwhile.
+#[test]
+fn a_checked_lane_asks_its_store_behind_its_runs_alone() {
+    let station = Station::with(&["mock"], "");
+    let port = station.path("port");
+    let other =
+        format!("[[lane]]\nname = \"2\"\nboard = \"serial:{}\"\nplans = [\"other.toml\"]\n", port.display());
+    let settings = fs::read_to_string(station.path("station.toml")).unwrap();
+    fs::write(station.path("station.toml"), settings + &other).unwrap();
+    fs::write(station.path("plan.toml"), with_mock()).unwrap();
+    fs::write(station.path("other.toml"), plan().replace("CAM-T", "CAM-U")).unwrap();
+    let mut running = station.start();
+    good_passes(&mut running, "1");
+    mock_fails(&mut running, "1");
+    let [database, aside] = ["data/station.db", "data/aside.db"].map(|name| station.path(name));
+    fs::rename(&database, &aside).unwrap();
+    for round in 0..3 {
+        let state = if round % 2 == 0 { "READY" } else { "EMPTY" };
+        if round % 2 == 0 {
+            fs::write(&port, "").unwrap()
+        } else {
+            fs::remove_file(&port).unwrap()
+        }
+        running.state("2", state);
+    }
+    fs::rename(&aside, &database).unwrap();
+    running.test("1", SERIALS[2]);
+    let passed = running.state("1", "PASS");
+    assert_eq!(passed["shown"]["serial"], SERIALS[2]);
+    let (_, heard) = running.end();
+    let outs = heard.iter().filter(|news| news["state"] == "OUT").filter_map(|news| news["note"].as_str());
+    let blind: Vec<_> = outs.filter(|note| note.contains("database")).collect();
+    assert!(blind.is_empty(), "{blind:?}");
+}
+
+#[test]
+fn a_lane_is_out_as_soon_as_the_hours_of_its_shift_end() {
+    let station = Station::with(&["mock"], "");
+    fs::write(station.path("plan.toml"), with_mock()).unwrap();
+    let mut running = station.start();
+    good_passes(&mut running, "1");
+    mock_fails(&mut running, "1");
+    running.end();
+    // Eight hours have gone by but for some seconds.
+    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
+    let almost = "UPDATE run SET started_ms = (unixepoch() - 8 * 3600 + 6) * 1000";
+    database.execute(almost, []).unwrap();
+    drop(database);
+    let mut running = station.start();
+    let out = running.state("1", "OUT");
+    assert!(out["note"].as_str().unwrap().contains("the good unit"), "{out}");
+    running.test("1", SERIALS[2]);
+    assert!(!running.answer(SERIALS[2]).0);
     running.end();
 }

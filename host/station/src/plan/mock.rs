@@ -1,0 +1,108 @@
+//! The mock board with a drawn fault, in the place of a unit that is known to be bad.
+//!
+//! It shows that the station and its plan tell a bad board from a good one: nothing of the fixture, the cable or the lane's board.
+
+use super::serial::RESERVED;
+use super::{Act, Selected};
+
+/// What stands for it in a plan, and on the barcode that has a lane judge it.
+pub const BARCODE: &str = "HR:MOCK";
+
+/// Faults of the datapath, each with its parameters. A board that sees a flipped bit itself refuses its tables, and one that loses a
+/// row stops a link test, which both is ERROR: bits are flipped hidden, and no row is lost. The low bits of a factor may change no sample.
+const FAULTS: [(&str, &[(&str, Values)]); 6] = [
+    ("stuck-data", &[("bit", Values::From(0, 7)), ("value", Values::From(0, 1))]),
+    ("dead-tap", &[("tap", Values::From(0, 6))]),
+    ("row-factor,hidden=true", &[("row", Values::Row), ("bit", Values::From(10, 23))]),
+    ("kernel-word,hidden=true", &[("node", Values::From(0, 64)), ("bit", Values::From(8, 14))]),
+    ("tap-offset", &[("columns", Values::Word(&["-3", "-2", "-1", "1", "2", "3"]))]),
+    ("no-rounding", &[]),
+];
+
+/// The values of a parameter.
+#[derive(Clone, Copy)]
+enum Values {
+    /// Whole numbers from the first to the second.
+    From(u64, u64),
+    /// A row of the frames.
+    Row,
+    /// One of these.
+    Word(&'static [&'static str]),
+}
+
+/// Whether a serial number is that of the mock in a lane. No board has it.
+#[must_use]
+pub fn is_mock(serial: &str) -> bool {
+    serial.strip_prefix(BARCODE).is_some_and(|rest| rest.starts_with(':'))
+}
+
+/// Its serial number in this lane, so that several lanes may be checked at once.
+#[must_use]
+pub fn serial(lane: &str) -> String {
+    debug_assert!(BARCODE.starts_with(RESERVED));
+    format!("{BARCODE}:{lane}")
+}
+
+/// The target string of a mock board with a fault that is drawn by `seed`, which steps of `selected` may find.
+#[must_use]
+pub fn target(seed: u64, selected: &Selected) -> String {
+    let rows = selected.steps.iter().filter_map(|step| match &step.act {
+        Act::Verify(judging) => Some(judging.chosen.tables.geometry().height() as u64),
+        Act::Identity | Act::Link { .. } => None,
+    });
+    let mut drawn = Drawn(seed);
+    let rows = rows.min().unwrap_or(1);
+    let Some((name, parameters)) = FAULTS.get(drawn.below(FAULTS.len() as u64) as usize) else {
+        return "mock".to_owned();
+    };
+    let mut value = |values| match values {
+        Values::From(least, most) => (least + drawn.below(most - least + 1)).to_string(),
+        Values::Row => drawn.below(rows).to_string(),
+        Values::Word(words) => {
+            words.get(drawn.below(words.len() as u64) as usize).copied().unwrap_or_default().to_owned()
+        }
+    };
+    let parameters: String =
+        parameters.iter().map(|(key, values)| format!(",{key}={}", value(*values))).collect();
+    format!("mock,fault={name}{parameters}")
+}
+
+/// What is left of a seed.
+struct Drawn(u64);
+
+impl Drawn {
+    /// A number below `most`, which is at least 1.
+    fn below(&mut self, most: u64) -> u64 {
+        let drawn = self.0 % most.max(1);
+        self.0 /= most.max(1);
+        drawn
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::plan::Plan;
+
+    /// The catalogue of faults is the mock's own.
+    #[test]
+    fn every_fault_that_may_be_drawn_is_one_of_the_mock() {
+        let text = include_str!("../../assets/demo-plan.toml").to_owned();
+        let plan = Plan::parse("plan.toml".as_ref(), text).unwrap();
+        let targets: BTreeSet<_> = (0..4000).map(|seed| target(seed * 7919, plan.variant(""))).collect();
+        let names: BTreeSet<_> = targets.iter().map(|target| target.split(',').nth(1).unwrap()).collect();
+        assert_eq!(names.len(), FAULTS.len(), "{names:?}");
+        assert!(targets.len() > 300, "{}", targets.len());
+        for target in targets {
+            halfrow::link::open(&target.parse().unwrap()).unwrap();
+        }
+    }
+
+    #[test]
+    fn no_board_has_its_serial_number() {
+        assert!(is_mock(&serial("1")) && !is_mock(BARCODE) && !is_mock("HR:MOCKER:1"));
+        assert!(serial("1").starts_with(RESERVED));
+    }
+}
