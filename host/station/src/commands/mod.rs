@@ -19,6 +19,7 @@ mod run;
 mod schema;
 mod serve;
 mod signals;
+mod token;
 mod unit;
 mod user;
 mod waive;
@@ -64,6 +65,7 @@ enum Command {
     Serve(serve::Arguments),
     Demo(demo::Arguments),
     User(user::Arguments),
+    Token(token::Arguments),
     Lane(lane::Arguments),
 }
 
@@ -131,6 +133,7 @@ impl Cli {
             Command::Serve(arguments) => serve::run(arguments),
             Command::Demo(arguments) => demo::run(arguments),
             Command::User(arguments) => user::run(arguments),
+            Command::Token(arguments) => token::run(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }

@@ -51,6 +51,8 @@ pub struct Settings {
 pub struct AccessSettings {
     /// The file of those who may act.
     pub users: PathBuf,
+    /// The file of machines that may read.
+    pub tokens: Option<PathBuf>,
     /// How long somebody may be idle and stay logged in.
     pub idle: Duration,
 }

@@ -84,7 +84,8 @@ fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {
         ));
     }
     let idle = Duration::from_secs_f64(3600.0 * hours);
-    Ok(AccessSettings { users: folder.join(not_empty(&text.users)?), idle })
+    let tokens = text.tokens.as_ref().map(not_empty).transpose()?.map(|file| folder.join(file));
+    Ok(AccessSettings { users: folder.join(not_empty(&text.users)?), tokens, idle })
 }
 
 fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {

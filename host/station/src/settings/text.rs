@@ -70,6 +70,7 @@ pub(super) struct WebText {
 #[serde(deny_unknown_fields)]
 pub(super) struct AccessText {
     pub(super) users: Spanned<String>,
+    pub(super) tokens: Option<Spanned<String>>,
     pub(super) hours: Option<Spanned<f64>>,
 }
 

@@ -1,5 +1,6 @@
 //! What stands before every route: is it for this station, who asks, and may they.
 
+use std::net::{IpAddr, Ipv4Addr};
 use std::time::Duration;
 
 use axum::body::{self, Body, Bytes};
@@ -10,10 +11,12 @@ use axum::middleware::Next;
 use axum::response::{IntoResponse as _, Redirect, Response};
 use tokio::time;
 
+use super::access::Machine;
+use super::login::Peer;
 use super::routes::Who;
 use super::state::App;
 use super::trouble::Trouble;
-use super::visit::{Visit, cookie};
+use super::visit::{User, Visit, cookie};
 
 /// How long an answer may take to begin.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -63,7 +66,18 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
 /// Around a route: who asks, and whether they may.
 pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next: Next) -> Response {
     let Guarded { app, who, is_act } = guarded;
-    let visit = app.visit(request.headers(), is_act);
+    let visit = match bearer(request.headers()) {
+        None => app.visit(request.headers(), is_act),
+        Some(token) => {
+            let peer =
+                request.extensions().get().map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |Peer(peer)| *peer);
+            let stranger = Visit { is_new: false, ..app.stranger(request.headers()) };
+            match machine(&app, token, (stranger, peer), is_act).await {
+                Ok(visit) => visit,
+                Err(refused) => return *refused,
+            }
+        }
+    };
     let checked =
         if is_act { act(&app, &visit, who, request).await } else { look(&app, &visit, who, request) };
     match checked {
@@ -85,6 +99,45 @@ type Refused = Box<Response>;
 
 fn refused(visit: &Visit, status: StatusCode, said: &'static str) -> Refused {
     Box::new(Trouble::new(visit, status, said).into_response())
+}
+
+/// The token of a machine (RFC 6750, section 2.1).
+fn bearer(headers: &HeaderMap) -> Option<&str> {
+    let (scheme, token) = headers.get(header::AUTHORIZATION)?.to_str().ok()?.split_once(' ')?;
+    scheme.eq_ignore_ascii_case("Bearer").then_some(token)
+}
+
+/// A machine that asks with a token: it is let in to look, and not to act.
+async fn machine(
+    app: &App,
+    token: &str,
+    (stranger, peer): (Visit, IpAddr),
+    is_act: bool,
+) -> Result<Visit, Refused> {
+    let told = |visit: Visit, act, from: String| async move {
+        let told = app.audit(&visit, act, &from, "").await.map(|()| visit);
+        told.map_err(|trouble| Box::new(trouble.into_response()))
+    };
+    match app.access().machine(token, peer) {
+        Machine::Waits(wait) => {
+            let seconds = (wait.as_secs() + 1).to_string();
+            let said = stranger.words.fill("login.wait", &[("seconds", &seconds)]);
+            Err(Box::new(Trouble::new(&stranger, StatusCode::TOO_MANY_REQUESTS, said).into_response()))
+        }
+        Machine::Unknown => {
+            let visit = told(stranger, "token refused", peer.to_string()).await?;
+            let mut response = refused(&visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login"));
+            response.headers_mut().insert(header::WWW_AUTHENTICATE, HeaderValue::from_static("Bearer"));
+            Err(response)
+        }
+        Machine::Known { name, is_new } => {
+            let visit = Visit { user: Some(User { name, who: Who::Reader }), ..stranger };
+            if is_act {
+                return Err(refused(&visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")));
+            }
+            if is_new { told(visit, "token", peer.to_string()).await } else { Ok(visit) }
+        }
+    }
 }
 
 /// A page: whoever may not see it logs in.

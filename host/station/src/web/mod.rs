@@ -24,7 +24,10 @@ mod state;
 mod trouble;
 mod visit;
 
-pub use access::{Access, Address, AddressError, Role, SecretError, UserError, Users, add_user};
+pub use access::{
+    Access, Address, AddressError, Role, Scope, SecretError, TokenError, Tokens, UserError, Users, add_token,
+    add_user,
+};
 pub use routes::{Route, Who, routes};
 pub use serve::{ServeError, Server};
 pub use state::App;

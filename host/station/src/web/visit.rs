@@ -14,7 +14,7 @@ use super::trouble::Trouble;
 pub struct User {
     /// The name, which stands in records and in the audit.
     pub name: String,
-    /// What they may do: operator or engineer.
+    /// What they may do: operator or engineer; a machine with a token is a reader.
     pub who: Who,
 }
 

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use hmac::{Hmac, KeyInit as _, Mac as _};
 use rand::TryRng as _;
 use rand::rngs::SysRng;
+use serde::de::DeserializeOwned;
 use sha2::Sha256;
 
 /// Bytes of a key, and of what is drawn for a session.
@@ -106,6 +107,28 @@ pub(crate) fn secret(path: &Path) -> Result<String, SecretError> {
         return Err(SecretError::Open { path: path.to_owned() });
     }
     fs::read_to_string(path).map_err(refused)
+}
+
+/// Writes `text` to the file `path`, which nobody else may read, all or nothing.
+pub(crate) fn keep(path: &Path, text: &str) -> Result<(), SecretError> {
+    let write = || {
+        let mut aside = PathBuf::from(path).into_os_string();
+        aside.push(".new");
+        let mut file = File::options().write(true).create(true).truncate(true).mode(0o600).open(&aside)?;
+        file.write_all(text.as_bytes())?;
+        file.sync_all()?;
+        fs::rename(&aside, path)
+    };
+    write().map_err(|source| SecretError::File { path: path.to_owned(), source })
+}
+
+/// What the TOML file `path` of secrets says.
+pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
+    let wrong = |error: toml::de::Error| SecretError::Wrong {
+        path: path.to_owned(),
+        what: error.message().to_owned(),
+    };
+    toml::from_str(&secret(path)?).map_err(wrong)
 }
 
 /// Drawn bytes, which nobody can guess.

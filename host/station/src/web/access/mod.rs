@@ -6,8 +6,10 @@
 mod address;
 mod key;
 mod sessions;
+mod tokens;
 mod users;
 
+use std::collections::HashSet;
 use std::net::{IpAddr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -15,6 +17,7 @@ use std::time::{Duration, Instant};
 
 pub use address::{Address, AddressError};
 pub use key::SecretError;
+pub use tokens::{Scope, TokenError, Tokens};
 pub use users::{Role, UserError, Users};
 
 use super::visit::User;
@@ -33,6 +36,10 @@ pub struct Access {
     key: Key,
     sessions: Mutex<Sessions>,
     failures: Mutex<Failures>,
+    /// Machines' failures, so that one with a wrong token behind a proxy locks no operator out.
+    refused: Mutex<Failures>,
+    /// Which machine was let in from where since the start.
+    machines: Mutex<HashSet<(String, IpAddr)>>,
 }
 
 /// Who may act.
@@ -41,8 +48,22 @@ enum People {
     /// Everybody who gets here.
     Everybody(User),
     /// Who is in the file and has logged in, until they have been idle for so long.
-    Listed { file: PathBuf, idle: Duration },
+    Listed { file: PathBuf, tokens: Option<PathBuf>, idle: Duration },
 }
+
+/// A machine that asks with a token.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Machine {
+    /// It is let in under this name, for the first time from there or not.
+    Known { name: String, is_new: bool },
+    /// It is not.
+    Unknown,
+    /// It has to wait so long.
+    Waits(Duration),
+}
+
+/// The most machines and addresses that are remembered.
+const MOST_MACHINES: usize = 1000;
 
 /// The station's key, in its folder.
 fn key_file(data: &Path) -> PathBuf {
@@ -59,12 +80,22 @@ impl Access {
             None => People::Everybody(everybody),
             Some(access) => {
                 Users::load(&access.users)?;
-                People::Listed { file: access.users.clone(), idle: access.idle }
+                access.tokens.as_deref().map(Tokens::load_or_none).transpose()?;
+                let (file, tokens) = (access.users.clone(), access.tokens.clone());
+                People::Listed { file, tokens, idle: access.idle }
             }
         };
         let key = Key::load(&key_file(&settings.data))?;
         let address = settings.address.clone();
-        Ok(Self { address, people, key, sessions: Mutex::default(), failures: Mutex::default() })
+        Ok(Self {
+            address,
+            people,
+            key,
+            sessions: Mutex::default(),
+            failures: Mutex::default(),
+            refused: Mutex::default(),
+            machines: Mutex::default(),
+        })
     }
 
     /// With the port that the system gave for port 0.
@@ -97,7 +128,7 @@ impl Access {
     pub(super) fn user(&self, session: Option<&str>, is_act: bool) -> Option<User> {
         match &self.people {
             People::Everybody(user) => Some(user.clone()),
-            People::Listed { file, idle } => {
+            People::Listed { file, idle, .. } => {
                 let session = session?;
                 let user = self.sessions().user(session, *idle, is_act, Instant::now())?;
                 // Whoever was taken from the file is nobody any more.
@@ -120,6 +151,29 @@ impl Access {
                 None
             }
         }
+    }
+
+    /// Which machine has this token, asked from `peer`.
+    pub(super) fn machine(&self, token: &str, peer: IpAddr) -> Machine {
+        let mut refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(wait) = refused.wait(peer, Instant::now()) {
+            return Machine::Waits(wait);
+        }
+        let tokens = match &self.people {
+            People::Listed { tokens: Some(file), .. } => Tokens::load_or_none(file),
+            _ => Ok(Tokens::default()),
+        };
+        let tokens = tokens.unwrap_or_else(|error| {
+            tracing::error!("{:#}", anyhow::Error::from(error));
+            Tokens::default()
+        });
+        let Some(name) = tokens.reader(&self.key, token) else {
+            refused.add(peer, Instant::now());
+            return Machine::Unknown;
+        };
+        let mut machines = self.machines.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_new = machines.len() < MOST_MACHINES && machines.insert((name.to_owned(), peer));
+        Machine::Known { name: name.to_owned(), is_new }
     }
 
     /// A new session of `user`: the value of its cookie.
@@ -174,6 +228,18 @@ impl Access {
     fn sessions(&self) -> MutexGuard<'_, Sessions> {
         self.sessions.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Adds a token to the file `file`; returns it, for it is nowhere written.
+///
+/// # Errors
+/// [`TokenError`]
+pub fn add_token(settings: &Settings, file: &Path, name: &str, scope: Scope) -> Result<String, TokenError> {
+    let key = Key::load(&key_file(&settings.data))?;
+    let mut tokens = Tokens::load_or_none(file)?;
+    let token = tokens.add(&key, name, scope)?;
+    tokens.save(file)?;
+    Ok(token)
 }
 
 /// Adds somebody to the file of the settings' people.

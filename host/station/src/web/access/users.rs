@@ -1,9 +1,7 @@
 //! The people who may act: a file of their names, badges and passwords, none of which can be read from it.
 
-use std::fs::{self, File};
-use std::io::{self, Write as _};
-use std::os::unix::fs::OpenOptionsExt as _;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 use std::sync::LazyLock;
 
 use argon2::{Argon2, PasswordHasher as _, PasswordVerifier as _};
@@ -78,11 +76,7 @@ impl Users {
     /// # Errors
     /// [`SecretError`]
     pub fn load(path: &Path) -> Result<Self, SecretError> {
-        let wrong = |error: toml::de::Error| SecretError::Wrong {
-            path: path.to_owned(),
-            what: error.message().to_owned(),
-        };
-        toml::from_str(&key::secret(path)?).map_err(wrong)
+        key::read(path)
     }
 
     /// As [`Self::load`]; nobody, if there is no file.
@@ -98,17 +92,9 @@ impl Users {
     /// # Errors
     /// [`SecretError::File`]
     pub fn save(&self, path: &Path) -> Result<(), SecretError> {
-        let write = || {
-            let text = toml::to_string(self).map_err(io::Error::other)?;
-            let mut aside = PathBuf::from(path).into_os_string();
-            aside.push(".new");
-            let mut file =
-                File::options().write(true).create(true).truncate(true).mode(0o600).open(&aside)?;
-            file.write_all(text.as_bytes())?;
-            file.sync_all()?;
-            fs::rename(&aside, path)
-        };
-        write().map_err(|source| SecretError::File { path: path.to_owned(), source })
+        let text = toml::to_string(self).map_err(io::Error::other);
+        let text = text.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
+        key::keep(path, &text)
     }
 
     /// Adds somebody. An engineer has a password.
@@ -215,7 +201,7 @@ mod tests {
         let path = folder.path().join("users.toml");
         users.save(&path).unwrap();
         let users = Users::load(&path).unwrap();
-        let text = fs::read_to_string(&path).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
         assert!(!text.contains("A17") && !text.contains("horse") && text.contains("$argon2id$"), "{text}");
         let who = |badge, password| users.identify(&key, badge, password).map(|user| user.who);
         assert_eq!(who("A17", ""), Some(Who::Operator));

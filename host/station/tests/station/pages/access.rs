@@ -3,6 +3,7 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 
+use crate::common::Did;
 use crate::pages::http::{Request, exchange};
 use crate::pages::station::{PUBLIC, SERIALS, Station};
 
@@ -32,6 +33,39 @@ fn a_badge_logs_in_and_nobody_may_guess_for_long() {
     let right = browser.post("/login", &[("badge", "A-0017")]).send();
     assert_eq!(right.status, 429, "the eleventh waits, even if it is right");
     assert_eq!(station.query("SELECT act FROM audit"), ["login refused"; 10]);
+}
+
+#[test]
+fn a_token_is_told_once_and_nobody_may_guess_for_long() {
+    let station = Station::public(1);
+    let add = |name: &str| -> Did { station.token(&["add", name, "--scope", "read"]).into() };
+    let added = add("mes");
+    let token = added.said.trim();
+    assert!(token.len() == 64 && token.bytes().all(|digit| digit.is_ascii_hexdigit()), "{added:?}");
+    let file = station.path("tokens.toml");
+    assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o600);
+    assert!(!fs::read_to_string(&file).unwrap().contains(token));
+    assert_eq!(add("mes").code, Some(2), "a name is one machine's");
+    let listed: Did = station.token(&["list"]).into();
+    assert_eq!(listed.said.trim(), "read  mes");
+    let no_jobs: Did = station.token(&["add", "line", "--scope", "jobs"]).into();
+    assert_eq!(no_jobs.code, Some(2), "{no_jobs:?}");
+    let serving = station.serve();
+    let ask = |token: &str| {
+        let request = Request::bare(serving.port, "GET", "/history").with("host", PUBLIC);
+        request.with("authorization", &format!("Bearer {token}")).send()
+    };
+    for wrong in 0..10 {
+        let answer = ask(&format!("{wrong:064x}"));
+        assert_eq!((answer.status, answer.header("www-authenticate")), (401, Some("Bearer")), "{wrong}");
+    }
+    assert_eq!(ask(token).status, 429, "the eleventh waits, even if it is right");
+    assert_eq!(station.query("SELECT act FROM audit"), ["token refused"; 10]);
+    // Behind a proxy all have one address, and people log in all the same.
+    assert_eq!(serving.operator().get("/").send().status, 200);
+    drop(serving);
+    fs::set_permissions(&file, fs::Permissions::from_mode(0o644)).unwrap();
+    assert!(station.refused().contains("chmod 600"));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A station with its pages at work.
 
 use std::fs;
-use std::io::{BufRead as _, BufReader, Write as _};
+use std::io::{BufRead as _, BufReader, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
@@ -47,7 +47,8 @@ impl Station {
     /// Behind a proxy that speaks TLS, with people who log in.
     pub(crate) fn public(lanes: usize) -> Self {
         let web = format!("[web]\nlisten = \"127.0.0.1:0\"\npublic = \"https://{PUBLIC}\"");
-        let station = Self::with(lanes, &format!("{web}\n[access]\nusers = \"users.toml\""));
+        let station =
+            Self::with(lanes, &format!("{web}\n[access]\nusers = \"users.toml\"\ntokens = \"tokens.toml\""));
         for (name, role, badge, password) in PEOPLE {
             let added = station.user(&["add", name, "--role", role], &format!("{badge}\n{password}\n"));
             assert!(added.status.success(), "{}", String::from_utf8_lossy(&added.stderr));
@@ -59,10 +60,19 @@ impl Station {
         self.folder.path().join(name)
     }
 
+    /// `halfrow-station token`.
+    pub(crate) fn token(&self, arguments: &[&str]) -> Output {
+        self.secrets("token", arguments, "")
+    }
+
     /// `halfrow-station user` with these words on stdin.
     pub(crate) fn user(&self, arguments: &[&str], said: &str) -> Output {
+        self.secrets("user", arguments, said)
+    }
+
+    fn secrets(&self, command: &str, arguments: &[&str], said: &str) -> Output {
         let mut child = Command::new(program())
-            .arg("user")
+            .arg(command)
             .args(arguments)
             .arg("--settings")
             .arg(self.path("station.toml"))
@@ -113,14 +123,25 @@ pub(crate) struct Serving {
 impl Serving {
     /// What `command` serves.
     pub(crate) fn of(command: &mut Command) -> Self {
-        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
-        let mut child = command.spawn().unwrap();
-        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
-        let said = lines.find_map(|line| line.split("http://127.0.0.1:").nth(1).map(str::to_owned));
-        let said = said.unwrap_or_else(|| panic!("it does not say where its pages are"));
-        // What else it says must not fill the pipe.
-        thread::spawn(move || lines.for_each(drop));
-        Self { child, port: said.trim_end_matches('/').parse().unwrap() }
+        loop {
+            let mut complained = tempfile::tempfile().unwrap();
+            let stderr = complained.try_clone().unwrap();
+            let command = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(stderr);
+            let mut child = command.spawn().unwrap();
+            let mut lines = BufReader::new(child.stdout.take().unwrap()).lines().map_while(Result::ok);
+            let said = lines.find_map(|line| line.split("http://127.0.0.1:").nth(1).map(str::to_owned));
+            if let Some(said) = said {
+                // What else it says must not fill the pipe.
+                thread::spawn(move || lines.for_each(drop));
+                return Self { child, port: said.trim_end_matches('/').parse().unwrap() };
+            }
+            let code = child.wait().unwrap().code();
+            let mut why = String::new();
+            complained.rewind().unwrap();
+            complained.read_to_string(&mut why).unwrap();
+            // A store that this test has closed is held for a moment by what other tests are just starting.
+            assert_eq!(code, Some(4), "it does not say where its pages are: {why}");
+        }
     }
 
     /// Whether the program goes on.

@@ -114,3 +114,38 @@ fn a_page_asked_for_by_a_stranger_leads_to_the_login() {
     let answer = serving.browser(PUBLIC).get("/").with("accept", "text/html").send();
     assert_eq!((answer.status, answer.headers["location"].as_str()), (303, "/login"));
 }
+
+/// A machine with a token sees every page that an operator sees, and acts nowhere; a token that is none opens nothing.
+#[test]
+fn a_token_reads_every_page_and_does_nothing() {
+    let station = Station::public(1);
+    let token = String::from_utf8(station.token(&["add", "mes", "--scope", "read"]).stdout).unwrap();
+    let serving = station.serve();
+    let (stranger, operator) = (serving.browser(PUBLIC), serving.operator());
+    let with = |request: Request, token: &str| request.with("authorization", &format!("Bearer {token}"));
+    for row in ROWS.iter().filter(|row| row.2 < Who::Engineer || row.0 == "POST") {
+        let what = format!("{} {}", row.0, row.3);
+        let bare = request(&stranger, row).without("cookie");
+        let answer = with(bare, token.trim()).send();
+        if row.0 == "GET" {
+            let seen = status(&request(&operator, row));
+            assert_eq!(answer.status, seen, "{what}");
+            assert_eq!(answer.header("set-cookie"), None, "{what}: a machine has no cookie");
+        } else {
+            assert_eq!(answer.status, 403, "{what}");
+            // An operator's cookie beside it does not help.
+            assert_eq!(status(&with(request(&operator, row), token.trim())), 403, "{what}");
+        }
+    }
+    assert_eq!(
+        station
+            .query("SELECT operator_id || ' ' || act || ' ' || subject FROM audit WHERE act LIKE 'token%'"),
+        ["mes token 127.0.0.1"]
+    );
+    assert!(station.token(&["remove", "mes"]).status.success());
+    assert_eq!(
+        status(&with(operator.get("/history"), token.trim())),
+        401,
+        "whatever was removed opens nothing"
+    );
+}

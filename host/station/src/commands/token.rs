@@ -1,0 +1,85 @@
+//! `halfrow-station token`
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+
+use super::{Failure, beginning, print};
+use crate::exit::Exit;
+use crate::web::{Scope, TokenError, Tokens, add_token};
+
+/// Say which machines may read the pages
+///
+/// A machine sends its token with every request, as `Authorization: Bearer TOKEN`. The file that `tokens` under `[access]` of the
+/// settings names keeps of a token its mark under the station's key. Changes count at once.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The station's settings
+    #[arg(
+        long,
+        global = true,
+        value_name = "FILE",
+        env = "HALFROW_STATION_SETTINGS",
+        default_value = "station.toml"
+    )]
+    settings: PathBuf,
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Draw a token and print it, this once
+    Add {
+        /// Which machine, as it stands in the audit
+        name: String,
+        /// What it is for
+        #[arg(long, value_enum, default_value = "read")]
+        scope: Scope,
+    },
+    /// Remove a machine's token
+    Remove {
+        /// Which machine
+        name: String,
+    },
+    /// Print every machine's name and scope
+    List,
+}
+
+pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
+    let settings = beginning::settings(settings)?;
+    let no_file = "the settings name no file of tokens; write tokens = \"tokens.toml\" into [access]";
+    let file = settings.access.as_ref().and_then(|access| access.tokens.as_ref());
+    let file = file.ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;
+    match what {
+        What::Add { name, scope } => {
+            std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
+            print(&add_token(&settings, file, name.trim(), *scope)?)
+        }
+        What::Remove { name } => {
+            let mut tokens = Tokens::load_or_none(file).map_err(Failure::call)?;
+            tokens.remove(name)?;
+            tokens.save(file).map_err(Failure::error)?;
+            print(&format!("{name} may not read any more"))
+        }
+        What::List => {
+            let tokens = Tokens::load_or_none(file).map_err(Failure::call)?;
+            let lines: Vec<_> =
+                tokens.names().map(|(name, scope)| format!("{:<5} {name}", word(scope))).collect();
+            print(&lines.join("\n"))
+        }
+    }
+}
+
+fn word(scope: Scope) -> &'static str {
+    match scope {
+        Scope::Read => "read",
+        Scope::Jobs => "jobs",
+    }
+}
+
+impl From<TokenError> for Failure {
+    fn from(error: TokenError) -> Self {
+        Self::call(error)
+    }
+}
