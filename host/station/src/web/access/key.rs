@@ -109,14 +109,16 @@ pub(crate) fn secret(path: &Path) -> Result<String, SecretError> {
     fs::read_to_string(path).map_err(refused)
 }
 
-/// Writes `text` to the file `path`, which nobody else may read, all or nothing.
-pub(crate) fn keep(path: &Path, text: &str) -> Result<(), SecretError> {
+/// Writes `text` to the file `path`, which nobody else may read, all or nothing; with `lasts`, a power cut does not take it back.
+pub(crate) fn keep(path: &Path, text: &str, lasts: bool) -> Result<(), SecretError> {
     let write = || {
         let mut aside = PathBuf::from(path).into_os_string();
         aside.push(".new");
         let mut file = File::options().write(true).create(true).truncate(true).mode(0o600).open(&aside)?;
         file.write_all(text.as_bytes())?;
-        file.sync_all()?;
+        if lasts {
+            file.sync_all()?;
+        }
         fs::rename(&aside, path)
     };
     write().map_err(|source| SecretError::File { path: path.to_owned(), source })

@@ -21,12 +21,14 @@ pub use tokens::{Scope, TokenError, Tokens};
 pub use users::{Role, UserError, Users};
 
 use super::visit::User;
+use crate::clock;
 use crate::settings::Settings;
 use key::Key;
 use sessions::{Failures, Sessions};
 
-/// What the marks of forms are told from others by.
+/// What the marks of forms are told from others by, and those of cookies.
 const FORM: &str = "form";
+const SESSION: &str = "session";
 
 /// Where the pages are, and who may see and do what there.
 #[derive(Debug)]
@@ -70,16 +72,23 @@ fn key_file(data: &Path) -> PathBuf {
     data.join("station.key")
 }
 
+/// Who is logged in, in the station's folder.
+fn sessions_file(data: &Path) -> PathBuf {
+    data.join("station.sessions")
+}
+
 impl Access {
     /// As the settings say. Without people in them everybody at the computer itself is `everybody`.
     ///
     /// # Errors
     /// [`SecretError`] when the station's key or the file of people cannot be used.
     pub fn of(settings: &Settings, everybody: User) -> Result<Self, SecretError> {
+        let mut sessions = Sessions::default();
         let people = match &settings.access {
             None => People::Everybody(everybody),
             Some(access) => {
                 Users::load(&access.users)?;
+                sessions = Sessions::load(&sessions_file(&settings.data))?;
                 access.tokens.as_deref().map(Tokens::load_or_none).transpose()?;
                 let (file, tokens) = (access.users.clone(), access.tokens.clone());
                 People::Listed { file, tokens, idle: access.idle }
@@ -91,7 +100,7 @@ impl Access {
             address,
             people,
             key,
-            sessions: Mutex::default(),
+            sessions: Mutex::new(sessions),
             failures: Mutex::default(),
             refused: Mutex::default(),
             machines: Mutex::default(),
@@ -130,12 +139,13 @@ impl Access {
             People::Everybody(user) => Some(user.clone()),
             People::Listed { file, idle, .. } => {
                 let session = session?;
-                let user = self.sessions().user(session, *idle, is_act, Instant::now())?;
+                let mark = self.key.mark(SESSION, session);
+                let user = self.sessions().user(&mark, *idle, is_act, clock::now_ms())?;
                 // Whoever was taken from the file is nobody any more.
                 if Users::load(file).is_ok_and(|users| users.has(&user)) {
                     return Some(user);
                 }
-                self.sessions().remove(session);
+                self.sessions().remove(&mark, clock::now_ms());
                 None
             }
         }
@@ -183,14 +193,14 @@ impl Access {
     pub(super) fn begin(&self, user: Option<User>) -> Result<String, SecretError> {
         let session = key::hex(&key::drawn().map_err(SecretError::NoRandomness)?);
         if let Some(user) = user {
-            self.sessions().add(session.clone(), user, Instant::now());
+            self.sessions().add(self.key.mark(SESSION, &session), user, clock::now_ms());
         }
         Ok(session)
     }
 
     /// Ends the session of this cookie.
     pub(super) fn end(&self, session: &str) {
-        self.sessions().remove(session);
+        self.sessions().remove(&self.key.mark(SESSION, session), clock::now_ms());
     }
 
     /// What forms carry that were made for this cookie.

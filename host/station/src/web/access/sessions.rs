@@ -2,8 +2,13 @@
 
 use std::collections::{HashMap, VecDeque};
 use std::net::IpAddr;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
+use super::key::{self, SecretError};
+use crate::web::routes::Who;
 use crate::web::visit::User;
 
 /// The most sessions at once.
@@ -14,33 +19,106 @@ const WINDOW: Duration = Duration::from_secs(60);
 /// The most addresses of which failures are kept.
 const MOST_PEERS: usize = 10_000;
 
-/// Everybody who is logged in, by the cookies of their browsers.
+/// How old may be what the file says of when somebody did something last.
+const SAVED_MS: i64 = 60_000;
+
+/// Somebody who is logged in, as the file has them. No cookie can be read from it.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Line {
+    /// The mark of the browser's cookie.
+    mark: String,
+    name: String,
+    is_engineer: bool,
+    /// When they did something last, in milliseconds since 1970, UTC.
+    used_ms: i64,
+}
+
+#[derive(Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Lines {
+    #[serde(default)]
+    session: Vec<Line>,
+}
+
+/// Everybody who is logged in, by the marks of their browsers' cookies. A station that starts again knows them still, so
+/// that pages that are open go on.
 #[derive(Debug, Default)]
-pub(super) struct Sessions(HashMap<String, (User, Instant)>);
+pub(super) struct Sessions {
+    known: HashMap<String, (User, i64)>,
+    file: Option<PathBuf>,
+    saved_ms: i64,
+}
 
 impl Sessions {
+    /// Those in the file `path`, which is written from here on.
+    ///
+    /// # Errors
+    /// [`SecretError`] when others may read it, or it cannot be read.
+    pub(super) fn load(path: &Path) -> Result<Self, SecretError> {
+        let lines = match path.exists().then(|| key::read::<Lines>(path)).transpose() {
+            Ok(lines) => lines.unwrap_or_default(),
+            Err(SecretError::Wrong { path, what }) => {
+                tracing::warn!("{}: {what}; everybody logs in anew", path.display());
+                Lines::default()
+            }
+            Err(error) => return Err(error),
+        };
+        let known = lines.session.into_iter().map(|Line { mark, name, is_engineer, used_ms }| {
+            let who = if is_engineer { Who::Engineer } else { Who::Operator };
+            (mark, (User { name, who }, used_ms))
+        });
+        Ok(Self { known: known.collect(), file: Some(path.to_owned()), saved_ms: 0 })
+    }
+
     /// Somebody logged in. Whoever has been idle for longest makes room.
-    pub(super) fn add(&mut self, session: String, user: User, now: Instant) {
-        if self.0.len() >= MOST {
-            let idle = self.0.iter().min_by_key(|(_, (_, used))| *used).map(|(session, _)| session.clone());
-            idle.map(|session| self.0.remove(&session));
+    pub(super) fn add(&mut self, mark: String, user: User, now_ms: i64) {
+        if self.known.len() >= MOST {
+            let idle = self.known.iter().min_by_key(|(_, (_, used))| *used).map(|(mark, _)| mark.clone());
+            idle.map(|mark| self.known.remove(&mark));
         }
-        self.0.insert(session, (user, now));
+        self.known.insert(mark, (user, now_ms));
+        self.save(now_ms);
     }
 
     /// Who this is, unless they have been idle for `idle`. An act is no idleness.
-    pub(super) fn user(&mut self, session: &str, idle: Duration, is_act: bool, now: Instant) -> Option<User> {
-        self.0.retain(|_, (_, used)| now.saturating_duration_since(*used) < idle);
-        let (user, used) = self.0.get_mut(session)?;
+    pub(super) fn user(&mut self, mark: &str, idle: Duration, is_act: bool, now_ms: i64) -> Option<User> {
+        let idle_ms = i64::try_from(idle.as_millis()).unwrap_or(i64::MAX);
+        self.known.retain(|_, (_, used)| now_ms.saturating_sub(*used) < idle_ms);
+        let (user, used) = self.known.get_mut(mark)?;
+        let user = user.clone();
         if is_act {
-            *used = now;
+            *used = now_ms;
+            if now_ms.saturating_sub(self.saved_ms) >= SAVED_MS {
+                self.save(now_ms);
+            }
         }
-        Some(user.clone())
+        Some(user)
     }
 
     /// Somebody logged out, or may not be logged in any more.
-    pub(super) fn remove(&mut self, session: &str) {
-        self.0.remove(session);
+    pub(super) fn remove(&mut self, mark: &str, now_ms: i64) {
+        if self.known.remove(mark).is_some() {
+            self.save(now_ms);
+        }
+    }
+
+    /// Writes everybody down. Whoever is lost with the file logs in anew, so nothing waits for the disk.
+    fn save(&mut self, now_ms: i64) {
+        let Some(file) = &self.file else { return };
+        self.saved_ms = now_ms;
+        let line = |(mark, (user, used_ms)): (&String, &(User, i64))| Line {
+            mark: mark.clone(),
+            name: user.name.clone(),
+            is_engineer: user.who == Who::Engineer,
+            used_ms: *used_ms,
+        };
+        let lines = Lines { session: self.known.iter().map(line).collect() };
+        let text = toml::to_string(&lines).map_err(std::io::Error::other);
+        let text = text.map_err(|source| SecretError::File { path: file.clone(), source });
+        if let Err(error) = text.and_then(|text| key::keep(file, &text, false)) {
+            tracing::warn!("{:#}", anyhow::Error::from(error));
+        }
     }
 }
 
@@ -70,7 +148,6 @@ impl Failures {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::web::routes::Who;
 
     #[test]
     fn the_tenth_failure_of_a_minute_is_followed_by_a_wait_for_that_address_alone() {
@@ -88,13 +165,35 @@ mod tests {
 
     #[test]
     fn idleness_ends_a_session_and_an_act_is_none() {
-        let (mut sessions, start) = (Sessions::default(), Instant::now());
-        let idle = Duration::from_secs(100);
+        let (mut sessions, idle) = (Sessions::default(), Duration::from_secs(100));
         let weber = User { name: "Weber".to_owned(), who: Who::Operator };
-        sessions.add("s".to_owned(), weber.clone(), start);
-        let after = |seconds| start + Duration::from_secs(seconds);
-        assert_eq!(sessions.user("s", idle, true, after(90)), Some(weber.clone()));
-        assert_eq!(sessions.user("s", idle, false, after(180)), Some(weber));
-        assert_eq!(sessions.user("s", idle, false, after(190)), None);
+        sessions.add("s".to_owned(), weber.clone(), 1_000);
+        assert_eq!(sessions.user("s", idle, true, 91_000), Some(weber.clone()));
+        assert_eq!(sessions.user("s", idle, false, 181_000), Some(weber));
+        assert_eq!(sessions.user("s", idle, false, 191_000), None);
+    }
+
+    #[test]
+    fn a_station_that_starts_again_knows_who_is_logged_in() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("station.sessions");
+        let idle = Duration::from_secs(3600);
+        let [weber, braun] = [("Weber", Who::Operator), ("Braun", Who::Engineer)]
+            .map(|(name, who)| User { name: name.to_owned(), who });
+        let mut sessions = Sessions::load(&path).unwrap();
+        sessions.add("w".to_owned(), weber.clone(), 0);
+        sessions.add("b".to_owned(), braun.clone(), 0);
+        sessions.add("gone".to_owned(), weber.clone(), 0);
+        sessions.remove("gone", 1);
+        sessions.user("b", idle, true, SAVED_MS + 1);
+        let mut again = Sessions::load(&path).unwrap();
+        assert_eq!(again.user("w", idle, false, 1_000), Some(weber));
+        assert_eq!(again.user("gone", idle, false, 1_000), None);
+        assert_eq!(again.user("b", idle, false, 3_600_000), Some(braun), "the act counts");
+        std::fs::write(&path, "no table").unwrap();
+        assert_eq!(Sessions::load(&path).unwrap().user("w", idle, false, 0), None);
+        let open = std::os::unix::fs::PermissionsExt::from_mode(0o644);
+        std::fs::set_permissions(&path, open).unwrap();
+        assert!(matches!(Sessions::load(&path), Err(SecretError::Open { .. })));
     }
 }

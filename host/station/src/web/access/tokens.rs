@@ -69,7 +69,7 @@ impl Tokens {
     pub fn save(&self, path: &Path) -> Result<(), SecretError> {
         let text = toml::to_string(self).map_err(io::Error::other);
         let text = text.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
-        key::keep(path, &text)
+        key::keep(path, &text, true)
     }
 
     /// Draws a token of 256 bits, in hexadecimal digits, which is known from here on and nowhere written.
@@ -142,7 +142,7 @@ mod tests {
         let key = Key::load(&folder.path().join("station.key")).unwrap();
         let path = folder.path().join("tokens.toml");
         let mark = key.mark(TOKEN, "t");
-        key::keep(&path, &format!("[[token]]\nname = \"line\"\nscope = \"jobs\"\nmark = \"{mark}\"\n"))
+        key::keep(&path, &format!("[[token]]\nname = \"line\"\nscope = \"jobs\"\nmark = \"{mark}\"\n"), true)
             .unwrap();
         let tokens = Tokens::load_or_none(&path).unwrap();
         assert_eq!(tokens.reader(&key, "t"), None);

@@ -94,7 +94,7 @@ impl Users {
     pub fn save(&self, path: &Path) -> Result<(), SecretError> {
         let text = toml::to_string(self).map_err(io::Error::other);
         let text = text.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
-        key::keep(path, &text)
+        key::keep(path, &text, true)
     }
 
     /// Adds somebody. An engineer has a password.

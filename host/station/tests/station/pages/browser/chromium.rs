@@ -17,7 +17,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// The browser's descriptors 3 and 4 are its ends of the pipes.
 const START: &str = "exec chromium --headless=new --no-sandbox --disable-gpu --no-first-run --disable-background-networking \
     --disable-component-update --disable-default-apps --disable-sync --disable-background-timer-throttling \
-    --autoplay-policy=no-user-gesture-required --user-data-dir=\"$0\" --remote-debugging-pipe about:blank 3<&0 4>&1 >/dev/null 2>&1";
+    --autoplay-policy=no-user-gesture-required --user-data-dir=\"$0\" --remote-debugging-pipe \"$@\" about:blank 3<&0 4>&1 >/dev/null 2>&1";
 
 /// A browser with one page.
 pub(super) struct Chromium {
@@ -34,10 +34,16 @@ pub(super) struct Chromium {
 impl Chromium {
     /// With the page at `address`.
     pub(super) fn open(address: &str) -> Self {
+        Self::with(&[], address)
+    }
+
+    /// The same of a browser with more arguments.
+    pub(super) fn with(arguments: &[&str], address: &str) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let mut child = Command::new("sh")
             .args(["-c", START])
             .arg(profile.path())
+            .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()

@@ -6,10 +6,10 @@ use super::chromium::Chromium;
 use crate::pages::station::{SERIALS, Serving, Station};
 
 /// The most milliseconds from the last beat until the page says that it is not live, beside what a busy machine takes.
-const NOT_LIVE: f64 = 3000.0;
+pub(super) const NOT_LIVE: f64 = 3000.0;
 
 /// Keeps when the page was last seen to beat, and when it turned live or not, by the page's own clock.
-const WATCH: &str = "new Promise(done => {
+pub(super) const WATCH: &str = "new Promise(done => {
     window.beat = window.died = window.rose = 0;
     new MutationObserver(() => window.beat = performance.now()).observe(document.getElementById('clock'), {childList: true});
     new MutationObserver(() => {

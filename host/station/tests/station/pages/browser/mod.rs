@@ -3,4 +3,5 @@
 mod chromium;
 mod live;
 mod look;
+mod proxied;
 mod scans;

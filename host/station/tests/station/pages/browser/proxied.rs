@@ -1,0 +1,134 @@
+//! The page through a proxy that speaks TLS: nginx, as docs/station-setup.md has it.
+
+use std::fs;
+use std::net::{TcpListener, TcpStream};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::json;
+use tempfile::TempDir;
+
+use super::chromium::Chromium;
+use super::live::{NOT_LIVE, WATCH};
+use crate::common::folder;
+use crate::pages::station::{PUBLIC, Serving, Station};
+
+/// The most milliseconds until the page is live again, beside what a busy machine takes.
+const AGAIN: f64 = 5000.0;
+/// How long the proxy is waited for: it ends hangs alone.
+const HANG: Duration = Duration::from_secs(60);
+/// Debian keeps servers where users do not look.
+const NGINX: &str = "PATH=\"$PATH:/usr/sbin:/usr/local/sbin\" exec nginx -p \"$0\" -c nginx.conf -e stderr";
+
+/// The example of the page on setting a station up.
+fn example() -> String {
+    let page =
+        fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/station-setup.md")).unwrap();
+    let begin = page.find("server {").unwrap();
+    let length = page[begin..].find("```").unwrap();
+    page[begin..begin + length].to_owned()
+}
+
+/// A proxy before the pages of a station.
+struct Proxy {
+    nginx: Child,
+    port: u16,
+    _folder: TempDir,
+}
+
+impl Proxy {
+    fn before(station: u16) -> Self {
+        let folder = folder();
+        let of = |name: &str| folder.path().join(name).display().to_string();
+        certificate(folder.path());
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let mut server = example();
+        for (theirs, ours) in [
+            ("listen 443 ssl", format!("listen 127.0.0.1:{port} ssl")),
+            ("/etc/ssl/station12.pem", of("station12.pem")),
+            ("/etc/ssl/private/station12.key", of("station12.key")),
+            ("127.0.0.1:8612", format!("127.0.0.1:{station}")),
+        ] {
+            assert!(server.contains(theirs), "{theirs} in {server}");
+            server = server.replace(theirs, &ours);
+        }
+        // Whoever is not root has none of its folders.
+        let places: String = ["client_body", "proxy", "fastcgi", "uwsgi", "scgi"]
+            .map(|place| format!("{place}_temp_path {};\n", of(place)))
+            .concat();
+        let whole = format!(
+            "daemon off;\nmaster_process off;\npid {};\nevents {{}}\nhttp {{\naccess_log off;\n{places}{server}}}\n",
+            of("nginx.pid")
+        );
+        fs::write(folder.path().join("nginx.conf"), whole).unwrap();
+        let mut nginx = Command::new("sh");
+        let nginx = nginx.args(["-c", NGINX]).arg(folder.path()).stderr(Stdio::null()).spawn().unwrap();
+        let mut proxy = Self { nginx, port, _folder: folder };
+        let begun = Instant::now();
+        while TcpStream::connect(("127.0.0.1", port)).is_err() {
+            let ended = proxy.nginx.try_wait().unwrap();
+            assert!(ended.is_none() && begun.elapsed() < HANG, "nginx does not listen: {ended:?}");
+            thread::sleep(Duration::from_millis(10));
+        }
+        proxy
+    }
+}
+
+impl Drop for Proxy {
+    fn drop(&mut self) {
+        let _ = self.nginx.kill();
+        let _ = self.nginx.wait();
+    }
+}
+
+fn certificate(folder: &Path) {
+    let made = Command::new("openssl")
+        .current_dir(folder)
+        .args(["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2"])
+        .args(["-keyout", "station12.key", "-out", "station12.pem"])
+        .args(["-subj", &format!("/CN={PUBLIC}"), "-addext", &format!("subjectAltName=DNS:{PUBLIC}")])
+        .output()
+        .unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+}
+
+/// Somebody logs in, and their page.
+fn open(proxy: &Proxy) -> Chromium {
+    let rules = format!("--host-resolver-rules=MAP {PUBLIC}:443 127.0.0.1:{}", proxy.port);
+    let mut page = Chromium::with(&["--ignore-certificate-errors", &rules], &format!("https://{PUBLIC}/"));
+    page.wait("location.pathname === '/login' && document.querySelector('[name=badge]') !== null");
+    page.evaluate("document.querySelector('[name=badge]').value = 'A-0017'");
+    page.evaluate("document.querySelector('form[action=\"/login\"]').requestSubmit()");
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    page
+}
+
+#[test]
+fn behind_a_proxy_that_says_502_the_page_is_live_again_by_itself() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let proxy = Proxy::before(serving.port);
+    let mut page = open(&proxy);
+    page.evaluate(WATCH);
+    page.wait("window.beat > 0");
+    let settings = station.path("station.toml");
+    let text = fs::read_to_string(&settings).unwrap();
+    fs::write(&settings, text.replace("127.0.0.1:0", &format!("127.0.0.1:{}", serving.port))).unwrap();
+    drop(serving);
+    page.wait("window.died > 0");
+    let silent = page.evaluate("window.died - window.beat").as_f64().unwrap();
+    println!("behind a proxy, not live {silent:.0} ms after the last beat");
+    assert!(silent < 2.0 * NOT_LIVE, "not live after {silent} ms");
+    assert_eq!(page.evaluate("fetch('/today').then(answer => answer.status)"), json!(502));
+    let _again: Serving = station.serve();
+    let back = page.evaluate("performance.now()").as_f64().unwrap();
+    page.wait("window.rose > 0");
+    let rose = page.evaluate("window.rose").as_f64().unwrap() - back;
+    println!("behind a proxy, live again {rose:.0} ms after it was back");
+    assert!(rose < 2.0 * AGAIN, "live after {rose} ms");
+    page.scan(crate::common::SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("document.querySelector('.lane.pass') !== null");
+    assert_eq!(station.query("SELECT DISTINCT operator_id FROM run"), ["Weber"]);
+}
