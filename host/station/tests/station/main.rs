@@ -12,4 +12,5 @@ mod lanes;
 mod pages;
 mod plans;
 mod runs;
+mod service;
 mod settings;

@@ -225,9 +225,9 @@ fn a_checked_lane_asks_its_store_behind_its_runs_alone() {
     for round in 0..3 {
         let state = if round % 2 == 0 { "READY" } else { "EMPTY" };
         if round % 2 == 0 {
-            fs::write(&port, "").unwrap()
+            fs::write(&port, "").unwrap();
         } else {
-            fs::remove_file(&port).unwrap()
+            fs::remove_file(&port).unwrap();
         }
         running.state("2", state);
     }

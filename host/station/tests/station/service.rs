@@ -1,0 +1,58 @@
+//! The unit for systemd, which docs/station-setup.md installs.
+
+use std::fs;
+use std::process::Command;
+
+use crate::common::{Did, folder, program};
+
+const UNIT: &str = include_str!("../../systemd/halfrow-station.service");
+/// Where the unit has the program.
+const INSTALLED: &str = "/usr/local/bin/halfrow-station";
+/// The most that `systemd-analyze security` may count, of 10; it counts boards, their groups and the network, too.
+const EXPOSURE: f64 = 2.0;
+
+#[test]
+fn the_unit_calls_the_program_as_it_is_called() {
+    let line = UNIT.lines().find_map(|line| line.strip_prefix("ExecStart=")).unwrap();
+    let arguments = line.strip_prefix(INSTALLED).unwrap();
+    let nowhere = arguments.replace("/etc/halfrow", "/nowhere");
+    let did: Did = Command::new(program()).args(nowhere.split_whitespace()).output().unwrap().into();
+    assert_eq!(did.code, Some(2), "{did:?}");
+    assert!(did.complained.contains("/nowhere/station.toml cannot be read"), "{did:?}");
+}
+
+/// What is said instead of a check.
+const ABSENT: &str = "systemd-analyze is not installed: the unit is not checked";
+
+/// What `systemd-analyze` says of this unit; nothing where it is not installed.
+fn analysed(unit: &str, how: &[&str]) -> Option<Did> {
+    let folder = folder();
+    let path = folder.path().join("halfrow-station.service");
+    fs::write(&path, unit.replace(INSTALLED, &program().display().to_string())).unwrap();
+    Command::new("systemd-analyze").args(how).arg("--no-pager").arg(&path).output().ok().map(Did::from)
+}
+
+#[test]
+fn systemd_finds_nothing_wrong_with_the_unit() {
+    let Some(right) = analysed(UNIT, &["verify"]) else {
+        println!("{ABSENT}");
+        return;
+    };
+    assert_eq!((right.code, right.complained.as_str()), (Some(0), ""), "{right:?}");
+    // The control: what is misspelt is told.
+    let wrong = analysed(&UNIT.replace("WatchdogSec", "WatchdogSecs"), &["verify"]).unwrap();
+    assert!(wrong.complained.contains("WatchdogSecs"), "{wrong:?}");
+}
+
+#[test]
+fn the_unit_leaves_open_what_lanes_need_and_little_else() {
+    let Some(did) = analysed(UNIT, &["security", "--offline=true"]) else {
+        println!("{ABSENT}");
+        return;
+    };
+    let said = did.said.lines().last().unwrap_or_default();
+    let level = said.rsplit(": ").next().and_then(|level| level.split_whitespace().next()?.parse().ok());
+    let level: f64 = level.unwrap_or_else(|| panic!("{did:?}"));
+    println!("exposure {level}");
+    assert!(level <= EXPOSURE, "{did:?}");
+}
