@@ -48,16 +48,33 @@ impl Store {
             .rows("to tell old evidence", sql::OLD_EVIDENCE, &[&before_ms], |row| row.get(0))
     }
 
-    /// Enters in the audit that these pieces of evidence are removed.
-    pub(crate) fn note_pruned(&mut self, hashes: &[String], operator: &str) -> Result<(), StoreError> {
+    /// The hashes of all evidence that a row names.
+    pub(crate) fn named_evidence(&self) -> Result<BTreeSet<String>, StoreError> {
+        let named = Snapshot::take(&self.folder)?.rows(
+            "to tell what evidence has a row",
+            sql::NAMED_EVIDENCE,
+            &[],
+            |row| row.get(0),
+        )?;
+        Ok(named.into_iter().collect())
+    }
+
+    /// Enters in the audit that all of these are removed, and why.
+    pub(crate) fn note_removed(
+        &mut self,
+        operator: &str,
+        act: &str,
+        subjects: &[String],
+        why: &str,
+    ) -> Result<(), StoreError> {
         let at_ms = clock::now_ms();
         let id = |_: &String| Ok(ids::new(at_ms)?.to_string());
-        let named: Result<Vec<_>, NoRandomness> = hashes.iter().map(id).collect();
+        let named: Result<Vec<_>, NoRandomness> = subjects.iter().map(id).collect();
         let named = named?;
         self.change("an audit", |to| {
             let mut add = to.prepare(sql::ADD_AUDIT)?;
-            for (id, hash) in named.iter().zip(hashes) {
-                add.execute(params![id, at_ms, operator, "prune", hash, "older than it is kept"])?;
+            for (id, subject) in named.iter().zip(subjects) {
+                add.execute(params![id, at_ms, operator, act, subject, why])?;
             }
             Ok(())
         })

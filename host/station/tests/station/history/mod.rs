@@ -11,6 +11,7 @@ mod pages;
 mod pareto;
 mod served;
 mod units;
+mod unnamed;
 mod waivers;
 mod wilson;
 mod yields;
