@@ -9,6 +9,7 @@ mod looked_at;
 mod made;
 mod pages;
 mod pareto;
+mod released;
 mod served;
 mod units;
 mod unnamed;
