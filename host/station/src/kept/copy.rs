@@ -1,6 +1,6 @@
 //! Copies of a station's folder: the index of one moment, and every piece of evidence that it names.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -146,12 +146,13 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     };
     let runs = copy.final_runs()?;
     let pruned = copy.pruned()?;
-    let records = runs.iter().map(|(_, hash)| hash.clone());
-    let all: BTreeSet<_> = records.chain(copy.attachments()?).collect();
+    // A record is never removed.
+    let records = runs.iter().map(|(_, hash)| (hash.clone(), i64::MAX));
+    let all: BTreeMap<_, _> = copy.attachments()?.into_iter().chain(records).collect();
     let mut evidence = 0;
-    for hash in &all {
+    for (hash, ended_ms) in &all {
         match from.blobs().get(hash) {
-            Err(error) if error.is_gone() && pruned.contains(hash) => {}
+            Err(error) if error.is_gone() && pruned.explains(hash, *ended_ms) => {}
             bytes => {
                 to.blobs().put(&bytes.map_err(StoreError::from)?).map_err(StoreError::from)?;
                 evidence += 1;

@@ -1,6 +1,6 @@
 //! What backups and pruning ask of the database.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use rusqlite::params;
@@ -26,18 +26,31 @@ impl Folder {
 }
 
 impl Snapshot {
-    /// The hashes of all attachments.
-    pub(crate) fn attachments(&self) -> Result<Vec<String>, StoreError> {
-        self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| row.get(0))
+    /// The hashes of all attachments, each with when the last run ended that has it, in milliseconds since 1970, UTC.
+    pub(crate) fn attachments(&self) -> Result<Vec<(String, i64)>, StoreError> {
+        self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
     }
 
-    /// The hashes of the evidence that was removed since it was old.
+    /// What evidence was removed since it was old.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn pruned(&self) -> Result<BTreeSet<String>, StoreError> {
-        let pruned = self.rows("to tell what was removed", sql::PRUNED, &[], |row| row.get(0))?;
-        Ok(pruned.into_iter().collect())
+    pub fn pruned(&self) -> Result<Removed, StoreError> {
+        let pruned =
+            self.rows("to tell what was removed", sql::PRUNED, &[], |row| Ok((row.get(0)?, row.get(1)?)))?;
+        Ok(Removed(pruned.into_iter().collect()))
+    }
+}
+
+/// Evidence that was removed since it was old, by its hash, and when: milliseconds since 1970, UTC.
+#[derive(Clone, Debug, Default)]
+pub struct Removed(BTreeMap<String, i64>);
+
+impl Removed {
+    /// Whether that is why a run that ended at this moment has not got this piece any more. A later run had it anew.
+    #[must_use]
+    pub fn explains(&self, hash: &str, ended_ms: i64) -> bool {
+        self.0.get(hash).is_some_and(|&removed_ms| ended_ms < removed_ms)
     }
 }
 
