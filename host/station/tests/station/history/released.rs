@@ -167,12 +167,17 @@ fn refused(backup: &TempDir, told: &str) {
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 0);
 }
 
-/// Makes the folder of each schema that has none. Those that are there are never made again.
+/// Makes the folder of each schema that has none, when that is wanted. Those that are there are never made again.
 #[test]
 #[ignore = "for whoever adds a schema; see released/README.md"]
 fn make_those_that_are_missing() {
+    let missing: Vec<_> = (1..=newest()).filter(|number| !released(*number).exists()).collect();
+    if missing.is_empty() {
+        return;
+    }
+    assert!(std::env::var_os("HALFROW_STATION_RELEASE").is_some(), "no folder for the schemas {missing:?}");
     let made = history();
-    for number in (1..=newest()).filter(|number| !released(*number).exists()) {
+    for number in missing {
         let to = released(number);
         fs::create_dir_all(&to).unwrap();
         fs::write(to.join("database.sql"), database(number, &made)).unwrap();
