@@ -1,1 +1,4 @@
-SELECT DISTINCT sha256 FROM attachment;
+-- Each piece of evidence, and when the last run ended that has it.
+SELECT attachment.sha256, max(run.ended_ms)
+FROM attachment JOIN run ON run.id = attachment.run_id
+GROUP BY attachment.sha256;

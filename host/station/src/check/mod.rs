@@ -1,11 +1,11 @@
 //! Whether everything is as it was written: every hash anew, and the index made anew from the records beside the one
 //! that is there.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use crate::plan::plan_hash;
 use crate::record::{BlobError, Blobs, Record, RecordError};
-use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Row, Snapshot, StoreError, TABLES};
+use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Row, Snapshot, StoreError, TABLES};
 
 /// What was looked at, and what is wrong.
 #[derive(Debug)]
@@ -135,8 +135,7 @@ enum Entry<'a> {
 
 struct Look {
     blobs: Blobs,
-    /// The hashes of what was removed since it was old.
-    removed: BTreeSet<String>,
+    removed: Removed,
     rebuilt: Rebuilt,
     evidence: usize,
     pruned: usize,
@@ -179,7 +178,9 @@ impl Look {
         let record = Record::parse(&bytes).map_err(|source| Fault::Record { run: owned(), source })?;
         for attachment in &record.attachments {
             match self.blobs.get(&attachment.sha256) {
-                Err(error) if error.is_gone() && self.removed.contains(&attachment.sha256) => {
+                Err(error)
+                    if error.is_gone() && self.removed.explains(&attachment.sha256, record.ended_ms) =>
+                {
                     self.pruned += 1;
                 }
                 Err(source) => self.faults.push(evidence(source)),

@@ -1,14 +1,15 @@
 //! `halfrow-station backup`, `restore` and `prune`
 
 use std::path::PathBuf;
-use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 use clap::Args;
+use serde_json::json;
 
 use super::looking::Data;
-use super::{Failure, print};
+use super::{Failure, document, print};
+use crate::clock;
 use crate::exit::Exit;
-use crate::kept::{self, Copied, CopyError, Pruned};
+use crate::kept::{self, Copied, CopyError, Pruned, Unnamed};
 use crate::store::{Folder, Store};
 
 /// Copy all that the station has kept to a new folder, while runs go on
@@ -40,26 +41,51 @@ pub(super) fn restore(arguments: &Restore) -> Result<Exit, Failure> {
     print(&format!("{runs} runs and {evidence} pieces of evidence were read back, 0 faults found"))
 }
 
-/// Remove the evidence of old runs; their records and rows are kept for ever
+/// Remove evidence that no row names, and that of old runs; records and rows are kept for ever
+///
+/// No row names what a run left that ended before its row was written. It is removed when it is a day old.
 #[derive(Debug, Args)]
 pub(super) struct Prune {
     #[command(flatten)]
     data: Data,
-    /// Evidence of runs that ended longer ago
+    /// Remove the evidence of runs that ended longer ago, too
     #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..))]
-    older_than: u32,
+    older_than: Option<u32>,
     /// Who removes it
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
     operator: String,
+    /// Print JSON
+    #[arg(long)]
+    pub(super) json: bool,
 }
 
 pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
-    let mut store = Store::open_existing(&arguments.data.folder())?;
-    let age = Duration::from_secs(86_400 * u64::from(arguments.older_than));
-    let before = SystemTime::now().checked_sub(age).and_then(|before| before.duration_since(UNIX_EPOCH).ok());
-    let before_ms = before.map_or(0, |before| before.as_millis() as i64);
-    let Pruned { pieces, bytes } = kept::prune(&mut store, before_ms, &arguments.operator)?;
-    print(&format!("{pieces} pieces of evidence were removed, {bytes} bytes; every record is kept"))
+    let Prune { data, older_than, operator, json } = arguments;
+    let mut store = Store::open_existing(&data.folder())?;
+    let old = match older_than {
+        Some(days) => kept::prune(&mut store, days_ago_ms(*days), operator)?,
+        None => Pruned::default(),
+    };
+    let unnamed = kept::prune_unnamed(&mut store, operator)?;
+    if *json {
+        let old = json!({ "pieces": old.pieces, "bytes": old.bytes });
+        let Unnamed { pieces, spools, bytes } = unnamed;
+        let unnamed = json!({ "pieces": pieces, "spools": spools, "bytes": bytes });
+        let rest = json!({ "old": old, "unnamed": unnamed });
+        return print(&document::text("prune", Exit::Pass, None, rest)?);
+    }
+    let Pruned { pieces, bytes } = old;
+    let by_age = older_than.map(|_| format!("{pieces} pieces of evidence were removed, {bytes} bytes; "));
+    let Unnamed { pieces, spools, bytes } = unnamed;
+    print(&format!(
+        "{}{pieces} pieces and {spools} spools that no row names were removed, {bytes} bytes; every record is kept",
+        by_age.unwrap_or_default()
+    ))
+}
+
+/// Milliseconds since 1970, UTC, so many days ago.
+fn days_ago_ms(days: u32) -> i64 {
+    clock::now_ms().saturating_sub(86_400_000 * i64::from(days))
 }
 
 impl From<CopyError> for Failure {

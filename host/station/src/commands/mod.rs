@@ -103,6 +103,7 @@ impl Cli {
         match &self.command {
             Command::Run(run::Arguments { json: true, .. }) => Some("run"),
             Command::Check(check::Arguments { json: true, .. }) => Some("check"),
+            Command::Prune(kept::Prune { json: true, .. }) => Some("prune"),
             Command::Codes(codes::Arguments { json: true }) => Some("codes"),
             _ => None,
         }

@@ -9,7 +9,7 @@ use crate::exit::Exit;
 /// What the program prints as JSON; the codes come from the program.
 const SCHEMA: &str = include_str!("../../schema/station-1.json");
 
-/// Print the JSON Schema of what `run`, `check` and `codes` print with `--json`
+/// Print the JSON Schema of what `run`, `check`, `prune` and `codes` print with `--json`
 #[derive(Debug, Args)]
 pub(super) struct Arguments {}
 

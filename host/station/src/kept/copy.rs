@@ -1,13 +1,13 @@
 //! Copies of a station's folder: the index of one moment, and every piece of evidence that it names.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::check::check;
 use crate::record::synced;
-use crate::store::{Folder, Snapshot, StoreError};
+use crate::store::{Folder, Snapshot, Store, StoreError};
 
 /// What was copied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,6 +62,30 @@ pub enum CopyError {
 /// # Errors
 /// [`CopyError`]
 pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
+    Snapshot::take(from)?;
+    made(to, |aside| into(from, aside))
+}
+
+/// Makes a station's new folder `to` from the copy in `from`, when all of it is as it was written. A copy of an older
+/// program's is brought up to date on the way, with its database beside the new one; `from` stays as it is.
+///
+/// # Errors
+/// [`CopyError`]
+pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
+    match sound(from, from) {
+        // It is looked at when it is up to date.
+        Err(CopyError::Store(StoreError::Older { .. })) => {}
+        looked_at => looked_at?,
+    }
+    made(to, |aside| {
+        let copied = into(from, aside)?;
+        sound(&Folder::new(aside), from)?;
+        Ok(copied)
+    })
+}
+
+/// Makes the new folder `to`, whole or not at all: `fill` is given its place aside.
+fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Result<Copied, CopyError> {
     let refused = |source| CopyError::Io { path: to.to_owned(), source };
     if fs::read_dir(to).is_ok_and(|mut entries| entries.next().is_some()) || to.is_file() {
         return Err(CopyError::Exists { path: to.to_owned() });
@@ -77,7 +101,7 @@ pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
         }
         made => made.map_err(refused)?,
     }
-    let copied = into(from, &aside).and_then(|copied| {
+    let copied = fill(&aside).and_then(|copied| {
         fs::rename(&aside, &to).map_err(refused)?;
         synced(parent).map_err(StoreError::from)?;
         Ok(copied)
@@ -89,23 +113,13 @@ pub fn backup(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     copied
 }
 
-/// Makes a station's new folder `to` from the copy in `from`, when all of it is as it was written.
-///
-/// # Errors
-/// [`CopyError`]
-pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
-    sound(from)?;
-    let copied = backup(from, to)?;
-    sound(&Folder::new(to))?;
-    Ok(copied)
-}
-
-fn sound(folder: &Folder) -> Result<(), CopyError> {
+/// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`.
+fn sound(folder: &Folder, named: &Folder) -> Result<(), CopyError> {
     let checked = check(folder)?;
     match checked.faults.first() {
         None => Ok(()),
         Some(first) => Err(CopyError::Faulty {
-            path: folder.path().to_owned(),
+            path: named.path().to_owned(),
             faults: checked.faults.len(),
             first: first.to_string(),
         }),
@@ -122,15 +136,23 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     for folder in [&spools, &blobs] {
         fs::create_dir(folder).map_err(refused)?;
     }
-    let copy = Snapshot::take(&to)?;
+    let copy = match Snapshot::take(&to) {
+        Err(StoreError::Older { .. }) => {
+            // Whoever opens it to write brings it up to date.
+            Store::open(&to).map_err(|error| as_in(from, error))?;
+            Snapshot::take(&to)?
+        }
+        taken => taken?,
+    };
     let runs = copy.final_runs()?;
     let pruned = copy.pruned()?;
-    let records = runs.iter().map(|(_, hash)| hash.clone());
-    let all: BTreeSet<_> = records.chain(copy.attachments()?).collect();
+    // A record is never removed.
+    let records = runs.iter().map(|(_, hash)| (hash.clone(), i64::MAX));
+    let all: BTreeMap<_, _> = copy.attachments()?.into_iter().chain(records).collect();
     let mut evidence = 0;
-    for hash in &all {
+    for (hash, ended_ms) in &all {
         match from.blobs().get(hash) {
-            Err(error) if error.is_gone() && pruned.contains(hash) => {}
+            Err(error) if error.is_gone() && pruned.explains(hash, *ended_ms) => {}
             bytes => {
                 to.blobs().put(&bytes.map_err(StoreError::from)?).map_err(StoreError::from)?;
                 evidence += 1;
@@ -139,4 +161,12 @@ fn into(from: &Folder, aside: &Path) -> Result<Copied, CopyError> {
     }
     synced(aside).map_err(StoreError::from)?;
     Ok(Copied { runs: runs.len(), evidence })
+}
+
+/// What is wrong with the database of the copy is wrong with the one that it is of.
+fn as_in(from: &Folder, error: StoreError) -> StoreError {
+    match error {
+        StoreError::OtherSchema { version, .. } => StoreError::OtherSchema { path: from.database(), version },
+        error => error,
+    }
 }

@@ -2,6 +2,9 @@
 
 mod copy;
 mod prune;
+mod unnamed;
 
 pub use copy::{Copied, CopyError, backup, restore};
 pub use prune::{Pruned, prune};
+pub(crate) use unnamed::{Spool, spools};
+pub use unnamed::{Unnamed, prune_unnamed};

@@ -23,7 +23,7 @@ pub fn prune(store: &mut Store, before_ms: i64, operator: &str) -> Result<Pruned
     let blobs = store.folder().blobs();
     let old = store.old_evidence(before_ms)?;
     let here: Vec<_> = old.into_iter().filter(|hash| blobs.path(hash).is_file()).collect();
-    store.note_pruned(&here, operator)?;
+    store.note_removed(operator, "prune", &here, "older than it is kept")?;
     let mut pruned = Pruned::default();
     for hash in &here {
         let path = blobs.path(hash);

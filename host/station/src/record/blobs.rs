@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use halfrow::frames::written_aside::{self, WriteAsideError, write_aside};
 use halfrow::result::sha256;
@@ -83,6 +84,11 @@ impl Blobs {
             // A run that ended early may have left it, and its name not yet on the disk.
             Err(WriteAsideError::Exists { .. }) => {
                 self.get(&hash)?;
+                // Its age counts from the last run that has it, which has no row yet.
+                let dated = File::options().append(true).open(&path);
+                dated
+                    .and_then(|file| file.set_modified(SystemTime::now()))
+                    .map_err(|source| BlobError::Folder { path: folder.to_owned(), source })?;
                 synced(folder)?;
             }
             written => written?,
@@ -98,6 +104,34 @@ impl Blobs {
         }
     }
 
+    /// Every piece of evidence that is there, whether a row names it or not. What has no hash for a name is none.
+    ///
+    /// # Errors
+    /// [`BlobError`] when the folder cannot be read.
+    pub(crate) fn all(&self) -> Result<Vec<Piece>, BlobError> {
+        let refused = |path: &Path| {
+            let path = path.to_owned();
+            move |source| BlobError::Folder { path, source }
+        };
+        let mut pieces = Vec::new();
+        for folder in fs::read_dir(&self.folder).map_err(refused(&self.folder))? {
+            let folder = folder.map_err(refused(&self.folder))?.path();
+            if !folder.is_dir() {
+                continue;
+            }
+            for entry in fs::read_dir(&folder).map_err(refused(&folder))? {
+                let entry = entry.map_err(refused(&folder))?;
+                let (path, known) = (entry.path(), entry.metadata().map_err(refused(&folder))?);
+                let hash = entry.file_name().to_string_lossy().into_owned();
+                if known.is_file() && is_hash(&hash) && path == self.path(&hash) {
+                    let modified = known.modified().map_err(refused(&folder))?;
+                    pieces.push(Piece { hash, bytes: known.len(), modified });
+                }
+            }
+        }
+        Ok(pieces)
+    }
+
     /// The bytes of this hash.
     ///
     /// # Errors
@@ -108,6 +142,21 @@ impl Blobs {
         let found = sha256([&bytes]);
         if found == hash { Ok(bytes) } else { Err(BlobError::Damaged { path, found }) }
     }
+}
+
+/// A file among the evidence.
+#[derive(Clone, Debug)]
+pub(crate) struct Piece {
+    /// Its hash, by its name.
+    pub hash: String,
+    /// How many bytes it has.
+    pub bytes: u64,
+    /// When it was last brought to the disk.
+    pub modified: SystemTime,
+}
+
+fn is_hash(name: &str) -> bool {
+    name.len() == 64 && name.bytes().all(|byte| byte.is_ascii_digit() || (b'a'..=b'f').contains(&byte))
 }
 
 /// Brings the names in a folder to the disk.

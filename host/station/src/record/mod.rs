@@ -8,8 +8,8 @@ use halfrow::Verdict;
 use halfrow::result::FileHash;
 use serde::{Deserialize, Serialize};
 
-pub(crate) use blobs::synced;
 pub use blobs::{BlobError, Blobs};
+pub(crate) use blobs::{Piece, synced};
 pub use conclude::Conclusion;
 pub use step::{
     BoardSeen, DeviceSeen, Measured, MeasuredOutcome, RunCause, StepOutcome, StepRecord, SuspectRecord,

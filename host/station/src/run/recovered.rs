@@ -4,6 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::clock;
+use crate::kept::{Spool, spools};
 use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind};
 use crate::plan::mock::is_mock;
@@ -25,7 +26,7 @@ pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     let closed =
         open.into_iter().map(|open| closed(store, open, "the station ended in the middle of the run"));
     let closed = closed.collect::<Result<_, _>>()?;
-    clear(&store.folder().spools());
+    clear(store);
     Ok(closed)
 }
 
@@ -44,12 +45,19 @@ pub fn recover_run(store: &mut Store, run: &str) -> Result<Saved, RunError> {
     Ok(Saved { record, stored, is_stuck: false })
 }
 
-/// Removes what runs left that ended between their result and their last act.
-fn clear(spools: &Path) {
-    let left = fs::read_dir(spools).into_iter().flatten().filter_map(Result::ok);
-    for path in left.map(|entry| entry.path()) {
-        if let Err(error) = fs::remove_dir_all(&path) {
-            tracing::warn!("{} cannot be removed: {error}; it is not needed any more", path.display());
+/// Removes what runs left that ended between their result and their last act, and what is a day old and no row names.
+fn clear(store: &Store) {
+    let spools = match spools(store) {
+        Ok(spools) => spools,
+        Err(error) => return tracing::warn!("what earlier runs left stays where it is: {error}"),
+    };
+    for Spool { name, path, is_old, .. } in spools.into_iter().filter(|spool| spool.is_over || spool.is_old) {
+        match fs::remove_dir_all(&path) {
+            Ok(()) if is_old => tracing::warn!("{} was removed: no row names the run {name}", path.display()),
+            Ok(()) => {}
+            Err(error) => {
+                tracing::warn!("{} cannot be removed: {error}; it is not needed any more", path.display());
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What backups and pruning ask of the database.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use rusqlite::params;
@@ -26,18 +26,31 @@ impl Folder {
 }
 
 impl Snapshot {
-    /// The hashes of all attachments.
-    pub(crate) fn attachments(&self) -> Result<Vec<String>, StoreError> {
-        self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| row.get(0))
+    /// The hashes of all attachments, each with when the last run ended that has it, in milliseconds since 1970, UTC.
+    pub(crate) fn attachments(&self) -> Result<Vec<(String, i64)>, StoreError> {
+        self.rows("to tell its evidence", sql::ATTACHMENTS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
     }
 
-    /// The hashes of the evidence that was removed since it was old.
+    /// What evidence was removed since it was old.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn pruned(&self) -> Result<BTreeSet<String>, StoreError> {
-        let pruned = self.rows("to tell what was removed", sql::PRUNED, &[], |row| row.get(0))?;
-        Ok(pruned.into_iter().collect())
+    pub fn pruned(&self) -> Result<Removed, StoreError> {
+        let pruned =
+            self.rows("to tell what was removed", sql::PRUNED, &[], |row| Ok((row.get(0)?, row.get(1)?)))?;
+        Ok(Removed(pruned.into_iter().collect()))
+    }
+}
+
+/// Evidence that was removed since it was old, by its hash, and when: milliseconds since 1970, UTC.
+#[derive(Clone, Debug, Default)]
+pub struct Removed(BTreeMap<String, i64>);
+
+impl Removed {
+    /// Whether that is why a run that ended at this moment has not got this piece any more. A later run had it anew.
+    #[must_use]
+    pub fn explains(&self, hash: &str, ended_ms: i64) -> bool {
+        self.0.get(hash).is_some_and(|&removed_ms| ended_ms < removed_ms)
     }
 }
 
@@ -48,16 +61,33 @@ impl Store {
             .rows("to tell old evidence", sql::OLD_EVIDENCE, &[&before_ms], |row| row.get(0))
     }
 
-    /// Enters in the audit that these pieces of evidence are removed.
-    pub(crate) fn note_pruned(&mut self, hashes: &[String], operator: &str) -> Result<(), StoreError> {
+    /// The hashes of all evidence that a row names.
+    pub(crate) fn named_evidence(&self) -> Result<BTreeSet<String>, StoreError> {
+        let named = Snapshot::take(&self.folder)?.rows(
+            "to tell what evidence has a row",
+            sql::NAMED_EVIDENCE,
+            &[],
+            |row| row.get(0),
+        )?;
+        Ok(named.into_iter().collect())
+    }
+
+    /// Enters in the audit that all of these are removed, and why.
+    pub(crate) fn note_removed(
+        &mut self,
+        operator: &str,
+        act: &str,
+        subjects: &[String],
+        why: &str,
+    ) -> Result<(), StoreError> {
         let at_ms = clock::now_ms();
         let id = |_: &String| Ok(ids::new(at_ms)?.to_string());
-        let named: Result<Vec<_>, NoRandomness> = hashes.iter().map(id).collect();
+        let named: Result<Vec<_>, NoRandomness> = subjects.iter().map(id).collect();
         let named = named?;
         self.change("an audit", |to| {
             let mut add = to.prepare(sql::ADD_AUDIT)?;
-            for (id, hash) in named.iter().zip(hashes) {
-                add.execute(params![id, at_ms, operator, "prune", hash, "older than it is kept"])?;
+            for (id, subject) in named.iter().zip(subjects) {
+                add.execute(params![id, at_ms, operator, act, subject, why])?;
             }
             Ok(())
         })

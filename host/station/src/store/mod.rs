@@ -33,6 +33,7 @@ use rusqlite::{Connection, OpenFlags, OptionalExtension as _, TransactionBehavio
 pub use again::AgainError;
 pub use bindings::{Admission, Change, RebindError, Rebinding};
 pub use error::StoreError;
+pub use keeping::Removed;
 pub use shared::SharedStore;
 pub use shift::{Checked, Owed};
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};

@@ -26,6 +26,7 @@ pub(super) const WAIVER_OF: &str = include_str!("../../sql/waiver-of.sql");
 pub(super) const ATTACHMENTS: &str = include_str!("../../sql/attachments.sql");
 pub(super) const PRUNED: &str = include_str!("../../sql/pruned.sql");
 pub(super) const OLD_EVIDENCE: &str = include_str!("../../sql/old-evidence.sql");
+pub(super) const NAMED_EVIDENCE: &str = include_str!("../../sql/named-evidence.sql");
 pub(crate) const RUNS: &str = include_str!("../../sql/runs.sql");
 pub(crate) const PLANS: &str = include_str!("../../sql/plans.sql");
 pub(crate) const UNITS_OF_SERIAL: &str = include_str!("../../sql/units-of-serial.sql");
@@ -59,7 +60,7 @@ pub(super) fn for_sqlite(text: &str) -> String {
 mod tests {
     use super::*;
 
-    const ALL: [&str; 44] = [
+    const ALL: [&str; 45] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -81,6 +82,7 @@ mod tests {
         ATTACHMENTS,
         PRUNED,
         OLD_EVIDENCE,
+        NAMED_EVIDENCE,
         RUNS,
         PLANS,
         UNITS_OF_SERIAL,

@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::process::Command;
+use std::time::{Duration, SystemTime};
 
 use serde_json::Value;
 
@@ -105,6 +106,24 @@ fn what_check_finds_has_codes() {
     assert_eq!(
         (&nowhere["error"]["code"], &nowhere["command"]),
         (&"database-refuses".into(), &"check".into())
+    );
+}
+
+#[test]
+fn what_prune_removes_is_a_document() {
+    let station = Station::with(PLAN);
+    station.run("CAT00001", "mock,fault=stuck-data");
+    let blob = station.store().blobs().put(b"nobody's").unwrap();
+    let file = fs::File::options().append(true).open(station.store().blobs().path(&blob)).unwrap();
+    file.set_modified(SystemTime::now() - Duration::from_secs(90_000)).unwrap();
+    let data = station.data().display().to_string();
+    let said = document(&did(&["prune", "--json", "--data", &data, "--operator", "engel"]));
+    assert_eq!(said["unnamed"], serde_json::json!({ "pieces": 1, "spools": 0, "bytes": 8 }));
+    assert_eq!(said["old"], serde_json::json!({ "pieces": 0, "bytes": 0 }));
+    let nowhere = document(&did(&["prune", "--json", "--data", "/nowhere"]));
+    assert_eq!(
+        (&nowhere["error"]["code"], &nowhere["command"]),
+        (&"database-refuses".into(), &"prune".into())
     );
 }
 

@@ -118,6 +118,22 @@ fn evidence_that_was_not_removed_by_age_is_missed() {
     assert!(backup(&made.folder(), &place.path().join("copy")).is_err());
 }
 
+/// What was removed with its run was written anew with a later one, which has lost it.
+#[test]
+fn evidence_of_a_later_run_is_missed_though_an_earlier_one_s_was_removed() {
+    let mut made = made();
+    assert_eq!(prune(&mut made.store, i64::MAX, "engel").unwrap().pieces, 3);
+    assert_eq!(sound(&made.folder()), [3, 1, 3, 4]);
+    let started_ms = 2 * BEGIN_MS;
+    let lane = "2".to_owned();
+    made.run(&Run { started_ms, lane, evidence: vec!["old"], ..Run::of("S6", End::Fail(&["memory"])) });
+    assert_eq!(sound(&made.folder()), [4, 1, 6, 3]);
+    fs::remove_file(made.folder().blobs().path(&hash_of("old"))).unwrap();
+    assert_eq!(check(&made.folder()).unwrap().faults.len(), 1);
+    let place = tempfile::tempdir().unwrap();
+    assert!(backup(&made.folder(), &place.path().join("copy")).is_err());
+}
+
 #[test]
 fn a_record_is_kept_even_where_a_row_calls_it_an_attachment() {
     let mut made = made();

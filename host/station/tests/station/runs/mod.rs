@@ -2,7 +2,7 @@
 
 mod again;
 pub(crate) mod bench;
-mod checked;
+pub(crate) mod checked;
 mod ends;
 mod faults;
 mod identity;

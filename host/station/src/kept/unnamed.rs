@@ -1,0 +1,148 @@
+//! What no row names: a run wrote it down, and ended before its row did. The power went, or the disk was full.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
+
+use serde::Deserialize;
+
+use crate::record::{BlobError, Blobs, Piece};
+use crate::store::{Store, StoreError};
+
+/// How long it is kept, for somebody who asks what happened.
+const KEPT: Duration = Duration::from_secs(86_400);
+/// What its removal is called in the audit. `check` excuses nothing by it: a run that names such bytes later has them.
+const ACT: &str = "prune unnamed";
+
+/// What was removed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Unnamed {
+    /// Pieces of evidence.
+    pub pieces: usize,
+    /// Folders of what runs wrote down while they were under way.
+    pub spools: usize,
+    /// The bytes of both.
+    pub bytes: u64,
+}
+
+/// Removes evidence and spools that are a day old and that no row names. A record is kept though no row names it, and all
+/// that it names, for it alone can tell of its run. A run that is open keeps its spool. All is in the audit before it is
+/// removed.
+///
+/// # Errors
+/// [`StoreError`]; what is removed by then is in the audit.
+pub fn prune_unnamed(store: &mut Store, operator: &str) -> Result<Unnamed, StoreError> {
+    let blobs = store.folder().blobs();
+    let pieces = old_pieces(store, &blobs)?;
+    let spools: Vec<_> = spools(store)?.into_iter().filter(|spool| spool.is_old).collect();
+    let names = spools.iter().map(|spool| spool.name.clone());
+    let subjects: Vec<_> = pieces.iter().map(|piece| piece.hash.clone()).chain(names).collect();
+    store.note_removed(operator, ACT, &subjects, "no row names it")?;
+    let mut removed = Unnamed::default();
+    for piece in &pieces {
+        let path = blobs.path(&piece.hash);
+        fs::remove_file(&path).map_err(|source| BlobError::Folder { path, source })?;
+        removed.pieces += 1;
+        removed.bytes += piece.bytes;
+    }
+    for Spool { path, bytes, .. } in spools {
+        fs::remove_dir_all(&path).map_err(|source| BlobError::Folder { path, source })?;
+        removed.spools += 1;
+        removed.bytes += bytes;
+    }
+    Ok(removed)
+}
+
+/// The evidence that may go.
+fn old_pieces(store: &Store, blobs: &Blobs) -> Result<Vec<Piece>, StoreError> {
+    let named = store.named_evidence()?;
+    let unnamed: Vec<_> = blobs.all()?.into_iter().filter(|piece| !named.contains(&piece.hash)).collect();
+    let mut kept = BTreeSet::new();
+    for Piece { hash, .. } in &unnamed {
+        if let Some(names) = named_by_record(&blobs.path(hash))? {
+            kept.insert(hash.clone());
+            kept.extend(names);
+        }
+    }
+    let may_go = |piece: &Piece| is_old(piece.modified) && !kept.contains(&piece.hash);
+    Ok(unnamed.into_iter().filter(may_go).collect())
+}
+
+/// The evidence that this file names, if it is a record, of this or another version.
+fn named_by_record(path: &Path) -> Result<Option<Vec<String>>, BlobError> {
+    #[derive(Deserialize)]
+    struct Record {
+        #[serde(rename = "schema")]
+        _schema: u32,
+        #[serde(rename = "run")]
+        _run: Run,
+        attachments: Vec<Attachment>,
+    }
+    #[derive(Deserialize)]
+    struct Run {
+        #[serde(rename = "id")]
+        _id: String,
+    }
+    #[derive(Deserialize)]
+    struct Attachment {
+        sha256: String,
+    }
+    let bytes = fs::read(path).map_err(|source| BlobError::Read { path: path.to_owned(), source })?;
+    let record = serde_json::from_slice::<Record>(&bytes).ok();
+    Ok(record.map(|record| record.attachments.into_iter().map(|one| one.sha256).collect()))
+}
+
+/// What a run wrote down that is over, or that no row names.
+#[derive(Clone, Debug)]
+pub(crate) struct Spool {
+    /// The run.
+    pub name: String,
+    /// The folder.
+    pub path: PathBuf,
+    /// How many bytes are in it.
+    pub bytes: u64,
+    /// Whether its run is over: all that is worth keeping of it is evidence.
+    pub is_over: bool,
+    /// Whether it may go though no row names it.
+    pub is_old: bool,
+}
+
+/// The spools of all runs that are not open.
+pub(crate) fn spools(store: &Store) -> Result<Vec<Spool>, StoreError> {
+    let open: BTreeSet<_> = store.open_runs()?.into_iter().map(|open| open.run.id).collect();
+    let mut spools = Vec::new();
+    let folder = store.folder().spools();
+    let refused = |source| BlobError::Folder { path: folder.clone(), source };
+    for entry in fs::read_dir(&folder).map_err(refused)? {
+        let entry = entry.map_err(refused)?;
+        let (name, path) = (entry.file_name().to_string_lossy().into_owned(), entry.path());
+        if open.contains(&name) || !path.is_dir() {
+            continue;
+        }
+        let is_over = store.folder().verdict_of(&name)?.is_some();
+        let (bytes, changed) = size_and_age(&path).map_err(|source| {
+            let path = path.clone();
+            BlobError::Folder { path, source }
+        })?;
+        spools.push(Spool { name, path, bytes, is_over, is_old: !is_over && is_old(changed) });
+    }
+    Ok(spools)
+}
+
+/// How many bytes are in a folder, and when it or a file in it was last written.
+fn size_and_age(folder: &Path) -> io::Result<(u64, SystemTime)> {
+    let (mut bytes, mut changed) = (0, fs::metadata(folder)?.modified()?);
+    for entry in fs::read_dir(folder)? {
+        let known = entry?.metadata()?;
+        bytes += known.len();
+        changed = changed.max(known.modified()?);
+    }
+    Ok((bytes, changed))
+}
+
+/// Whether something that was last written at this moment may go. What was written in the future may not.
+fn is_old(written: SystemTime) -> bool {
+    SystemTime::now().duration_since(written).is_ok_and(|age| age >= KEPT)
+}

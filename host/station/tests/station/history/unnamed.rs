@@ -1,0 +1,196 @@
+//! What no row names is removed a day later, and nothing else.
+
+use std::fs::{self, File};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, SystemTime};
+
+use halfrow_station::check::check;
+use halfrow_station::kept::{Unnamed, prune_unnamed};
+use halfrow_station::run::recover;
+use halfrow_station::store::Folder;
+
+use super::commands::did;
+use super::made::{BEGIN_MS, End, Made, Run, id};
+use crate::common::query;
+use crate::runs::bench::{PLAN, Station};
+
+const HOUR: Duration = Duration::from_secs(3600);
+
+/// Makes a file as old as this.
+fn aged(path: &Path, age: Duration) {
+    File::options().append(true).open(path).unwrap().set_modified(SystemTime::now() - age).unwrap();
+}
+
+/// Evidence of this age, and its hash.
+fn evidence(folder: &Folder, bytes: &str, age: Duration) -> String {
+    let hash = folder.blobs().put(bytes.as_bytes()).unwrap();
+    aged(&folder.blobs().path(&hash), age);
+    hash
+}
+
+/// What a run of this name wrote down, so long ago.
+fn spool(folder: &Folder, run: &str, age: Duration) {
+    let path = folder.spool(run);
+    fs::create_dir(&path).unwrap();
+    let events = path.join("events.jsonl");
+    fs::write(&events, "{}\n").unwrap();
+    aged(&events, age);
+    File::open(&path).unwrap().set_modified(SystemTime::now() - age).unwrap();
+}
+
+fn is_sound(folder: &Folder) {
+    let checked = check(folder).unwrap();
+    assert!(checked.faults.is_empty(), "{:?}", checked.faults);
+}
+
+#[test]
+fn what_no_row_names_goes_when_it_is_a_day_old() {
+    let mut made = Made::new();
+    made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    let folder = made.folder();
+    // However old it is.
+    for hash in query(made.as_ref(), "SELECT sha256 FROM attachment UNION SELECT record_sha256 FROM run") {
+        aged(&folder.blobs().path(&hash), 1000 * HOUR);
+    }
+    let old = evidence(&folder, "nobody's", 25 * HOUR);
+    let young = evidence(&folder, "whose?", 23 * HOUR);
+    let mine = folder.blobs().path(&old).with_file_name("notes.txt");
+    fs::write(&mine, "of a technician").unwrap();
+    aged(&mine, 1000 * HOUR);
+    let removed = prune_unnamed(&mut made.store, "engel").unwrap();
+    assert_eq!(removed, Unnamed { pieces: 1, spools: 0, bytes: 8 });
+    assert!(folder.blobs().get(&old).unwrap_err().is_gone());
+    assert!(folder.blobs().get(&young).is_ok() && mine.is_file());
+    let noted = "SELECT act || ' ' || subject || ' ' || operator_id FROM audit";
+    assert_eq!(query(made.as_ref(), noted), [format!("prune unnamed {old} engel")]);
+    is_sound(&folder);
+    assert_eq!(prune_unnamed(&mut made.store, "engel").unwrap(), Unnamed::default());
+}
+
+/// The index was lost, or restored from a copy that is older: what it does not name may be all that is left of a run.
+#[test]
+fn a_record_that_no_row_names_stays_and_what_it_names() {
+    let mut made = Made::new();
+    made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    let theirs = query(made.as_ref(), "SELECT sha256 FROM attachment UNION SELECT record_sha256 FROM run");
+    let folder = made.closed();
+    for file in ["station.db", "station.db-wal", "station.db-shm"] {
+        let _ = fs::remove_file(folder.path().join(file));
+    }
+    let mut made = Made::at(folder);
+    for hash in &theirs {
+        aged(&made.folder().blobs().path(hash), 1000 * HOUR);
+    }
+    let old = evidence(&made.folder(), "nobody's", 25 * HOUR);
+    assert_eq!(prune_unnamed(&mut made.store, "engel").unwrap().pieces, 1);
+    assert!(made.folder().blobs().get(&old).is_err());
+    for hash in &theirs {
+        made.folder().blobs().get(hash).unwrap();
+    }
+}
+
+#[test]
+fn a_spool_goes_a_day_after_its_run_was_lost_and_that_of_an_open_run_stays() {
+    let mut made = Made::new();
+    let open = made.run(&Run::of("S1", End::Open));
+    let over = made.run(&Run { lane: "2".to_owned(), ..Run::of("S2", End::Pass) });
+    let [old, young] = [7, 8].map(|number| id(BEGIN_MS, number));
+    let folder = made.folder();
+    for (run, hours) in [(&open, 100), (&over, 100), (&old, 25), (&young, 23)] {
+        spool(&folder, run, hours * HOUR);
+    }
+    let removed = prune_unnamed(&mut made.store, "engel").unwrap();
+    assert_eq!(removed, Unnamed { pieces: 0, spools: 1, bytes: 3 });
+    let is_there = |run: &str| folder.spool(run).exists();
+    assert_eq!([&open, &over, &old, &young].map(|run| is_there(run)), [true, true, false, true]);
+    // The next start closes the open run with what is in its spool, and needs that of the other no more.
+    spool(&folder, &old, 25 * HOUR);
+    assert_eq!(recover(&mut made.store).unwrap()[0].record.attachments[0].name, "events.jsonl");
+    assert_eq!([&open, &over, &old, &young].map(|run| is_there(run)), [false, false, false, true]);
+    is_sound(&folder);
+}
+
+/// The run finds its evidence there already, as old as what may go, and its row comes later.
+#[test]
+fn evidence_of_a_run_without_its_row_stays_however_long_it_lay_there() {
+    let mut made = Made::new();
+    let hash = evidence(&made.folder(), "seen", 100 * HOUR);
+    let run = Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) };
+    let (head, plan) = made.begin(&run);
+    made.folder().blobs().put(b"seen").unwrap();
+    assert_eq!(prune_unnamed(&mut made.store, "engel").unwrap(), Unnamed::default());
+    made.finish(&run, head, plan);
+    assert_eq!(query(made.as_ref(), "SELECT sha256 FROM attachment"), [hash]);
+    is_sound(&made.folder());
+}
+
+/// Ends what others do, whatever becomes of the test.
+struct Over<'a>(&'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Runs are recorded while somebody removes what no row names as fast as it goes, and somebody else makes all of it look
+/// old. What has no row yet is safe all the same, since only one of the programs has the folder.
+#[test]
+fn runs_that_are_recorded_meanwhile_lose_nothing() {
+    let station = Station::with(PLAN);
+    station.run("CAT00000", "mock,fault=stuck-data");
+    let (is_over, removals) = (AtomicBool::new(false), AtomicUsize::new(0));
+    let go_on = || !is_over.load(Ordering::Relaxed);
+    thread::scope(|scope| {
+        let _over = Over(&is_over);
+        scope.spawn(|| {
+            while go_on() {
+                let old = SystemTime::now() - 25 * HOUR;
+                for path in crate::runs::checked::evidence(&station) {
+                    // It may be gone by now.
+                    let _ = File::open(path).map(|file| file.set_modified(old));
+                }
+            }
+        });
+        let pruning = scope.spawn(|| {
+            while go_on() {
+                station.store().blobs().put(b"nobody's").unwrap();
+                let (code, said, complained) = did(&station.data(), &["prune"]);
+                assert!([0, 4].contains(&code), "{complained}");
+                removals.fetch_add(usize::from(said.starts_with("1 pieces")), Ordering::Relaxed);
+            }
+        });
+        let mut serials = (1..).map(|number| format!("CAT{number:05}"));
+        let mut serial = serials.next().unwrap();
+        let mut failed = 0;
+        while (failed < 5 || removals.load(Ordering::Relaxed) == 0) && !pruning.is_finished() {
+            match station.run(&serial, "mock,fault=stuck-data").code {
+                Some(1) => {
+                    failed += 1;
+                    serial = serials.next().unwrap();
+                }
+                busy => assert_eq!(busy, Some(4)),
+            }
+        }
+    });
+    let checked = station.check();
+    assert_eq!(checked.code, Some(0), "{checked:?}");
+}
+
+#[test]
+fn the_command_says_what_it_removed() {
+    let mut made = Made::new();
+    made.run(&Run { evidence: vec!["seen"], ..Run::of("S1", End::Fail(&["memory"])) });
+    evidence(&made.folder(), "nobody's", 25 * HOUR);
+    spool(&made.folder(), &id(BEGIN_MS, 7), 25 * HOUR);
+    let folder = made.closed();
+    let (code, said, _) = did(&folder, &["prune"]);
+    let expected = "1 pieces and 1 spools that no row names were removed, 11 bytes; every record is kept\n";
+    assert_eq!((code, said.as_str()), (0, expected));
+    let (code, said, _) = did(&folder, &["prune", "--older-than", "1"]);
+    let expected = "1 pieces of evidence were removed, 4 bytes; 0 pieces and 0 spools that no row names \
+                    were removed, 0 bytes; every record is kept\n";
+    assert_eq!((code, said.as_str()), (0, expected));
+}
