@@ -22,7 +22,7 @@ module halfrow_multiply_add #(
         if (enable) begin
             difference <= minuend - subtrahend;
             product <= factor * difference;
-            sum <= addend + {{32-DIFFERENCE_BITS{product[DIFFERENCE_BITS+15]}}, product};
+            sum <= addend + product;
         end
 endmodule
 
