@@ -48,12 +48,6 @@ def memory_of_many_writers(text):
             yield line, f"the elements of {name} are driven from several always blocks; use a vector"
 
 
-def sign_by_hand(text):
-    """A concatenation is unsigned: XST then may put a DSP slice's adder into the fabric."""
-    for found in re.finditer(r"\{\{[^{}]+\{(\w+)\[[^\]]+\]\}\}, *\1\}", bare(text)):
-        yield line_of(text, found.start()), f"{found[1]} is extended by hand; a signed name extends itself"
-
-
 def initial_value_missing(text):
     """A register without one starts as 0, which is active at a pin whose name ends in _n."""
     for found in re.finditer(r"^ *output +reg +(?:\[[^\]]+\] +)?(\w+_n)\b(?! = )", bare(text), re.MULTILINE):
@@ -81,7 +75,7 @@ def zero_replications(sources, top, parameters=()):
         return subprocess.run(["vvp", "-n", f"{work}/built"], capture_output=True, text=True, check=True).stdout.splitlines()
 
 
-RULES = [ram_style_missing, memory_of_many_writers, sign_by_hand, initial_value_missing]
+RULES = [ram_style_missing, memory_of_many_writers, initial_value_missing]
 
 
 def offences(path):

@@ -1,6 +1,6 @@
 // addend + (minuend - subtrahend) * factor, in three stages, as one DSP slice does it. The factor comes one enabled
 // clock behind the minuend, the addend two. The sum has the slice's 48 bits: narrower ones are not mapped soundly by
-// every tool.
+// every tool, and neither is the sum of the signed product: of five taps yosys 0.23 then leaves no DSP slice.
 `default_nettype none
 
 module halfrow_multiply_add #(
@@ -22,7 +22,7 @@ module halfrow_multiply_add #(
         if (enable) begin
             difference <= minuend - subtrahend;
             product <= factor * difference;
-            sum <= addend + product;
+            sum <= addend + {{32-DIFFERENCE_BITS{product[DIFFERENCE_BITS+15]}}, product};
         end
 endmodule
 
