@@ -9,7 +9,7 @@ import sys
 import rtl
 
 COLUMNS, LINES = 120, 400
-PORT = re.compile(r"    (input |output|inout ) (wire|reg ) (signed )?(\[[^]]+\])? *\w+,?$")
+PORT = re.compile(r"    (input |output|inout ) (wire|reg ) (signed )?(\[[^]]+\])? *\w+( = [0-9]+'[bdh][0-9a-f]+)?,?$")
 
 
 def offences(path):
@@ -36,7 +36,7 @@ def offences(path):
         if in_ports and re.match(r"    (input|output|inout)\b", code):
             if not PORT.match(code):
                 yield number, "a port that is not `direction type [range] name`"
-            columns.add(re.search(r"\w+,?$", code).start())
+            columns.add(re.search(r"\w+( = \S+)?,?$", code).start())
         elif re.search(r"\S  ", code) or re.search(r"\[ ", code):
             yield number, "code that is aligned by spaces"
         if in_ports and line.startswith(");"):

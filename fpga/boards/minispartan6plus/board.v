@@ -74,8 +74,12 @@ module board #(
 
             // Both stand still while the core is not in reset. 1000 = 1024 - 16 - 8.
             wire [31:0] wide = {15'd0, khz};
+            reg  [31:0] hertz;
 
-            assign clock_hz = pixclk_runs ? (wide << 10) - (wide << 4) - (wide << 3) : LINK_HZ;
+            always @(posedge clk)
+                hertz <= pixclk_runs ? (wide << 10) - (wide << 4) - (wide << 3) : LINK_HZ;
+
+            assign clock_hz = hertz;
             assign clock_source = pixclk_runs ? CLOCK_PIXCLK : CLOCK_PLL;
 
             board_sensor sensor (

@@ -90,27 +90,26 @@ module halfrow_entry #(
         end
 
     // Left of column 0 stands the nearest sample of the same colour, so columns 0 and 1 fill all of it at once.
-    reg [11:0] slots [0:SLOTS-1];
+    reg [12*SLOTS-1:0] slots;
+    wire [12*SLOTS-1:0] moved = {sample, slots[12*SLOTS-1:12]};
+    wire [12*SLOTS-1:0] next;
     wire fill = taken == 12'd2;
     genvar k;
     generate
         for (k = 0; k < SLOTS; k = k + 1) begin : slot
-            if (k == SLOTS - 1) begin : newest
-                always @(posedge clk)
-                    if (enable && collecting)
-                        slots[k] <= sample;
-            end else if ((SLOTS - 1 - k) % 2 == 1) begin : like_column_0
-                always @(posedge clk)
-                    if (enable && collecting)
-                        slots[k] <= fill ? slots[SLOTS-1] : slots[k+1];
+            if ((SLOTS - 1 - k) % 2 == 1) begin : like_column_0
+                assign next[12*k +: 12] = fill ? slots[12*(SLOTS-1) +: 12] : moved[12*k +: 12];
             end else begin : like_column_1
-                always @(posedge clk)
-                    if (enable && collecting)
-                        slots[k] <= fill ? sample : slots[k+1];
+                assign next[12*k +: 12] = fill ? sample : moved[12*k +: 12];
             end
-            assign opening[12*k +: 12] = slots[k];
         end
     endgenerate
+
+    always @(posedge clk)
+        if (enable && collecting)
+            slots <= next;
+
+    assign opening = slots;
 endmodule
 
 `default_nettype wire

@@ -46,8 +46,15 @@ module halfrow_kernel #(
         .clk(clk), .write(node_write), .write_address({table_bank, table_entry}), .write_node(written),
         .read(read), .read_address(address_1), .read_node(node_1));
 
-    assign node_port_0 = {{16*FIRST{1'b0}}, node_0, {16*FIRST{1'b0}}};
-    assign node_port_1 = {{16*FIRST{1'b0}}, node_1, {16*FIRST{1'b0}}};
+    generate
+        if (TAPS == 7) begin : outer
+            assign node_port_0 = node_0;
+            assign node_port_1 = node_1;
+        end else begin : inner
+            assign node_port_0 = {16'd0, node_0, 16'd0};
+            assign node_port_1 = {16'd0, node_1, 16'd0};
+        end
+    endgenerate
 
     reg [23:0] fractions;
     always @(posedge clk)

@@ -1,6 +1,6 @@
 // addend + (minuend - subtrahend) * factor, in three stages, as one DSP slice does it. The factor comes one enabled
 // clock behind the minuend, the addend two. The sum has the slice's 48 bits: narrower ones are not mapped soundly by
-// every tool.
+// every tool, and neither is the sum of the signed product: of five taps yosys 0.23 then leaves no DSP slice.
 `default_nettype none
 
 module halfrow_multiply_add #(

@@ -14,7 +14,6 @@ module halfrow_window #(
 );
     localparam SLOTS = LEFT + 4;
     localparam TAPS = 2 * LEFT + 1;
-    localparam FIRST = 3 - LEFT; // the first tap that there is
 
     // With five taps the newest sample is no tap yet. Both builds read a sample on the same clock, the first on which
     // it is sure to have come and the last on which the ring is sure to hold it.
@@ -26,7 +25,13 @@ module halfrow_window #(
             kept <= load ? opening : window[12*(SLOTS+1)-1:12];
 
     wire [12*TAPS-1:0] chosen = other_colour ? window[12*TAPS-1:0] : window[12*(TAPS+1)-1:12];
-    assign taps = {{12*FIRST{1'b0}}, chosen, {12*FIRST{1'b0}}};
+    generate
+        if (LEFT == 3) begin : outer
+            assign taps = chosen;
+        end else begin : inner
+            assign taps = {12'd0, chosen, 12'd0};
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

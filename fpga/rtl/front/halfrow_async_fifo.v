@@ -23,13 +23,13 @@ module halfrow_async_fifo #(
         if (BITS < 2 || BITS > 16) halfrow_illegal_BITS is_2_to_16 ();
     endgenerate
 
-    reg [WIDTH-1:0] words [0:(1<<BITS)-1];
+    (* ram_style = "distributed" *) reg [WIDTH-1:0] words [0:(1<<BITS)-1];
 
     // The pointers have one bit more than an address, so that a full memory differs from an empty one.
     reg [BITS:0] tail, tail_gray;
     reg [BITS:0] head, head_gray;
-    reg [BITS:0] head_near_in, head_in;
-    reg [BITS:0] tail_near_out, tail_out;
+    (* ASYNC_REG = "TRUE" *) reg [BITS:0] head_near_in, head_in;
+    (* ASYNC_REG = "TRUE" *) reg [BITS:0] tail_near_out, tail_out;
 
     wire [BITS:0] tail_next = tail + 1'b1;
     wire [BITS:0] head_next = head + 1'b1;

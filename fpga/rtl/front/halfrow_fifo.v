@@ -23,7 +23,7 @@ module halfrow_fifo #(
         if (BITS < 1 || BITS > 16) halfrow_illegal_BITS is_1_to_16 ();
     endgenerate
 
-    reg [WIDTH-1:0] words [0:(1<<BITS)-1];
+    (* ram_style = "distributed" *) reg [WIDTH-1:0] words [0:(1<<BITS)-1];
     reg [BITS-1:0] head, tail;
 
     wire [BITS-1:0] behind_tail = tail + 1'b1;

@@ -58,7 +58,7 @@ module halfrow_fifo_bridge #(
     wire [7:0] rx_data, tx_data;
 
     reg proven;
-    reg [1:0] armed; // [1] is synchronous to link_clk
+    (* ASYNC_REG = "TRUE" *) reg [1:0] armed; // [1] is synchronous to link_clk
 
     always @(posedge clk)
         if (rst)

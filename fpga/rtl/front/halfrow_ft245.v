@@ -16,9 +16,9 @@ module halfrow_ft245 #(
 
     input  wire       ft_rxf_n,         // not synchronous to clk
     input  wire       ft_txe_n,
-    output reg        ft_rd_n,
-    output reg        ft_wr_n,
-    output reg        ft_siwu_n,
+    output reg        ft_rd_n = 1'b1,  // from the configuration on
+    output reg        ft_wr_n = 1'b1,
+    output reg        ft_siwu_n = 1'b1,
     output reg        ft_control_drive, // WR# and SIWU# are driven, otherwise left to their pull-ups
     input  wire [7:0] ft_data_in,
     output reg  [7:0] ft_data_out,
@@ -53,7 +53,7 @@ module halfrow_ft245 #(
     reg [11:0] quiet;       // clocks up to SIWU#
     reg unsent;             // bytes were written since SIWU# was last low
     reg reads_next;         // when both directions wait
-    reg [1:0] rxf_n, txe_n; // [1] is synchronous
+    (* ASYNC_REG = "TRUE" *) reg [1:0] rxf_n, txe_n; // [1] is synchronous
 
     wire may_read = !rxf_n[1] && !rx_valid;
     wire may_write = !txe_n[1] && ft_control_drive;

@@ -9,7 +9,7 @@ module halfrow_uart #(
 
     input  wire       rxd,
     output wire       txd,
-    output reg        rts_n,    // high: the other side should stop; it may send 23 bytes more
+    output reg        rts_n = 1'b1, // high: the other side should stop; it may send 23 bytes more
     input  wire       cts_n,
 
     output wire       rx_valid,

@@ -23,7 +23,7 @@ module halfrow_uart_rx #(
     localparam [15:0] WHOLE = DIVIDER - 1;
 
     reg [1:0] state;
-    reg [4:0] history; // [1:0] synchronise, [4:2] vote, so that one clock of noise is not seen
+    (* ASYNC_REG = "TRUE" *) reg [4:0] history; // [1:0] synchronise, [4:2] vote, so that one clock of noise is not seen
     reg line;
     reg [COUNT_BITS-1:0] count;
     reg [3:0] bits; // that came

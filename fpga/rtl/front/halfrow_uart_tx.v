@@ -20,10 +20,10 @@ module halfrow_uart_tx #(
     localparam COUNT_BITS = DIVIDER <= 16 ? 4 : DIVIDER <= 256 ? 8 : 16;
     localparam [15:0] WHOLE = DIVIDER - 1;
 
-    reg [8:0] shift;
+    reg [8:0] shift = 9'h1ff; // the line rests high from the configuration on
     reg [COUNT_BITS-1:0] count;
     reg [3:0] bits; // still to be sent, that on the line included
-    reg [1:0] cts_near_n;
+    (* ASYNC_REG = "TRUE" *) reg [1:0] cts_near_n;
 
     wire free = bits == 4'd0;
     wire next = count == {COUNT_BITS{1'b0}};

@@ -67,7 +67,7 @@ module halfrow_receiver (
     reg [95:0] header;
     reg [31:0] crc;
     wire [31:0] crc_next;
-    reg [7:0] buffer [0:4095];
+    (* ram_style = "block" *) reg [7:0] buffer [0:4095];
     wire in_header = place[12];
     wire too_many = place == TOO_MANY;
 

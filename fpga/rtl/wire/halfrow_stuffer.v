@@ -26,7 +26,7 @@ module halfrow_stuffer (
     reg [8:0] tail;
     reg [8:0] head;
     reg room; // two more bytes fit
-    reg [7:0] ring [0:511];
+    (* ram_style = "block" *) reg [7:0] ring [0:511];
 
     wire zero = in_data == 8'd0;
     wire consume = in_valid && in_ready;

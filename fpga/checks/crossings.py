@@ -1,0 +1,208 @@
+#!/usr/bin/env python3
+"""The clock crossings of the boards' tops, by yosys' netlists in front of mapping. Every bit that a register takes from another clock, or
+from a pin, must go straight into two registers that nothing else reads between and that are marked ASYNC_REG; a bus of them must count in Gray
+code; a reset may begin at once when it ends in two registers. What is none of these stands in crossings.ini with its reason, and what stands
+there must be found. crossings.txt has faults that this must refuse.
+"""
+import collections
+import concurrent.futures
+import configparser
+import fnmatch
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+from word_netlist import REGISTERS, Netlist
+
+HERE = pathlib.Path(__file__).resolve().parent
+ROOT = HERE.parent.parent
+READ = """read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; {sources} hierarchy -check -top {top}; proc; flatten; opt_expr; opt_dff;
+opt_clean; memory_collect; write_json {json}"""
+
+
+class Crossings:
+    def __init__(self, netlist):
+        self.netlist = netlist
+        self.by_bit = {register.bit: register for register in netlist.registers()}
+
+    def foreign(self, register, bit):
+        return {leaf for leaf in self.netlist.leaves(bit) if leaf[0] != register.clock}
+
+    def all(self):
+        """(register, port, bit, what comes from elsewhere) of each."""
+        for register in self.by_bit.values():
+            for port, bit in self.netlist.inputs(register):
+                others = self.foreign(register, bit)
+                if others:
+                    yield register, port, bit, others
+
+    def second(self, register):
+        """The register that alone reads this one, in the same clock."""
+        readers = self.netlist.readers[register.bit]
+        if len(readers) != 1 or readers[0][1] != "D":
+            return None
+        cell, _, place = readers[0]
+        if self.netlist.cells[cell]["type"] not in REGISTERS:
+            return None
+        after = self.by_bit.get(self.netlist.cells[cell]["connections"]["Q"][place])
+        return after if after and after.clock == register.clock else None
+
+    def fault(self, register, port, bit):
+        """Why this is no synchroniser, or None."""
+        if port == "ARST":
+            return self.fault_of_reset(register, bit)
+        if port != "D":
+            return f"reaches the register's {port}"
+        if bit not in self.by_bit and bit not in self.netlist.pins:
+            return "has logic in front of the first register"
+        after = self.second(register)
+        if after is None:
+            return "is read behind one register"
+        if register.bit not in self.netlist.marked or after.bit not in self.netlist.marked:
+            return "ends in registers that are not marked ASYNC_REG"
+        return None
+
+    def fault_of_reset(self, register, bit):
+        """A reset may begin without the clock: its end has to pass two registers in a row, all held by it, before it is read."""
+        chain = [r for r in self.by_bit.values() if r.cell == register.cell]
+        first = [r for r in chain if not isinstance(self.netlist.inputs(r)[0][1], int)]
+        if len(first) != 1 or any(r.bit not in self.netlist.marked for r in chain):
+            return "is a reset that does not end in a marked chain of registers"
+        length, last = 1, first[0]
+        while (after := self.second(last)) and after.cell == register.cell:
+            length, last = length + 1, after
+        return None if length == len(chain) >= 2 else "is a reset that is read before two registers"
+
+    def is_gray(self, bits):
+        """Whether each of these register bits is loaded with n[k] ^ n[k+1] where n counts up by one."""
+        data = sorted((self.by_bit[bit].place, self.netlist.inputs(self.by_bit[bit])[0][1]) for bit in bits)
+        counts = {}
+        for place, bit in data:
+            cell, port, position = self.netlist.driver.get(bit, (None, None, None))
+            kind = cell and self.netlist.cells[cell]["type"]
+            sources = self.netlist.sources_of(cell, port, position) if kind == "$xor" else [bit]
+            counts[place] = [source for source in sources if isinstance(source, int)]
+        top = data[-1][0]
+        adder = lambda bit: self.netlist.driver.get(bit, (None, None, None))
+        if len({self.by_bit[bit].cell for bit in bits}) != 1 or [place for place, _ in data] != list(range(top + 1)):
+            return False
+        for place, sources in counts.items():
+            wanted = {place, place + 1} if place < top else {place}
+            drivers = [adder(source) for source in sources]
+            if {position for _, _, position in drivers} != wanted:
+                return False
+            if any(not self.counts_up(cell) for cell, _, _ in drivers):
+                return False
+        return True
+
+    def counts_up(self, cell):
+        if cell is None or self.netlist.cells[cell]["type"] != "$add":
+            return False
+        step = self.netlist.cells[cell]["connections"]["B"]
+        return step[0] == "1" and all(bit == "0" for bit in step[1:])
+
+
+def buses(found):
+    """Synchronised bits by the register that they end in and the one that they come from."""
+    grouped = collections.defaultdict(set)
+    for register, bit in found:
+        grouped[register.cell].add(bit)
+    return grouped
+
+
+def judge(crossings, listed):
+    """Faults, the entries of the list that were met, and how many bits were found sound."""
+    faults, met, sound = set(), set(), []
+    for register, port, bit, others in crossings.all():
+        why = crossings.fault(register, port, bit)
+        if why is None:
+            sound += [(register, bit)] if port == "D" else []
+            continue
+        for clock, source in others:
+            entry = next((key for key in listed if matches(key, source, register.name)), None)
+            if entry:
+                met.add(entry)
+            else:
+                faults.add(f"{source} ({clock}) -> {register.name} ({register.clock}) {why}")
+    for bits in buses(sound).values():
+        registers = [bit for bit in bits if bit in crossings.by_bit]
+        # Bits of one register that travel together and are no Gray code may be seen at different times.
+        words = collections.Counter(crossings.by_bit[bit].cell for bit in registers)
+        for cell, count in words.items():
+            word = [bit for bit in registers if crossings.by_bit[bit].cell == cell]
+            if count > 1 and not crossings.is_gray(word):
+                faults.add(f"{crossings.by_bit[word[0]].name} crosses as a bus of {count} bits that do not count in Gray code")
+    return faults, met, sound
+
+
+def matches(key, source, register):
+    left, right = (side.strip() for side in key.split("->"))
+    return fnmatch.fnmatchcase(source, left) and fnmatch.fnmatchcase(register, right)
+
+
+def elaborated(board, kind, sensor, tree, work):
+    """The netlist of a top whose sources are those of a tree."""
+    (work / "halfrow_build.vh").write_text("`define HALFROW_BUILD 32'h12345678\n" + ("`define HALFROW_SENSOR\n" if sensor else ""))
+    listed = re.findall(r"^verilog work (.*)$", (board / f"{kind}.prj").read_text(), re.MULTILINE)
+    sources = " ".join(f"read_verilog -I{work} -I{tree}/fpga/rtl {tree}/{path};" for path in listed)
+    script = READ.format(sources=sources.replace("\n", " "), top=f"{board.name}_{kind}", json=work / "top.json").replace("\n", " ")
+    done = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"crossings: yosys does not read {board.name}_{kind}:\n{done.stderr[-1500:]}")
+    return Netlist(json.loads((work / "top.json").read_text())["modules"][f"{board.name}_{kind}"])
+
+
+def faults_of(board, kind, sensor, tree=ROOT):
+    """Faults of a top, and a line about one that has none."""
+    top = f"{board.name}_{kind}" + (" with sensor" if sensor else "")
+    config = configparser.ConfigParser(delimiters=(":",), interpolation=None)
+    config.optionxform = str
+    config.read(HERE / "crossings.ini")
+    listed = [key for section in config.sections() if fnmatch.fnmatchcase(top, section) for key in config[section]]
+    with tempfile.TemporaryDirectory() as work:
+        faults, met, sound = judge(Crossings(elaborated(board, kind, sensor, tree, pathlib.Path(work))), listed)
+    faults |= {f"crossings.ini: {key} is not in {top}" for key in listed if key not in met}
+    return faults, f"PASS {top}: {len(sound)} bits cross through two registers, {len(met)} crossings are listed with their reasons"
+
+
+def missed(board, kind, mutants):
+    """Those faults, put all into one copy of the sources, that are not refused by the name of what they spoil."""
+    with tempfile.TemporaryDirectory() as scratch:
+        tree = pathlib.Path(scratch)
+        shutil.copytree(ROOT / "fpga", tree / "fpga", ignore=shutil.ignore_patterns("target", "model", "mock", "sim"))
+        for _, path, edit, _ in mutants:
+            before = (tree / path).read_text()
+            after = subprocess.run(["sed", "-E", edit], input=before, capture_output=True, text=True, check=True).stdout
+            if after == before:
+                sys.exit(f"crossings: crossings.txt: {edit} changes nothing in {path}")
+            (tree / path).write_text(after)
+        faults, _ = faults_of(board, kind, True, tree)
+        return [(path, edit) for _, path, edit, spoilt in mutants if not any(spoilt in fault for fault in faults)]
+
+
+def mutants(kind):
+    lines = (HERE / "crossings.txt").read_text().splitlines()
+    words = [re.split(r"\s{2,}", line.strip(), maxsplit=3) for line in lines if line and not line.startswith("#")]
+    return [word for word in words if word[0] == kind]
+
+
+def main():
+    boards = sorted(path.parent for path in (HERE.parent / "boards").glob("*/fifo.prj"))
+    kinds = ("fifo", "uart")
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        tops = [pool.submit(faults_of, board, kind, sensor) for board in boards for kind in kinds for sensor in (False, True)]
+        spoilt = [pool.submit(missed, boards[0], kind, mutants(kind)) for kind in kinds]
+        wrong = sorted({fault for top in tops for fault in top.result()[0]})
+        wrong += [f"this fault is not refused: {path}: {edit}" for kind in spoilt for path, edit in kind.result()]
+    if wrong:
+        sys.exit("crossings: " + "\ncrossings: ".join(wrong))
+    print("\n".join(top.result()[1] for top in tops))
+    print(f"PASS {sum(len(mutants(kind)) for kind in kinds)} faults put into crossings are refused")
+
+
+main()
