@@ -102,8 +102,11 @@ fn mock_fails(running: &mut Running, lane: &str) -> Value {
                 && news["shown"]["serial"].as_str().is_some_and(|of| of.starts_with("HR:MOCK"))
         };
         let ended = running.wait("a verdict on the mock", is_over);
-        if ended["shown"]["verdict"] == "FAIL" {
-            return running.state(lane, "FAIL");
+        // Between the verdict and the look at the store the lane may still be out.
+        match (ended["shown"]["verdict"] == "FAIL", ended["state"] == "FAIL") {
+            (true, true) => return ended,
+            (true, false) => return running.state(lane, "FAIL"),
+            (false, _) => {}
         }
     }
 }
