@@ -28,6 +28,7 @@ pub mod plan;
 mod presence;
 pub mod record;
 pub mod run;
+pub mod said;
 pub mod settings;
 pub mod store;
 pub mod web;

@@ -5,6 +5,8 @@ use rusqlite::{OptionalExtension as _, params};
 
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::Plan;
+use crate::said::Said;
+use crate::said::Saying;
 
 /// What a lane is to do before its production counts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -12,7 +14,7 @@ pub struct Owed {
     /// The unit that is to be tested.
     pub serial: String,
     /// Why.
-    pub why: String,
+    pub why: Said,
 }
 
 impl Folder {
@@ -31,9 +33,7 @@ impl Folder {
         let Some(shift) = &plan.shift else { return Ok(None) };
         let lasts = i64::try_from(shift.lasts.as_millis()).unwrap_or(i64::MAX);
         let reader = self.reader()?;
-        for (serial, expected, name) in
-            [(&shift.good, Verdict::Pass, "good"), (&shift.bad, Verdict::Fail, "bad")]
-        {
+        for (serial, expected) in [(&shift.good, Verdict::Pass), (&shift.bad, Verdict::Fail)] {
             let since = now_ms.saturating_sub(lasts);
             let of = params![station, lane, plan.sha256, plan.product, serial, since];
             let last: Option<String> = reader
@@ -44,16 +44,15 @@ impl Folder {
                     doing: "to tell who checked a shift",
                     source,
                 })?;
-            let why = match last {
-                Some(verdict) if verdict == expected.to_string() => continue,
-                Some(verdict) => {
-                    format!("the {name} unit {serial} came to {verdict}; an engineer looks at the lane")
-                }
-                None => {
-                    format!("the {name} unit {serial} is to come to {expected} first, to check this shift")
-                }
+            let of = serial.clone();
+            let why = match (last, expected) {
+                (Some(verdict), _) if verdict == expected.to_string() => continue,
+                (Some(verdict), Verdict::Pass) => Saying::GoodUnitWrong { serial: of, verdict },
+                (Some(verdict), _) => Saying::BadUnitWrong { serial: of, verdict },
+                (None, Verdict::Pass) => Saying::GoodUnitDue { serial: of },
+                (None, _) => Saying::BadUnitDue { serial: of },
             };
-            return Ok(Some(Owed { serial: serial.clone(), why }));
+            return Ok(Some(Owed { serial: serial.clone(), why: why.into() }));
         }
         Ok(None)
     }

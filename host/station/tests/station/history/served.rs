@@ -28,6 +28,8 @@ pub(crate) struct Answer {
     pub(crate) status: u16,
     head: String,
     pub(crate) body: Vec<u8>,
+    /// Whether it came to its end.
+    pub(crate) is_whole: bool,
 }
 
 impl Answer {
@@ -94,8 +96,13 @@ impl Served {
         let end = bytes.windows(4).position(|window| window == b"\r\n\r\n").unwrap();
         let head = String::from_utf8(bytes[..end].to_vec()).unwrap();
         let status = head.split(' ').nth(1).unwrap().parse().unwrap();
+        let body = &bytes[end + 4..];
+        if head.to_lowercase().contains("transfer-encoding: chunked") {
+            let (body, is_whole) = unchunked(body);
+            return Answer { status, head, body, is_whole };
+        }
         assert_ne!(head.to_lowercase().find("content-length"), None, "{head}");
-        Answer { status, head, body: bytes[end + 4..].to_vec() }
+        Answer { status, head, body: body.to_vec(), is_whole: true }
     }
 
     /// The page at `path`, which is there.
@@ -105,6 +112,21 @@ impl Served {
         assert_eq!(answer.header("content-type"), Some("text/html; charset=utf-8"));
         answer.text()
     }
+}
+
+/// The bytes of chunks (RFC 9112, section 7.1), and whether the last one came.
+fn unchunked(mut rest: &[u8]) -> (Vec<u8>, bool) {
+    let mut bytes = Vec::new();
+    while let Some(end) = rest.windows(2).position(|window| window == b"\r\n") {
+        let length = usize::from_str_radix(std::str::from_utf8(&rest[..end]).unwrap(), 16).unwrap();
+        if length == 0 {
+            return (bytes, true);
+        }
+        let Some(chunk) = rest.get(end + 2..end + 2 + length) else { break };
+        bytes.extend_from_slice(chunk);
+        rest = rest.get(end + 4 + length..).unwrap_or_default();
+    }
+    (bytes, false)
 }
 
 impl Drop for Served {
