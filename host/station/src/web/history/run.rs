@@ -207,7 +207,7 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
 fn steps(visit: &Visit, record: &Record) -> Markup {
     html! {
         h2 { (visit.say("run.steps")) }
-        div.wide { table.steps { tbody { @for step in &record.steps { (step_row(visit, step)) } } } }
+        div.wide tabindex="0" { table.steps { tbody { @for step in &record.steps { (step_row(visit, step)) } } } }
     }
 }
 
@@ -257,7 +257,7 @@ fn checks(visit: &Visit, record: &Record) -> Markup {
     html! {
         @for (step, checks) in all {
             h2 { (visit.say("run.checks")) ", " (show::said(&step.name)) }
-            div.wide { table.checks { tbody { @for check in checks { tr {
+            div.wide tabindex="0" { table.checks { tbody { @for check in checks { tr {
                 th scope="row" { (show::said(&text(check, "name"))) }
                 td { (outcome(visit, &text(check, "outcome"))) }
                 td {
@@ -280,7 +280,7 @@ fn measurements(visit: &Visit, record: &Record) -> Markup {
     html! {
         @if !all.is_empty() {
             h2 { (visit.say("run.measurements")) }
-            div.wide { table.measurements {
+            div.wide tabindex="0" { table.measurements {
                 thead { tr {
                     th { (visit.say("run.measurement")) } th.number { (visit.say("run.value")) } th { (visit.say("run.limit")) }
                     th { (visit.say("run.came")) } th { (visit.say("run.step")) }

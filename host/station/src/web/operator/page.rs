@@ -39,6 +39,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
     let content = html! {
         section #station data-csrf=(visit.csrf) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
             data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn")) {
+            h1.heard { (visit.say("nav.lanes")) }
             @if visit.may(Who::Operator) { (scan_box(&visit, &now, answer.as_ref())) } @else { (log_in(&visit)) }
             (hint(&app, &visit, &now))
             (floor(&visit, &now))
