@@ -11,6 +11,12 @@
 //!                               web: the pages
 //! ```
 
+#![allow(
+    clippy::result_large_err,
+    clippy::large_enum_variant,
+    reason = "a sentence carries its code, its figures and its causes, and is made a few times a run"
+)]
+
 pub mod check;
 mod clock;
 pub mod commands;
