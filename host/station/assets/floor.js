@@ -22,10 +22,11 @@ export function draw(event) {
 }
 
 // Shows what the lane's run does.
-export function progress({ lane, what, rows }) {
+export function progress({ lane, what, lang, rows }) {
   const doing = place(lane)?.querySelector(".doing"), bar = place(lane)?.querySelector("progress");
   if (!doing || !bar) return;
   doing.textContent = what;
+  doing.lang = lang ?? "";
   if (rows) [bar.value, bar.max] = rows;
   else bar.removeAttribute("value");
 }

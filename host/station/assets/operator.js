@@ -73,7 +73,7 @@ const HEAR = {
   doing: progress,
   scan: () => {},
   hook: ({ said }) => answer({ is_taken: false, said }),
-  beat: ({ ms }) => put("clock", new Date(ms).toLocaleTimeString(document.documentElement.lang, { hour12: false })),
+  beat: ({ clock }) => put("clock", clock),
 };
 
 live({

@@ -11,6 +11,12 @@
 //!                               web: the pages
 //! ```
 
+#![allow(
+    clippy::result_large_err,
+    clippy::large_enum_variant,
+    reason = "a sentence carries its code, its figures and its causes, and is made a few times a run"
+)]
+
 pub mod check;
 mod clock;
 pub mod commands;
@@ -28,6 +34,7 @@ pub mod plan;
 mod presence;
 pub mod record;
 pub mod run;
+pub mod said;
 pub mod settings;
 pub mod store;
 pub mod web;

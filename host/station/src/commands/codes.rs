@@ -22,6 +22,7 @@ use crate::kept::CopyError;
 use crate::plan::serial::SerialError;
 use crate::record::{BlobError, RecordError};
 use crate::run::{NoRandomness, RunError};
+use crate::said::Saying;
 use crate::store::{AgainError, NoWaiver, RebindError, StoreError};
 
 /// Print the page of all codes of the station's errors
@@ -121,6 +122,8 @@ codes::codes! {
     RebindError {
         Unknown [serial] => "unit-unknown",
         Several [serial, first, second] => "unit-of-two-products",
+        NoReason => "rebind-without-reason",
+        NoDevice [device] => "device-malformed",
         UnderTest [serial] => "unit-under-test",
         = NoRandomness,
         = Store,
@@ -151,6 +154,58 @@ codes::codes! {
         Failed [program, said] => "hook-failed",
         Late [program, deadline] => "hook-late",
     }
+    Saying {
+        Armed [lane] => "lane-armed",
+        Starts [lane] => "lane-starts",
+        ToldToEnd [lane] => "lane-told-to-end",
+        TakenOut [lane] => "lane-taken-out",
+        PutBack [lane] => "lane-put-back",
+        Tested [serial, lane] => "serial-tested",
+        MockJudged [lane] => "mock-judged",
+        Waits [serial, lane] => "serial-waits",
+        WaitsForPlug [serial] => "serial-waits-for-board",
+        WaitsInstead [serial, other] => "serial-waits-instead",
+        OutByPerson => "out-by-person",
+        Unkillable => "out-by-process",
+        GoodUnitWrong [serial, verdict] => "shift-good-unit-wrong",
+        BadUnitWrong [serial, verdict] => "shift-bad-unit-wrong",
+        GoodUnitDue [serial] => "shift-good-unit-due",
+        BadUnitDue [serial] => "shift-bad-unit-due",
+        MockDue [barcode] => "shift-mock-due",
+        MockWrong [target, verdict, barcode] => "shift-mock-wrong",
+        NoLaneOrPlan => "settings-without-lane-or-plan",
+        NoThread [error] => "thread-missing",
+        HardwareAlone [kind] => "plan-takes-hardware",
+        BuildNotOfPlan [build, builds] => "build-not-of-plan",
+        DeviceAskedFor => "device-asked-for",
+        DeviceUnsaid => "device-unsaid",
+        IdentityUnchecked [name, kind, build] => "identity-not-checked",
+        DeviceKnown [name, kind, build, device] => "device-known",
+        DeviceNew [name, kind, build, device] => "device-new",
+        StoppedBefore => "run-stopped-before",
+        LinkTested [link] => "link-tested",
+        LinkAnswersWrong [wrong] => "link-answers-wrong",
+        BoardSwapped [first, now] => "board-swapped",
+        DeviceElsewhere [device] => "device-in-other-lane",
+        OtherProduct [serial, product, scanned] => "board-of-other-product",
+        OtherSerial [serial, scanned] => "board-of-other-serial",
+        OtherDevice [serial, device, found] => "serial-of-other-device",
+        BeyondLimit [name, value, unit, low, high] => "measurement-beyond-limit",
+        NotMeasured [name, unit, low, high] => "measurement-missing",
+        StepsUnknown [passed, planned] => "steps-unknown",
+        StepNotReached => "step-not-reached",
+        LaneBabbles [line] => "lane-told-nonsense",
+        LaneDied [status] => "lane-died",
+        LaneNotStarted [error] => "lane-not-started",
+        LaneSilent [seconds] => "lane-silent",
+        LaneLate [seconds] => "lane-late",
+        LaneDeaf [seconds] => "lane-deaf",
+        LaneStuck [why] => "lane-stuck",
+        LaneEndless => "lane-endless",
+        PlanChanged => "plan-changed",
+        StationEnded [tries] => "station-ended",
+        SavedTooLate [tries] => "result-saved-too-late",
+    }
     ;
     UnknownBarcode [text] => "barcode-unknown"
     ;
@@ -161,7 +216,8 @@ codes::codes! {
     NoMock => "plan-without-mock"
 }
 
-fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
+/// The code of an error of the station's, of the library's or of the system's.
+pub(crate) fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
     lookup(error).or_else(|| program::known(error))
 }
 

@@ -2,7 +2,7 @@
 
 mod beginning;
 mod check;
-mod codes;
+pub(crate) mod codes;
 mod demo;
 mod document;
 mod export;
@@ -10,6 +10,7 @@ mod history;
 mod kept;
 mod lane;
 mod lanes;
+mod lang_check;
 mod looking;
 mod notify;
 mod pareto;
@@ -60,6 +61,7 @@ enum Command {
     Plan(plan::Arguments),
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
+    LangCheck(lang_check::Arguments),
     Codes(codes::Arguments),
     Schema(schema::Arguments),
     Serve(serve::Arguments),
@@ -129,6 +131,7 @@ impl Cli {
             Command::Plan(arguments) => plan::run(arguments),
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
+            Command::LangCheck(arguments) => lang_check::run(arguments),
             Command::Codes(arguments) => codes::run(arguments),
             Command::Schema(arguments) => schema::run(arguments),
             Command::Serve(arguments) => serve::run(arguments),

@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::store::{Change, Folder, RebindError, Store};
+use crate::store::{Change, Folder, RebindError, Store, is_device};
 
 /// Say that a serial number has another device from now on
 ///
@@ -39,10 +39,8 @@ fn not_empty(text: &str) -> Result<String, String> {
 }
 
 fn device(text: &str) -> Result<String, String> {
-    let is_device = text.len() == 16 && text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
     let says = "give 16 hexadecimal digits in lower case, not all 0, as a run prints them behind `device`";
-    let has_number = text.bytes().any(|digit| digit != b'0');
-    if is_device && has_number { Ok(text.to_owned()) } else { Err(says.to_owned()) }
+    if is_device(text) { Ok(text.to_owned()) } else { Err(says.to_owned()) }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -62,7 +60,10 @@ impl From<RebindError> for Failure {
         match error {
             RebindError::Store(error) => error.into(),
             RebindError::NoRandomness(_) | RebindError::UnderTest { .. } => Self::error(error),
-            RebindError::Unknown { .. } | RebindError::Several { .. } => Self::call(error),
+            RebindError::Unknown { .. }
+            | RebindError::Several { .. }
+            | RebindError::NoReason
+            | RebindError::NoDevice { .. } => Self::call(error),
         }
     }
 }

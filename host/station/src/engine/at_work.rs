@@ -14,6 +14,7 @@ use super::{Board, Heard, Input};
 use crate::clock;
 use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
 use crate::presence::{Presence, USB, is_there};
+use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
 use crate::store::{AgainError, Folder, Owed};
 
@@ -135,8 +136,7 @@ impl AtWork {
                     }
                 }
                 Err(error) => {
-                    let why = format!("{:#}", anyhow::Error::from(error));
-                    return (Some(Owes { plan, serial: None, why }), None);
+                    return (Some(Owes { plan, serial: None, why: Said::of(&error) }), None);
                 }
             }
         }
@@ -197,7 +197,7 @@ impl AtWork {
                 Err(why) => (false, Some(lane), None, why),
             },
             Ok(Answer { lane: None, effect, said }) => (true, None, effect, said),
-            Err(error) => (false, None, None, error.to_string()),
+            Err(error) => (false, None, None, Said::of(&error)),
         };
         let name = lane.and_then(|lane| Some(self.floor.lanes().get(lane)?.name().to_owned()));
         self.tell(&News::Scan { number, scanned, is_taken, lane: name, said });
@@ -231,7 +231,7 @@ impl AtWork {
     }
 
     /// What is to be done, unless it is to test a unit again that passed already: then why not, which the lane says too.
-    fn unless_passed(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, String> {
+    fn unless_passed(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, Said> {
         let Some(Effect::Begin(of)) = &effect else { return Ok(effect) };
         let Some(PlanFile { plan, .. }) = self.shared.settings.plans.get(of.plan) else { return Ok(effect) };
         let asked = self.asked.get_mut(lane).and_then(Option::take);
@@ -245,10 +245,10 @@ impl AtWork {
                 if let Some(asked) = self.asked.get_mut(lane) {
                     *asked = Some(of.serial.clone());
                 }
-                error.to_string()
+                Said::of(&error)
             }
-            Ok(Some(error)) => error.to_string(),
-            Err(error) => format!("{:#}", anyhow::Error::from(error)),
+            Ok(Some(error)) => Said::of(&error),
+            Err(error) => Said::of(&error),
         };
         self.floor.happened(lane, Event::NotBegun { why: why.clone() }, self.now());
         Err(why)
@@ -267,7 +267,7 @@ impl AtWork {
         match started {
             Ok(thread) => self.threads.push(thread),
             Err(error) => {
-                let why = format!("the system has no thread for it ({error}); end other programs");
+                let why = Saying::NoThread { error: error.to_string() }.into();
                 self.happened(lane, Event::NotBegun { why });
             }
         }

@@ -1,6 +1,7 @@
 //! What works for one lane: a thread for its run, one for its hooks, one to save what was not saved. Each tells the
 //! engine how it went; none waits for another lane.
 
+use std::error::Error;
 use std::path::PathBuf;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, OnceLock};
@@ -15,6 +16,7 @@ use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::lane::Message;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
+use crate::said::{Said, Saying};
 use crate::settings::Settings;
 use crate::store::SharedStore;
 
@@ -52,7 +54,7 @@ pub(super) fn begin(
     let shared = Arc::clone(shared);
     thread::Builder::new().name(format!("run in lane {lane}")).spawn(move || {
         let run = || carried_out(&shared, lane, &accepted, &operator, stop);
-        let (event, is_stuck) = guarded(run).unwrap_or_else(|fault| (unsaved(fault), false));
+        let (event, is_stuck) = guarded(run).unwrap_or_else(|fault| (unsaved(&fault), false));
         shared.tell(lane, Heard::Happened(event));
         if is_stuck {
             shared.tell(lane, Heard::Happened(Event::Stuck));
@@ -70,7 +72,7 @@ fn carried_out(
 ) -> (Event, bool) {
     let Settings { name, lanes, plans, silence, memory_mib, .. } = &shared.settings;
     let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
-        return (Event::NotBegun { why: "the settings have no such lane or plan".to_owned() }, false);
+        return (Event::NotBegun { why: Saying::NoLaneOrPlan.into() }, false);
     };
     let order = Order {
         plan: &file.plan,
@@ -92,8 +94,8 @@ fn carried_out(
             let is_stuck = saved.is_stuck;
             (Event::Ended(shown(saved)), is_stuck)
         }
-        Err(error @ RunError::Unsaved { .. }) => (unsaved(error), false),
-        Err(error) => (Event::NotBegun { why: told(error) }, false),
+        Err(error @ RunError::Unsaved { .. }) => (unsaved(&error), false),
+        Err(error) => (Event::NotBegun { why: Said::of(&error) }, false),
     }
 }
 
@@ -104,9 +106,9 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
         thread::sleep(AGAIN);
         let event = guarded(|| match shared.store.with(|store| run::recover_run(store, &run)) {
             Ok(saved) => Event::Ended(shown(saved)),
-            Err(error) => unsaved(error),
+            Err(error) => unsaved(&error),
         });
-        shared.tell(lane, Heard::Happened(event.unwrap_or_else(unsaved)));
+        shared.tell(lane, Heard::Happened(event.unwrap_or_else(|fault| unsaved(&fault))));
     })
 }
 
@@ -118,8 +120,8 @@ pub(super) fn hook(shared: &Arc<Shared>, lane: usize, shown: Shown) -> std::io::
         for hook in shared.settings.hooks.iter().filter(|hook| hook.on == shown.verdict) {
             let said = match guarded(|| hooks::run(hook, name, &shown)) {
                 Ok(Ok(())) => continue,
-                Ok(Err(error)) => told(error),
-                Err(fault) => told(fault),
+                Ok(Err(error)) => Said::of(&error),
+                Err(fault) => Said::of(&fault),
             };
             shared.tell(lane, Heard::Hook { run: shown.run.clone(), said });
         }
@@ -127,16 +129,12 @@ pub(super) fn hook(shared: &Arc<Shared>, lane: usize, shown: Shown) -> std::io::
 }
 
 /// Nothing is known of a run but what is in the store, which the recovery looks at.
-fn unsaved(error: impl Into<anyhow::Error>) -> Event {
-    Event::Unsaved { why: told(error) }
-}
-
-fn told(error: impl Into<anyhow::Error>) -> String {
-    format!("{:#}", error.into())
+fn unsaved(error: &(dyn Error + 'static)) -> Event {
+    Event::Unsaved { why: Said::of(error) }
 }
 
 fn shown(saved: Saved) -> Shown {
-    let Saved { record, stored, .. } = saved;
+    let Saved { record, stored, saved_ms, .. } = saved;
     Shown {
         run: record.run.id,
         serial: record.run.serial,
@@ -144,6 +142,8 @@ fn shown(saved: Saved) -> Shown {
         record_sha256: stored.record_sha256,
         headline: record.conclusion.headline,
         remedy: record.conclusion.remedy,
+        finding: record.conclusion.finding,
+        saved_ms,
     }
 }
 

@@ -135,7 +135,16 @@ mod tests {
 
     fn shown(headline: &str) -> Shown {
         let [run, serial, record_sha256, headline] = ["id", "CA1", "abcd", headline].map(str::to_owned);
-        Shown { run, serial, verdict: Verdict::Fail, record_sha256, headline, remedy: None }
+        Shown {
+            run,
+            serial,
+            verdict: Verdict::Fail,
+            record_sha256,
+            headline,
+            remedy: None,
+            finding: None,
+            saved_ms: 0,
+        }
     }
 
     fn hook(script: &str, deadline: u64) -> Hook {

@@ -25,6 +25,7 @@ pub use news::{LaneState, News};
 
 use crate::floor::{Act, Event};
 use crate::guard::guarded;
+use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{SharedStore, Store};
 use at_work::AtWork;
@@ -49,7 +50,7 @@ enum Input {
 enum Heard {
     Happened(Event),
     Doing { run: String, what: String, rows: Option<(u64, u64)> },
-    Hook { run: String, said: String },
+    Hook { run: String, said: Said },
 }
 
 /// A station at work.

@@ -5,6 +5,7 @@ use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
 use serde::Serialize;
 
 use crate::floor::{Lane, Shown, Word};
+use crate::said::{self, Said};
 
 /// How many pieces of news a listener may be behind. One that is further behind hears no more, and looks anew.
 const BACKLOG: usize = 1024;
@@ -37,7 +38,8 @@ pub enum News {
         /// The lane that it went to.
         lane: Option<String>,
         /// What was understood, or why it was refused.
-        said: String,
+        #[serde(serialize_with = "said::as_text")]
+        said: Said,
     },
     /// A hook did not do what it should have done. The verdict stands.
     Hook {
@@ -46,7 +48,8 @@ pub enum News {
         /// The run.
         run: String,
         /// What went wrong.
-        said: String,
+        #[serde(serialize_with = "said::as_text")]
+        said: Said,
     },
 }
 
@@ -66,7 +69,8 @@ pub struct LaneState {
     /// The last verdict, which is saved.
     pub shown: Option<Shown>,
     /// Why it is out of service, why nothing was saved, why no run was begun.
-    pub note: Option<String>,
+    #[serde(serialize_with = "said::as_text_if_any")]
+    pub note: Option<Said>,
 }
 
 impl From<&Lane> for LaneState {
@@ -78,7 +82,7 @@ impl From<&Lane> for LaneState {
             serial: lane.serial().map(str::to_owned),
             run: lane.run().map(str::to_owned),
             shown: lane.shown().cloned(),
-            note: lane.note().map(str::to_owned),
+            note: lane.note().cloned(),
         }
     }
 }
@@ -112,11 +116,13 @@ impl Listeners {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::said::Saying;
 
     #[test]
     fn a_slow_listener_is_let_go_and_the_others_hear_everything() {
         let mut listeners = Listeners::default();
-        let news = || News::Hook { lane: "1".to_owned(), run: "r".to_owned(), said: "x".to_owned() };
+        let news =
+            || News::Hook { lane: "1".to_owned(), run: "r".to_owned(), said: Saying::OutByPerson.into() };
         let (slow, quick) = (listeners.add(std::iter::empty()), listeners.add(std::iter::once(news())));
         quick.recv().unwrap();
         for _ in 0..=BACKLOG {

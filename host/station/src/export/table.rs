@@ -62,6 +62,11 @@ impl<W: Write> Table<W> {
         Ok(table)
     }
 
+    /// More of a table whose header was written already.
+    pub fn further(to: W) -> Self {
+        Self(to)
+    }
+
     /// Writes the lines of a run.
     ///
     /// # Errors

@@ -9,17 +9,18 @@
 use halfrow::Verdict;
 
 use crate::plan::mock::is_mock;
+use crate::said::{Said, Saying};
 
 use super::words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Phase {
-    Out { why: String },
+    Out { why: Said },
     Idle,
     Running { of: Accepted, run: Option<String> },
     Saving { of: Accepted, run: Option<String> },
     Ended,
-    Unsaved { of: Accepted, run: Option<String>, why: String },
+    Unsaved { of: Accepted, run: Option<String>, why: Said },
 }
 
 /// A lane.
@@ -31,7 +32,7 @@ pub struct Lane {
     is_present: bool,
     waiting: Option<Accepted>,
     shown: Option<Shown>,
-    note: Option<String>,
+    note: Option<Said>,
     owes: Option<Owes>,
 }
 
@@ -122,13 +123,11 @@ impl Lane {
 
     /// What else there is to say: why it is out of service, why nothing was saved, why no run was begun.
     #[must_use]
-    pub fn note(&self) -> Option<&str> {
+    pub fn note(&self) -> Option<&Said> {
         match &self.phase {
             Phase::Out { why } | Phase::Unsaved { why, .. } => Some(why),
-            Phase::Idle | Phase::Ended if self.owes.is_some() => {
-                self.owes.as_ref().map(|owes| owes.why.as_str())
-            }
-            _ => self.note.as_deref(),
+            Phase::Idle | Phase::Ended if self.owes.is_some() => self.owes.as_ref().map(|owes| &owes.why),
+            _ => self.note.as_ref(),
         }
     }
 
@@ -261,10 +260,7 @@ impl Lane {
                 let effect = run.clone().map(|run| Effect::Recover { run });
                 (Phase::Unsaved { of, run, why }, effect)
             }
-            (Phase::Ended, Event::Stuck) => {
-                let why = "its process cannot be killed; restart the computer".to_owned();
-                (Phase::Out { why }, None)
-            }
+            (Phase::Ended, Event::Stuck) => (Phase::Out { why: Saying::Unkillable.into() }, None),
             (phase, _) => (phase, None),
         };
         self.phase = phase;

@@ -17,6 +17,7 @@ pub use scan::{Act, Scan, UnknownBarcode};
 pub use words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
 
 use crate::plan::serial::{SerialError, SerialRule};
+use crate::said::{Said, Saying};
 
 /// How long a serial number waits for a lane.
 const WAIT: Duration = Duration::from_secs(60);
@@ -49,7 +50,7 @@ pub struct Answer {
     /// What is to be done there.
     pub effect: Option<Effect>,
     /// What was understood, for people.
-    pub said: String,
+    pub said: Said,
 }
 
 /// A scan that is refused. Nothing has changed.
@@ -146,11 +147,7 @@ impl Floor {
             Scan::Lane(name) => {
                 let lane = self.named(&name)?;
                 self.armed = Some(lane);
-                Ok(Answer {
-                    lane: Some(lane),
-                    effect: None,
-                    said: format!("the next scan is for lane {name}"),
-                })
+                Ok(Answer { lane: Some(lane), effect: None, said: Saying::Armed { lane: name }.into() })
             }
             Scan::Act(act) => self.act(self.meant()?, act),
             Scan::Mock => self.mock(self.meant()?),
@@ -178,15 +175,16 @@ impl Floor {
     /// # Errors
     /// [`ScanError::Lane`] when it cannot be done now.
     pub fn act(&mut self, lane: usize, act: Act) -> Result<Answer, ScanError> {
+        let name = self.name(lane).to_owned();
         let (event, said) = match act {
-            Act::Start => (Event::Start, "starts"),
-            Act::Abort => (Event::Abort, "is told to end"),
-            Act::Out => (Event::Out { why: "taken out by a person".to_owned() }, "is out of service"),
-            Act::In => (Event::In, "is in service"),
+            Act::Start => (Event::Start, Saying::Starts { lane: name }),
+            Act::Abort => (Event::Abort, Saying::ToldToEnd { lane: name }),
+            Act::Out => (Event::Out { why: Saying::OutByPerson.into() }, Saying::TakenOut { lane: name }),
+            Act::In => (Event::In, Saying::PutBack { lane: name }),
         };
         let effect = self.lane(lane)?.take(event)?;
         self.armed = None;
-        Ok(Answer { lane: Some(lane), effect, said: format!("lane {} {said}", self.name(lane)) })
+        Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }
 
     /// Takes what happened to a lane at the time `now`. A serial number that waits goes to the lane that a board came to.
@@ -232,9 +230,12 @@ impl Floor {
         self.refuse_elsewhere(lane, &accepted)?;
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
         self.armed = None;
-        let does = if effect.is_some() { "is tested" } else { "waits" };
-        let said = format!("{serial} {does} in lane {}", self.name(lane));
-        Ok(Answer { lane: Some(lane), effect, said })
+        let (serial, name) = (serial.to_owned(), self.name(lane).to_owned());
+        let said = match effect {
+            Some(_) => Saying::Tested { serial, lane: name },
+            None => Saying::Waits { serial, lane: name },
+        };
+        Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }
 
     /// Has a lane judge the mock board that it owes its shift.
@@ -243,8 +244,8 @@ impl Floor {
         let product = self.rules.get(plan).map_or_else(String::new, |rule| rule.product.clone());
         let effect = self.lane(lane)?.take(Event::Given(Accepted { plan, product, serial }))?;
         self.armed = None;
-        let said = format!("the mock board with a drawn fault is judged in lane {}", self.name(lane));
-        Ok(Answer { lane: Some(lane), effect, said })
+        let said = Saying::MockJudged { lane: self.name(lane).to_owned() };
+        Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }
 
     /// Keeps the serial number for the next lane into which a board is plugged.
@@ -252,10 +253,12 @@ impl Floor {
         let all: Vec<usize> = (0..self.rules.len()).collect();
         let accepted = self.read(&all, &serial)?;
         self.refuse_elsewhere(usize::MAX, &accepted)?;
-        let instead = self.pending(now).map(|other| format!(", instead of {other}")).unwrap_or_default();
-        let said = format!("{serial} waits for the next board that is plugged in{instead}");
+        let said = match self.pending(now).map(str::to_owned) {
+            Some(other) => Saying::WaitsInstead { serial: serial.clone(), other },
+            None => Saying::WaitsForPlug { serial: serial.clone() },
+        };
         self.pending = Some((serial, now));
-        Ok(Answer { lane: None, effect: None, said })
+        Ok(Answer { lane: None, effect: None, said: said.into() })
     }
 
     /// The one of these plans that takes the serial number.

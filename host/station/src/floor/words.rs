@@ -3,6 +3,8 @@
 use halfrow::Verdict;
 use serde::Serialize;
 
+use crate::said::Said;
+
 /// How runs of a lane are started.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Starts {
@@ -40,6 +42,10 @@ pub struct Shown {
     pub headline: String,
     /// What to do next.
     pub remedy: Option<String>,
+    /// The headline with its code, where the record has one.
+    pub finding: Option<Said>,
+    /// When it was saved, in milliseconds since 1970, UTC.
+    pub saved_ms: i64,
 }
 
 /// What a lane is called by those who look at it.
@@ -82,7 +88,7 @@ pub enum Event {
     /// Somebody takes it out of service.
     Out {
         /// Why.
-        why: String,
+        why: Said,
     },
     /// Somebody puts it back.
     In,
@@ -94,7 +100,7 @@ pub enum Event {
     /// Its run could not even be entered; the board was not touched.
     NotBegun {
         /// Why.
-        why: String,
+        why: Said,
     },
     /// Its run's process has ended.
     Saving,
@@ -103,7 +109,7 @@ pub enum Event {
     /// Its run's result is not saved.
     Unsaved {
         /// Why.
-        why: String,
+        why: Said,
     },
     /// Its process cannot be killed, and may still have the board.
     Stuck,
@@ -119,7 +125,7 @@ pub struct Owes {
     /// The serial number of the unit; none when it cannot be told which.
     pub serial: Option<String>,
     /// Why.
-    pub why: String,
+    pub why: Said,
 }
 
 impl Owes {
@@ -155,7 +161,7 @@ pub enum Refusal {
         /// The lane.
         lane: String,
         /// Why.
-        why: String,
+        why: Said,
     },
     /// It was not checked in this shift.
     #[error("lane {lane} is out of service: {why}")]
@@ -163,7 +169,7 @@ pub enum Refusal {
         /// The lane.
         lane: String,
         /// What is to be done.
-        why: String,
+        why: Said,
     },
     /// It owes its shift no mock board.
     #[error("lane {lane} is to be checked by no mock board now; scan the label of the board in it")]

@@ -19,9 +19,8 @@ use super::kept_frame::keep;
 use crate::exit::Exit;
 use crate::plan::limits::{Limit, Maker, SAMPLES_DIFFERING};
 use crate::plan::{DeviceRule, Judging, Plan};
-use crate::record::{
-    BoardSeen, IDENTITY_NOT_CHECKED, Measured, RunCause, StepOutcome, SuspectRecord, judged,
-};
+use crate::record::{BoardSeen, Measured, RunCause, StepOutcome, SuspectRecord, judged};
+use crate::said::{Said, Saying};
 
 /// What a try of a step came to.
 #[derive(Debug)]
@@ -29,7 +28,7 @@ pub(super) struct Try {
     pub(super) outcome: StepOutcome,
     pub(super) cause: RunCause,
     pub(super) exit: Exit,
-    pub(super) detail: String,
+    pub(super) finding: Said,
     pub(super) remedy: Option<String>,
     pub(super) measurements: Vec<Measured>,
     pub(super) suspects: Vec<SuspectRecord>,
@@ -38,7 +37,8 @@ pub(super) struct Try {
 }
 
 impl Try {
-    fn of(cause: Cause, code: &str, detail: impl Into<String>) -> Self {
+    fn of(cause: Cause, finding: impl Into<Said>) -> Self {
+        let finding = finding.into();
         let outcome = match cause.verdict() {
             Verdict::Pass => StepOutcome::Passed,
             Verdict::Fail => StepOutcome::Failed,
@@ -46,9 +46,9 @@ impl Try {
         };
         Self {
             outcome,
-            cause: RunCause::of(cause, code),
+            cause: RunCause::of(cause, &finding.code),
             exit: cause.into(),
-            detail: detail.into(),
+            finding,
             remedy: None,
             measurements: Vec::new(),
             suspects: Vec::new(),
@@ -59,24 +59,23 @@ impl Try {
 
     fn error(cause: Cause, error: &(dyn Error + 'static)) -> Self {
         let problem = Problem::of(error);
-        Self { remedy: problem.remedy.clone(), ..Self::of(cause, &problem.code, problem.sentence()) }
+        Self { remedy: problem.remedy.clone(), ..Self::of(cause, problem) }
     }
 
-    fn refused(detail: String, remedy: &str) -> Self {
-        Self { remedy: Some(remedy.to_owned()), ..Self::of(Cause::Refused, "", detail) }
+    fn refused(why: Saying, remedy: &str) -> Self {
+        Self { remedy: Some(remedy.to_owned()), ..Self::of(Cause::Refused, why) }
     }
 
     /// Somebody mixed boards up.
-    fn mixed_up(detail: String, remedy: String) -> Self {
-        let refused = Self::of(Cause::Refused, "", detail);
+    fn mixed_up(why: Said, remedy: String) -> Self {
+        let refused = Self::of(Cause::Refused, why);
         Self { cause: RunCause::Operator, remedy: Some(remedy), ..refused }
     }
 
     /// With these measurements: a PASS that misses a limit is what the limit says, and a FAIL with a limit that blames
     /// the station is ERROR.
     fn measured(mut self, measurements: Vec<Measured>) -> Self {
-        let faults: Vec<_> =
-            measurements.iter().filter_map(|one| Some((one.fault()?, one.sentence()))).collect();
+        let faults: Vec<_> = measurements.iter().filter_map(|one| Some((one.fault()?, one.said()))).collect();
         self.measurements = measurements;
         // What is not the board's fault is worse: the board was not judged rightly then.
         let worst = faults.iter().find(|(cause, _)| *cause != RunCause::Board).or(faults.first());
@@ -85,13 +84,13 @@ impl Try {
             StepOutcome::Failed => *cause != RunCause::Board,
             StepOutcome::Error | StepOutcome::Skipped => false,
         };
-        let Some((cause, sentence)) = worst.filter(|(cause, _)| is_worse(cause)) else { return self };
+        let Some((cause, said)) = worst.filter(|(cause, _)| is_worse(cause)) else { return self };
         (self.outcome, self.exit) = match cause {
             RunCause::Board => (StepOutcome::Failed, Exit::Fail),
             RunCause::Refused => (StepOutcome::Error, Exit::Refused),
             _ => (StepOutcome::Error, Exit::Error),
         };
-        (self.cause, self.detail) = (*cause, sentence.clone());
+        (self.cause, self.finding) = (*cause, said.clone());
         self
     }
 }
@@ -134,15 +133,15 @@ impl Common<'_> {
         }
         let Plan { require_hardware, builds, device, .. } = self.plan;
         if *require_hardware && kind != BoardKind::Hardware {
-            let detail = format!("the board is a {kind}, and the plan takes hardware alone");
-            Some(Try::refused(detail, "Check the lane's target."))
+            Some(Try::refused(Saying::HardwareAlone { kind: kind.to_string() }, "Check the lane's target."))
         } else if !builds.contains(&seen.build) {
-            let detail =
-                format!("the board's build is {}, and the plan takes {}", seen.build, builds.join(", "));
-            Some(Try::refused(detail, "Load a released build, or take the plan for this one."))
+            let (build, builds) = (seen.build.clone(), builds.join(", "));
+            Some(Try::refused(
+                Saying::BuildNotOfPlan { build, builds },
+                "Load a released build, or take the plan for this one.",
+            ))
         } else if *device == DeviceRule::Required && seen.device.is_none() {
-            let detail = "the board does not say which device it is, and the plan asks for it".to_owned();
-            Some(Try::refused(detail, "Load a build that reads the FPGA's own number."))
+            Some(Try::refused(Saying::DeviceAskedFor, "Load a build that reads the FPGA's own number."))
         } else {
             None
         }
@@ -150,19 +149,18 @@ impl Common<'_> {
 
     /// Whether the device may be judged under the serial number, which the station knows.
     fn ruled(&self, seen: &BoardSeen) -> Try {
-        let of = |known: &str| {
-            let detail = format!("{} ({}), build {}, {known}", seen.name, seen.kind, seen.build);
-            Try::of(Cause::Equal, "", detail)
-        };
+        let [name, kind, build] = [&seen.name, &seen.kind, &seen.build].map(String::clone);
+        let of = |saying| Try::of(Cause::Equal, saying);
         let Some(device) = seen.device.as_ref().filter(|_| self.plan.device != DeviceRule::NotChecked) else {
-            return of(IDENTITY_NOT_CHECKED);
+            return of(Saying::IdentityUnchecked { name, kind, build });
         };
+        let device = device.clone();
         match (self.rule)(seen) {
-            Ok(Ruling::Known) => of(&format!("device {device}")),
-            Ok(Ruling::New) => of(&format!("device {device}, seen for the first time")),
+            Ok(Ruling::Known) => of(Saying::DeviceKnown { name, kind, build, device }),
+            Ok(Ruling::New) => of(Saying::DeviceNew { name, kind, build, device }),
             Ok(Ruling::Refused { why, remedy }) => Try::mixed_up(why, remedy),
-            Ok(Ruling::Untold { why }) => Try::of(Cause::Station, "", why),
-            Err(by) => Try::of(Cause::Stopped(by), "", "the run was stopped before the board was judged"),
+            Ok(Ruling::Untold { why }) => Try::of(Cause::Station, why),
+            Err(by) => Try::of(Cause::Stopped(by), Saying::StoppedBefore),
         }
     }
 
@@ -189,11 +187,8 @@ impl Common<'_> {
             }
         };
         let result = match figures.errors.wrong {
-            0 => Try::of(Cause::Equal, "", format!("the link was tested: {}", figures.link)),
-            wrong => {
-                let detail = format!("{wrong} answers hold other bytes than were sent, under a right CRC");
-                Try::of(Cause::Different, "", detail)
-            }
+            0 => Try::of(Cause::Equal, Saying::LinkTested { link: figures.link.clone() }),
+            wrong => Try::of(Cause::Different, Saying::LinkAnswersWrong { wrong }),
         };
         let evidence = serde_json::to_value(&figures).ok();
         let measured = judged(Maker::Link, &of_link(&figures), self.limits);
@@ -238,14 +233,13 @@ impl Common<'_> {
         if let Some(exchanged) = seen.as_ref().and_then(|seen| self.exchanged(seen)) {
             return exchanged;
         }
-        let code = report.error().map_or_else(String::new, |problem| problem.code);
         let measured = judged(Maker::Verify, &of_verify(&report, begun.elapsed()), self.limits);
         let result = Try {
             remedy: report.remedy(),
             suspects: report.suspects.iter().map(suspect).collect(),
             board: seen,
             evidence: serde_json::to_value(&report).ok(),
-            ..Try::of(report.cause, &code, report.headline())
+            ..Try::of(report.cause, &report.finding)
         };
         result.measured(measured)
     }
@@ -256,8 +250,8 @@ impl Common<'_> {
         let name = |board: &BoardSeen| {
             format!("{} of build {}", board.device.as_deref().unwrap_or("unnumbered"), board.build)
         };
-        let detail = format!("the board was exchanged during the run: {} became {}", name(first), name(seen));
-        let refused = Try::refused(detail, "Leave the board in its place, and test it again.");
+        let swapped = Saying::BoardSwapped { first: name(first), now: name(seen) };
+        let refused = Try::refused(swapped, "Leave the board in its place, and test it again.");
         Some(Try { board: Some(seen.clone()), ..refused })
     }
 

@@ -14,6 +14,7 @@ use super::{Control, Job, Message, Ruling};
 use crate::clock;
 use crate::plan::{Act, Plan, Step};
 use crate::record::{BoardSeen, StepOutcome, StepRecord};
+use crate::said::{Said, Saying};
 
 /// How often a lane that waits for the station looks whether it is to end.
 const LOOK: Duration = Duration::from_millis(50);
@@ -84,15 +85,13 @@ pub fn carry_out(job: &Job, heeded: &Heeded, tell: &(dyn Fn(&Message) + Sync)) {
 }
 
 /// The plan as the run began with it.
-fn prepared(job: &Job) -> Result<(Plan, Target), String> {
+fn prepared(job: &Job) -> Result<(Plan, Target), Said> {
     let plan = Plan::parse(&job.plan, job.text.clone());
-    let plan = plan.map_err(|error| format!("{:#}", anyhow::Error::from(error)))?;
+    let plan = plan.map_err(|error| Said::of(&error))?;
     if plan.sha256 != job.sha256 {
-        return Err(
-            "a file that the plan names was changed while the run began; test the board again".to_owned()
-        );
+        return Err(Saying::PlanChanged.into());
     }
-    let target = job.target.parse().map_err(|error: halfrow::target::TargetError| error.to_string())?;
+    let target = job.target.parse().map_err(|error: halfrow::target::TargetError| Said::of(&error))?;
     Ok((plan, target))
 }
 
@@ -142,7 +141,7 @@ fn tried(
         Act::Link { each } => common.link(*each, within),
         Act::Verify(judging) => common.verify(judging, (within, (seq, attempt)), &Told::by(tell)),
     };
-    let Try { outcome, cause, exit, detail, remedy, measurements, suspects, board, evidence } = came;
+    let Try { outcome, cause, exit, finding, remedy, measurements, suspects, board, evidence } = came;
     StepRecord {
         seq,
         attempt,
@@ -153,7 +152,8 @@ fn tried(
         exit_code: exit.code(),
         started_ms,
         ended_ms: clock::now_ms(),
-        detail,
+        detail: finding.to_string(),
+        finding: Some(finding),
         remedy,
         measurements,
         suspects,

@@ -6,6 +6,7 @@ use halfrow::verdict::StoppedBy;
 use serde::{Deserialize, Serialize};
 
 use crate::record::{BoardSeen, StepRecord};
+use crate::said::Said;
 
 /// What the lane is to do: the first line that it reads.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,14 +68,14 @@ pub enum Ruling {
     /// It may not: somebody mixed boards up.
     Refused {
         /// Why.
-        why: String,
+        why: Said,
         /// What to do.
         remedy: String,
     },
     /// It cannot be told.
     Untold {
         /// Why.
-        why: String,
+        why: Said,
     },
 }
 
@@ -138,6 +139,6 @@ pub enum Message {
     /// The job cannot be done: the last message, too.
     Refused {
         /// Why, and what to do.
-        why: String,
+        why: Said,
     },
 }

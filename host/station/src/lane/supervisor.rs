@@ -16,6 +16,7 @@ use nix::unistd::Pid;
 
 use super::{Control, Job, Message, Ruling};
 use crate::record::{BoardSeen, StepRecord};
+use crate::said::{Said, Saying};
 
 /// How often the supervisor looks whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(50);
@@ -56,13 +57,13 @@ pub enum End {
     /// It did all that it would.
     Done,
     /// It could not do the job at all.
-    Refused(String),
+    Refused(Said),
     /// Its process did not start, or ended before it was done.
-    Died(String),
+    Died(Said),
     /// It was killed, since it was silent or took too long.
-    Killed(String),
+    Killed(Said),
     /// It should have been killed, and the system could not: it may still have the board.
-    Stuck(String),
+    Stuck(Said),
 }
 
 /// Who attends to a lane while it works.
@@ -89,7 +90,7 @@ pub fn supervise(
             let end = lane.attended(patience, attendant, &mut steps);
             lane.end(end)
         }
-        Err(error) => End::Died(format!("the lane could not be started: {error}")),
+        Err(error) => End::Died(Saying::LaneNotStarted { error: error.to_string() }.into()),
     };
     Heard { steps, end }
 }
@@ -126,7 +127,7 @@ impl Lane {
         match lane.brief(job, spool) {
             Ok(()) => Ok(lane),
             Err(error) => {
-                lane.end(End::Killed(String::new()));
+                lane.end(End::Killed(Saying::LaneNotStarted { error: error.to_string() }.into()));
                 Err(error)
             }
         }
@@ -159,10 +160,12 @@ impl Lane {
                         Ok(Message::Done) => return End::Done,
                         Ok(Message::Refused { why }) => return End::Refused(why),
                         Ok(message) => self.answer(&message, attendant, steps),
-                        Err(_) => return End::Killed(format!("the lane told what is no message: {line}")),
+                        Err(_) => return End::Killed(Saying::LaneBabbles { line }.into()),
                     }
                 }
-                Err(RecvTimeoutError::Disconnected) => return End::Died(String::new()),
+                Err(RecvTimeoutError::Disconnected) => {
+                    return End::Died(Saying::LaneDied { status: String::new() }.into());
+                }
                 Err(RecvTimeoutError::Timeout) => {}
             }
             if asked.is_none()
@@ -204,29 +207,25 @@ impl Lane {
             status = waited(&mut self.child);
         }
         match (end, status) {
-            (End::Killed(why), None) => End::Stuck(format!("{why}, and could not even be killed")),
-            (End::Died(_), Some(status)) => {
-                End::Died(format!("the lane ended before it was done ({status})"))
-            }
-            (End::Died(_) | End::Done | End::Refused(_), None) => {
-                End::Stuck("the lane did not end, and could not even be killed".to_owned())
-            }
+            (End::Killed(why), None) => End::Stuck(Saying::LaneStuck { why }.into()),
+            (End::Died(_), Some(status)) => End::Died(Saying::LaneDied { status: status.to_string() }.into()),
+            (End::Died(_) | End::Done | End::Refused(_), None) => End::Stuck(Saying::LaneEndless.into()),
             (end, _) => end,
         }
     }
 }
 
 /// Why the lane is waited for no longer.
-fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<Instant>) -> Option<String> {
+fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<Instant>) -> Option<Said> {
     let seconds = |limit: Duration| limit.as_secs_f64();
     if last.elapsed() > patience.silence {
-        return Some(format!("the lane told nothing for {} s", seconds(patience.silence)));
+        return Some(Saying::LaneSilent { seconds: seconds(patience.silence) }.into());
     }
     if begun.elapsed() > patience.whole {
-        return Some(format!("the lane took longer than {} s", seconds(patience.whole)));
+        return Some(Saying::LaneLate { seconds: seconds(patience.whole) }.into());
     }
     let is_deaf = asked.is_some_and(|asked| asked.elapsed() > GRACE);
-    is_deaf.then(|| format!("the lane did not end within {} s of being told to", seconds(GRACE)))
+    is_deaf.then(|| Saying::LaneDeaf { seconds: seconds(GRACE) }.into())
 }
 
 /// How a process ended, if it does within [`GRACE`].

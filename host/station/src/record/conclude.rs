@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::IDENTITY_NOT_CHECKED;
 use super::step::{DeviceSeen, Measured, RunCause, StepOutcome, StepRecord};
 use crate::exit::Exit;
+use crate::said::{Said, Saying};
 
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +21,9 @@ pub struct Conclusion {
     pub headline: String,
     /// What to do next.
     pub remedy: Option<String>,
+    /// The headline with its code.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finding: Option<Said>,
 }
 
 impl Conclusion {
@@ -36,7 +40,7 @@ impl Conclusion {
         let by_run = run.iter().filter_map(Self::by_measurement);
         let missing = || {
             let passed = steps.iter().filter(|step| step.outcome == StepOutcome::Passed).count();
-            let why = || format!("{passed} of {planned} steps passed, and of the others nothing is known");
+            let why = || Saying::StepsUnknown { passed, planned };
             (passed < planned as usize).then(|| Self::error(RunCause::Station, why()))
         };
         let mut worst: Vec<_> = by_step.chain(by_run).chain(lane).collect();
@@ -49,6 +53,7 @@ impl Conclusion {
             exit_code: Exit::Pass.code(),
             headline: steps.last().map_or_else(String::new, |step| step.detail.clone()),
             remedy: None,
+            finding: steps.last().and_then(|step| step.finding.clone()),
         })
     }
 
@@ -63,10 +68,12 @@ impl Conclusion {
 
     /// An ERROR of this cause.
     #[must_use]
-    pub fn error(cause: RunCause, headline: impl Into<String>) -> Self {
+    pub fn error(cause: RunCause, why: impl Into<Said>) -> Self {
+        let why = why.into();
         let exit = if cause == RunCause::Refused { Exit::Refused } else { Exit::Error };
         let remedy = Some("Test the board again.".to_owned());
-        Self { verdict: Verdict::Error, cause, exit_code: exit.code(), headline: headline.into(), remedy }
+        let (verdict, exit_code, headline) = (Verdict::Error, exit.code(), why.to_string());
+        Self { verdict, cause, exit_code, headline, remedy, finding: Some(why) }
     }
 
     fn by_step(step: &StepRecord) -> Option<Self> {
@@ -81,18 +88,19 @@ impl Conclusion {
             exit_code: step.exit_code,
             headline: step.detail.clone(),
             remedy: step.remedy.clone(),
+            finding: step.finding.clone(),
         })
     }
 
     fn by_measurement(measured: &Measured) -> Option<Self> {
         let cause = measured.fault()?;
-        let headline = measured.sentence();
+        let (headline, finding) = (measured.sentence(), measured.said());
         Some(match cause {
             RunCause::Board => {
                 let (verdict, exit_code) = (Verdict::Fail, Exit::Fail.code());
-                Self { verdict, cause, exit_code, headline, remedy: None }
+                Self { verdict, cause, exit_code, headline, remedy: None, finding: Some(finding) }
             }
-            cause => Self::error(cause, headline),
+            cause => Self::error(cause, finding),
         })
     }
 }
@@ -113,6 +121,7 @@ mod tests {
             started_ms: 1,
             ended_ms: 2,
             detail: format!("step {seq}, try {attempt}"),
+            finding: None,
             remedy: None,
             measurements: Vec::new(),
             suspects: Vec::new(),
@@ -134,7 +143,7 @@ mod tests {
         assert_eq!(of(1, &[], None), (Verdict::Error, RunCause::Station));
         let skipped = step(2, 1, StepOutcome::Skipped, RunCause::None);
         assert_eq!(of(2, &[passed(1), skipped], None), (Verdict::Error, RunCause::Station));
-        let died = Conclusion::error(RunCause::Crash, "it died");
+        let died = Conclusion::error(RunCause::Crash, Saying::LaneEndless);
         assert_eq!(of(2, &[passed(1), passed(2)], Some(died)), (Verdict::Error, RunCause::Crash));
     }
 
@@ -148,7 +157,7 @@ mod tests {
         assert_eq!(of(1, std::slice::from_ref(&failed), None), (Verdict::Fail, RunCause::Board));
         let later = step(2, 1, StepOutcome::Error, RunCause::Station);
         assert_eq!(of(2, &[failed.clone(), later], None), (Verdict::Error, RunCause::Station));
-        let hung = Conclusion::error(RunCause::Crash, "it hung");
+        let hung = Conclusion::error(RunCause::Crash, Saying::LaneEndless);
         assert_eq!(of(1, &[failed], Some(hung)), (Verdict::Error, RunCause::Crash));
     }
 

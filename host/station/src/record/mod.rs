@@ -218,6 +218,7 @@ mod tests {
                 exit_code: 0,
                 headline: "all is right".to_owned(),
                 remedy: None,
+                finding: None,
             },
             plan: PlanRecord { sha256, name, version, text, files: Some(Vec::new()) },
             production: true,
@@ -236,7 +237,7 @@ mod tests {
     fn a_pass_without_an_outcome_of_a_step_is_not_stored() {
         assert!(matches!(pass().bytes(1), Err(RecordError::Incomplete { seq: 1, steps: 1 })));
         let mut error = pass();
-        error.conclusion = Conclusion::error(RunCause::Crash, "it died");
+        error.conclusion = Conclusion::error(RunCause::Crash, crate::said::Saying::LaneEndless);
         let bytes = error.bytes(1).unwrap();
         assert_eq!(Record::parse(&bytes).unwrap(), error);
     }
@@ -245,7 +246,7 @@ mod tests {
     #[test]
     fn a_measurement_that_is_no_number_is_not_stored() {
         let mut record = pass();
-        record.conclusion = Conclusion::error(RunCause::Crash, "it died");
+        record.conclusion = Conclusion::error(RunCause::Crash, crate::said::Saying::LaneEndless);
         for wrong in [f64::NAN, f64::INFINITY] {
             record.measurements[0].value = Some(wrong);
             assert!(matches!(record.bytes(1), Err(RecordError::NotANumber { .. })));

@@ -8,6 +8,7 @@ use serde_json::Value;
 use crate::exit::Exit;
 use crate::plan::Step;
 use crate::plan::limits::{Blame, Limit, MEASUREMENTS, Maker, Measurement};
+use crate::said::{Said, Saying};
 
 /// One try of one step.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -33,6 +34,9 @@ pub struct StepRecord {
     pub ended_ms: i64,
     /// What was seen, in one sentence.
     pub detail: String,
+    /// It with its code.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finding: Option<Said>,
     /// What to do next.
     pub remedy: Option<String>,
     /// What was measured.
@@ -59,7 +63,8 @@ impl StepRecord {
             exit_code: Exit::NothingJudged.code(),
             started_ms: at_ms,
             ended_ms: at_ms,
-            detail: "not reached".to_owned(),
+            detail: Saying::StepNotReached.to_string(),
+            finding: Some(Saying::StepNotReached.into()),
             remedy: None,
             measurements: Vec::new(),
             suspects: Vec::new(),
@@ -276,6 +281,17 @@ impl Measured {
             (MeasuredOutcome::Unset, _) => Some(RunCause::Refused),
             (MeasuredOutcome::Failed, Blame::Board) => Some(RunCause::Board),
             (MeasuredOutcome::Failed, Blame::Station) => Some(RunCause::Station),
+        }
+    }
+
+    /// That it is beyond its limit, or missing.
+    #[must_use]
+    pub fn said(&self) -> Said {
+        let (sentence, low, high) = (self.sentence(), self.low, self.high);
+        let (name, unit) = (self.name.clone(), self.unit.clone());
+        match self.value {
+            Some(value) => Saying::BeyondLimit { sentence, name, value, unit, low, high }.into(),
+            None => Saying::NotMeasured { sentence, name, unit, low, high }.into(),
         }
     }
 

@@ -27,6 +27,7 @@ use crate::record::{
     Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead,
     SCHEMA, StepRecord, judged,
 };
+use crate::said::{Said, Saying};
 use crate::store::{Admission, SharedStore, Store, StoreError, Stored};
 use crate::{clock, ids};
 
@@ -68,6 +69,8 @@ pub struct Saved {
     pub record: Record,
     /// What was read back.
     pub stored: Stored,
+    /// When that was, in milliseconds since 1970, UTC.
+    pub saved_ms: i64,
     /// Whether the lane's process could not be killed: it may still have the board.
     pub is_stuck: bool,
 }
@@ -212,7 +215,7 @@ impl Attendant for Attending<'_> {
 
     fn rule(&mut self, board: &BoardSeen) -> Ruling {
         let Some(device) = &board.device else {
-            return Ruling::Untold { why: "the board does not say which device it is".to_owned() };
+            return Ruling::Untold { why: Saying::DeviceUnsaid.into() };
         };
         match self.store.with(|store| store.admit(self.run, device)) {
             Ok(Admission::New) => {
@@ -224,7 +227,7 @@ impl Attendant for Attending<'_> {
                 Ruling::Known
             }
             Ok(Admission::Refused { why, remedy }) => Ruling::Refused { why, remedy: remedy.to_owned() },
-            Err(error) => Ruling::Untold { why: format!("{:#}", anyhow::Error::from(error)) },
+            Err(error) => Ruling::Untold { why: Said::of(&error) },
         }
     }
 }
@@ -318,10 +321,11 @@ fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Resu
         store.finish(&record, steps)
     };
     let stored = saved().map_err(|source| RunError::Unsaved { run, source: Box::new(source) })?;
+    let saved_ms = clock::now_ms();
     if let Err(error) = fs::remove_dir_all(spool) {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
-    Ok(Saved { record, stored, is_stuck: false })
+    Ok(Saved { record, stored, saved_ms, is_stuck: false })
 }
 
 /// What a lane wrote down, as evidence.

@@ -9,6 +9,7 @@ use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind};
 use crate::plan::mock::is_mock;
 use crate::record::{Conclusion, DeviceSeen, PlanRecord, Record, RunCause, SCHEMA, StepRecord};
+use crate::said::Saying;
 use crate::store::{OpenRun, Store};
 
 use super::{RunError, Saved, save};
@@ -23,8 +24,7 @@ pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     if !open.is_empty() {
         store.folder().blobs().clear();
     }
-    let closed =
-        open.into_iter().map(|open| closed(store, open, "the station ended in the middle of the run"));
+    let closed = open.into_iter().map(|open| closed(store, open, |tries| Saying::StationEnded { tries }));
     let closed = closed.collect::<Result<_, _>>()?;
     clear(store);
     Ok(closed)
@@ -39,10 +39,10 @@ pub fn recover_run(store: &mut Store, run: &str) -> Result<Saved, RunError> {
     let unsaved = |source| RunError::Unsaved { run: run.to_owned(), source: Box::new(source) };
     let open = store.open_runs().map_err(unsaved)?;
     if let Some(open) = open.into_iter().find(|open| open.run.id == run) {
-        return closed(store, open, "the result could not be saved when the run was over");
+        return closed(store, open, |tries| Saying::SavedTooLate { tries });
     }
     let (stored, record) = store.saved(run).map_err(unsaved)?;
-    Ok(Saved { record, stored, is_stuck: false })
+    Ok(Saved { record, stored, saved_ms: clock::now_ms(), is_stuck: false })
 }
 
 /// Removes what runs left that ended between their result and their last act, and what is a day old and no row names.
@@ -62,17 +62,17 @@ fn clear(store: &Store) {
     }
 }
 
-fn closed(store: &mut Store, open: OpenRun, why: &str) -> Result<Saved, RunError> {
+fn closed(store: &mut Store, open: OpenRun, why: impl Fn(usize) -> Saying) -> Result<Saved, RunError> {
     let OpenRun { run, plan_sha256, plan: [name, version, text] } = open;
     let spool = store.folder().spool(&run.id);
     kill_left_behind(&spool);
     let steps = told(&spool);
-    let headline = format!("{why}, after {} tries of steps", steps.len());
+    let why = why(steps.len());
     let record = Record {
         schema: SCHEMA,
         ended_ms: clock::now_ms().max(run.started_ms),
         seconds: None,
-        conclusion: Conclusion::error(RunCause::Crash, headline),
+        conclusion: Conclusion::error(RunCause::Crash, why),
         production: takes_hardware_alone(&text) && !is_mock(&run.serial),
         plan: PlanRecord { sha256: plan_sha256, name, version, text, files: None },
         marginal: steps.iter().any(|step| step.attempt > 1),

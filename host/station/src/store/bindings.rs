@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Store, StoreError, statements as sql};
 use crate::record::RunHead;
+use crate::said::{Said, Saying};
 use crate::{clock, ids};
 
 /// Why a run binds.
@@ -22,7 +23,7 @@ pub enum Admission {
     /// They do not, or the device is being tested elsewhere.
     Refused {
         /// Which board it is, and which was scanned.
-        why: String,
+        why: Said,
         /// What to do.
         remedy: &'static str,
     },
@@ -60,8 +61,8 @@ impl Store {
     /// [`StoreError`] when the database cannot be read.
     pub fn admit(&mut self, run: &RunHead, device: &str) -> Result<Admission, StoreError> {
         if self.admitted.get(device).is_some_and(|other| *other != run.id) {
-            let why = format!("device {device} is being tested in another lane");
-            return Ok(Admission::Refused { why, remedy: "Wait until that run is over." });
+            let why = Saying::DeviceElsewhere { device: device.to_owned() };
+            return Ok(Admission::Refused { why: why.into(), remedy: "Wait until that run is over." });
         }
         let known = || -> rusqlite::Result<Known> {
             let unit = self.writer.query_row(sql::UNIT_OF_DEVICE, [device], |row| {
@@ -84,8 +85,14 @@ impl Store {
     /// the next judgement of the unit binds it. The reason is kept.
     ///
     /// # Errors
-    /// [`RebindError`] when there is no such unit, or it is being tested.
+    /// [`RebindError`] when there is no such unit, it is being tested, or what is said of it is no device or no reason.
     pub fn rebind(&mut self, change: &Change<'_>) -> Result<Rebinding, RebindError> {
+        if change.reason.trim().is_empty() {
+            return Err(RebindError::NoReason);
+        }
+        if let Some(device) = change.device.filter(|device| !is_device(device)) {
+            return Err(RebindError::NoDevice { device: device.to_owned() });
+        }
         let unit_id = self.unit(change)?;
         let open: Option<String> = self
             .writer
@@ -102,7 +109,7 @@ impl Store {
             operator: change.operator.to_owned(),
             unit_id,
             device: change.device.map(str::to_owned),
-            reason: change.reason.to_owned(),
+            reason: change.reason.trim().to_owned(),
         };
         self.change("another binding", |to| audit(to, &rebinding).and_then(|()| rebind(to, &rebinding)))?;
         Ok(rebinding)
@@ -162,6 +169,17 @@ pub enum RebindError {
         /// Another.
         second: String,
     },
+    /// Nobody says why.
+    #[error("another binding needs a reason; say why, it is kept")]
+    NoReason,
+    /// This is no device.
+    #[error(
+        "`{device}` is no device; give 16 hexadecimal digits in lower case, not all 0, as a run prints them behind `device`"
+    )]
+    NoDevice {
+        /// What was given.
+        device: String,
+    },
     /// It is in a lane just now.
     #[error("the unit `{serial}`, or its device, is being tested; wait until the run is over")]
     UnderTest {
@@ -174,6 +192,13 @@ pub enum RebindError {
     /// The store.
     #[error(transparent)]
     Store(#[from] StoreError),
+}
+
+/// Whether this is the number of an FPGA as records write it.
+#[must_use]
+pub fn is_device(text: &str) -> bool {
+    let is_hexadecimal = text.bytes().all(|byte| matches!(byte, b'0'..=b'9' | b'a'..=b'f'));
+    text.len() == 16 && is_hexadecimal && text.bytes().any(|digit| digit != b'0')
 }
 
 /// A unit by its label.
@@ -199,14 +224,18 @@ impl Known {
             (None, None) => return Admission::New,
             (Some(unit), _) if unit == scanned => return Admission::Known,
             (Some(unit), _) if unit.product != scanned.product => {
-                format!("this board is {} of {}; you scanned {}", unit.serial, unit.product, scanned.serial)
+                let Unit { serial, product } = unit.clone();
+                Saying::OtherProduct { serial, product, scanned: scanned.serial.clone() }
             }
-            (Some(unit), _) => format!("this board is {}; you scanned {}", unit.serial, scanned.serial),
+            (Some(unit), _) => {
+                Saying::OtherSerial { serial: unit.serial.clone(), scanned: scanned.serial.clone() }
+            }
             (None, Some(other)) => {
-                format!("{} is device {other}; the board in the lane is device {device}", scanned.serial)
+                let (serial, device, found) = (scanned.serial.clone(), other.clone(), device.to_owned());
+                Saying::OtherDevice { serial, device, found }
             }
         };
-        Admission::Refused { why, remedy: MIXED_UP }
+        Admission::Refused { why: why.into(), remedy: MIXED_UP }
     }
 }
 
@@ -257,7 +286,7 @@ mod tests {
 
     fn refusal(known: &Known, serial: &str, device: &str) -> String {
         match known.admits(&unit(serial), device) {
-            Admission::Refused { why, .. } => why,
+            Admission::Refused { why, .. } => why.to_string(),
             other => panic!("{other:?}"),
         }
     }

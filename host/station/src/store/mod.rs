@@ -31,7 +31,7 @@ use std::time::Duration;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _, TransactionBehavior};
 
 pub use again::AgainError;
-pub use bindings::{Admission, Change, RebindError, Rebinding};
+pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
 pub use error::StoreError;
 pub use keeping::Removed;
 pub use shared::SharedStore;

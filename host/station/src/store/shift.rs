@@ -6,6 +6,7 @@ use rusqlite::{OptionalExtension as _, params};
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::mock::BARCODE;
 use crate::plan::{Bad, Plan, Shift};
+use crate::said::{Said, Saying};
 
 /// What a lane is to do before its production counts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -13,7 +14,7 @@ pub struct Owed {
     /// The unit that is to be tested.
     pub serial: String,
     /// Why.
-    pub why: String,
+    pub why: Said,
 }
 
 /// What a lane owes to its shift.
@@ -69,24 +70,24 @@ impl Folder {
 }
 
 /// Why a lane waits for what is to come to `expected`, and came to something else or to nothing.
-fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> String {
-    let unit = match (expected, &shift.bad) {
-        (Verdict::Pass, _) => format!("the good unit {}", shift.good),
-        (_, Bad::Unit(serial)) => format!("the bad unit {serial}"),
+fn why(shift: &Shift, expected: Verdict, last: Option<Judged>) -> Said {
+    let (serial, is_good) = match (expected, &shift.bad) {
+        (Verdict::Pass, _) => (shift.good.clone(), true),
+        (_, Bad::Unit(serial)) => (serial.clone(), false),
         (_, Bad::Mock) => {
+            let barcode = BARCODE.to_owned();
             return match last {
-                None => format!(
-                    "the mock board with a drawn fault is to come to {expected} first, to check this shift; scan {BARCODE}"
-                ),
-                Some(Judged { verdict, target, .. }) => format!(
-                    "{target} came to {verdict}, so the plan does not find this fault; an engineer looks at the plan, \
-                     and {BARCODE} draws another one"
-                ),
-            };
+                None => Saying::MockDue { barcode },
+                Some(Judged { verdict, target, .. }) => Saying::MockWrong { target, verdict, barcode },
+            }
+            .into();
         }
     };
-    match last {
-        Some(Judged { verdict, .. }) => format!("{unit} came to {verdict}; an engineer looks at the lane"),
-        None => format!("{unit} is to come to {expected} first, to check this shift"),
+    match (last, is_good) {
+        (Some(Judged { verdict, .. }), true) => Saying::GoodUnitWrong { serial, verdict },
+        (Some(Judged { verdict, .. }), false) => Saying::BadUnitWrong { serial, verdict },
+        (None, true) => Saying::GoodUnitDue { serial },
+        (None, false) => Saying::BadUnitDue { serial },
     }
+    .into()
 }

@@ -6,6 +6,7 @@ use axum::response::{IntoResponse as _, Response};
 use maud::{DOCTYPE, Markup, html};
 
 use super::language;
+use super::routes::Who;
 use super::visit::Visit;
 
 /// A place of the navigation.
@@ -85,7 +86,10 @@ impl Page<'_> {
 fn navigation(visit: &Visit, here: Here) -> Markup {
     html! {
         header.top {
-            span.station { (visit.say("nav.station")) " " b { (visit.station) } }
+            span.station {
+                @if !visit.plans.is_empty() { b.plans { (visit.plans) } " · " }
+                (visit.say("nav.station")) " " b { (visit.station) }
+            }
             nav aria-label=(visit.say("nav.pages")) {
                 @for (place, path, Label { key }) in Here::ALL {
                     a href=(path) aria-current=[(place == here).then_some("page")] { (visit.say(key)) }
@@ -102,7 +106,7 @@ fn who(visit: &Visit) -> Markup {
     html! {
         @match &visit.user {
             Some(user) => {
-                span.who { (user.name) }
+                span.who { (user.name) " " span.role { "(" (role(visit, user.who)) ")" } }
                 @if visit.can_log_in {
                     form method="post" action="/logout" {
                         input type="hidden" name="csrf" value=(visit.csrf);
@@ -114,6 +118,10 @@ fn who(visit: &Visit) -> Markup {
             None => {}
         }
     }
+}
+
+fn role(visit: &Visit, who: Who) -> &'static str {
+    if who >= Who::Engineer { visit.say("role.engineer") } else { visit.say("role.operator") }
 }
 
 fn languages(visit: &Visit) -> Markup {

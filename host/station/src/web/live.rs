@@ -12,6 +12,7 @@ use std::{io, thread};
 use tokio::sync::{broadcast, oneshot};
 
 use crate::engine::{Engine, LaneState, News};
+use crate::said::Said;
 
 /// How often there is a beat.
 const BEAT: Duration = Duration::from_secs(1);
@@ -33,7 +34,7 @@ pub(super) struct Became {
     pub(super) scanned: String,
     pub(super) is_taken: bool,
     pub(super) lane: Option<String>,
-    pub(super) said: String,
+    pub(super) said: Said,
 }
 
 /// What pages are told.
@@ -43,7 +44,7 @@ pub(super) enum What {
     Lane(Box<LaneState>),
     Doing(String, Doing),
     Scan(Became),
-    Hook { lane: String, said: String },
+    Hook { lane: String, said: Said },
 }
 
 /// With its number. They follow each other without a gap.

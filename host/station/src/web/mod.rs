@@ -12,7 +12,7 @@ mod access;
 mod assets;
 mod guard;
 mod history;
-mod language;
+pub(crate) mod language;
 mod layout;
 mod live;
 mod login;

@@ -3,6 +3,7 @@
 use std::io;
 use std::sync::Arc;
 
+use halfrow::report::wording::plain;
 use tokio::task;
 
 use super::access::Access;
@@ -10,8 +11,12 @@ use super::live::Live;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::engine::Engine;
-use crate::settings::Settings;
+use crate::plan::Plan;
+use crate::settings::{PlanFile, Settings};
 use crate::store::{Snapshot, Store, StoreError};
+
+/// Plans that are named in the head of a page.
+const NAMED: usize = 2;
 
 /// The station as its pages know it. A copy is the same one.
 #[derive(Clone, Debug)]
@@ -23,6 +28,7 @@ struct Parts {
     engine: Arc<Engine>,
     access: Access,
     live: Arc<Live>,
+    plans: String,
     hints: Vec<String>,
 }
 
@@ -39,12 +45,18 @@ impl App {
         hints: Vec<String>,
     ) -> io::Result<Self> {
         let live = Live::start(&engine)?;
-        Ok(Self(Arc::new(Parts { settings, engine, access, live, hints })))
+        let plans = named(&settings);
+        Ok(Self(Arc::new(Parts { settings, engine, access, live, plans, hints })))
     }
 
     /// Its name.
     pub(super) fn station(&self) -> &str {
         &self.0.settings.name
+    }
+
+    /// Its plans, for the head of every page.
+    pub(super) fn plans(&self) -> &str {
+        &self.0.plans
     }
 
     pub(super) fn settings(&self) -> &Settings {
@@ -122,4 +134,15 @@ impl App {
     ) -> Result<T, Trouble> {
         task::spawn_blocking(work).await.map_err(|error| Trouble::broken(visit, &error))
     }
+}
+
+/// The plans by product, name and version; of many the first two, and how many more there are.
+fn named(settings: &Settings) -> String {
+    let name = |file: &PlanFile| {
+        let Plan { product, name, version, .. } = &file.plan;
+        plain(&format!("{product} {name} {version}")).into_owned()
+    };
+    let (first, more) = settings.plans.split_at(settings.plans.len().min(NAMED));
+    let names = first.iter().map(name).collect::<Vec<_>>().join(", ");
+    if more.is_empty() { names } else { format!("{names} + {}", more.len()) }
 }

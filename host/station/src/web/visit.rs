@@ -35,6 +35,8 @@ pub(super) struct Visit {
     pub(super) csrf: String,
     /// The station's name.
     pub(super) station: String,
+    /// Its plans by product, name and version.
+    pub(super) plans: String,
     /// Whether the page's script asks, which takes answers as JSON.
     pub(super) is_script: bool,
 }
@@ -70,9 +72,9 @@ impl App {
     pub(super) fn stranger(&self, headers: &HeaderMap) -> Visit {
         let words = language::of(cookie(headers, language::COOKIE), headers.get(header::ACCEPT_LANGUAGE));
         let is_script = headers.get(header::ACCEPT).is_some_and(|value| value == "application/json");
-        let station = self.station().to_owned();
+        let (station, plans) = (self.station().to_owned(), self.plans().to_owned());
         let (session, csrf) = (String::new(), String::new());
-        Visit { words, user: None, session, is_new: true, can_log_in: false, csrf, station, is_script }
+        Visit { words, user: None, session, is_new: true, can_log_in: false, csrf, station, plans, is_script }
     }
 }
 

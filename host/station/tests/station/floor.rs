@@ -6,6 +6,7 @@ use halfrow::Verdict;
 use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, Rule, ScanError, Shown, Starts, Word};
 use halfrow_station::plan::Plan;
 use halfrow_station::plan::serial::SerialRule;
+use halfrow_station::said::Said;
 
 use crate::common::{SERIALS, guarded_plan};
 
@@ -44,7 +45,7 @@ fn serial(number: usize) -> String {
 
 fn shown(verdict: Verdict) -> Shown {
     let [run, serial, record_sha256, headline] = ["r", "CA", "h", "w"].map(str::to_owned);
-    Shown { run, serial, verdict, record_sha256, headline, remedy: None }
+    Shown { run, serial, verdict, record_sha256, headline, remedy: None, finding: None, saved_ms: 0 }
 }
 
 fn plug(floor: &mut Floor, lane: usize) -> Option<Effect> {
@@ -97,7 +98,7 @@ fn what_is_not_saved_blocks_its_lane_until_it_is_known() {
     floor.scan(&serial(0), at(0)).unwrap();
     floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
     floor.happened(0, Event::Saving, at(0));
-    let full = || Event::Unsaved { why: "full".to_owned() };
+    let full = || Event::Unsaved { why: Said::of(&std::io::Error::other("full")) };
     let recover = Some(Effect::Recover { run: "r".to_owned() });
     assert_eq!(floor.happened(0, full(), at(0)), recover);
     assert_eq!((words(&floor)[0], floor.lanes()[0].shown()), (Word::Unsaved, None));
@@ -181,7 +182,7 @@ fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
     plug(&mut floor, 0);
     floor.scan(&serial(0), at(10)).unwrap();
     let instead = floor.scan(&serial(1), at(20)).unwrap();
-    assert!(instead.said.ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
+    assert!(instead.said.to_string().ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
     let effect = floor.happened(1, Event::Present(true), at(80));
     assert!(matches!(effect, Some(Effect::Begin(accepted)) if accepted.serial == serial(1)));
     assert_eq!(words(&floor), [Word::Ready, Word::Running]);
@@ -251,7 +252,8 @@ fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
     let mut floor = floor(&[BUTTON], false);
     plug(&mut floor, 0);
     floor.scan(&serial(0), at(0)).unwrap();
-    let owes = Owes { plan: 0, serial: Some(serial(1)), why: "the shift is over".to_owned() };
+    let owes =
+        Owes { plan: 0, serial: Some(serial(1)), why: Said::of(&std::io::Error::other("the shift is over")) };
     floor.happened(0, Event::Owes(Some(owes)), at(1));
     assert_eq!(words(&floor), [Word::Out]);
     assert!(floor.act(0, Act::Start).is_err());
@@ -269,7 +271,8 @@ fn the_mock_is_judged_where_it_is_owed_without_a_board_and_nowhere_else() {
     assert!(floor.scan_for(0, "HR:MOCK:1", at(0)).is_err(), "its serial number is no barcode");
     for lane in 0..2 {
         let serial = Some(format!("HR:MOCK:{}", lane + 1));
-        let owes = Owes { plan: 1, serial: serial.clone(), why: "the mock first".to_owned() };
+        let owes =
+            Owes { plan: 1, serial: serial.clone(), why: Said::of(&std::io::Error::other("the mock first")) };
         floor.happened(lane, Event::Owes(Some(owes)), at(0));
         let begun = floor.scan_for(lane, "HR:MOCK", at(0)).unwrap().effect;
         let Some(Effect::Begin(of)) = begun else { panic!("{begun:?}") };

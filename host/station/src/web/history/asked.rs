@@ -43,6 +43,11 @@ impl Wrong {
 }
 
 impl Asked {
+    /// For this serial number.
+    pub(super) fn of_serial(serial: &str) -> Self {
+        Self { serial: serial.to_owned(), ..Self::default() }
+    }
+
     /// As a filter of runs.
     ///
     /// # Errors
@@ -131,7 +136,7 @@ impl Asked {
 
 /// The address of the page of a serial number.
 pub(super) fn unit_address(serial: &str) -> String {
-    Asked { serial: serial.to_owned(), ..Asked::default() }.address("/unit", None)
+    Asked::of_serial(serial).address("/unit", None)
 }
 
 fn some(text: &str) -> Option<String> {

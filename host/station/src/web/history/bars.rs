@@ -36,8 +36,8 @@ const BESIDE: usize = 52;
 const HEIGHT: usize = 130;
 
 /// A column for each day of a yield: share and interval, the earliest first. Each day has its name and what stands there
-/// when it is pointed at.
-pub(super) fn days(days: &[(String, String, Rate)]) -> Markup {
+/// when it is pointed at; `of` says what they are for.
+pub(super) fn days(of: &str, days: &[(String, String, Rate)]) -> Markup {
     let least = days.iter().filter_map(|(.., rate)| rate.interval).map(|[low, _]| low).fold(1.0, f64::min);
     // Where shares are high, what is below would be empty.
     let floor = [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least).unwrap_or(0.0);
@@ -45,7 +45,7 @@ pub(super) fn days(days: &[(String, String, Rate)]) -> Markup {
     let y = |share: f64| 8.0 + 100.0 * (1.0 - share) / (1.0 - floor);
     let last = days.len().saturating_sub(1);
     html! {
-        svg.days viewBox=(format!("0 0 {width} {HEIGHT}")) height=(HEIGHT) width=(width) role="img" {
+        svg.days viewBox=(format!("0 0 {width} {HEIGHT}")) height=(HEIGHT) width=(width) role="img" aria-label=(of) {
             @for share in [1.0, f64::midpoint(1.0, floor), floor] {
                 rect.grid x="0" y=(format!("{:.1}", y(share))) width=(days.len() * DAY) height="1" {}
                 text x=(days.len() * DAY + 4) y=(format!("{:.1}", y(share) + 4.0)) { (100.0 * share) " %" }

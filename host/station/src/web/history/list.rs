@@ -45,6 +45,9 @@ pub(super) async fn page(
             @if let Some(next) = &found.next {
                 a rel="next" href=(asked.address("/history", Some(next))) { (visit.say("history.older")) }
             }
+            @if !found.runs.is_empty() {
+                a.table href=(asked.address("/history.csv", None)) download { (visit.say("history.table")) }
+            }
         }
     };
     let page = Page { here: Here::History, title: visit.say("history.title"), head: show::head(), content };
@@ -126,7 +129,7 @@ fn row(visit: &Visit, run: &RunLine) -> Markup {
             td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }
             td.lane { span.of-card { (visit.say("history.lane")) " " } (show::said(&run.lane)) }
             td.operator { (show::said(&run.operator)) }
-            td.headline { @if let Some(headline) = &run.headline { (show::said(headline)) } }
+            td.headline { @if let Some(headline) = &run.headline { (show::english(visit, headline)) } }
         }
     }
 }

@@ -5,8 +5,10 @@
 //!      └─────► /unit?serial=…      /yield      /pareto
 //! ```
 
+mod acts;
 mod asked;
 mod bars;
+mod csv;
 mod evidence;
 mod list;
 mod pareto;
@@ -16,17 +18,20 @@ mod show;
 mod unit;
 mod yields;
 
-use super::routes::{Route, Who, look};
+use super::routes::{Route, Who, act, look};
 
 pub(super) fn routes() -> Vec<Route> {
     vec![
         look("/history", Who::Reader, list::page),
+        look("/history.csv", Who::Reader, csv::all),
         look("/runs/{run}", Who::Reader, run::page),
+        act("/runs/{run}/waive", Who::Engineer, acts::waive),
         look("/runs/{run}/export/{format}", Who::Reader, evidence::export),
         look("/runs/{run}/evidence/{hash}", Who::Reader, evidence::attachment),
         look("/runs/{run}/preview/{hash}", Who::Reader, pictures::preview),
         look("/runs/{run}/difference/{found}/{expected}", Who::Reader, pictures::difference),
         look("/unit", Who::Reader, unit::page),
+        act("/unit/rebind", Who::Engineer, acts::rebind),
         look("/yield", Who::Reader, yields::page),
         look("/pareto", Who::Reader, pareto::page),
     ]

@@ -59,7 +59,7 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
 fn table(visit: &Visit, found: &Pareto) -> Markup {
     let most = found.bars.first().map_or(0, |bar| bar.runs.count);
     html! {
-        div.wide { table.pareto {
+        div.wide tabindex="0" { table.pareto {
             thead { tr {
                 th { (visit.say("pareto.what")) } th { (visit.say("pareto.runs")) }
                 th { (visit.say("pareto.share")) } th.number { (visit.say("yield.units")) }

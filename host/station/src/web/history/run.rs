@@ -1,15 +1,19 @@
 //! One run: its verdict and all that it stands on.
 
 use axum::extract::{Path, State};
+use axum::http::StatusCode;
 use axum::response::Response;
+use halfrow::Verdict;
 use maud::{Markup, html};
 use serde_json::Value;
 
+use super::acts::Refused;
 use super::asked::unit_address;
-use super::{pictures, show};
+use super::{acts, pictures, show};
 use crate::export;
 use crate::history::unit::{self as history, UnitRun};
-use crate::record::{Attachment, Measured, Record, StepRecord};
+use crate::record::{Attachment, DeviceSeen, Measured, Record, StepRecord};
+use crate::said::Said;
 use crate::store::{Snapshot, Waiver};
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
@@ -28,6 +32,16 @@ pub(super) async fn page(
     visit: Visit,
     Path(id): Path<String>,
 ) -> Result<Response, Trouble> {
+    shown(app, visit, id, None).await
+}
+
+/// The page with why an act was refused on it, if one was.
+pub(super) async fn shown(
+    app: App,
+    visit: Visit,
+    id: String,
+    refused: Option<Refused>,
+) -> Result<Response, Trouble> {
     let look = move |now: &Snapshot| {
         let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };
         let read = |hash: &String| match export::record(now.folder(), hash) {
@@ -42,10 +56,14 @@ pub(super) async fn page(
         Ok(Some(Found { run, record, kept }))
     };
     let found = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
-    let content = content(&visit, &found);
+    let status = refused.as_ref().map_or(StatusCode::OK, |refused| refused.status);
+    let content = html! {
+        @if let Some(refused) = &refused { (refused.markup()) }
+        (content(&visit, &found))
+    };
     let title =
         format!("{} {}", found.run.line.serial, found.run.line.verdict.as_deref().unwrap_or_default());
-    Ok(Page { here: Here::History, title: &title, head: show::head(), content }.answer(&visit))
+    Ok(Page { here: Here::History, title: &title, head: show::head(), content }.with_status(&visit, status))
 }
 
 fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
@@ -54,10 +72,7 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
     html! {
         article.run {
             h1 { (show::outcome(visit, line)) " " a href=(unit_address(&line.serial)) { (show::said(&line.serial)) } }
-            @if let Some(headline) = &line.headline { p.headline { (show::said(headline)) } }
-            @if let Some(remedy) = read.and_then(|record| record.conclusion.remedy.as_ref()) {
-                p.remedy { (show::said(remedy)) }
-            }
+            (concluded(visit, line.headline.as_deref(), read.map(AsRef::as_ref)))
             @if let Some(Err(why)) = record { p.trouble role="alert" { (show::said(why)) } }
             @for one in &run.waivers { (waiver(visit, one)) }
             (suspects(visit, run, read.map(AsRef::as_ref)))
@@ -69,13 +84,42 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
                 (measurements(visit, record))
             }
             (files(visit, run, kept))
+            (acts::waive_form(visit, run))
         }
     }
 }
 
-/// A suspected part in one sentence.
-pub(super) fn suspect(visit: &Visit, suspect: &history::Suspect) -> Markup {
+/// What the run came to, and what to do.
+fn concluded(visit: &Visit, headline: Option<&str>, record: Option<&Record>) -> Markup {
+    let finding = record.and_then(|record| record.conclusion.finding.as_ref());
+    let told = finding.map(|finding| visit.words.tell(finding));
+    let told = told.or_else(|| headline.map(|text| visit.words.english(text.to_owned())));
+    let is_unchecked = |record: &Record| {
+        record.device == DeviceSeen::NotChecked && record.conclusion.verdict == Verdict::Pass
+    };
+    html! {
+        @if let Some(told) = told {
+            p.headline {
+                (show::told(&told))
+                @if visit.words.code != "en" && finding.is_some() && record.is_some_and(is_unchecked) {
+                    "; " (visit.say("run.unchecked"))
+                }
+            }
+        }
+        @if let Some(remedy) = record.and_then(|record| record.conclusion.remedy.as_ref()) {
+            p.remedy { (show::told(&visit.words.remedy(finding, remedy))) }
+        }
+    }
+}
+
+/// A suspected part in one sentence; `defect` is its code, where the record has it.
+pub(super) fn suspect(visit: &Visit, suspect: &history::Suspect, defect: Option<&Said>) -> Markup {
     let share = format!("{:.0}", 100.0 * suspect.explained);
+    let own = defect.map(|defect| visit.words.tell(defect)).filter(|told| told.foreign.is_none());
+    if let Some(told) = own.filter(|_| visit.words.code != "en") {
+        let words = visit.words.fill("run.suspected", &[("what", &told.text), ("share", &share)]);
+        return html! { p.suspect { (show::said(&words)) } };
+    }
     let values = [("part", suspect.part.as_str()), ("place", &suspect.place), ("share", &share)];
     html! { p.suspect { (show::said(&visit.words.fill("run.suspect", &values))) } }
 }
@@ -94,12 +138,34 @@ pub(super) fn waiver(visit: &Visit, waiver: &Waiver) -> Markup {
 fn suspects(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
     let advice =
         |place: usize| record.and_then(|record| record.suspects.get(place)).map(|one| &one.technician);
+    let defects = record.map(defects).unwrap_or_default();
     html! {
         @for (place, one) in run.suspects.iter().enumerate() {
-            (suspect(visit, one))
-            @if let Some(advice) = advice(place) { p.advice { (show::said(advice)) } }
+            @let defect = defects.get(place);
+            (suspect(visit, one, defect))
+            @if let Some(advice) = advice(place) { p.advice { (show::told(&visit.words.remedy(defect, advice))) } }
         }
     }
+}
+
+/// The suspects of the last step that has some, with their codes.
+fn defects(record: &Record) -> Vec<Said> {
+    let of_step = |step: &StepRecord| {
+        let all = step.evidence.as_ref()?.get("suspects")?.as_array()?;
+        let defect = |suspect: &Value| {
+            let part = suspect.get("part").and_then(Value::as_str).unwrap_or_default();
+            coded(suspect.get("defect")?, part)
+        };
+        Some(all.iter().filter_map(defect).collect::<Vec<_>>()).filter(|all| !all.is_empty())
+    };
+    record.steps.iter().rev().find_map(of_step).unwrap_or_default()
+}
+
+/// A finding of the judge's report with its sentence.
+fn coded(finding: &Value, message: &str) -> Option<Said> {
+    let code = finding.get("code")?.as_str()?.to_owned();
+    let parameters = finding.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
+    Some(Said { code, parameters, message: message.to_owned(), causes: Vec::new() })
 }
 
 fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
@@ -141,7 +207,7 @@ fn facts(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
 fn steps(visit: &Visit, record: &Record) -> Markup {
     html! {
         h2 { (visit.say("run.steps")) }
-        div.wide { table.steps { tbody { @for step in &record.steps { (step_row(visit, step)) } } } }
+        div.wide tabindex="0" { table.steps { tbody { @for step in &record.steps { (step_row(visit, step)) } } } }
     }
 }
 
@@ -156,7 +222,15 @@ fn step_row(visit: &Visit, step: &StepRecord) -> Markup {
             }
             td { (outcome(visit, step.outcome.name())) }
             td.number { (show::number(visit, seconds)) " s" }
-            td { (show::said(&step.detail)) @if let Some(remedy) = &step.remedy { br; span.soft { (show::said(remedy)) } } }
+            td {
+                @match &step.finding {
+                    Some(finding) => (show::told(&visit.words.tell(finding))),
+                    None => (show::english(visit, &step.detail)),
+                }
+                @if let Some(remedy) = &step.remedy {
+                    br; span.soft { (show::told(&visit.words.remedy(step.finding.as_ref(), remedy))) }
+                }
+            }
         }
     }
 }
@@ -183,10 +257,15 @@ fn checks(visit: &Visit, record: &Record) -> Markup {
     html! {
         @for (step, checks) in all {
             h2 { (visit.say("run.checks")) ", " (show::said(&step.name)) }
-            div.wide { table.checks { tbody { @for check in checks { tr {
+            div.wide tabindex="0" { table.checks { tbody { @for check in checks { tr {
                 th scope="row" { (show::said(&text(check, "name"))) }
                 td { (outcome(visit, &text(check, "outcome"))) }
-                td { (show::said(&text(check, "detail"))) }
+                td {
+                    @match check.get("finding").and_then(|finding| coded(finding, &text(check, "detail"))) {
+                        Some(finding) => (show::told(&visit.words.tell(&finding))),
+                        None => (show::english(visit, &text(check, "detail"))),
+                    }
+                }
             } } } } }
         }
     }
@@ -201,7 +280,7 @@ fn measurements(visit: &Visit, record: &Record) -> Markup {
     html! {
         @if !all.is_empty() {
             h2 { (visit.say("run.measurements")) }
-            div.wide { table.measurements {
+            div.wide tabindex="0" { table.measurements {
                 thead { tr {
                     th { (visit.say("run.measurement")) } th.number { (visit.say("run.value")) } th { (visit.say("run.limit")) }
                     th { (visit.say("run.came")) } th { (visit.say("run.step")) }

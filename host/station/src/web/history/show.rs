@@ -6,6 +6,7 @@ use maud::{Markup, html};
 
 use crate::history::rate::Rate;
 use crate::history::runs::RunLine;
+use crate::web::language::Told;
 use crate::web::visit::Visit;
 
 /// What a page of the history has in its head.
@@ -22,6 +23,19 @@ pub(super) fn moment(ms: i64) -> Markup {
 /// What a scanner, a board or a person said, without the control characters that would turn the page's text around.
 pub(super) fn said(text: &str) -> Markup {
     html! { (plain(text)) }
+}
+
+/// What was told, marked where it stands in another language than the page.
+pub(super) fn told(told: &Told) -> Markup {
+    match told.foreign {
+        Some(language) => html! { span lang=(language) { (said(&told.text)) } },
+        None => said(&told.text),
+    }
+}
+
+/// What was told in English.
+pub(super) fn english(visit: &Visit, text: &str) -> Markup {
+    told(&visit.words.english(text.to_owned()))
 }
 
 /// A verdict as word, shape and colour; that a run is open.

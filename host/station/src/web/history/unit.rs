@@ -1,11 +1,13 @@
 //! All that is known of a serial number.
 
 use axum::extract::{Query, State};
+use axum::http::StatusCode;
 use axum::response::Response;
 use maud::{Markup, html};
 
+use super::acts::Refused;
 use super::asked::Asked;
-use super::show;
+use super::{acts, show};
 use crate::history::unit::{self, Binding, Unit, UnitRun};
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
@@ -20,14 +22,28 @@ pub(super) async fn page(
     visit: Visit,
     Query(asked): Query<Asked>,
 ) -> Result<Response, Trouble> {
+    shown(app, visit, asked, None).await
+}
+
+/// The page with why an act was refused on it, if one was.
+pub(super) async fn shown(
+    app: App,
+    visit: Visit,
+    asked: Asked,
+    refused: Option<Refused>,
+) -> Result<Response, Trouble> {
     let serial = asked.serial.clone();
     let units = app.look(&visit, move |now| unit::units(now, &serial)).await?;
     if units.is_empty() {
         return Err(Trouble::missing(&visit));
     }
-    let content = html! { @for unit in &units { (of(&visit, &asked, unit)) } };
+    let status = refused.as_ref().map_or(StatusCode::OK, |refused| refused.status);
+    let content = html! {
+        @if let Some(refused) = &refused { (refused.markup()) }
+        @for unit in &units { (of(&visit, &asked, unit)) }
+    };
     let page = Page { here: Here::History, title: &asked.serial, head: show::head(), content };
-    Ok(page.answer(&visit))
+    Ok(page.with_status(&visit, status))
 }
 
 fn of(visit: &Visit, asked: &Asked, unit: &Unit) -> Markup {
@@ -44,6 +60,7 @@ fn of(visit: &Visit, asked: &Asked, unit: &Unit) -> Markup {
             }
             (flips(visit, unit))
             (devices(visit, &unit.bindings))
+            (acts::rebind_form(visit, unit))
             h2 { (visit.say("history.every")) }
             ol.story { @for run in unit.runs.iter().take(MOST_RUNS) { (story(visit, run)) } }
             @if more > 0 {
@@ -110,8 +127,8 @@ fn story(visit: &Visit, run: &UnitRun) -> Markup {
                     }
                 }
             }
-            @if let Some(headline) = &line.headline { p { (show::said(headline)) } }
-            @for suspect in &run.suspects { (super::run::suspect(visit, suspect)) }
+            @if let Some(headline) = &line.headline { p { (show::english(visit, headline)) } }
+            @for suspect in &run.suspects { (super::run::suspect(visit, suspect, None)) }
             @for waiver in &run.waivers { (super::run::waiver(visit, waiver)) }
         }
     }

@@ -88,7 +88,7 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
         @for of_plan in lines.chunk_by(|one, other| one.plan == other.plan) {
             figure.days {
                 figcaption { (visit.say("yield.first")) ", " (show::said(&of_plan[0].plan.plan)) }
-                div.wide { (bars::days(&named_days(of_plan))) }
+                div.wide tabindex="0" { (bars::days(visit.say("yield.first"), &named_days(of_plan))) }
             }
         }
     }
@@ -106,7 +106,7 @@ fn named_days(of_plan: &[Yield]) -> Vec<(String, String, Rate)> {
 
 fn table(visit: &Visit, lines: &[Yield]) -> Markup {
     html! {
-        div.wide { table.yields {
+        div.wide tabindex="0" { table.yields {
             thead { tr {
                 th { (visit.say("history.plan")) } th.number { (visit.say("yield.units")) }
                 th { (visit.say("yield.first")) } th { (visit.say("yield.last")) }

@@ -1,5 +1,7 @@
 //! Scans, and what is done with lanes.
 
+use std::error::Error;
+
 use axum::Form;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
@@ -9,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::page;
 use crate::floor::{Act, Scan, ScanError};
+use crate::said::{Said, Saying};
 use crate::web::live::Became;
 use crate::web::login::logged_in;
 use crate::web::routes::Who;
@@ -77,7 +80,7 @@ async fn badge(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Option<Res
 
 /// What the scan is for, and what became of it.
 async fn understood(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Answer, Trouble> {
-    let refused = |error: ScanError| Ok(scanned.answer(None, Err(error.to_string()), scanned.armed()));
+    let refused = |error: ScanError| Ok(scanned.answer(None, Err(told(visit, &error)), scanned.armed()));
     let label = app.settings().scanner.label(&scanned.text).map(str::to_owned);
     let Some(label) = label.or_else(|| scanned.typed.then(|| scanned.text.clone())) else {
         return refused(ScanError::Incomplete);
@@ -92,7 +95,7 @@ async fn understood(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Answe
     match Scan::read(&label) {
         Ok(Scan::Lane(name)) => match place(app, &name) {
             Ok(_) => {
-                let said = visit.words.fill("scan.armed", &[("lane", &name)]);
+                let said = told(visit, &Saying::Armed { lane: name.clone() });
                 Ok(scanned.answer(Some(name.clone()), Ok(said), Some(name)))
             }
             Err(error) => refused(error),
@@ -105,6 +108,7 @@ async fn understood(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Answe
             let (number, became) = app.live().ask();
             app.engine().label(number, armed.map(|(place, _)| place), &label, visit.name());
             let Became { is_taken, lane, said, .. } = heard(visit, became).await?;
+            let said = visit.words.tell(&said).text;
             let armed = if is_taken { None } else { scanned.armed() };
             Ok(scanned.answer(lane, if is_taken { Ok(said) } else { Err(said) }, armed))
         }
@@ -163,25 +167,31 @@ pub(super) async fn back(app: State<App>, visit: Visit, lane: Path<String>) -> R
 
 /// Does it with the lane.
 async fn done(app: App, visit: Visit, lane: String, act: Act) -> Result<Response, Trouble> {
-    let (place, name) =
-        place(&app, &lane).map_err(|error| Trouble::new(&visit, StatusCode::NOT_FOUND, error.to_string()))?;
+    let (place, name) = place(&app, &lane)
+        .map_err(|error| Trouble::new(&visit, StatusCode::NOT_FOUND, told(&visit, &error)))?;
     app.audit(&visit, "lane", name, &act.barcode()).await?;
     let (number, became) = app.live().ask();
     app.engine().act(number, place, act, visit.name());
     let became = heard(&visit, became).await?;
+    let said = visit.words.tell(&became.said).text;
     match (visit.is_script, became.is_taken) {
         (true, is_taken) => Ok(json(&Answer {
             counter: 0,
             is_taken,
             scanned: became.scanned,
             lane: became.lane,
-            said: became.said,
+            said,
             armed: None,
             is_other: false,
         })),
         (false, true) => Ok(Redirect::to("/").into_response()),
-        (false, false) => Err(Trouble::new(&visit, StatusCode::CONFLICT, became.said)),
+        (false, false) => Err(Trouble::new(&visit, StatusCode::CONFLICT, said)),
     }
+}
+
+/// What was told, in the visitor's language.
+fn told(visit: &Visit, error: &(dyn Error + 'static)) -> String {
+    visit.words.tell(&Said::of(error)).text
 }
 
 fn json(answer: &Answer) -> Response {

@@ -65,22 +65,28 @@ fn snapshot(visit: &Visit, now: &Now) -> String {
 fn news(visit: &Visit, told: &Told) -> String {
     let id = told.id;
     match &told.what {
-        What::Beat => event_text(id, "beat", &json!({ "ms": clock::now_ms() })),
-        What::Lane(state) => event_text(id, "lane", &LaneEvent::new(visit, state, None)),
-        What::Doing(lane, doing) => event_text(
+        What::Beat => event_text(
             id,
-            "doing",
-            &json!({ "lane": lane, "run": doing.run, "what": doing.what, "rows": doing.rows.map(|(done, of)| [done, of]) }),
+            "beat",
+            &json!({ "clock": clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string() }),
         ),
+        What::Lane(state) => event_text(id, "lane", &LaneEvent::new(visit, state, None)),
+        What::Doing(lane, doing) => event_text(id, "doing", &{
+            let told = super::lane::doing(visit, doing);
+            let rows = doing.rows.map(|(done, of)| [done, of]);
+            json!({ "lane": lane, "run": doing.run, "what": told.text, "lang": told.foreign, "rows": rows })
+        }),
         What::Scan(became) => event_text(
             id,
             "scan",
             &json!({
                 "number": became.number, "scanned": became.scanned, "is_taken": became.is_taken,
-                "lane": became.lane, "said": became.said,
+                "lane": became.lane, "said": visit.words.tell(&became.said).text,
             }),
         ),
-        What::Hook { lane, said } => event_text(id, "hook", &json!({ "lane": lane, "said": said })),
+        What::Hook { lane, said } => {
+            event_text(id, "hook", &json!({ "lane": lane, "said": visit.words.tell(said).text }))
+        }
     }
 }
 

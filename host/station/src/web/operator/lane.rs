@@ -1,12 +1,15 @@
 //! A lane on the page. The server alone draws it, for the page's first look as for every change.
 
 use halfrow::Verdict;
+use halfrow::report::wording::plain;
 use maud::{Markup, html};
 use serde::Serialize;
 
 use super::shapes::{class, does, said, shape};
+use crate::clock;
 use crate::engine::LaneState;
-use crate::floor::Word;
+use crate::floor::{Shown, Word};
+use crate::web::language::Told;
 use crate::web::live::Doing;
 use crate::web::routes::Who;
 use crate::web::visit::Visit;
@@ -66,7 +69,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
             p.word { (shape(state.state)) span { (word) } }
             p.serial { (state.serial.as_deref().unwrap_or_default()) }
             (says(visit, state))
-            @if state.state == Word::Running { (progress(doing)) }
+            @if state.state == Word::Running { (progress(visit, doing)) }
         }
     }
 }
@@ -82,22 +85,54 @@ fn length(word: &str) -> &'static str {
 
 /// What the operator does now, and why.
 fn says(visit: &Visit, state: &LaneState) -> Markup {
-    let shown = state.shown.as_ref().filter(|_| matches!(state.state, Word::Fail | Word::Error));
+    let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
+    let judged = shown.filter(|_| state.state != Word::Pass);
     html! {
         p.does { (does(visit, state.state)) }
-        @if let Some(note) = &state.note { p.why lang="en" { (note) } }
-        @if let Some(shown) = shown {
-            p.why lang="en" title=(shown.remedy.as_deref().unwrap_or_default()) { (shown.headline) }
+        @if let Some(note) = &state.note { (why(&visit.words.tell(note), None)) }
+        @if let Some(shown) = judged {
+            @let remedy = shown.remedy.as_ref().map(|text| visit.words.remedy(shown.finding.as_ref(), text));
+            (why(&headline(visit, shown), remedy.as_ref()))
         }
+        @if let Some(shown) = shown { (saved(visit, shown)) }
     }
 }
 
+fn headline(visit: &Visit, shown: &Shown) -> Told {
+    match &shown.finding {
+        Some(finding) => visit.words.tell(finding),
+        None => visit.words.english(shown.headline.clone()),
+    }
+}
+
+/// Why, with what to do when it is pointed at.
+fn why(told: &Told, remedy: Option<&Told>) -> Markup {
+    html! { p.why lang=[told.foreign] title=[remedy.map(|remedy| &remedy.text)] { (plain(&told.text)) } }
+}
+
+/// When the verdict was saved, by the station's clock.
+fn saved(visit: &Visit, shown: &Shown) -> Markup {
+    let at = clock::local(shown.saved_ms);
+    let words = visit.words.fill("lane.saved", &[("time", &at.strftime("%H:%M").to_string())]);
+    html! { p.saved { time datetime=(format!("{:.3}", at.timestamp())) title=(at.strftime("%Y-%m-%d %H:%M:%S").to_string()) { (words) } } }
+}
+
 /// What the run does; the script puts in what is told later.
-fn progress(doing: Option<&Doing>) -> Markup {
-    let rows = doing.and_then(|doing| doing.rows);
+fn progress(visit: &Visit, of: Option<&Doing>) -> Markup {
+    let (rows, told) = (of.and_then(|of| of.rows), of.map(|of| doing(visit, of)));
     html! {
-        p.doing lang="en" { (doing.map_or("", |doing| doing.what.as_str())) }
+        p.doing lang=[told.as_ref().and_then(|told| told.foreign)] {
+            @if let Some(told) = &told { (plain(&told.text)) }
+        }
         progress max=[rows.map(|(_, of)| of)] value=[rows.map(|(done, _)| done)] {}
+    }
+}
+
+/// What the run does, in words. What its plan and the judge call it stays as it is.
+pub(super) fn doing(visit: &Visit, doing: &Doing) -> Told {
+    match doing.rows {
+        Some(_) => Told { text: visit.say("lane.rows").to_owned(), foreign: None },
+        None => visit.words.english(doing.what.clone()),
     }
 }
 

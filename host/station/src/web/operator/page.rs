@@ -2,11 +2,11 @@
 
 use axum::extract::State;
 use axum::response::{Html, IntoResponse as _, Response};
-use jiff::Timestamp;
 use maud::{Markup, html};
 
 use super::acts::Answer;
 use super::lane::lane;
+use crate::clock;
 use crate::history::Period;
 use crate::history::rate::Rate;
 use crate::history::yields::{By, Wanted, Yields, yields};
@@ -19,8 +19,6 @@ use crate::web::visit::Visit;
 
 /// How often the page comes anew without its script, in seconds.
 const ANEW: u32 = 5;
-/// Milliseconds of a day.
-const DAY_MS: i64 = 86_400_000;
 
 pub(super) async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     drawn(app, visit, None).await
@@ -41,6 +39,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
     let content = html! {
         section #station data-csrf=(visit.csrf) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
             data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn")) {
+            h1.heard { (visit.say("nav.lanes")) }
             @if visit.may(Who::Operator) { (scan_box(&visit, &now, answer.as_ref())) } @else { (log_in(&visit)) }
             (hint(&app, &visit, &now))
             (floor(&visit, &now))
@@ -93,7 +92,7 @@ fn scan_box(visit: &Visit, now: &Now, answer: Option<&Answer>) -> Markup {
 
 fn live_lamp(visit: &Visit) -> Markup {
     html! {
-        span #live .live role="status" { span #lamp { (visit.say("live.page")) } " " time #clock {} }
+        span #live .live role="status" { span #lamp { (visit.say("live.page")) } " " time #clock { (clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string()) } }
     }
 }
 
@@ -133,8 +132,7 @@ pub(super) async fn today(State(app): State<App>, visit: Visit) -> Result<Respon
 }
 
 async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
-    let now = Timestamp::now().as_millisecond();
-    let period = Period { from_ms: now - now.rem_euclid(DAY_MS), ..Period::default() };
+    let period = Period { from_ms: clock::midnight_ms(clock::now_ms()), ..Period::default() };
     let wanted = Wanted { period, ..Wanted::default() };
     let counted = app.look(visit, move |snapshot| yields(snapshot, &wanted, By::Plan)).await?;
     Ok(summed(visit, &counted))
@@ -147,7 +145,7 @@ fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {
     let (passed, judged) = sum(|line| line.first_pass);
     let (errors, _) = sum(|line| line.errors);
     let (judged_text, errors) = (judged.to_string(), errors.to_string());
-    let first_pass = Rate::new(passed, judged).text();
+    let first_pass = Rate::new(passed, judged).text().replace('.', visit.say("history.decimal"));
     let values = [("judged", judged_text.as_str()), ("first", &first_pass), ("errors", &errors)];
     html! { (visit.words.fill("today.counted", &values)) }
 }

@@ -308,3 +308,62 @@ fn a_unit_s_page_tells_its_story_in_every_language() {
         assert_eq!(verdicts, ["pass", "fail", "error"]);
     }
 }
+
+/// More runs than are read at once.
+fn hundreds() -> Made {
+    let mut made = Made::new();
+    for number in 0_usize..450 {
+        let end = if number.is_multiple_of(3) { End::Fail(&["memory"]) } else { End::Pass };
+        let started_ms = BEGIN_MS + HOUR_MS * number as i64;
+        let operator = ["weber", "=1+1", "O'Neil, \"J\""][number % 3].to_owned();
+        made.run(&Run { started_ms, operator, ..Run::of(&format!("S{number}"), end) });
+    }
+    made
+}
+
+#[test]
+fn a_table_of_a_filter_is_what_the_command_writes() {
+    let made = hundreds();
+    let place = tempfile::tempdir().unwrap();
+    let written = |filter: &[&str], name: &str| {
+        let to = place.path().join(name);
+        let output = Command::new(program())
+            .args(["export", "--format", "csv", "--data"])
+            .arg(made.as_ref() as &Path)
+            .arg("--to")
+            .arg(&to)
+            .args(filter)
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        std::fs::read(to).unwrap()
+    };
+    let all = written(&[], "all.csv");
+    let failed = written(&["--verdict", "FAIL", "--operator", "weber"], "failed.csv");
+    assert!(all.len() > 3 * failed.len() / 2 && failed.len() > 50_000, "{} {}", all.len(), failed.len());
+    let served = Served::of(made);
+    let table = served.get("/history.csv");
+    assert_eq!(table.header("content-disposition"), Some("attachment; filename=\"runs.csv\""));
+    assert_eq!(table.header("content-type"), Some("text/csv; charset=utf-8"));
+    assert!(table.body == all, "{} bytes, and {} are right", table.body.len(), all.len());
+    let page = served.page("/history?verdict=FAIL&operator=weber");
+    assert!(page.contains("href=\"/history.csv?verdict=FAIL&amp;operator=weber\" download"), "{page}");
+    assert!(served.get("/history.csv?verdict=FAIL&operator=weber").body == failed);
+    assert_eq!(served.get("/history.csv?verdict=MAYBE").status, 400);
+    let nothing = served.get("/history.csv?serial=nobody").text();
+    assert!(nothing.starts_with("run,product,serial,") && nothing.lines().count() == 1, "{nothing}");
+}
+
+/// Half a table must not be taken for the whole.
+#[test]
+fn a_table_that_cannot_go_on_breaks_off() {
+    let made = hundreds();
+    let page = halfrow_station::history::runs::page(&made.now(), &Default::default(), None, 400).unwrap();
+    let lost = page.runs.last().unwrap().record_sha256.clone().unwrap();
+    let served = Served::of(made);
+    assert!(served.get("/history.csv").is_whole);
+    std::fs::remove_file(served.folder().blobs().path(&lost)).unwrap();
+    let broken = served.get("/history.csv");
+    assert_eq!(broken.status, 200, "its beginning was right");
+    assert!(!broken.is_whole && !broken.body.is_empty());
+}

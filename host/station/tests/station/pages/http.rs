@@ -14,6 +14,8 @@ pub(crate) struct Answer {
     pub(crate) status: u16,
     pub(crate) headers: BTreeMap<String, String>,
     pub(crate) body: Vec<u8>,
+    /// Whether the body came to its end.
+    pub(crate) is_whole: bool,
 }
 
 impl Answer {
@@ -48,13 +50,36 @@ pub(crate) fn exchange(port: u16, bytes: &[u8]) -> Option<Answer> {
     let pairs = lines.filter_map(|line| line.split_once(": "));
     let headers: BTreeMap<String, String> =
         pairs.map(|(name, value)| (name.to_lowercase(), value.to_owned())).collect();
-    let body = headers.get("content-length").map(|length| {
-        let mut body = Vec::new();
-        // The head of an answer to HEAD tells of a body that does not come.
-        let _ = stream.take(length.parse().unwrap()).read_to_end(&mut body);
-        body
-    });
-    Some(Answer { status, headers, body: body.unwrap_or_default() })
+    let (body, is_whole) = body(&mut stream, &headers);
+    Some(Answer { status, headers, body, is_whole })
+}
+
+/// What follows a head, and whether it came to its end; the head of an answer to HEAD tells of a body that does not come.
+fn body(stream: &mut TcpStream, headers: &BTreeMap<String, String>) -> (Vec<u8>, bool) {
+    let mut bytes = Vec::new();
+    if headers.get("transfer-encoding").is_some_and(|kind| kind == "chunked") {
+        let _ = stream.read_to_end(&mut bytes);
+        return unchunked(&bytes);
+    }
+    let length = headers.get("content-length").map_or(0, |length| length.parse().unwrap());
+    let _ = stream.take(length).read_to_end(&mut bytes);
+    let is_whole = bytes.len() as u64 == length;
+    (bytes, is_whole)
+}
+
+/// The bytes of chunks (RFC 9112, section 7.1), and whether the last one came.
+fn unchunked(mut rest: &[u8]) -> (Vec<u8>, bool) {
+    let mut bytes = Vec::new();
+    while let Some(end) = rest.windows(2).position(|window| window == b"\r\n") {
+        let length = usize::from_str_radix(std::str::from_utf8(&rest[..end]).unwrap(), 16).unwrap();
+        if length == 0 {
+            return (bytes, true);
+        }
+        let Some(chunk) = rest.get(end + 2..end + 2 + length) else { break };
+        bytes.extend_from_slice(chunk);
+        rest = rest.get(end + 4 + length..).unwrap_or_default();
+    }
+    (bytes, false)
 }
 
 /// A request.

@@ -127,3 +127,73 @@ fn two_pages_do_not_get_each_others_lanes() {
     assert_eq!(scan(&one, SERIALS[0], "1")["lane"], "1");
     assert_eq!(scan(&other, SERIALS[1], "2")["lane"], "2");
 }
+
+/// Who and what it is about, when a verdict was saved, and the day so far: all without a script.
+#[test]
+fn the_page_says_plan_station_and_operator_when_it_was_saved_and_the_day() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let operator = serving.operator();
+    let scan = operator.post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json");
+    while !scan.send().text().contains("\"is_taken\":true") {}
+    let mut page = String::new();
+    while !page.contains("lane pass") {
+        page = operator.get("/").send().text();
+    }
+    assert!(page.contains("<b class=\"plans\">CAM-T quick 1</b> · Station <b>12</b>"), "{page}");
+    assert!(page.contains("Weber <span class=\"role\">(operator)</span>"), "{page}");
+    let (_, saved) = page.split_once("class=\"saved\"").unwrap();
+    let (moment, rest) = saved.split_once("datetime=\"").unwrap().1.split_once('"').unwrap();
+    let moment: jiff::Timestamp = moment.parse().unwrap();
+    let ended: i64 = station.query("SELECT ended_ms FROM run")[0].parse().unwrap();
+    let late = moment.as_millisecond() - ended;
+    assert!((-1000..600_000).contains(&late), "saved {late} ms behind the run's end");
+    let (_, text) = rest.split_once('>').unwrap();
+    let shape: String =
+        text.chars().take(11).map(|letter| if letter.is_ascii_digit() { '0' } else { letter }).collect();
+    assert_eq!(shape, "saved 00:00");
+    // One of one: Wilson's interval, whose lower end is 1 / (1 + 1.96²).
+    assert!(page.contains("today 1 judged · first pass 100.0 % (20.7–100.0) · errors 0"), "{page}");
+    let german = operator.get("/").with("accept-language", "de").send().text();
+    assert!(german.contains("100,0 % (20,7–100,0)") && german.contains("(Bediener)"), "{german}");
+}
+
+/// Reasons, refusals and headlines come by their codes.
+#[test]
+fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
+    let station =
+        Station::public(2).where_instead("station.toml", "mock,serial=1", "mock,serial=1,fault=stuck-data");
+    let serving = station.serve();
+    let here = serving.engineer();
+    let scan = |text: &str, lane: &str, language: &str| {
+        let request = here.post("/scan", &[("text", text), ("lane", lane)]);
+        request.with("accept", "application/json").with("accept-language", language).send().text()
+    };
+    for (language, said) in
+        [("de", "die Prüfziffer von „CA0131103629“ ist falsch"), ("zh", "“CA0131103629”的校验位错误")]
+    {
+        let refused = scan("CA0131103629", "1", language);
+        assert!(refused.contains(said), "{refused}");
+    }
+    while !scan(SERIALS[0], "1", "de").contains("wird auf Platz 1 geprüft") {}
+    assert_eq!(here.post("/lanes/2/out", &[]).send().status, 303);
+    let page = |language: &str| here.get("/").with("accept-language", language).send().text();
+    while !page("en").contains("lane fail") {}
+    for (language, said) in [
+        (
+            "de",
+            ["Abtastwerten weichen ab", "von einer Person stillgelegt", "gesichert ", "Bitstream neu laden"],
+        ),
+        ("zh", ["个样值中", "由人员停用", "已保存 ", "请重新加载比特流"]),
+    ] {
+        let page = page(language);
+        for said in said {
+            assert!(page.contains(said), "{said}: {page}");
+        }
+        assert!(!page.contains("class=\"why\" lang=\"en\""), "{page}");
+        let run = page.split("data-run=\"").nth(1).unwrap().split('"').next().unwrap().to_owned();
+        let run = here.get(&format!("/runs/{run}")).with("accept-language", language).send().text();
+        assert!(run.contains(said[0]) && run.contains(said[3]), "{run}");
+        assert!(!run.contains("lang=\"en\""), "{run}");
+    }
+}

@@ -2,6 +2,7 @@
 
 mod access;
 mod browser;
+mod changes;
 mod fuzz;
 pub(crate) mod http;
 mod lanes;

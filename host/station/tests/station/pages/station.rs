@@ -56,6 +56,14 @@ impl Station {
         station
     }
 
+    /// With another word in one of its files.
+    pub(crate) fn where_instead(self, name: &str, was: &str, is: &str) -> Self {
+        let text = fs::read_to_string(self.path(name)).unwrap();
+        assert!(text.contains(was), "{text}");
+        fs::write(self.path(name), text.replace(was, is)).unwrap();
+        self
+    }
+
     pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.folder.path().join(name)
     }

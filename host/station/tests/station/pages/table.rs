@@ -10,7 +10,7 @@ use crate::pages::station::{Browser, PUBLIC, Station};
 /// A route as this table has it: method, path, who may, a path that there is, and the fields of a form that is right.
 type Row = (&'static str, &'static str, Who, &'static str, &'static [(&'static str, &'static str)]);
 
-const ROWS: [Row; 23] = [
+const ROWS: [Row; 26] = [
     ("GET", "/assets/{name}", Who::Anyone, "/assets/style.css", &[]),
     ("GET", "/login", Who::Anyone, "/login", &[]),
     ("POST", "/login", Who::Anyone, "/login", &[("badge", "A-0017")]),
@@ -20,6 +20,7 @@ const ROWS: [Row; 23] = [
     ("GET", "/live", Who::Reader, "/live", &[]),
     ("GET", "/today", Who::Reader, "/today", &[]),
     ("GET", "/history", Who::Reader, "/history", &[]),
+    ("GET", "/history.csv", Who::Reader, "/history.csv", &[]),
     ("GET", "/runs/{run}", Who::Reader, "/runs/1", &[]),
     ("GET", "/runs/{run}/export/{format}", Who::Reader, "/runs/1/export/csv", &[]),
     ("GET", "/runs/{run}/evidence/{hash}", Who::Reader, "/runs/1/evidence/2", &[]),
@@ -33,6 +34,8 @@ const ROWS: [Row; 23] = [
     ("POST", "/lanes/{lane}/abort", Who::Operator, "/lanes/1/abort", &[]),
     ("POST", "/lanes/{lane}/out", Who::Engineer, "/lanes/1/out", &[]),
     ("POST", "/lanes/{lane}/in", Who::Engineer, "/lanes/1/in", &[]),
+    ("POST", "/runs/{run}/waive", Who::Engineer, "/runs/1/waive", &[("reason", "used as it is")]),
+    ("POST", "/unit/rebind", Who::Engineer, "/unit/rebind", &[("serial", "1"), ("reason", "repaired")]),
     // What the station's own pages refuse before they look at who asks.
     ("GET", "", Who::Anyone, "/nothing/here", &[]),
 ];

@@ -92,10 +92,21 @@ const OVER: &str = "(() => {
     for (const state of ['running', 'pass', 'error']) {
         lane.className = `lane ${state} ${state === 'running' ? 'middle' : 'short'}`;
         const more = state === 'running' ? '<p class=doing>rows</p><progress></progress>' : `<p class=why>${long}</p>`;
-        lane.innerHTML = before + (state === 'pass' ? '' : more);
+        const saved = state === 'running' ? '' : '<p class=saved>gesichert 14:02</p>';
+        lane.innerHTML = before + (state === 'pass' ? '' : more) + saved;
         lane.querySelector('.word span').textContent = state.toUpperCase();
         lane.querySelector('.serial').textContent = 'CA080442957X';
-        const parts = [...lane.children].filter(part => part.checkVisibility()).map(part => [part, part.getBoundingClientRect()]);
+        const boxes = [...lane.children].filter(part => part.checkVisibility()).map(part => [part, part.getBoundingClientRect()]);
+        // What stands beside the name is no line of its own.
+        const isBeside = part => getComputedStyle(part).position === 'absolute';
+        const parts = boxes.filter(([part]) => !isBeside(part));
+        for (const [part, box] of boxes.filter(([part]) => isBeside(part))) {
+            for (const other of lane.querySelectorAll('header h2, header form, .word')) {
+                const its = other.getBoundingClientRect();
+                const isClear = its.right <= box.left || its.left >= box.right || its.bottom <= box.top + 1 || its.top >= box.bottom - 1;
+                if (!isClear) found.push(`${state}: ${part.className} on ${other.tagName} ${other.className}`);
+            }
+        }
         const all = lane.getBoundingClientRect();
         for (const [i, [part, box]] of parts.entries()) {
             if (box.bottom > all.bottom + 1) found.push(`${state}: ${part.className} stands out`);

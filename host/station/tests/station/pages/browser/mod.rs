@@ -1,6 +1,8 @@
 //! The operator's page in Chromium.
 
+mod axe;
 mod chromium;
+mod figures;
 mod live;
 mod look;
 mod proxied;

@@ -15,7 +15,7 @@ const SPEEDS: [u64; 4] = [0, 1, 8, 20];
 const LANES: usize = 4;
 
 /// The serial number of this number, with its check digit as ISO 2108:1992 computes it for an ISBN.
-fn serial(number: usize) -> String {
+pub(super) fn serial(number: usize) -> String {
     let digits = format!("{number:09}");
     let sum: usize = digits.bytes().zip(1..).map(|(digit, place)| usize::from(digit - b'0') * place).sum();
     format!("CA{digits}{}", if sum % 11 == 10 { "X".to_owned() } else { (sum % 11).to_string() })

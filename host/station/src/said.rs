@@ -1,0 +1,202 @@
+//! What people are told: in English, and as a code with parameters, from which pages say it in other languages.
+
+use std::error::Error;
+use std::fmt;
+
+use halfrow::result::codes::Parameter;
+use halfrow::result::{Finding, Parameters, Problem};
+use serde::{Deserialize, Serialize, Serializer};
+use serde_json::{Value, json};
+
+use crate::commands::codes::known;
+
+/// A sentence for people. It is written as its English text.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Said {
+    /// Its code, as docs/CODES.md and docs/STATION-CODES.md list them.
+    pub code: String,
+    /// Its figures and names.
+    #[serde(default, skip_serializing_if = "serde_json::Map::is_empty")]
+    pub parameters: Parameters,
+    /// It in English.
+    pub message: String,
+    /// What led to it, the nearest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub causes: Vec<Self>,
+}
+
+impl Said {
+    /// An error of this program with its causes.
+    #[must_use]
+    pub fn of(error: &(dyn Error + 'static)) -> Self {
+        Problem::by(error, known).into()
+    }
+}
+
+impl From<Problem> for Said {
+    fn from(problem: Problem) -> Self {
+        let Problem { code, parameters, message, causes, .. } = problem;
+        Self { code, parameters, message, causes: causes.into_iter().map(Self::from).collect() }
+    }
+}
+
+impl From<Saying> for Said {
+    fn from(saying: Saying) -> Self {
+        Self::of(&saying)
+    }
+}
+
+/// What the judge found.
+impl From<&Finding> for Said {
+    fn from(finding: &Finding) -> Self {
+        match finding {
+            Finding::Problem(problem) => Problem::clone(problem).into(),
+            finding => {
+                let Problem { code, parameters, message, .. } = finding.as_problem();
+                Self { code, parameters, message, causes: Vec::new() }
+            }
+        }
+    }
+}
+
+/// It and its causes in one sentence.
+impl fmt::Display for Said {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)?;
+        self.causes.iter().try_for_each(|cause| write!(f, ": {}", cause.message))
+    }
+}
+
+impl Parameter for Said {
+    fn parameter(&self) -> Value {
+        json!({ "code": self.code, "parameters": self.parameters, "message": self.to_string() })
+    }
+}
+
+/// For documents in which it is text.
+pub(crate) fn as_text<S: Serializer>(said: &Said, to: S) -> Result<S::Ok, S::Error> {
+    to.collect_str(said)
+}
+
+/// As [`as_text`], of what may not be there.
+pub(crate) fn as_text_if_any<S: Serializer>(said: &Option<Said>, to: S) -> Result<S::Ok, S::Error> {
+    said.as_ref().map(ToString::to_string).serialize(to)
+}
+
+/// What the station says that is no error of a type of its own: answers to scans, why a lane is out of service, what a
+/// step came to. Codes are those of `commands::codes`.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs, reason = "the sentence says what each is, and what its figures are")]
+pub enum Saying {
+    #[error("the next scan is for lane {lane}")]
+    Armed { lane: String },
+    #[error("lane {lane} starts")]
+    Starts { lane: String },
+    #[error("lane {lane} is told to end")]
+    ToldToEnd { lane: String },
+    #[error("lane {lane} is out of service")]
+    TakenOut { lane: String },
+    #[error("lane {lane} is in service")]
+    PutBack { lane: String },
+    #[error("{serial} is tested in lane {lane}")]
+    Tested { serial: String, lane: String },
+    #[error("the mock board with a drawn fault is judged in lane {lane}")]
+    MockJudged { lane: String },
+    #[error("{serial} waits in lane {lane}")]
+    Waits { serial: String, lane: String },
+    #[error("{serial} waits for the next board that is plugged in")]
+    WaitsForPlug { serial: String },
+    #[error("{serial} waits for the next board that is plugged in, instead of {other}")]
+    WaitsInstead { serial: String, other: String },
+    #[error("taken out by a person")]
+    OutByPerson,
+    #[error("its process cannot be killed; restart the computer")]
+    Unkillable,
+    #[error("the good unit {serial} came to {verdict}; an engineer looks at the lane")]
+    GoodUnitWrong { serial: String, verdict: String },
+    #[error("the bad unit {serial} came to {verdict}; an engineer looks at the lane")]
+    BadUnitWrong { serial: String, verdict: String },
+    #[error("the good unit {serial} is to come to PASS first, to check this shift")]
+    GoodUnitDue { serial: String },
+    #[error("the bad unit {serial} is to come to FAIL first, to check this shift")]
+    BadUnitDue { serial: String },
+    #[error(
+        "the mock board with a drawn fault is to come to FAIL first, to check this shift; scan {barcode}"
+    )]
+    MockDue { barcode: String },
+    #[error(
+        "{target} came to {verdict}, so the plan does not find this fault; an engineer looks at the plan, and {barcode} draws another one"
+    )]
+    MockWrong { target: String, verdict: String, barcode: String },
+    #[error("the settings have no such lane or plan")]
+    NoLaneOrPlan,
+    #[error("the system has no thread for it ({error}); end other programs")]
+    NoThread { error: String },
+    #[error("the board is a {kind}, and the plan takes hardware alone")]
+    HardwareAlone { kind: String },
+    #[error("the board's build is {build}, and the plan takes {builds}")]
+    BuildNotOfPlan { build: String, builds: String },
+    #[error("the board does not say which device it is, and the plan asks for it")]
+    DeviceAskedFor,
+    #[error("the board does not say which device it is")]
+    DeviceUnsaid,
+    #[error("{name} ({kind}), build {build}, {IDENTITY_NOT_CHECKED}", IDENTITY_NOT_CHECKED = crate::record::IDENTITY_NOT_CHECKED)]
+    IdentityUnchecked { name: String, kind: String, build: String },
+    #[error("{name} ({kind}), build {build}, device {device}")]
+    DeviceKnown { name: String, kind: String, build: String, device: String },
+    #[error("{name} ({kind}), build {build}, device {device}, seen for the first time")]
+    DeviceNew { name: String, kind: String, build: String, device: String },
+    #[error("the run was stopped before the board was judged")]
+    StoppedBefore,
+    #[error("the link was tested: {link}")]
+    LinkTested { link: String },
+    #[error("{wrong} answers hold other bytes than were sent, under a right CRC")]
+    LinkAnswersWrong { wrong: u64 },
+    #[error("the board was exchanged during the run: {first} became {now}")]
+    BoardSwapped { first: String, now: String },
+    #[error("device {device} is being tested in another lane")]
+    DeviceElsewhere { device: String },
+    #[error("this board is {serial} of {product}; you scanned {scanned}")]
+    OtherProduct { serial: String, product: String, scanned: String },
+    #[error("this board is {serial}; you scanned {scanned}")]
+    OtherSerial { serial: String, scanned: String },
+    #[error("{serial} is device {device}; the board in the lane is device {found}")]
+    OtherDevice { serial: String, device: String, found: String },
+    #[error("{sentence}")]
+    BeyondLimit {
+        sentence: String,
+        name: String,
+        value: f64,
+        unit: String,
+        low: Option<f64>,
+        high: Option<f64>,
+    },
+    #[error("{sentence}")]
+    NotMeasured { sentence: String, name: String, unit: String, low: Option<f64>, high: Option<f64> },
+    #[error("{passed} of {planned} steps passed, and of the others nothing is known")]
+    StepsUnknown { passed: usize, planned: u32 },
+    #[error("not reached")]
+    StepNotReached,
+    #[error("the lane told what is no message: {line}")]
+    LaneBabbles { line: String },
+    #[error("the lane ended before it was done ({status})")]
+    LaneDied { status: String },
+    #[error("the lane could not be started: {error}")]
+    LaneNotStarted { error: String },
+    #[error("the lane told nothing for {seconds} s")]
+    LaneSilent { seconds: f64 },
+    #[error("the lane took longer than {seconds} s")]
+    LaneLate { seconds: f64 },
+    #[error("the lane did not end within {seconds} s of being told to")]
+    LaneDeaf { seconds: f64 },
+    #[error("{why}, and could not even be killed")]
+    LaneStuck { why: Said },
+    #[error("the lane did not end, and could not even be killed")]
+    LaneEndless,
+    #[error("a file that the plan names was changed while the run began; test the board again")]
+    PlanChanged,
+    #[error("the station ended in the middle of the run, after {tries} tries of steps")]
+    StationEnded { tries: usize },
+    #[error("the result could not be saved when the run was over, after {tries} tries of steps")]
+    SavedTooLate { tries: usize },
+}

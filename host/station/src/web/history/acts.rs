@@ -1,0 +1,150 @@
+//! What an engineer changes about what was judged: a waiver beside a FAIL, another device under a serial number.
+
+use axum::Form;
+use axum::extract::{Path, State};
+use axum::http::StatusCode;
+use axum::response::{IntoResponse as _, Redirect, Response};
+use maud::{Markup, html};
+use serde::Deserialize;
+
+use super::asked::{Asked, unit_address};
+use super::{run, show, unit};
+use crate::history::unit::{Unit, UnitRun};
+use crate::said::Said;
+use crate::store::{Change, NoWaiver, RebindError};
+use crate::web::language::Told;
+use crate::web::routes::Who;
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// The longest reason, in characters.
+const MOST: &str = "500";
+/// What a device looks like, for the browser.
+const DEVICE: &str = "[0-9a-f]{16}";
+
+/// Why something was not done, for the page that it was asked for on.
+#[derive(Debug)]
+pub(super) struct Refused {
+    pub(super) status: StatusCode,
+    code: String,
+    told: Told,
+}
+
+impl Refused {
+    fn new(visit: &Visit, status: StatusCode, said: &Said) -> Self {
+        Self { status, code: said.code.clone(), told: visit.words.tell(said) }
+    }
+
+    /// It with its code.
+    pub(super) fn markup(&self) -> Markup {
+        html! { p.refused role="alert" { (show::told(&self.told)) " " code { (self.code) } } }
+    }
+}
+
+#[derive(Deserialize)]
+pub(super) struct Waive {
+    #[serde(default)]
+    reason: String,
+}
+
+pub(super) async fn waive(
+    State(app): State<App>,
+    visit: Visit,
+    Path(id): Path<String>,
+    Form(Waive { reason }): Form<Waive>,
+) -> Result<Response, Trouble> {
+    let (run, name) = (id.clone(), visit.name().to_owned());
+    let waived = app.change(&visit, move |store| store.waive(&run, &name, &reason)).await?;
+    let status = match &waived {
+        Ok(_) => return Ok(Redirect::to(&show::run_address(&id)).into_response()),
+        Err(NoWaiver::NoRun { .. }) => StatusCode::NOT_FOUND,
+        Err(NoWaiver::Empty) => StatusCode::BAD_REQUEST,
+        Err(NoWaiver::NoFail { .. } | NoWaiver::Waived { .. }) => StatusCode::CONFLICT,
+        Err(NoWaiver::NoRandomness(_) | NoWaiver::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
+    };
+    let refused = waived.err().map(|error| Refused::new(&visit, status, &Said::of(&error)));
+    run::shown(app, visit, id, refused).await
+}
+
+#[derive(Deserialize)]
+#[serde(default)]
+#[derive(Default)]
+pub(super) struct Rebind {
+    serial: String,
+    product: String,
+    device: String,
+    reason: String,
+}
+
+pub(super) async fn rebind(
+    State(app): State<App>,
+    visit: Visit,
+    Form(asked): Form<Rebind>,
+) -> Result<Response, Trouble> {
+    let serial = asked.serial.clone();
+    let name = visit.name().to_owned();
+    let change = move |store: &mut crate::store::Store| {
+        let some = |text: &str| Some(text.trim().to_owned()).filter(|text| !text.is_empty());
+        let (product, device) = (some(&asked.product), some(&asked.device));
+        store.rebind(&Change {
+            serial: &asked.serial,
+            product: product.as_deref(),
+            device: device.as_deref(),
+            operator: &name,
+            reason: &asked.reason,
+        })
+    };
+    let bound = app.change(&visit, change).await?;
+    let status = match &bound {
+        Ok(_) => return Ok(Redirect::to(&unit_address(&serial)).into_response()),
+        Err(RebindError::Unknown { .. }) => StatusCode::NOT_FOUND,
+        Err(RebindError::NoReason | RebindError::NoDevice { .. }) => StatusCode::BAD_REQUEST,
+        Err(RebindError::Several { .. } | RebindError::UnderTest { .. }) => StatusCode::CONFLICT,
+        Err(RebindError::NoRandomness(_) | RebindError::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
+    };
+    let refused = bound.err().map(|error| Refused::new(&visit, status, &Said::of(&error)));
+    unit::shown(app, visit, Asked::of_serial(&serial), refused).await
+}
+
+/// The form by which an engineer waives the FAIL of a run that has no waiver.
+pub(super) fn waive_form(visit: &Visit, run: &UnitRun) -> Markup {
+    let is_open = run.line.verdict.as_deref() == Some("FAIL") && run.waivers.is_empty();
+    html! {
+        @if is_open && visit.may(Who::Engineer) {
+            form.change method="post" action=(format!("{}/waive", show::run_address(&run.line.id))) autocomplete="off" {
+                h2 { (visit.say("waive.title")) }
+                p.soft { (visit.say("waive.about")) }
+                (fields(visit))
+                button { (visit.say("waive.waive")) }
+            }
+        }
+    }
+}
+
+/// The form by which an engineer says which device a unit has from then on.
+pub(super) fn rebind_form(visit: &Visit, unit: &Unit) -> Markup {
+    html! {
+        @if visit.may(Who::Engineer) {
+            form.change method="post" action="/unit/rebind" autocomplete="off" {
+                h2 { (visit.say("rebind.title")) }
+                p.soft { (visit.say("rebind.about")) }
+                input type="hidden" name="serial" value=(unit.serial);
+                input type="hidden" name="product" value=(unit.product);
+                label { span { (visit.say("rebind.device")) }
+                    input name="device" maxlength="16" pattern=(DEVICE) spellcheck="false" placeholder=(visit.say("rebind.next"));
+                }
+                (fields(visit))
+                button { (visit.say("rebind.rebind")) }
+            }
+        }
+    }
+}
+
+/// The mark of the form, and the reason.
+fn fields(visit: &Visit) -> Markup {
+    html! {
+        input type="hidden" name="csrf" value=(visit.csrf);
+        label { span { (visit.say("history.reason")) } input name="reason" required maxlength=(MOST); }
+    }
+}

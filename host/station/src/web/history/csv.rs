@@ -1,0 +1,87 @@
+//! The runs that a filter leaves, as a table for other programs.
+
+use std::io;
+
+use axum::body::Body;
+use axum::extract::{Query, State};
+use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
+use axum::response::{IntoResponse as _, Response};
+use futures_util::stream;
+
+use super::asked::Asked;
+use crate::export::{self, ExportError, Table};
+use crate::history::runs::{self, Filter, Place};
+use crate::store::{Snapshot, StoreError};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+/// Runs that are read at once. Whoever reads slowly holds neither a thread nor the store meanwhile.
+const RUNS: u32 = 200;
+
+/// A download that is under way.
+struct Download {
+    app: App,
+    visit: Visit,
+    filter: Filter,
+    /// What comes next; none behind the last piece.
+    next: Option<Next>,
+}
+
+enum Next {
+    Piece(Vec<u8>, Option<Place>),
+    After(Place),
+}
+
+/// All pages of the filter, piece by piece. A download that cannot go on breaks off, so that no half is taken for the whole.
+pub(super) async fn all(
+    State(app): State<App>,
+    visit: Visit,
+    Query(asked): Query<Asked>,
+) -> Result<Response, Trouble> {
+    let filter = asked.filter().map_err(|wrong| wrong.told(&visit))?;
+    let (first, after) = piece(&app, &visit, &filter, None).await?;
+    let download = Download { app, visit, filter, next: Some(Next::Piece(first, after)) };
+    let headers = [
+        (CONTENT_TYPE, "text/csv; charset=utf-8"),
+        (CONTENT_DISPOSITION, "attachment; filename=\"runs.csv\""),
+        (CACHE_CONTROL, "no-store"),
+    ];
+    Ok((headers, Body::from_stream(stream::unfold(download, further))).into_response())
+}
+
+async fn further(mut of: Download) -> Option<(io::Result<Vec<u8>>, Download)> {
+    let (bytes, after) = match of.next.take()? {
+        Next::Piece(bytes, after) => (bytes, after),
+        Next::After(place) => match piece(&of.app, &of.visit, &of.filter, Some(place)).await {
+            Ok(piece) => piece,
+            // Why is in the log.
+            Err(_) => return Some((Err(io::Error::other("the store cannot be read")), of)),
+        },
+    };
+    of.next = after.map(Next::After);
+    Some((Ok(bytes), of))
+}
+
+/// The lines of the runs from the one after `after` on, and after which the next piece begins. The first has the header.
+async fn piece(
+    app: &App,
+    visit: &Visit,
+    filter: &Filter,
+    after: Option<Place>,
+) -> Result<(Vec<u8>, Option<Place>), Trouble> {
+    let filter = filter.clone();
+    let written = move |now: &Snapshot| -> Result<_, StoreError> {
+        let page = runs::page(now, &filter, after.as_ref(), RUNS)?;
+        Ok(lines(now, &page, after.is_none()).map(|bytes| (bytes, page.next)))
+    };
+    app.look(visit, written).await?.map_err(|error| Trouble::broken(visit, &error))
+}
+
+fn lines(now: &Snapshot, page: &runs::Page, is_first: bool) -> Result<Vec<u8>, ExportError> {
+    let mut table = if is_first { Table::begin(Vec::new())? } else { Table::further(Vec::new()) };
+    for hash in page.runs.iter().filter_map(|run| run.record_sha256.as_ref()) {
+        table.add(&export::record(now.folder(), hash)?.0)?;
+    }
+    Ok(table.end())
+}

@@ -1,0 +1,102 @@
+//! What an engineer changes on a page: a waiver, and another device under a serial number.
+
+use crate::pages::station::{Browser, SERIALS, Serving, Station};
+
+/// A station with people and a board that fails, and the run that has failed.
+fn failed() -> (Station, Serving, String) {
+    let station = Station::public(1)
+        .where_instead("station.toml", "mock,serial=1", "mock,serial=1,fault=stuck-data")
+        .where_instead("plan.toml", "not-checked", "if-present");
+    let serving = station.serve();
+    let operator = serving.operator();
+    let scan = operator.post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json");
+    // The board is seen when the station has looked for it.
+    while !scan.send().text().contains("\"is_taken\":true") {}
+    let mut failed = Vec::new();
+    while failed.is_empty() {
+        failed = station.query("SELECT id FROM run WHERE verdict = 'FAIL'");
+    }
+    (station, serving, failed.remove(0))
+}
+
+fn page(browser: &Browser, path: &str) -> String {
+    let answer = browser.get(path).send();
+    assert_eq!(answer.status, 200, "{path}: {}", answer.text());
+    answer.text()
+}
+
+#[test]
+fn an_engineer_waives_a_fail_once_and_with_a_reason_and_everyone_sees_it() {
+    let (station, serving, run) = failed();
+    let (operator, engineer) = (serving.operator(), serving.engineer());
+    let (path, act) = (format!("/runs/{run}"), format!("/runs/{run}/waive"));
+    let form = format!("action=\"{act}\"");
+    assert!(!page(&operator, &path).contains(&form), "an operator has no such form");
+    assert!(page(&engineer, &path).contains(&form));
+    assert_eq!(operator.post(&act, &[("reason", "x")]).send().status, 403);
+    for (language, said) in
+        [("en", "a waiver needs a name and a reason"), ("de", "eine Freigabe braucht Namen und Grund")]
+    {
+        let empty = engineer.post(&act, &[("reason", " ")]).with("accept-language", language).send();
+        assert_eq!(empty.status, 400);
+        assert!(
+            empty.text().contains(said) && empty.text().contains("waiver-without-reason"),
+            "{}",
+            empty.text()
+        );
+        assert!(empty.text().contains(&form), "and the form is there still");
+    }
+    assert_eq!(station.query("SELECT id FROM waiver"), Vec::<String>::new());
+    let given = engineer.post(&act, &[("reason", "the lamp's cable, <not> the board")]).send();
+    assert_eq!((given.status, given.headers["location"].as_str()), (303, path.as_str()));
+    let again = engineer.post(&act, &[("reason", "once more")]).send();
+    assert_eq!(again.status, 409);
+    assert!(
+        again.text().contains("waiver-given-already") && !again.text().contains(&form),
+        "{}",
+        again.text()
+    );
+    let stored = station.query("SELECT run_id || ' ' || operator_id || ' ' || reason FROM waiver");
+    assert_eq!(stored, [format!("{run} Braun the lamp's cable, <not> the board")]);
+    assert_eq!(
+        station.query("SELECT operator_id || ' ' || subject FROM audit WHERE act = 'waive'"),
+        [format!("Braun {run}")]
+    );
+    assert!(page(&operator, &path).contains("the lamp's cable, &lt;not&gt; the board"));
+    for list in ["/history", &format!("/unit?serial={}", SERIALS[0])] {
+        assert!(page(&operator, list).contains("<span class=\"waived\">waived</span>"), "{list}");
+    }
+    assert_eq!(engineer.post("/runs/1/waive", &[("reason", "x")]).send().status, 404);
+}
+
+#[test]
+fn an_engineer_binds_a_unit_to_another_device_with_a_reason() {
+    let (station, serving, _) = failed();
+    let (operator, engineer) = (serving.operator(), serving.engineer());
+    let unit = format!("/unit?serial={}", SERIALS[0]);
+    let form = "action=\"/unit/rebind\"";
+    assert!(!page(&operator, &unit).contains(form) && page(&engineer, &unit).contains(form));
+    let holds = "SELECT device FROM binding WHERE to_ms IS NULL";
+    assert_eq!(station.query(holds), ["0000000000000001"]);
+    let bind = |browser: &Browser, device: &str, reason: &str| {
+        let fields = [("serial", SERIALS[0]), ("product", "CAM-T"), ("device", device), ("reason", reason)];
+        browser.post("/unit/rebind", &fields).send()
+    };
+    assert_eq!(bind(&operator, "", "repaired").status, 403);
+    for (device, reason, code) in [
+        ("00000000000000Ff", "repaired", "device-malformed"),
+        ("0000000000000000", "repaired", "device-malformed"),
+        ("00000000000000ff", " ", "rebind-without-reason"),
+    ] {
+        let refused = bind(&engineer, device, reason);
+        assert_eq!(refused.status, 400, "{device}");
+        assert!(refused.text().contains(code) && refused.text().contains(form), "{}", refused.text());
+    }
+    assert_eq!(station.query(holds), ["0000000000000001"]);
+    assert_eq!(bind(&engineer, "00000000000000ff", "FPGA exchanged").status, 303);
+    assert_eq!(station.query(holds), ["00000000000000ff"]);
+    let shown = page(&operator, &unit);
+    assert!(shown.contains("00000000000000ff") && shown.contains("FPGA exchanged"), "{shown}");
+    assert_eq!(bind(&engineer, "", "the next one is right").status, 303);
+    assert_eq!(station.query(holds), Vec::<String>::new());
+}
