@@ -54,9 +54,13 @@ pub(crate) fn exchange(port: u16, bytes: &[u8]) -> Option<Answer> {
     Some(Answer { status, headers, body, is_whole })
 }
 
-/// What follows a head, and whether it came to its end; the head of an answer to HEAD tells of a body that does not come.
+/// What follows a head, and whether it came to its end. The head of an answer to HEAD tells of a body that does not come, and
+/// news have no end.
 fn body(stream: &mut TcpStream, headers: &BTreeMap<String, String>) -> (Vec<u8>, bool) {
     let mut bytes = Vec::new();
+    if headers.get("content-type").is_some_and(|kind| kind == "text/event-stream") {
+        return (bytes, false);
+    }
     if headers.get("transfer-encoding").is_some_and(|kind| kind == "chunked") {
         let _ = stream.read_to_end(&mut bytes);
         return unchunked(&bytes);
