@@ -66,6 +66,8 @@ module minispartan6plus_fifo (
     assign ft_siwu_n = ft_control_drive ? siwu_n : 1'bz;
 
     halfrow_fifo_bridge #(
+        .POWER_UP_WIDTH(1920),
+        .POWER_UP_HEIGHT(1080),
         .BUILD(`HALFROW_BUILD),
         .NAME("miniSpartan6+ LX25 FIFO")
     ) bridge (

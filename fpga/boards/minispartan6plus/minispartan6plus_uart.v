@@ -57,6 +57,8 @@ module minispartan6plus_uart (
         .pin_isp_data(isp_data));
 
     halfrow_uart_bridge #(
+        .POWER_UP_WIDTH(1920),
+        .POWER_UP_HEIGHT(1080),
         .BUILD(`HALFROW_BUILD),
         .NAME("miniSpartan6+ LX25 UART")
     ) bridge (

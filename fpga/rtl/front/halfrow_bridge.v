@@ -5,6 +5,8 @@
 module halfrow_bridge #(
     parameter MAX_WIDTH = 2048,
     parameter MAX_HEIGHT = 2048,
+    parameter POWER_UP_WIDTH = MAX_WIDTH, // what a sensor gives, which a session may change
+    parameter POWER_UP_HEIGHT = MAX_HEIGHT,
     parameter RING_BITS = 11,             // M = 2 ** RING_BITS
     parameter TAPS = 7,                   // 5 or 7
     parameter TABLE_BANKS = 2,            // 1 or 2
@@ -106,7 +108,9 @@ module halfrow_bridge #(
     wire [24:0] step_port;
 
     halfrow_dispatcher #(
-        .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS),
+        .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT),
+        .POWER_UP_WIDTH(POWER_UP_WIDTH), .POWER_UP_HEIGHT(POWER_UP_HEIGHT),
+        .ROW_BITS(ROW_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS),
         .LEAST_BLANKING(0), .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN),
         .ROW_BANKS_OUT(ROW_BANKS_OUT), .BUILD(BUILD), .NATURE(NATURE), .NAME(NAME)
     ) dispatcher (

@@ -12,6 +12,8 @@ module halfrow_fifo_bridge #(
     parameter STROBE = 32,
     parameter MAX_WIDTH = 2048,
     parameter MAX_HEIGHT = 2048,
+    parameter POWER_UP_WIDTH = MAX_WIDTH,
+    parameter POWER_UP_HEIGHT = MAX_HEIGHT,
     parameter RING_BITS = 11,
     parameter TAPS = 7,
     parameter TABLE_BANKS = 2,
@@ -94,7 +96,9 @@ module halfrow_fifo_bridge #(
         .out_ready(link_tx_ready));
 
     halfrow_bridge #(
-        .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .RING_BITS(RING_BITS), .TAPS(TAPS),
+        .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT),
+        .POWER_UP_WIDTH(POWER_UP_WIDTH), .POWER_UP_HEIGHT(POWER_UP_HEIGHT),
+        .RING_BITS(RING_BITS), .TAPS(TAPS),
         .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN), .ROW_BANKS_OUT(ROW_BANKS_OUT), .BUILD(BUILD),
         .NATURE(NATURE), .NAME(NAME)
     ) bridge (

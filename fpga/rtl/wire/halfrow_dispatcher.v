@@ -5,6 +5,8 @@
 module halfrow_dispatcher #(
     parameter MAX_WIDTH = 2048,
     parameter MAX_HEIGHT = 2048,
+    parameter POWER_UP_WIDTH = MAX_WIDTH, // what a sensor gives, which a session may change
+    parameter POWER_UP_HEIGHT = MAX_HEIGHT,
     parameter ROW_BITS = 11,              // at least 7
     parameter RING_BITS = 11,             // M = 2 ** RING_BITS
     parameter TAPS = 7,                   // 5 or 7
@@ -174,7 +176,10 @@ module halfrow_dispatcher #(
     wire [2:0] wrong_field;
     wire rows_anywhere = rows_waiting || rows_held || core_busy;
 
-    halfrow_settings #(.MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .LEAST_BLANKING(LEAST_BLANKING)) settings (
+    halfrow_settings #(
+        .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .LEAST_BLANKING(LEAST_BLANKING),
+        .POWER_UP_WIDTH(POWER_UP_WIDTH), .POWER_UP_HEIGHT(POWER_UP_HEIGHT)
+    ) settings (
         .clk(clk), .restore(rst || wipe), .wanted(fields),
         .load(accepted && is_configure && !rows_anywhere && !out_of_range), .out_of_range(out_of_range),
         .wrong_field(wrong_field), .configured(configured), .width(width), .height(height), .centre2(centre2),

@@ -4,7 +4,9 @@
 module halfrow_settings #(
     parameter MAX_WIDTH = 2048,
     parameter MAX_HEIGHT = 2048,
-    parameter LEAST_BLANKING = 0
+    parameter LEAST_BLANKING = 0,
+    parameter POWER_UP_WIDTH = MAX_WIDTH,
+    parameter POWER_UP_HEIGHT = MAX_HEIGHT
 ) (
     input  wire         clk,
     input  wire         restore,      // pulse: the settings of power-up, no configuration
@@ -28,11 +30,14 @@ module halfrow_settings #(
             halfrow_illegal_MAX_WIDTH is_even_and_64_to_2592 ();
         if (MAX_HEIGHT < 1 || MAX_HEIGHT > GREATEST_HEIGHT) halfrow_illegal_MAX_HEIGHT is_1_to_2048 ();
         if (LEAST_BLANKING < 0 || LEAST_BLANKING > 65535) halfrow_illegal_LEAST_BLANKING is_0_to_65535 ();
+        if (POWER_UP_WIDTH != MAX_WIDTH
+            && (POWER_UP_WIDTH < LEAST_WIDTH || POWER_UP_WIDTH > MAX_WIDTH || POWER_UP_WIDTH % 2 != 0))
+            halfrow_illegal_POWER_UP_WIDTH is_even_and_64_to_MAX_WIDTH ();
+        if (POWER_UP_HEIGHT != MAX_HEIGHT && (POWER_UP_HEIGHT < 1 || POWER_UP_HEIGHT > MAX_HEIGHT))
+            halfrow_illegal_POWER_UP_HEIGHT is_1_to_MAX_HEIGHT ();
     endgenerate
 
-    localparam [11:0] POWER_UP_WIDTH = MAX_WIDTH[11:0];
-    localparam [11:0] POWER_UP_HEIGHT = MAX_HEIGHT[11:0];
-    localparam [12:0] POWER_UP_CENTRE2 = MAX_WIDTH[12:0] - 13'd1;
+    localparam [12:0] POWER_UP_CENTRE2 = POWER_UP_WIDTH[12:0] - 13'd1;
     localparam [15:0] POWER_UP_BLANKING = LEAST_BLANKING[15:0];
     localparam [1:0] POWER_UP_DEPTH = DEPTH_12;
 
@@ -61,8 +66,8 @@ module halfrow_settings #(
     always @(posedge clk) begin
         if (restore) begin
             configured <= 1'b0;
-            width <= POWER_UP_WIDTH;
-            height <= POWER_UP_HEIGHT;
+            width <= POWER_UP_WIDTH[11:0];
+            height <= POWER_UP_HEIGHT[11:0];
             centre2 <= POWER_UP_CENTRE2;
             blanking <= POWER_UP_BLANKING;
             gap_seed <= 32'd0;

@@ -5,9 +5,10 @@ use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_quick, of_boards, plug, run_al
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn every_tenth_of_the_small_ones_behind_an_ft2232h() {
-    let quick = all().filter(is_quick);
-    run_all(quick.step_by(10), "usb", true, plug);
+fn every_twentieth_of_the_small_ones_behind_an_ft2232h() {
+    // Those between the ones that are judged behind the kernel's own driver.
+    let quick = all().filter(is_quick).skip(10);
+    run_all(quick.step_by(20), "usb", true, plug);
 }
 
 #[test]
