@@ -27,7 +27,7 @@ fn analysed(unit: &str, how: &[&str]) -> Did {
     let path = folder.path().join("halfrow-station.service");
     fs::write(&path, unit.replace(INSTALLED, &program().display().to_string())).unwrap();
     let did = Command::new("systemd-analyze").args(how).arg("--no-pager").arg(&path).output();
-    did.expect("systemd-analyze is missing; run: apt-get install systemd").into()
+    did.unwrap_or_else(|_| panic!("systemd-analyze is missing; run: apt-get install systemd")).into()
 }
 
 #[test]
