@@ -112,7 +112,7 @@ pub struct Shift {
 pub enum Bad {
     /// The unit of this serial number.
     Unit(String),
-    /// The [mock](mock) board, with a fault that is drawn for every run.
+    /// The [`mock`] board, with a fault that is drawn for every run.
     Mock,
 }
 
