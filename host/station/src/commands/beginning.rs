@@ -1,6 +1,6 @@
 //! What all commands begin with that keep new results: the disk is asked, the store opened, what was left open closed.
 
-use std::path::{self, Path};
+use std::path::{self, Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -39,6 +39,27 @@ impl Disk {
     pub(super) fn opens(&self, folder: &Path) -> Result<Store, Failure> {
         self.takes(folder)?;
         Ok(Store::open(&Folder::new(folder))?)
+    }
+}
+
+/// Which settings the command is about, whatever it does with them.
+#[derive(Debug, Args)]
+pub(super) struct SettingsFile {
+    /// The station's settings
+    #[arg(
+        long,
+        global = true,
+        value_name = "FILE",
+        env = "HALFROW_STATION_SETTINGS",
+        default_value = "station.toml"
+    )]
+    settings: PathBuf,
+}
+
+impl SettingsFile {
+    /// What they say.
+    pub(super) fn load(&self) -> Result<Settings, Failure> {
+        settings(&self.settings)
     }
 }
 

@@ -1,10 +1,9 @@
 //! `halfrow-station token`
 
-use std::path::PathBuf;
-
 use clap::{Args, Subcommand};
 
-use super::{Failure, beginning, print};
+use super::beginning::SettingsFile;
+use super::{Failure, print};
 use crate::exit::Exit;
 use crate::web::{Scope, TokenError, Tokens, add_token};
 
@@ -14,15 +13,8 @@ use crate::web::{Scope, TokenError, Tokens, add_token};
 /// settings names keeps of a token its mark under the station's key. Changes count at once.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The station's settings
-    #[arg(
-        long,
-        global = true,
-        value_name = "FILE",
-        env = "HALFROW_STATION_SETTINGS",
-        default_value = "station.toml"
-    )]
-    settings: PathBuf,
+    #[command(flatten)]
+    settings: SettingsFile,
     #[command(subcommand)]
     what: What,
 }
@@ -47,7 +39,7 @@ enum What {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = beginning::settings(settings)?;
+    let settings = settings.load()?;
     let no_file = "the settings name no file of tokens; write tokens = \"tokens.toml\" into [access]";
     let file = settings.access.as_ref().and_then(|access| access.tokens.as_ref());
     let file = file.ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;

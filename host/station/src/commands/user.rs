@@ -2,12 +2,12 @@
 
 use std::io::{self, BufRead as _, IsTerminal as _};
 use std::os::fd::AsRawFd as _;
-use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 use nix::sys::termios::{self, LocalFlags, SetArg};
 
-use super::{Failure, beginning, print};
+use super::beginning::SettingsFile;
+use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use crate::web::{Role, UserError, Users, add_user};
@@ -18,15 +18,8 @@ use crate::web::{Role, UserError, Users, add_user};
 /// hash. Changes count at once.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The station's settings
-    #[arg(
-        long,
-        global = true,
-        value_name = "FILE",
-        env = "HALFROW_STATION_SETTINGS",
-        default_value = "station.toml"
-    )]
-    settings: PathBuf,
+    #[command(flatten)]
+    settings: SettingsFile,
     #[command(subcommand)]
     what: What,
 }
@@ -51,7 +44,7 @@ enum What {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = beginning::settings(settings)?;
+    let settings = settings.load()?;
     let no_file = "the settings name no file of users; write [access] with users = \"users.toml\"";
     let access = settings.access.as_ref().ok_or_else(|| Failure::call(anyhow::anyhow!(no_file)))?;
     match what {

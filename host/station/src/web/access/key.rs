@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use hmac::{Hmac, KeyInit as _, Mac as _};
 use rand::TryRng as _;
 use rand::rngs::SysRng;
+use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::Sha256;
 
@@ -131,6 +132,18 @@ pub(crate) fn read<T: DeserializeOwned>(path: &Path) -> Result<T, SecretError> {
         what: error.message().to_owned(),
     };
     toml::from_str(&secret(path)?).map_err(wrong)
+}
+
+/// As [`read`]; what there is by default, if there is no file.
+pub(crate) fn read_or_none<T: DeserializeOwned + Default>(path: &Path) -> Result<T, SecretError> {
+    if path.exists() { read(path) } else { Ok(T::default()) }
+}
+
+/// Writes secrets to the TOML file `path`, as [`keep`] does.
+pub(crate) fn write(path: &Path, secrets: &impl Serialize, lasts: bool) -> Result<(), SecretError> {
+    let text = toml::to_string(secrets).map_err(io::Error::other);
+    let text = text.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
+    keep(path, &text, lasts)
 }
 
 /// Drawn bytes, which nobody can guess.

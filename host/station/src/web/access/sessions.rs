@@ -56,8 +56,8 @@ impl Sessions {
     /// # Errors
     /// [`SecretError`] when others may read it, or it cannot be read.
     pub(super) fn load(path: &Path) -> Result<Self, SecretError> {
-        let lines = match path.exists().then(|| key::read::<Lines>(path)).transpose() {
-            Ok(lines) => lines.unwrap_or_default(),
+        let lines: Lines = match key::read_or_none(path) {
+            Ok(lines) => lines,
             Err(SecretError::Wrong { path, what }) => {
                 tracing::warn!("{}: {what}; everybody logs in anew", path.display());
                 Lines::default()
@@ -114,9 +114,7 @@ impl Sessions {
             used_ms: *used_ms,
         };
         let lines = Lines { session: self.known.iter().map(line).collect() };
-        let text = toml::to_string(&lines).map_err(std::io::Error::other);
-        let text = text.map_err(|source| SecretError::File { path: file.clone(), source });
-        if let Err(error) = text.and_then(|text| key::keep(file, &text, false)) {
+        if let Err(error) = key::write(file, &lines, false) {
             tracing::warn!("{:#}", anyhow::Error::from(error));
         }
     }

@@ -1,6 +1,5 @@
 //! Machines that read the pages: a file of their names and tokens, none of which can be read from it.
 
-use std::io;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -59,7 +58,7 @@ impl Tokens {
     /// # Errors
     /// [`SecretError`]
     pub fn load_or_none(path: &Path) -> Result<Self, SecretError> {
-        if path.exists() { key::read(path) } else { Ok(Self::default()) }
+        key::read_or_none(path)
     }
 
     /// Writes every token to the file `path`, all or nothing.
@@ -67,9 +66,7 @@ impl Tokens {
     /// # Errors
     /// [`SecretError::File`]
     pub fn save(&self, path: &Path) -> Result<(), SecretError> {
-        let text = toml::to_string(self).map_err(io::Error::other);
-        let text = text.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
-        key::keep(path, &text, true)
+        key::write(path, self, true)
     }
 
     /// Draws a token of 256 bits, in hexadecimal digits, which is known from here on and nowhere written.

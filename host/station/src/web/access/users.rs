@@ -1,6 +1,5 @@
 //! The people who may act: a file of their names, badges and passwords, none of which can be read from it.
 
-use std::io;
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -84,7 +83,7 @@ impl Users {
     /// # Errors
     /// [`SecretError`]
     pub fn load_or_none(path: &Path) -> Result<Self, SecretError> {
-        if path.exists() { Self::load(path) } else { Ok(Self::default()) }
+        key::read_or_none(path)
     }
 
     /// Writes everybody to the file `path`, all or nothing.
@@ -92,9 +91,7 @@ impl Users {
     /// # Errors
     /// [`SecretError::File`]
     pub fn save(&self, path: &Path) -> Result<(), SecretError> {
-        let text = toml::to_string(self).map_err(io::Error::other);
-        let text = text.map_err(|source| SecretError::File { path: path.to_owned(), source })?;
-        key::keep(path, &text, true)
+        key::write(path, self, true)
     }
 
     /// Adds somebody. An engineer has a password.
