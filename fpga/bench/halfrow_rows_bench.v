@@ -114,7 +114,8 @@ module halfrow_rows_bench;
     wire        row_done, row_busy, frame_start, rows_waiting, rows_held, core_busy, shadow_in_use, quiet;
     wire        row_accepted, row_left, row_repeated, row_unneeded, sample_over, latency_valid;
     wire        row_valid, row_flag, row_byte_valid;
-    wire        core_reset, prepare, prepare_bank, prepared, enable, in_valid, in_start, out_valid, out_start, out_last;
+    wire        core_reset, prepare, prepare_bank, prepared, enables, in_valid, in_start, out_valid, out_start, out_last;
+    reg         enable = 0;
     wire [3:0]  row_refusal;
     wire [7:0]  row_kind, row_session, row_byte;
     wire [10:0] prepare_row;
@@ -137,9 +138,11 @@ module halfrow_rows_bench;
         .row_valid(row_valid), .row_kind(row_kind), .row_sequence(row_sequence), .row_length(row_length),
         .row_flag(row_flag), .row_session(row_session), .row_taken(row_taken), .row_byte_valid(row_byte_valid),
         .row_byte(row_byte), .row_byte_ready(row_byte_ready), .core_reset(core_reset), .prepare(prepare),
-        .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared), .enable(enable),
+        .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared), .enables(enables),
         .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample), .out_valid(out_valid), .out_start(out_start),
         .out_last(out_last), .out_sample(out_sample));
+
+    always @(posedge clk) enable <= enables;
 
     core_stand_in #(.L(L)) core (
         .clk(clk), .reset(core_reset || rst), .enable(enable), .width(width), .prepare(prepare),

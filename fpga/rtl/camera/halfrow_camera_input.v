@@ -42,9 +42,10 @@ module halfrow_camera_input #(
     always @(posedge clk)
         line_before <= camera_line_valid;
 
-    reg [11:0] row; // that starts next
-    reg asked;      // the core was told so
-    wire row_there = row < height;
+    reg [11:0] row;        // that starts next
+    reg [11:0] rows_there; // from it on
+    reg asked;             // the core was told so
+    wire row_there = rows_there != 12'd0;
     wire line_start = frame_valid && camera_line_valid && !line_before && row_there;
 
     assign prepare = !asked && row_there;
@@ -54,9 +55,11 @@ module halfrow_camera_input #(
     always @(posedge clk)
         if (rst || (frame_before && !frame_valid)) begin
             row <= 12'd0;
+            rows_there <= height;
             asked <= 1'b0;
         end else if (line_start) begin
             row <= row + 12'd1;
+            rows_there <= rows_there - 12'd1;
             asked <= 1'b0;
         end else if (prepare)
             asked <= 1'b1;

@@ -12,7 +12,7 @@ module halfrow_multiplexer #(
     output wire                camera_reset, // the sensor is not looked at
 
     input  wire                test_reset,   // one clock: test rows are dropped
-    input  wire                test_enable,
+    input  wire                test_enables, // test rows' enable of the next clock
     input  wire                test_prepare,
     input  wire [ROW_BITS-1:0] test_prepare_row,
     input  wire                test_prepare_bank,
@@ -30,7 +30,7 @@ module halfrow_multiplexer #(
     output wire                camera_out_valid,
 
     output wire                core_reset,
-    output wire                core_enable,
+    output reg                 core_enable,  // a register, since all of the core hangs on it
     output wire                prepare,
     output wire [ROW_BITS-1:0] prepare_row,
     output wire                prepare_bank,
@@ -51,9 +51,11 @@ module halfrow_multiplexer #(
             camera <= !session_open && (camera || tables_ready);
         end
 
+    always @(posedge clk)
+        core_enable <= rst || !session_open || test_enables;
+
     assign camera_reset = rst || !camera || session_open;
     assign core_reset = rst || test_reset || (test != session_open);
-    assign core_enable = test ? test_enable : 1'b1;
 
     assign prepare = test ? test_prepare : camera_prepare && camera;
     assign prepare_row = test ? test_prepare_row : camera_prepare_row;

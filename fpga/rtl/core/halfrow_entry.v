@@ -34,14 +34,16 @@ module halfrow_entry #(
     reg open;         // the row may go on
     reg [11:0] taken; // samples of the row
     reg [RING_BITS-1:0] newest_address;
-    wire full = taken == width;
+    reg full;         // taken == W
+    reg half;         // taken == W/2
+    wire [11:0] behind_taken = taken + 12'd1;
     wire start = in_valid && in_start;
     wire goes_on = in_valid && !in_start && open && !full;
     wire cut = open && !full && (start || !in_valid);
 
     assign ring_write = enable && (start || goes_on);
     assign row_end = enable && open && full;
-    assign row_begin = enable && goes_on && waiting && taken == {1'b0, width[11:1]};
+    assign row_begin = enable && goes_on && waiting && half;
 
     always @(posedge clk)
         if (rst)
@@ -51,7 +53,9 @@ module halfrow_entry #(
 
     always @(posedge clk)
         if (ring_write) begin
-            taken <= in_start ? 12'd1 : taken + 12'd1;
+            taken <= in_start ? 12'd1 : behind_taken;
+            full <= !in_start && behind_taken == width;
+            half <= !in_start && behind_taken == {1'b0, width[11:1]};
             newest_address <= write_address;
         end
 

@@ -27,14 +27,9 @@ module halfrow_kernel #(
     wire unused = &{1'b0, table_data}; // without outer taps g0 and g6 are not stored
 
     wire read = enable || table_read;
-    reg [7:0] address_0, address_1;
     wire [7:0] left = {bank, 1'b0, node};
-
-    always @(posedge clk)
-        if (read) begin
-            address_0 <= table_read ? {table_bank, table_entry} : left;
-            address_1 <= table_read ? {table_bank, table_entry} : left + 8'd1;
-        end
+    wire [7:0] address_0 = table_read ? {table_bank, table_entry} : left;
+    wire [7:0] address_1 = table_read ? {table_bank, table_entry} : left + 8'd1;
 
     wire [16*STORED-1:0] node_0, node_1;
     wire [16*STORED-1:0] written = table_data[16*FIRST +: 16*STORED];

@@ -1,4 +1,5 @@
-// A copy of the kernel's nodes with one port to read: node 0 to 64 of either bank.
+// A copy of the kernel's nodes with one port to read: node 0 to 64 of either bank. A tool may take the second register
+// behind the memory from the block RAM itself.
 `default_nettype none
 
 module halfrow_nodes #(
@@ -11,19 +12,22 @@ module halfrow_nodes #(
     input  wire [WIDTH-1:0] write_node,
     input  wire             read,
     input  wire [7:0]       read_address,
-    output reg  [WIDTH-1:0] read_node
+    output reg  [WIDTH-1:0] read_node // two clocks with `read` behind its address
 );
     localparam BITS = (TABLE_BANKS == 2) ? 8 : 7;
 
     wire unused = &{1'b0, write_address[7], read_address[7]}; // with one bank
 
-    (* ram_style = "block" *) reg [WIDTH-1:0] nodes [0:(1 << BITS)-1];
+    (* ram_style = "block", no_rw_check *) reg [WIDTH-1:0] nodes [0:(1 << BITS)-1];
+    reg [WIDTH-1:0] from_memory;
 
     always @(posedge clk) begin
         if (write)
             nodes[write_address[BITS-1:0]] <= write_node;
-        if (read)
-            read_node <= nodes[read_address[BITS-1:0]];
+        if (read) begin
+            from_memory <= nodes[read_address[BITS-1:0]];
+            read_node <= from_memory;
+        end
     end
 endmodule
 

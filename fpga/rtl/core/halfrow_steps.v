@@ -1,4 +1,5 @@
-// The step table: one factor Q a row and bank, read through one port.
+// The step table: one factor Q a row and bank, read through one port. A memory's output gets a register of its own before
+// anything is made of it, since it comes late in the clock.
 `default_nettype none
 
 module halfrow_steps #(
@@ -14,11 +15,11 @@ module halfrow_steps #(
     input  wire                read,
     input  wire                read_bank,
     input  wire [ROW_BITS-1:0] read_row,
-    output wire [24:0]         step, // stays until the next read
-    output reg                 bank  // that it came from
+    output reg  [24:0]         step, // two clocks behind `read`, until the next one
+    output reg                 bank  // that it comes from, one clock behind
 );
     // One memory a bank: a single one of twice the depth takes more block RAMs.
-    (* ram_style = "block" *) reg [24:0] first [0:MAX_HEIGHT-1];
+    (* ram_style = "block", no_rw_check *) reg [24:0] first [0:MAX_HEIGHT-1];
     reg [24:0] first_step;
 
     always @(posedge clk) begin
@@ -34,7 +35,7 @@ module halfrow_steps #(
 
     generate
         if (TABLE_BANKS == 2) begin : two_banks
-            (* ram_style = "block" *) reg [24:0] second [0:MAX_HEIGHT-1];
+            (* ram_style = "block", no_rw_check *) reg [24:0] second [0:MAX_HEIGHT-1];
             reg [24:0] second_step;
 
             always @(posedge clk) begin
@@ -44,9 +45,11 @@ module halfrow_steps #(
                     second_step <= second[read_row];
             end
 
-            assign step = bank ? second_step : first_step;
+            always @(posedge clk)
+                step <= bank ? second_step : first_step;
         end else begin : one_bank
-            assign step = first_step;
+            always @(posedge clk)
+                step <= first_step;
         end
     endgenerate
 endmodule

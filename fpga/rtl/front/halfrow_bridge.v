@@ -141,7 +141,7 @@ module halfrow_bridge #(
         .node_port_1(node_port_1), .idle(idle));
 
     // Test rows.
-    wire test_reset, test_enable, test_prepare, test_prepare_bank, test_valid, test_start, test_out_valid;
+    wire test_reset, test_enables, test_prepare, test_prepare_bank, test_valid, test_start, test_out_valid;
     wire [ROW_BITS-1:0] test_prepare_row;
     wire [11:0] test_sample;
     wire prepared, out_valid, out_start, out_last;
@@ -168,7 +168,7 @@ module halfrow_bridge #(
         .row_flag(row_flag), .row_session(row_session), .row_taken(row_taken), .row_byte_valid(row_byte_valid),
         .row_byte(row_byte), .row_byte_ready(row_byte_ready),
         .core_reset(test_reset), .prepare(test_prepare), .prepare_row(test_prepare_row),
-        .prepare_bank(test_prepare_bank), .prepared(prepared), .enable(test_enable), .in_valid(test_valid),
+        .prepare_bank(test_prepare_bank), .prepared(prepared), .enables(test_enables), .in_valid(test_valid),
         .in_start(test_start), .in_sample(test_sample), .out_valid(test_out_valid), .out_start(out_start),
         .out_last(out_last), .out_sample(out_sample));
 
@@ -198,7 +198,7 @@ module halfrow_bridge #(
 
     halfrow_multiplexer #(.ROW_BITS(ROW_BITS)) multiplexer (
         .clk(clk), .rst(rst), .session_open(session_open), .tables_ready(idle), .camera_reset(camera_reset),
-        .test_reset(test_reset), .test_enable(test_enable), .test_prepare(test_prepare),
+        .test_reset(test_reset), .test_enables(test_enables), .test_prepare(test_prepare),
         .test_prepare_row(test_prepare_row), .test_prepare_bank(test_prepare_bank), .test_valid(test_valid),
         .test_start(test_start), .test_sample(test_sample), .test_out_valid(test_out_valid),
         .camera_prepare(camera_prepare), .camera_prepare_row(camera_prepare_row),

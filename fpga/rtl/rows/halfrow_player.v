@@ -10,7 +10,6 @@ module halfrow_player #(
     input  wire                   rst,         // also while rows are dropped
 
     input  wire [11:0]            width,
-    input  wire [COLUMN_BITS-1:0] last_column,
     input  wire [15:0]            blanking,    // pixel clocks
     input  wire [31:0]            gap_seed,
 
@@ -21,6 +20,7 @@ module halfrow_player #(
     output wire                   sample_read, // the sample of `column` is to be at the pins
     output wire [COLUMN_BITS-1:0] column,
 
+    output wire                   enables,     // `enable` of the next clock
     output reg                    enable,
     output reg                    in_valid,
     output reg                    in_start,
@@ -36,7 +36,8 @@ module halfrow_player #(
     localparam NO_DRAW = 2'd0, BLANKING_DRAWN = 2'd1, ALL_DRAWN = 2'd2;
 
     reg in_row;
-    reg [COLUMN_BITS-1:0] next_column;
+    reg [COLUMN_BITS-1:0] next_column, last_but_one;
+    reg at_last; // next_column is the row's last
     reg ends_frame; // the row under way or played last does
     reg paused;
     reg [1:0] draws;  // in front of the next row
@@ -53,7 +54,7 @@ module halfrow_player #(
     wire may_start = !in_row && row_ready && draws_done && none_blank && extra == 4'd0;
     wire pause = gaps_on && drawn[2:0] == 3'd0 && !paused;
     wire sample_enters = (in_row || may_start) && !pause;
-    wire last_enters = in_row && !pause && next_column == last_column;
+    wire last_enters = in_row && !pause && at_last;
     wire waits = row_ready && draws_done;
     wire draining = ends_frame && (flush != 12'd0 || !none_blank);
     wire blank_passes = !in_row && !may_start && (row_ready ? waits : draining);
@@ -62,6 +63,7 @@ module halfrow_player #(
     wire draw_second = row_ready && draws == BLANKING_DRAWN && !in_row;
     wire draw_sample = sample_enters && !last_enters;
 
+    assign enables = (sample_enters || blank_passes) && !rst;
     assign start = may_start && !pause;
     assign sample_read = sample_enters;
     assign column = in_row ? next_column : {COLUMN_BITS{1'b0}};
@@ -110,17 +112,21 @@ module halfrow_player #(
         end
 
     always @(posedge clk)
+        enable <= enables;
+
+    always @(posedge clk) begin
+        last_but_one <= width[COLUMN_BITS-1:0] - 2'd2;
         next_column <= sample_enters ? column + 1'b1 : column;
+        at_last <= in_row && (sample_enters ? next_column == last_but_one : at_last);
+    end
 
     always @(posedge clk)
         if (rst) begin
-            enable <= 1'b0;
             in_valid <= 1'b0;
             in_start <= 1'b0;
             in_last <= 1'b0;
             under_way <= 1'b0;
         end else begin
-            enable <= sample_enters || blank_passes;
             in_valid <= sample_enters;
             in_start <= start;
             in_last <= last_enters;

@@ -33,12 +33,13 @@ module halfrow_row_gate #(
     input  wire [(1<<IN_BITS)-1:0] waiting,
     input  wire                    played,
 
-    output wire                    place_write,   // packet_byte is the place's byte number place_byte
+    output wire                    place_write,   // of place_byte, the place's byte number place_index
     output wire [ENTRY_BITS-1:0]   entry,         // of the packet's row
-    output wire [2:0]              place_byte,
+    output wire [2:0]              place_index,
+    output wire [7:0]              place_byte,
     input  wire                    places_held,   // no entry may be written yet
-    output wire [ENTRY_BITS-1:0]   before_entry,
-    input  wire [7:0]              before_byte,   // number place_byte of before_entry
+    output reg  [ENTRY_BITS-1:0]   before_entry,
+    input  wire [7:0]              before_byte,   // number place_index of before_entry
 
     output wire                    sample_write,
     output reg  [COLUMN_BITS-1:0]  column,
@@ -60,16 +61,21 @@ module halfrow_row_gate #(
     localparam [ENTRY_BITS:0] BANKS_IN = {{ENTRY_BITS{1'b0}}, 1'b1} << IN_BITS;
 
     reg [2:0] state;
-    reg [3:0] shown; // number of packet_byte while it is in the place
-    reg shown_valid;
-    reg in_samples; // packet_byte is behind the place
+    // The packet's byte gets a register before anything is made of it, since a memory's output comes late in the clock.
+    reg [7:0] shown_byte;
+    reg [3:0] coming, shown; // its number while it is in the place
+    reg coming_valid, shown_valid;
+    reg in_samples;          // it is behind the place
 
     wire reading = state == PLACE || state == TAKE;
 
     always @(posedge clk) begin
         packet_address <= reading ? packet_address + 12'd1 : 12'd0;
-        shown <= packet_address[3:0];
-        shown_valid <= reading;
+        coming <= packet_address[3:0];
+        coming_valid <= reading;
+        shown <= coming;
+        shown_valid <= coming_valid;
+        shown_byte <= packet_byte;
     end
 
     wire passed, far, last_number, row_0, follows, commit_fits, fits, short;
@@ -77,13 +83,16 @@ module halfrow_row_gate #(
 
     halfrow_row_check #(.ENTRY_BITS(ENTRY_BITS)) check (
         .clk(clk), .begins(state == SETTLE), .byte_valid(state == PLACE && shown_valid), .byte_index(shown),
-        .place_byte(packet_byte), .before_byte(before_byte), .packet_length(packet_length),
+        .place_byte(shown_byte), .before_byte(before_byte), .packet_length(packet_length),
         .acknowledged(acknowledged), .width(width), .height(height), .commit_frame(commit_frame),
         .entry(entry), .passed(passed), .far(far), .distance(distance), .last_number(last_number),
         .row_0(row_0), .follows(follows), .commit_fits(commit_fits), .fits(fits), .short(short));
 
-    assign before_entry = entry - 1'b1;
-    assign place_byte = shown[2:0];
+    always @(posedge clk)
+        before_entry <= entry - 1'b1;
+
+    assign place_index = shown[2:0];
+    assign place_byte = shown_byte;
 
     // A row that waits may be the one that a commit is for, or the right predecessor, as long as it has not come.
     wire [IN_BITS-1:0] bank = entry[IN_BITS-1:0];
@@ -125,7 +134,7 @@ module halfrow_row_gate #(
 
     assign place_write = state == TAKE && shown_valid && !in_samples && !shown[3];
     assign sample_write = taking && phase != 2'd0;
-    assign sample = phase == 2'd1 ? {packet_byte[3:0], earlier} : {packet_byte, earlier[3:0]};
+    assign sample = phase == 2'd1 ? {shown_byte[3:0], earlier} : {shown_byte, earlier[3:0]};
 
     always @(posedge clk) begin
         if (state != TAKE) begin
@@ -140,7 +149,7 @@ module halfrow_row_gate #(
             if (sample_write)
                 column <= column + 1'b1;
         end
-        earlier <= phase == 2'd1 ? {4'd0, packet_byte[7:4]} : packet_byte;
+        earlier <= phase == 2'd1 ? {4'd0, shown_byte[7:4]} : shown_byte;
     end
 
     assign again = state == AGAIN && !again_waiting;

@@ -27,7 +27,10 @@ module halfrow_row_numbers #(
     output reg  [ENTRY_BITS-1:0]   rows_entered, // rows from `acknowledged` on that have entered
     output reg  [ENTRY_BITS-1:0]   rows_left,    // of them, rows that have left the core
     output reg  [ENTRY_BITS-1:0]   rows_sent,    // of them, rows that have been sent
-    output wire [ENTRY_BITS-1:0]   next_entry,   // low bits of the first row that has not entered
+    // low bits of the first row that has not entered, has not left, was never sent
+    output reg  [ENTRY_BITS-1:0]   next_entry,
+    output reg  [ENTRY_BITS-1:0]   leaving_entry,
+    output reg  [ENTRY_BITS-1:0]   unsent_entry,
     output reg  [(1<<IN_BITS)-1:0] waiting,      // in-banks that hold a row, until it has entered
     output reg                     played        // a row has entered since rows were dropped
 );
@@ -151,7 +154,20 @@ module halfrow_row_numbers #(
             rows_sent <= rows_sent + {{ENTRY_BITS-1{1'b0}}, sent} - released;
         end
 
-    assign next_entry = acknowledged[ENTRY_BITS-1:0] + rows_entered;
+    always @(posedge clk)
+        if (rst) begin
+            next_entry <= {ENTRY_BITS{1'b0}};
+            leaving_entry <= {ENTRY_BITS{1'b0}};
+            unsent_entry <= {ENTRY_BITS{1'b0}};
+        end else if (complete && operation == LOAD) begin
+            next_entry <= lower[ENTRY_BITS-1:0];
+            leaving_entry <= lower[ENTRY_BITS-1:0];
+            unsent_entry <= lower[ENTRY_BITS-1:0];
+        end else begin
+            next_entry <= next_entry + {{ENTRY_BITS-1{1'b0}}, entered};
+            leaving_entry <= leaving_entry + {{ENTRY_BITS-1{1'b0}}, left};
+            unsent_entry <= unsent_entry + {{ENTRY_BITS-1{1'b0}}, sent};
+        end
 
     always @(posedge clk)
         if (rst || drop) begin

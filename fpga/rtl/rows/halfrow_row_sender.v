@@ -33,7 +33,7 @@ module halfrow_row_sender #(
     output reg  [7:0]             counted_byte,
     output wire                   sample_read,
     output reg  [COLUMN_BITS-1:0] column,       // to be read next
-    input  wire [11:0]            sample,       // of the last sample_read
+    input  wire [11:0]            read_sample,  // by the last sample_read
 
     output wire                   row_valid,
     output wire [7:0]             row_kind,
@@ -56,7 +56,7 @@ module halfrow_row_sender #(
     reg [ENTRY_BITS-1:0] entry, waiting_entry;
     reg first_time;
     reg dropped; // while it was sent
-    reg [COLUMN_BITS-1:0] row_width;
+    reg [COLUMN_BITS-1:0] end_column; // `column` when the row's last byte goes
     reg [15:0] packets;
     reg [11:0] sample_bytes;
 
@@ -73,8 +73,9 @@ module halfrow_row_sender #(
     reg [1:0] phase;   // byte of three
     reg [3:0] earlier; // bits of the sample before
     wire move = (state == HEAD || state == SAMPLES) && (!row_byte_valid || row_byte_ready);
-    wire head_ends = move && state == HEAD && head == HEAD_BYTES - 5'd1;
-    wire row_ends = move && state == SAMPLES && phase == 2'd2 && column == row_width;
+    wire last_of_head = head == HEAD_BYTES - 5'd1;
+    wire head_ends = move && state == HEAD && last_of_head;
+    wire row_ends = move && state == SAMPLES && phase == 2'd2 && column == end_column;
 
     assign place_address = {entry, head[2:0]};
     assign sent = row_ends && first_time && !dropped;
@@ -104,7 +105,7 @@ module halfrow_row_sender #(
         if (state == IDLE) begin
             entry <= unsent ? unsent_entry : waiting_entry;
             first_time <= unsent;
-            row_width <= width[COLUMN_BITS-1:0];
+            end_column <= width[COLUMN_BITS-1:0] + 1'b1;
             row_length <= {4'd0, sample_bytes} + {11'd0, HEAD_BYTES};
             row_sequence <= packets;
             row_session <= session;
@@ -143,6 +144,7 @@ module halfrow_row_sender #(
             low_greatest <= counted_byte == 8'hff;
     end
 
+    reg [11:0] sample;
     reg [7:0] sample_byte;
 
     always @*
@@ -159,24 +161,27 @@ module halfrow_row_sender #(
         row_byte_valid <= !rst && (move || (row_byte_valid && !row_byte_ready));
     end
 
-    // The first sample is read all through the head, and each further one when the one before has lent its last whole
-    // byte.
-    assign sample_read = state == HEAD || (move && phase != 2'd1);
+    // A sample gets a register of its own, since a memory's output comes late in the clock. The first is read all through
+    // the head, and each further one when the one two before it has lent its last whole byte.
+    wire next_sample = head_ends || (move && state == SAMPLES && phase != 2'd1);
+    assign sample_read = (state == HEAD && !last_of_head) || next_sample;
+
+    always @(posedge clk)
+        if (next_sample)
+            sample <= read_sample;
 
     always @(posedge clk) begin
         if (state == OFFER) begin
             head <= 5'd0;
             phase <= 2'd0;
             column <= {COLUMN_BITS{1'b0}};
-        end else if (head_ends)
-            column <= column + 1'b1;
-        else if (move) begin
-            if (state == HEAD)
+        end else begin
+            if (next_sample || (move && state == HEAD && head == HEAD_BYTES - 5'd2))
+                column <= column + 1'b1;
+            if (move && state == HEAD && !last_of_head)
                 head <= head + 5'd1;
-            else begin
+            if (move && state == SAMPLES) begin
                 phase <= phase == 2'd2 ? 2'd0 : phase + 2'd1;
-                if (phase != 2'd1)
-                    column <= column + 1'b1;
                 earlier <= sample[11:8];
             end
         end

@@ -80,7 +80,7 @@ module halfrow_rows #(
     output wire [ROW_BITS-1:0] prepare_row,
     output wire                prepare_bank,
     input  wire                prepared,
-    output wire                enable,
+    output wire                enables,       // the core's enable of the next clock
     output wire                in_valid,
     output wire                in_start,
     output wire [11:0]         in_sample,
@@ -112,7 +112,7 @@ module halfrow_rows #(
     wire [COLUMN_BITS-1:0] last_column = width[COLUMN_BITS-1:0] - 1'b1;
 
     wire settling, arrived, in_last, leaves, sent, played;
-    wire [ENTRY_BITS-1:0] rows_entered, rows_left, rows_sent, first_unentered;
+    wire [ENTRY_BITS-1:0] rows_entered, rows_left, rows_sent, first_unentered, leaving_entry, unsent_entry;
     wire [ROW_BANKS_IN-1:0] waiting;
     wire [ENTRY_BITS-1:0] gate_entry;
 
@@ -123,16 +123,17 @@ module halfrow_rows #(
         .entered(in_last), .left(leaves), .sent(sent),
         .acknowledged(acknowledged), .credit_window(credit_window), .next_row_in(next_row_in),
         .rows_entered(rows_entered), .rows_left(rows_left), .rows_sent(rows_sent), .next_entry(first_unentered),
+        .leaving_entry(leaving_entry), .unsent_entry(unsent_entry),
         .waiting(waiting), .played(played));
 
     wire place_write, place_held;
     wire [2:0] place_index;
     wire [ENTRY_BITS-1:0] before_entry;
-    wire [7:0] before_byte, prepare_byte, send_byte;
+    wire [7:0] place_byte, before_byte, prepare_byte, send_byte;
     wire [ENTRY_BITS+2:0] prepare_address, send_address;
 
     halfrow_row_places #(.ENTRY_BITS(ENTRY_BITS)) places (
-        .clk(clk), .write(place_write), .write_address({gate_entry, place_index}), .write_byte(packet_byte),
+        .clk(clk), .write(place_write), .write_address({gate_entry, place_index}), .write_byte(place_byte),
         .check_address({before_entry, place_index}), .check_byte(before_byte),
         .prepare_address(prepare_address), .prepare_byte(prepare_byte),
         .send_address(send_address), .send_byte(send_byte));
@@ -150,7 +151,8 @@ module halfrow_rows #(
         .has_generation(generation != 8'd0), .commit_pending(commit_pending), .commit_frame(commit_frame),
         .settling(settling), .acknowledged(acknowledged), .rows_entered(rows_entered), .rows_left(rows_left),
         .waiting(waiting), .played(played),
-        .place_write(place_write), .entry(gate_entry), .place_byte(place_index), .places_held(place_held),
+        .place_write(place_write), .entry(gate_entry), .place_index(place_index), .place_byte(place_byte),
+        .places_held(place_held),
         .before_entry(before_entry), .before_byte(before_byte),
         .sample_write(sample_in_write), .column(column_in), .sample(sample_in),
         .again(again), .again_waiting(again_waiting),
@@ -177,15 +179,15 @@ module halfrow_rows #(
         .ready(row_ready), .start(start), .entry(ready_entry), .row_0(next_row_0), .row_is_last(next_is_last),
         .row_generation(next_generation), .row_bank(prepare_bank), .busy(preparer_busy));
 
-    wire sample_in_read, flushing;
+    wire sample_in_read, flushing, enable;
     wire [COLUMN_BITS-1:0] column_played;
     wire [15:0] pauses;
 
     halfrow_player #(.TAPS(TAPS), .COLUMN_BITS(COLUMN_BITS)) player (
-        .clk(clk), .rst(clear), .width(width), .last_column(last_column), .blanking(blanking), .gap_seed(gap_seed),
+        .clk(clk), .rst(clear), .width(width), .blanking(blanking), .gap_seed(gap_seed),
         .row_ready(row_ready), .row_0(next_row_0), .row_is_last(next_is_last), .start(start),
         .sample_read(sample_in_read), .column(column_played),
-        .enable(enable), .in_valid(in_valid), .in_start(in_start), .in_last(in_last),
+        .enables(enables), .enable(enable), .in_valid(in_valid), .in_start(in_start), .in_last(in_last),
         .pauses(pauses),
         .under_way(under_way), .flushing(flushing));
 
@@ -200,7 +202,6 @@ module halfrow_rows #(
         .write_sample(sample_in), .read(sample_in_read),
         .read_address({start ? ready_entry[IN_BITS-1:0] : played_bank, column_played}), .read_sample(in_sample));
 
-    wire [ENTRY_BITS-1:0] leaving_entry = acknowledged[ENTRY_BITS-1:0] + rows_left;
     wire sample_out_write, row_inside, other_tables;
     wire [COLUMN_BITS-1:0] column_collected, column_sent;
     wire [OUT_BITS-1:0] left_bank, sent_bank;
@@ -237,7 +238,6 @@ module halfrow_rows #(
         .read_sample(sample_sent));
 
     wire sender_idle;
-    wire [ENTRY_BITS-1:0] unsent_entry = acknowledged[ENTRY_BITS-1:0] + rows_sent;
 
     halfrow_row_sender #(
         .OUT_BITS(OUT_BITS), .ENTRY_BITS(ENTRY_BITS), .COLUMN_BITS(COLUMN_BITS)
@@ -249,7 +249,7 @@ module halfrow_rows #(
         .place_address(send_address), .place_byte(send_byte), .bank(sent_bank),
         .head_index(head_index), .head_byte(head_byte), .counted(counted), .counted_high(counted_high),
         .counted_byte(counted_byte),
-        .sample_read(sample_out_read), .column(column_sent), .sample(sample_sent),
+        .sample_read(sample_out_read), .column(column_sent), .read_sample(sample_sent),
         .row_valid(row_valid), .row_kind(row_kind), .row_sequence(row_sequence), .row_length(row_length),
         .row_flag(row_flag), .row_session(row_session), .row_taken(row_taken),
         .row_byte_valid(row_byte_valid), .row_byte(row_byte), .row_byte_ready(row_byte_ready), .idle(sender_idle));

@@ -60,19 +60,20 @@ module halfrow_reply #(
         else refusal_byte <= refusal[{index[1:0], 3'd0} +: 8];
     end
 
-    // Only bytes from memories come as they are, the rest is two clocks behind its index.
+    // Only a table's byte comes as it is, the rest is two clocks behind its index.
     reg [7:0] made;
     reg in_table; // behind the span
     reg from_packet;
 
     always @(posedge clk) begin
-        made <= serial_low | serial_high | middle_byte | capability | crc_byte | refusal_byte;
+        made <= from_packet ? packet_byte
+                            : serial_low | serial_high | middle_byte | capability | crc_byte | refusal_byte;
         in_table <= source == FROM_TABLE && index >= 12'd7;
         from_packet <= source == FROM_PACKET || (source == FROM_TABLE && index < 12'd7)
                        || (source == FROM_HELLO && index < 12'd4);
     end
 
-    wire [7:0] value = in_table ? table_byte : from_packet ? packet_byte : made | status_byte;
+    wire [7:0] value = in_table ? table_byte : made | status_byte;
 
     reg active, settled, fetched;
     wire last = index == length;

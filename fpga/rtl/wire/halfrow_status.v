@@ -101,14 +101,21 @@ module halfrow_status (
         end
     end
 
+    // A byte is read a clock before it is counted up.
     (* ram_style = "distributed" *) reg [7:0] counters [0:63];
-    wire [5:0] address = report ? index : {counter, place};
-    wire [7:0] stored = counters[address];
+    reg [7:0] stored;
+    wire [1:0] next_place = place + 2'd1;
+    wire [5:0] read_address = report ? index : state == IDLE ? {next, 2'd0} : {counter, next_place};
+    wire [5:0] write_address = report ? index : {counter, place};
+    wire [7:0] read = counters[read_address];
     wire [8:0] sum = {1'b0, stored} + {4'd0, amount};
     wire write = report ? report_clears && take : state != IDLE;
     wire [7:0] written = report || state == SWEEP ? 8'd0 : state == SATURATE ? 8'hff : sum[7:0];
 
-    always @(posedge clk) if (write) counters[address] <= written;
+    always @(posedge clk) begin
+        stored <= read;
+        if (write) counters[write_address] <= written;
+    end
 
     always @(posedge clk) begin
         case (state)
@@ -120,7 +127,7 @@ module halfrow_status (
                 place <= 2'd0;
             end
             COUNT: begin
-                place <= place + 2'd1;
+                place <= next_place;
                 amount <= 5'd1;
                 if (!sum[8]) state <= IDLE;
                 else if (place == 2'd3) state <= SATURATE;
@@ -175,7 +182,7 @@ module halfrow_status (
 
     always @(posedge clk) begin
         if (high || !report) counter_byte <= 8'd0;
-        else counter_byte <= stored;
+        else counter_byte <= read;
         if (!high || index[4] || index[2] || !report) next_row_byte <= 8'd0;
         else next_row_byte <= next_row_in[{index[1:0], 3'd0} +: 8];
         if (!high || index[4] || !index[2] || !report) acknowledged_byte <= 8'd0;

@@ -19,19 +19,19 @@ module halfrow_table_port #(
     output wire                advance,     // the packet's next byte is wanted
     input  wire [7:0]          packet_byte, // the one that was wanted a clock ago
     output wire                byte_valid,
-    output reg  [7:0]          byte_read,
+    output wire [7:0]          byte_read,
     input  wire                byte_ready,
 
     output wire                step_write,
     output wire                node_write,
     output reg  [ROW_BITS-1:0] table_entry,
     output wire [79:0]         table_data,
-    input  wire [24:0]         step_port,   // two clocks after table_entry
+    input  wire [24:0]         step_port,   // three clocks after table_entry
     input  wire [79:0]         node_port_0,
     input  wire [79:0]         node_port_1
 );
     `include "halfrow_board.vh"
-    localparam IDLE = 3'd0, NEXT = 3'd1, FETCH = 3'd2, TEST = 3'd3, ADDRESS = 3'd4, SELECT = 3'd5, OFFER = 3'd6;
+    localparam IDLE = 3'd0, NEXT = 3'd1, FETCH = 3'd2, TEST = 3'd3, ADDRESS = 3'd4, OFFER = 3'd5;
 
     localparam [3:0] NODE_BYTES = 4'd10;
     localparam [3:0] STEP_BYTES = 4'd4;
@@ -39,14 +39,17 @@ module halfrow_table_port #(
     reg [2:0] state;
     reg [3:0] place; // byte of the entry
     reg [11:0] left;
-    reg [79:0] entry; // the newest byte in [79:72]; the first one of a whole entry in [7:0]
+    reg [79:0] entry; // being written: the newest byte in [79:72]; whole, or being read: the first one in [7:0]
     wire [3:0] size = kernel ? NODE_BYTES : STEP_BYTES;
+    wire last_byte = place == (kernel ? NODE_BYTES - 4'd1 : STEP_BYTES - 4'd1);
     wire fetched = state == FETCH && place == NODE_BYTES;
-    wire entry_done = (state == TEST && !illegal) || (state == OFFER && byte_ready && place == size);
+    wire byte_taken = state == OFFER && byte_ready;
+    wire entry_done = (state == TEST && !illegal) || (byte_taken && last_byte);
 
     assign done = state == NEXT && left == 12'd0;
     assign advance = state == FETCH && place < size;
     assign byte_valid = state == OFFER;
+    assign byte_read = entry[7:0];
 
     // A step is shifted on without new bytes until it stands where a node would.
     wire step_zero = entry[23:0] == 24'd0;
@@ -61,7 +64,8 @@ module halfrow_table_port #(
 
     always @(posedge clk) begin
         if (start && task_kind == TASK_WIPE) entry <= 80'd0;
-        else if (state == FETCH && place != 4'd0) entry <= {packet_byte, entry[79:8]};
+        else if (state == ADDRESS) entry <= kernel ? port ? node_port_1 : node_port_0 : {55'd0, step_port};
+        else if ((state == FETCH && place != 4'd0) || byte_taken) entry <= {packet_byte, entry[79:8]};
         if (start) begin
             table_entry <= first;
             left <= count;
@@ -70,23 +74,6 @@ module halfrow_table_port #(
             left <= left - 12'd1;
         end
     end
-
-    // Both ports by pairs of bytes, and the step. Kept, because the mapper would trade look-up tables for depth.
-    wire [31:0] step = {7'd0, step_port};
-    (* keep = "true" *) wire [39:0] pairs;
-    (* keep = "true" *) wire [7:0] step_byte;
-    assign step_byte = step[{place[1:0], 3'd0} +: 8];
-    genvar i;
-    generate
-        for (i = 0; i < 5; i = i + 1) begin : pair
-            wire [15:0] both = port ? node_port_1[16*i +: 16] : node_port_0[16*i +: 16];
-            assign pairs[8*i +: 8] = place[0] ? both[15:8] : both[7:0];
-        end
-    endgenerate
-    wire [7:0] lower_byte = pairs[{1'b0, place[2:1], 3'd0} +: 8];
-
-    always @(posedge clk)
-        if (state == SELECT) byte_read <= !kernel ? step_byte : place[3] ? pairs[39:32] : lower_byte;
 
     always @(posedge clk) begin
         case (state)
@@ -100,15 +87,14 @@ module halfrow_table_port #(
                 endcase
             FETCH: if (fetched) state <= TEST;
             TEST: state <= illegal ? IDLE : NEXT;
-            ADDRESS: if (place[1]) state <= SELECT;
-            SELECT: state <= OFFER;
-            OFFER: if (byte_ready) state <= place == size ? NEXT : SELECT;
+            ADDRESS: if (place[1]) state <= OFFER;
+            OFFER: if (entry_done) state <= NEXT;
             default: state <= IDLE;
         endcase
         if (start) state <= NEXT;
         if (rst) state <= IDLE;
 
-        if (state == FETCH || (state == ADDRESS && !place[1]) || state == SELECT) place <= place + 4'd1;
+        if (state == FETCH || (state == ADDRESS && !place[1]) || (byte_taken && !last_byte)) place <= place + 4'd1;
         else if (state != OFFER) place <= 4'd0;
     end
 endmodule
