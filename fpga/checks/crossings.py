@@ -8,7 +8,6 @@ import collections
 import concurrent.futures
 import configparser
 import fnmatch
-import json
 import os
 import pathlib
 import re
@@ -17,12 +16,11 @@ import subprocess
 import sys
 import tempfile
 
+import tops
 from word_netlist import REGISTERS, Netlist
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-READ = """read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; {sources} hierarchy -check -top {top}; proc; flatten; opt_expr; opt_dff;
-opt_clean; memory_collect; write_json {json}"""
 
 
 class Crossings:
@@ -145,32 +143,19 @@ def matches(key, source, register):
     return fnmatch.fnmatchcase(source, left) and fnmatch.fnmatchcase(register, right)
 
 
-def elaborated(board, kind, sensor, tree, work):
-    """The netlist of a top whose sources are those of a tree."""
-    (work / "halfrow_build.vh").write_text("`define HALFROW_BUILD 32'h12345678\n" + ("`define HALFROW_SENSOR\n" if sensor else ""))
-    listed = re.findall(r"^verilog work (.*)$", (board / f"{kind}.prj").read_text(), re.MULTILINE)
-    sources = " ".join(f"read_verilog -I{work} -I{tree}/fpga/rtl {tree}/{path};" for path in listed)
-    script = READ.format(sources=sources.replace("\n", " "), top=f"{board.name}_{kind}", json=work / "top.json").replace("\n", " ")
-    done = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"crossings: yosys does not read {board.name}_{kind}:\n{done.stderr[-1500:]}")
-    return Netlist(json.loads((work / "top.json").read_text())["modules"][f"{board.name}_{kind}"])
-
-
-def faults_of(board, kind, sensor, tree=ROOT):
+def faults_of(top, tree=ROOT):
     """Faults of a top, and a line about one that has none."""
-    top = f"{board.name}_{kind}" + (" with sensor" if sensor else "")
+    name = tops.name_of(top)
     config = configparser.ConfigParser(delimiters=(":",), interpolation=None)
     config.optionxform = str
     config.read(HERE / "crossings.ini")
-    listed = [key for section in config.sections() if fnmatch.fnmatchcase(top, section) for key in config[section]]
-    with tempfile.TemporaryDirectory() as work:
-        faults, met, sound = judge(Crossings(elaborated(board, kind, sensor, tree, pathlib.Path(work))), listed)
-    faults |= {f"crossings.ini: {key} is not in {top}" for key in listed if key not in met}
-    return faults, f"PASS {top}: {len(sound)} bits cross through two registers, {len(met)} crossings are listed with their reasons"
+    listed = [key for section in config.sections() if fnmatch.fnmatchcase(name, section) for key in config[section]]
+    faults, met, sound = judge(Crossings(Netlist(tops.netlist(top, "words", tree))), listed)
+    faults |= {f"crossings.ini: {key} is not in {name}" for key in listed if key not in met}
+    return faults, f"PASS {name}: {len(sound)} bits cross through two registers, {len(met)} crossings are listed with their reasons"
 
 
-def missed(board, kind, mutants):
+def missed(top, mutants):
     """Those faults, put all into one copy of the sources, that are not refused by the name of what they spoil."""
     with tempfile.TemporaryDirectory() as scratch:
         tree = pathlib.Path(scratch)
@@ -181,7 +166,7 @@ def missed(board, kind, mutants):
             if after == before:
                 sys.exit(f"crossings: crossings.txt: {edit} changes nothing in {path}")
             (tree / path).write_text(after)
-        faults, _ = faults_of(board, kind, True, tree)
+        faults, _ = faults_of(top, tree)
         return [(path, edit) for _, path, edit, spoilt in mutants if not any(spoilt in fault for fault in faults)]
 
 
@@ -192,17 +177,16 @@ def mutants(kind):
 
 
 def main():
-    boards = sorted(path.parent for path in (HERE.parent / "boards").glob("*/fifo.prj"))
-    kinds = ("fifo", "uart")
+    every = tops.all_of()
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        tops = [pool.submit(faults_of, board, kind, sensor) for board in boards for kind in kinds for sensor in (False, True)]
-        spoilt = [pool.submit(missed, boards[0], kind, mutants(kind)) for kind in kinds]
-        wrong = sorted({fault for top in tops for fault in top.result()[0]})
-        wrong += [f"this fault is not refused: {path}: {edit}" for kind in spoilt for path, edit in kind.result()]
+        judged = [pool.submit(faults_of, top) for top in every]
+        spoilt = [pool.submit(missed, top, mutants(top.kind)) for top in every if top.sensor]
+        wrong = sorted({fault for top in judged for fault in top.result()[0]})
+        wrong += [f"this fault is not refused: {path}: {edit}" for top in spoilt for path, edit in top.result()]
     if wrong:
         sys.exit("crossings: " + "\ncrossings: ".join(wrong))
-    print("\n".join(top.result()[1] for top in tops))
-    print(f"PASS {sum(len(mutants(kind)) for kind in kinds)} faults put into crossings are refused")
+    print("\n".join(top.result()[1] for top in judged))
+    print(f"PASS {sum(len(mutants(top.kind)) for top in every if top.sensor)} faults put into crossings are refused")
 
 
 main()

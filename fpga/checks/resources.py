@@ -1,24 +1,30 @@
 #!/usr/bin/env python3
-"""Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25, prints what each takes in percent of it and how
-much logic stands between its registers, and fails where budget.ini is exceeded. `halfrow paper` reads WORK/report.json.
+"""Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25, prints what each takes in percent of it, how much logic
+stands between its registers and how many pins the busiest clock enables and resets of a board's top lead to, and fails where budget.ini is
+exceeded. `halfrow paper` reads WORK/report.json.
     resources.py WORK [BUILD ...]     WORK: a directory for logs and netlists; BUILD: a section's name"""
 
 import concurrent.futures
-import configparser
+import itertools
 import json
+import os
 import pathlib
 import subprocess
 import sys
 
+import budget
+import depth
 import netlist
 import rtl
+import tops
 
-CHECKS = pathlib.Path(__file__).resolve().parent
 LX25 = {"luts": 15032, "registers": 30064, "block_rams": 52, "dsps": 38}
 
 
 def synthesise(work, name, build):
     """The flat netlist of a build, as yosys writes it in JSON."""
+    if budget.top_of(build):
+        return tops.netlist(budget.top_of(build), "cells")
     stem = work / "".join(c if c.isalnum() else "_" for c in name)
     top = build["top"]
     if top not in rtl.modules():
@@ -33,13 +39,14 @@ def synthesise(work, name, build):
 
 def measure(module):
     counts = netlist.resources(module)
-    depth = netlist.Depth(module)
+    graph = netlist.Graph(module)
+    logic = depth.Depth(graph)
     shares = {name: 100 * counts[name] / LX25[name] for name in LX25}
     counts["mean"] = sum(shares.values()) / len(shares)
-    counts["arithmetic"] = depth.arithmetic
-    counts["carry_bits"] = depth.carry_bits
-    counts["lut_levels"] = depth.lut_levels
-    return counts, shares, depth
+    counts["arithmetic"] = logic.arithmetic
+    counts["carry_bits"] = graph.carry_bits
+    counts["lut_levels"] = logic.lut_levels
+    return counts, shares, logic
 
 
 def excesses(build, counts, shares):
@@ -59,27 +66,35 @@ def described(name, counts, shares):
     return {"name": name, **parts, "mean": counts["mean"]}
 
 
+def fan_outs(name, graph):
+    """The busiest clock enables and resets, three each."""
+    for what, pins in (("clock enables", netlist.ENABLE), ("resets", netlist.RESET)):
+        busiest = ", ".join(f"{net} x{count}" for count, net in itertools.islice(graph.fan_outs(pins), 3))
+        yield f"{name}: pins behind {what}: {busiest}"
+
+
 def main():
     work = pathlib.Path(sys.argv[1])
     work.mkdir(parents=True, exist_ok=True)
-    budget = configparser.ConfigParser(interpolation=None)
-    budget.read_string((CHECKS / "budget.ini").read_text())
-    names = sys.argv[2:] or budget.sections()
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        modules = list(pool.map(lambda name: synthesise(work, name, budget[name]), names))
+    builds = budget.sections()
+    names = sys.argv[2:] or list(builds)
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        modules = list(pool.map(lambda name: synthesise(work, name, builds[name]), names))
     print("XC6SLX25: 15,032 LUTs, 30,064 registers, 52 block RAMs, 38 DSP48A1. yosys gives no slices.\n")
     print(f"{'':28} {'LUTs':>13} {'registers':>13} {'block RAM':>13} {'no 9K':>6} {'DSP48A1':>11} {'mean':>6}"
           f" {'carry bits':>10} {'LUT levels':>10}")
-    exceeded, described_builds = [], []
+    exceeded, described_builds, leading = [], [], []
     for name, module in zip(names, modules):
-        counts, shares, depth = measure(module)
+        counts, shares, logic = measure(module)
         cells = " ".join(f"{counts[key]:6g} {shares[key]:4.1f} %" for key in ("luts", "registers", "block_rams"))
         print(f"{name:28} {cells} {counts['whole_rams']:6} {counts['dsps']:4} {shares['dsps']:4.1f} %"
-              f" {counts['mean']:4.1f} % {depth.carry_bits:9} {depth.lut_levels:10}")
+              f" {counts['mean']:4.1f} % {counts['carry_bits']:9} {counts['lut_levels']:10}")
         described_builds.append(described(name, counts, shares))
-        exceeded += [f"{name}: {excess}" for excess in excesses(budget[name], counts, shares)]
-        exceeded += [f"{name}: {path}" for path in depth.offences(int(budget[name]["arithmetic"]),
-                                                                 int(budget[name]["lut_levels"]))]
+        exceeded += [f"{name}: {excess}" for excess in excesses(builds[name], counts, shares)]
+        exceeded += [f"{name}: {path}" for path in logic.offences(int(builds[name]["arithmetic"]),
+                                                                 int(builds[name]["lut_levels"]))]
+        leading += fan_outs(name, logic.graph) if budget.top_of(builds[name]) else []
+    print("\n" + "\n".join(leading))
     tool = subprocess.run(["yosys", "-V"], check=True, capture_output=True, text=True).stdout.split(" (")[0].strip()
     report = {"tool": tool, "device": "XC6SLX25", "builds": described_builds}
     (work / "report.json").write_text(json.dumps(report, indent=2) + "\n")

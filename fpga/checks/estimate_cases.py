@@ -1,0 +1,77 @@
+#!/usr/bin/env python3
+"""estimate.py and depth.py on netlists of a few cells, against sums made by hand."""
+
+import sys
+
+import depth
+import estimate
+import netlist
+
+CLOCK, OTHER = 2, 3
+
+
+def cell(kind, parameters=None, outputs=("O", "Q", "CO", "DOA", "DOB", "P", "PCOUT"), **pins):
+    return {"type": kind, "parameters": parameters or {}, "connections": {pin: list(bits) for pin, bits in pins.items()},
+            "port_directions": {pin: "output" if pin in outputs else "input" for pin in pins}}
+
+
+def register(d, q, c=CLOCK, kind="FDRE", ce="1"):
+    return cell(kind, C=[c], CE=[ce], D=[d], Q=[q], R=["0"])
+
+
+def module(**cells):
+    bits = {bit for one in cells.values() for bits in one["connections"].values() for bit in bits if isinstance(bit, int)}
+    names = {f"n{bit}": {"bits": [bit], "attributes": {}} for bit in bits if bit not in (CLOCK, OTHER)}
+    names |= {"clk": {"bits": [CLOCK], "attributes": {}}, "other": {"bits": [OTHER], "attributes": {}}}
+    return {"cells": cells, "ports": {}, "netnames": names}
+
+
+def dsp(a, b, p, **registers):
+    used = {name: "0" for name in ("A0REG", "A1REG", "B0REG", "B1REG", "CREG", "DREG", "MREG", "PREG")}
+    return cell("DSP48A1", used | registers, CLK=[CLOCK], A=[a], B=[b], C=["0"], D=["0"], P=[p],
+                OPMODE=["1", "0", "0", "0", "0", "0", "0", "0"])
+
+
+# 10 leads to one LUT: 0.45 + 0.55 + 0.22 + 0.55 + 0.35.
+ONE_LUT = module(a=register(13, 10), l=cell("LUT1", I0=[10], O=[11]), b=register(11, 12))
+# 10 leads to four pins, so each of its ways takes 0.22 * 2 more. Entering a chain 0.40, on along it 0.09, from there to D 0.55.
+CHAIN = module(
+    a=register(30, 10), l=cell("LUT2", I0=[10], I1=[10], O=[11]), low=cell("CARRY4", CI=["0"], S=[11, 10, 10, "0"], DI=["0"] * 4,
+                                                                         O=[12, 13, 14, 15], CO=[16, 17, 18, 19]),
+    high=cell("CARRY4", CI=[19], S=["0"] * 4, DI=["0"] * 4, O=[20, 21, 22, 23], CO=[24, 25, 26, 27]), b=register(23, 28))
+# A block RAM's output into a multiplier whose product is kept: 2.1 + 0.55 + 3.0 + 0.35.
+BLOCK_RAM = module(m=cell("RAMB16BWER", CLKA=[CLOCK], CLKB=["0"], ADDRA=[10], DOA=[11], DOB=[12]),
+                   d=dsp(11, "0", 13, MREG="1"))
+# 0.45 + 0.55 + 0.35 in half a period.
+HALF = module(a=register(12, 10, kind="FDRE_1"), b=register(10, 11))
+# The same from one clock to the other.
+CROSSING = module(a=register(12, 10), b=register(10, 11, c=OTHER))
+# Nothing but an asynchronous reset.
+ASYNCHRONOUS = module(a=register(12, 10), b=cell("FDPE", C=[CLOCK], CE=["1"], D=["0"], PRE=[10], Q=[11]))
+
+DELAYS = [("one LUT", ONE_LUT, 2.12), ("a chain", CHAIN, 0.45 + 0.99 + 0.22 + 0.55 + 0.40 + 0.09 + 0.55 + 0.35),
+          ("a block RAM", BLOCK_RAM, 6.0), ("half a period", HALF, 2.7), ("a crossing", CROSSING, 1.35), ("a reset", ASYNCHRONOUS, None)]
+DEPTHS = [("one LUT", ONE_LUT, 0, 1), ("a chain", CHAIN, 1, 1), ("a block RAM", BLOCK_RAM, 1, 2)]
+# Netlists and limits between which they must be refused, and not: by one clock, and by a crossing.
+LIMITS = [(ONE_LUT, {"mhz": "472", "crossing_ns": "9"}, True), (ONE_LUT, {"mhz": "471", "crossing_ns": "9"}, False),
+          (CROSSING, {"mhz": "900", "crossing_ns": "1.3"}, True), (CROSSING, {"mhz": "900", "crossing_ns": "1.4"}, False)]
+
+
+def faults():
+    for name, cells, wanted in DELAYS:
+        paths = estimate.Estimate(cells).paths()
+        delay = paths[0].delay if paths else None
+        if (delay is None) != (wanted is None) or wanted and abs(delay - wanted) > 1e-9:
+            yield f"{name} takes {delay} ns, by hand {wanted}"
+    for name, cells, steps, luts in DEPTHS:
+        found = depth.Depth(netlist.Graph(cells))
+        if (found.arithmetic, found.lut_levels) != (steps, luts):
+            yield f"{name} has {found.arithmetic} steps and {found.lut_levels} LUTs, by hand {steps} and {luts}"
+    for cells, limits, refused in LIMITS:
+        if bool(estimate.judge("", cells, limits, 1)[1]) != refused:
+            yield f"with {limits} a netlist is {'not ' if refused else ''}refused"
+
+
+wrong = list(faults())
+if wrong:
+    sys.exit("estimate_cases: " + "\nestimate_cases: ".join(wrong))

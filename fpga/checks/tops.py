@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+"""The tops of the miniSpartan6+ as yosys reads them: once for every check that looks at them. What it made is kept below
+target/hardware/tops for as long as the sources are the same.
+    tops.py words|cells fifo|uart [sensor]     prints the file of the netlist
+words: flat, in front of mapping, read without a warning. cells: flat, of Spartan-6 cells, with pads, as `build --yosys` writes it."""
+
+import collections
+import hashlib
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+KEPT = ROOT / "target/hardware/tops"
+LIBRARY = "read_verilog -lib -specify +/xilinx/cells_sim.v +/xilinx/cells_xtra.v"
+COMMANDS = {
+    "words": "hierarchy -check -top {top}; proc; check -assert; flatten; opt_expr; opt_dff; opt_clean; memory_collect",
+    # No shift registers: yosys 0.23 forgets the clock enable of those that it extracts from registers.
+    "cells": "synth_xilinx -family xc6s -ise -flatten -nosrl -top {top}",
+}
+# What yosys says of a top that is no fault of it.
+EXPECTED = ["tri-state", "floating point", "Replacing memory"]
+
+Top = collections.namedtuple("Top", "board kind sensor")
+
+
+def all_of(board="minispartan6plus"):
+    return [Top(board, kind, sensor) for kind in ("fifo", "uart") for sensor in (False, True)]
+
+
+def module_of(top):
+    return f"{top.board}_{top.kind}"
+
+
+def name_of(top):
+    return module_of(top) + (" with sensor" if top.sensor else "")
+
+
+def sources(top, tree=ROOT):
+    listed = (tree / "fpga/boards" / top.board / f"{top.kind}.prj").read_text()
+    return [tree / path for path in re.findall(r"^verilog work (.*)$", listed, re.MULTILINE)]
+
+
+def build_header(top, build="12345678"):
+    return f"`define HALFROW_BUILD 32'h{build}\n" + ("`define HALFROW_SENSOR\n" if top.sensor else "")
+
+
+def netlist(top, stage, tree=ROOT):
+    """The top's flat module, as yosys writes it in JSON."""
+    return json.loads(made(top, stage, tree).read_text())["modules"][module_of(top)]
+
+
+def made(top, stage, tree=ROOT):
+    """The file of that netlist. A tree that is not the project's own keeps its file itself."""
+    kept = KEPT if tree == ROOT else tree / "netlists"
+    stem = kept / (name_of(top).replace(" ", "_") + f"-{stage}")
+    file, mark = stem.with_suffix(".json"), stem.with_suffix(".key")
+    key = key_of(top, stage, tree)
+    if not (file.exists() and mark.exists() and mark.read_text() == key):
+        kept.mkdir(parents=True, exist_ok=True)
+        mark.unlink(missing_ok=True)
+        run(top, stage, tree, file)
+        mark.write_text(key)
+    return file
+
+
+def key_of(top, stage, tree):
+    """What the netlist depends on."""
+    digest = hashlib.sha256()
+    for path in [pathlib.Path(__file__), *sources(top, tree), *sorted((tree / "fpga/rtl").glob("*.vh"))]:
+        digest.update(path.read_bytes())
+    version = subprocess.run(["yosys", "-V"], check=True, capture_output=True).stdout
+    digest.update(version + repr((top, stage)).encode())
+    return digest.hexdigest()
+
+
+def script(top, stage, header, tree=ROOT):
+    """yosys commands that make the netlist of a top; `header` is the folder of halfrow_build.vh."""
+    reading = "; ".join(f"read_verilog -I{header} -I{tree}/fpga/rtl {path}" for path in sources(top, tree))
+    return f"{LIBRARY}; {reading}; {COMMANDS[stage].format(top=module_of(top))}"
+
+
+def run(top, stage, tree, file):
+    with tempfile.TemporaryDirectory(dir=file.parent) as work:
+        (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(top))
+        aside = pathlib.Path(work) / file.name
+        # Mapping warns of each block RAM whose ports are narrower than the vendor's.
+        strict = ["-e", "."] if stage == "words" else []
+        expected = [word for text in EXPECTED for word in ("-w", text)]
+        commands = f"{script(top, stage, work, tree)}; write_json {aside}"
+        done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"tops: yosys does not make {stage} of {name_of(top)}:\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
+        aside.replace(file)
+
+
+def main():
+    try:
+        stage, kind, *sensor = sys.argv[1:]
+        known = stage in COMMANDS and kind in ("fifo", "uart") and sensor in ([], ["sensor"])
+    except ValueError:
+        known = False
+    if not known:
+        sys.exit(__doc__)
+    print(made(Top("minispartan6plus", kind, bool(sensor)), stage))
+
+
+if __name__ == "__main__":
+    main()
