@@ -1,5 +1,5 @@
-// The step table: one factor Q a row and bank, read through one port. A memory's output gets a register of its own before
-// anything is made of it, since it comes late in the clock.
+// The step table: one factor Q a row and bank, read through one port. A memory's output gets a register of its own
+// before anything is made of it, since it comes late in the clock.
 `default_nettype none
 
 module halfrow_steps #(

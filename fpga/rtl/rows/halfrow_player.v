@@ -115,7 +115,7 @@ module halfrow_player #(
         enable <= enables;
 
     always @(posedge clk) begin
-        last_but_one <= width[COLUMN_BITS-1:0] - 2'd2;
+        last_but_one <= width[COLUMN_BITS-1:0] - {{COLUMN_BITS-2{1'b0}}, 2'd2};
         next_column <= sample_enters ? column + 1'b1 : column;
         at_last <= in_row && (sample_enters ? next_column == last_but_one : at_last);
     end

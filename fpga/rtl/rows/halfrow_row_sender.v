@@ -161,8 +161,8 @@ module halfrow_row_sender #(
         row_byte_valid <= !rst && (move || (row_byte_valid && !row_byte_ready));
     end
 
-    // A sample gets a register of its own, since a memory's output comes late in the clock. The first is read all through
-    // the head, and each further one when the one two before it has lent its last whole byte.
+    // A sample gets a register of its own, since a memory's output comes late in the clock. The first is read all
+    // through the head, and each further one when the one two before it has lent its last whole byte.
     wire next_sample = head_ends || (move && state == SAMPLES && phase != 2'd1);
     assign sample_read = (state == HEAD && !last_of_head) || next_sample;
 
