@@ -59,9 +59,9 @@ module halfrow_player #(
     wire draining = ends_frame && (flush != 12'd0 || !none_blank);
     wire blank_passes = !in_row && !may_start && (row_ready ? waits : draining);
 
-    wire draw_first = row_ready && draws == NO_DRAW && (!in_row || last_enters);
+    wire draw_first = row_ready && draws == NO_DRAW && (!in_row || (at_last && !pause));
     wire draw_second = row_ready && draws == BLANKING_DRAWN && !in_row;
-    wire draw_sample = sample_enters && !last_enters;
+    wire draw_sample = (in_row ? !at_last : may_start) && !pause;
 
     assign enables = (sample_enters || blank_passes) && !rst;
     assign start = may_start && !pause;

@@ -24,7 +24,7 @@ module halfrow_preparer #(
     output wire [ROW_BITS-1:0]   prepare_row,
     input  wire                  prepared,    // low from the clock behind `prepare` until the row may start
 
-    output wire                  ready,
+    output reg                   ready,       // the state is READY
     input  wire                  start,       // pulse: the row starts
     output reg  [ENTRY_BITS-1:0] entry,
     output wire                  row_0,
@@ -46,7 +46,6 @@ module halfrow_preparer #(
     assign row_0 = place[31:16] == 16'd0;
     assign frame_start = state == FRAME && row_0;
     assign prepare = state == PREPARE;
-    assign ready = state == READY;
     assign busy = state != IDLE;
 
     always @(posedge clk) begin
@@ -76,6 +75,9 @@ module halfrow_preparer #(
                 READY: if (start) state <= IDLE;
                 default: state <= IDLE;
             endcase
+
+    always @(posedge clk)
+        ready <= !rst && ((state == PREPARING && prepared) || (ready && !start));
 endmodule
 
 `default_nettype wire

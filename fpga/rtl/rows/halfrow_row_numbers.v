@@ -41,7 +41,7 @@ module halfrow_row_numbers #(
 
     // One adder goes round: bytes 0 to 3 of one number in four clocks, and a clock to choose the next.
     reg [2:0] operation, place;
-    reg [7:0] addend;
+    reg [7:0] addend; // to byte 0, so 0 at the others
     reg carry;
     reg [23:0] lower;
     reg load_waits, compare_waits, release_waits, credit_was_last;
@@ -52,12 +52,33 @@ module halfrow_row_numbers #(
     reg [7:0] acknowledged_byte, drop_byte, window_byte;
     wire [1:0] next_byte = place[1:0] + 2'd1;
     wire [7:0] number = operation == LOAD ? drop_byte : acknowledged_byte;
-    wire [9:0] sum = {1'b0, number, 1'b1} + {1'b0, addend & {8{place == 3'd0}}, carry};
+    wire [9:0] sum = {1'b0, number, 1'b1} + {1'b0, addend, carry};
     wire [31:0] result = {sum[8:1], lower};
     wire complete = place == 3'd3;
     wire releases = complete && operation == RELEASE;
 
     assign settling = acknowledge || load_waits || compare_waits || release_waits;
+
+    reg [2:0] next_operation;
+    reg [7:0] next_addend;
+    reg [ENTRY_BITS-1:0] to_release;
+
+    always @* begin
+        next_operation = CREDIT;
+        next_addend = {{8-ENTRY_BITS{1'b0}}, rows_entered} + BANKS_IN;
+        if (load_waits) begin
+            next_operation = LOAD;
+            next_addend = 8'd0;
+        end else if (compare_waits)
+            next_operation = COMPARE;
+        else if (release_waits) begin
+            next_operation = RELEASE;
+            next_addend = {{8-ENTRY_BITS{1'b0}}, release_rows};
+        end else if (credit_was_last) begin
+            next_operation = NEXT;
+            next_addend = {{7-ENTRY_BITS{1'b0}}, known};
+        end
+    end
 
     always @(posedge clk) begin
         carry <= place != PREPARE && sum[9];
@@ -66,22 +87,11 @@ module halfrow_row_numbers #(
         drop_byte <= drop_next_row[{next_byte, 3'd0} +: 8];
         window_byte <= window[{next_byte, 3'd0} +: 8];
         place <= complete ? PREPARE : place + 3'd1;
+        addend <= 8'd0;
         if (place == PREPARE) begin
-            if (load_waits) begin
-                operation <= LOAD;
-                addend <= 8'd0;
-            end else if (compare_waits)
-                operation <= COMPARE;
-            else if (release_waits) begin
-                operation <= RELEASE;
-                addend <= {{8-ENTRY_BITS{1'b0}}, release_rows};
-            end else if (credit_was_last) begin
-                operation <= NEXT;
-                addend <= {{7-ENTRY_BITS{1'b0}}, known};
-            end else begin
-                operation <= CREDIT;
-                addend <= {{8-ENTRY_BITS{1'b0}}, rows_entered} + BANKS_IN;
-            end
+            operation <= next_operation;
+            addend <= next_addend;
+            to_release <= next_addend[ENTRY_BITS-1:0];
         end
         if (complete) begin
             if (operation == LOAD)
@@ -141,7 +151,7 @@ module halfrow_row_numbers #(
     assign release_rows = behind ? {ENTRY_BITS{1'b0}} : far || near > rows_sent ? rows_sent : near;
 
     wire unused = &{1'b0, sum[0], ahead[0]};
-    wire [ENTRY_BITS-1:0] released = addend[ENTRY_BITS-1:0] & {ENTRY_BITS{releases}};
+    wire [ENTRY_BITS-1:0] released = to_release & {ENTRY_BITS{releases}};
 
     always @(posedge clk)
         if (rst || drop) begin

@@ -153,10 +153,16 @@ module halfrow_dispatcher #(
     // HELLO
     wire repeated, held;
     wire [6:0] tenths_left;
-    wire common_version = fields[71:65] == 7'd0 && fields[79:72] != 8'd0;
-    wire take_over = fields[87:80] != 8'd0;
+    reg common_version; // of a HELLO; the fields stand still for a clock before they are judged
+    reg take_over;
+    wire welcome = common_version && (!held || take_over);
     wire greeted = accepted && is_hello;
-    wire opens = greeted && common_version && (!held || take_over) && !repeated;
+    wire opens = accepted && welcome && !repeated;
+
+    always @(posedge clk) begin
+        common_version <= is_hello && fields[71:65] == 7'd0 && fields[79:72] != 8'd0;
+        take_over <= fields[87:80] != 8'd0;
+    end
 
     halfrow_session session_rules (
         .clk(clk), .rst(rst), .millisecond(millisecond), .nonce(fields[31:0]), .host(fields[63:32]),
@@ -311,7 +317,7 @@ module halfrow_dispatcher #(
                 end else if (is_hello) begin
                     if (!common_version) {code, detail} <= {REFUSAL_VERSION, 8'd0, WIRE_VERSION};
                     else {code, detail} <= {REFUSAL_HELD, 9'd0, tenths_left};
-                    state <= common_version && (!held || take_over) ? SETTLE : REFUSE;
+                    state <= welcome ? SETTLE : REFUSE;
                 end else if (is_reset) state <= SETTLE;
                 else if (is_status) state <= COUNTED;
                 else if (is_configure) begin

@@ -76,15 +76,16 @@ module halfrow_reply #(
     wire [7:0] value = in_table ? table_byte : made | status_byte;
 
     reg active, settled, fetched;
-    wire last = index == length;
+    reg last; // index == length, a clock later
     wire wait_table = in_table && !table_byte_valid;
 
-    assign done = active && last && !byte_valid;
+    assign done = settled && last && !byte_valid;
     assign advance = active && fetched && !last && !wait_table && (!byte_valid || byte_ready);
     assign table_byte_ready = advance && in_table;
 
     always @(posedge clk) begin
-        settled <= active && !advance;
+        last <= index == length;
+        settled <= active && !advance && !done;
         fetched <= settled && !advance;
         if (begin_payload) active <= 1'b1;
         else if (done) active <= 1'b0;

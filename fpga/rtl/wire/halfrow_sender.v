@@ -91,9 +91,8 @@ module halfrow_sender (
             window_now <= window;
             header <= WIRE_VERSION;
         end else if (move) header <= field;
-        if (state == HEADER && count == 4'd5) left[7:0] <= header;
-        if (state == HEADER && count == 4'd6) left[11:8] <= header[3:0];
-        if (state == PAYLOAD && move) left <= left - 12'd1;
+        if (state == HEADER) left <= length[11:0];
+        else if (move) left <= left - 12'd1;
         // What is shifted in is what the next packet's CRC begins with.
         if (move) begin
             crc <= state == CLOSE ? {8'hff, crc[31:8]} : crc_next;

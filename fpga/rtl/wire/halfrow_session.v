@@ -23,15 +23,20 @@ module halfrow_session (
 
     reg [7:0] number;
     reg [31:0] holder_nonce, holder_host;
-    wire same_nonce, same_host;
+    wire nonce_fits, host_fits;
+    reg same_nonce, same_host;
     reg [6:0] milliseconds;
+    reg counting; // tenths_left is not 0
 
     assign session = session_open ? number : 8'd0;
     assign repeated = session_open && same_nonce && same_host;
-    assign held = session_open && !same_host && tenths_left != 7'd0;
+    assign held = session_open && !same_host && counting;
 
-    halfrow_equal #(.WIDTH(32)) nonces (.clk(clk), .a(nonce), .b(holder_nonce), .equal(same_nonce));
-    halfrow_equal #(.WIDTH(32)) hosts (.clk(clk), .a(host), .b(holder_host), .equal(same_host));
+    halfrow_equal #(.WIDTH(32)) nonces (.clk(clk), .a(nonce), .b(holder_nonce), .equal(nonce_fits));
+    halfrow_equal #(.WIDTH(32)) hosts (.clk(clk), .a(host), .b(holder_host), .equal(host_fits));
+
+    always @(posedge clk)
+        {same_nonce, same_host} <= {nonce_fits, host_fits};
 
     always @(posedge clk)
         if (open) begin
@@ -55,9 +60,13 @@ module halfrow_session (
         if (rst || heard || open || (greet && same_host)) begin
             tenths_left <= TENTHS;
             milliseconds <= 7'd0;
-        end else if (millisecond && tenths_left != 7'd0) begin
+            counting <= 1'b1;
+        end else if (millisecond && counting) begin
             milliseconds <= milliseconds == LAST_OF_TENTH ? 7'd0 : milliseconds + 7'd1;
-            if (milliseconds == LAST_OF_TENTH) tenths_left <= tenths_left - 7'd1;
+            if (milliseconds == LAST_OF_TENTH) begin
+                tenths_left <= tenths_left - 7'd1;
+                counting <= tenths_left != 7'd1;
+            end
         end
     end
 endmodule

@@ -80,7 +80,8 @@ module halfrow_status (
     end
 
     wire begins = state == IDLE && any && !report;
-    wire forget = rst || clear;
+    reg forget;
+    always @(posedge clk) forget <= rst || clear;
 
     always @(posedge clk) begin
         packet_waits <= packet || (packet_waits && !(begins && next == COUNTER_PACKETS));

@@ -26,6 +26,7 @@ module halfrow_stuffer (
     reg [8:0] tail;
     reg [8:0] head;
     reg room; // two more bytes fit
+    reg running; // the state is RUN
     (* ram_style = "block" *) reg [7:0] ring [0:511];
 
     wire zero = in_data == 8'd0;
@@ -34,7 +35,7 @@ module halfrow_stuffer (
     wire coding = state == FULL || state == CLOSE || (state == RUN && zero);
     wire [8:0] used = tail - head;
 
-    assign in_ready = room && state == RUN;
+    assign in_ready = room && running;
     assign idle = state == START && head == open && !out_valid;
 
     always @(posedge clk) begin
@@ -64,19 +65,24 @@ module halfrow_stuffer (
         end
     end
 
-    always @(posedge clk) begin
-        if (act) begin
-            case (state)
-                START: state <= RUN;
-                RUN: if (in_last) state <= CLOSE;
-                         else if (!zero && run == LONGEST - 8'd1) state <= FULL;
-                FULL: state <= RUN;
-                CLOSE: state <= STOP;
-                default: state <= START;
-            endcase
+    reg [2:0] next_state;
+    always @*
+        case (state)
+            START: next_state = RUN;
+            RUN: next_state = in_last ? CLOSE : !zero && run == LONGEST - 8'd1 ? FULL : RUN;
+            FULL: next_state = RUN;
+            CLOSE: next_state = STOP;
+            default: next_state = START;
+        endcase
+
+    always @(posedge clk)
+        if (rst) begin
+            state <= START;
+            running <= 1'b0;
+        end else if (act) begin
+            state <= next_state;
+            running <= next_state == RUN;
         end
-        if (rst) state <= START;
-    end
 
     wire fetch = head != open && (!out_valid || out_ready);
 

@@ -40,8 +40,9 @@ module halfrow_table_port #(
     reg [3:0] place; // byte of the entry
     reg [11:0] left;
     reg [79:0] entry; // being written: the newest byte in [79:72]; whole, or being read: the first one in [7:0]
-    wire [3:0] size = kernel ? NODE_BYTES : STEP_BYTES;
-    wire last_byte = place == (kernel ? NODE_BYTES - 4'd1 : STEP_BYTES - 4'd1);
+    reg of_nodes; // `kernel`, a clock later
+    wire [3:0] size = of_nodes ? NODE_BYTES : STEP_BYTES;
+    wire last_byte = place == (of_nodes ? NODE_BYTES - 4'd1 : STEP_BYTES - 4'd1);
     wire fetched = state == FETCH && place == NODE_BYTES;
     wire byte_taken = state == OFFER && byte_ready;
     wire entry_done = (state == TEST && !illegal) || (byte_taken && last_byte);
@@ -55,16 +56,17 @@ module halfrow_table_port #(
     wire step_zero = entry[23:0] == 24'd0;
     wire step_illegal = entry[31:25] != 7'd0 || entry[24] != step_zero;
     wire node_illegal = TAPS == 5 && (entry[15:0] != 16'd0 || entry[79:64] != 16'd0);
-    assign illegal = state == TEST && task_kind == TASK_CHECK && (kernel ? node_illegal : step_illegal);
+    assign illegal = state == TEST && task_kind == TASK_CHECK && (of_nodes ? node_illegal : step_illegal);
 
     wire write = state == TEST && (task_kind == TASK_WRITE || task_kind == TASK_WIPE);
-    assign step_write = write && !kernel;
-    assign node_write = write && kernel;
-    assign table_data = {entry[79:25], entry[24] || (task_kind == TASK_WIPE && !kernel), entry[23:0]};
+    assign step_write = write && !of_nodes;
+    assign node_write = write && of_nodes;
+    assign table_data = {entry[79:25], entry[24] || (task_kind == TASK_WIPE && !of_nodes), entry[23:0]};
 
     always @(posedge clk) begin
+        of_nodes <= kernel;
         if (start && task_kind == TASK_WIPE) entry <= 80'd0;
-        else if (state == ADDRESS) entry <= kernel ? port ? node_port_1 : node_port_0 : {55'd0, step_port};
+        else if (state == ADDRESS) entry <= of_nodes ? port ? node_port_1 : node_port_0 : {55'd0, step_port};
         else if ((state == FETCH && place != 4'd0) || byte_taken) entry <= {packet_byte, entry[79:8]};
         if (start) begin
             table_entry <= first;
