@@ -43,7 +43,7 @@ module halfrow_entry #(
 
     assign ring_write = enable && (start || goes_on);
     assign row_end = enable && open && full;
-    assign row_begin = enable && goes_on && waiting && half;
+    assign row_begin = enable && in_valid && !in_start && waiting && half; // one that waits is open
 
     always @(posedge clk)
         if (rst)

@@ -129,7 +129,7 @@ module halfrow_row_gate #(
 
     reg [1:0] phase;   // byte of three
     reg [7:0] earlier; // bits of the byte before that are not in a sample yet
-    wire taking = state == TAKE && shown_valid && in_samples;
+    wire taking = shown_valid && in_samples;
     wire all_taken = sample_write && column == last_column;
 
     assign place_write = state == TAKE && shown_valid && !in_samples && !shown[3];
@@ -137,7 +137,7 @@ module halfrow_row_gate #(
     assign sample = phase == 2'd1 ? {shown_byte[3:0], earlier} : {shown_byte, earlier[3:0]};
 
     always @(posedge clk) begin
-        if (state != TAKE) begin
+        if (rst || state != TAKE || all_taken) begin
             in_samples <= 1'b0;
             phase <= 2'd0;
             column <= {COLUMN_BITS{1'b0}};

@@ -54,7 +54,7 @@ module halfrow_row_numbers #(
     wire [7:0] number = operation == LOAD ? drop_byte : acknowledged_byte;
     wire [9:0] sum = {1'b0, number, 1'b1} + {1'b0, addend, carry};
     wire [31:0] result = {sum[8:1], lower};
-    wire complete = place == 3'd3;
+    reg complete; // with the last byte
     wire releases = complete && operation == RELEASE;
 
     assign settling = acknowledge || load_waits || compare_waits || release_waits;
@@ -87,6 +87,7 @@ module halfrow_row_numbers #(
         drop_byte <= drop_next_row[{next_byte, 3'd0} +: 8];
         window_byte <= window[{next_byte, 3'd0} +: 8];
         place <= complete ? PREPARE : place + 3'd1;
+        complete <= place == 3'd2;
         addend <= 8'd0;
         if (place == PREPARE) begin
             operation <= next_operation;
@@ -110,6 +111,7 @@ module halfrow_row_numbers #(
         end
         if (rst || drop) begin
             place <= PREPARE;
+            complete <= 1'b0;
             operation <= NEXT;
             load_waits <= drop && !rst;
             compare_waits <= 1'b0;

@@ -109,7 +109,8 @@ module halfrow_rows #(
     localparam [ENTRY_BITS-1:0] BANKS_OUT = {{ENTRY_BITS-1{1'b0}}, 1'b1} << OUT_BITS;
 
     wire clear = rst || drop_rows;
-    wire [COLUMN_BITS-1:0] last_column = width[COLUMN_BITS-1:0] - 1'b1;
+    reg [COLUMN_BITS-1:0] last_column;
+    always @(posedge clk) last_column <= width[COLUMN_BITS-1:0] - 1'b1;
 
     wire settling, arrived, in_last, leaves, sent, played;
     wire [ENTRY_BITS-1:0] rows_entered, rows_left, rows_sent, first_unentered, leaving_entry, unsent_entry;

@@ -141,14 +141,15 @@ module halfrow_dispatcher #(
     wire [12:0] read_length;
 
     always @(posedge clk)
-        if (opens) fields <= 104'd0; // a session's first row is row 0
-        else if (state == LOAD && packet_address[3:0] != 4'd0 && packet_address[3:1] != 3'd7)
+        if (state == LOAD && packet_address[3:0] != 4'd0 && packet_address[3:1] != 3'd7)
             fields <= {packet_byte, fields[103:8]};
 
     halfrow_request request (
         .clk(clk), .kind(packet_kind), .length(packet_length), .fields(fields[55:0]), .unknown(unknown),
         .malformed(malformed), .read_length(read_length));
-    wire accepted = state == JUDGE && !unknown && !malformed;
+    reg judging; // the state is JUDGE
+    wire accepted = judging && !unknown && !malformed;
+    always @(posedge clk) judging <= !rst && state == LOAD && settled;
 
     // HELLO
     wire repeated, held;
@@ -174,8 +175,8 @@ module halfrow_dispatcher #(
     wire resets = accepted && is_reset;
     wire wipe = resets && level == RESET_WIPES;
     always @(posedge clk) drop_rows <= (opens || resets) && !rst;
-    assign drop_next_row = fields[39:8];
     assign new_session = is_hello;
+    assign drop_next_row = fields[39:8] & {32{!new_session}}; // a session's first row is row 0
 
     // CONFIGURE
     wire out_of_range;

@@ -77,14 +77,16 @@ module halfrow_reply #(
 
     reg active, settled, fetched;
     reg last; // index == length, a clock later
-    wire wait_table = in_table && !table_byte_valid;
+    reg wait_table; // nobody else takes the table's bytes, so this may come a clock late
 
     assign done = settled && last && !byte_valid;
-    assign advance = active && fetched && !last && !wait_table && (!byte_valid || byte_ready);
+    // A byte takes three clocks to fetch, so one that waits for the byte in front to have gone loses none.
+    assign advance = active && fetched && !last && !wait_table && !byte_valid;
     assign table_byte_ready = advance && in_table;
 
     always @(posedge clk) begin
         last <= index == length;
+        wait_table <= in_table && !table_byte_valid;
         settled <= active && !advance && !done;
         fetched <= settled && !advance;
         if (begin_payload) active <= 1'b1;

@@ -39,8 +39,9 @@ module halfrow_sender (
 
     localparam IDLE = 2'd0, HEADER = 2'd1, PAYLOAD = 2'd2, CLOSE = 2'd3;
 
-    reg [1:0] state;
+    reg [1:0] state, next_state;
     reg of_row;       // the packet under way is the row client's
+    reg reply_goes, row_goes; // the state is PAYLOAD, of a reply or of a row
     reg [3:0] count;  // bytes of header and CRC that went, and one more
     reg [11:0] left;  // bytes of payload to come
     reg [7:0] header; // its byte to go
@@ -53,17 +54,17 @@ module halfrow_sender (
     wire stuffer_ready, stuffer_idle;
     wire [31:0] crc_next;
     wire free = !stage_valid || stuffer_ready;
-    wire offered = of_row ? row_byte_valid : reply_byte_valid;
-    wire move = free && (state == HEADER || state == CLOSE || (state == PAYLOAD && offered));
+    wire offered = (reply_goes && reply_byte_valid) || (row_goes && row_byte_valid);
+    wire move = free && (state == HEADER || state == CLOSE || offered);
     wire [7:0] payload_byte = of_row ? row_byte : reply_byte;
     wire [7:0] body_byte = state == HEADER ? header : payload_byte;
-    wire header_ends = state == HEADER && move && count == 4'd12;
+    wire header_ends = state == HEADER && free && count == 4'd12;
     wire last = count == 4'd0;
 
     assign reply_taken = header_ends && !of_row;
     assign row_taken = state == IDLE && row_valid && !reply_valid;
-    assign reply_byte_ready = state == PAYLOAD && !of_row && free;
-    assign row_byte_ready = state == PAYLOAD && of_row && free;
+    assign reply_byte_ready = reply_goes && free;
+    assign row_byte_ready = row_goes && free;
     assign idle = state == IDLE && !stage_valid && stuffer_idle;
 
     wire [7:0] kind = of_row ? row_kind : reply_kind;
@@ -104,14 +105,21 @@ module halfrow_sender (
         end
     end
 
-    always @(posedge clk) begin
+    always @* begin
+        next_state = state;
         case (state)
-            IDLE: if (reply_valid || row_valid) state <= HEADER;
-            HEADER: if (header_ends) state <= left == 12'd0 ? CLOSE : PAYLOAD;
-            PAYLOAD: if (move && left == 12'd1) state <= CLOSE;
-            default: if (move && last) state <= IDLE;
+            IDLE: if (reply_valid || row_valid) next_state = HEADER;
+            HEADER: if (header_ends) next_state = left == 12'd0 ? CLOSE : PAYLOAD;
+            PAYLOAD: if (move && left == 12'd1) next_state = CLOSE;
+            default: if (move && last) next_state = IDLE;
         endcase
-        if (rst) state <= IDLE;
+        if (rst) next_state = IDLE;
+    end
+
+    always @(posedge clk) begin
+        state <= next_state;
+        reply_goes <= next_state == PAYLOAD && !of_row;
+        row_goes <= next_state == PAYLOAD && of_row;
     end
 
     always @(posedge clk) begin
