@@ -2,7 +2,7 @@
 """The tops of the miniSpartan6+ as yosys reads them: once for every check that looks at them. What it made is kept below
 target/hardware/tops for as long as the sources are the same.
     tops.py words|cells fifo|uart [sensor]     prints the file of the netlist
-words: flat, in front of mapping, read without a warning. cells: flat, of Spartan-6 cells, with pads, as `build --yosys` writes it."""
+words: flat, in front of mapping, read without a warning. cells: flat, of Spartan-6 cells, with pads, as `build --yosys` takes it."""
 
 import collections
 import hashlib
@@ -44,7 +44,7 @@ def sources(top, tree=ROOT):
     return [tree / path for path in re.findall(r"^verilog work (.*)$", listed, re.MULTILINE)]
 
 
-def build_header(top, build="12345678"):
+def build_header(top, build):
     return f"`define HALFROW_BUILD 32'h{build}\n" + ("`define HALFROW_SENSOR\n" if top.sensor else "")
 
 
@@ -83,18 +83,20 @@ def script(top, stage, header, tree=ROOT):
     return f"{LIBRARY}; {reading}; {COMMANDS[stage].format(top=module_of(top))}"
 
 
-def run(top, stage, tree, file):
+def run(top, stage, tree, file, build="12345678", behind=None):
+    """Has yosys make `file`, or what the commands `behind` write."""
     with tempfile.TemporaryDirectory(dir=file.parent) as work:
-        (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(top))
+        (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(top, build))
         aside = pathlib.Path(work) / file.name
         # Mapping warns of each block RAM whose ports are narrower than the vendor's.
         strict = ["-e", "."] if stage == "words" else []
         expected = [word for text in EXPECTED for word in ("-w", text)]
-        commands = f"{script(top, stage, work, tree)}; write_json {aside}"
+        commands = script(top, stage, work, tree) + (behind or f"; write_json {aside}")
         done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"tops: yosys does not make {stage} of {name_of(top)}:\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
-        aside.replace(file)
+        if not behind:
+            aside.replace(file)
 
 
 def main():
