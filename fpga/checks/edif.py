@@ -2,12 +2,14 @@
 """The netlist of one of the miniSpartan6+'s tops as EDIF, for ISE's ngdbuild in place of XST's, and that it says what yosys has: it is read
 back and compared, pin by pin.
     edif.py KIND FOLDER BUILD [sensor]     writes FOLDER/top.edif; BUILD: eight hexadecimal digits
+    edif.py check                          tries it on all four tops, and that differences would be found
 Hierarchical names get ISE's separator, and all nets that the UCF files name must be there."""
 
 import collections
 import json
 import pathlib
 import re
+import subprocess
 import sys
 import tempfile
 
@@ -81,14 +83,14 @@ def ise_name(name):
 
 
 def joined_by(module):
-    """What each bit of a netlist joins, as Edif has it."""
+    """What each bit of a netlist joins, as Edif has it. Those of constants are "0" and "1"."""
     joined = collections.defaultdict(set)
     ends = [(ise_name(name), cell["connections"]) for name, cell in module["cells"].items()]
     ends.append(("", {name: port["bits"] for name, port in module["ports"].items()}))
     for cell, pins in ends:
         for port, bits in pins.items():
             for place, bit in enumerate(bits):
-                if isinstance(bit, int):
+                if bit not in ("x", "z"):
                     joined[bit].add((cell, port, len(bits) - 1 - place))
     return {bit: frozenset(net) for bit, net in joined.items()}
 
@@ -110,10 +112,15 @@ def differences(edif, module):
     wanted = collections.Counter(cell["type"] for cell in module["cells"].values())
     if kinds != wanted:
         yield f"cells: {kinds - wanted} too many, {wanted - kinds} missing"
-    ours = {net for net in joined_by(module).values() if len(net) > 1}
-    theirs = {net for net in edif.nets.values() if len(net) > 1 and not any(edif.cells.get(cell) in ("GND", "VCC") for cell, _, _ in net)}
+    of_constants = {"GND": "0", "VCC": "1"}
+    ours = {(bit if bit in ("0", "1") else "", net) for bit, net in joined_by(module).items() if len(net) > 1 or bit in ("0", "1")}
+    theirs = set()
+    for net in edif.nets.values():
+        sources = {end for end in net if edif.cells.get(end[0]) in of_constants}
+        if len(net) > 1:
+            theirs.add(("".join(of_constants[edif.cells[cell]] for cell, _, _ in sources), net - sources))
     if ours != theirs:
-        yield f"nets: {len(theirs - ours)} are joined otherwise, as {sorted(next(iter(theirs ^ ours)))[:4]}"
+        yield f"nets: {len(theirs - ours)} are joined otherwise, as {sorted(next(iter(theirs ^ ours))[1])[:4]}"
 
 
 def missing(edif, ucf):
@@ -124,31 +131,71 @@ def missing(edif, ucf):
             yield name
 
 
-def write(top, folder, build):
-    """Writes top.edif, and returns what is wrong with it."""
+def ucf_of(top):
     board = tops.ROOT / "fpga/boards" / top.board
-    ucf = "".join((board / f"{name}.ucf").read_text() for name in ("common", top.kind, *(["sensor"] if top.sensor else [])))
-    with tempfile.TemporaryDirectory(dir=folder) as work:
-        aside, netlist = pathlib.Path(work) / "top.edif", pathlib.Path(work) / "netlist.json"
-        tops.run(top, "cells", tops.ROOT, netlist, build, f"; setundef -zero; write_json {netlist}; write_edif -pvector ang {aside}")
+    return "".join((board / f"{name}.ucf").read_text() for name in ("common", top.kind, *(["sensor"] if top.sensor else [])))
+
+
+def written(top, netlist):
+    """The EDIF of a netlist in JSON, and the module that it was written from. What is unknown becomes 0."""
+    with tempfile.TemporaryDirectory() as work:
+        aside, settled = pathlib.Path(work) / "top.edif", pathlib.Path(work) / "top.json"
+        script = f"read_json {netlist}; setundef -zero; write_json {settled}; write_edif -pvector ang {aside}"
+        done = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"edif: yosys writes no EDIF of {tops.name_of(top)}:\n{done.stderr[-1500:]}")
         text = re.sub(r'(\(rename \S+ ")([^"]*)"', lambda found: found[1] + ise_name(found[2]) + '"', aside.read_text())
-        module = json.loads(netlist.read_text())["modules"][tops.module_of(top)]
-    text = with_kept_names(text, Edif(text, tops.module_of(top)), module, ucf)
-    (folder / "top.edif").write_text(text)
+        module = json.loads(settled.read_text())["modules"][tops.module_of(top)]
+    return with_kept_names(text, Edif(text, tops.module_of(top)), module, ucf_of(top)), module
+
+
+def faults(top, text, module):
     edif = Edif(text, tops.module_of(top))
-    return edif, [*differences(edif, module), *(f"there is no {name}, which the UCF names" for name in missing(edif, ucf))]
+    return [*differences(edif, module), *(f"there is no {name}, which the UCF names" for name in missing(edif, ucf_of(top)))]
+
+
+def told(top, text):
+    edif = Edif(text, tops.module_of(top))
+    return f"PASS EDIF of {tops.name_of(top)}: {len(edif.cells)} cells and {len(edif.nets)} nets, as yosys has them, and all that the UCF names"
+
+
+# Edits of an EDIF file that must be found: another cell, a pin on another net, bits in another order, another constant, a lost name.
+SPOILT = [("cellRef FDRE", "cellRef FDSE"), ("(portRef D ", "(portRef CE "), ("(member DOA 1)", "(member DOA 2)"),
+          ("cellRef GND", "cellRef VCC"), ("clk32", "clock")]
+
+
+def check():
+    """Every top, and what must be found in the first."""
+    for top in tops.all_of(BOARD):
+        text, module = written(top, tops.made(top, "cells"))
+        wrong = faults(top, text, module)
+        contents = text.index("(contents")
+        for before, after in SPOILT if top == tops.all_of(BOARD)[0] else []:
+            place = text.index(before, contents)
+            spoilt = text[:place] + text[place:].replace(before, after, 1) if before != "clk32" else text.replace(before, after)
+            if not faults(top, spoilt, module):
+                wrong.append(f"`{after}` in place of `{before}` is not refused")
+        if wrong:
+            sys.exit("edif: " + "\nedif: ".join(wrong))
+        print(told(top, text))
 
 
 def main():
     words = sys.argv[1:]
+    if words == ["check"]:
+        return check()
     if len(words) not in (3, 4) or words[0] not in ("fifo", "uart") or words[3:] not in ([], ["sensor"]):
         sys.exit(__doc__)
-    if not re.fullmatch("[0-9a-f]{8}", words[2]):
-        sys.exit(f"edif: BUILD is eight hexadecimal digits, not `{words[2]}`")
-    edif, wrong = write(tops.Top(BOARD, words[0], bool(words[3:])), pathlib.Path(words[1]).resolve(), words[2])
-    if wrong:
+    kind, folder, build = words[0], pathlib.Path(words[1]).resolve(), words[2]
+    if not re.fullmatch("[0-9a-f]{8}", build):
+        sys.exit(f"edif: BUILD is eight hexadecimal digits, not `{build}`")
+    top = tops.Top(BOARD, kind, bool(words[3:]))
+    tops.run(top, "cells", tops.ROOT, folder / "netlist.json", build)
+    text, module = written(top, folder / "netlist.json")
+    if wrong := faults(top, text, module):
         sys.exit("edif: " + "\nedif: ".join(wrong))
-    print(f"PASS top.edif: {len(edif.cells)} cells and {len(edif.nets)} nets, as yosys has them, and all that the UCF names")
+    (folder / "top.edif").write_text(text)
+    print(told(top, text))
 
 
 if __name__ == "__main__":

@@ -83,20 +83,19 @@ def script(top, stage, header, tree=ROOT):
     return f"{LIBRARY}; {reading}; {COMMANDS[stage].format(top=module_of(top))}"
 
 
-def run(top, stage, tree, file, build="12345678", behind=None):
-    """Has yosys make `file`, or what the commands `behind` write."""
+def run(top, stage, tree, file, build="12345678"):
+    """Has yosys make the netlist anew."""
     with tempfile.TemporaryDirectory(dir=file.parent) as work:
         (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(top, build))
         aside = pathlib.Path(work) / file.name
         # Mapping warns of each block RAM whose ports are narrower than the vendor's.
         strict = ["-e", "."] if stage == "words" else []
         expected = [word for text in EXPECTED for word in ("-w", text)]
-        commands = script(top, stage, work, tree) + (behind or f"; write_json {aside}")
+        commands = f"{script(top, stage, work, tree)}; write_json {aside}"
         done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True)
         if done.returncode:
             sys.exit(f"tops: yosys does not make {stage} of {name_of(top)}:\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
-        if not behind:
-            aside.replace(file)
+        aside.replace(file)
 
 
 def main():
