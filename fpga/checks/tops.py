@@ -70,7 +70,7 @@ def made(top, stage, tree=ROOT):
 def key_of(top, stage, tree):
     """What the netlist depends on."""
     digest = hashlib.sha256()
-    for path in [pathlib.Path(__file__), *sources(top, tree), *sorted((tree / "fpga/rtl").glob("*.vh"))]:
+    for path in [pathlib.Path(__file__), *sources(top, tree), *sorted((tree / "fpga").glob("*/**/*.vh"))]:
         digest.update(path.read_bytes())
     version = subprocess.run(["yosys", "-V"], check=True, capture_output=True).stdout
     digest.update(version + repr((top, stage)).encode())
@@ -79,7 +79,8 @@ def key_of(top, stage, tree):
 
 def script(top, stage, header, tree=ROOT):
     """yosys commands that make the netlist of a top; `header` is the folder of halfrow_build.vh."""
-    reading = "; ".join(f"read_verilog -I{header} -I{tree}/fpga/rtl {path}" for path in sources(top, tree))
+    found = " ".join(f"-I{folder}" for folder in (header, f"{tree}/fpga/rtl", f"{tree}/fpga/boards/common"))
+    reading = "; ".join(f"read_verilog {found} {path}" for path in sources(top, tree))
     return f"{LIBRARY}; {reading}; {COMMANDS[stage].format(top=module_of(top))}"
 
 
