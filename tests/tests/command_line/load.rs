@@ -121,7 +121,7 @@ fn a_bitstream_without_a_record_is_loaded_with_a_warning_onto_the_board_that_is_
     assert!(!folder.path().join("called").exists());
     let ended = load(&folder, &["top.bit", "--onto", "ulx3s", "--json"]);
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
-    assert!(ended.stderr.contains("warning: there is no top.json beside it"), "{}", ended.stderr);
+    assert!(ended.stderr.contains("warning: there is no top.bit.json beside it"), "{}", ended.stderr);
     let said = ended.json();
     assert_eq!((&said["loaded"]["record"], &said["loaded"]["compared"]), (&Value::Null, &json!(false)));
     assert_eq!(folder.text("called"), "-b\nulx3s\ntop.bit\n");
@@ -138,7 +138,7 @@ fn what_contradicts_itself_is_refused_before_anything_is_loaded() {
     refused(&folder, &["top.bit"], 2, "bitstream-differs-from-record");
     recorded(&folder, "moon", "00000001");
     refused(&folder, &["top.bit"], 2, "bitstream-board-unknown");
-    folder.write("top.json", "{\"board\": \"ulx3s\"}");
+    folder.write("top.bit.json", "{\"board\": \"ulx3s\"}");
     refused(&folder, &["top.bit"], 2, "bitstream-record-malformed");
     assert!(!folder.path().join("called").exists());
 }

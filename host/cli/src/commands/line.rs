@@ -111,7 +111,7 @@ commands! {
     /// Load a bitstream into a board
     ///
     /// Calls openFPGALoader, which must be installed. With --board the board is greeted behind it, and its build compared with
-    /// the one that stands in the file beside the bitstream (top.json of top.bit), which the build scripts write. Exit codes: 0
+    /// the one that stands in the file beside the bitstream (top.bit.json of top.bit), which the build scripts write. Exit codes: 0
     /// loaded, and the same build where it was compared, 2 usage or no loader, nothing was loaded, 3 the loader failed or was
     /// killed at its deadline, or nothing answers, 4 busy, 6 the board is of another build.
     Load(super::load::Arguments), "load";

@@ -33,7 +33,7 @@ pub(super) use error::LoadError;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The bitstream, as a board's build script leaves it: top.bit, with top.json beside it
+    /// The bitstream, as a board's build script leaves it: top.bit, with top.bit.json beside it
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// The board that is loaded, as `halfrow boards` lists it [default: the one that the file beside FILE names]

@@ -33,7 +33,9 @@ pub(super) struct Record {
 
 /// Where the record of a bitstream lies.
 pub(super) fn place(bitstream: &Path) -> PathBuf {
-    bitstream.with_extension("json")
+    let mut name = bitstream.as_os_str().to_owned();
+    name.push(".json");
+    name.into()
 }
 
 /// The record of `bitstream`, if it has one.
