@@ -50,7 +50,7 @@ def measure(module):
 
 
 def excesses(build, counts, shares):
-    for name in (*LX25, "mean", "arithmetic", "carry_bits", "lut_levels"):
+    for name in (*LX25, "whole_rams", "mean", "arithmetic", "carry_bits", "lut_levels"):
         if name not in build:
             continue
         limit = build[name]

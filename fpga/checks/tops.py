@@ -2,7 +2,7 @@
 """The tops of the miniSpartan6+ as yosys reads them: once for every check that looks at them. What it made is kept below
 target/hardware/tops for as long as the sources are the same.
     tops.py words|cells fifo|uart [sensor]     prints the file of the netlist
-words: flat, in front of mapping, read without a warning. cells: flat, of Spartan-6 cells, with pads, as `build --yosys` writes it."""
+words: flat, in front of mapping, read without a warning. cells: flat, of Spartan-6 cells, with pads, as `build --yosys` takes it."""
 
 import collections
 import hashlib
@@ -44,7 +44,7 @@ def sources(top, tree=ROOT):
     return [tree / path for path in re.findall(r"^verilog work (.*)$", listed, re.MULTILINE)]
 
 
-def build_header(top, build="12345678"):
+def build_header(top, build):
     return f"`define HALFROW_BUILD 32'h{build}\n" + ("`define HALFROW_SENSOR\n" if top.sensor else "")
 
 
@@ -70,7 +70,7 @@ def made(top, stage, tree=ROOT):
 def key_of(top, stage, tree):
     """What the netlist depends on."""
     digest = hashlib.sha256()
-    for path in [pathlib.Path(__file__), *sources(top, tree), *sorted((tree / "fpga/rtl").glob("*.vh"))]:
+    for path in [pathlib.Path(__file__), *sources(top, tree), *sorted((tree / "fpga").glob("*/**/*.vh"))]:
         digest.update(path.read_bytes())
     version = subprocess.run(["yosys", "-V"], check=True, capture_output=True).stdout
     digest.update(version + repr((top, stage)).encode())
@@ -79,13 +79,15 @@ def key_of(top, stage, tree):
 
 def script(top, stage, header, tree=ROOT):
     """yosys commands that make the netlist of a top; `header` is the folder of halfrow_build.vh."""
-    reading = "; ".join(f"read_verilog -I{header} -I{tree}/fpga/rtl {path}" for path in sources(top, tree))
+    found = " ".join(f"-I{folder}" for folder in (header, f"{tree}/fpga/rtl", f"{tree}/fpga/boards/common"))
+    reading = "; ".join(f"read_verilog {found} {path}" for path in sources(top, tree))
     return f"{LIBRARY}; {reading}; {COMMANDS[stage].format(top=module_of(top))}"
 
 
-def run(top, stage, tree, file):
+def run(top, stage, tree, file, build="12345678"):
+    """Has yosys make the netlist anew."""
     with tempfile.TemporaryDirectory(dir=file.parent) as work:
-        (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(top))
+        (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(top, build))
         aside = pathlib.Path(work) / file.name
         # Mapping warns of each block RAM whose ports are narrower than the vendor's.
         strict = ["-e", "."] if stage == "words" else []

@@ -22,6 +22,46 @@ pub(crate) fn for_stderr(quiet: bool) -> Box<dyn Progress> {
     }
 }
 
+/// What another program says while it is waited for: the last line on a terminal, every line elsewhere, or nothing.
+pub(crate) enum Told {
+    Nothing,
+    Lines,
+    Last(ProgressBar),
+}
+
+impl Told {
+    /// What suits the standard error stream.
+    #[must_use]
+    pub(crate) fn on_stderr(quiet: bool) -> Self {
+        if quiet {
+            Self::Nothing
+        } else if console::is_watched() {
+            Self::Last(Bar::new().0)
+        } else {
+            Self::Lines
+        }
+    }
+
+    /// It says `line`.
+    pub(crate) fn line(&self, line: &str) {
+        match self {
+            Self::Nothing => {}
+            Self::Lines => console::diagnose(&line),
+            Self::Last(bar) => {
+                bar.set_message(line.to_owned());
+                bar.tick();
+            }
+        }
+    }
+
+    /// It has ended.
+    pub(crate) fn done(&self) {
+        if let Self::Last(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// The share of rows, and the time, from which on the rest can be told. The first rows wait for what is made once.
 const TELLING_SHARE: f64 = 0.1;
 const TELLING_TIME: Duration = Duration::from_secs(5);

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 17] = [
+const COMMANDS: [(&str, &str); 18] = [
     ("verify", "Judge a board"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
@@ -16,6 +16,7 @@ const COMMANDS: [(&str, &str); 17] = [
     ("boards", "List the boards"),
     ("info", "Say what a board is"),
     ("link", "Test the link"),
+    ("load", "Load a bitstream"),
     ("serve", "Serve a mock or simulated board"),
     ("station", "Start the production station"),
     ("faults", "List the faults"),

@@ -13,6 +13,7 @@ mod corrected;
 mod documents;
 mod help;
 mod lenses;
+mod load;
 mod made_files;
 mod outputs;
 mod paper;

@@ -3,6 +3,7 @@
 use clap::Args;
 use serde::Serialize;
 
+use super::bitstreams::{BOARDS, BitstreamBoard};
 use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
@@ -45,6 +46,7 @@ enum Entry<'a> {
 #[derive(Serialize)]
 struct Boards<'a> {
     boards: &'a [Entry<'a>],
+    bitstreams: &'a [BitstreamBoard],
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
@@ -59,13 +61,16 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         }
     }
     let mut entries: Vec<_> = devices.iter().map(Entry::Device).collect();
+    let mut bitstreams: &[BitstreamBoard] = &[];
     if arguments.targets.is_empty() {
         entries.extend(built_in().into_iter().map(Entry::BuiltIn));
+        bitstreams = &BOARDS;
     }
     if context.json {
-        print_result("boards", Exit::Pass, None, Boards { boards: &entries })?;
+        print_result("boards", Exit::Pass, None, Boards { boards: &entries, bitstreams })?;
     } else {
-        print(&entries.iter().map(text).collect::<Vec<_>>().join("\n"))?;
+        let lines: Vec<_> = entries.iter().map(text).chain(bitstreams.iter().map(bitstream_text)).collect();
+        print(&lines.join("\n"))?;
     }
     Ok(Exit::Pass)
 }
@@ -85,6 +90,15 @@ fn text(entry: &Entry<'_>) -> String {
     }
     lines.push(format!("    {}", state(device)));
     lines.join("\n")
+}
+
+fn bitstream_text(board: &BitstreamBoard) -> String {
+    let BitstreamBoard { name, device, links, build, bitstream, .. } = board;
+    let links = links.join(", ");
+    format!(
+        "\n{name}\n    a board with a bitstream of this project: {device}, behind {links}\n    build: {build}\n    \
+         load:  halfrow load {bitstream}"
+    )
 }
 
 /// What came of asking, or else of looking.

@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use super::call_error::CallError;
 use super::document::print_result;
+use super::load::LoadError;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
 use crate::serve::ServeError;
@@ -57,6 +58,18 @@ codes::codes! {
         OtherSize [path, width, height, columns, rows] => "frame-of-other-size",
         StationMissing [path] => "station-missing",
         StationNotStarted [path] => "station-not-started",
+    }
+    LoadError {
+        RecordMalformed [path] => "bitstream-record-malformed",
+        OtherBitstream [path, record] => "bitstream-differs-from-record",
+        Nameless [path, known] => "bitstream-board-not-named",
+        UnknownBoard [path, board, known] => "bitstream-board-unknown",
+        OtherBoard [path, board, named] => "bitstream-for-other-board",
+        LoaderMissing [other] => "loader-missing",
+        LoaderNotStarted [call] => "loader-not-started",
+        LoaderFailed [call, said] => "loader-failed",
+        LoaderLate [call, deadline, said] => "loader-late",
+        OtherBuild [target, board, file] => "board-of-other-build",
     }
     SettingsError {
         Io [path] => "settings-file-unreadable",

@@ -108,6 +108,13 @@ commands! {
     /// Random bytes go to the board and come back; nothing that the board computes is judged. Its tables are lost. Exit codes: 0 the
     /// link was measured, 1 the board itself spoils what it returns, 3 the link broke or is too poor, 4 busy.
     Link(super::link::Arguments), "link";
+    /// Load a bitstream into a board
+    ///
+    /// Calls openFPGALoader, which must be installed. With --board the board is greeted behind it, and its build compared with
+    /// the one that stands in the file beside the bitstream (top.bit.json of top.bit), which the build scripts write. Exit codes: 0
+    /// loaded, and the same build where it was compared, 2 usage or no loader, nothing was loaded, 3 the loader failed or was
+    /// killed at its deadline, or nothing answers, 4 busy, 6 the board is of another build.
+    Load(super::load::Arguments), "load";
     /// Serve a mock or simulated board to other programs
     ///
     /// It is put behind a pseudo-terminal or a TCP port. Prints the target that leads to it, and goes on until Ctrl-C or

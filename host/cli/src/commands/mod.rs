@@ -1,5 +1,6 @@
 //! The command line: one file a command.
 
+mod bitstreams;
 mod board;
 mod boards;
 mod call_error;
@@ -17,6 +18,7 @@ mod kernel;
 mod lens;
 mod line;
 mod link;
+mod load;
 mod optics;
 mod paper;
 mod schema;
@@ -166,6 +168,7 @@ impl Cli {
             Command::Boards(arguments) => boards::run(arguments, &context),
             Command::Info(arguments) => info::run(arguments, &context),
             Command::Link(arguments) => link::run(arguments, &context),
+            Command::Load(arguments) => load::run(arguments, &context),
             Command::Serve(arguments) => serve::run(arguments),
             Command::Station(arguments) => station::run(arguments).map(|never| match never {}),
             Command::Faults(arguments) => faults::run(arguments, &context),

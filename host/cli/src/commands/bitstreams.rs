@@ -1,0 +1,56 @@
+//! The boards that this project has bitstreams for: what `halfrow boards` lists of them, and what loads them.
+
+use serde::Serialize;
+
+/// A board of `fpga/boards`.
+#[derive(Debug, Serialize)]
+pub(super) struct BitstreamBoard {
+    /// The name of its folder there.
+    pub(super) name: &'static str,
+    /// Its FPGA.
+    pub(super) device: &'static str,
+    /// The kinds of target that reach it, as `--board` takes them.
+    pub(super) links: &'static [&'static str],
+    /// What makes its bitstreams, in the project's folder.
+    pub(super) build: &'static str,
+    /// What that leaves to be loaded, in the project's folder.
+    pub(super) bitstream: &'static str,
+    /// What openFPGALoader calls the board.
+    pub(super) loader_name: &'static str,
+    /// Another program that loads it, without the file, for who has no openFPGALoader.
+    pub(super) other_loader: &'static str,
+}
+
+/// All of them. The loader's names are those of openFPGALoader 0.10 (`--list-boards`).
+pub(super) const BOARDS: [BitstreamBoard; 2] = [
+    BitstreamBoard {
+        name: "minispartan6plus",
+        device: "XC6SLX25-3-FTG256",
+        links: &["usb", "serial"],
+        build: "fpga/boards/minispartan6plus/build fifo|uart [sensor]",
+        bitstream: "target/minispartan6plus/fifo/top.bit",
+        loader_name: "minispartan6",
+        other_loader: "xc3sprog -c ftdi",
+    },
+    BitstreamBoard {
+        name: "ulx3s",
+        device: "LFE5U-25F or 85F, CABGA381",
+        links: &["serial", "usb"],
+        build: "fpga/boards/ulx3s/build uart|fifo [sensor] [--device 25|85]",
+        bitstream: "target/ulx3s/uart-25/top.bit",
+        loader_name: "ulx3s",
+        other_loader: "fujprog",
+    },
+];
+
+impl BitstreamBoard {
+    /// The one of that name.
+    pub(super) fn named(name: &str) -> Option<&'static Self> {
+        BOARDS.iter().find(|board| board.name == name)
+    }
+
+    /// All names, for a sentence.
+    pub(super) fn names() -> String {
+        BOARDS.map(|board| board.name).join(", ")
+    }
+}

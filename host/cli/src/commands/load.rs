@@ -1,0 +1,203 @@
+//! `halfrow load`
+
+mod error;
+mod loader;
+mod record;
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use serde::Serialize;
+use serde_json::json;
+
+use self::loader::Call;
+use self::record::Record;
+use super::bitstreams::{BOARDS, BitstreamBoard};
+use super::document::result_text;
+use super::{Context, Failure, conclude};
+use crate::exit::Exit;
+use crate::progress::Told;
+use crate::{console, signals};
+use halfrow::board::{Board, BoardError, OpenOptions};
+use halfrow::link::{self, Class};
+use halfrow::result::{BoardReport, Identity};
+use halfrow::run::Draws;
+use halfrow::target::Target;
+use halfrow::verdict::StoppedBy;
+
+pub(super) use error::LoadError;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The bitstream, as a board's build script leaves it: top.bit, with top.bit.json beside it
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The board that is loaded, as `halfrow boards` lists it [default: the one that the file beside FILE names]
+    #[arg(long, value_name = "NAME", value_parser = PossibleValuesParser::new(BOARDS.map(|board| board.name)))]
+    onto: Option<String>,
+    /// The loaded board behind its link: it is greeted, and must be of the file's build
+    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", value_parser = super::board::target())]
+    board: Option<Target>,
+    /// The longest that loading may take, and the board until it answers
+    #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = seconds)]
+    deadline: Duration,
+    /// What else openFPGALoader is called with, as `-- --ftdi-serial NUMBER` of one board among several
+    #[arg(last = true, value_name = "OPTIONS")]
+    options: Vec<String>,
+}
+
+fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds| (0.1..=86_400.0).contains(seconds));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "give a number of seconds, 0.1 to 86400".to_owned())
+}
+
+/// What was loaded, and what came of it.
+#[derive(Serialize)]
+struct Loaded<'a> {
+    file: &'a Path,
+    onto: &'static str,
+    command: Vec<String>,
+    record: Option<&'a Record>,
+    /// Whether the board's build was compared with the file's, and so is the same.
+    compared: bool,
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let record = record::read(&arguments.file).map_err(|error| Failure { exit: Exit::Usage, error })?;
+    let onto = onto(arguments, record.as_ref()).map_err(Failure::call)?;
+    let board = match (&arguments.board, &context.settings.board) {
+        (None, Some(text)) => Some(text.parse().map_err(Failure::call)?),
+        (target, _) => target.clone(),
+    };
+    if let Some(warning) = warning(&arguments.file, record.as_ref()) {
+        console::diagnose(&format_args!("warning: {warning}"));
+    }
+    let signal = signals::stop();
+    let stopped = move || Exit::stopped_by(signal.load(Ordering::Relaxed));
+    let call = Call::new(onto.loader_name, onto.other_loader, &arguments.file, &arguments.options);
+    call.run(arguments.deadline, &Told::on_stderr(context.quiet), &stopped)?;
+    let report = board.map(|target| greeted(&target, arguments.deadline, &stopped)).transpose()?;
+    let compared = match (&report, &record) {
+        (Some(report), Some(record)) => compare(report, record)?,
+        _ => false,
+    };
+    let loaded = Loaded {
+        file: &arguments.file,
+        onto: onto.name,
+        command: call.words(),
+        record: record.as_ref(),
+        compared,
+    };
+    if context.json {
+        let said = result_text("load", Exit::Pass, report.as_ref(), json!({ "loaded": loaded }))?;
+        return conclude(Exit::Pass, &said);
+    }
+    conclude(Exit::Pass, &text(&loaded, report.as_ref()))
+}
+
+/// The board that the call or the record names.
+fn onto(arguments: &Arguments, record: Option<&Record>) -> Result<&'static BitstreamBoard, LoadError> {
+    let path = arguments.file.clone();
+    match (arguments.onto.as_deref(), record.map(|record| record.board.as_str())) {
+        (Some(named), Some(board)) if named != board => {
+            Err(LoadError::OtherBoard { path, board: board.to_owned(), named: named.to_owned() })
+        }
+        (None, None) => Err(LoadError::Nameless { path, known: BitstreamBoard::names() }),
+        (named, recorded) => {
+            let board = named.or(recorded).unwrap_or_default();
+            let (known, name) = (BitstreamBoard::names(), board.to_owned());
+            BitstreamBoard::named(board).ok_or(LoadError::UnknownBoard { path, board: name, known })
+        }
+    }
+}
+
+/// What makes a bitstream one that cannot be told from others.
+fn warning(file: &Path, record: Option<&Record>) -> Option<String> {
+    match record {
+        None => Some(format!(
+            "there is no {} beside it, so nothing tells which build {} is, and nothing can be compared",
+            record::place(file).display(),
+            file.display()
+        )),
+        Some(record) if record.modified => Some(format!(
+            "{} was built from sources that are in no commit; its build {} names the one before",
+            file.display(),
+            record.build
+        )),
+        Some(_) => None,
+    }
+}
+
+/// What `target` says of itself, as soon as it says anything. A link may come and go while a board is loaded.
+fn greeted(
+    target: &Target,
+    limit: Duration,
+    stopped: &dyn Fn() -> Option<StoppedBy>,
+) -> Result<BoardReport, Failure> {
+    let deadline = Instant::now() + limit;
+    loop {
+        let (failure, may_change) = match greet(target) {
+            Ok(report) => return Ok(report),
+            Err(failed) => failed,
+        };
+        if let Some(by) = stopped() {
+            return Err(BoardError::Stopped(by).into());
+        }
+        if !may_change || Instant::now() >= deadline {
+            return Err(failure);
+        }
+        thread::sleep(Duration::from_millis(100));
+    }
+}
+
+/// One try, and whether another may end otherwise.
+fn greet(target: &Target) -> Result<BoardReport, (Failure, bool)> {
+    let candidate = link::open(target).map_err(|error| {
+        let may_change = error.class() != Class::Call;
+        (error.into(), may_change)
+    })?;
+    let Draws { nonce, host } = Draws::draw();
+    let options = OpenOptions { nonce, host, polite: true, ..OpenOptions::default() };
+    let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| {
+        let failure = Failure::from(error);
+        let may_change = failure.exit == Exit::Error;
+        (failure, may_change)
+    })?;
+    let identity = Identity::of(&board.welcome, &board.capabilities);
+    let kind = candidate.kind.confirmed_by(board.capabilities.nature);
+    if let Err(error) = board.close() {
+        tracing::debug!("the session was not closed: {error}");
+    }
+    Ok(BoardReport { kind, target: candidate.target, identity: Some(identity) })
+}
+
+/// Refuses a board of another build than the file's.
+fn compare(report: &BoardReport, record: &Record) -> Result<bool, Failure> {
+    let board = report.identity.as_ref().map(|identity| identity.build.clone()).unwrap_or_default();
+    if board.eq_ignore_ascii_case(&record.build) {
+        return Ok(true);
+    }
+    let (target, file) = (report.target.to_string(), record.build.clone());
+    Err(Failure::refused(LoadError::OtherBuild { target, board, file }))
+}
+
+fn text(loaded: &Loaded<'_>, board: Option<&BoardReport>) -> String {
+    let mut lines = vec![format!("{:<12} {} into {}", "loaded", loaded.file.display(), loaded.onto)];
+    if let Some(Record { kind, device, build, tools, .. }) = loaded.record {
+        lines.push(format!("{:<12} {build}: {kind} for {device}, by {tools}", "build"));
+    }
+    if let Some(BoardReport { kind, target, identity: Some(identity) }) = board {
+        let same = if loaded.compared { ", which is the file's" } else { "" };
+        lines.push(format!(
+            "{:<12} {target} ({kind}) answers: {}, build {}{same}",
+            "board", identity.name, identity.build
+        ));
+    } else {
+        lines.push(format!("{:<12} not asked; --board TARGET compares its build with the file's", "board"));
+    }
+    lines.join("\n")
+}

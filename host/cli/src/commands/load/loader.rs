@@ -1,0 +1,225 @@
+//! openFPGALoader as a program of its own, under a deadline.
+
+use std::io::{self, Read};
+use std::os::unix::process::CommandExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
+
+use super::LoadError;
+use crate::commands::Failure;
+use crate::exit::Exit;
+use crate::progress::Told;
+use halfrow::board::BoardError;
+use halfrow::verdict::StoppedBy;
+
+/// The program.
+pub(super) const PROGRAM: &str = "openFPGALoader";
+/// How often the program is looked at.
+const LOOK: Duration = Duration::from_millis(10);
+/// The most that is kept of what it says, in bytes.
+const MOST_KEPT: usize = 2000;
+/// How long its last words may take when it has ended, should something that it started hold its streams open.
+const LAST_WORDS: Duration = Duration::from_secs(2);
+
+/// A call of the loader.
+#[derive(Clone, Debug)]
+pub(super) struct Call {
+    /// Its options.
+    options: Vec<String>,
+    file: PathBuf,
+    /// What to call by hand when there is no such program.
+    other: String,
+}
+
+impl Call {
+    /// Loads `file` into the board that the loader knows by `board`, with `more` of its options.
+    pub(super) fn new(board: &str, other: &str, file: &Path, more: &[String]) -> Self {
+        let mut options = vec!["-b".to_owned(), board.to_owned()];
+        options.extend(more.iter().cloned());
+        let other = format!("{other} {}", quoted(&file.display().to_string()));
+        Self { options, file: file.to_owned(), other }
+    }
+
+    /// Program, options and file.
+    pub(super) fn words(&self) -> Vec<String> {
+        let file = self.file.display().to_string();
+        [PROGRAM.to_owned()].into_iter().chain(self.options.iter().cloned()).chain([file]).collect()
+    }
+
+    /// As a shell takes it.
+    pub(super) fn line(&self) -> String {
+        self.words().iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+    }
+
+    /// Runs it to its end, which `deadline` or whoever `stopped` names may hasten.
+    ///
+    /// # Errors
+    /// When it did not end well.
+    pub(super) fn run(
+        &self,
+        deadline: Duration,
+        told: &Told,
+        stopped: &dyn Fn() -> Option<StoppedBy>,
+    ) -> Result<(), Failure> {
+        let begun = Instant::now();
+        let mut loader = Loader::start(self)?;
+        let end = loader.attended(begun + deadline, told, stopped);
+        let said = loader.end(told);
+        let call = self.line();
+        match end {
+            End::By(by) => Err(BoardError::Stopped(by).into()),
+            End::Late => {
+                let deadline = deadline.as_secs_f64();
+                Err(Failure::error(LoadError::LoaderLate { call, deadline, said }))
+            }
+            End::Ended(Ok(status)) if status.success() => Ok(()),
+            End::Ended(Ok(status)) => Err(Failure::error(LoadError::LoaderFailed { call, status, said })),
+            End::Ended(Err(source)) => Err(Failure::error(LoadError::LoaderNotStarted { call, source })),
+        }
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+=:,".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+enum End {
+    Ended(io::Result<ExitStatus>),
+    Late,
+    By(StoppedBy),
+}
+
+struct Loader {
+    child: Child,
+    lines: Receiver<String>,
+    said: String,
+}
+
+impl Loader {
+    fn start(call: &Call) -> Result<Self, Failure> {
+        let mut command = Command::new(PROGRAM);
+        command.args(&call.options).arg(&call.file).process_group(0);
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().map_err(|source| match source.kind() {
+            io::ErrorKind::NotFound => Failure {
+                exit: Exit::Usage,
+                error: LoadError::LoaderMissing { other: call.other.clone() }.into(),
+            },
+            _ => Failure::error(LoadError::LoaderNotStarted { call: call.line(), source }),
+        })?;
+        let (sender, lines) = channel();
+        let streams: [Option<Box<dyn Read + Send>>; 2] = [
+            child.stdout.take().map(|stream| Box::new(stream) as _),
+            child.stderr.take().map(|stream| Box::new(stream) as _),
+        ];
+        let loader = Self { child, lines, said: String::new() };
+        for stream in streams.into_iter().flatten() {
+            if let Err(source) = hear(stream, sender.clone()) {
+                loader.kill();
+                return Err(Failure::error(LoadError::LoaderNotStarted { call: call.line(), source }));
+            }
+        }
+        Ok(loader)
+    }
+
+    /// Hears it until it ends or has to.
+    fn attended(&mut self, deadline: Instant, told: &Told, stopped: &dyn Fn() -> Option<StoppedBy>) -> End {
+        loop {
+            match self.lines.recv_timeout(LOOK) {
+                Ok(line) => self.keep(&line, told),
+                // It may close its streams before it ends.
+                Err(RecvTimeoutError::Disconnected) => thread::sleep(LOOK),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if let Some(ended) = self.child.try_wait().transpose() {
+                return End::Ended(ended);
+            }
+            if let Some(by) = stopped() {
+                return End::By(by);
+            }
+            if Instant::now() >= deadline {
+                return End::Late;
+            }
+        }
+    }
+
+    fn keep(&mut self, line: &str, told: &Told) {
+        told.line(line);
+        if !self.said.is_empty() {
+            self.said.push_str(" / ");
+        }
+        self.said.push_str(line);
+        let surplus = self.said.len().saturating_sub(MOST_KEPT);
+        let cut = (surplus..=self.said.len()).find(|&place| self.said.is_char_boundary(place));
+        self.said.drain(..cut.unwrap_or_default());
+    }
+
+    fn kill(&self) {
+        if let Ok(group) = i32::try_from(self.child.id()) {
+            // Nothing is left to be killed when all have ended.
+            let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
+        }
+    }
+
+    /// Sees that it is gone with all that it started, and returns the last that it said.
+    fn end(mut self, told: &Told) -> String {
+        self.kill();
+        let _ = self.child.wait();
+        let limit = Instant::now() + LAST_WORDS;
+        while let Ok(line) = self.lines.recv_timeout(limit.saturating_duration_since(Instant::now())) {
+            self.keep(&line, told);
+        }
+        told.done();
+        if self.said.is_empty() { "it said nothing".to_owned() } else { self.said }
+    }
+}
+
+/// Sends the lines of a stream, which end with a line feed or, where they are progress, a carriage return.
+fn hear(stream: Box<dyn Read + Send>, lines: Sender<String>) -> io::Result<()> {
+    let hear = move || {
+        let mut line = Vec::new();
+        let tell = |line: &mut Vec<u8>| {
+            let text = String::from_utf8_lossy(line).trim().to_owned();
+            line.clear();
+            text.is_empty() || lines.send(text).is_ok()
+        };
+        for byte in io::BufReader::new(stream).bytes().map_while(Result::ok) {
+            if byte != b'\n' && byte != b'\r' {
+                line.push(byte);
+            } else if !tell(&mut line) {
+                return;
+            }
+        }
+        tell(&mut line);
+    };
+    thread::Builder::new().name("loader".to_owned()).spawn(hear).map(drop)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_call_can_be_repeated_in_a_shell() {
+        let call = Call::new(
+            "ulx3s",
+            "fujprog",
+            Path::new("it's a/top.bit"),
+            &["--freq".to_owned(), "1e6".to_owned()],
+        );
+        assert_eq!(call.line(), r"openFPGALoader -b ulx3s --freq 1e6 'it'\''s a/top.bit'");
+        assert_eq!(call.other, r"fujprog 'it'\''s a/top.bit'");
+    }
+}

@@ -1,0 +1,60 @@
+//! What is known of a bitstream: the file beside it that `fpga/boards/record` writes when it is built.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::LoadError;
+use crate::commands::CallError;
+use halfrow::result::sha256;
+
+/// How a bitstream was made. Keys that it does not know may come.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Record {
+    /// The board, by its folder in `fpga/boards`.
+    pub(super) board: String,
+    /// The FPGA that it is for, as the tools name it.
+    pub(super) device: String,
+    /// The link, `fifo` or `uart`, and what else the build was asked for.
+    pub(super) kind: String,
+    /// The commit of the sources, in hexadecimal.
+    pub(super) commit: String,
+    /// Whether the sources were others than the commit's.
+    pub(super) modified: bool,
+    /// What the board says of itself as its build: eight hexadecimal digits.
+    pub(super) build: String,
+    /// SHA-256 of the bitstream, in hexadecimal.
+    pub(super) sha256: String,
+    /// What made it, with versions.
+    pub(super) tools: String,
+}
+
+/// Where the record of a bitstream lies.
+pub(super) fn place(bitstream: &Path) -> PathBuf {
+    let mut name = bitstream.as_os_str().to_owned();
+    name.push(".json");
+    name.into()
+}
+
+/// The record of `bitstream`, if it has one.
+///
+/// # Errors
+/// When the bitstream or its record cannot be read, or the one is not what the other tells of.
+pub(super) fn read(bitstream: &Path) -> Result<Option<Record>, anyhow::Error> {
+    let bytes =
+        fs::read(bitstream).map_err(|source| CallError::Unreadable { path: bitstream.to_owned(), source })?;
+    let path = place(bitstream);
+    let text = match fs::read(&path) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
+        read => read.map_err(|source| CallError::Unreadable { path: path.clone(), source })?,
+    };
+    let record: Record = serde_json::from_slice(&text)
+        .map_err(|source| LoadError::RecordMalformed { path: path.clone(), source })?;
+    if sha256([bytes]) != record.sha256.to_lowercase() {
+        let (path, record) = (bitstream.to_owned(), path);
+        return Err(LoadError::OtherBitstream { path, record }.into());
+    }
+    Ok(Some(record))
+}

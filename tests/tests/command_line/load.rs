@@ -1,0 +1,213 @@
+//! `halfrow load`, with programs in openFPGALoader's place.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use halfrow_tests::patience::wait_until;
+use halfrow_tests::program::{Ended, Folder, Running, finish, halfrow};
+use serde_json::{Value, json};
+
+/// What openFPGALoader 0.10 says without a board, each line on the stream that it uses.
+const NO_BOARD: &str = "echo 'JTAG init failed with: unable to open ftdi device'; \
+                        echo 'unable to open ftdi device: -3 (device not found)' >&2; exit 1";
+/// One that works, and notes what it was called with.
+const WORKS: &str = r#"printf '%s\n' "$@" >called; printf 'Loading: 40%%\rLoading: 100%%\nDone\n'"#;
+/// One that hangs with a child, whose number it notes whole.
+const HANGS: &str = "sleep 1000 & echo $! >id; mv id child; echo started >&2; wait";
+
+/// A folder with `bin/openFPGALoader`, which does this.
+fn with_loader(script: &str) -> Folder {
+    let folder = Folder::new();
+    // What is written by a process of its own is open in no other when it is started.
+    let put = "mkdir bin; printf '#!/bin/sh\\n%s\\n' \"$1\" >bin/openFPGALoader; chmod +x bin/openFPGALoader";
+    let mut shell = Command::new("sh");
+    shell.current_dir(folder.path()).args(["-ec", put, "sh", script]);
+    assert_eq!(finish(&mut shell).code, Some(0));
+    folder.write("top.bit", "a bitstream");
+    folder
+}
+
+fn repository() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// Has the build scripts' own program write what is known of `top.bit`.
+fn recorded(folder: &Folder, board: &str, build: &str) {
+    let mut record = Command::new(repository().join("fpga/boards/record"));
+    record.current_dir(folder.path()).args(["top.bit", board, "xc6slx25", "fifo", build, "ISE 14.7"]);
+    let ended = finish(&mut record);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+}
+
+/// The command in a folder whose `bin` comes first on the path.
+fn command(folder: &Folder, arguments: &[&str]) -> Command {
+    let mut command = folder.command(["load"].into_iter().chain(arguments.iter().copied()));
+    let bin = folder.path().join("bin");
+    command.env("PATH", format!("{}:/usr/bin:/bin", bin.display()));
+    command
+}
+
+fn load(folder: &Folder, arguments: &[&str]) -> Ended {
+    finish(&mut command(folder, arguments))
+}
+
+/// A call that must end with `code` and this code of an error.
+#[track_caller]
+fn refused(folder: &Folder, arguments: &[&str], code: i32, error: &str) -> Value {
+    let ended = load(folder, &[arguments, &["--json"]].concat());
+    let said = ended.json();
+    assert_eq!((ended.code, &said["error"]["code"]), (Some(code), &error.into()), "{said}{}", ended.stderr);
+    said["error"].clone()
+}
+
+/// The build of the mock board, as the board tells it.
+fn build_of_the_mock() -> String {
+    halfrow(["info", "--json"]).json()["board"]["identity"]["build"].as_str().unwrap().to_owned()
+}
+
+fn is_running(id: &str) -> bool {
+    let state = fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
+    // One whose parent did not look after it yet has ended, too.
+    state.rsplit(')').next().is_some_and(|rest| !rest.is_empty() && !rest.trim_start().starts_with('Z'))
+}
+
+#[test]
+fn the_loader_is_called_by_its_name_of_the_board_and_the_build_is_compared() {
+    let folder = with_loader(WORKS);
+    let build = build_of_the_mock();
+    recorded(&folder, "minispartan6plus", &build);
+    let ended = load(&folder, &["top.bit", "--board", "mock", "--json", "--", "--ftdi-serial", "HR 1"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert_eq!(folder.text("called"), "-b\nminispartan6\n--ftdi-serial\nHR 1\ntop.bit\n");
+    let said = ended.json();
+    assert_eq!(
+        (&said["loaded"]["compared"], &said["loaded"]["onto"]),
+        (&json!(true), &json!("minispartan6plus"))
+    );
+    assert_eq!(
+        (&said["board"]["identity"]["build"], &said["loaded"]["record"]["tools"]),
+        (&json!(build), &json!("ISE 14.7"))
+    );
+    assert!(ended.stderr.contains("Loading: 40%\nLoading: 100%\nDone\n"), "{}", ended.stderr);
+    let quiet = load(&folder, &["top.bit", "--board", "mock", "--quiet"]);
+    assert!(quiet.stdout.contains(&format!("build {build}, which is the file's")), "{}", quiet.stdout);
+    assert!(!quiet.stderr.contains("Loading"), "{}", quiet.stderr);
+}
+
+#[test]
+fn a_board_of_another_build_is_refused() {
+    let folder = with_loader(WORKS);
+    recorded(&folder, "ulx3s", "00000bad");
+    let error = refused(&folder, &["top.bit", "--board", "mock"], 6, "board-of-other-build");
+    assert_eq!(error["parameters"]["board"], build_of_the_mock());
+    assert_eq!(error["parameters"]["file"], "00000bad");
+    assert_eq!(folder.text("called"), "-b\nulx3s\ntop.bit\n");
+}
+
+#[test]
+fn a_board_that_never_answers_is_waited_for_until_the_deadline() {
+    let folder = with_loader(WORKS);
+    recorded(&folder, "ulx3s", "00000001");
+    let call = ["top.bit", "--board", "serial:/dev/nonesuch", "--deadline", "0.5"];
+    refused(&folder, &call, 3, "serial-port-missing");
+    assert!(folder.path().join("called").exists());
+}
+
+#[test]
+fn a_bitstream_without_a_record_is_loaded_with_a_warning_onto_the_board_that_is_named() {
+    let folder = with_loader(WORKS);
+    refused(&folder, &["top.bit"], 2, "bitstream-board-not-named");
+    assert!(!folder.path().join("called").exists());
+    let ended = load(&folder, &["top.bit", "--onto", "ulx3s", "--json"]);
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+    assert!(ended.stderr.contains("warning: there is no top.bit.json beside it"), "{}", ended.stderr);
+    let said = ended.json();
+    assert_eq!((&said["loaded"]["record"], &said["loaded"]["compared"]), (&Value::Null, &json!(false)));
+    assert_eq!(folder.text("called"), "-b\nulx3s\ntop.bit\n");
+}
+
+#[test]
+fn what_contradicts_itself_is_refused_before_anything_is_loaded() {
+    let folder = with_loader(WORKS);
+    recorded(&folder, "minispartan6plus", "00000001");
+    refused(&folder, &["top.bit", "--onto", "ulx3s"], 2, "bitstream-for-other-board");
+    refused(&folder, &["top.bit", "--onto", "moon"], 2, "usage-value-wrong");
+    refused(&folder, &["none.bit"], 2, "input-unreadable");
+    folder.write("top.bit", "another bitstream");
+    refused(&folder, &["top.bit"], 2, "bitstream-differs-from-record");
+    recorded(&folder, "moon", "00000001");
+    refused(&folder, &["top.bit"], 2, "bitstream-board-unknown");
+    folder.write("top.bit.json", "{\"board\": \"ulx3s\"}");
+    refused(&folder, &["top.bit"], 2, "bitstream-record-malformed");
+    assert!(!folder.path().join("called").exists());
+}
+
+#[test]
+fn a_loader_that_fails_is_quoted() {
+    let folder = with_loader(NO_BOARD);
+    recorded(&folder, "minispartan6plus", "00000001");
+    let error = refused(&folder, &["top.bit"], 3, "loader-failed");
+    let said = error["parameters"]["said"].as_str().unwrap();
+    for line in ["JTAG init failed with: unable to open ftdi device", "device: -3 (device not found)"] {
+        assert!(said.contains(line), "{said}");
+    }
+    assert_eq!(error["parameters"]["call"], "openFPGALoader -b minispartan6 top.bit");
+}
+
+#[test]
+fn without_a_loader_it_is_told_how_to_get_one_and_how_to_load_by_hand() {
+    let folder = Folder::new();
+    folder.write("top.bit", "a bitstream");
+    recorded(&folder, "ulx3s", "00000001");
+    let mut command = folder.command(["load", "top.bit"]);
+    let ended = finish(command.env("PATH", folder.path()));
+    assert_eq!(ended.code, Some(2), "{}", ended.stderr);
+    let said = ended.stderr;
+    for words in ["sudo apt install openfpgaloader", "brew install openfpgaloader", "`fujprog top.bit`"] {
+        assert!(said.contains(words), "{said}");
+    }
+}
+
+#[test]
+fn a_loader_that_hangs_is_killed_at_the_deadline_with_all_that_it_started() {
+    let folder = with_loader(HANGS);
+    recorded(&folder, "ulx3s", "00000001");
+    // A busy machine may take longer to start it than it may take in all.
+    let begun = ["1", "8", "64"].into_iter().any(|deadline| {
+        let error = refused(&folder, &["top.bit", "--deadline", deadline], 3, "loader-late");
+        let begun = folder.path().join("child").exists();
+        assert!(!begun || error["parameters"]["said"] == "started", "{error}");
+        begun
+    });
+    assert!(begun);
+    let child = folder.text("child");
+    wait_until("the loader's child to end", || !is_running(child.trim()));
+}
+
+#[test]
+fn a_signal_ends_the_loader_too() {
+    let folder = with_loader(HANGS);
+    recorded(&folder, "ulx3s", "00000001");
+    let mut running = Running::start(&mut command(&folder, &["top.bit"]));
+    running.wait_for("started");
+    running.send("INT");
+    let ended = running.end();
+    assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+    let child = folder.text("child");
+    wait_until("the loader's child to end", || !is_running(child.trim()));
+}
+
+#[test]
+fn the_boards_that_have_bitstreams_are_listed_with_what_to_load() {
+    let listed = halfrow(["boards", "--json"]).json();
+    let boards = listed["bitstreams"].as_array().unwrap();
+    let names: Vec<_> = boards.iter().map(|board| board["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["minispartan6plus", "ulx3s"]);
+    let text = halfrow(["boards"]).stdout;
+    for board in boards {
+        assert!(text.contains(&format!("halfrow load {}", board["bitstream"].as_str().unwrap())), "{text}");
+    }
+    // A list of some targets says nothing of others.
+    assert_eq!(halfrow(["boards", "mock", "--json"]).json()["bitstreams"], json!([]));
+}
