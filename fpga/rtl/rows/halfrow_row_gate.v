@@ -39,7 +39,8 @@ module halfrow_row_gate #(
     output wire [7:0]              place_byte,
     input  wire                    places_held,   // no entry may be written yet
     output reg  [ENTRY_BITS-1:0]   before_entry,
-    input  wire [7:0]              before_byte,   // number place_index of before_entry
+    output wire [2:0]              before_index,
+    input  wire [7:0]              before_byte,   // number before_index of before_entry
 
     output wire                    sample_write,
     output reg  [COLUMN_BITS-1:0]  column,
@@ -62,7 +63,7 @@ module halfrow_row_gate #(
 
     reg [2:0] state;
     // The packet's byte gets a register before anything is made of it, since a memory's output comes late in the clock.
-    reg [7:0] shown_byte;
+    reg [7:0] shown_byte, shown_before;
     reg [3:0] coming, shown; // its number while it is in the place
     reg coming_valid, shown_valid;
     reg in_samples;          // it is behind the place
@@ -76,6 +77,7 @@ module halfrow_row_gate #(
         shown <= coming;
         shown_valid <= coming_valid;
         shown_byte <= packet_byte;
+        shown_before <= before_byte;
     end
 
     wire passed, far, last_number, row_0, follows, commit_fits, fits, short;
@@ -83,7 +85,7 @@ module halfrow_row_gate #(
 
     halfrow_row_check #(.ENTRY_BITS(ENTRY_BITS)) check (
         .clk(clk), .begins(state == SETTLE), .byte_valid(state == PLACE && shown_valid), .byte_index(shown),
-        .place_byte(shown_byte), .before_byte(before_byte), .packet_length(packet_length),
+        .place_byte(shown_byte), .before_byte(shown_before), .packet_length(packet_length),
         .acknowledged(acknowledged), .width(width), .height(height), .commit_frame(commit_frame),
         .entry(entry), .passed(passed), .far(far), .distance(distance), .last_number(last_number),
         .row_0(row_0), .follows(follows), .commit_fits(commit_fits), .fits(fits), .short(short));
@@ -92,6 +94,7 @@ module halfrow_row_gate #(
         before_entry <= entry - 1'b1;
 
     assign place_index = shown[2:0];
+    assign before_index = coming[2:0];
     assign place_byte = shown_byte;
 
     // A row that waits may be the one that a commit is for, or the right predecessor, as long as it has not come.

@@ -128,14 +128,14 @@ module halfrow_rows #(
         .waiting(waiting), .played(played));
 
     wire place_write, place_held;
-    wire [2:0] place_index;
+    wire [2:0] place_index, before_index;
     wire [ENTRY_BITS-1:0] before_entry;
     wire [7:0] place_byte, before_byte, prepare_byte, send_byte;
     wire [ENTRY_BITS+2:0] prepare_address, send_address;
 
     halfrow_row_places #(.ENTRY_BITS(ENTRY_BITS)) places (
         .clk(clk), .write(place_write), .write_address({gate_entry, place_index}), .write_byte(place_byte),
-        .check_address({before_entry, place_index}), .check_byte(before_byte),
+        .check_address({before_entry, before_index}), .check_byte(before_byte),
         .prepare_address(prepare_address), .prepare_byte(prepare_byte),
         .send_address(send_address), .send_byte(send_byte));
 
@@ -154,7 +154,7 @@ module halfrow_rows #(
         .waiting(waiting), .played(played),
         .place_write(place_write), .entry(gate_entry), .place_index(place_index), .place_byte(place_byte),
         .places_held(place_held),
-        .before_entry(before_entry), .before_byte(before_byte),
+        .before_entry(before_entry), .before_index(before_index), .before_byte(before_byte),
         .sample_write(sample_in_write), .column(column_in), .sample(sample_in),
         .again(again), .again_waiting(again_waiting),
         .accepted(arrived), .unneeded(row_unneeded), .sample_over(sample_over));
