@@ -1,11 +1,14 @@
-// Models of the Spartan-6 block RAMs in the forms that yosys makes of an inferred memory: both ports of one width, the old
-// word where a port reads and writes at once, no output register, no reset. Other forms end the simulation.
+// Models of the Spartan-6 block RAMs in the forms that yosys makes of an inferred memory: both ports of one width, no output
+// register, no reset. Other forms end the simulation. Where a port reads and writes at once it gets the old word, or the new one in the
+// form WRITE_FIRST, in which the other port then gets no word that anybody knows: here the old one inverted.
 `default_nettype none
 
 module block_ram #(
     parameter BITS = 14,                     // of an address that counts bits
     parameter WIDTH_A = 0,
-    parameter WIDTH_B = 0
+    parameter WIDTH_B = 0,
+    parameter NEW_A = 0,                     // WRITE_FIRST
+    parameter NEW_B = 0
 ) (
     input  wire            clk_a,
     input  wire            clk_b,
@@ -25,31 +28,40 @@ module block_ram #(
 
     integer    lane_a, lane_b;
     reg [35:0] words [0:(1 << (BITS - SHIFT))-1];
+    wire       same = address_a[BITS-1:SHIFT] == address_b[BITS-1:SHIFT];
 
     always @(posedge clk_a)
         if (enable_a) begin
-            out_a <= words[address_a[BITS-1:SHIFT]];
+            out_a <= words[address_a[BITS-1:SHIFT]] ^ {36{same && NEW_B != 0 && enable_b && write_b != 4'd0}};
             for (lane_a = 0; lane_a < 4; lane_a = lane_a + 1)
                 if (write_a[lane_a]) begin
                     words[address_a[BITS-1:SHIFT]][8*lane_a +: 8] <= in_a[8*lane_a +: 8];
                     words[address_a[BITS-1:SHIFT]][32 + lane_a] <= in_a[32 + lane_a];
+                    if (NEW_A != 0) begin
+                        out_a[8*lane_a +: 8] <= in_a[8*lane_a +: 8];
+                        out_a[32 + lane_a] <= in_a[32 + lane_a];
+                    end
                 end
         end
 
     always @(posedge clk_b)
         if (enable_b) begin
-            out_b <= words[address_b[BITS-1:SHIFT]];
+            out_b <= words[address_b[BITS-1:SHIFT]] ^ {36{same && NEW_A != 0 && enable_a && write_a != 4'd0}};
             for (lane_b = 0; lane_b < 4; lane_b = lane_b + 1)
                 if (write_b[lane_b]) begin
                     words[address_b[BITS-1:SHIFT]][8*lane_b +: 8] <= in_b[8*lane_b +: 8];
                     words[address_b[BITS-1:SHIFT]][32 + lane_b] <= in_b[32 + lane_b];
+                    if (NEW_B != 0) begin
+                        out_b[8*lane_b +: 8] <= in_b[8*lane_b +: 8];
+                        out_b[32 + lane_b] <= in_b[32 + lane_b];
+                    end
                 end
         end
 
     initial
         if (WIDTH_A != 0 && WIDTH_B != 0 && WIDTH_A != WIDTH_B) begin
             $display("block_ram: ports of %0d and %0d bits", WIDTH_A, WIDTH_B);
-            $finish;
+            $stop;
         end
 endmodule
 
@@ -81,16 +93,18 @@ module RAMB16BWER (
     parameter DOB_REG = 0;
     parameter WRITE_MODE_A = "";
     parameter WRITE_MODE_B = "";
+    localparam NEW_A = WRITE_MODE_A == "WRITE_FIRST";
+    localparam NEW_B = WRITE_MODE_B == "WRITE_FIRST";
 
-    block_ram #(.BITS(14), .WIDTH_A(DATA_WIDTH_A), .WIDTH_B(DATA_WIDTH_B)) ram (
+    block_ram #(.BITS(14), .WIDTH_A(DATA_WIDTH_A), .WIDTH_B(DATA_WIDTH_B), .NEW_A(NEW_A), .NEW_B(NEW_B)) ram (
         .clk_a(CLKA), .clk_b(CLKB), .enable_a(ENA), .enable_b(ENB), .write_a(WEA), .write_b(WEB),
         .address_a(ADDRA), .address_b(ADDRB), .in_a({DIPA, DIA}), .in_b({DIPB, DIB}),
         .out_a({DOPA, DOA}), .out_b({DOPB, DOB}));
 
     initial
-        if (DOA_REG != 0 || DOB_REG != 0 || WRITE_MODE_A != "READ_FIRST" || WRITE_MODE_B != "READ_FIRST") begin
+        if (DOA_REG != 0 || DOB_REG != 0 || !(NEW_A || WRITE_MODE_A == "READ_FIRST") || !(NEW_B || WRITE_MODE_B == "READ_FIRST")) begin
             $display("RAMB16BWER: a form without a model");
-            $finish;
+            $stop;
         end
 endmodule
 
@@ -123,6 +137,8 @@ module RAMB8BWER (
     parameter RAM_MODE = "";
     parameter WRITE_MODE_A = "";
     parameter WRITE_MODE_B = "";
+    localparam NEW_A = WRITE_MODE_A == "WRITE_FIRST";
+    localparam NEW_B = WRITE_MODE_B == "WRITE_FIRST";
 
     // In the form SDP, A writes and B reads, and the 36 bits of either are shared out over the pins of both.
     localparam WIDE = RAM_MODE == "SDP";
@@ -130,7 +146,7 @@ module RAMB8BWER (
     wire [35:0] in_b = {2'd0, DIPBDIP, 16'd0, DIBDI};
     wire [35:0] out_a, out_b;
 
-    block_ram #(.BITS(13), .WIDTH_A(DATA_WIDTH_A), .WIDTH_B(DATA_WIDTH_B)) ram (
+    block_ram #(.BITS(13), .WIDTH_A(DATA_WIDTH_A), .WIDTH_B(DATA_WIDTH_B), .NEW_A(NEW_A), .NEW_B(NEW_B)) ram (
         .clk_a(CLKAWRCLK), .clk_b(CLKBRDCLK), .enable_a(ENAWREN), .enable_b(ENBRDEN),
         .write_a(WIDE ? {WEBWEU, WEAWEL} : {2'd0, WEAWEL}), .write_b(WIDE ? 4'd0 : {2'd0, WEBWEU}), .address_a(ADDRAWRADDR), .address_b(ADDRBRDADDR),
         .in_a(in_a), .in_b(in_b), .out_a(out_a), .out_b(out_b));
@@ -139,10 +155,10 @@ module RAMB8BWER (
     assign {DOPBDOP, DOBDO} = WIDE ? {out_b[35:34], out_b[31:16]} : {out_b[33:32], out_b[15:0]};
 
     initial
-        if (DOA_REG != 0 || DOB_REG != 0 || WRITE_MODE_A != "READ_FIRST" || WRITE_MODE_B != "READ_FIRST"
+        if (DOA_REG != 0 || DOB_REG != 0 || !(NEW_A || WRITE_MODE_A == "READ_FIRST") || !(NEW_B || WRITE_MODE_B == "READ_FIRST")
             || (WIDE && DATA_WIDTH_A != 36)) begin
             $display("RAMB8BWER: a form without a model");
-            $finish;
+            $stop;
         end
 endmodule
 

@@ -150,8 +150,8 @@ struct Bench {
         core.table_read = 1;
         core.table_bank = bank;
         core.table_entry = entry;
-        edge();
-        edge();
+        for (int clock = 0; clock < 3; clock++)
+            edge();
         core.eval();
     }
 

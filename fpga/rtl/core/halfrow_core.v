@@ -41,7 +41,7 @@ module halfrow_core #(
     input  wire                table_bank,
     input  wire [ROW_BITS-1:0] table_entry,
     input  wire [79:0]         table_data,
-    input  wire                table_read,     // the ports show `table_entry` two clocks later; the core is empty
+    input  wire                table_read,     // the ports show `table_entry` three clocks later; the core is empty
     output wire [24:0]         step_port,
     output wire [79:0]         node_port_0,
     output wire [79:0]         node_port_1

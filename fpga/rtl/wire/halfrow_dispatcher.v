@@ -96,7 +96,7 @@ module halfrow_dispatcher #(
     output wire [ROW_BITS-1:0] table_entry,
     output wire [79:0]         table_data,
     output wire                table_read,
-    input  wire [24:0]         step_port,     // two clocks behind table_entry
+    input  wire [24:0]         step_port,     // three clocks behind table_entry
     input  wire [79:0]         node_port_0,
     input  wire [79:0]         node_port_1,
 
