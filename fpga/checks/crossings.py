@@ -21,8 +21,9 @@ from word_netlist import REGISTERS, Netlist
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-READ = """read_verilog -lib +/xilinx/cells_sim.v +/xilinx/cells_xtra.v; {sources} hierarchy -check -top {top}; proc; flatten; opt_expr; opt_dff;
-opt_clean; memory_collect; write_json {json}"""
+CELLS = {"minispartan6plus": "+/xilinx/cells_sim.v +/xilinx/cells_xtra.v", "ulx3s": "+/ecp5/cells_bb.v"}
+READ = ("read_verilog -lib {cells}; verilog_defaults -add {includes}; read_verilog {source}; hierarchy -check {libraries} -top {top}; "
+        "proc; flatten; opt_expr; opt_dff; opt_clean; memory_collect; write_json {json}")
 
 
 class Crossings:
@@ -147,14 +148,16 @@ def matches(key, source, register):
 
 def elaborated(board, kind, sensor, tree, work):
     """The netlist of a top whose sources are those of a tree."""
-    (work / "halfrow_build.vh").write_text("`define HALFROW_BUILD 32'h12345678\n" + ("`define HALFROW_SENSOR\n" if sensor else ""))
-    listed = re.findall(r"^verilog work (.*)$", (board / f"{kind}.prj").read_text(), re.MULTILINE)
-    sources = " ".join(f"read_verilog -I{work} -I{tree}/fpga/rtl {tree}/{path};" for path in listed)
-    script = READ.format(sources=sources.replace("\n", " "), top=f"{board.name}_{kind}", json=work / "top.json").replace("\n", " ")
+    (work / "halfrow_build.vh").write_text("`define HALFROW_BUILD 32'h12345678\n`define HALFROW_SERIAL 64'd1\n" + ("`define HALFROW_SENSOR\n" if sensor else ""))
+    boards, top = tree / "fpga" / "boards", f"{board.name}_{kind}"
+    folders = [*sorted((tree / "fpga" / "rtl").glob("*/")), boards / "common", boards / board.name]
+    script = READ.format(cells=CELLS[board.name], includes=f"-I{work} -I{tree}/fpga/rtl -I{boards}/common",
+                         source=boards / board.name / f"{top}.v", libraries=" ".join(f"-libdir {folder}" for folder in folders), top=top,
+                         json=work / "top.json")
     done = subprocess.run(["yosys", "-q", "-p", script], capture_output=True, text=True)
     if done.returncode != 0:
-        sys.exit(f"crossings: yosys does not read {board.name}_{kind}:\n{done.stderr[-1500:]}")
-    return Netlist(json.loads((work / "top.json").read_text())["modules"][f"{board.name}_{kind}"])
+        sys.exit(f"crossings: yosys does not read {top}:\n{done.stderr[-1500:]}")
+    return Netlist(json.loads((work / "top.json").read_text())["modules"][top])
 
 
 def faults_of(board, kind, sensor, tree=ROOT):
@@ -192,7 +195,7 @@ def mutants(kind):
 
 
 def main():
-    boards = sorted(path.parent for path in (HERE.parent / "boards").glob("*/fifo.prj"))
+    boards = [HERE.parent / "boards" / name for name in CELLS]
     kinds = ("fifo", "uart")
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         tops = [pool.submit(faults_of, board, kind, sensor) for board in boards for kind in kinds for sensor in (False, True)]
