@@ -1,12 +1,14 @@
-// The board with a sensor and an image processor at its pins, and no host. The sensor's data are good from 2 ns before the falling edge of
-// PIXCLK to 2 ns behind it, as the miniSpartan6+'s sensor.ucf has it, and unknown otherwise; its edges jitter. The image processor takes what is there at the
-// falling edge of its own clock. Pictures of the power-up size come through unchanged, W/2 + L + 2 clocks late, from the first whole one
-// on; again behind a PIXCLK that stopped in the middle of a picture.
+// A board with a sensor and an image processor at its pins, and no host; board_under_test.vh of its bench is the board. The sensor's
+// data are good from 2 ns before the falling edge of PIXCLK to 2 ns behind it, as the miniSpartan6+'s sensor.ucf has it, and unknown
+// otherwise; its edges jitter. The image processor takes what is there at the falling edge of its own clock. Pictures of the power-up
+// size come through unchanged, W/2 + L + 2 clocks late, from the first whole one on; again behind a PIXCLK that stopped in the middle
+// of a picture.
 //   +rising    the sensor's data are good around the other edge      +inverted   its LINE_VALID is low in a row
 //   +late      its data come half a clock too late                   +short      its rows have two samples less
 // A millisecond is 10 us here, so that the board's choice of the clock takes no 32 ms.
 `timescale 1ns / 1ps
 `default_nettype none
+`define SENSOR_AT_PINS
 
 module sensor_bench;
     localparam real HALF = 5.21, JITTER = 0.25, GOOD = 2.0;
@@ -42,7 +44,8 @@ module sensor_bench;
         show;
     end
 
-    wire rxd = 1'b1, cts_n = 1'b1, txd, rts_n;
+    wire rxd = 1'b1, cts_n = 1'b1;
+    wire txd, rts_n;
     `include "board_under_test.vh"
     defparam dut.board.milliseconds.LINK_KHZ = 17'd960;
     defparam dut.board.with_sensor.choice.LEAST_KHZ = 16'd40;

@@ -7,7 +7,7 @@ localparam real BAUD = 83.333;                    // 12 Mbaud
 `else
     minispartan6plus_uart dut (
         .clk32(oscillator), .uart_rxd(rxd), .uart_txd(txd), .uart_cts_n(cts_n), .uart_rts_n(rts_n), .led(led)
-`ifdef HALFROW_SENSOR
+`ifdef SENSOR_AT_PINS
         , .camera_pixclk(pixclk), .camera_frame_valid(seen_frame), .camera_line_valid(seen_line), .camera_data(seen_data),
         .isp_pixclk(isp_pixclk), .isp_frame_valid(isp_frame_valid), .isp_line_valid(isp_line_valid), .isp_data(isp_data)
 `endif

@@ -10,7 +10,7 @@ wire            resting;                          // high in every build
     assign rts_n = 1'b0;                          // it has none
     ulx3s_uart dut (
         .clk_25mhz(oscillator), .ftdi_txd(rxd), .ftdi_rxd(txd), .ftdi_nrts(cts_n), .wifi_gpio0(resting), .led(led)
-`ifdef HALFROW_SENSOR
+`ifdef SENSOR_AT_PINS
         , .camera_pixclk(pixclk), .camera_frame_valid(seen_frame), .camera_line_valid(seen_line), .camera_data(seen_data),
         .isp_pixclk(isp_pixclk), .isp_frame_valid(isp_frame_valid), .isp_line_valid(isp_line_valid), .isp_data(isp_data)
 `endif
