@@ -68,7 +68,7 @@ def commit():
 
 
 def constraints(design):
-    names = ["common", design.kind] + (["sensor"] if design.sensor else [])
+    names = [] if design.kind == "core" else ["common", design.kind] + (["sensor"] if design.sensor else [])
     return [BOARD / f"{name}.lpf" for name in names]
 
 
@@ -93,25 +93,31 @@ def read(design, work):
             f"hierarchy -check {libraries} -top {top} -chparam TAPS {design.taps}; rename -top top; ")
 
 
+def synthesis(design, work):
+    """yosys commands that make the netlist for place and route, top.json, and for simulation, top.v."""
+    return read(design, work) + "synth_ecp5 -top top -json top.json; write_verilog -noattr top.v"
+
+
 def synthesise(design, work):
-    """Makes work/top.json and work/top.v, the netlist for place and route and for simulation."""
+    """Makes the netlist in a work folder."""
     work.mkdir(parents=True, exist_ok=True)
     define(design, work)
-    script = read(design, work) + "synth_ecp5 -top top -json top.json; write_verilog -noattr top.v"
-    run("yosys", ["-p", script], work)
+    run("yosys", ["-p", synthesis(design, work)], work)
+
+
+def routing(design, device):
+    """nextpnr's arguments, but for its files and the seed."""
+    arguments = [DEVICES[device], "--package", "CABGA381", "--speed", "6", "--timing-allow-fail", "--report", "report.json"]
+    if design.kind == "core":
+        return [*arguments, "--out-of-context", "--freq", LEAST_CORE_MHZ]
+    return [*arguments, "--lpf", "top.lpf", "--textcfg", "top.config"]
 
 
 def route(design, netlist, device, seed, work):
     """Places and routes a netlist, and returns nextpnr's report. That a clock is too slow is the caller's to judge."""
     work.mkdir(parents=True, exist_ok=True)
-    arguments = [DEVICES[device], "--package", "CABGA381", "--speed", "6", "--seed", seed, "--timing-allow-fail",
-                 "--json", os.path.relpath(netlist, work), "--report", "report.json", "--textcfg", "top.config"]
-    if design.kind == "core":
-        arguments += ["--out-of-context", "--freq", LEAST_CORE_MHZ]
-    else:
-        (work / "top.lpf").write_text("".join(path.read_text() for path in constraints(design)))
-        arguments += ["--lpf", "top.lpf"]
-    run("nextpnr-ecp5", arguments, work)
+    (work / "top.lpf").write_text("".join(path.read_text() for path in constraints(design)))
+    run("nextpnr-ecp5", [*routing(design, device), "--seed", seed, "--json", os.path.relpath(netlist, work)], work)
     return json.loads((work / "report.json").read_text())
 
 
