@@ -78,9 +78,10 @@ def key_of(top, stage, tree):
 
 
 def script(top, stage, header, tree=ROOT):
-    """yosys commands that make the netlist of a top; `header` is the folder of halfrow_build.vh."""
-    found = " ".join(f"-I{folder}" for folder in (header, f"{tree}/fpga/rtl", f"{tree}/fpga/boards/common"))
-    reading = "; ".join(f"read_verilog {found} {path}" for path in sources(top, tree))
+    """yosys commands, for the folder `tree`, that make the netlist of a top; `header` is the folder of halfrow_build.vh. Names in a netlist
+    have the sources' paths in them, so these must not depend on where the project lies."""
+    found = " ".join(f"-I{folder}" for folder in (header, "fpga/rtl", "fpga/boards/common"))
+    reading = "; ".join(f"read_verilog {found} {path.relative_to(tree)}" for path in sources(top, tree))
     return f"{LIBRARY}; {reading}; {COMMANDS[stage].format(top=module_of(top))}"
 
 
@@ -93,7 +94,7 @@ def run(top, stage, tree, file, build="12345678"):
         strict = ["-e", "."] if stage == "words" else []
         expected = [word for text in EXPECTED for word in ("-w", text)]
         commands = f"{script(top, stage, work, tree)}; write_json {aside}"
-        done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True)
+        done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True, cwd=tree)
         if done.returncode:
             sys.exit(f"tops: yosys does not make {stage} of {name_of(top)}:\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
         aside.replace(file)
