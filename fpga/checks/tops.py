@@ -56,8 +56,8 @@ def libraries(top, tree=ROOT):
     """For yosys' `hierarchy`: the folders in which modules are found that were not read."""
     if len(sources(top, tree)) > 1:
         return ""
-    folders = [tree / "fpga/boards" / top.board, tree / "fpga/boards/common"]
-    return " ".join([rtl.libraries(tree / "fpga/rtl"), *(f"-libdir {folder}" for folder in folders)])
+    of_board = f"-libdir fpga/boards/{top.board} -libdir fpga/boards/common"
+    return f"{rtl.libraries(tree / 'fpga/rtl').replace(f'{tree}/', '')} {of_board}"
 
 
 def build_header(top, build):
@@ -98,9 +98,10 @@ def key_of(top, stage, tree):
 
 
 def script(top, stage, header, tree=ROOT):
-    """yosys commands that make the netlist of a top; `header` is the folder of halfrow_build.vh."""
-    found = " ".join(f"-I{folder}" for folder in (header, f"{tree}/fpga/rtl", f"{tree}/fpga/boards/common"))
-    reading = "; ".join(f"read_verilog {path}" for path in sources(top, tree))
+    """yosys commands, for the folder `tree`, that make the netlist of a top; `header` is the folder of halfrow_build.vh. Names in a netlist
+    have the sources' paths in them, so these must not depend on where the project lies."""
+    found = " ".join(f"-I{folder}" for folder in (header, "fpga/rtl", "fpga/boards/common"))
+    reading = "; ".join(f"read_verilog {path.relative_to(tree)}" for path in sources(top, tree))
     commands = COMMANDS[stage].format(top=module_of(top), libraries=libraries(top, tree))
     return f"read_verilog -lib {CELLS[top.board]}; verilog_defaults -add {found}; {reading}; {commands}"
 
@@ -114,7 +115,7 @@ def run(top, stage, tree, file, build="12345678"):
         strict = ["-e", "."] if stage == "words" else []
         expected = [word for text in EXPECTED for word in ("-w", text)]
         commands = f"{script(top, stage, work, tree)}; write_json {aside}"
-        done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True)
+        done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True, cwd=tree)
         if done.returncode:
             sys.exit(f"tops: yosys does not make {stage} of {name_of(top)}:\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
         aside.replace(file)
