@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""The tops of the miniSpartan6+ as yosys reads them: once for every check that looks at them. What it made is kept below
+"""The boards' tops as yosys reads them: once for every check that looks at them. What it made is kept below
 target/hardware/tops for as long as the sources are the same.
-    tops.py words|cells fifo|uart [sensor]     prints the file of the netlist
-words: flat, in front of mapping, read without a warning. cells: flat, of Spartan-6 cells, with pads, as `build --yosys` takes it."""
+    tops.py words|cells BOARD fifo|uart [sensor]     prints the file of the netlist
+words: flat, in front of mapping, read without a warning. cells, of the miniSpartan6+: flat, of Spartan-6 cells, with pads, as
+`build --yosys` takes it."""
 
 import collections
 import hashlib
@@ -13,11 +14,14 @@ import subprocess
 import sys
 import tempfile
 
+import rtl
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 KEPT = ROOT / "target/hardware/tops"
-LIBRARY = "read_verilog -lib -specify +/xilinx/cells_sim.v +/xilinx/cells_xtra.v"
+# The vendor's cells, by board.
+CELLS = {"minispartan6plus": "-specify +/xilinx/cells_sim.v +/xilinx/cells_xtra.v", "ulx3s": "+/ecp5/cells_bb.v"}
 COMMANDS = {
-    "words": "hierarchy -check -top {top}; proc; check -assert; flatten; opt_expr; opt_dff; opt_clean; memory_collect",
+    "words": "hierarchy -check {libraries} -top {top}; proc; check -assert; flatten; opt_expr; opt_dff; opt_clean; memory_collect",
     # No shift registers: yosys 0.23 forgets the clock enable of those that it extracts from registers.
     "cells": "synth_xilinx -family xc6s -ise -flatten -nosrl -top {top}",
 }
@@ -40,12 +44,26 @@ def name_of(top):
 
 
 def sources(top, tree=ROOT):
-    listed = (tree / "fpga/boards" / top.board / f"{top.kind}.prj").read_text()
-    return [tree / path for path in re.findall(r"^verilog work (.*)$", listed, re.MULTILINE)]
+    """What is read: all that a vendor's project lists, or the top alone where yosys finds the rest in `libraries`."""
+    board = tree / "fpga/boards" / top.board
+    listed = board / f"{top.kind}.prj"
+    if not listed.exists():
+        return [board / f"{module_of(top)}.v"]
+    return [tree / path for path in re.findall(r"^verilog work (.*)$", listed.read_text(), re.MULTILINE)]
+
+
+def libraries(top, tree=ROOT):
+    """For yosys' `hierarchy`: the folders in which modules are found that were not read."""
+    if len(sources(top, tree)) > 1:
+        return ""
+    of_board = f"-libdir fpga/boards/{top.board} -libdir fpga/boards/common"
+    return f"{rtl.libraries(tree / 'fpga/rtl').replace(f'{tree}/', '')} {of_board}"
 
 
 def build_header(top, build):
-    return f"`define HALFROW_BUILD 32'h{build}\n" + ("`define HALFROW_SENSOR\n" if top.sensor else "")
+    """halfrow_build.vh, as a build script writes it."""
+    lines = [f"`define HALFROW_BUILD 32'h{build}", "`define HALFROW_SERIAL 64'd1"] + ["`define HALFROW_SENSOR"] * top.sensor
+    return "\n".join(lines) + "\n"
 
 
 def netlist(top, stage, tree=ROOT):
@@ -70,7 +88,9 @@ def made(top, stage, tree=ROOT):
 def key_of(top, stage, tree):
     """What the netlist depends on."""
     digest = hashlib.sha256()
-    for path in [pathlib.Path(__file__), *sources(top, tree), *sorted((tree / "fpga").glob("*/**/*.vh"))]:
+    folders = [tree / "fpga/rtl", tree / "fpga/boards" / top.board, tree / "fpga/boards/common"]
+    found = {path for folder in folders for kind in ("*.v", "*.vh", "*.prj") for path in folder.rglob(kind)}
+    for path in [pathlib.Path(__file__), *sorted(found)]:
         digest.update(path.read_bytes())
     version = subprocess.run(["yosys", "-V"], check=True, capture_output=True).stdout
     digest.update(version + repr((top, stage)).encode())
@@ -78,10 +98,12 @@ def key_of(top, stage, tree):
 
 
 def script(top, stage, header, tree=ROOT):
-    """yosys commands that make the netlist of a top; `header` is the folder of halfrow_build.vh."""
-    found = " ".join(f"-I{folder}" for folder in (header, f"{tree}/fpga/rtl", f"{tree}/fpga/boards/common"))
-    reading = "; ".join(f"read_verilog {found} {path}" for path in sources(top, tree))
-    return f"{LIBRARY}; {reading}; {COMMANDS[stage].format(top=module_of(top))}"
+    """yosys commands, for the folder `tree`, that make the netlist of a top; `header` is the folder of halfrow_build.vh. Names in a netlist
+    have the sources' paths in them, so these must not depend on where the project lies."""
+    found = " ".join(f"-I{folder}" for folder in (header, "fpga/rtl", "fpga/boards/common"))
+    reading = "; ".join(f"read_verilog {path.relative_to(tree)}" for path in sources(top, tree))
+    commands = COMMANDS[stage].format(top=module_of(top), libraries=libraries(top, tree))
+    return f"read_verilog -lib {CELLS[top.board]}; verilog_defaults -add {found}; {reading}; {commands}"
 
 
 def run(top, stage, tree, file, build="12345678"):
@@ -93,7 +115,7 @@ def run(top, stage, tree, file, build="12345678"):
         strict = ["-e", "."] if stage == "words" else []
         expected = [word for text in EXPECTED for word in ("-w", text)]
         commands = f"{script(top, stage, work, tree)}; write_json {aside}"
-        done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True)
+        done = subprocess.run(["yosys", "-q", *expected, *strict, "-p", commands], capture_output=True, text=True, cwd=tree)
         if done.returncode:
             sys.exit(f"tops: yosys does not make {stage} of {name_of(top)}:\n{done.stdout[-1500:]}{done.stderr[-1500:]}")
         aside.replace(file)
@@ -101,13 +123,13 @@ def run(top, stage, tree, file, build="12345678"):
 
 def main():
     try:
-        stage, kind, *sensor = sys.argv[1:]
-        known = stage in COMMANDS and kind in ("fifo", "uart") and sensor in ([], ["sensor"])
+        stage, board, kind, *sensor = sys.argv[1:]
+        known = stage in COMMANDS and board in CELLS and kind in ("fifo", "uart") and sensor in ([], ["sensor"])
     except ValueError:
         known = False
     if not known:
         sys.exit(__doc__)
-    print(made(Top("minispartan6plus", kind, bool(sensor)), stage))
+    print(made(Top(board, kind, bool(sensor)), stage))
 
 
 if __name__ == "__main__":

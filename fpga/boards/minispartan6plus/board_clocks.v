@@ -5,7 +5,7 @@
 module board_clocks #(
     parameter SENSOR = 0                       // 1: with a sensor
 ) (
-    input  wire clk32,                         // pin
+    input  wire oscillator,                    // pin, 32 MHz
     input  wire pixclk,                        // pin; not looked at without a sensor
     input  wire choose_pixclk,
     output wire link_clk,
@@ -15,7 +15,7 @@ module board_clocks #(
 );
     wire from_oscillator, feedback, from_pll;
 
-    IBUFG oscillator (.I(clk32), .O(from_oscillator));
+    IBUFG oscillator_buffer (.I(oscillator), .O(from_oscillator));
 
     PLL_BASE #(
         .BANDWIDTH("OPTIMIZED"), .COMPENSATION("INTERNAL"), .CLKIN_PERIOD(31.25),
@@ -30,7 +30,7 @@ module board_clocks #(
         if (SENSOR != 0) begin : with_sensor
             wire from_sensor;
 
-            IBUFG sensor (.I(pixclk), .O(from_sensor));
+            IBUFG sensor_buffer (.I(pixclk), .O(from_sensor));
             BUFG direct_buffer (.I(from_sensor), .O(pixclk_direct));
 
             // ASYNC, since the default kind waits for an edge of a clock that may have stopped. A short pulse that this can

@@ -34,9 +34,9 @@ pub(super) const BOARDS: [BitstreamBoard; 2] = [
     },
     BitstreamBoard {
         name: "ulx3s",
-        device: "LFE5U-25F or 85F, CABGA381",
+        device: "LFE5U-12F, 25F, 45F or 85F, CABGA381",
         links: &["serial", "usb"],
-        build: "fpga/boards/ulx3s/build uart|fifo [sensor] [--device 25|85]",
+        build: "fpga/boards/ulx3s/build uart|fifo [sensor] [--device 12|25|45|85]",
         bitstream: "target/ulx3s/uart-25/top.bit",
         loader_name: "ulx3s",
         other_loader: "fujprog",

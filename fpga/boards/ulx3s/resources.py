@@ -1,0 +1,60 @@
+#!/usr/bin/env python3
+"""Synthesises both tops for an ECP5 with the yosys that is on the path, prints what they take of an LFE5U-25F, and fails beyond
+budget.ini. It is what can be seen of a bitstream without placing it."""
+import concurrent.futures
+import configparser
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import flow
+
+LFE5U_25F = {"luts": 24288, "registers": 24288, "block_rams": 56, "multipliers": 28}
+# Cells of yosys, and how many of what they take.
+TAKES = {"LUT4": ("luts", 1), "CCU2C": ("luts", 2), "TRELLIS_DPR16X4": ("luts", 4), "TRELLIS_FF": ("registers", 1),
+         "DP16KD": ("block_rams", 1), "MULT18X18D": ("multipliers", 1)}
+# Multiplexers beside the LUTs that they join, and what there is one of.
+FREE = {"PFUMX", "L6MUX21", "EHXPLLL", "$_TBUF_"}
+
+
+def synthesised(kind):
+    """How many of each cell. Names and the last checks, which take a fifth of the time, are left out."""
+    design = flow.Design(kind, build="12345678", serial=1)
+    with tempfile.TemporaryDirectory() as scratch:
+        work = pathlib.Path(scratch)
+        flow.define(design, work)
+        script = flow.read(design, work) + "synth_ecp5 -top top -run begin:check; tee -o cells.json stat -json"
+        done = subprocess.run(["yosys", "-q", "-p", script], cwd=work, capture_output=True, text=True)
+        if done.returncode:
+            sys.exit(f"resources: yosys does not synthesise ulx3s_{kind}:\n{done.stderr[-2000:]}")
+        return json.loads((work / "cells.json").read_text())["modules"]["\\top"]["num_cells_by_type"]
+
+
+def counted(cells):
+    counts = dict.fromkeys(LFE5U_25F, 0)
+    for kind, number in cells.items():
+        if kind in TAKES:
+            counts[TAKES[kind][0]] += TAKES[kind][1] * number
+        elif kind not in FREE:
+            sys.exit(f"resources: unknown cell {kind}")
+    return counts
+
+
+def main():
+    budget = configparser.ConfigParser()
+    budget.read(flow.BOARD / "budget.ini")
+    with concurrent.futures.ThreadPoolExecutor(2) as pool:
+        found = {kind: counted(cells) for kind, cells in zip(budget.sections(), pool.map(synthesised, budget.sections()))}
+    exceeded = []
+    for kind, counts in found.items():
+        shares = ", ".join(f"{counts[part]:,} {part} ({100 * counts[part] / of:.1f} %)" for part, of in LFE5U_25F.items())
+        print(f"PASS ulx3s_{kind} on an LFE5U-25F: {shares}".replace("_rams", " RAMs"))
+        exceeded += [f"{kind}: {counts[part]} {part}, allowed {limit}" for part, limit in budget[kind].items()
+                     if counts[part] > int(limit)]
+    if exceeded:
+        sys.exit("resources: over the budget:\n  " + "\n  ".join(exceeded))
+
+
+main()

@@ -1,0 +1,53 @@
+// The ULX3S behind its FT231X, a UART of 3 Mbaud. The chip's RTS# holds the board's transmitter; its CTS# is on the FPGA's TDO, so the
+// board cannot hold the host.
+// halfrow_build.vh, which the build script writes, defines HALFROW_BUILD, HALFROW_SERIAL and, for a board with a sensor, HALFROW_SENSOR.
+`default_nettype none
+`include "halfrow_build.vh"
+
+module ulx3s_uart #(
+    parameter TAPS = 7                         // 5 or 7
+) (
+    input  wire        clk_25mhz,
+    input  wire        ftdi_txd,               // TXD of the FT231X
+    output wire        ftdi_rxd,               // its RXD
+    input  wire        ftdi_nrts,              // its RTS#
+    output wire        wifi_gpio0,
+    output wire [7:0]  led
+`ifdef HALFROW_SENSOR
+    ,
+    input  wire        camera_pixclk,
+    input  wire        camera_frame_valid,
+    input  wire        camera_line_valid,
+    input  wire [11:0] camera_data,
+    output wire        isp_pixclk,
+    output wire        isp_frame_valid,
+    output wire        isp_line_valid,
+    output wire [11:0] isp_data
+`endif
+);
+    wire oscillator = clk_25mhz;
+    `include "board_top.vh"
+
+    wire rts_n;
+    wire unused_rts_n = &{1'b0, rts_n};
+
+    assign wifi_gpio0 = 1'b1;                  // low, the ESP32 may take the FPGA's JTAG
+
+    halfrow_uart_bridge #(
+        .DIVIDER(32),                          // 3 Mbaud of 96 MHz
+        .POWER_UP_WIDTH(1920),
+        .POWER_UP_HEIGHT(1080),
+        .TAPS(TAPS),
+        .BUILD(`HALFROW_BUILD),
+        .NAME("ULX3S UART")
+    ) bridge (
+        .link_clk(link_clk), .link_rst(link_rst),
+        .rxd(ftdi_txd), .txd(ftdi_rxd), .rts_n(rts_n), .cts_n(ftdi_nrts),
+        .clk(clk), .rst(rst), .millisecond(millisecond), .clock_source(clock_source), .clock_hz(clock_hz),
+        .serial(serial),
+        .camera_frame_valid(taken_frame_valid), .camera_line_valid(taken_line_valid), .camera_data(taken_data),
+        .isp_frame_valid(made_frame_valid), .isp_line_valid(made_line_valid), .isp_data(made_data),
+        .camera_fault(camera_fault), .session_open(session_open), .packet_seen(packet_seen), .quiet(quiet));
+endmodule
+
+`default_nettype wire

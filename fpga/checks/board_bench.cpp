@@ -1,0 +1,326 @@
+// Drives a whole board, as written or as synthesised, at the pins of its UART: HELLO, tables, rows, and compares what comes back with
+// datapath.hpp, every sample and every latency. It ends at the first difference, with status 1.
+//   board_bench FRAMES SEED
+#include "Vboard.h"
+#include "datapath.hpp"
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <random>
+
+#ifndef TAPS
+#define TAPS 7
+#endif
+constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048, CLOCKS_A_BIT = 32;
+
+using Bytes = std::vector<uint8_t>;
+
+[[noreturn]] static void fail(const char *what) {
+    std::printf("FAIL %s\n", what);
+    std::exit(1);
+}
+
+static void put(Bytes &bytes, uint64_t value, int count) {
+    for (int k = 0; k < count; k++)
+        bytes.push_back(value >> 8 * k);
+}
+
+static uint64_t get(const Bytes &bytes, size_t from, int count) {
+    uint64_t value = 0;
+    for (int k = 0; k < count; k++)
+        value |= uint64_t(bytes.at(from + k)) << 8 * k;
+    return value;
+}
+
+static uint32_t crc_of(const Bytes &bytes) {
+    uint32_t crc = 0;
+    for (uint8_t byte : bytes)
+        crc = crc32(crc, byte, 1);
+    return crc;
+}
+
+static Bytes stuffed(const Bytes &packet) {
+    Bytes out{0};
+    for (size_t at = 0; at <= packet.size();) {
+        size_t end = at;
+        while (end < packet.size() && end - at < 254 && packet[end])
+            end++;
+        out.push_back(end - at + 1);
+        out.insert(out.end(), packet.begin() + at, packet.begin() + end);
+        if (end - at == 254 && end == packet.size())
+            break;
+        at = end - at == 254 ? end : end + 1;
+    }
+    out.push_back(0);
+    return out;
+}
+
+static Bytes unstuffed(const Bytes &piece) {
+    Bytes out;
+    for (size_t at = 0; at < piece.size();) {
+        size_t code = piece[at++];
+        for (size_t k = 1; k < code; k++)
+            out.push_back(piece.at(at++));
+        if (code != 255 && at < piece.size())
+            out.push_back(0);
+    }
+    return out;
+}
+
+// The two lines of the UART, and the clock.
+struct Lines {
+    Vboard board;
+    std::deque<uint8_t> to_board;
+    Bytes piece;
+    std::deque<Bytes> packets;               // that came whole
+    int sent = 0, heard = -1;                // clocks into a byte; none is heard: -1
+    uint8_t byte = 0;
+    uint64_t clocks = 0;
+
+    void edge() {
+        board.clk_25mhz = 0;
+        board.eval();
+        board.clk_25mhz = 1;
+        board.eval();
+        clocks++;
+        speak();
+        listen();
+    }
+
+    void speak() {
+        int bit = sent / CLOCKS_A_BIT;
+        board.ftdi_txd = to_board.empty() || bit == 9 ? 1 : bit == 0 ? 0 : to_board.front() >> (bit - 1) & 1;
+        if (!to_board.empty() && ++sent == 10 * CLOCKS_A_BIT) {
+            sent = 0;
+            to_board.pop_front();
+        }
+    }
+
+    void listen() {
+        if (heard < 0 && board.ftdi_rxd)
+            return;
+        heard++;
+        int bit = heard / CLOCKS_A_BIT;
+        if (heard % CLOCKS_A_BIT != CLOCKS_A_BIT / 2 || bit == 0)
+            return;
+        if (bit < 9) {
+            byte = byte >> 1 | board.ftdi_rxd << 7;
+            return;
+        }
+        if (!board.ftdi_rxd)
+            fail("a byte without its stop bit");
+        heard = -1;
+        if (byte) {
+            piece.push_back(byte);
+        } else if (!piece.empty()) {
+            packets.push_back(unstuffed(piece));
+            piece.clear();
+        }
+    }
+
+    Bytes next_packet() {
+        for (uint64_t until = clocks + 20000000; packets.empty(); edge())
+            if (clocks == until)
+                fail("no answer within 20 million clocks");
+        Bytes packet = packets.front();
+        packets.pop_front();
+        Bytes body(packet.begin(), packet.end() - 4);
+        if (packet.size() < 16 || crc_of(body) != get(packet, packet.size() - 4, 4) || get(packet, 4, 2) != packet.size() - 16)
+            fail("a packet that is damaged");
+        return packet;
+    }
+};
+
+struct Host {
+    Lines lines;
+    std::mt19937 random;
+    uint16_t sequence = 0;
+    uint8_t session = 0, generation = 0;
+    uint32_t window = 0, have = 0;           // rows that may be sent, rows that came back
+    uint64_t outputs = 0;
+    std::deque<Bytes> rows;                  // ROW_OUT packets
+
+    int draw(int count) { return random() % count; }
+
+    void send(uint8_t kind, const Bytes &payload) {
+        Bytes packet;
+        put(packet, 1, 1);
+        put(packet, kind, 1);
+        put(packet, sequence++, 2);
+        put(packet, payload.size(), 2);
+        put(packet, 0, 1);
+        put(packet, session, 1);
+        put(packet, have, 4);
+        packet.insert(packet.end(), payload.begin(), payload.end());
+        put(packet, crc_of(packet), 4);
+        for (uint8_t byte : stuffed(packet))
+            lines.to_board.push_back(byte);
+    }
+
+    // One packet of the board's; rows are put aside.
+    Bytes hear() {
+        Bytes packet = lines.next_packet();
+        if (packet[1] == 0x7f)
+            fail("a refusal");
+        window = get(packet, 8, 4);
+        if (packet[1] == 0x21)
+            rows.push_back(packet);
+        return packet;
+    }
+
+    Bytes ask(uint8_t kind, const Bytes &payload) {
+        send(kind, payload);
+        Bytes reply = hear();
+        while (reply[1] == 0x21)
+            reply = hear();
+        if (reply[1] != kind || get(reply, 2, 2) != uint16_t(sequence - 1))
+            fail("an answer to something else");
+        return Bytes(reply.begin() + 12, reply.end() - 4);
+    }
+
+    void hello() {
+        Bytes payload;
+        put(payload, 0x1badcafe, 4);
+        put(payload, 0x12345678, 4);
+        put(payload, 1, 1);
+        put(payload, 1, 1);
+        put(payload, 1, 1);
+        Bytes reply = ask(0x00, payload);
+        if (get(reply, 0, 4) != 0x1badcafe || get(reply, 4, 5) != 0x0131575248)
+            fail("the reply to HELLO");
+        session = reply.at(9);
+        Bytes list = ask(0x01, {});
+        int found = 0;
+        for (size_t at = 0; at < list.size(); at += 2 + list.at(at + 1))
+            found += (list[at] == 0x05 && list.at(at + 2) == TAPS) + (list[at] == 0x06 && list.at(at + 2) == LATENCY);
+        if (found != 2)
+            fail("the capabilities are not those of this build");
+    }
+
+    Kernel kernel() {
+        Kernel drawn = kernel_of(draw(2) && TAPS == 7 ? Interpolant::keys : Interpolant::hermite);
+        if (draw(2))
+            for (Node &node : drawn)
+                for (int k = 0; k < 5; k++)
+                    node[k] = TAPS == 5 && k % 4 == 0 ? 0 : int16_t(random()) >> draw(3);
+        return drawn;
+    }
+
+    int64_t step(const Frame &frame) {
+        for (int tries = 0; tries < 50; tries++) {
+            int64_t drawn = draw(2) ? 14648488 - draw(100000) : (1 << 24) - draw(1 << 22);
+            if (legal(frame, drawn, RING))
+                return drawn;
+        }
+        return 1 << 24;
+    }
+
+    void write(int table, const Bytes &entries, int count) {
+        Bytes payload;
+        put(payload, table, 1);
+        put(payload, 0, 4);                  // bank, port, first
+        put(payload, count, 2);
+        payload.insert(payload.end(), entries.begin(), entries.end());
+        ask(0x10, payload);
+    }
+
+    void configure(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel) {
+        Bytes settings, factors, nodes, commit;
+        put(settings, frame.width, 2);
+        put(settings, steps.size(), 2);
+        put(settings, frame.centre, 2);
+        put(settings, draw(20), 2);
+        put(settings, draw(2) ? random() : 0, 4);
+        put(settings, frame.bits, 1);
+        ask(0x18, settings);
+        for (int64_t step : steps)
+            put(factors, step, 4);
+        for (const Node &node : kernel)
+            for (int16_t weight : node)
+                put(nodes, uint16_t(weight), 2);
+        write(0, factors, steps.size());
+        write(1, nodes, 65);
+        put(commit, crc_of(factors), 4);
+        put(commit, crc_of(nodes), 4);
+        put(commit, generation, 2);          // the frame's number
+        put(commit, generation + 1, 1);
+        ask(0x13, commit);
+        generation++;
+    }
+
+    void send_row(uint32_t number, int row, bool last, const Row &samples) {
+        Bytes payload;
+        put(payload, number, 4);
+        put(payload, generation - 1, 2);
+        put(payload, row, 2);
+        put(payload, samples.size(), 2);
+        put(payload, last, 1);
+        put(payload, 0, 1);
+        for (size_t j = 0; j < samples.size(); j += 2)
+            put(payload, samples[j] | samples[j + 1] << 12, 3);
+        send(0x20, payload);
+    }
+
+    void check_row(const Frame &frame, int row, int64_t step, const Kernel &kernel, const Row &samples) {
+        while (rows.empty())
+            hear();
+        Bytes out = rows.front();
+        rows.pop_front();
+        if (get(out, 12, 4) != have || get(out, 16, 2) != generation - 1u || get(out, 18, 2) != unsigned(row) || out.at(23) != generation)
+            fail("another row, or tables of another generation");
+        if (get(out, 24, 2) != frame.width / 2u + LATENCY || get(out, 26, 2) != frame.width / 2u + LATENCY)
+            fail("a latency that is not W/2 + L");
+        for (int j = 0; j < frame.width; j++) {
+            int sample = get(out, 32 + j / 2 * 3, 3) >> 12 * (j % 2) & 0xfff, due = output(frame, step, kernel, samples, j);
+            if (sample != due) {
+                std::printf("row %d, column %d: %d, due %d\n", row, j, sample, due);
+                fail("a sample differs");
+            }
+            outputs++;
+        }
+        have++;
+        send(0x22, {});
+    }
+
+    void play() {
+        int width = 64 + 2 * draw(20);
+        Frame frame{width, 8 + 2 * draw(3), draw(2) ? width - 1 : draw(2 * width - 1)};
+        std::vector<int64_t> steps(3 + draw(2));
+        std::vector<Row> samples;
+        for (int64_t &factor : steps) {
+            factor = step(frame);
+            samples.emplace_back(width);
+            for (int &sample : samples.back())
+                sample = draw(1 << frame.bits);
+        }
+        Kernel weights = kernel();
+        configure(frame, steps, weights);
+        uint32_t first = have;
+        for (size_t row = 0, sent = 0; row < steps.size(); row++) {
+            while (sent < steps.size() && (sent <= row || first + sent < window)) {
+                send_row(first + sent, sent, sent + 1 == steps.size(), samples[sent]);
+                sent++;
+            }
+            check_row(frame, row, steps[row], weights, samples[row]);
+        }
+    }
+};
+
+int main(int argc, char **argv) {
+    if (argc != 3) {
+        std::printf("board_bench FRAMES SEED\n");
+        return 2;
+    }
+    Host host;
+    host.random.seed(std::atoi(argv[2]));
+    host.lines.board.ftdi_nrts = 0;
+    host.lines.board.ftdi_txd = 1;
+    for (int k = 0; k < 20000; k++)
+        host.lines.edge();
+    host.hello();
+    for (int k = 0; k < std::atoi(argv[1]); k++)
+        host.play();
+    std::printf("%d taps: %lu samples equal, %lu clocks\n", TAPS, host.outputs, host.lines.clocks);
+    return 0;
+}
