@@ -1,6 +1,6 @@
 // Models of the ECP5 cells that yosys' library leaves empty, in the forms that synth_ecp5 makes of an inferred memory or product: a
-// block RAM with ports of one width, the old word where a port reads and writes at once, no output register, no reset, contents that
-// begin as 0; a product without registers. Other forms end the simulation. TO_Q: picoseconds from the clock to the word.
+// block RAM with ports of one width, the old word where a port reads and writes at once, no output register, no reset, contents and
+// outputs that begin as 0; a product without registers. Other forms end the simulation. TO_Q: picoseconds from the clock to the word.
 `default_nettype none
 `timescale 1ps / 1ps
 
@@ -26,8 +26,10 @@ module block_ram #(
     integer    lane_a, lane_b, place;
     reg [35:0] words [0:(1 << (14 - SHIFT))-1];
 
-    initial
+    initial begin
+        {out_a, out_b} = 72'd0;
         for (place = 0; place < 1 << (14 - SHIFT); place = place + 1) words[place] = 36'd0;
+    end
 
     always @(posedge clk_a)
         if (enable_a) begin
