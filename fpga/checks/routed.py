@@ -2,7 +2,7 @@
 """Writes what nextpnr-ecp5 made of a design as Verilog that ecp5_routed.v and ecp5_cells.v simulate.
     routed.py ROUTED.json OUT.v [ROUTED.sdf]     ROUTED: what nextpnr's --write and --sdf gave; with the delays if they are given
 A delay stands in front of the pin that it leads to: that of the wire to it, and the longest through its cell from there. Icarus 11
-takes no INTERCONNECT from an SDF, which is half of the delay, so nothing is annotated."""
+leaves the INTERCONNECT of an SDF out, which is half of the delay, so nothing is annotated."""
 import collections
 import json
 import pathlib
