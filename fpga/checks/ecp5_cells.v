@@ -1,10 +1,12 @@
 // Models of the ECP5 cells that yosys' library leaves empty, in the forms that synth_ecp5 makes of an inferred memory or product: a
-// block RAM with ports of one width, the old word where a port reads and writes at once, no output register, no reset, contents that
-// begin as 0; a product without registers. Other forms end the simulation.
+// block RAM with ports of one width, the old word where a port reads and writes at once, no output register, no reset, contents and
+// outputs that begin as 0; a product without registers. Other forms end the simulation. TO_Q: picoseconds from the clock to the word.
 `default_nettype none
+`timescale 1ps / 1ps
 
 module block_ram #(
-    parameter WIDTH = 36
+    parameter WIDTH = 36,
+    parameter TO_Q = 0
 ) (
     input  wire        clk_a,
     input  wire        clk_b,
@@ -24,19 +26,21 @@ module block_ram #(
     integer    lane_a, lane_b, place;
     reg [35:0] words [0:(1 << (14 - SHIFT))-1];
 
-    initial
+    initial begin
+        {out_a, out_b} = 72'd0;
         for (place = 0; place < 1 << (14 - SHIFT); place = place + 1) words[place] = 36'd0;
+    end
 
     always @(posedge clk_a)
         if (enable_a) begin
-            out_a <= words[address_a[13:SHIFT]];
+            out_a <= #TO_Q words[address_a[13:SHIFT]];
             for (lane_a = 0; lane_a < 4; lane_a = lane_a + 1)
                 if (write_a[lane_a]) words[address_a[13:SHIFT]][9*lane_a +: 9] <= in_a[9*lane_a +: 9];
         end
 
     always @(posedge clk_b)
         if (enable_b) begin
-            out_b <= words[address_b[13:SHIFT]];
+            out_b <= #TO_Q words[address_b[13:SHIFT]];
             for (lane_b = 0; lane_b < 4; lane_b = lane_b + 1)
                 if (write_b[lane_b]) words[address_b[13:SHIFT]][9*lane_b +: 9] <= in_b[9*lane_b +: 9];
         end
@@ -52,6 +56,7 @@ module DP16KD (
         DOA16, DOA17, DOB0, DOB1, DOB2, DOB3, DOB4, DOB5, DOB6, DOB7, DOB8, DOB9, DOB10, DOB11, DOB12, DOB13, DOB14,
         DOB15, DOB16, DOB17
 );
+    parameter TO_Q = 0;
     parameter DATA_WIDTH_A = 18;
     parameter DATA_WIDTH_B = 18;
     parameter REGMODE_A = "NOREG";
@@ -94,7 +99,7 @@ module DP16KD (
     wire [3:0]  lanes_a = WIDE ? address_a[3:0] : DATA_WIDTH_A == 18 ? {2'b00, address_a[1:0]} : 4'b0001;
     wire [3:0]  lanes_b = DATA_WIDTH_B == 18 ? {2'b00, address_b[1:0]} : 4'b0001;
 
-    block_ram #(.WIDTH(DATA_WIDTH_A)) ram (
+    block_ram #(.WIDTH(DATA_WIDTH_A), .TO_Q(TO_Q)) ram (
         .clk_a(CLKA), .clk_b(CLKB), .enable_a(CEA), .enable_b(CEB), .write_a(lanes_a & {4{WEA}}), .write_b(lanes_b & {4{WEB && !WIDE}}),
         .address_a(address_a), .address_b(address_b), .in_a({WIDE ? in_b : 18'd0, in_a}), .in_b({18'd0, in_b}), .out_a(out_a),
         .out_b(out_b));

@@ -32,7 +32,11 @@ module board_clocks #(
 
             // Logic and not the vendor's DCSC, which waits for an edge of a clock that may have stopped. A short pulse that this can let
             // through when it turns to a running PIXCLK finds the core in reset, and its memories are filled again behind it.
-            assign clk = choose_pixclk ? pixclk : link_clk;
+            wire chosen = choose_pixclk ? pixclk : link_clk;
+            (* keep *) wire core_clock;        // named in sensor.lpf
+
+            DCCA core_buffer (.CLKI(chosen), .CE(1'b1), .CLKO(core_clock));
+            assign clk = core_clock;
         end else begin : without_sensor
             wire unused = &{1'b0, pixclk, choose_pixclk};
 

