@@ -10,7 +10,8 @@ module halfrow_row_check #(
     input  wire                  byte_valid,
     input  wire [3:0]            byte_index,    // 0 to 11
     input  wire [7:0]            place_byte,
-    input  wire [7:0]            before_byte,   // the same byte of the row in front
+    input  wire [2:0]            before_index,  // the number that byte_index has a clock later
+    input  wire [7:0]            before_byte,   // that byte of the row in front
     input  wire [11:0]           packet_length, // bytes of payload
 
     input  wire [31:0]           acknowledged,
@@ -58,9 +59,14 @@ module halfrow_row_check #(
     wire [7:0] height_byte = high ? {4'd0, height[11:8]} : height[7:0];
     wire [9:0] rows_below = {1'b0, height_byte, 1'b0} - {1'b0, place_byte, !high || row_outside};
 
+    // The predecessor's bytes with 1 added to its row.
     reg carry;
-    wire [9:0] expected = {1'b0, before_byte, 1'b1} + {9'd0, in_row && (!high || carry)};
-    wire unused = &{1'b0, difference[0], rows_below[0], expected[0]};
+    reg [7:0] expected;
+    wire counts = before_index[2:1] == 2'd3 && (!before_index[0] || carry);
+    wire unused = &{1'b0, difference[0], rows_below[0]};
+
+    always @(posedge clk)
+        {carry, expected} <= {1'b0, before_byte} + {8'd0, counts};
 
     always @(posedge clk)
         if (begins) begin
@@ -72,9 +78,8 @@ module halfrow_row_check #(
             if (in_frame)
                 commit_fits <= commit_fits && place_byte == commit_byte;
             if (in_frame || in_row)
-                follows <= follows && place_byte == expected[8:1];
+                follows <= follows && place_byte == expected;
             if (in_row) begin
-                carry <= expected[9];
                 row_0 <= row_0 && place_byte == 8'd0;
                 row_outside <= rows_below[9];
                 row_is_last <= row_is_last && rows_below[8:1] == 8'd0;

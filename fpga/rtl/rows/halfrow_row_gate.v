@@ -63,7 +63,7 @@ module halfrow_row_gate #(
 
     reg [2:0] state;
     // The packet's byte gets a register before anything is made of it, since a memory's output comes late in the clock.
-    reg [7:0] shown_byte, shown_before;
+    reg [7:0] shown_byte;
     reg [3:0] coming, shown; // its number while it is in the place
     reg coming_valid, shown_valid;
     reg in_samples;          // it is behind the place
@@ -77,7 +77,6 @@ module halfrow_row_gate #(
         shown <= coming;
         shown_valid <= coming_valid;
         shown_byte <= packet_byte;
-        shown_before <= before_byte;
     end
 
     wire passed, far, last_number, row_0, follows, commit_fits, fits, short;
@@ -85,7 +84,7 @@ module halfrow_row_gate #(
 
     halfrow_row_check #(.ENTRY_BITS(ENTRY_BITS)) check (
         .clk(clk), .begins(state == SETTLE), .byte_valid(state == PLACE && shown_valid), .byte_index(shown),
-        .place_byte(shown_byte), .before_byte(shown_before), .packet_length(packet_length),
+        .place_byte(shown_byte), .before_index(before_index), .before_byte(before_byte), .packet_length(packet_length),
         .acknowledged(acknowledged), .width(width), .height(height), .commit_frame(commit_frame),
         .entry(entry), .passed(passed), .far(far), .distance(distance), .last_number(last_number),
         .row_0(row_0), .follows(follows), .commit_fits(commit_fits), .fits(fits), .short(short));

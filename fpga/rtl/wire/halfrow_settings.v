@@ -49,15 +49,16 @@ module halfrow_settings #(
     wire [7:0] new_bits = wanted[103:96];
 
     reg [16:0] least_width2;
-    wire bits_wrong = new_bits != 8'd8 && new_bits != 8'd10 && new_bits != 8'd12;
-    wire width_wrong = new_width[0] || new_width < LEAST_WIDTH || {16'd0, new_width} > MAX_WIDTH;
-    wire height_wrong = new_height == 16'd0 || {16'd0, new_height} > MAX_HEIGHT;
+    reg bits_wrong, width_wrong, height_wrong, blanking_wrong;
     wire centre_wrong = {new_width, 1'b0} < least_width2;
     wire [16:0] above_blanking = {1'b0, new_blanking} - {1'b0, POWER_UP_BLANKING};
-    wire blanking_wrong = above_blanking[16];
     wire unused = &{1'b0, above_blanking[15:0]};
 
     always @(posedge clk) begin
+        bits_wrong <= new_bits != 8'd8 && new_bits != 8'd10 && new_bits != 8'd12;
+        width_wrong <= new_width[0] || new_width < LEAST_WIDTH || {16'd0, new_width} > MAX_WIDTH;
+        height_wrong <= new_height == 16'd0 || {16'd0, new_height} > MAX_HEIGHT;
+        blanking_wrong <= above_blanking[16];
         least_width2 <= {1'b0, new_centre2} + 17'd2;
         out_of_range <= bits_wrong || width_wrong || height_wrong || centre_wrong || blanking_wrong;
         wrong_field <= bits_wrong ? 3'd5 : width_wrong ? 3'd0 : height_wrong ? 3'd1 : centre_wrong ? 3'd2 : 3'd3;
