@@ -2,7 +2,7 @@
 """Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25, prints what each takes in percent of it, how much logic
 stands between its registers and how many pins the busiest clock enables and resets of a board's top lead to, and fails where budget.ini is
 exceeded. `halfrow paper` reads WORK/report.json.
-    resources.py WORK [BUILD ...]     WORK: a directory for logs and netlists; BUILD: a section's name"""
+    resources.py WORK [tops]     WORK: a directory for logs and netlists; tops: the boards' tops, too, which takes two minutes"""
 
 import concurrent.futures
 import itertools
@@ -77,7 +77,7 @@ def main():
     work = pathlib.Path(sys.argv[1])
     work.mkdir(parents=True, exist_ok=True)
     builds = budget.sections()
-    names = sys.argv[2:] or list(builds)
+    names = [name for name in builds if sys.argv[2:] == ["tops"] or not budget.top_of(builds[name])]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         modules = list(pool.map(lambda name: synthesise(work, name, builds[name]), names))
     print("XC6SLX25: 15,032 LUTs, 30,064 registers, 52 block RAMs, 38 DSP48A1. yosys gives no slices.\n")
@@ -94,7 +94,8 @@ def main():
         exceeded += [f"{name}: {path}" for path in logic.offences(int(builds[name]["arithmetic"]),
                                                                  int(builds[name]["lut_levels"]))]
         leading += fan_outs(name, logic.graph) if budget.top_of(builds[name]) else []
-    print("\n" + "\n".join(leading))
+    if leading:
+        print("\n" + "\n".join(leading))
     tool = subprocess.run(["yosys", "-V"], check=True, capture_output=True, text=True).stdout.split(" (")[0].strip()
     report = {"tool": tool, "device": "XC6SLX25", "builds": described_builds}
     (work / "report.json").write_text(json.dumps(report, indent=2) + "\n")
