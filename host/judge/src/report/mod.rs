@@ -5,6 +5,7 @@ mod html;
 mod json;
 mod junit;
 pub mod pictures;
+mod shell;
 pub mod wording;
 
 pub use folder::check as check_folder;
@@ -14,6 +15,7 @@ pub use html::render as html;
 pub use json::render as json;
 pub use junit::document as junit_document;
 pub use junit::render as junit;
+pub use shell::shell_word;
 
 use crate::result::{Evidence, Report};
 

@@ -16,6 +16,7 @@ use crate::commands::Failure;
 use crate::exit::Exit;
 use crate::progress::Told;
 use halfrow::board::BoardError;
+use halfrow::report::shell_word;
 use halfrow::verdict::StoppedBy;
 
 /// The program.
@@ -42,7 +43,7 @@ impl Call {
     pub(super) fn new(board: &str, other: &str, file: &Path, more: &[String]) -> Self {
         let mut options = vec!["-b".to_owned(), board.to_owned()];
         options.extend(more.iter().cloned());
-        let other = format!("{other} {}", quoted(&file.display().to_string()));
+        let other = format!("{other} {}", shell_word(&file.display().to_string()));
         Self { options, file: file.to_owned(), other }
     }
 
@@ -54,7 +55,7 @@ impl Call {
 
     /// As a shell takes it.
     pub(super) fn line(&self) -> String {
-        self.words().iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ")
+        self.words().iter().map(|word| shell_word(word)).collect::<Vec<_>>().join(" ")
     }
 
     /// Runs it to its end, which `deadline` or whoever `stopped` names may hasten.
@@ -82,16 +83,6 @@ impl Call {
             End::Ended(Ok(status)) => Err(Failure::error(LoadError::LoaderFailed { call, status, said })),
             End::Ended(Err(source)) => Err(Failure::error(LoadError::LoaderNotStarted { call, source })),
         }
-    }
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+=:,".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }
 

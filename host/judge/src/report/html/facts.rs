@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::report::shell_word;
 use crate::report::wording::{self, count, grouped, plain};
 use crate::result::{FrameReport, LinkReport, Outcome, Report, TablesReport};
 
@@ -145,7 +146,7 @@ fn tables(tables: &TablesReport) -> Markup {
 /// What it takes to repeat the run.
 pub(super) fn run(report: &Report) -> Markup {
     let run = &report.run;
-    let command: Vec<_> = run.arguments.iter().map(|argument| quoted(argument)).collect();
+    let command: Vec<_> = run.arguments.iter().map(|argument| shell_word(argument)).collect();
     html! {
         section {
             h2 { "Run" }
@@ -169,26 +170,4 @@ pub(super) fn run(report: &Report) -> Markup {
 /// A term and its value.
 pub(super) fn pair(term: &str, value: impl AsRef<str>) -> Markup {
     html! { div { dt { (plain(term)) } dd { (plain(value.as_ref())) } } }
-}
-
-/// An argument as a POSIX shell takes it.
-fn quoted(argument: &str) -> String {
-    let tame = |letter: char| letter.is_ascii_alphanumeric() || "_-./:=,@%+".contains(letter);
-    if !argument.is_empty() && argument.chars().all(tame) {
-        return argument.to_owned();
-    }
-    format!("'{}'", argument.replace('\'', r"'\''"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn only_arguments_that_a_shell_would_touch_are_quoted() {
-        assert_eq!(quoted("mock,fault=flip,rate=1e-4"), "mock,fault=flip,rate=1e-4");
-        assert_eq!(quoted("my frames/*.pgm"), "'my frames/*.pgm'");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted(""), "''");
-    }
 }
