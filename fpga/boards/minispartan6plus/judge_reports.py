@@ -27,6 +27,13 @@ def first(pattern, text):
     return int(found[1].replace(",", "")) if found else None
 
 
+def errors(report, text, form=r"Number of errors:\s*([\d,]+)"):
+    """What a report's own count of errors tells."""
+    count = first(form, text)
+    if count != 0:
+        yield f"{report}: {'no count of errors' if count is None else f'{count} errors'}"
+
+
 def synthesis(text):
     """top.syr, by XST."""
     for latch in re.findall(r"Found \d+-bit latch for signal <[^\n]*?>(?=\.)", text):
@@ -35,9 +42,7 @@ def synthesis(text):
         yield f"top.syr: {count} latches {kind}"
     for line in re.findall(r"^.*(?:Multi-source|multiple drivers).*$", text, re.MULTILINE):
         yield f"top.syr: {line.strip()}"
-    errors = first(r"Number of errors\s*:\s*([\d,]+)", text)
-    if errors != 0:
-        yield f"top.syr: {'no count of errors' if errors is None else f'{errors} errors'}"
+    yield from errors("top.syr", text, r"Number of errors\s*:\s*([\d,]+)")
 
 
 def translation(text):
@@ -46,16 +51,13 @@ def translation(text):
         yield f"top.bld: {line.strip()}"
     for line in re.findall(r"^.*multiple drivers.*$", text, re.MULTILINE):
         yield f"top.bld: {line.strip()}"
-    errors = first(r"Number of errors:\s*([\d,]+)", text)
-    if errors != 0:
-        yield f"top.bld: {'no count of errors' if errors is None else f'{errors} errors'}"
+    yield from errors("top.bld", text)
 
 
 def mapping(text, expected):
     """top_map.mrp, by map."""
-    errors, latches = first(r"Number of errors:\s*([\d,]+)", text), first(r"Number used as Latches:\s*([\d,]+)", text)
-    if errors != 0:
-        yield f"top_map.mrp: {'no count of errors' if errors is None else f'{errors} errors'}"
+    yield from errors("top_map.mrp", text)
+    latches = first(r"Number used as Latches:\s*([\d,]+)", text)
     if latches != 0:
         yield f"top_map.mrp: {'no count of latches' if latches is None else f'{latches} latches'}"
     for kind, key in COUNTED.items():
