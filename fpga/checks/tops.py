@@ -60,9 +60,9 @@ def libraries(top, tree=ROOT):
     return f"{rtl.libraries(tree / 'fpga/rtl').replace(f'{tree}/', '')} {of_board}"
 
 
-def build_header(top, build):
+def build_header(build, sensor, serial=1):
     """halfrow_build.vh, as a build script writes it."""
-    lines = [f"`define HALFROW_BUILD 32'h{build}", "`define HALFROW_SERIAL 64'd1"] + ["`define HALFROW_SENSOR"] * top.sensor
+    lines = [f"`define HALFROW_BUILD 32'h{build}", f"`define HALFROW_SERIAL 64'd{serial}"] + ["`define HALFROW_SENSOR"] * bool(sensor)
     return "\n".join(lines) + "\n"
 
 
@@ -109,7 +109,7 @@ def script(top, stage, header, tree=ROOT):
 def run(top, stage, tree, file, build="12345678"):
     """Has yosys make the netlist anew."""
     with tempfile.TemporaryDirectory(dir=file.parent) as work:
-        (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(top, build))
+        (pathlib.Path(work) / "halfrow_build.vh").write_text(build_header(build, top.sensor))
         aside = pathlib.Path(work) / file.name
         # Mapping warns of each block RAM whose ports are narrower than the vendor's.
         strict = ["-e", "."] if stage == "words" else []

@@ -21,6 +21,7 @@ TARGET = ROOT / "target" / "ulx3s"
 TOOLS = TARGET / "tools"
 sys.path.insert(0, str(ROOT / "fpga" / "checks"))
 import rtl  # noqa: E402
+import tops  # noqa: E402
 
 DEVICES = {"12": "--12k", "25": "--25k", "45": "--45k", "85": "--85k"}
 # What every clock of a bitstream must reach, and the core where nothing but its own paths holds it back.
@@ -75,9 +76,7 @@ def constraints(design):
 
 def define(design, work):
     """Writes halfrow_build.vh, which the tops include."""
-    lines = [f"`define HALFROW_BUILD 32'h{design.build}", f"`define HALFROW_SERIAL 64'd{design.serial}"]
-    lines += ["`define HALFROW_SENSOR"] if design.sensor else []
-    (work / "halfrow_build.vh").write_text("\n".join(lines) + "\n")
+    (work / "halfrow_build.vh").write_text(tops.build_header(design.build, design.sensor, design.serial))
 
 
 def read(design, work):
