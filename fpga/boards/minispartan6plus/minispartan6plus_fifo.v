@@ -12,17 +12,7 @@ module minispartan6plus_fifo (
     output wire        ft_wr_n,
     output wire        ft_siwu_n,
     output wire [7:0]  led
-`ifdef HALFROW_SENSOR
-    ,
-    input  wire        camera_pixclk,
-    input  wire        camera_frame_valid,
-    input  wire        camera_line_valid,
-    input  wire [11:0] camera_data,
-    output wire        isp_pixclk,
-    output wire        isp_frame_valid,
-    output wire        isp_line_valid,
-    output wire [11:0] isp_data
-`endif
+    `include "sensor_ports.vh"
 );
     wire oscillator = clk32;
     `include "board_top.vh"

@@ -16,17 +16,7 @@ module ulx3s_fifo #(
     output wire        ftdi_rxd,               // RXD of the FT231X, which rests
     output wire        wifi_gpio0,
     output wire [7:0]  led
-`ifdef HALFROW_SENSOR
-    ,
-    input  wire        camera_pixclk,
-    input  wire        camera_frame_valid,
-    input  wire        camera_line_valid,
-    input  wire [11:0] camera_data,
-    output wire        isp_pixclk,
-    output wire        isp_frame_valid,
-    output wire        isp_line_valid,
-    output wire [11:0] isp_data
-`endif
+    `include "sensor_ports.vh"
 );
     wire oscillator = clk_25mhz;
     `include "board_top.vh"
