@@ -3,13 +3,12 @@ localparam real BAUD = 83.333;                    // 12 Mbaud
 `ifdef LINK_FIFO
     minispartan6plus_fifo dut (
         .clk32(oscillator), .ft_d(d), .ft_rxf_n(rxf_n), .ft_txe_n(txe_n), .ft_rd_n(rd_n), .ft_wr_n(wr_n),
-        .ft_siwu_n(siwu_n), .led(led));
+        .ft_siwu_n(siwu_n), .led(led)
+        `include "sensor_at_pins.vh"
+    );
 `else
     minispartan6plus_uart dut (
         .clk32(oscillator), .uart_rxd(rxd), .uart_txd(txd), .uart_cts_n(cts_n), .uart_rts_n(rts_n), .led(led)
-`ifdef SENSOR_AT_PINS
-        , .camera_pixclk(pixclk), .camera_frame_valid(seen_frame), .camera_line_valid(seen_line), .camera_data(seen_data),
-        .isp_pixclk(isp_pixclk), .isp_frame_valid(isp_frame_valid), .isp_line_valid(isp_line_valid), .isp_data(isp_data)
-`endif
+        `include "sensor_at_pins.vh"
     );
 `endif

@@ -5,15 +5,14 @@ wire            resting;                          // high in every build
     wire unused_rxd;
     ulx3s_fifo dut (
         .clk_25mhz(oscillator), .ft_d(d), .ft_rxf_n(rxf_n), .ft_txe_n(txe_n), .ft_rd_n(rd_n), .ft_wr_n(wr_n),
-        .ft_siwu_n(siwu_n), .ftdi_rxd(unused_rxd), .wifi_gpio0(resting), .led(led));
+        .ft_siwu_n(siwu_n), .ftdi_rxd(unused_rxd), .wifi_gpio0(resting), .led(led)
+        `include "sensor_at_pins.vh"
+    );
 `else
     assign rts_n = 1'b0;                          // it has none
     ulx3s_uart dut (
         .clk_25mhz(oscillator), .ftdi_txd(rxd), .ftdi_rxd(txd), .ftdi_nrts(cts_n), .wifi_gpio0(resting), .led(led)
-`ifdef SENSOR_AT_PINS
-        , .camera_pixclk(pixclk), .camera_frame_valid(seen_frame), .camera_line_valid(seen_line), .camera_data(seen_data),
-        .isp_pixclk(isp_pixclk), .isp_frame_valid(isp_frame_valid), .isp_line_valid(isp_line_valid), .isp_data(isp_data)
-`endif
+        `include "sensor_at_pins.vh"
     );
 `endif
 initial #1000 if (resting !== 1'b1) $display("FAIL GPIO0 of the ESP32 is not high");
