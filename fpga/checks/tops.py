@@ -2,6 +2,7 @@
 """The boards' tops as yosys reads them: once for every check that looks at them. What it made is kept below
 target/hardware/tops for as long as the sources are the same.
     tops.py words|cells BOARD fifo|uart [sensor]     prints the file of the netlist
+    tops.py header BUILD SERIAL [sensor]             prints halfrow_build.vh; BUILD: eight hexadecimal digits
 words: flat, in front of mapping, read without a warning. cells: flat, of the vendor's cells. Those of the miniSpartan6+ have their
 pads, as `build --yosys` takes them; those of the ULX3S are made of the words, without the names that place and route would want."""
 
@@ -129,6 +130,8 @@ def run(top, stage, tree, file, build="12345678"):
 
 
 def main():
+    if sys.argv[1:2] == ["header"] and len(sys.argv) in (4, 5) and sys.argv[4:] in ([], ["sensor"]):
+        return print(build_header(sys.argv[2], sys.argv[4:], sys.argv[3]), end="")
     try:
         stage, board, kind, *sensor = sys.argv[1:]
         known = stage in STAGES and board in CELLS and kind in ("fifo", "uart") and sensor in ([], ["sensor"])

@@ -19,7 +19,8 @@ BOARD = pathlib.Path(__file__).resolve().parent
 ROOT = BOARD.parents[2]
 TARGET = ROOT / "target" / "ulx3s"
 TOOLS = TARGET / "tools"
-sys.path.insert(0, str(ROOT / "fpga" / "checks"))
+sys.path[:0] = [str(ROOT / "fpga" / "checks"), str(BOARD.parent)]
+import commit  # noqa: E402
 import rtl  # noqa: E402
 import tops  # noqa: E402
 
@@ -61,12 +62,6 @@ def run(tool, arguments, work):
 def versions():
     """What made the design, as requirements.txt pins it."""
     return re.findall(r"^(yowasp-(?:yosys|nextpnr-ecp5))==(\S+)", (BOARD / "requirements.txt").read_text(), re.MULTILINE)
-
-
-def commit():
-    """Eight digits of the commit, or zeros where there is none."""
-    done = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short=8", "HEAD"], capture_output=True, text=True)
-    return done.stdout.strip()[:8] if done.returncode == 0 else "00000000"
 
 
 def constraints(design):
