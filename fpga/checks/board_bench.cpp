@@ -1,139 +1,17 @@
-// Drives a whole board, as written or as synthesised, at the pins of its UART: HELLO, tables, rows, and compares what comes back with
+// Drives a whole board, as written or as synthesised, at the pins of its link: HELLO, tables, rows, and compares what comes back with
 // datapath.hpp, every sample and every latency. It ends at the first difference, with status 1.
 //   board_bench FRAMES SEED
-#include "Vboard.h"
-#include "datapath.hpp"
+#include "board_link.hpp"
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <deque>
 #include <random>
 
 #ifndef TAPS
 #define TAPS 7
 #endif
-constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048, CLOCKS_A_BIT = 32;
-
-using Bytes = std::vector<uint8_t>;
-
-[[noreturn]] static void fail(const char *what) {
-    std::printf("FAIL %s\n", what);
-    std::exit(1);
-}
-
-static void put(Bytes &bytes, uint64_t value, int count) {
-    for (int k = 0; k < count; k++)
-        bytes.push_back(value >> 8 * k);
-}
-
-static uint64_t get(const Bytes &bytes, size_t from, int count) {
-    uint64_t value = 0;
-    for (int k = 0; k < count; k++)
-        value |= uint64_t(bytes.at(from + k)) << 8 * k;
-    return value;
-}
-
-static uint32_t crc_of(const Bytes &bytes) {
-    uint32_t crc = 0;
-    for (uint8_t byte : bytes)
-        crc = crc32(crc, byte, 1);
-    return crc;
-}
-
-static Bytes stuffed(const Bytes &packet) {
-    Bytes out{0};
-    for (size_t at = 0; at <= packet.size();) {
-        size_t end = at;
-        while (end < packet.size() && end - at < 254 && packet[end])
-            end++;
-        out.push_back(end - at + 1);
-        out.insert(out.end(), packet.begin() + at, packet.begin() + end);
-        if (end - at == 254 && end == packet.size())
-            break;
-        at = end - at == 254 ? end : end + 1;
-    }
-    out.push_back(0);
-    return out;
-}
-
-static Bytes unstuffed(const Bytes &piece) {
-    Bytes out;
-    for (size_t at = 0; at < piece.size();) {
-        size_t code = piece[at++];
-        for (size_t k = 1; k < code; k++)
-            out.push_back(piece.at(at++));
-        if (code != 255 && at < piece.size())
-            out.push_back(0);
-    }
-    return out;
-}
-
-// The two lines of the UART, and the clock.
-struct Lines {
-    Vboard board;
-    std::deque<uint8_t> to_board;
-    Bytes piece;
-    std::deque<Bytes> packets;               // that came whole
-    int sent = 0, heard = -1;                // clocks into a byte; none is heard: -1
-    uint8_t byte = 0;
-    uint64_t clocks = 0;
-
-    void edge() {
-        board.clk_25mhz = 0;
-        board.eval();
-        board.clk_25mhz = 1;
-        board.eval();
-        clocks++;
-        speak();
-        listen();
-    }
-
-    void speak() {
-        int bit = sent / CLOCKS_A_BIT;
-        board.ftdi_txd = to_board.empty() || bit == 9 ? 1 : bit == 0 ? 0 : to_board.front() >> (bit - 1) & 1;
-        if (!to_board.empty() && ++sent == 10 * CLOCKS_A_BIT) {
-            sent = 0;
-            to_board.pop_front();
-        }
-    }
-
-    void listen() {
-        if (heard < 0 && board.ftdi_rxd)
-            return;
-        heard++;
-        int bit = heard / CLOCKS_A_BIT;
-        if (heard % CLOCKS_A_BIT != CLOCKS_A_BIT / 2 || bit == 0)
-            return;
-        if (bit < 9) {
-            byte = byte >> 1 | board.ftdi_rxd << 7;
-            return;
-        }
-        if (!board.ftdi_rxd)
-            fail("a byte without its stop bit");
-        heard = -1;
-        if (byte) {
-            piece.push_back(byte);
-        } else if (!piece.empty()) {
-            packets.push_back(unstuffed(piece));
-            piece.clear();
-        }
-    }
-
-    Bytes next_packet() {
-        for (uint64_t until = clocks + 20000000; packets.empty(); edge())
-            if (clocks == until)
-                fail("no answer within 20 million clocks");
-        Bytes packet = packets.front();
-        packets.pop_front();
-        Bytes body(packet.begin(), packet.end() - 4);
-        if (packet.size() < 16 || crc_of(body) != get(packet, packet.size() - 4, 4) || get(packet, 4, 2) != packet.size() - 16)
-            fail("a packet that is damaged");
-        return packet;
-    }
-};
+constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048;
 
 struct Host {
-    Lines lines;
+    Link link;
     std::mt19937 random;
     uint16_t sequence = 0;
     uint8_t session = 0, generation = 0;
@@ -155,12 +33,12 @@ struct Host {
         packet.insert(packet.end(), payload.begin(), payload.end());
         put(packet, crc_of(packet), 4);
         for (uint8_t byte : stuffed(packet))
-            lines.to_board.push_back(byte);
+            link.lines.to_board.push_back(byte);
     }
 
     // One packet of the board's; rows are put aside.
     Bytes hear() {
-        Bytes packet = lines.next_packet();
+        Bytes packet = link.next_packet();
         if (packet[1] == 0x7f)
             fail("a refusal");
         window = get(packet, 8, 4);
@@ -314,13 +192,11 @@ int main(int argc, char **argv) {
     }
     Host host;
     host.random.seed(std::atoi(argv[2]));
-    host.lines.board.ftdi_nrts = 0;
-    host.lines.board.ftdi_txd = 1;
     for (int k = 0; k < 20000; k++)
-        host.lines.edge();
+        host.link.edge();
     host.hello();
     for (int k = 0; k < std::atoi(argv[1]); k++)
         host.play();
-    std::printf("%d taps: %lu samples equal, %lu clocks\n", TAPS, host.outputs, host.lines.clocks);
+    std::printf("%d taps: %lu samples equal, %lu clocks\n", TAPS, host.outputs, host.link.clocks);
     return 0;
 }
