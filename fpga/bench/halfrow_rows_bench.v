@@ -205,7 +205,7 @@ module halfrow_rows_bench;
     endfunction
 
     // ---- the sender: takes packets, and judges those that no reset fell into
-    integer    ready_percent = 100, at = -1, length = 0, packets = 0, received = 0, column;
+    integer    ready_percent = 100, at = -1, length = 0, packets = 0, received = 0, column, asks;
     reg [7:0]  bytes [0:4095];
     reg        judge = 1;
     reg [31:0] number = 0, next_new = 0;
