@@ -4,7 +4,7 @@
 //   random N SEED   N cases: widths, depths, centres, steps, kernels, blankings, gaps, tables changed between rows
 //   hostile N SEED  the same behind rows too short and too long, rows unprepared, resets in mid row
 //   frame KERNEL    the golden frame of 1920 x 1080 by its CRC-32: hermite or keys
-//   fault N         turns fault N on; in a model of mutation.py
+// Words with a + are the model's.
 #include "Vcore.h"
 #include "datapath.hpp"
 #include <algorithm>
@@ -36,6 +36,8 @@ struct Bench {
     uint64_t pixel_clock = 0, strict_from = 0, outputs = 0;
     uint32_t crc = 0;
     int shorts = 0, longs = 0, unprepared = 0;
+    static constexpr int NEVER = -1;
+    struct { int column = NEVER, bank, row; } next; // the row behind is prepared with this column of the one that is played
 
     int draw(int count) { return random() % count; }
 
@@ -50,6 +52,7 @@ struct Bench {
         core.eval();
         core.clk = 1;
         core.eval();
+        core.prepare = 0;
         shorts += core.row_short;
         longs += core.row_long;
         unprepared += core.row_unprepared;
@@ -58,6 +61,7 @@ struct Bench {
     void reset() {
         core.rst = 1;
         core.enable = core.in_valid = core.prepare = 0;
+        next.column = NEVER;
         edge();
         core.rst = 0;
         expected.clear();
@@ -155,12 +159,15 @@ struct Bench {
         core.eval();
     }
 
-    void prepare(int bank, int row) {
+    void ask(int bank, int row) {
         core.prepare = 1;
         core.prepare_row = row;
         core.prepare_bank = bank;
+    }
+
+    void prepare(int bank, int row) {
+        ask(bank, row);
         edge();
-        core.prepare = 0;
     }
 
     void await_prepared() {
@@ -180,8 +187,12 @@ struct Bench {
     }
 
     void play(const Row &row, int count) {
-        for (int j = 0; j < count; j++)
+        for (int j = 0; j < count; j++) {
+            if (j == next.column)
+                ask(next.bank, next.row);
             pixel(true, j == 0, row[j % row.size()]);
+        }
+        next.column = NEVER;
     }
 
     void flush() {
@@ -273,9 +284,9 @@ static void rows(Bench &bench, int count) {
     }
     int blanking = bench.draw(2) ? bench.draw(9) : 0;
     int waits = bench.draw(3) ? 0 : bench.draw(40);
+    int bank = bench.draw(TABLE_BANKS);
+    bench.prepare(bank, 0);
     for (int row = 0; row < count; row++) {
-        int bank = bench.draw(TABLE_BANKS);
-        bench.prepare(bank, row * 37 % 1080);
         bench.await_prepared();
         for (int k = 0; k < waits; k++)
             bench.edge();
@@ -283,7 +294,19 @@ static void rows(Bench &bench, int count) {
             bench.pixel(false, false, bench.draw(4096));
         Row samples = bench.content();
         bench.expect(samples, steps[bank][row], kernels[bank]);
-        bench.play(samples, bench.frame.width);
+        if (row + 1 == count) {
+            bench.play(samples, bench.frame.width);
+            break;
+        }
+        // At once behind the start, somewhere in the row, or behind it, as late as the next one can wait for.
+        int columns = bench.frame.width, moment = bench.draw(3), next_bank = bench.draw(TABLE_BANKS), next_row = (row + 1) * 37 % 1080;
+        bench.next = {moment == 0 ? 1 : 1 + bench.draw(columns - 1), next_bank, next_row};
+        if (moment == 2)
+            bench.next.column = Bench::NEVER;
+        bench.play(samples, columns);
+        if (moment == 2)
+            bench.prepare(next_bank, next_row);
+        bank = next_bank;
     }
     bench.flush();
     for (int bank = 0; bank < TABLE_BANKS; bank++) {
@@ -366,6 +389,7 @@ static void golden_frame(Bench &bench, Interpolant interpolant) {
 }
 
 int main(int argc, char **argv) {
+    Verilated::commandArgs(argc, argv);
     Bench bench;
     const int widest = std::min(200, RING);
     for (int k = 1; k < argc; k++) {
@@ -373,11 +397,8 @@ int main(int argc, char **argv) {
         int count = k + 1 < argc ? std::atoi(argv[k + 1]) : 0;
         if (std::strcmp(what, "golden") == 0) {
             golden(bench);
-#ifdef FAULTS
-        } else if (std::strcmp(what, "fault") == 0) {
-            bench.core.mutsel = count;
-            k++;
-#endif
+        } else if (what[0] == '+') {
+            continue;
         } else if (std::strcmp(what, "frame") == 0 && k + 1 < argc) {
             golden_frame(bench, argv[++k][0] == 'k' ? Interpolant::keys : Interpolant::hermite);
         } else if (k + 2 < argc && count > 0) {
