@@ -304,7 +304,8 @@ task dropped_while_sent;
             while (at < n) @(negedge clk);
             m = received;
             ready_percent = n % 3 == 0 ? 5 : 20;
-            drop(n * 64 + 32'h01010104 + n % 3 * 4, n % 2); // no byte of its number is as before
+            drop(n * 64 + 32'h01010104 + n % 3 * 4, n % 2); // no byte of its number is as before, nor of its frame's
+            base = base - 32'h0202;
             generation = generation == 255 ? 1 : generation + 1;
             configure(n % 4 < 2 ? 96 : 64, 1, 0, 0);
             send(next_new);
