@@ -1,6 +1,7 @@
 // Drives a whole board, as written or as synthesised, at the pins of its UART: HELLO, tables, rows, and compares what comes back with
 // datapath.hpp, every sample and every latency. It ends at the first difference, with status 1.
 //   board_bench FRAMES SEED
+// With BYTES it drives halfrow_bridge at its bytes. Words with a + are the model's.
 #include "Vboard.h"
 #include "datapath.hpp"
 #include <algorithm>
@@ -11,6 +12,9 @@
 
 #ifndef TAPS
 #define TAPS 7
+#endif
+#ifndef LEAST_BLANKING
+#define LEAST_BLANKING 0
 #endif
 constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048, CLOCKS_A_BIT = 32;
 
@@ -78,6 +82,40 @@ struct Lines {
     uint8_t byte = 0;
     uint64_t clocks = 0;
 
+#ifdef BYTES
+    void start() {
+        board.rst = 1;
+        board.camera_frame_valid = board.camera_line_valid = board.millisecond = board.rx_valid = 0;
+        for (int k = 0; k < 4; k++)
+            edge();
+        board.rst = 0;
+    }
+
+    // Either side is held up now and then.
+    void edge() {
+        board.clk = 0;
+        board.tx_ready = clocks / 4096 % 2 ? 1 : clocks * 2654435761u >> 30 & 1;
+        board.rx_valid = !to_board.empty();
+        board.rx_data = to_board.empty() ? 0 : to_board.front();
+        board.eval();
+        bool taken = board.rx_valid && board.rx_ready, given = board.tx_valid && board.tx_ready;
+        uint8_t data = board.tx_data;
+        board.clk = 1;
+        board.eval();
+        clocks++;
+        if (taken)
+            to_board.pop_front();
+        if (given)
+            came(data);
+    }
+#else
+    void start() {
+        board.ftdi_nrts = 0;
+        board.ftdi_txd = 1;
+        for (int k = 0; k < 20000; k++)
+            edge();
+    }
+
     void edge() {
         board.clk_25mhz = 0;
         board.eval();
@@ -111,8 +149,13 @@ struct Lines {
         if (!board.ftdi_rxd)
             fail("a byte without its stop bit");
         heard = -1;
-        if (byte) {
-            piece.push_back(byte);
+        came(byte);
+    }
+#endif
+
+    void came(uint8_t data) {
+        if (data) {
+            piece.push_back(data);
         } else if (!piece.empty()) {
             packets.push_back(unstuffed(piece));
             piece.clear();
@@ -230,7 +273,7 @@ struct Host {
         put(settings, frame.width, 2);
         put(settings, steps.size(), 2);
         put(settings, frame.centre, 2);
-        put(settings, draw(20), 2);
+        put(settings, LEAST_BLANKING + draw(20), 2);
         put(settings, draw(2) ? random() : 0, 4);
         put(settings, frame.bits, 1);
         ask(0x18, settings);
@@ -308,16 +351,14 @@ struct Host {
 };
 
 int main(int argc, char **argv) {
-    if (argc != 3) {
+    Verilated::commandArgs(argc, argv);
+    if (argc < 3) {
         std::printf("board_bench FRAMES SEED\n");
         return 2;
     }
     Host host;
     host.random.seed(std::atoi(argv[2]));
-    host.lines.board.ftdi_nrts = 0;
-    host.lines.board.ftdi_txd = 1;
-    for (int k = 0; k < 20000; k++)
-        host.lines.edge();
+    host.lines.start();
     host.hello();
     for (int k = 0; k < std::atoi(argv[1]); k++)
         host.play();
