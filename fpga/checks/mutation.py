@@ -35,7 +35,7 @@ def key(count):
 
 def judge(fault, checks):
     """The first check that refuses a fault."""
-    return next((name for name, (command, clocks) in checks.items() if mutants.found(command, fault, clocks)), SURVIVES)
+    return next((check.name for check in checks if check.refuses(fault)), SURVIVES)
 
 
 def try_all(module, section, place, count):
@@ -46,14 +46,12 @@ def try_all(module, section, place, count):
     known = dict(line.split() for line in results.read_text().splitlines()) if results.exists() else {}
     open_numbers = [number for number in range(1, len(faults) + 1) if str(number) not in known]
     if open_numbers:
-        checks = {}
-        for name in section["checks"].split():
-            command = mutants.build(place, name, made, section)
-            checks[name] = command, mutants.limit_of(command, f"{name} of {module}")
+        checks = [mutants.Check(name, place, made, section) for name in section["checks"].split()]
         with concurrent.futures.ThreadPoolExecutor(2) as pool, open(results, "a", buffering=1) as out:
-            for number, finder in zip(open_numbers, pool.map(lambda number: judge(number, checks), open_numbers)):
-                out.write(f"{number} {finder}\n")
-                known[str(number)] = finder
+            tried = {pool.submit(judge, number, checks): number for number in open_numbers}
+            for one in concurrent.futures.as_completed(tried):
+                known[str(tried[one])] = one.result()
+                out.write(f"{tried[one]} {one.result()}\n")
     return [(number, fault, known[str(number)]) for number, fault in enumerate(faults, 1)]
 
 
