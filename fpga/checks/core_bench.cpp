@@ -273,19 +273,21 @@ static void golden(Bench &bench) {
 
 // One case: some rows through both banks, often with no clock between them.
 static void rows(Bench &bench, int count) {
+    const int first = bench.draw(2048);
+    auto entry = [first](int row) { return (first + 37 * row) % 2048; };
     Kernel kernels[2] = {bench.kernel(), bench.kernel()};
     std::vector<int64_t> steps[2];
     for (int bank = 0; bank < TABLE_BANKS; bank++) {
         bench.write_kernel(bank, kernels[bank]);
         for (int row = 0; row < count; row++) {
             steps[bank].push_back(bench.step());
-            bench.write_step(bank, row * 37 % 1080, steps[bank][row]);
+            bench.write_step(bank, entry(row), steps[bank][row]);
         }
     }
     int blanking = bench.draw(2) ? bench.draw(9) : 0;
     int waits = bench.draw(3) ? 0 : bench.draw(40);
     int bank = bench.draw(TABLE_BANKS);
-    bench.prepare(bank, 0);
+    bench.prepare(bank, entry(0));
     for (int row = 0; row < count; row++) {
         bench.await_prepared();
         for (int k = 0; k < waits; k++)
@@ -299,7 +301,7 @@ static void rows(Bench &bench, int count) {
             break;
         }
         // At once behind the start, somewhere in the row, or behind it, as late as the next one can wait for.
-        int columns = bench.frame.width, moment = bench.draw(3), next_bank = bench.draw(TABLE_BANKS), next_row = (row + 1) * 37 % 1080;
+        int columns = bench.frame.width, moment = bench.draw(3), next_bank = bench.draw(TABLE_BANKS), next_row = entry(row + 1);
         bench.next = {moment == 0 ? 1 : 1 + bench.draw(columns - 1), next_bank, next_row};
         if (moment == 2)
             bench.next.column = Bench::NEVER;
@@ -312,7 +314,7 @@ static void rows(Bench &bench, int count) {
     for (int bank = 0; bank < TABLE_BANKS; bank++) {
         bench.check_kernel(bank, kernels[bank]);
         for (int row = 0; row < count; row++)
-            bench.check_step(bank, row * 37 % 1080, steps[bank][row]);
+            bench.check_step(bank, entry(row), steps[bank][row]);
     }
 }
 

@@ -16,7 +16,7 @@ MANY = ["random", "3000", "3", "hostile", "1500", "4", "frame", "hermite"]
 COMPILED = {
     "core": ("core_bench.cpp", "core", "halfrow_core", FEW),
     "core_long": ("core_bench.cpp", "core", "halfrow_core", MANY),
-    "rows_of_board": ("board_bench.cpp", "board", "halfrow_bridge", ["6", "1"]),
+    "rows_of_board": ("board_bench.cpp", "board", "halfrow_bridge", ["40", "1"]),
 }
 
 # Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port. Nor is a clock that is turned.
