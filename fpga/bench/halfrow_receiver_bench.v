@@ -167,18 +167,19 @@ module halfrow_receiver_bench;
         rst         = 1;
         if (!$value$plusargs("cases=%s", cases)) $finish;
         for (idle = 0; idle < 4; idle = idle + 1)
-            for (hold = 0; hold < 3; hold = hold + 1) begin
-                file       = $fopen(cases, "r");
-                played     = 0;
-                cases_read = 0;
-                while ($fscanf(file, "%s", name) == 1) begin
-                    read_case;
-                    if (count < LONG || (cases_read + 3 * idle + hold) % 12 == 0) play;
-                    cases_read = cases_read + 1;
+            for (hold = 0; hold < 3; hold = hold + 1)
+                if ($test$plusargs("all") || hold == idle % 3) begin
+                    file       = $fopen(cases, "r");
+                    played     = 0;
+                    cases_read = 0;
+                    while ($fscanf(file, "%s", name) == 1) begin
+                        read_case;
+                        if (count < LONG || (cases_read + idle) % 4 == 0) play;
+                        cases_read = cases_read + 1;
+                    end
+                    $fclose(file);
+                    if (faults == 0) $display("PASS %0d cases, idle pattern %0d, hold pattern %0d", played, idle, hold);
                 end
-                $fclose(file);
-                if (faults == 0) $display("PASS %0d cases, idle pattern %0d, hold pattern %0d", played, idle, hold);
-            end
         if (played > 0) $display("DONE");
         $finish;
     end

@@ -205,7 +205,7 @@ module halfrow_rows_bench;
     endfunction
 
     // ---- the sender: takes packets, and judges them; one whose row is dropped meanwhile comes whole all the same
-    integer    ready_percent = 100, at = -1, length = 0, packets = 0, received = 0, column;
+    integer    ready_percent = 100, at = -1, length = 0, packets = 0, received = 0, column, asks;
     reg [7:0]  bytes [0:4095];
     reg [31:0] number = 0, next_new = 0;
     reg [15:0] frame_of [0:15], row_of [0:15];

@@ -267,7 +267,8 @@ task lossy_host;
     begin
         configure(64, 5, 3, 4242);
         drop(1000, 1);
-        for (n = 0; n < 3000; n = n + 1) begin
+        asks = $test$plusargs("all") ? 3000 : 1000;
+        for (n = 0; n < asks; n = n + 1) begin
             ready_percent = n / 100 % 2 ? 100 : 20;
             // A host that loses what comes back does not acknowledge it, and asks again.
             if ($random % 3 == 0)
@@ -287,7 +288,7 @@ task lossy_host;
             settle;
             acknowledge_all;
         end
-        expect_equal("enough rows came back", acknowledged > 1200, 1);
+        expect_equal("enough rows came back", acknowledged > 1000 + asks / 15, 1);
         passed("a host that loses and asks again");
     end
 endtask
