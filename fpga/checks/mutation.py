@@ -26,7 +26,7 @@ SURVIVES = "survives"
 def key(count):
     """A hash of all that decides what a fault is and who finds it."""
     told = hashlib.sha256(f"{count} {SEED}".encode())
-    files = [*rtl.RTL.glob("**/*.v*"), *mutants.BENCH.iterdir(), *HERE.glob("mut*"), *HERE.glob("*_bench.cpp"), HERE / "datapath.hpp",
+    files = [*rtl.RTL.glob("**/*.v*"), *mutants.BENCH.iterdir(), *HERE.glob("mut*"), *HERE.glob("*_bench.cpp"), *HERE.glob("*.hpp"),
              HERE / "rtl.py"]
     for path in sorted(path for path in files if path.is_file() and path.suffix != ".md"):
         told.update(path.name.encode() + b"\0" + path.read_bytes())
