@@ -5,6 +5,7 @@ localparam HELLO = 8'h00, CAPABILITIES = 8'h01, STATUS = 8'h02, RESET = 8'h03, E
 localparam NONE = 0, VERSION_WRONG = 1, KIND_UNKNOWN = 2, PAYLOAD = 3, RANGE = 4, SESSION = 5, HELD = 6, BUSY = 7,
            NOT_READY = 8, TABLE_CRC_WRONG = 9, CREDIT = 10, OUTER_TAPS = 12;
 localparam STEPS = 0, KERNEL = 1, SHADOW = 0, ACTIVE = 1;
+localparam [7:0] NO_KIND = 8'hee; // of a request that got no reply; no reply has it
 
 reg clk, rst, millisecond;
 initial clk = 0;
@@ -209,7 +210,7 @@ task give(input [7:0] kind, input [15:0] length, input [7:0] of_session);
         @(negedge clk);
         packet_valid = 0;
         check(replies - before < 2, "more than one reply");
-        if (replies == before) got_kind = 8'hxx;
+        if (replies == before) got_kind = NO_KIND;
         else begin
             check(got_total == got_length, "the reply's length");
             check(got_sequence == packet_sequence, "the reply's sequence number");
@@ -235,7 +236,7 @@ task replied(input [7:0] kind, input integer length);
 endtask
 
 task unanswered;
-    check(got_kind === 8'hxx, "a reply where there should be none");
+    check(got_kind === NO_KIND, "a reply where there should be none");
 endtask
 
 task put16(input integer place, input [15:0] value);

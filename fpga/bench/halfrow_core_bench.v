@@ -79,7 +79,7 @@ module halfrow_core_check #(parameter TAPS = 7) (input wire start, output reg do
         end
     end
 
-    task clock; begin @(posedge clk); #1; end endtask
+    task clock; begin @(posedge clk); #1; prepare = 0; end endtask
 
     reg pauses;
     task pixel_clock;
@@ -139,14 +139,24 @@ module halfrow_core_check #(parameter TAPS = 7) (input wire start, output reg do
     endtask
 
     task prepare_next(input [10:0] row, input bank);
-        integer limit;
         begin
             prepare_row = row; prepare_bank = bank;
-            prepare = 1; clock; prepare = 0;
+            prepare = 1; clock;
+            await_prepared;
+        end
+    endtask
+
+    task await_prepared;
+        integer limit;
+        begin
             for (limit = 0; !prepared && limit < 40; limit = limit + 1) clock;
             if (!prepared) errors = errors + 1;
         end
     endtask
+
+    integer    next_at;   // the column with which the row behind is asked for; -1: none
+    reg [10:0] next_row;
+    reg        next_bank;
 
     // The first `samples` of row 0 of the golden frame, at the depth that is set.
     task enter(input integer samples);
@@ -159,9 +169,19 @@ module halfrow_core_check #(parameter TAPS = 7) (input wire start, output reg do
                 product = j * 32'd2654435761;
                 in_sample = product[31:20] >> (4 - 2 * depth);
                 in_valid = 1; in_start = j == 0;
+                if (j == next_at) {prepare, prepare_row, prepare_bank} = {1'b1, next_row, next_bank};
                 pixel_clock;
             end
-            in_valid = 0; in_start = 0;
+            in_valid = 0; in_start = 0; next_at = -1;
+        end
+    endtask
+
+    // As enter; behind it the row of `next_row` is prepared, which is asked for with column `at`.
+    task enter_asking(input integer at, input [10:0] row, input bank);
+        begin
+            next_at = at; next_row = row; next_bank = bank;
+            enter(W);
+            await_prepared;
         end
     endtask
 
@@ -178,14 +198,18 @@ module halfrow_core_check #(parameter TAPS = 7) (input wire start, output reg do
         end
     endtask
 
-    // One row of each of two generations, one behind the other.
-    task pair(input integer blanking, input with_pauses);
+    // One row of each of two generations, one behind the other, asked for with a column of the row in front, or behind it: 0.
+    task pair(input integer blanking, input with_pauses, input integer asked);
         begin
             pauses = with_pauses;
             reset;
-            prepare_next(11'd0, 1'b0); enter(W);
-            prepare_next(11'd1, 1'b1); blank(blanking); enter(W);
-            prepare_next(11'd0, 1'b0); blank(blanking); enter(W);
+            prepare_next(11'd0, 1'b0);
+            if (asked == 0) begin enter(W); prepare_next(11'd1, 1'b1); end
+            else enter_asking(asked, 11'd1, 1'b1);
+            blank(blanking);
+            if (asked == 0) begin enter(W); prepare_next(11'd0, 1'b0); end
+            else enter_asking(asked, 11'd0, 1'b0);
+            blank(blanking); enter(W);
             blank(DELAY);
             expect_row(0, 32'h8b0d0aa8);
             expect_row(1, (TAPS == 7) ? 32'h1592d58e : 32'h0daa9274);
@@ -226,13 +250,16 @@ module halfrow_core_check #(parameter TAPS = 7) (input wire start, output reg do
     initial begin
         done = 0;
         {rst, enable, prepare, in_valid, in_start, step_write, node_write, table_read, pauses} = 0;
-        in_sample = 0; prepare_row = 0; prepare_bank = 0; table_entry = 0; table_bank = 0; table_data = 0;
+        in_sample = 0; next_at = -1; prepare_row = 0; prepare_bank = 0; table_entry = 0; table_bank = 0; table_data = 0;
         depth = 2; centre2 = 63;
         wait (start);
         rst = 1; clock; clock; reset;
         write_step(1'b0, 11'd0, 25'd14648488); write_kernel(1'b0, HERMITE);
         write_kernel(1'b1, (TAPS == 7) ? KEYS : LINEAR); write_step(1'b1, 11'd1, (TAPS == 7) ? 25'd14648488 : 25'd1);
-        for (k = 0; k <= 8 && !done; k = k + 1) begin pair(k, 1'b0); pair(k, 1'b1); end
+        for (k = 0; k <= 8 && !done; k = k + 1) begin
+            pair(k, 1'b0, 0); pair(k, 1'b1, 0);
+            pair(k, k[0], 1); pair(k, !k[0], 1 + 7 * k);
+        end
         if (!done) $display("PASS %0d taps: rows of two table banks, 0 to 8 clocks apart, %0d clocks behind", TAPS, DELAY);
 
         pauses = 0;

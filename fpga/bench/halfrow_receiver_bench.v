@@ -142,16 +142,18 @@ module halfrow_receiver_bench;
         end
     endtask
 
+    reg playing = 0;
+    always @(posedge playing) send;
+
     task play;
         begin
             rst = 1;
             @(posedge clk) #1;
             rst  = 0;
-            sent = 0;
-            fork
-                send;
-                watch;
-            join
+            sent    = 0;
+            playing = 1;
+            watch;
+            playing = 0;
             played = played + 1;
         end
     endtask

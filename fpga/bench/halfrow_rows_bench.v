@@ -204,14 +204,15 @@ module halfrow_rows_bench;
         end
     endfunction
 
-    // ---- the sender: takes packets, and judges those that no reset fell into
+    // ---- the sender: takes packets, and judges them; one whose row is dropped meanwhile comes whole all the same
     integer    ready_percent = 100, at = -1, length = 0, packets = 0, received = 0, column, asks;
     reg [7:0]  bytes [0:4095];
-    reg        judge = 1;
     reg [31:0] number = 0, next_new = 0;
     reg [15:0] frame_of [0:15], row_of [0:15];
     reg [7:0]  generation_of [0:15];
-    integer    repeats_of [0:15], pauses [0:2047], extra [0:2047];
+    reg [11:0] width_of [0:15];
+    reg        last_of [0:15];
+    integer    repeats_of [0:15], pauses_of [0:15], pauses [0:2047], extra [0:2047];
     reg [23:0] pair;
 
     always @(negedge clk) begin
@@ -220,12 +221,13 @@ module halfrow_rows_bench;
     end
 
     always @(posedge clk) begin
+        if (at < 0 && row_byte_ready && row_byte_valid)
+            expect_equal("bytes behind a packet's end", 1, 0);
         if (at >= 0 && row_byte_ready && row_byte_valid) begin
             bytes[at] = row_byte;
             at = at + 1;
             if (at == length) begin
-                if (judge)
-                    judge_row;
+                judge_row;
                 received = received + 1;
                 at = -1;
             end
@@ -236,13 +238,9 @@ module halfrow_rows_bench;
             packets = packets + 1;
             length = row_length;
             at = 0;
-            judge = 1;
         end
-        if (drop_rows) begin
-            judge = 0;
-            if (new_session)
-                packets = 0;
-        end
+        if (drop_rows && new_session)
+            packets = 0;
     end
 
     task judge_row;
@@ -250,15 +248,16 @@ module halfrow_rows_bench;
             number = {bytes[3], bytes[2], bytes[1], bytes[0]};
             expect_equal("frame", {bytes[5], bytes[4]}, frame_of[number[3:0]]);
             expect_equal("row", {bytes[7], bytes[6]}, row_of[number[3:0]]);
-            expect_equal("width", {bytes[9], bytes[8]}, width);
-            expect_equal("flags", bytes[10], row_of[number[3:0]] == height - 1);
+            expect_equal("width", {bytes[9], bytes[8]}, width_of[number[3:0]]);
+            expect_equal("bytes", length, 20 + width_of[number[3:0]] / 2 * 3);
+            expect_equal("flags", bytes[10], last_of[number[3:0]]);
             expect_equal("generation", bytes[11], generation_of[number[3:0]]);
-            expect_equal("first latency", {bytes[13], bytes[12]}, width / 2 + L);
-            expect_equal("last latency", {bytes[15], bytes[14]}, width / 2 + L);
-            expect_equal("pauses", {bytes[17], bytes[16]}, pauses[row_of[number[3:0]]]);
+            expect_equal("first latency", {bytes[13], bytes[12]}, width_of[number[3:0]] / 2 + L);
+            expect_equal("last latency", {bytes[15], bytes[14]}, width_of[number[3:0]] / 2 + L);
+            expect_equal("pauses", {bytes[17], bytes[16]}, pauses_of[number[3:0]]);
             expect_equal("repeats", {bytes[19], bytes[18]}, repeats_of[number[3:0]]);
-            repeats_of[number[3:0]] = repeats_of[number[3:0]] + 1;
-            for (column = 0; column < width; column = column + 2) begin
+            repeats_of[number[3:0]] = repeats_of[number[3:0]] + (repeats_of[number[3:0]] != 65535);
+            for (column = 0; column < width_of[number[3:0]]; column = column + 2) begin
                 pair = {bytes[22 + column / 2 * 3], bytes[21 + column / 2 * 3], bytes[20 + column / 2 * 3]};
                 expect_equal("samples", pair, {sample_of(number, column + 1), sample_of(number, column)});
             end
@@ -327,17 +326,27 @@ module halfrow_rows_bench;
         end
     endtask
 
+    // What must come back of a row.
+    task due(input [31:0] row_number, input [15:0] frame, input [15:0] row, input [7:0] of_generation);
+        begin
+            frame_of[row_number[3:0]] = frame;
+            row_of[row_number[3:0]] = row;
+            generation_of[row_number[3:0]] = of_generation;
+            width_of[row_number[3:0]] = width;
+            last_of[row_number[3:0]] = row == height - 1;
+            pauses_of[row_number[3:0]] = pauses[row];
+            repeats_of[row_number[3:0]] = 0;
+        end
+    endtask
+
     // The row as it belongs there, which the board has not got.
     task send(input [31:0] row_number);
         reg [31:0] row;
         begin
             row = row_number - base;
             place(row_number);
-            frame_of[row_number[3:0]] = row / height;
-            row_of[row_number[3:0]] = row % height;
-            generation_of[row_number[3:0]] =
-                commit_pending && row / height >= commit_frame ? commit_generation : generation;
-            repeats_of[row_number[3:0]] = 0;
+            due(row_number, row / height, row % height,
+                commit_pending && row / height >= commit_frame ? commit_generation : generation);
             refused(0);
         end
     endtask

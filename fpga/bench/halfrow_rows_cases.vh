@@ -126,8 +126,7 @@ task order;
         place(104); refused(8);
         for (n = 2; n > 0; n = n - 1) begin
             put(103 + n, 6 + n, 0, 64, 0);
-            frame_of[(103 + n) & 15] = 6 + n; row_of[(103 + n) & 15] = 0; repeats_of[(103 + n) & 15] = 0;
-            generation_of[(103 + n) & 15] = 9;
+            due(103 + n, 6 + n, 0, 9);
             refused(0);
         end
         settle;
@@ -218,7 +217,7 @@ endtask
 
 task resets;
     begin
-        for (n = 0; n < 120; n = n + 1) begin
+        for (n = 0; n < 100; n = n + 1) begin
             settle;
             drop(n * 50, n % 3 == 0);
             configure(n % 4 == 0 ? 128 : 64, 3, n % 7, n % 2 * n);
@@ -294,6 +293,82 @@ task lossy_host;
     end
 endtask
 
+// A row is dropped at each byte of its packet; other rows with its place in the banks follow at once, in another width
+// and generation.
+task dropped_while_sent;
+    begin
+        for (n = 0; n < 30; n = n + 1) begin
+            configure(64, 1, 0, 0);
+            ready_percent = 100;
+            drop(n * 64, 0);
+            send(n * 64);
+            while (at < n) @(negedge clk);
+            m = received;
+            ready_percent = n % 3 == 0 ? 5 : 20;
+            drop(n * 64 + 32'h01010104 + n % 3 * 4, n % 2); // no byte of its number is as before, nor of its frame's
+            base = base - 32'h0202;
+            generation = generation == 255 ? 1 : generation + 1;
+            configure(n % 4 < 2 ? 96 : 64, 1, 0, 0);
+            send(next_new);
+            send(next_new + 1);
+            settle;
+            expect_equal("the dropped row and both others came", received - m, 3);
+            acknowledge_all;
+            expect_equal("nothing is left", {rows_waiting, rows_held, core_busy}, 0);
+        end
+        ready_percent = 100;
+        passed("rows that are dropped while they are sent");
+    end
+endtask
+
+// Counters that no bench could play to their end.
+task ends_of_counters;
+    begin
+        configure(64, 1, 0, 0);
+        drop(0, 1);
+        rows.row_sender.packets = 16'hfffe;
+        packets = 65534;
+        for (n = 0; n < 4; n = n + 1) begin
+            send(n);
+            settle;
+            acknowledge_all;
+        end
+
+        send(4);
+        settle;
+        {rows.heads.bytes[3], rows.heads.bytes[2]} = 16'hfffc;
+        rows.row_sender.greatest = 0;
+        repeats_of[4] = 65533;
+        for (n = 0; n < 5; n = n + 1) begin
+            place(4);
+            refused(0);
+            settle;
+        end
+        expect_equal("repeats at their end", {bytes[19], bytes[18]}, 65535);
+        acknowledge_all;
+        passed("the last number of a packet and the most repeats");
+
+        configure(64, 2, 0, 99);
+        base = 5;
+        rows.player.pauses = 16'hffff - pauses[0] + 1;
+        pauses[0] = 65535;
+        send(5);
+        send(6);
+        settle;
+        expect_equal("both came back", next_new, 7);
+        acknowledge_all;
+        passed("the most pauses");
+
+        if ($test$plusargs("all")) begin
+            configure(64, 2, 33000, 0);
+            play(1);
+            configure(64, 258, 0, 0);
+            play(1);
+            passed("a blanking of 16 bits, and rows whose number takes two bytes");
+        end
+    end
+endtask
+
 initial begin
     repeat (4) @(negedge clk);
     rst = 0;
@@ -307,6 +382,8 @@ initial begin
     resets;
     last_numbers;
     lossy_host;
+    dropped_while_sent;
+    ends_of_counters;
     $display("DONE");
     $finish;
 end

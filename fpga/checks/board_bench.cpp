@@ -1,12 +1,16 @@
 // Drives a whole board, as written or as synthesised, at the pins of its link: HELLO, tables, rows, and compares what comes back with
 // datapath.hpp, every sample and every latency. It ends at the first difference, with status 1.
 //   board_bench FRAMES SEED
+// Words with a + are the model's.
 #include "board_link.hpp"
 #include <algorithm>
 #include <random>
 
 #ifndef TAPS
 #define TAPS 7
+#endif
+#ifndef LEAST_BLANKING
+#define LEAST_BLANKING 0
 #endif
 constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048;
 
@@ -108,7 +112,7 @@ struct Host {
         put(settings, frame.width, 2);
         put(settings, steps.size(), 2);
         put(settings, frame.centre, 2);
-        put(settings, draw(20), 2);
+        put(settings, LEAST_BLANKING + draw(20), 2);
         put(settings, draw(2) ? random() : 0, 4);
         put(settings, frame.bits, 1);
         ask(0x18, settings);
@@ -186,14 +190,14 @@ struct Host {
 };
 
 int main(int argc, char **argv) {
-    if (argc != 3) {
+    Verilated::commandArgs(argc, argv);
+    if (argc < 3) {
         std::printf("board_bench FRAMES SEED\n");
         return 2;
     }
     Host host;
     host.random.seed(std::atoi(argv[2]));
-    for (int k = 0; k < 20000; k++)
-        host.link.edge();
+    host.link.start();
     host.hello();
     for (int k = 0; k < std::atoi(argv[1]); k++)
         host.play();

@@ -1,5 +1,5 @@
 // A board at the pins of its link, as Verilator made it of a netlist or of its sources: packets to it and from it. LINK_FIFO: the board of
-// edif_board.v, else a UART.
+// edif_board.v; LINK_BYTES: halfrow_bridge; else a UART.
 #pragma once
 #include "Vboard.h"
 #include "datapath.hpp"
@@ -87,6 +87,8 @@ struct Lines : Pins {
     int reading = 0, read_rest = 6, write_rest = 0;
     bool wrote = false;
 
+    static constexpr int CLOCKS_TO_START = 20000;
+
     Lines() { board.rxf_n = board.txe_n = 1; }
 
     void clock() {
@@ -128,9 +130,36 @@ struct Lines : Pins {
         board.txe_n = write_rest != 0;
     }
 };
+#elif defined(LINK_BYTES)
+// Bytes as they are. Either side is held up now and then.
+struct Lines : Pins {
+    static constexpr int CLOCKS_TO_START = 4;
+    uint64_t clocks = 0;
+
+    Lines() { board.camera_frame_valid = board.camera_line_valid = board.millisecond = board.rx_valid = 0; }
+
+    void clock() {
+        board.clk = 0;
+        board.rst = clocks < CLOCKS_TO_START;
+        board.tx_ready = clocks / 4096 % 2 ? 1 : clocks * 2654435761u >> 30 & 1;
+        board.rx_valid = !to_board.empty();
+        board.rx_data = to_board.empty() ? 0 : to_board.front();
+        board.eval();
+        bool taken = board.rx_valid && board.rx_ready, given = board.tx_valid && board.tx_ready;
+        uint8_t data = board.tx_data;
+        board.clk = 1;
+        board.eval();
+        clocks++;
+        if (taken)
+            to_board.pop_front();
+        if (given)
+            heard_byte(data);
+    }
+};
 #else
 // The two lines of a UART.
 struct Lines : Pins {
+    static constexpr int CLOCKS_TO_START = 20000;
     int sent = 0, heard = -1;                // clocks into a byte; none is heard: -1
     uint8_t byte = 0;
 
@@ -180,6 +209,11 @@ struct Lines : Pins {
 struct Link {
     Lines lines;
     uint64_t clocks = 0;
+
+    void start() {
+        for (int k = 0; k < Lines::CLOCKS_TO_START; k++)
+            edge();
+    }
 
     void edge() {
         lines.clock();

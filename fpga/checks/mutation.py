@@ -1,84 +1,112 @@
 #!/usr/bin/env python3
-"""Puts faults into the core (five taps, one bank) and counts how many core_bench sees.
-    fpga/checks/mutation.py WORK COUNT
-yosys draws COUNT faults and puts GROUP of them into a model, where a number chooses which is on. What survives is listed
-with its place, whether or not it makes a difference.
+"""Puts faults into the Verilog, one at a time, and says which check finds which.
+    fpga/checks/mutation.py WORK COUNT [MODULE...]
+mutation.ini says where and what tries them. yosys draws all faults of a module into one netlist, where a number chooses which is on, so
+a check is compiled once a module. What was found is kept in WORK; a run that was stopped goes on while sources, COUNT and SEED are the same.
+What survives is listed with its place, whether or not it makes a difference.
 """
+import collections
 import concurrent.futures
+import configparser
+import hashlib
 import pathlib
 import re
-import subprocess
+import shutil
 import sys
 
+import mutants
 import rtl
 
 HERE = pathlib.Path(__file__).resolve().parent
-WORK, COUNT = pathlib.Path(sys.argv[1]), int(sys.argv[2])
-GROUP = 50
-FLOOR = 90                                   # per cent; some of what survives is no fault
-CASES = ["golden", "random", "200", "1", "hostile", "100", "2"]
-MORE_CASES = ["random", "3000", "3", "hostile", "1500", "4", "frame", "hermite"]   # for what survives those
-
-# Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port.
-BASE = f"""{rtl.read("halfrow_core", ["TAPS=5", "TABLE_BANKS=1"])}
-prep -flatten; simplemap t:$dff t:$dffe t:$sdff t:$sdffe t:$sdffce t:$mux t:$pmux t:$and t:$or t:$not t:$xor; opt -full; wreduce;
-opt -full; rename -top top; opt_clean -purge; write_ilang {WORK}/base.il;
-select c:* t:$mem* %d; mutate -list {COUNT} -seed 1 -ctrl mutsel 16 1 -o {WORK}/faults.txt"""
+FLOOR = 85                                   # per cent found of all; some of what survives is no fault
+SEED = 1
+SURVIVES = "survives"
 
 
-def run(command, log, seconds=None):
-    with open(log, "w") as out:
-        try:
-            return subprocess.run(command, stdout=out, stderr=subprocess.STDOUT, timeout=seconds).returncode
-        except subprocess.TimeoutExpired:
-            return None
+def key(count):
+    """A hash of all that decides what a fault is and who finds it."""
+    told = hashlib.sha256(f"{count} {SEED}".encode())
+    files = [*rtl.RTL.glob("**/*.v*"), *mutants.BENCH.iterdir(), *HERE.glob("mut*"), *HERE.glob("*_bench.cpp"), *HERE.glob("*.hpp"),
+             HERE / "rtl.py"]
+    for path in sorted(path for path in files if path.is_file() and path.suffix != ".md"):
+        told.update(path.name.encode() + b"\0" + path.read_bytes())
+    return told.hexdigest()
 
 
-def must(command, log):
-    if run(command, log) != 0:
-        sys.exit(f"mutation: {command[0]} failed, see {log}")
+def judge(fault, checks):
+    """The first check that refuses a fault."""
+    return next((check.name for check in checks if check.refuses(fault)), SURVIVES)
 
 
-def build(first, faults):
-    """A model of these faults, and the bench around it. The number is registered, or every evaluation would follow it."""
-    place = WORK / f"group_{first}"
-    place.mkdir(parents=True, exist_ok=True)
-    (place / "script.ys").write_text(f"read_ilang {WORK}/base.il\n" + "\n".join(faults) + f"\nwrite_verilog -noattr {place}/top.v\n")
-    must(["yosys", "-q", "-s", str(place / "script.ys")], place / "yosys.log")
-    must(["verilator", "--cc", "--exe", "--build", "-O3", "--prefix", "Vcore", "--top-module", "top", "-Wno-fatal", "--Mdir", str(place),
-          "-o", "bench", str(place / "top.v"), "-CFLAGS", "-O1 -std=c++17 -DTAPS=5 -DTABLE_BANKS=1 -DFAULTS", str(HERE / "core_bench.cpp")],
-         place / "build.log")
-    return place / "bench"
+def try_all(module, section, place, count):
+    """Number, fault and who found it, of each fault of a module; what is known is read."""
+    faults = mutants.draw(place, module, section, count, SEED)
+    made = mutants.netlist(place, module, section, faults)
+    results = place / "results"
+    known = dict(line.split() for line in results.read_text().splitlines()) if results.exists() else {}
+    open_numbers = [number for number in range(1, len(faults) + 1) if str(number) not in known]
+    if open_numbers:
+        checks = [mutants.Check(name, place, made, section) for name in section["checks"].split()]
+        with concurrent.futures.ThreadPoolExecutor(2) as pool, open(results, "a", buffering=1) as out:
+            tried = {pool.submit(judge, number, checks): number for number in open_numbers}
+            for one in concurrent.futures.as_completed(tried):
+                known[str(tried[one])] = one.result()
+                out.write(f"{tried[one]} {one.result()}\n")
+    return [(number, fault, known[str(number)]) for number, fault in enumerate(faults, 1)]
 
 
-def survives(bench, number, cases):
-    return run([str(bench), "fault", str(number), *cases], bench.parent / f"fault_{number}.log", 300) == 0
+def described(number, fault):
+    """A fault in words: what it does to which cell or wire, and the line that this comes from."""
+    wire = re.search(r"-wire (\S+) -wirebit (\d+)", fault)
+    mode, cell, port = (re.search(rf"-{word} (\S+)", fault)[1] for word in ("mode", "cell", "port"))
+    source = " ".join(dict.fromkeys(re.findall(r"-src \S*?(halfrow_\w+\.v:\d+)", fault)))
+    return f"{number} {mode} {wire[1] + '[' + wire[2] + ']' if wire else cell} {port} {source}"
 
 
-def group(first, faults):
-    bench = build(first, faults)
-    if not survives(bench, 0, CASES + MORE_CASES):
-        sys.exit("mutation: the core without a fault fails")
-    return [k for k in range(first, first + len(faults)) if survives(bench, k, CASES) and survives(bench, k, MORE_CASES)]
+def inner(fault, module):
+    """The module that a fault is in, by its name in fpga/rtl."""
+    return re.search(r"-module \S*?(halfrow_\w+)", fault)[1] if re.search(r"-module \S*?halfrow_", fault) else module
+
+
+def table(found, order):
+    """Lines: a module, its faults, and how many each check found first."""
+    rows = collections.defaultdict(collections.Counter)
+    for module, part, finder in found:
+        rows[module, part][finder] += 1
+    for (module, part), counts in rows.items():
+        told = ", ".join(f"{name} {counts[name]}" for name in [*order, SURVIVES] if counts[name])
+        yield f"{module.removeprefix('halfrow_')}/{part.removeprefix('halfrow_')}: {counts.total()}: {told}"
+    sums = collections.Counter(finder for _, _, finder in found)
+    yield f"all: {sums.total()}: " + ", ".join(f"{name} {sums[name]}" for name in [*order, SURVIVES] if sums[name])
 
 
 def main():
-    WORK.mkdir(parents=True, exist_ok=True)
-    must(["yosys", "-q", "-p", BASE.replace("\n", " ")], WORK / "base.log")
-    faults = (WORK / "faults.txt").read_text().splitlines()
-    with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        groups = [pool.submit(group, k + 1, faults[k:k + GROUP]) for k in range(0, len(faults), GROUP)]
-        alive = [number for done in groups for number in done.result()]
-    for number in alive:
-        fault = faults[number - 1]
-        wire = re.search(r"-wire (\S+) -wirebit (\d+)", fault)
-        mode, cell, port = (re.search(rf"-{word} (\S+)", fault)[1] for word in ("mode", "cell", "port"))
-        source = " ".join(re.findall(r"-src \S*?(halfrow_\w+\.v:\d+)", fault))
-        print(f"  survives: {number} {mode} {wire[1] + '[' + wire[2] + ']' if wire else cell} {port} {source}")
-    killed = len(faults) - len(alive)
-    print(f"{killed} of {len(faults)} killed")
-    if 100 * killed < FLOOR * len(faults):
-        sys.exit(f"mutation: less than {FLOOR} per cent")
+    work, count, chosen = pathlib.Path(sys.argv[1]), int(sys.argv[2]), sys.argv[3:]
+    sections = configparser.ConfigParser()
+    sections.read(HERE / "mutation.ini")
+    work.mkdir(parents=True, exist_ok=True)
+    mark = work / "key"
+    if not mark.exists() or mark.read_text() != key(count):
+        for name in sections.sections():
+            shutil.rmtree(work / name, ignore_errors=True)
+        mark.write_text(key(count))
+    found, survivors = [], []
+    order = list(dict.fromkeys(name for section in sections.values() for name in section.get("checks", "").split()))
+    for module in chosen or sections.sections():
+        section, place = sections[module], work / module
+        place.mkdir(exist_ok=True)
+        for number, fault, finder in try_all(module, section, place, max(1, count * section.getint("share") // 1000)):
+            found.append((module, inner(fault, module), finder))
+            if finder == SURVIVES:
+                survivors.append(f"  survives: {module} {described(number, fault)}")
+        print(f"{module}: {sum(1 for one in found if one[0] == module and one[2] != SURVIVES)} of "
+              f"{sum(1 for one in found if one[0] == module)} found", flush=True)
+    lines = [*survivors, *table(found, order)]
+    (work / "table").write_text("\n".join(lines) + "\n")
+    print("\n".join(lines))
+    seen = sum(1 for one in found if one[2] != SURVIVES)
+    if 100 * seen < FLOOR * len(found):
+        sys.exit(f"mutation: {seen} of {len(found)} found, less than {FLOOR} per cent")
 
 
 main()
