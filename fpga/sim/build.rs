@@ -6,30 +6,51 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, exit};
 
-/// A top module with its parameters, and the name of the C++ class that it becomes.
+/// A top module with its parameters.
 struct Model {
+    /// The C++ class that it becomes.
     class: &'static str,
-    top: &'static str,
+    /// What src/ffi.rs knows it by, behind `halfrow_`.
+    name: &'static str,
+    top: Top,
     parameters: &'static [&'static str],
 }
 
+/// A top module.
+struct Top {
+    module: &'static str,
+    /// The header in `shim` that knows its ports.
+    ports: &'static str,
+}
+
+const BRIDGE: Top = Top { module: "halfrow_bridge", ports: "bridge.h" };
+const UART: Top = Top { module: "halfrow_uart_bridge", ports: "uart.h" };
+const FIFO: Top = Top { module: "halfrow_fifo_bridge", ports: "fifo.h" };
+const CORE: Top = Top { module: "halfrow_core", ports: "core.h" };
+
 const BOARDS: [Model; 3] = [
-    Model { class: "Bridge", top: "halfrow_bridge", parameters: &[] },
-    Model { class: "UartBridge", top: "halfrow_uart_bridge", parameters: &[] },
-    Model { class: "FifoBridge", top: "halfrow_fifo_bridge", parameters: &[] },
+    Model { class: "Bridge", name: "bridge", top: BRIDGE, parameters: &[] },
+    Model { class: "UartBridge", name: "uart", top: UART, parameters: &[] },
+    Model { class: "FifoBridge", name: "fifo", top: FIFO, parameters: &[] },
 ];
 
 /// What tests alone need.
 const BUILDS: [Model; 7] = [
-    Model { class: "Core7", top: "halfrow_core", parameters: &["TAPS=7"] },
-    Model { class: "Core5", top: "halfrow_core", parameters: &["TAPS=5"] },
-    Model { class: "CoreShort", top: "halfrow_core", parameters: &["TAPS=7", "RING_BITS=7"] },
-    Model { class: "CoreShort5", top: "halfrow_core", parameters: &["TAPS=5", "RING_BITS=7"] },
-    Model { class: "BridgeFour", top: "halfrow_bridge", parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4"] },
-    Model { class: "BridgeIn", top: "halfrow_bridge", parameters: &["ROW_BANKS_IN=4"] },
+    Model { class: "Core7", name: "core7", top: CORE, parameters: &["TAPS=7"] },
+    Model { class: "Core5", name: "core5", top: CORE, parameters: &["TAPS=5"] },
+    Model { class: "CoreShort", name: "core_short", top: CORE, parameters: &["TAPS=7", "RING_BITS=7"] },
+    Model { class: "CoreShort5", name: "core_short5", top: CORE, parameters: &["TAPS=5", "RING_BITS=7"] },
+    Model {
+        class: "BridgeFour",
+        name: "bridge_four",
+        top: BRIDGE,
+        parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4"],
+    },
+    Model { class: "BridgeIn", name: "bridge_in", top: BRIDGE, parameters: &["ROW_BANKS_IN=4"] },
     Model {
         class: "BridgeLean",
-        top: "halfrow_bridge",
+        name: "bridge_lean",
+        top: BRIDGE,
         parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4", "TABLE_BANKS=1", "TAPS=5"],
     },
 ];
@@ -89,13 +110,13 @@ impl Verilator {
         let mut command = Command::new(&self.program);
         command.args(["--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal"]);
         command.args(is_traced.then_some("--trace"));
-        command.args(["--top-module", model.top, "--prefix", model.class]).arg("--Mdir").arg(folder);
-        let identity = IDENTITY.iter().filter(|_| model.top != "halfrow_core");
+        command.args(["--top-module", model.top.module, "--prefix", model.class]).arg("--Mdir").arg(folder);
+        let identity = IDENTITY.iter().filter(|_| model.top.module != CORE.module);
         command.args(model.parameters.iter().chain(identity).map(|parameter| format!("-G{parameter}")));
         command.arg(format!("-I{}", rtl.display()));
         for group in folders(rtl) {
             command.arg("-y").arg(&group);
-            let top = group.join(model.top).with_extension("v");
+            let top = group.join(model.top.module).with_extension("v");
             if top.exists() {
                 command.arg(top);
             }
@@ -108,16 +129,19 @@ impl Verilator {
     }
 
     fn compile(&self, models: &[&Model], out: &Path) {
-        let all = models.iter().flat_map(|model| cpp_files(&out.join(model.class)));
-        let (seldom, mut sources): (Vec<_>, Vec<_>) = all.partition(|file| runs_seldom(file));
+        let (mut often, mut seldom) = (Vec::new(), Vec::new());
+        for model in models {
+            let (slow, fast): (Vec<_>, Vec<_>) =
+                cpp_files(&out.join(model.class)).into_iter().partition(|file| runs_seldom(file));
+            // In one unit with what calls it, a model's parts are inlined into each other.
+            let design = format!("DESIGN({}, {})", model.name, model.class);
+            often.push(unit(out, model.class, &[&[model.top.ports.into()], &fast[..]].concat(), &design));
+            seldom.push(unit(out, &format!("{}Seldom", model.class), &slow, ""));
+        }
         for file in ["verilated.cpp", "verilated_threads.cpp", "verilated_vcd_c.cpp"] {
-            sources.push(self.include.join(file));
+            often.push(self.include.join(file));
         }
-        if models.len() > BOARDS.len() {
-            sources.push("shim/builds.cpp".into());
-        }
-        sources.push("shim/boards.cpp".into());
-        self.compiler(models, out).opt_level(3).files(sources).compile("halfrow_designs");
+        self.compiler(models, out).opt_level(3).files(often).compile("halfrow_designs");
         self.compiler(models, out).opt_level(0).files(seldom).compile("halfrow_designs_seldom");
         println!("cargo::rustc-link-lib=pthread");
     }
@@ -125,13 +149,26 @@ impl Verilator {
     fn compiler(&self, models: &[&Model], out: &Path) -> cc::Build {
         let mut build = cc::Build::new();
         build.cpp(true).std("c++17").debug(false).warnings(false).define("VL_TIME_CONTEXT", None);
+        // Nobody replaces a function of this library, so they may be inlined although its code is position-independent.
+        build.flag_if_supported("-fno-semantic-interposition");
         build.define("VM_TRACE", "1").define("VM_TRACE_VCD", "1").define("VM_TRACE_FST", "0");
-        build.include(&self.include).include(self.include.join("vltstd"));
+        build.include(&self.include).include(self.include.join("vltstd")).include("shim");
         for model in models {
             build.include(out.join(model.class));
         }
         build
     }
+}
+
+/// Writes the source `name` in `out` that includes these files and ends with `last`.
+fn unit(out: &Path, name: &str, files: &[PathBuf], last: &str) -> PathBuf {
+    let includes = files.iter().map(|file| format!("#include \"{}\"\n", file.display()));
+    let unit = out.join(name).with_extension("cpp");
+    let text = includes.collect::<String>() + last + "\n";
+    if let Err(error) = fs::write(&unit, text) {
+        fail(&format!("{} cannot be written: {error}", unit.display()));
+    }
+    unit
 }
 
 /// The folders in a folder, in the order of their names.

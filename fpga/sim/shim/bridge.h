@@ -34,3 +34,5 @@ void clock_bridge(Design<Model>& design, const BridgeInputs& in, BridgeOutputs& 
     model.clk = 1;
     design.settle();
 }
+
+#define DESIGN(name, Model) OFFER(name, Model, BridgeInputs, BridgeOutputs, clock_bridge)

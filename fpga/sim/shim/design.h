@@ -85,6 +85,6 @@ constexpr Functions<Inputs, Outputs> functions() {
     };
 }
 
-#define DESIGN(name, Model, Inputs, Outputs, clock) \
+#define OFFER(name, Model, Inputs, Outputs, clock) \
     extern "C" const Functions<Inputs, Outputs> halfrow_##name; \
     const Functions<Inputs, Outputs> halfrow_##name = functions<Model, Inputs, Outputs, clock<Model>>();

@@ -1,15 +1,9 @@
-// The core alone, and boards of other builds than the one that ships.
+// The core alone.
+#pragma once
 
-#include "BridgeFour.h"
-#include "BridgeIn.h"
-#include "BridgeLean.h"
-#include "Core5.h"
-#include "Core7.h"
-#include "CoreShort.h"
-#include "CoreShort5.h"
-#include "bridge.h"
+#include "design.h"
 
-// The same structures stand in src/ffi/core.rs.
+// The same structures stand in src/ffi.rs.
 struct CoreInputs {
     bool rst, enable;
     uint8_t depth;
@@ -63,10 +57,4 @@ void clock_core(Design<Model>& design, const CoreInputs& in, CoreOutputs& out) {
     design.settle();
 }
 
-DESIGN(core7, Core7, CoreInputs, CoreOutputs, clock_core)
-DESIGN(core5, Core5, CoreInputs, CoreOutputs, clock_core)
-DESIGN(core_short, CoreShort, CoreInputs, CoreOutputs, clock_core)
-DESIGN(core_short5, CoreShort5, CoreInputs, CoreOutputs, clock_core)
-DESIGN(bridge_four, BridgeFour, BridgeInputs, BridgeOutputs, clock_bridge)
-DESIGN(bridge_in, BridgeIn, BridgeInputs, BridgeOutputs, clock_bridge)
-DESIGN(bridge_lean, BridgeLean, BridgeInputs, BridgeOutputs, clock_bridge)
+#define DESIGN(name, Model) OFFER(name, Model, CoreInputs, CoreOutputs, clock_core)
