@@ -146,6 +146,9 @@ impl Board {
             }
             Request::RowIn(row) => return self.row_in(row),
             Request::RowAck => return Ok(()),
+            Request::Burst(_) | Request::Records { .. } | Request::Expect(_) | Request::Trap => {
+                return Err((RefusalCode::Kind, 0));
+            }
         };
         self.answer(header, self.session.number(), &reply);
         if matches!(request, Request::Reset(reset) if reset.level == ResetLevel::Session) {

@@ -1,8 +1,8 @@
 //! Requests and bytes that no host would send: the board stays up, keeps its promises and answers the next HELLO.
 
 use halfrow_protocol::message::{
-    Bank, Commit, Configuration, Entries, Hello, Reply, Request, Reset, ResetLevel, RowIn, RowPlace, Span,
-    Status, Table,
+    Bank, Burst, BurstMode, Commit, Configuration, Entries, Expect, Hello, Reply, Request, Reset, ResetLevel,
+    RowIn, RowPlace, Span, Status, Table,
 };
 use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
 use proptest::prelude::*;
@@ -92,7 +92,19 @@ fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
             let packed = vec![d as u8; samples::packed_length(width.into())];
             Request::RowIn(RowIn { place, packed: &packed }).write(&mut payload);
         }
-        Kind::Capabilities | Kind::RowOut | Kind::RowAck | Kind::Refusal => {}
+        Kind::Burst => {
+            let mode = [BurstMode::Fresh, BurstMode::Alternating, BurstMode::Repeating, BurstMode::Trapped]
+                [d as usize % 4];
+            let (first_frame, frame_blanking) = (c as u16, d as u16);
+            Request::Burst(Burst { burst: a, frames: b, seed: c, first_frame, frame_blanking, mode })
+                .write(&mut payload);
+        }
+        Kind::Records => Request::Records { from: a }.write(&mut payload),
+        Kind::Expect => {
+            let bytes = vec![c.to_le_bytes(); b as usize % (Expect::MOST + 1)];
+            Request::Expect(Expect { first: a as u16, bytes: &bytes }).write(&mut payload);
+        }
+        Kind::Capabilities | Kind::RowOut | Kind::RowAck | Kind::Trap | Kind::Refusal => {}
     }
     payload
 }

@@ -45,6 +45,8 @@ impl Board {
             kernel_ports: KERNEL_PORTS,
             clock_source: 0,
             clock_hz: options.pixel_clock,
+            bursts: None,
+            entered: false,
             nature: BoardNature::Mock,
             name: "halfrow mock board".to_owned(),
         }

@@ -215,6 +215,7 @@ impl Board {
             pauses: row.pauses,
             repeats,
             packed: &packed,
+            entered: None,
         };
         let header = Header {
             kind: Kind::RowOut.code(),
