@@ -165,6 +165,29 @@ pub enum Defect {
         /// The first.
         first: usize,
     },
+    /// Rows enter the core otherwise than they were sent.
+    RowsChangedOnEntry {
+        /// How many.
+        rows: usize,
+        /// The first of them.
+        first: usize,
+        /// Its frame.
+        frame: u16,
+    },
+    /// Frames begin with the tables of the frame in front of them.
+    TablesChangeLate {
+        /// So many rows.
+        rows: usize,
+    },
+    /// What is right row by row is wrong at the full pixel clock.
+    OnlyAtSpeed {
+        /// A row in which it was seen.
+        row: Option<usize>,
+        /// Samples of that row that differ.
+        samples: usize,
+        /// Bits of them that do.
+        bits: Vec<u32>,
+    },
     /// None that is known explains most of the differences: where they lie.
     NoneKnown {
         /// Their rows.

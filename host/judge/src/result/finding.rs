@@ -68,6 +68,29 @@ pub enum Finding {
         /// Damaged packets that the board counts although nothing had to be sent again.
         damaged_unseen: u32,
     },
+    /// Frames that the board made on its own are the reference's, at the full pixel clock.
+    EqualAtSpeed {
+        /// Frames.
+        frames: u32,
+        /// The pixel clock in hertz; 0 when the board names none.
+        clock_hz: u32,
+        /// How long they took on that clock, in seconds.
+        seconds: Option<f64>,
+        /// Frames that waited until the host had the records of earlier ones.
+        held_back: u32,
+    },
+    /// They are the reference's, and the enable was off in some.
+    PausedAtSpeed {
+        /// Frames.
+        frames: u32,
+        /// Those with pauses.
+        paused: u32,
+    },
+    /// The board made no frames on its own.
+    NothingAtSpeed {
+        /// Why.
+        reason: NoBurst,
+    },
     /// The run ended before.
     NotReached {},
     /// Everything was judged, and all of it is right.
@@ -133,6 +156,64 @@ pub enum Finding {
         frames: usize,
         /// The likeliest cause.
         suspect: Option<Box<Defect>>,
+    },
+    /// Rows entered the core otherwise than they were sent, by the board's own CRC.
+    RowsEnteredChanged {
+        /// How many.
+        rows: usize,
+        /// The first of them.
+        row: usize,
+        /// Its frame.
+        frame: u16,
+    },
+    /// Rows came out right, and the board's CRC of what entered is another one.
+    EntryMiscounted {
+        /// How many.
+        rows: usize,
+        /// The first of them.
+        row: usize,
+        /// Its frame.
+        frame: u16,
+    },
+    /// Frames that the board made on its own have other signatures than the reference's.
+    DiffersAtSpeed {
+        /// How many.
+        wrong: u32,
+        /// Of so many.
+        frames: u32,
+        /// The first of them, counted from the first of the burst.
+        first: u32,
+        /// What making it again has shown.
+        repetition: Repetition,
+        /// The likeliest cause.
+        suspect: Option<Box<Defect>>,
+    },
+    /// A frame that the board made on its own has the right signature, and something else that it counts is wrong.
+    MiscountedAtSpeed {
+        /// The frame, counted from the first of the burst.
+        frame: u32,
+        /// What.
+        count: BurstCount,
+        /// What the board counts.
+        counted: u32,
+        /// What it should.
+        right: u32,
+    },
+    /// No frame followed in a burst.
+    BurstStalled {
+        /// The frame that was waited for, counted from the first of the burst.
+        frame: u32,
+        /// Frames of the burst.
+        frames: u32,
+        /// How long it was waited for, in seconds.
+        seconds: f64,
+    },
+    /// A burst ended before its last frame.
+    BurstEndedEarly {
+        /// Frames that came.
+        came: u32,
+        /// Frames of the burst.
+        frames: u32,
     },
     /// Rows take another latency than the board claims.
     LatencyWrong {
@@ -282,6 +363,68 @@ pub enum Finding {
     /// An error of the station, the link or the call.
     #[serde(untagged)]
     Problem(Box<Problem>),
+}
+
+/// Why there was no burst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum NoBurst {
+    /// Nobody asked for one.
+    NotAskedFor {},
+    /// The board makes no frames on its own.
+    BoardMakesNone {},
+    /// It makes others than this program knows.
+    ContentUnknown {
+        /// Its content id.
+        content: u16,
+        /// The one that is known.
+        known: u16,
+    },
+}
+
+/// What making a frame again has shown that was wrong at speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum Repetition {
+    /// Its signature told enough.
+    NotNeeded {},
+    /// The board cannot keep a row that differs.
+    NoTrap {},
+    /// It was right every time.
+    AllRight {
+        /// How often.
+        frames: u32,
+    },
+    /// It was wrong again, and a row of it was kept.
+    Trapped {
+        /// Frames up to the first that was wrong.
+        frames: u32,
+        /// The row.
+        row: usize,
+    },
+    /// It was wrong again, and no row that differs was kept.
+    NothingTrapped {
+        /// Frames up to the first that was wrong.
+        frames: u32,
+    },
+    /// It could not be made again.
+    Impossible {},
+}
+
+/// What a board counts of a frame that it made on its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BurstCount {
+    /// Samples.
+    Samples,
+    /// Rows.
+    Rows,
+    /// The smallest latency.
+    LeastLatency,
+    /// The largest.
+    MostLatency,
+    /// The generation of its tables.
+    Generation,
 }
 
 /// Why a board may not be as the host made it, although it is sound.

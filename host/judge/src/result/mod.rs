@@ -39,7 +39,7 @@ pub use counter::Counter;
 pub use defect::{ClampEnd, Counting, Defect, Extent, MadeWith, Memory, Reading, RowSource, StaleFrames};
 pub use document::{Document, SCHEMA, Schema};
 pub use evidence::{Evidence, EvidenceReport};
-pub use finding::{Doubt, Finding};
+pub use finding::{BurstCount, Doubt, Finding, NoBurst, Repetition};
 pub use frames::{FrameReport, FrameTiming, LatencyReport, Variation};
 pub use identity::Identity;
 pub use link::{LinkReport, Reconnection};
