@@ -95,7 +95,7 @@ fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
         Kind::Burst => {
             let mode = [BurstMode::Fresh, BurstMode::Alternating, BurstMode::Repeating, BurstMode::Trapped]
                 [d as usize % 4];
-            let (first_frame, frame_blanking) = (c as u16, d as u16);
+            let (first_frame, frame_blanking) = (c as u16, d as u16 % 1000);
             Request::Burst(Burst { burst: a, frames: b, seed: c, first_frame, frame_blanking, mode })
                 .write(&mut payload);
         }
