@@ -94,7 +94,10 @@ fn equal(frames: u32, clock_hz: u32, seconds: Option<f64>, held_back: u32) -> St
         0 => " without a pause".to_owned(),
         hertz => format!(" at {:.1} MHz", f64::from(hertz) / 1e6),
     };
-    let time = seconds.map_or_else(String::new, |seconds| format!(" in {seconds:.1} s"));
+    let time = seconds.map_or_else(String::new, |seconds| match seconds {
+        short if short < 1.0 => format!(" in {:.1} ms", short * 1e3),
+        long => format!(" in {long:.1} s"),
+    });
     let waited = match held_back {
         0 => String::new(),
         some => format!("; {some} of them waited until the records of others were read"),
