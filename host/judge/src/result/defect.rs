@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Extent;
+
 /// A single defect of a board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
@@ -271,7 +273,7 @@ impl Defect {
     /// Its code and its parameters.
     #[must_use]
     pub fn tagged(&self) -> (String, super::Parameters) {
-        super::finding::tagged(self)
+        super::problem::tagged(self)
     }
 }
 
@@ -359,51 +361,5 @@ pub enum RowSource {
     Input {
         /// Rows below.
         rows: isize,
-    },
-}
-
-/// Which rows or columns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Extent {
-    /// A single one.
-    One {
-        /// Which.
-        at: usize,
-    },
-    /// All.
-    Every {},
-    /// All from one on.
-    From {
-        /// That one.
-        first: usize,
-    },
-    /// All between two, these included.
-    Between {
-        /// The first.
-        first: usize,
-        /// The last.
-        last: usize,
-    },
-    /// Only even ones.
-    Even {
-        /// How many.
-        count: usize,
-    },
-    /// Only odd ones.
-    Odd {
-        /// How many.
-        count: usize,
-    },
-    /// Some.
-    Some {
-        /// How many.
-        count: usize,
-        /// Of so many.
-        total: usize,
-        /// The first.
-        first: usize,
-        /// The last.
-        last: usize,
     },
 }

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Account, BoardKind, Counter, Defect, Parameters, Problem, wording};
+use super::problem::tagged;
+use super::{Account, BoardKind, BurstCount, Counter, Defect, Doubt, NoBurst, Problem, Repetition, wording};
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -365,94 +366,6 @@ pub enum Finding {
     Problem(Box<Problem>),
 }
 
-/// Why there was no burst.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "of", rename_all = "kebab-case")]
-pub enum NoBurst {
-    /// Nobody asked for one.
-    NotAskedFor {},
-    /// The board makes no frames on its own.
-    BoardMakesNone {},
-    /// It makes others than this program knows.
-    ContentUnknown {
-        /// Its content id.
-        content: u16,
-        /// The one that is known.
-        known: u16,
-    },
-}
-
-/// What making a frame again has shown that was wrong at speed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "of", rename_all = "kebab-case")]
-pub enum Repetition {
-    /// Its signature told enough.
-    NotNeeded {},
-    /// The board cannot keep a row that differs.
-    NoTrap {},
-    /// It was right every time.
-    AllRight {
-        /// How often.
-        frames: u32,
-    },
-    /// It was wrong again, and a row of it was kept.
-    Trapped {
-        /// Frames up to the first that was wrong.
-        frames: u32,
-        /// The row.
-        row: usize,
-    },
-    /// It was wrong again, and no row that differs was kept.
-    NothingTrapped {
-        /// Frames up to the first that was wrong.
-        frames: u32,
-    },
-    /// It could not be made again.
-    Impossible {},
-}
-
-/// What a board counts of a frame that it made on its own.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum BurstCount {
-    /// Samples.
-    Samples,
-    /// Rows.
-    Rows,
-    /// The smallest latency.
-    LeastLatency,
-    /// The largest.
-    MostLatency,
-    /// The generation of its tables.
-    Generation,
-}
-
-/// Why a board may not be as the host made it, although it is sound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "of", rename_all = "kebab-case")]
-pub enum Doubt {
-    /// Requests that change the board may have come to it twice.
-    RequestsTwice {
-        /// How many.
-        requests: u64,
-    },
-    /// The board counts other packets than were sent to it.
-    PacketsMiscounted {
-        /// What it counts.
-        counted: u64,
-        /// What was sent.
-        sent: u64,
-    },
-}
-
-impl Doubt {
-    /// It as a part of a sentence.
-    #[must_use]
-    pub fn sentence(self) -> String {
-        wording::because(self)
-    }
-}
-
 impl Finding {
     /// It in one sentence, without a full stop.
     #[must_use]
@@ -482,19 +395,4 @@ impl Finding {
         let (message, remedy) = (self.sentence(), self.remedy());
         Problem { code, parameters, message, remedy, causes: Vec::new() }
     }
-}
-
-impl From<Problem> for Finding {
-    fn from(problem: Problem) -> Self {
-        Self::Problem(Box::new(problem))
-    }
-}
-
-/// The code and the parameters of a finding or a defect.
-pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
-    let value = serde_json::to_value(value).unwrap_or_default();
-    let code = value.get("code").and_then(serde_json::Value::as_str).unwrap_or_default().to_owned();
-    let parameters =
-        value.get("parameters").and_then(serde_json::Value::as_object).cloned().unwrap_or_default();
-    (code, parameters)
 }

@@ -80,7 +80,7 @@ impl NotExercised {
     /// Its code and its parameters.
     #[must_use]
     pub fn tagged(&self) -> (String, Parameters) {
-        super::finding::tagged(self)
+        super::problem::tagged(self)
     }
 }
 

@@ -14,6 +14,8 @@ const USUAL_CLOCK: u32 = 96_000_000;
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The longest between two looks at the records, so that whoever stops the run need not wait.
 const LONGEST_LOOK: Duration = Duration::from_millis(250);
+/// The shortest, so that a link has time for others.
+const SHORTEST_LOOK: Duration = Duration::from_millis(10);
 /// What a board may keep a frame to itself, beside [`PATIENT_FRAMES`].
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The frames that could have been made meanwhile.
@@ -114,7 +116,7 @@ impl BurstPlan {
     /// How long to wait for more records when `left` frames are to come: until the board's memory for them is half full.
     pub(super) fn look_again_in(&self, left: u32) -> Duration {
         let frames = left.min(u32::from(self.bursts.records / 2)).max(1);
-        self.frame_time().saturating_mul(frames).min(LONGEST_LOOK)
+        self.frame_time().saturating_mul(frames).clamp(SHORTEST_LOOK, LONGEST_LOOK)
     }
 
     /// How long no record may come.
@@ -155,7 +157,8 @@ mod tests {
     fn records_are_looked_for_before_the_board_has_no_room_for_more() {
         let look = |clock_hz, left| plan(clock_hz).look_again_in(left).as_millis();
         // 32 frames would be 691 ms.
-        assert_eq!((look(96_000_000, 1000), look(96_000_000, 3)), (250, 64));
+        assert_eq!([1000, 3].map(|left| look(96_000_000, left)), [250, 64]);
+        assert_eq!(look(1_000_000_000, 1), 10);
         assert_eq!(plan(96_000_000).patience(), Duration::from_secs(5));
         // 1 MHz: 2.07 s a frame.
         assert_eq!(plan(1_000_000).patience().as_secs(), 41);
