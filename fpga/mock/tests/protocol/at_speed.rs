@@ -230,11 +230,3 @@ fn faults_of_the_core_show_in_a_burst_too() {
     assert_eq!((lost.rows, lost.samples), (3, 192));
     assert_ne!(lost.signature, FRAME);
 }
-
-#[test]
-fn zz_time() {
-    let mut bench = full_size(&hermite());
-    let begun = std::time::Instant::now();
-    let n = bench.signed(&Burst { frames: 20, frame_blanking: 8, ..ONE }).len();
-    println!("{n} frames: {:?} each", begun.elapsed() / 20);
-}
