@@ -176,6 +176,7 @@ impl Player {
     }
 
     /// One pixel clock of a burst, whose outputs go to no bank: what leaves, and at which clock.
+    #[inline(always)]
     pub(crate) fn clock(&mut self, input: Option<Entering<'_>>) -> (Option<Leaving>, u64) {
         let now = self.pixel_clock;
         self.pixel_clock += 1;

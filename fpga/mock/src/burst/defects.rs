@@ -42,6 +42,7 @@ pub(crate) struct BurstDefects {
 #[derive(Debug)]
 pub(super) struct Wear {
     defects: BurstDefects,
+    spoils: bool,
     random: u32,
     /// Frames since the board was switched on.
     frames: u32,
@@ -51,7 +52,8 @@ impl Wear {
     pub(super) fn new(defects: BurstDefects) -> Self {
         // The one state that the generator does not leave is 0.
         let random = defects.slow_path.map_or(0, |path| path.seed).max(1);
-        Self { defects, random, frames: 0 }
+        let spoils = defects.slow_path.is_some() || defects.warm_bit.is_some();
+        Self { defects, spoils, random, frames: 0 }
     }
 
     /// A frame has left.
@@ -60,8 +62,9 @@ impl Wear {
     }
 
     /// Whether any output may be spoilt.
+    #[inline]
     pub(super) fn spoils(&self) -> bool {
-        self.defects.slow_path.is_some() || self.defects.warm_bit.is_some()
+        self.spoils
     }
 
     /// An output of `row` as it leaves the board; `is_first` of its row.

@@ -38,8 +38,11 @@ struct FrameInside {
 pub(super) struct Signer {
     rows: VecDeque<RowInside>,
     frames: VecDeque<FrameInside>,
-    /// The outputs of the row that leaves, as they are signed.
+    /// The outputs of the row that leaves, as they are signed: W of them, of which the first `left` have left.
     outputs: Vec<[u8; 2]>,
+    left: usize,
+    /// So many have left when there is something to be done: the first, or all.
+    edge: usize,
     lost_row: Option<u16>,
     wear: Wear,
     /// The trap behind the signatures.
@@ -54,6 +57,8 @@ impl Signer {
             rows: VecDeque::new(),
             frames: VecDeque::new(),
             outputs: Vec::new(),
+            left: 0,
+            edge: 1,
             lost_row,
             wear: Wear::new(defects),
             trap: Trap::new(max_height),
@@ -75,6 +80,7 @@ impl Signer {
         self.rows.clear();
         self.frames.clear();
         self.outputs.clear();
+        (self.left, self.edge) = (0, 1);
         self.trap.kept = None;
     }
 
@@ -98,27 +104,36 @@ impl Signer {
         if let Some(frame) = self.frames.back_mut() {
             frame.record.generation = generation;
         }
+        self.outputs.resize(row.width.into(), [0; 2]);
         self.rows.push_back(row);
     }
 
     /// Takes an output that left at the pixel clock `now`.
+    #[inline]
     pub(super) fn collect(&mut self, leaving: Leaving, now: u64) {
-        let Some(row) = self.rows.front() else { return };
-        let is_first = self.outputs.is_empty();
         let mut sample = leaving.sample;
         if self.wear.spoils() {
-            sample = self.wear.spoil(row, is_first, sample);
+            sample = self.spoil(sample);
         }
-        self.outputs.push(sample.to_le_bytes());
-        if is_first || self.outputs.len() == usize::from(row.width) {
-            self.row_edge(is_first, now);
+        // Nothing leaves but rows that have entered, which are all as wide.
+        let Some(output) = self.outputs.get_mut(self.left) else { return };
+        *output = sample.to_le_bytes();
+        self.left += 1;
+        if self.left == self.edge {
+            self.row_edge(now);
         }
     }
 
-    /// The first or the last output of a row leaves.
     #[cold]
-    fn row_edge(&mut self, is_first: bool, now: u64) {
+    fn spoil(&mut self, sample: u16) -> u16 {
+        self.rows.front().map_or(sample, |row| self.wear.spoil(row, self.left == 0, sample))
+    }
+
+    /// The first or the last output of a row has left.
+    #[cold]
+    fn row_edge(&mut self, now: u64) {
         let (Some(row), Some(frame)) = (self.rows.front(), self.frames.front_mut()) else { return };
+        let is_first = self.left == 1;
         let is_lost = self.lost_row == Some(row.row);
         if !is_lost {
             let latency =
@@ -126,6 +141,7 @@ impl Signer {
             frame.measure(u16::try_from(latency).unwrap_or(u16::MAX));
         }
         if is_first {
+            self.edge = self.outputs.len();
             return;
         }
         if !is_lost {
@@ -137,7 +153,7 @@ impl Signer {
             self.end_frame();
         }
         self.rows.pop_front();
-        self.outputs.clear();
+        (self.left, self.edge) = (0, 1);
     }
 
     fn end_frame(&mut self) {
