@@ -1,6 +1,9 @@
 //! Frames that a board makes on its own: what is wrong with them is the board's, what is missing is nobody's, and what was not
 //! judged is said.
 
+use std::time::Duration;
+
+use halfrow::link;
 use halfrow::progress::Silent;
 use halfrow::result::{
     BurstCount, Check, CheckName, Defect, Finding, NoBurst, NotExercised, Outcome, Repetition, Report,
@@ -79,6 +82,41 @@ fn a_wrong_signature_fails_and_what_does_not_come_again_is_said() {
     assert_eq!(report.suspects[0].defect, Defect::OnlyAtSpeed { row: None, samples: 0, bits: Vec::new() });
 }
 
+/// A fault of the mock, the place that is suspected, and a part of the sentence.
+type SpeedFault = (&'static str, &'static str, &'static str);
+
+/// What only frames at full speed show. 64 x 8 samples a frame, three frames.
+const SPEED_FAULTS: [SpeedFault; 5] = [
+    (
+        "slow-path,one-in=300",
+        "fails at the full pixel clock, seen in bit 5 of the corrected samples",
+        "made again",
+    ),
+    ("warm-bit", "fails at the full pixel clock, seen in bit 5 of the corrected samples", "in row 3 first"),
+    ("warm-bit,after=1,row=7,bit=11", "seen in bit 11 of the corrected samples", "in row 7 first"),
+    ("late-swap", "the change of table banks between two frames", "2 of 3 frames differ at speed"),
+    ("hidden-pause", "a path that fails at the full pixel clock", "45 pixel clocks of most latency"),
+];
+
+#[test]
+fn what_fails_at_full_speed_alone_passes_row_by_row_and_fails_in_a_burst() {
+    let judged = |fault: &str, at_speed: Option<Duration>| {
+        let candidate = link::open(&format!("mock,fault={fault}").parse().unwrap()).unwrap();
+        let plan = Plan { at_speed, fail_fast: false, ..TINY.plan() };
+        verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report
+    };
+    for (fault, place, sentence) in SPEED_FAULTS {
+        let unseen = judged(fault, Some(Duration::ZERO));
+        assert_eq!(unseen.verdict, Verdict::Pass, "{fault}: {}", unseen.headline());
+        let seen = judged(fault, None);
+        assert_eq!(failed_check(&seen), Some(CheckName::AtSpeed), "{fault}: {}", seen.headline());
+        assert!(seen.headline().contains(sentence), "{fault}: {}", seen.headline());
+        let suspected = seen.suspects.first().map(halfrow::result::Suspect::place).unwrap_or_default();
+        assert!(suspected.contains(place), "{fault}: {suspected}: {}", seen.headline());
+        assert!(seen.remedy().is_some(), "{fault}");
+    }
+}
+
 /// What a board counts, how it is spoilt, and what it should be.
 type Count = (BurstCount, fn(&mut FrameRecord), u32);
 
@@ -119,7 +157,7 @@ fn why_nothing_was_tested_at_speed_is_said() {
     let unknown = judge_claims(&TINY, |board| {
         board.bursts.iter_mut().for_each(|bursts| bursts.content = 2);
     });
-    let plan = Plan { at_speed: Some(std::time::Duration::ZERO), ..TINY.plan() };
+    let plan = Plan { at_speed: Some(Duration::ZERO), ..TINY.plan() };
     let candidate = Altered::new(&Options::default(), |_, packet: Passing| vec![packet]).candidate();
     let unasked = verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report;
     for (report, reason) in [(without, none), (unknown, other), (unasked, NoBurst::NotAskedFor {})] {

@@ -18,7 +18,7 @@ use super::plan::{DECOY, Generation, Segment};
 use super::steps::Run;
 use crate::board::{Bank, BoardError, BoardNature, Bursts, RowTiming};
 use crate::progress::Step;
-use crate::result::{CheckName, Finding, NoBurst, NotExercised, Outcome};
+use crate::result::{BurstCount, CheckName, Finding, NoBurst, NotExercised, Outcome, Suspect};
 use burst::BurstPlan;
 use watched::Watched;
 
@@ -74,8 +74,9 @@ impl Run<'_> {
         if watched.wrong > 0 {
             return Err(self.wrong_at_speed(&plan, &tables, &watched));
         }
-        if let Some(finding) = &watched.miscounted {
-            return Err(End::failed(CheckName::AtSpeed, finding.clone()));
+        if let Some(finding) = watched.miscounted {
+            let suspects = miscount_suspects(&finding);
+            return Err(End::Failed { check: CheckName::AtSpeed, finding, suspects });
         }
         let finding = self.right_at_speed(&plan, &watched);
         let outcome = if watched.paused > 0 { Outcome::Skipped } else { Outcome::Passed };
@@ -120,6 +121,13 @@ impl Run<'_> {
         let seconds = plan.seconds(frames).filter(|_| clock_hz > 0);
         Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }
     }
+}
+
+/// What loses or gains a clock at full speed alone; whatever else is miscounted is the counter's own fault.
+fn miscount_suspects(finding: &Finding) -> Vec<Suspect> {
+    use BurstCount::{LeastLatency, MostLatency};
+    let is_late = matches!(finding, Finding::MiscountedAtSpeed { count: LeastLatency | MostLatency, .. });
+    if is_late { vec![repeated::only_at_speed(None)] } else { Vec::new() }
 }
 
 /// What a burst left untested at the full pixel clock.

@@ -176,7 +176,7 @@ fn upper_part(generation: &Generation, rows: usize) -> Option<Generation> {
 }
 
 /// What fails at the full pixel clock alone, seen in `row` if one was trapped: its number, what it should be, what it is.
-fn only_at_speed(row: Option<(usize, &[u16], &[u16])>) -> Suspect {
+pub(super) fn only_at_speed(row: Option<(usize, &[u16], &[u16])>) -> Suspect {
     let defect = match row {
         None => Defect::OnlyAtSpeed { row: None, samples: 0, bits: Vec::new() },
         Some((row, expected, found)) => {
