@@ -104,13 +104,13 @@ impl BurstPlan {
     }
 
     /// How long `frames` take on the board's clock, in seconds.
-    pub(super) fn seconds(&self, frames: u32) -> Option<f64> {
-        Some(f64::from(frames) * self.clocks as f64 / f64::from(self.clock_hz))
+    pub(super) fn seconds(&self, frames: u32) -> f64 {
+        f64::from(frames) * self.clocks as f64 / f64::from(self.clock_hz)
     }
 
     /// How long one frame takes on the board's clock.
     fn frame_time(&self) -> Duration {
-        Duration::from_secs_f64(self.clocks as f64 / f64::from(self.clock_hz))
+        Duration::from_secs_f64(self.seconds(1))
     }
 
     /// How long to wait for more records when `left` frames are to come: until the board's memory for them is half full.
@@ -150,7 +150,7 @@ mod tests {
         let plan = plan(96_000_000);
         let frames = |seconds| plan.frames_in(Duration::from_secs_f64(seconds));
         assert_eq!([frames(3.0), frames(1.0), frames(0.001), frames(1e9)], [138, 46, 2, u32::MAX - 1]);
-        assert_eq!((plan.seconds(138).unwrap() * 100.0).round(), 298.0);
+        assert_eq!((plan.seconds(138) * 100.0).round(), 298.0);
     }
 
     #[test]

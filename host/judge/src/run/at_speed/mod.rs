@@ -118,7 +118,7 @@ impl Run<'_> {
             return Finding::PausedAtSpeed { frames, paused };
         }
         let clock_hz = self.board.capabilities.clock_hz;
-        let seconds = plan.seconds(frames).filter(|_| clock_hz > 0);
+        let seconds = (clock_hz > 0).then(|| plan.seconds(frames));
         Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }
     }
 }

@@ -9,6 +9,7 @@ use halfrow_protocol::message::{Burst, BurstState, FrameRecord};
 use super::burst::BurstPlan;
 use super::predicted;
 use crate::board::{Board, BoardError};
+use crate::progress::{Progress, Step};
 use crate::result::{BurstCount, CheckName, Finding};
 use crate::run::findings::End;
 use crate::run::plan::Generation;
@@ -84,6 +85,7 @@ struct Watch<'a> {
     /// Whether the burst ends behind the first frame that is wrong.
     ends_early: bool,
     predicted: Receiver<u32>,
+    progress: &'a dyn Progress,
     watched: Watched,
     /// How long no record has come.
     idle: Duration,
@@ -97,6 +99,10 @@ impl Watch<'_> {
             let Ok(expected) = self.predicted.recv() else { break };
             self.watched.take(self.plan, self.generation, expected, record);
             self.idle = Duration::ZERO;
+        }
+        if !fetched.records.is_empty() {
+            let Watched { frames, .. } = self.watched;
+            self.progress.frame(&format!("{}, {frames} of {}", Step::AtSpeed, self.plan.frames));
         }
         if self.ends_early && self.watched.wrong > 0 && self.burst.frames > 0 {
             self.burst.frames = 0;
@@ -148,6 +154,7 @@ impl Run<'_> {
                 generation: tables.first().map_or(0, |active| active.number),
                 ends_early,
                 predicted: predicted::ahead(scope, *plan, tables),
+                progress: self.progress,
                 watched: Watched::default(),
                 idle: Duration::ZERO,
             };
