@@ -32,7 +32,7 @@ const BURSTS: &str = "bursts";
 const ENTERED: &str = "entered";
 
 const BURST_BUILDS: &[(&str, BurstBuild)] =
-    &[("none", BurstBuild::None), ("untrapped", BurstBuild::Untrapped), ("trapped", BurstBuild::Trapped)];
+    &[("no", BurstBuild::None), ("untrapped", BurstBuild::Untrapped), ("trapped", BurstBuild::Trapped)];
 
 /// An option that no build can have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -92,21 +92,29 @@ fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
             let packed = vec![d as u8; samples::packed_length(width.into())];
             Request::RowIn(RowIn { place, packed: &packed }).write(&mut payload);
         }
-        Kind::Burst => {
-            let mode = [BurstMode::Fresh, BurstMode::Alternating, BurstMode::Repeating, BurstMode::Trapped]
-                [d as usize % 4];
-            let (first_frame, frame_blanking) = (c as u16, d as u16 % 1000);
-            Request::Burst(Burst { burst: a, frames: b, seed: c, first_frame, frame_blanking, mode })
-                .write(&mut payload);
-        }
-        Kind::Records => Request::Records { from: a }.write(&mut payload),
-        Kind::Expect => {
-            let bytes = vec![c.to_le_bytes(); b as usize % (Expect::MOST + 1)];
-            Request::Expect(Expect { first: a as u16, bytes: &bytes }).write(&mut payload);
-        }
+        Kind::Burst | Kind::Records | Kind::Expect => at_speed(kind, [a, b, c, d], &mut payload),
         Kind::Capabilities | Kind::RowOut | Kind::RowAck | Kind::Trap | Kind::Refusal => {}
     }
     payload
+}
+
+/// The payload of a request of bursts.
+fn at_speed(kind: Kind, [a, b, c, d]: [u32; 4], payload: &mut Vec<u8>) {
+    let bytes = vec![c.to_le_bytes(); b as usize % (Expect::MOST + 1)];
+    let modes = [BurstMode::Fresh, BurstMode::Alternating, BurstMode::Repeating, BurstMode::Trapped];
+    let request = match kind {
+        Kind::Records => Request::Records { from: a },
+        Kind::Expect => Request::Expect(Expect { first: a as u16, bytes: &bytes }),
+        _ => Request::Burst(Burst {
+            burst: a,
+            frames: b,
+            seed: c,
+            first_frame: c as u16,
+            frame_blanking: d as u16 % 1000,
+            mode: modes[d as usize % modes.len()],
+        }),
+    };
+    request.write(payload);
 }
 
 fn span([a, b, c, d]: [u32; 4]) -> Span {
