@@ -195,7 +195,7 @@ fn a_late_swap_shows_when_frames_are_as_close_as_they_may_be() {
 
 #[test]
 fn a_hidden_pause_shows_in_the_latency_alone() {
-    let record = broken(BoardFault::HiddenPause { row: 2 }).signed(&ONE)[0];
+    let record = broken(BoardFault::HiddenPause { row: 3 }).signed(&ONE)[0];
     assert_eq!((record.least_latency, record.most_latency, record.pauses), (44, 45, 0));
     assert_eq!((record.signature, record.samples), (FRAME, 256));
 }
