@@ -5,7 +5,7 @@ mod misfits;
 mod poor_links;
 mod sound_boards;
 
-pub use broken_boards::{BROKEN_AT_SPEED, BROKEN_BOARDS};
+pub use broken_boards::BROKEN_BOARDS;
 pub use misfits::MISFITS;
 pub use poor_links::{HOPELESS_LINKS, REPAIRED_LINKS, SLOW_LINKS};
 pub use sound_boards::SOUND_BOARDS;
@@ -14,9 +14,7 @@ use crate::scenario::{On, Scenario};
 
 /// Every scenario there is.
 pub fn all() -> impl Iterator<Item = &'static Scenario> {
-    [SOUND_BOARDS, BROKEN_BOARDS, BROKEN_AT_SPEED, REPAIRED_LINKS, SLOW_LINKS, HOPELESS_LINKS, MISFITS]
-        .into_iter()
-        .flatten()
+    [SOUND_BOARDS, BROKEN_BOARDS, REPAIRED_LINKS, SLOW_LINKS, HOPELESS_LINKS, MISFITS].into_iter().flatten()
 }
 
 /// What a run ends with when nothing is wrong.

@@ -1,6 +1,6 @@
 //! Broken boards: every fault of the board is found, and its part named.
 
-use super::{expect, passes};
+use super::expect;
 use crate::scenario::Scenario;
 
 /// Every fault of the board that the mock has, with the built-in frames at the paper's size; and some once more where
@@ -47,14 +47,6 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "row 1079's factor, bit 0",
     ),
     expect("ERROR", 6, "another datapath", ",fault=wrong-datapath", &[], "this program judges datapath 1"),
-];
-
-/// Boards that are wrong at full speed alone: row by row they compute what they should.
-pub const BROKEN_AT_SPEED: &[Scenario] = &[
-    passes("a path that is too slow", ",fault=slow-path,one-in=1", &[]),
-    passes("a bit that flips in a warm board", ",fault=warm-bit,after=0", &[]),
-    passes("a bank that is changed late", ",fault=late-swap", &[]),
-    passes("a pause that is hidden", ",fault=hidden-pause", &[]),
 ];
 
 const fn fails(name: &'static str, options: &'static str, sentence: &'static str) -> Scenario {
