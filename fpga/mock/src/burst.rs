@@ -252,3 +252,31 @@ impl Plan {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::depth::Depth;
+
+    /// Pixel clocks that a burst of three frames of four rows of 64 samples takes, which the core leaves after 44.
+    fn clocks(blanking: u16, frame_blanking: u16) -> u64 {
+        let options = Options::default();
+        let (mut player, mut tables) = (Player::new(&options, None).unwrap(), Tables::new(&options, None));
+        let settings =
+            Settings { width: 64, height: 4, centre2: 63, depth: Depth::Eight, blanking, gap_seed: 5 };
+        player.configure(settings).unwrap();
+        let mut bursts = Bursts::new(&options, None);
+        bursts.start(Plan { burst: 1, seed: 1, first_frame: 0, frame_blanking, mode: BurstMode::Fresh }, 3);
+        bursts.run(&mut player, &mut tables, u64::MAX);
+        assert_eq!((bursts.state(), bursts.signer.records.len()), (BurstState::Ended, 3));
+        player.now()
+    }
+
+    /// Neither is seen from outside, where a frame counts for its samples and latencies alone.
+    #[test]
+    fn between_rows_and_frames_pass_exactly_their_blankings() {
+        assert_eq!(clocks(0, 8), 3 * 4 * 64 + 2 * 8 + 44);
+        assert_eq!(clocks(7, 8), 3 * (4 * 64 + 3 * 7) + 2 * 8 + 44);
+        assert_eq!(clocks(7, 1000), 3 * (4 * 64 + 3 * 7) + 2 * 1000 + 44);
+    }
+}

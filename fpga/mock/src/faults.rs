@@ -90,8 +90,8 @@ pub enum BoardFault {
     SpoiltRow {
         /// The row of every frame.
         row: u16,
-        /// The column.
-        column: u16,
+        /// The column; none for the middle one.
+        column: Option<u16>,
         /// The bit, 0 to 11.
         bit: u8,
     },
@@ -262,11 +262,15 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
     fault(
         "spoilt-row",
         "a bit of a row flips between its packet and the core",
-        &[ROW, Parameter::new("column", Range::Whole(0, 2591), Some("7"), "the column"), OUTPUT_BIT],
+        &[
+            ROW,
+            Parameter::new("column", Range::Whole(0, 2591), None, "the column; without it, the middle one"),
+            OUTPUT_BIT,
+        ],
         |values| {
             Ok(BoardFault::SpoiltRow {
                 row: values.whole("row")?,
-                column: values.whole("column")?,
+                column: values.is_given("column").then(|| values.whole("column")).transpose()?,
                 bit: values.whole("bit")?,
             })
         },

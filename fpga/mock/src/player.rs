@@ -63,8 +63,8 @@ pub(crate) struct PlayerDefects {
 pub(crate) struct SpoiltSample {
     /// Its row.
     pub(crate) row: u16,
-    /// Its column.
-    pub(crate) column: u16,
+    /// Its column; none for the middle one.
+    pub(crate) column: Option<u16>,
     /// The bit.
     pub(crate) bit: u8,
 }
@@ -73,7 +73,7 @@ impl SpoiltSample {
     /// A row as the core gets it.
     fn spoil(self, row: u16, samples: &mut [u16]) {
         if row == self.row
-            && let Some(sample) = samples.get_mut(usize::from(self.column))
+            && let Some(sample) = samples.get_mut(self.column.map_or(samples.len() / 2, usize::from))
         {
             *sample ^= 1_u16.checked_shl(self.bit.into()).unwrap_or(0);
         }

@@ -4,7 +4,9 @@ use halfrow_protocol::message::{
     Burst, BurstMode, BurstState, Configuration, FrameRecord, Records, RefusalCode, Request,
 };
 
-use crate::at_speed::{CONTENTS, ENDLESS, FRAME, HEIGHT, ONE, Told, golden_tables, ready, ready_with};
+use crate::at_speed::{
+    CONTENTS, ENDLESS, FRAME, HEIGHT, ONE, Told, activate, golden_tables, ready, ready_with,
+};
 use crate::frames::{configuration, lean};
 use crate::material::{factors, hermite, keys};
 use crate::uploads::TableSet;
@@ -83,6 +85,11 @@ pub(crate) fn every_second_frame_of_an_alternating_burst_is_the_shadows(on: &dyn
         (FRAME, 1),
         "the active ones are as before"
     );
+    // The shadow's were committed once, and are the shadow's all the same.
+    bench.done(&TableSet::unstretched(HEIGHT).commit(2, 1));
+    activate(&mut bench, &configuration(HEIGHT), 1);
+    let both = bench.signed(&Burst { burst: 4, frames: 2, first_frame: u16::MAX, ..alternating });
+    assert_eq!((made(both[1]), both[0].generation), ((FRAME, 0), 2));
 }
 
 pub(crate) fn neither_blanking_nor_a_gap_seed_changes_a_record(on: &dyn Boards) {

@@ -148,7 +148,7 @@ fn faults_that_only_speed_shows_do_not_show_row_by_row() {
     ] {
         assert!(is_right_row_by_row(fault), "{fault:?}");
     }
-    assert!(!is_right_row_by_row(BoardFault::SpoiltRow { row: 3, column: 7, bit: 5 }));
+    assert!(!is_right_row_by_row(BoardFault::SpoiltRow { row: 3, column: None, bit: 5 }));
 }
 
 /// One row in 256 outputs, of which the burst's first row never is one.
@@ -195,7 +195,7 @@ fn a_late_swap_shows_when_frames_are_as_close_as_they_may_be() {
 
 #[test]
 fn a_hidden_pause_shows_in_the_latency_alone() {
-    let record = broken(BoardFault::HiddenPause { row: 2 }).signed(&ONE)[0];
+    let record = broken(BoardFault::HiddenPause { row: 3 }).signed(&ONE)[0];
     assert_eq!((record.least_latency, record.most_latency, record.pauses), (44, 45, 0));
     assert_eq!((record.signature, record.samples), (FRAME, 256));
 }
@@ -203,8 +203,10 @@ fn a_hidden_pause_shows_in_the_latency_alone() {
 /// Row 3, column 7: what entered is told with the row, so a wrong way in is not taken for a wrong core.
 #[test]
 fn a_row_that_is_spoilt_on_its_way_in_says_what_entered() {
-    let mut bench =
-        Bench::greeted(&Built(Options::default(), Some(BoardFault::SpoiltRow { row: 3, column: 7, bit: 5 })));
+    let mut bench = Bench::greeted(&Built(
+        Options::default(),
+        Some(BoardFault::SpoiltRow { row: 3, column: Some(7), bit: 5 }),
+    ));
     make_ready(&mut bench, 4);
     let heard = bench.send_all(4, 0..4);
     for (number, packet) in (0..).zip(&heard) {
