@@ -47,7 +47,11 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         "row 1079's factor, bit 0",
     ),
     fails("a row that changes on its way in", ",fault=spoilt-row", "not computed wrongly"),
-    fails("a path that is too slow", ",fault=slow-path", "fails at the full pixel clock, seen in bit 5"),
+    fails(
+        "a path that is too slow",
+        ",fault=slow-path,one-in=2000",
+        "fails at the full pixel clock, seen in bit 5",
+    ),
     fails("a bit that flips when warm", ",fault=warm-bit,row=1,bit=11", "in row 1 first"),
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
