@@ -88,6 +88,21 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
     })
 }
 
+/// What to do about such a finding, or about rows that entered the core changed.
+pub(super) fn remedy(finding: &Finding) -> Option<String> {
+    let asked = match finding {
+        Finding::RowsEnteredChanged { .. } => {
+            "Check the banks that rows wait in, and the unpacking of samples in front of them."
+        }
+        Finding::EntryMiscounted { .. } => "Check the board's CRC unit: the samples themselves were right.",
+        Finding::MiscountedAtSpeed { .. } => {
+            "Check what the board counts of the frames that it makes: their samples were right."
+        }
+        _ => return None,
+    };
+    Some(asked.to_owned())
+}
+
 /// "138 frames at 96.0 MHz in 3.0 s, every sample equal"
 fn equal(frames: u32, clock_hz: u32, seconds: Option<f64>, held_back: u32) -> String {
     let clock = match clock_hz {

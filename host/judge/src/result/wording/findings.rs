@@ -261,14 +261,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::RowSwallowed { .. } => {
             "Check the row banks and the row player: the board took the row and lost it inside."
         }
-        Finding::RowsEnteredChanged { .. } => {
-            "Check the banks that rows wait in, and the unpacking of samples in front of them."
-        }
-        Finding::EntryMiscounted { .. } => "Check the board's CRC unit: the samples themselves were right.",
-        Finding::MiscountedAtSpeed { .. } => {
-            "Check what the board counts of the frames that it makes: their samples were right."
-        }
-        other => return asked_of_conduct(other),
+        other => return at_speed::remedy(other).or_else(|| asked_of_conduct(other)),
     };
     Some(asked.to_owned())
 }

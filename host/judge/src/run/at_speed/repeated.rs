@@ -131,7 +131,7 @@ impl Run<'_> {
         }
         let only = only_at_speed(Some((*row, expected.row(*row), samples)));
         let evidence = Evidence { index: 0, input, found, expected };
-        let mut suspects = self.diagnose_row(&generation, content, comparison, evidence);
+        let mut suspects = self.diagnose_row(&generation, content, comparison, &evidence);
         let is_told = differing >= TELLING && suspects.first().is_some_and(|first| first.explained >= 1.0);
         suspects.insert(if is_told { 1 } else { 0 }, only);
         Some(suspects)
@@ -142,7 +142,7 @@ impl Run<'_> {
         generation: &Generation,
         content: Content,
         comparison: Comparison,
-        evidence: Evidence,
+        evidence: &Evidence,
     ) -> Vec<Suspect> {
         let Generation { number, tables, kernel } = generation;
         let frame = FrameReport {
@@ -161,7 +161,7 @@ impl Run<'_> {
             uploaded: &[Uploaded { generation: *number, tables, kernel }],
             ring: self.board.capabilities.ring.into(),
             frames: slice::from_ref(&frame),
-            evidence: slice::from_ref(&evidence),
+            evidence: slice::from_ref(evidence),
         })
     }
 }

@@ -112,7 +112,7 @@ impl Watch<'_> {
         Ok(is_over || self.watched.frames >= self.plan.frames)
     }
 
-    fn to_the_end(mut self) -> Result<Watched, End> {
+    fn finish(mut self) -> Result<Watched, End> {
         let of_board = |error: BoardError| End::board(CheckName::AtSpeed, &error);
         let unclear = |finding| End::error(CheckName::AtSpeed, Cause::Station, finding);
         let frames = self.plan.frames;
@@ -158,7 +158,7 @@ impl Run<'_> {
                 watched: Watched::default(),
                 idle: Duration::ZERO,
             };
-            watch.to_the_end()
+            watch.finish()
         })
     }
 }
