@@ -7,6 +7,7 @@ use halfrow_protocol::message::{
 use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
 use proptest::prelude::*;
 
+use crate::at_speed::ENDLESS;
 use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
 use crate::frames::{lean, make_ready, ready, row, samples_of};
 use crate::{Boards, Build, cases, offered};
@@ -24,6 +25,8 @@ enum Event {
     Bytes(Vec<u8>),
     /// The host has so many rows more.
     Acknowledge(u32),
+    /// The host has all rows, and wants so many frames of a burst.
+    Burst(u32),
 }
 
 fn event() -> impl Strategy<Value = Event> {
@@ -35,6 +38,7 @@ fn event() -> impl Strategy<Value = Event> {
     prop_oneof![
         4 => (0_u32..4).prop_map(Event::Row),
         3 => (0_u32..4).prop_map(Event::Acknowledge),
+        1 => prop_oneof![0_u32..5, Just(Burst::ENDLESS)].prop_map(Event::Burst),
         3 => (prop_oneof![4 => request, 1 => packet], foreign)
             .prop_map(|((kind, payload), foreign)| Event::Packet { kind, payload, foreign }),
         1 => prop::collection::vec(any::<u8>(), 0..60).prop_map(Event::Bytes),
@@ -200,6 +204,10 @@ impl Observer {
             Event::Acknowledge(more) => {
                 self.bench.window = self.status().next_row_out.saturating_add(more);
                 self.bench.packet(&Request::RowAck)
+            }
+            Event::Burst(frames) => {
+                self.bench.window = self.status().next_row_in;
+                self.bench.packet(&Request::Burst(Burst { frames, ..ENDLESS }))
             }
         };
         self.receive(&bytes);
