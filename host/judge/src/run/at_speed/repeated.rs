@@ -78,10 +78,12 @@ impl Run<'_> {
         let mut signatures = Vec::new();
         signer(generation).sign(&generation.tables, plan.content(0), &mut signatures);
         self.board.expect(&signatures).map_err(of_board)?;
-        let Watched { frames, wrong, .. } = self.watch(&plan, slice::from_ref(generation), true)?;
-        if wrong == 0 {
-            return Ok(Repetition::AllRight { frames }.into());
-        }
+        let watched = self.watch(&plan, slice::from_ref(generation), true)?;
+        let Some(first) = watched.wrong_frames.first() else {
+            return Ok(Repetition::AllRight { frames: watched.frames }.into());
+        };
+        // Records come by the handful, so that others may be there behind it.
+        let frames = first.n + 1;
         let trapped = self.board.trap().map_err(of_board)?;
         let row = trapped.as_ref().map(|trapped| trapped.row);
         let told = trapped.and_then(|trapped| self.suspects_of(generation, plan.content(0), &trapped));
