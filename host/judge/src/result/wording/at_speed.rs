@@ -136,10 +136,10 @@ fn shown(repetition: Repetition) -> String {
         Repetition::NoTrap {} => ", of which the board keeps no row".to_owned(),
         Repetition::AllRight { frames } => format!("; made again by itself, it was right {frames} times"),
         Repetition::Trapped { frames, row } => {
-            format!("; made again, it differed within {frames} frames, in row {row} first")
+            format!("; made again, it differed at try {frames}, in row {row} first")
         }
         Repetition::NothingTrapped { frames } => {
-            format!("; made again, it differed within {frames} frames, and the board kept no row that does")
+            format!("; made again, it differed at try {frames}, and the board kept no row that does")
         }
         Repetition::Impossible {} => "; it could not be made again".to_owned(),
     }
