@@ -22,6 +22,8 @@ FROM_HOST = {
     0x13: "steps_crc:I kernel_crc:I first_frame:H generation:B",
     0x18: "width:H height:H centre2:H blanking:H gap_seed:I bits:B",
     0x20: PLACE + "samples", 0x22: "",
+    0x30: "burst:I frames:I seed:I first_frame:H frame_blanking:H mode:B",
+    0x31: "from:I", 0x32: "first:H count:H signatures", 0x33: "",
 }
 FROM_BOARD = {
     0x00: "nonce:I magic:4s version:B session:B build:I serial:Q",
@@ -31,13 +33,18 @@ FROM_BOARD = {
     " most_latency:I",
     0x03: "", 0x04: "bytes",
     0x10: "", 0x11: SPAN + "entries", 0x12: "crc:I", 0x13: "generation:B", 0x18: "",
-    0x21: PLACE + "first_latency:H last_latency:H pauses:H repeats:H samples",
+    0x21: PLACE + "first_latency:H last_latency:H pauses:H repeats:H samples entered",
+    0x30: "", 0x31: "burst:I from:I state:B count:B records", 0x32: "", 0x33: "kept:B trapped",
     0x7F: "code:B kind:B detail:H",
 }
 CAPABILITIES = dict(enumerate((
     "datapath max_width max_height depths taps latency ring least_blanking table_banks row_banks_in row_banks_out"
-    " step_ports kernel_ports clock_source clock_hz").split(), 1)) | {0x20: "nature", 0x21: "name"}
-MEANINGS = {"take_over": 2, "level": 3, "table": 2, "bank": 2}  # how many values, from 0, have a meaning
+    " step_ports kernel_ports clock_source clock_hz").split(), 1)) | {0x11: "entered", 0x20: "nature", 0x21: "name"}
+BURSTS = "content:H records:H least_frame_blanking:H trap:B"  # of the capability 10
+RECORD = "signature:I samples:I rows:H least_latency:H most_latency:H pauses:H generation:B flags:B"
+TRAPPED = "frame:I row:H width:H signature:I samples"
+MEANINGS = {"take_over": 2, "level": 3, "table": 2, "bank": 2, "mode": 4, "state": 3,
+            "kept": 2}  # how many values, from 0, have a meaning
 
 
 def unstuff(piece):
@@ -71,11 +78,40 @@ def capabilities(data, fields):
     """Every known tag becomes a field of its own."""
     while data:
         tag, value, data = data[0], data[2 : 2 + data[1]], data[2 + data[1] :]
-        if tag in CAPABILITIES:
+        if tag in CAPABILITIES and (value or tag != 0x11):
+            value = value[:1] if tag == 0x11 else value
             fields[CAPABILITIES[tag]] = value.decode() if tag == 0x21 else int.from_bytes(value, "little")
+        elif tag == 0x10 and value:
+            fields |= read_fields(BURSTS, value)
 
 
-TAILS = {"samples": samples, "entries": entries, "capabilities": capabilities, "bytes": lambda data, _: data.hex(" ")}
+def entered(data, fields):
+    """What follows the samples, which are not cut off in front of it: only boards with the capability 11 send it."""
+    tail = data[3 * fields["width"] // 2 :]
+    return struct.unpack_from("<I", tail)[0] if len(tail) >= 4 else None
+
+
+def records(data, fields):
+    """The numbers of one record after the other; bit 0 alone of the flags means anything."""
+    size = struct.calcsize("<" + "".join(word[-1] for word in RECORD.split()))
+    found = [read_fields(RECORD, data[at : at + size]) for at in range(0, size * fields["count"], size)]
+    values = [value for record in found for value in (record | {"flags": record["flags"] & 1}).values()]
+    return " ".join(map(str, values))
+
+
+def signatures(data, fields):
+    """One of 32 bits a row."""
+    return " ".join(map(str, struct.unpack_from(f"<{fields['count']}I", data)))
+
+
+def trapped(data, fields):
+    """The row that was kept, if one was."""
+    if fields["kept"]:
+        fields |= read_fields(TRAPPED, data)
+
+
+TAILS = {"samples": samples, "entries": entries, "capabilities": capabilities, "bytes": lambda data, _: data.hex(" "),
+         "entered": entered, "records": records, "signatures": signatures, "trapped": trapped}
 
 
 def read_fields(layout, data):

@@ -41,13 +41,21 @@ pub enum Kind {
     RowOut = 0x21,
     /// Nothing but the header's acknowledgement.
     RowAck = 0x22,
+    /// Starts or ends frames that the board makes on its own.
+    Burst = 0x30,
+    /// What the board signed of them.
+    Records = 0x31,
+    /// The signatures that rows of a repeating frame must have.
+    Expect = 0x32,
+    /// The first row that had another one.
+    Trap = 0x33,
     /// Why a request was refused.
     Refusal = 0x7f,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Self; 14] = [
+    pub const ALL: [Self; 18] = [
         Self::Hello,
         Self::Capabilities,
         Self::Status,
@@ -61,6 +69,10 @@ impl Kind {
         Self::RowIn,
         Self::RowOut,
         Self::RowAck,
+        Self::Burst,
+        Self::Records,
+        Self::Expect,
+        Self::Trap,
         Self::Refusal,
     ];
 

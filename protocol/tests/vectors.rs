@@ -8,7 +8,8 @@ mod vector_file;
 use std::collections::BTreeMap;
 
 use halfrow_protocol::message::{
-    Capabilities, Entries, MAGIC, NODE_WEIGHTS, Refusal, RowIn, RowOut, RowPlace, Span, Table,
+    Bursts, Capabilities, Entries, Expect, FrameRecord, MAGIC, NODE_WEIGHTS, Records, Refusal, RowIn, RowOut,
+    RowPlace, Span, Table, TrappedRow,
 };
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Malformed, Packet, Reply, Request, samples};
 
@@ -88,18 +89,52 @@ fn entries_fields(entries: Entries<'_>) -> Fields {
     [span_fields(entries.span), vec![("entries", values)]].concat()
 }
 
-fn row_fields(place: RowPlace, generation: u8, packed: &[u8]) -> Fields {
-    let mut row = vec![0; usize::from(place.width)];
+fn unpacked(packed: &[u8], width: u16) -> String {
+    let mut row = vec![0; usize::from(width)];
     samples::unpack(packed, &mut row);
+    list(row)
+}
+
+fn row_fields(place: RowPlace, generation: u8, packed: &[u8]) -> Fields {
     let mut fields = fields![place; row_sequence frame row width];
     fields.push(("flags", u8::from(place.last).to_string()));
-    fields.extend([("generation", generation.to_string()), ("samples", list(row))]);
+    fields.extend([("generation", generation.to_string()), ("samples", unpacked(packed, place.width))]);
+    fields
+}
+
+/// The numbers of a record, in the order of its bytes.
+fn record_numbers(record: FrameRecord) -> [u32; 8] {
+    let FrameRecord { signature, samples, rows, least_latency, most_latency, pauses, generation, held_back } =
+        record;
+    let words = [rows, least_latency, most_latency, pauses].map(u32::from);
+    let [rows, least_latency, most_latency, pauses] = words;
+    [signature, samples, rows, least_latency, most_latency, pauses, generation.into(), held_back.into()]
+}
+
+fn records_fields(records: &Records<'_>) -> Fields {
+    let fields = fields![records; burst from];
+    let state = ("state", (records.state as u8).to_string());
+    let count = ("count", records.bytes.len().to_string());
+    [fields, vec![state, count, ("records", list(records.records().flat_map(record_numbers)))]].concat()
+}
+
+fn trap_fields(kept: Option<&TrappedRow<'_>>) -> Fields {
+    let mut fields = vec![("kept", u8::from(kept.is_some()).to_string())];
+    if let Some(row @ TrappedRow { width, packed, .. }) = kept {
+        fields.extend(fields![row; frame row width signature]);
+        fields.push(("samples", unpacked(packed, *width)));
+    }
     fields
 }
 
 fn capability_fields(board: &Capabilities) -> Fields {
     let mut fields = fields![board; datapath max_width max_height depths taps latency ring least_blanking
         table_banks row_banks_in row_banks_out step_ports kernel_ports clock_source clock_hz];
+    if let Some(bursts @ Bursts { trap, .. }) = &board.bursts {
+        fields.extend(fields![bursts; content records least_frame_blanking]);
+        fields.push(("trap", u8::from(*trap).to_string()));
+    }
+    fields.extend(board.entered.then(|| ("entered", "1".into())));
     fields.push(("nature", (board.nature as u8).to_string()));
     // A board without a name sends none; the crate reads that as an empty one.
     fields.extend((!board.name.is_empty()).then(|| ("name", board.name.clone())));
@@ -112,7 +147,7 @@ fn request_fields(request: &Request<'_>) -> Fields {
             let take_over = ("take_over", u8::from(hello.take_over).to_string());
             [fields![hello; nonce host version_min version_max], vec![take_over]].concat()
         }
-        Request::Capabilities | Request::RowAck => vec![],
+        Request::Capabilities | Request::RowAck | Request::Trap => vec![],
         Request::Status { clear } => vec![("clear", u8::from(clear).to_string())],
         Request::Reset(reset) => {
             [fields![reset; next_row], vec![("level", (reset.level as u8).to_string())]].concat()
@@ -124,6 +159,16 @@ fn request_fields(request: &Request<'_>) -> Fields {
         Request::Configure(set) => fields![set; width height centre2 blanking gap_seed bits],
         // A host's rows have no generation; the crate sends 0 for it and does not look at it.
         Request::RowIn(RowIn { place, packed }) => row_fields(place, 0, packed),
+        Request::Burst(burst) => {
+            let mode = ("mode", (burst.mode as u8).to_string());
+            [fields![burst; burst frames seed first_frame frame_blanking], vec![mode]].concat()
+        }
+        Request::Records { from } => vec![("from", from.to_string())],
+        Request::Expect(expect @ Expect { first, bytes }) => vec![
+            ("first", first.to_string()),
+            ("count", bytes.len().to_string()),
+            ("signatures", list(expect.signatures())),
+        ],
     }
 }
 
@@ -136,15 +181,18 @@ fn reply_fields(reply: &Reply<'_>) -> Fields {
         Reply::Status(status) => {
             status.counters().into_iter().map(|(name, count)| (name, count.to_string())).collect()
         }
-        Reply::Reset | Reply::TableWrite | Reply::Configure => vec![],
+        Reply::Reset | Reply::TableWrite | Reply::Configure | Reply::Burst | Reply::Expect => vec![],
         Reply::Echo(bytes) => vec![("bytes", hex(bytes))],
         Reply::TableRead(entries) => entries_fields(*entries),
         Reply::TableCrc(crc) => vec![("crc", crc.to_string())],
         Reply::Commit { generation } => vec![("generation", generation.to_string())],
         Reply::RowOut(row @ RowOut { place, generation, packed, .. }) => {
             let latencies = fields![row; first_latency last_latency pauses repeats];
-            [row_fields(*place, *generation, packed), latencies].concat()
+            let entered = row.entered.map(|crc| ("entered", crc.to_string()));
+            [row_fields(*place, *generation, packed), latencies, Vec::from_iter(entered)].concat()
         }
+        Reply::Records(records) => records_fields(records),
+        Reply::Trap(kept) => trap_fields(kept.as_ref()),
         Reply::Refusal(refusal @ Refusal { code, .. }) => {
             [fields![refusal; kind detail], vec![("code", (*code as u8).to_string())]].concat()
         }

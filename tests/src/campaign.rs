@@ -124,7 +124,7 @@ impl Kind {
         let is_in_table = matches!(self, Self::RowFactor | Self::KernelWord);
         let hidden = if is_in_table { ",hidden=true" } else { "" };
         match check_of(system, &format!("{options}{hidden}")) {
-            Some(CheckName::Frames) => return Found::BySamples,
+            Some(CheckName::Frames | CheckName::AtSpeed) => return Found::BySamples,
             Some(other) => panic!("{options}: the check {other} failed, which looks at no samples"),
             None if !is_in_table => return Found::ByNothing,
             None => {}

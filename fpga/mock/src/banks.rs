@@ -30,6 +30,8 @@ pub struct RowOut {
     pub last_latency: u16,
     /// Board clocks that the pixel enable was off while the row entered, at most 65535.
     pub pauses: u16,
+    /// CRC-32 of the samples that entered, words of 16 bits, little endian.
+    pub entered: u32,
 }
 
 /// A row of which not every sample has left yet.
@@ -99,15 +101,15 @@ impl OutBanks {
     /// Takes a bank for a row of `width` samples whose first one enters at the pixel clock `now`.
     pub(crate) fn open(&mut self, name: RowName, width: usize, now: u64) {
         let samples = Vec::with_capacity(width);
-        let row = RowOut { name, samples, first_latency: 0, last_latency: 0, pauses: 0 };
+        let row = RowOut { name, samples, first_latency: 0, last_latency: 0, pauses: 0, entered: 0 };
         self.filling.push_back(Filling { row, width, first_in: now, last_in: now });
     }
 
-    /// Notes that the newest row's last sample entered at the pixel clock `now`.
-    pub(crate) fn entered(&mut self, pauses: u16, now: u64) {
+    /// Notes that the newest row's last sample entered at the pixel clock `now`, and the CRC-32 of all that did.
+    pub(crate) fn entered(&mut self, crc: u32, pauses: u16, now: u64) {
         if let Some(filling) = self.filling.back_mut() {
             filling.last_in = now;
-            filling.row.pauses = pauses;
+            (filling.row.entered, filling.row.pauses) = (crc, pauses);
         }
     }
 

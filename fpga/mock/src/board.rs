@@ -1,5 +1,6 @@
 //! The board behind the wire: packets in, packets out, as `protocol/WIRE.md` says.
 
+mod bursts;
 mod identity;
 mod rows;
 mod session;
@@ -16,6 +17,7 @@ use halfrow_protocol::message::{
 };
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Packet};
 
+use crate::burst::Bursts;
 use crate::faults::BoardFault;
 use crate::options::{OptionError, Options};
 use crate::player::Player;
@@ -42,6 +44,7 @@ pub struct Board {
     player: Player,
     configured: bool,
     rows: RowBanks,
+    bursts: Bursts,
     status: Status,
 }
 
@@ -62,6 +65,7 @@ impl Board {
             player: Player::new(options, fault)?,
             configured: false,
             rows: RowBanks::new(options.row_banks_in),
+            bursts: Bursts::new(options, fault),
             status: Status::default(),
         })
     }
@@ -69,6 +73,7 @@ impl Board {
     /// Takes bytes from the host that arrive together, at the time `now` since the board was switched on. A frame's last
     /// row leaves behind them, so that a next frame among them enters while it leaves.
     pub fn receive(&mut self, bytes: &[u8], now: Duration) {
+        self.end_silence(now);
         let mut decoder = std::mem::take(&mut self.decoder);
         let mut bytes = bytes;
         while let Some(packet) = decoder.next(&mut bytes) {
@@ -99,6 +104,7 @@ impl Board {
             self.acknowledge(header.window);
         }
         let done = match Request::read(packet) {
+            _ if !self.knows(header.kind) => Err((RefusalCode::Kind, 0)),
             Ok(request) => self.carry_out(&header, &request, now),
             Err(Malformed::Kind(_)) => Err((RefusalCode::Kind, 0)),
             Err(_) => Err((RefusalCode::Payload, 0)),
@@ -106,6 +112,7 @@ impl Board {
         if let Err(refused) = done {
             self.refuse(&header, refused);
         }
+        self.go_on();
     }
 
     /// Counts a packet of a session that is not open, and says so.
@@ -146,6 +153,9 @@ impl Board {
             }
             Request::RowIn(row) => return self.row_in(row),
             Request::RowAck => return Ok(()),
+            Request::Burst(_) | Request::Records { .. } | Request::Expect(_) | Request::Trap => {
+                return self.carry_out_at_speed(header, request);
+            }
         };
         self.answer(header, self.session.number(), &reply);
         if matches!(request, Request::Reset(reset) if reset.level == ResetLevel::Session) {

@@ -81,6 +81,7 @@ impl Core {
     }
 
     /// One pixel clock, with a sample or without one. Returns the output that is taken at the same clock edge.
+    #[inline(always)]
     pub fn clock(&mut self, input: Option<Entering<'_>>) -> Option<Leaving> {
         if let Some(entering) = input {
             self.enter(entering);
@@ -91,6 +92,7 @@ impl Core {
     }
 
     /// Writes a sample into the ring; a row's first one sets the time of its first read.
+    #[inline]
     fn enter(&mut self, entering: Entering<'_>) {
         if let Some(binding) = entering.begins {
             let clocks = u32::from(binding.width) / 2 + LOOK_AHEAD;
@@ -100,6 +102,7 @@ impl Core {
     }
 
     /// Lets the waiting row follow the one that leaves, once its time has come.
+    #[inline]
     fn begin_reading(&mut self) {
         match &mut self.waiting {
             None => {}

@@ -1,14 +1,13 @@
 //! Faults by name: one part of the board out of order, on purpose.
 
+mod defects;
 mod effect;
 
 use halfrow_pipe::{Fault, FaultError, FaultInfo, Parameter, Parameters, Place, Range, ValueError, Values};
 
-use crate::board::WrongClaims;
-use crate::core::{CoreDefects, DeadTap, NODES, StuckBits, Weight};
-use crate::player::PlayerDefects;
-use crate::tables::{Drift, FlippedBit, Stale, TableDefects};
+use crate::core::{NODES, Weight};
 
+pub(crate) use defects::Defects;
 pub use effect::Streamed;
 
 /// A fault inside the board, with the part that it is in.
@@ -87,6 +86,40 @@ pub enum BoardFault {
     },
     /// The board claims another datapath id.
     WrongDatapath,
+    /// A bit of a row flips between its packet and the core.
+    SpoiltRow {
+        /// The row of every frame.
+        row: u16,
+        /// The column; none for the middle one.
+        column: Option<u16>,
+        /// The bit, 0 to 11.
+        bit: u8,
+    },
+    /// A bit of the output flips at a rate in rows that follow another without a pause.
+    SlowPath {
+        /// The bit, 0 to 11.
+        bit: u8,
+        /// Outputs of which one flips, on average.
+        one_in: u32,
+        /// The seed of the draws.
+        seed: u32,
+    },
+    /// A bit of the output flips once the board has made so many frames on its own.
+    WarmBit {
+        /// Frames that it has made before.
+        after: u32,
+        /// The row whose first output flips.
+        row: u16,
+        /// The bit, 0 to 11.
+        bit: u8,
+    },
+    /// Between frames that follow each other as closely as they may, the table bank changes a row late.
+    LateSwap,
+    /// The output stands still for a clock in a row of every frame that the board makes, and that is not counted.
+    HiddenPause {
+        /// The row.
+        row: u16,
+    },
 }
 
 /// A row that small frames have too is the default.
@@ -100,6 +133,7 @@ const HIDDEN: Parameter = Parameter::new(
 );
 const TRUTHS: Range = Range::Words(&["false", "true"]);
 const LEVELS: Range = Range::Words(&["0", "1"]);
+const OUTPUT_BIT: Parameter = Parameter::new("bit", Range::Whole(0, 11), Some("5"), "the bit");
 const TAP: Range = Range::Whole(0, 6);
 
 /// The faults of the board.
@@ -225,6 +259,71 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
         },
     ),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
+    fault(
+        "spoilt-row",
+        "a bit of a row flips between its packet and the core",
+        &[
+            ROW,
+            Parameter::new("column", Range::Whole(0, 2591), None, "the column; without it, the middle one"),
+            OUTPUT_BIT,
+        ],
+        |values| {
+            Ok(BoardFault::SpoiltRow {
+                row: values.whole("row")?,
+                column: values.is_given("column").then(|| values.whole("column")).transpose()?,
+                bit: values.whole("bit")?,
+            })
+        },
+    ),
+    fault(
+        "slow-path",
+        "in a burst, a bit of the output flips at a rate in rows that follow another without a pause",
+        &[
+            OUTPUT_BIT,
+            Parameter::new(
+                "one-in",
+                Range::Whole(1, u32::MAX as i64),
+                Some("100000"),
+                "outputs of which one flips, on average",
+            ),
+            Parameter::new("seed", Range::Whole(1, u32::MAX as i64), Some("2"), "the seed of the draws"),
+        ],
+        |values| {
+            Ok(BoardFault::SlowPath {
+                bit: values.whole("bit")?,
+                one_in: values.whole("one-in")?,
+                seed: values.whole("seed")?,
+            })
+        },
+    ),
+    fault(
+        "warm-bit",
+        "in a burst, the first output of a row has a flipped bit once the board is warm",
+        &[
+            Parameter::new("after", Range::Whole(0, u32::MAX as i64), Some("2"), "frames that warm it"),
+            ROW,
+            OUTPUT_BIT,
+        ],
+        |values| {
+            Ok(BoardFault::WarmBit {
+                after: values.whole("after")?,
+                row: values.whole("row")?,
+                bit: values.whole("bit")?,
+            })
+        },
+    ),
+    fault(
+        "late-swap",
+        "in a burst, the table bank changes a row late when frames are as close as they may be, given two banks",
+        &[],
+        |_| Ok(BoardFault::LateSwap),
+    ),
+    fault(
+        "hidden-pause",
+        "in a burst, the output stands still for a clock in a row, which is not counted as a pause",
+        &[ROW],
+        |values| Ok(BoardFault::HiddenPause { row: values.whole("row")? }),
+    ),
 ];
 
 const fn fault(
@@ -240,52 +339,6 @@ const fn fault(
 pub fn catalogue() -> impl Iterator<Item = FaultInfo> {
     let pipe = halfrow_pipe::FAULTS.iter().map(|fault| fault.info);
     pipe.chain(FAULTS.iter().map(|fault| fault.info))
-}
-
-/// What is wrong with each part of a board.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Defects {
-    /// The datapath.
-    pub(crate) core: CoreDefects,
-    /// The tables.
-    pub(crate) tables: TableDefects,
-    /// What plays rows and collects them.
-    pub(crate) player: PlayerDefects,
-    /// What the board says of itself.
-    pub(crate) claims: WrongClaims,
-}
-
-impl Defects {
-    /// What is wrong with a board with `fault`.
-    pub(crate) fn of(fault: Option<BoardFault>) -> Self {
-        let mut defects = Self::default();
-        let Self { core, tables, player, claims } = &mut defects;
-        match fault {
-            None => {}
-            Some(BoardFault::StuckData { bit, value }) => core.data_lines = StuckBits::one(bit, value),
-            Some(BoardFault::StuckAddress { bit, value }) => core.address_lines = StuckBits::one(bit, value),
-            Some(BoardFault::RowFactor { row, bit, hidden }) => {
-                tables.factor = Some(FlippedBit { entry: row, bit, hidden });
-            }
-            Some(BoardFault::KernelWord { node, weight, bit, hidden }) => {
-                tables.word = Some(FlippedBit { entry: (node, weight), bit, hidden });
-            }
-            Some(BoardFault::TapOffset { columns }) => core.tap_offset = columns.into(),
-            Some(BoardFault::NoRounding) => core.rounding = 0,
-            Some(BoardFault::DeadTap { tap, reads }) => core.dead_tap = Some(DeadTap { tap, reads }),
-            Some(BoardFault::Late) => core.extra_delay = 1,
-            Some(BoardFault::WrongLatencyClaim) => claims.latency = 1,
-            Some(BoardFault::LostRow { row }) => player.lost_row = Some(row),
-            Some(BoardFault::StaleTable { hidden }) => {
-                tables.stale = Some(if hidden { Stale::Hidden } else { Stale::Admitted });
-            }
-            Some(BoardFault::DriftingTable { after, row, bit }) => {
-                tables.drift = Some(Drift { after, row, bit });
-            }
-            Some(BoardFault::WrongDatapath) => claims.datapath = 1,
-        }
-        defects
-    }
 }
 
 impl BoardFault {

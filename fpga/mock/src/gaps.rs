@@ -23,13 +23,17 @@ impl Gaps {
         self.state != 0 && self.draw() & 0x7 == 0
     }
 
-    /// The next number of Marsaglia's xorshift32.
     fn draw(&mut self) -> u32 {
-        self.state ^= self.state << 13;
-        self.state ^= self.state >> 17;
-        self.state ^= self.state << 5;
+        self.state = draw(self.state);
         self.state
     }
+}
+
+/// The number behind `x` of Marsaglia's xorshift32.
+pub(crate) fn draw(mut x: u32) -> u32 {
+    x ^= x << 13;
+    x ^= x >> 17;
+    x ^ x << 5
 }
 
 #[cfg(test)]

@@ -8,13 +8,17 @@
 //!
 //! [`Core`] is the datapath with its one ring of samples and its timing. [`Player`] feeds it rows and measures how
 //! long each takes. [`Tables`] hold the stretch factors and the kernel in a shadow bank and a committed one.
+//! Behind the wire a board also makes frames itself and signs them, as `fpga/AT-SPEED.md` says: about one of 1920 x 1080 with
+//! every packet that it gets, so that it takes no time of its own there either.
 //! [`BoardFault`] breaks one part of the board on purpose, so that a judge of boards can be judged.
 //!
 //! The crate shares no arithmetic with the reference model: both follow `fpga/DATAPATH.md` on their own.
 
 mod banks;
 mod board;
+mod burst;
 mod connect;
+mod content;
 mod core;
 mod depth;
 mod faults;
@@ -30,7 +34,7 @@ pub use crate::connect::{ConnectError, board_fault, connect};
 pub use crate::core::{Core, Entering, Kernel, Leaving, NODES, Node, RowBinding, Weight};
 pub use crate::depth::Depth;
 pub use crate::faults::{BoardFault, FAULTS, Streamed, catalogue};
-pub use crate::options::{OptionError, Options, TapCount};
+pub use crate::options::{BurstBuild, OptionError, Options, TapCount};
 pub use crate::player::{PlayError, Player, RowIn};
 pub use crate::settings::{Settings, SettingsError};
 pub use crate::tables::{Bank, Bound, Port, TableError, Tables, UNSTRETCHED};

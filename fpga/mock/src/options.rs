@@ -14,6 +14,8 @@ const TABLE_BANKS: Limits = Limits::new("table-banks", 1, 2);
 const MAX_WIDTH: Limits = Limits::new("max-width", 64, 2592);
 const MAX_HEIGHT: Limits = Limits::new("max-height", 1, 2048);
 const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
+const RECORDS: Limits = Limits::new("records", 2, 1024);
+const LEAST_FRAME_BLANKING: Limits = Limits::new("least-frame-blanking", 0, 4095);
 /// As wide as the number that a Spartan-6 has, which is of 57 bits.
 const SERIAL: Limits = Limits::new("serial", 0, (1 << 57) - 1);
 
@@ -22,6 +24,15 @@ const TAPS: &str = "taps";
 
 /// The name of the option that lists the depths, as in `depths=8+12`.
 const DEPTHS: &str = "depths";
+
+/// The name of the option that says whether a board makes bursts.
+const BURSTS: &str = "bursts";
+
+/// The name of the option that says whether rows come back with the CRC-32 of what entered.
+const ENTERED: &str = "entered";
+
+const BURST_BUILDS: &[(&str, BurstBuild)] =
+    &[("no", BurstBuild::None), ("untrapped", BurstBuild::Untrapped), ("trapped", BurstBuild::Trapped)];
 
 /// An option that no build can have.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -65,6 +76,17 @@ pub enum TapCount {
     Seven,
 }
 
+/// Whether a build makes frames of its own (`fpga/AT-SPEED.md`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BurstBuild {
+    /// It does not.
+    None,
+    /// It does, and keeps no row that is wrong.
+    Untrapped,
+    /// It does, with a trap.
+    Trapped,
+}
+
 /// The constants of a build.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
@@ -92,6 +114,14 @@ pub struct Options {
     pub pixel_clock: u32,
     /// The FPGA's own number, below 2^57; 0 for none.
     pub serial: u64,
+    /// Whether the board makes bursts.
+    pub bursts: BurstBuild,
+    /// Records of bursts that are kept, 2 to 1024.
+    pub records: u16,
+    /// Pixel clocks that the build needs between the frames of a burst, 0 to 4095.
+    pub least_frame_blanking: u16,
+    /// Whether rows come back with the CRC-32 of what entered.
+    pub entered: bool,
 }
 
 impl Default for Options {
@@ -109,6 +139,10 @@ impl Default for Options {
             depths: Depth::ALL.to_vec(),
             pixel_clock: 96_000_000,
             serial: 0,
+            bursts: BurstBuild::Trapped,
+            records: 64,
+            least_frame_blanking: 8,
+            entered: true,
         }
     }
 }
@@ -134,6 +168,8 @@ impl Options {
         MAX_HEIGHT.check(self.max_height.into())?;
         PIXEL_CLOCK.check(self.pixel_clock.into())?;
         SERIAL.check(i64::try_from(self.serial).unwrap_or(i64::MAX))?;
+        RECORDS.check(self.records.into())?;
+        LEAST_FRAME_BLANKING.check(self.least_frame_blanking.into())?;
         let (ring, max_width) = (self.ring_size(), self.max_width);
         RING.check(ring.into())?;
         if !ring.is_power_of_two() {
@@ -165,6 +201,10 @@ impl BoardOptions for Options {
         DEPTHS,
         PIXEL_CLOCK.key(),
         SERIAL.key(),
+        BURSTS,
+        RECORDS.key(),
+        LEAST_FRAME_BLANKING.key(),
+        ENTERED,
     ];
 
     const FAULTS: &'static [Fault<BoardFault>] = FAULTS;
@@ -182,6 +222,10 @@ impl BoardOptions for Options {
             "max-height" => self.max_height = MAX_HEIGHT.parse(value)?,
             "pixel-clock" => self.pixel_clock = PIXEL_CLOCK.parse(value)?,
             "serial" => self.serial = SERIAL.parse(value)?,
+            "records" => self.records = RECORDS.parse(value)?,
+            "least-frame-blanking" => self.least_frame_blanking = LEAST_FRAME_BLANKING.parse(value)?,
+            BURSTS => self.bursts = parse_word(BURSTS, value, BURST_BUILDS)?,
+            ENTERED => self.entered = parse_word(ENTERED, value, &[("no", false), ("yes", true)])?,
             TAPS => {
                 self.taps = parse_word(TAPS, value, &[("five", TapCount::Five), ("seven", TapCount::Seven)])?;
             }

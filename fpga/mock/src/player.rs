@@ -1,7 +1,9 @@
 //! Plays rows through the core as a sensor would, and measures how long they take.
 
+use std::borrow::Cow;
+
 use crate::banks::{OutBanks, RowName};
-use crate::core::{Core, Entering, RowBinding};
+use crate::core::{Core, Entering, Leaving, RowBinding};
 use crate::faults::{BoardFault, Defects};
 use crate::gaps::Gaps;
 use crate::options::{OptionError, Options};
@@ -52,6 +54,30 @@ pub enum PlayError {
 pub(crate) struct PlayerDefects {
     /// The row of every frame that goes in and never comes out.
     pub(crate) lost_row: Option<u16>,
+    /// A bit that flips between the in-bank and the core.
+    pub(crate) spoilt: Option<SpoiltSample>,
+}
+
+/// A sample of every frame of which a bit flips between the in-bank and the core.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SpoiltSample {
+    /// Its row.
+    pub(crate) row: u16,
+    /// Its column; none for the middle one.
+    pub(crate) column: Option<u16>,
+    /// The bit.
+    pub(crate) bit: u8,
+}
+
+impl SpoiltSample {
+    /// A row as the core gets it.
+    fn spoil(self, row: u16, samples: &mut [u16]) {
+        if row == self.row
+            && let Some(sample) = samples.get_mut(self.column.map_or(samples.len() / 2, usize::from))
+        {
+            *sample ^= 1_u16.checked_shl(self.bit.into()).unwrap_or(0);
+        }
+    }
 }
 
 /// Plays rows through the core, one sample a pixel clock.
@@ -67,6 +93,7 @@ pub struct Player {
     pixel_clock: u64,
     /// Pixel clocks without a sample that bring the rest of a frame's last row out.
     flush: u32,
+    spoilt: Option<SpoiltSample>,
     /// Where corrected rows wait to be fetched.
     pub banks: OutBanks,
 }
@@ -77,6 +104,7 @@ impl Player {
     /// # Errors
     /// If the options do not describe a build that can exist.
     pub fn new(options: &Options, fault: Option<BoardFault>) -> Result<Self, OptionError> {
+        let defects = Defects::of(fault).player;
         Ok(Self {
             core: Core::new(options, fault)?,
             options: options.clone(),
@@ -84,7 +112,8 @@ impl Player {
             gaps: Gaps::default(),
             pixel_clock: 0,
             flush: 0,
-            banks: OutBanks::new(options.row_banks_out, Defects::of(fault).player.lost_row),
+            spoilt: defects.spoilt,
+            banks: OutBanks::new(options.row_banks_out, defects.lost_row),
         })
     }
 
@@ -136,6 +165,24 @@ impl Player {
         self.flush = 0;
     }
 
+    /// Pixel clocks D between a sample and its output with the present settings, as the core really is.
+    pub(crate) fn delay(&self) -> u32 {
+        self.core.delay(self.settings.width)
+    }
+
+    /// The pixel clock that comes next.
+    pub(crate) fn now(&self) -> u64 {
+        self.pixel_clock
+    }
+
+    /// One pixel clock of a burst, whose outputs go to no bank: what leaves, and at which clock.
+    #[inline(always)]
+    pub(crate) fn clock(&mut self, input: Option<Entering<'_>>) -> (Option<Leaving>, u64) {
+        let now = self.pixel_clock;
+        self.pixel_clock += 1;
+        (self.core.clock(input), now)
+    }
+
     fn check(&self, row: &RowIn) -> Result<(), PlayError> {
         let &Settings { width, height, .. } = &self.settings;
         if row.samples.len() != usize::from(width) {
@@ -156,12 +203,17 @@ impl Player {
         let binding = RowBinding { width, centre2, depth, factor: bound.factor, kernel: bound.kernel };
         let mut begins = Some(&binding);
         let mut pauses = 0_u16;
-        self.banks.open(name, row.samples.len(), self.pixel_clock);
-        for &sample in &row.samples {
+        let mut samples = Cow::Borrowed(&row.samples);
+        if let Some(spoilt) = self.spoilt {
+            spoilt.spoil(number, samples.to_mut());
+        }
+        self.banks.open(name, samples.len(), self.pixel_clock);
+        for &sample in samples.iter() {
             pauses = pauses.saturating_add(self.gaps.pauses().into());
             self.tick(Some(Entering { sample, begins: begins.take() }));
         }
-        self.banks.entered(pauses, self.pixel_clock - 1);
+        let bytes: Vec<_> = samples.iter().map(|sample| sample.to_le_bytes()).collect();
+        self.banks.entered(crc32fast::hash(bytes.as_flattened()), pauses, self.pixel_clock - 1);
     }
 
     /// Lets pixel clocks pass without a sample.

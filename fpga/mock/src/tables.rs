@@ -218,11 +218,16 @@ impl Tables {
 
     /// What the row that begins now is bound to.
     pub fn bind(&mut self, row: u16) -> Bound {
+        self.bind_from(Bank::Active, row)
+    }
+
+    /// What a row that begins now with the tables of a bank is bound to.
+    pub(crate) fn bind_from(&mut self, bank: Bank, row: u16) -> Bound {
         self.drift();
         let (bank, named_after) = match self.defects.stale {
-            None => (Bank::Active, Bank::Active),
+            None => (bank, bank),
             Some(Stale::Admitted) => (Bank::Shadow, Bank::Shadow),
-            Some(Stale::Hidden) => (Bank::Shadow, Bank::Active),
+            Some(Stale::Hidden) => (Bank::Shadow, bank),
         };
         Bound {
             factor: self.factor(bank, row.into(), Port::Datapath).unwrap_or(UNSTRETCHED),

@@ -1,6 +1,6 @@
 //! A Bayer frame: samples as they come from the sensor, row by row.
 
-use crate::Phase;
+use crate::{Geometry, Phase};
 
 /// Bits of one sample.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -118,6 +118,12 @@ impl Frame {
     pub(crate) fn with_samples(&self, samples: Vec<u16>) -> Self {
         debug_assert_eq!(samples.len(), self.samples.len());
         Self { samples, ..*self }
+    }
+
+    /// A frame of `geometry`, for samples that are known to fit.
+    pub(crate) fn of_geometry(geometry: &Geometry, phase: Phase, samples: Vec<u16>) -> Self {
+        debug_assert_eq!(samples.len(), geometry.width() * geometry.height());
+        Self { width: geometry.width(), depth: geometry.depth(), phase, samples }
     }
 
     /// Columns.

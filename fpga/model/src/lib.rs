@@ -9,7 +9,8 @@
 //! ```
 //!
 //! [`correct`] is the oracle: it implements `fpga/DATAPATH.md` and a board must equal it. [`Corrector`] gives the same bits
-//! many times faster, by vectors where the processor has them. [`correct_real`] computes the
+//! many times faster, by vectors where the processor has them. A [`Signer`] predicts what a board signs that makes frames on
+//! its own, whose [`Content`] is that of `fpga/AT-SPEED.md`. [`correct_real`] computes the
 //! same correction in double precision, to show what the integers cost. Equation and section numbers in this crate are
 //! those of Lai et al., *Real-time distortion correction of fish-eye lens based on Bayer image signal*, Optical Review
 //! 2014. The crate knows no board, no protocol and no file.
@@ -17,6 +18,7 @@
 mod bayer;
 mod calibrated;
 mod camera;
+mod content;
 mod corrector;
 mod fast;
 mod frame;
@@ -33,8 +35,9 @@ mod table;
 pub use bayer::{Colour, Phase, UnknownPhase};
 pub use calibrated::CalibratedLens;
 pub use camera::{Camera, CameraError, Residual, Target};
+pub use content::{Content, frame_signature, row_signature};
 pub use corrector::{CorrectError, Source, correct, correct_row, source, source_by_entry};
-pub use fast::{Corrector, ModelPath, UnavailablePath, UnknownPath};
+pub use fast::{Corrector, ModelPath, Signer, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};
 pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
 pub use interpolant::{Interpolant, UnknownInterpolant};

@@ -23,7 +23,7 @@ use toml::Spanned;
 use halfrow::tables::text::{self, quoted};
 
 /// The keys of a settings file.
-const KEYS: [&str; 11] = [
+const KEYS: [&str; 12] = [
     "board",
     "tables",
     "kernel",
@@ -33,6 +33,7 @@ const KEYS: [&str; 11] = [
     "timeout",
     "retry_limit",
     "reconnect",
+    "at_speed",
     "require_hardware",
     "seed",
 ];
@@ -63,6 +64,9 @@ pub struct Settings {
     /// How long a board that goes away may stay away, in seconds: 0 or more, and finite.
     #[serde(deserialize_with = "seconds")]
     pub reconnect: Option<f64>,
+    /// How long the board makes frames on its own at the full pixel clock, in seconds: 0 or more, and finite.
+    #[serde(deserialize_with = "seconds")]
+    pub at_speed: Option<f64>,
     /// Whether to refuse anything but hardware.
     pub require_hardware: Option<bool>,
     /// The seed of all that is random in a run.
@@ -138,6 +142,7 @@ impl Settings {
             self.timeout.is_some(),
             self.retry_limit.is_some(),
             self.reconnect.is_some(),
+            self.at_speed.is_some(),
             self.require_hardware.is_some(),
             self.seed.is_some(),
         ];

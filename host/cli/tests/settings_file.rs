@@ -36,6 +36,7 @@ fn every_setting_is_read() {
         timeout = 90
         retry_limit = 2.5
         reconnect = 20
+        at_speed = 0.5
         require_hardware = false
         seed = 18446744073709551615
     "#;
@@ -49,6 +50,7 @@ fn every_setting_is_read() {
         timeout: Some(90.0),
         retry_limit: Some(2.5),
         reconnect: Some(20.0),
+        at_speed: Some(0.5),
         require_hardware: Some(false),
         seed: Some(u64::MAX),
     };
@@ -71,10 +73,10 @@ fn the_example_uncommented_sets_everything() {
     let text: Vec<_> = lines.filter(|line| line.contains(" = ")).collect();
     let Settings { board, tables, kernel, frame, report, .. } = load(&text.join("\n")).unwrap();
     assert!(board.is_some() && tables.is_some() && kernel.is_some() && frame.is_some() && report.is_some());
-    let Settings { overwrite, timeout, retry_limit, reconnect, require_hardware, seed, .. } =
+    let Settings { overwrite, timeout, retry_limit, reconnect, at_speed, require_hardware, seed, .. } =
         load(&text.join("\n")).unwrap();
     assert!(overwrite.is_some() && timeout.is_some() && retry_limit.is_some());
-    assert!(reconnect.is_some());
+    assert!(reconnect.is_some() && at_speed.is_some());
     assert!(require_hardware.is_some() && seed.is_some());
 }
 
@@ -89,7 +91,7 @@ fn a_file_that_was_named_must_be_there() {
 #[test]
 fn an_unknown_key_is_named_with_its_line_and_the_keys_that_there_are() {
     let expected = "line 3: there is no setting \"bord\"; use one of board, tables, kernel, frame, report, overwrite, \
-                    timeout, retry_limit, reconnect, require_hardware, seed";
+                    timeout, retry_limit, reconnect, at_speed, require_hardware, seed";
     assert_eq!(sentence("seed = 1\n\nbord = 'mock'\nabord = 1\n"), expected);
 }
 

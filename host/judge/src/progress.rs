@@ -41,6 +41,8 @@ pub enum Step {
     OpenTheBoard,
     /// Bytes go to the board and come back.
     TestTheLink,
+    /// The board makes frames on its own.
+    AtSpeed,
     /// Everything is done again, since an old copy of a request may have spoilt it.
     LookAgain,
     /// The board went away, and the run waits for it.
@@ -53,6 +55,7 @@ impl fmt::Display for Step {
             Self::JudgeTheJudge => "judging the judge",
             Self::OpenTheBoard => "opening the board",
             Self::TestTheLink => "testing the link",
+            Self::AtSpeed => "frames at the full pixel clock",
             Self::LookAgain => "looking again, in a session of its own",
             Self::WaitForTheBoard => "waiting for the board to come back",
         })

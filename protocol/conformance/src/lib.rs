@@ -10,7 +10,11 @@
 #![expect(clippy::panic, clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![expect(clippy::missing_panics_doc, reason = "a board that answers otherwise than it must fails the test")]
 
+pub mod at_speed;
 pub mod bench;
+mod burst_ends;
+mod burst_refusals;
+mod bursts;
 pub mod capabilities;
 mod commits;
 mod configuring;
@@ -80,6 +84,42 @@ macro_rules! suite {
 }
 
 suite! { $
+    burst_ends:
+        a_reset_of_any_level_ends_a_burst_at_once,
+        a_burst_can_follow_one_that_was_reset,
+        a_new_session_ends_a_burst_and_knows_none,
+        a_repeated_hello_ends_nothing,
+        ten_seconds_of_silence_end_a_burst_and_its_session,
+        silence_behind_a_burst_closes_nothing,
+        the_trap_keeps_nothing_while_all_rows_are_expected,
+        the_trap_keeps_the_first_row_that_is_not_expected,
+        a_row_that_nobody_uploaded_is_expected_to_have_0,
+        only_a_trapped_burst_sets_the_trap_and_only_the_next_one_empties_it,
+        a_reset_and_a_new_session_empty_the_trap;
+    burst_refusals:
+        a_board_that_makes_none_refuses_the_kinds,
+        payloads_that_are_too_short_or_without_meaning_are_refused,
+        without_configuration_or_committed_tables_a_board_is_not_ready,
+        fields_out_of_range_are_named_the_first_of_several,
+        no_burst_starts_while_the_board_holds_rows_or_a_commit_or_makes_another,
+        while_a_burst_is_under_way_a_row_counts_as_inside,
+        tables_are_written_during_a_burst_that_does_not_use_them,
+        rows_are_refused_during_a_burst_whatever_they_are,
+        rows_of_a_burst_count_in_no_counter,
+        expected_signatures_end_before_max_height;
+    bursts:
+        the_golden_frame_is_signed_and_counted,
+        golden_frames_of_other_shapes_are_signed,
+        frames_are_numbered_modulo_2_16_and_a_repeating_burst_has_one,
+        every_second_frame_of_an_alternating_burst_is_the_shadows,
+        neither_blanking_nor_a_gap_seed_changes_a_record,
+        records_stay_until_the_host_says_that_it_has_them,
+        without_a_burst_there_are_no_records,
+        another_burst_drops_the_records_of_the_one_before,
+        a_frame_without_a_free_record_is_held_back_and_says_so,
+        a_burst_without_frames_has_ended_when_it_starts,
+        a_request_that_is_repeated_starts_nothing_twice,
+        a_burst_may_be_made_longer_or_ended_while_it_is_under_way;
     capabilities:
         every_board_sends_all_tags_in_their_widths,
         the_build_shows;
@@ -181,6 +221,7 @@ suite! { $
         a_wider_configuration_takes_wider_rows;
     playing:
         the_golden_rows_come_out_of_the_wire,
+        the_crc_of_what_entered_is_that_of_the_samples_that_were_sent,
         every_row_has_its_own_factor,
         outputs_are_clamped_to_the_depth_and_inputs_go_in_as_they_are,
         a_row_leaves_when_half_of_the_next_has_entered_and_a_frame_when_its_last_row_was_played,

@@ -1,13 +1,13 @@
 //! Section 5 of WIRE.md: samples, latencies and gaps of the rows that come back.
 
-use halfrow_protocol::message::{Configuration, Hello, Request};
+use halfrow_protocol::message::{Configuration, Hello, Reply, Request};
 use halfrow_protocol::samples;
 use proptest::prelude::*;
 
 use crate::bench::{Bench, HELLO, rows_of};
 use crate::frames::{Row, configuration, lean, ready, row, samples_of};
 use crate::golden_rows::{HERMITE, KEYS};
-use crate::material::{GOLDEN_FACTOR, Nodes, UNSTRETCHED, hermite, keys, noise_row};
+use crate::material::{GOLDEN_FACTOR, Nodes, UNSTRETCHED, crc_of_words, hermite, keys, noise_row};
 use crate::{Boards, Build, cases};
 
 use crate::uploads::TableSet;
@@ -26,6 +26,21 @@ pub(crate) fn the_golden_rows_come_out_of_the_wire(on: &dyn Boards) {
     for (kernel, expected) in [(hermite(), HERMITE), (keys(), KEYS)] {
         assert_eq!(samples_of(&golden(on, &kernel).send_all(1, [0])[0].row()), expected);
     }
+}
+
+/// What entered is told of rows as they came, samples beyond the depth included.
+pub(crate) fn the_crc_of_what_entered_is_that_of_the_samples_that_were_sent(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 2);
+    bench.done(&Request::Configure(Configuration { bits: 8, ..configuration(2) }));
+    let answer = bench.done(&Request::Capabilities);
+    let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
+    let heard = bench.send_all(2, 0..2);
+    for (number, packet) in (0..).zip(&heard) {
+        let crc = capabilities.entered.then(|| crc_of_words(row(2, number).samples));
+        assert_eq!(packet.row().entered, crc, "row {number}");
+        assert_eq!(packet.payload.len(), 12 + 8 + 96 + if crc.is_some() { 4 } else { 0 });
+    }
+    assert_eq!(heard.len(), 2);
 }
 
 pub(crate) fn every_row_has_its_own_factor(on: &dyn Boards) {

@@ -1,12 +1,13 @@
 //! Requests and bytes that no host would send: the board stays up, keeps its promises and answers the next HELLO.
 
 use halfrow_protocol::message::{
-    Bank, Commit, Configuration, Entries, Hello, Reply, Request, Reset, ResetLevel, RowIn, RowPlace, Span,
-    Status, Table,
+    Bank, Burst, BurstMode, Commit, Configuration, Entries, Expect, Hello, Reply, Request, Reset, ResetLevel,
+    RowIn, RowPlace, Span, Status, Table,
 };
 use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
 use proptest::prelude::*;
 
+use crate::at_speed::ENDLESS;
 use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
 use crate::frames::{lean, make_ready, ready, row, samples_of};
 use crate::{Boards, Build, cases, offered};
@@ -24,6 +25,8 @@ enum Event {
     Bytes(Vec<u8>),
     /// The host has so many rows more.
     Acknowledge(u32),
+    /// The host has all rows, and wants so many frames of a burst.
+    Burst(u32),
 }
 
 fn event() -> impl Strategy<Value = Event> {
@@ -35,6 +38,7 @@ fn event() -> impl Strategy<Value = Event> {
     prop_oneof![
         4 => (0_u32..4).prop_map(Event::Row),
         3 => (0_u32..4).prop_map(Event::Acknowledge),
+        1 => prop_oneof![0_u32..5, Just(Burst::ENDLESS)].prop_map(Event::Burst),
         3 => (prop_oneof![4 => request, 1 => packet], foreign)
             .prop_map(|((kind, payload), foreign)| Event::Packet { kind, payload, foreign }),
         1 => prop::collection::vec(any::<u8>(), 0..60).prop_map(Event::Bytes),
@@ -92,9 +96,29 @@ fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
             let packed = vec![d as u8; samples::packed_length(width.into())];
             Request::RowIn(RowIn { place, packed: &packed }).write(&mut payload);
         }
-        Kind::Capabilities | Kind::RowOut | Kind::RowAck | Kind::Refusal => {}
+        Kind::Burst | Kind::Records | Kind::Expect => at_speed(kind, [a, b, c, d], &mut payload),
+        Kind::Capabilities | Kind::RowOut | Kind::RowAck | Kind::Trap | Kind::Refusal => {}
     }
     payload
+}
+
+/// The payload of a request of bursts.
+fn at_speed(kind: Kind, [a, b, c, d]: [u32; 4], payload: &mut Vec<u8>) {
+    let bytes = vec![c.to_le_bytes(); b as usize % (Expect::MOST + 1)];
+    let modes = [BurstMode::Fresh, BurstMode::Alternating, BurstMode::Repeating, BurstMode::Trapped];
+    let request = match kind {
+        Kind::Records => Request::Records { from: a },
+        Kind::Expect => Request::Expect(Expect { first: a as u16, bytes: &bytes }),
+        _ => Request::Burst(Burst {
+            burst: a,
+            frames: b,
+            seed: c,
+            first_frame: c as u16,
+            frame_blanking: d as u16 % 1000,
+            mode: modes[d as usize % modes.len()],
+        }),
+    };
+    request.write(payload);
 }
 
 fn span([a, b, c, d]: [u32; 4]) -> Span {
@@ -180,6 +204,10 @@ impl Observer {
             Event::Acknowledge(more) => {
                 self.bench.window = self.status().next_row_out.saturating_add(more);
                 self.bench.packet(&Request::RowAck)
+            }
+            Event::Burst(frames) => {
+                self.bench.window = self.status().next_row_in;
+                self.bench.packet(&Request::Burst(Burst { frames, ..ENDLESS }))
             }
         };
         self.receive(&bytes);

@@ -1,9 +1,12 @@
 //! Tables on their way to the board and back.
 
-use halfrow_protocol::message::{Bank, Commit, Entries, Reply, Request, Span, Table};
+use halfrow_protocol::message::{Bank, Commit, Entries, ROW_FACTOR_BYTES, Reply, Request, Span, Table};
 
 use crate::bench::Bench;
 use crate::material::{Nodes, UNSTRETCHED, hermite};
+
+/// Row factors of one packet.
+const FACTORS: usize = 1000;
 
 /// Row factors and a kernel, as a host uploads them.
 #[derive(Clone)]
@@ -29,7 +32,9 @@ impl TableSet {
 
     /// Writes both into the shadow bank.
     pub fn upload(&self, bench: &mut Bench) {
-        bench.done(&write(Table::RowFactors, 0, &self.factors));
+        for (first, factors) in (0..).step_by(FACTORS).zip(self.factors.chunks(FACTORS * ROW_FACTOR_BYTES)) {
+            bench.done(&write(Table::RowFactors, first, factors));
+        }
         bench.done(&write(Table::Kernel, 0, &self.nodes));
     }
 

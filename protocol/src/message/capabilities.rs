@@ -39,12 +39,51 @@ impl Depths {
     }
 }
 
+/// What a board can do of AT-SPEED.md: frames that it makes and signs on its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bursts {
+    /// The content id: which samples a seed stands for. A host asks for no burst of an id that it does not know.
+    pub content: u16,
+    /// Records that the board keeps until a host has them, at least 2.
+    pub records: u16,
+    /// The fewest pixel clocks between two frames.
+    pub least_frame_blanking: u16,
+    /// Whether a row whose signature is not the expected one is kept.
+    pub trap: bool,
+}
+
+impl Bursts {
+    fn write(&self) -> [u8; 7] {
+        let [[c0, c1], [r0, r1], [b0, b1]] =
+            [self.content, self.records, self.least_frame_blanking].map(u16::to_le_bytes);
+        [c0, c1, r0, r1, b0, b1, self.trap.into()]
+    }
+
+    /// A value without bytes is as none.
+    fn read(mut value: Fields<'_>) -> Result<Option<Self>, Malformed> {
+        if value.0.is_empty() {
+            return Ok(None);
+        }
+        let bursts = Self {
+            content: value.u16()?,
+            records: value.u16()?,
+            least_frame_blanking: value.u16()?,
+            trap: value.u8()? != 0,
+        };
+        Ok(value.end(Some(bursts)))
+    }
+}
+
 macro_rules! capabilities {
     ($($(#[$doc:meta])* $tag:literal $name:ident: $type:ident,)*) => {
         /// What a board is and can do.
         #[derive(Clone, Debug, PartialEq, Eq)]
         pub struct Capabilities {
             $($(#[$doc])* pub $name: $type,)*
+            /// The bursts that it makes; none where it makes none.
+            pub bursts: Option<Bursts>,
+            /// Whether ROW_OUT ends with the CRC-32 of the samples that entered.
+            pub entered: bool,
             /// What stands behind the wire.
             pub nature: BoardNature,
             /// The board's name, for people; UTF-8, at most 255 bytes.
@@ -52,17 +91,26 @@ macro_rules! capabilities {
         }
 
         impl Capabilities {
+            const BURSTS: u8 = 0x10;
+            const ENTERED: u8 = 0x11;
             const NATURE: u8 = 0x20;
             const NAME: u8 = 0x21;
 
             pub(crate) fn write(&self, payload: &mut Vec<u8>) {
                 $(tagged(payload, $tag, &self.$name.to_le_bytes());)*
+                if let Some(bursts) = &self.bursts {
+                    tagged(payload, Self::BURSTS, &bursts.write());
+                }
+                if self.entered {
+                    tagged(payload, Self::ENTERED, &[1]);
+                }
                 tagged(payload, Self::NATURE, &[self.nature as u8]);
                 tagged(payload, Self::NAME, cut(&self.name).as_bytes());
             }
 
             pub(crate) fn read(mut fields: Fields<'_>) -> Result<Self, Malformed> {
                 $(let mut $name = None;)*
+                let (mut bursts, mut entered) = (None, false);
                 let (mut nature, mut name) = (None, String::new());
                 while !fields.0.is_empty() {
                     let tag = fields.u8()?;
@@ -70,6 +118,8 @@ macro_rules! capabilities {
                     let mut value = Fields(fields.take(usize::from(length))?);
                     match tag {
                         $($tag => $name = Some($type::from_le_bytes(value.array()?)),)*
+                        Self::BURSTS => bursts = Bursts::read(value)?,
+                        Self::ENTERED => entered = length > 0 && value.u8()? != 0,
                         Self::NATURE => nature = Some(BoardNature::from_code(value.u8()?)?),
                         Self::NAME => name = cut(&String::from_utf8_lossy(value.rest())).into(),
                         _ => {}
@@ -77,6 +127,8 @@ macro_rules! capabilities {
                 }
                 Ok(Self {
                     $($name: $name.ok_or(Malformed::MissingCapability(stringify!($name)))?,)*
+                    bursts,
+                    entered,
                     nature: nature.ok_or(Malformed::MissingCapability("nature"))?,
                     name,
                 })

@@ -1,5 +1,6 @@
 //! What packets say. Integers are little endian; a reader skips what a later version appended to a payload it knows.
 
+mod bursts;
 mod capabilities;
 mod datapath;
 mod hello;
@@ -11,7 +12,8 @@ mod tables;
 
 use alloc::vec::Vec;
 
-pub use capabilities::{BoardNature, Capabilities, Depths};
+pub use bursts::{Burst, BurstMode, BurstState, Expect, FrameRecord, Records, TrappedRow};
+pub use capabilities::{BoardNature, Bursts, Capabilities, Depths};
 pub use datapath::{Datapath, UnknownDatapath};
 pub use hello::{Hello, MAGIC, Welcome};
 pub use refusal::{Refusal, RefusalCode};
@@ -78,6 +80,17 @@ pub enum Request<'a> {
     RowIn(RowIn<'a>),
     /// Take the acknowledgement in the header; there is no reply.
     RowAck,
+    /// Make frames on your own, or this many more or fewer.
+    Burst(Burst),
+    /// Drop the records of the burst's frames before this one, and say those from it on.
+    Records {
+        /// The frame, counted from 0.
+        from: u32,
+    },
+    /// Expect these signatures of the rows of a burst.
+    Expect(Expect<'a>),
+    /// Say which row was trapped.
+    Trap,
 }
 
 impl<'a> Request<'a> {
@@ -97,6 +110,10 @@ impl<'a> Request<'a> {
             Self::Configure(_) => Kind::Configure,
             Self::RowIn(_) => Kind::RowIn,
             Self::RowAck => Kind::RowAck,
+            Self::Burst(_) => Kind::Burst,
+            Self::Records { .. } => Kind::Records,
+            Self::Expect(_) => Kind::Expect,
+            Self::Trap => Kind::Trap,
         }
     }
 
@@ -104,7 +121,7 @@ impl<'a> Request<'a> {
     pub fn write(&self, payload: &mut Vec<u8>) {
         match self {
             Self::Hello(hello) => hello.write(payload),
-            Self::Capabilities | Self::RowAck => {}
+            Self::Capabilities | Self::RowAck | Self::Trap => {}
             Self::Status { clear } => payload.push(u8::from(*clear)),
             Self::Reset(reset) => reset.write(payload),
             Self::Echo(bytes) => payload.extend_from_slice(bytes),
@@ -113,6 +130,9 @@ impl<'a> Request<'a> {
             Self::Commit(commit) => commit.write(payload),
             Self::Configure(configuration) => configuration.write(payload),
             Self::RowIn(row) => row.write(payload),
+            Self::Burst(burst) => burst.write(payload),
+            Self::Records { from } => payload.extend_from_slice(&from.to_le_bytes()),
+            Self::Expect(expect) => expect.write(payload),
         }
     }
 
@@ -136,6 +156,10 @@ impl<'a> Request<'a> {
             Kind::Configure => Configuration::read(fields).map(Self::Configure),
             Kind::RowIn => RowIn::read(fields).map(Self::RowIn),
             Kind::RowAck => Ok(Self::RowAck),
+            Kind::Burst => Burst::read(fields).map(Self::Burst),
+            Kind::Records => fields.u32().map(|from| Self::Records { from }),
+            Kind::Expect => Expect::read(fields).map(Self::Expect),
+            Kind::Trap => Ok(Self::Trap),
             Kind::RowOut | Kind::Refusal => Err(Malformed::Kind(code)),
         }
     }
@@ -169,6 +193,14 @@ pub enum Reply<'a> {
     Configure,
     /// A corrected row.
     RowOut(RowOut<'a>),
+    /// The burst has this many frames, and goes on or begins.
+    Burst,
+    /// What was signed of a burst's frames.
+    Records(Records<'a>),
+    /// The signatures are kept.
+    Expect,
+    /// The row that was trapped, if one was.
+    Trap(Option<TrappedRow<'a>>),
     /// The request was refused.
     Refusal(Refusal),
 }
@@ -189,6 +221,10 @@ impl<'a> Reply<'a> {
             Self::Commit { .. } => Kind::Commit,
             Self::Configure => Kind::Configure,
             Self::RowOut(_) => Kind::RowOut,
+            Self::Burst => Kind::Burst,
+            Self::Records(_) => Kind::Records,
+            Self::Expect => Kind::Expect,
+            Self::Trap(_) => Kind::Trap,
             Self::Refusal(_) => Kind::Refusal,
         }
     }
@@ -199,12 +235,14 @@ impl<'a> Reply<'a> {
             Self::Hello(welcome) => welcome.write(payload),
             Self::Capabilities(capabilities) => capabilities.write(payload),
             Self::Status(status) => status.write(payload),
-            Self::Reset | Self::TableWrite | Self::Configure => {}
+            Self::Reset | Self::TableWrite | Self::Configure | Self::Burst | Self::Expect => {}
             Self::Echo(bytes) => payload.extend_from_slice(bytes),
             Self::TableRead(entries) => entries.write(payload),
             Self::TableCrc(crc) => payload.extend_from_slice(&crc.to_le_bytes()),
             Self::Commit { generation } => payload.push(*generation),
             Self::RowOut(row) => row.write(payload),
+            Self::Records(records) => records.write(payload),
+            Self::Trap(kept) => TrappedRow::write(kept.as_ref(), payload),
             Self::Refusal(refusal) => refusal.write(payload),
         }
     }
@@ -228,6 +266,10 @@ impl<'a> Reply<'a> {
             Kind::Commit => fields.u8().map(|generation| Self::Commit { generation }),
             Kind::Configure => Ok(Self::Configure),
             Kind::RowOut => RowOut::read(fields).map(Self::RowOut),
+            Kind::Burst => Ok(Self::Burst),
+            Kind::Records => Records::read(fields).map(Self::Records),
+            Kind::Expect => Ok(Self::Expect),
+            Kind::Trap => TrappedRow::read(fields).map(Self::Trap),
             Kind::Refusal => Refusal::read(fields).map(Self::Refusal),
             Kind::RowIn | Kind::RowAck => Err(Malformed::Kind(code)),
         }

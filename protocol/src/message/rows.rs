@@ -93,6 +93,9 @@ pub struct RowOut<'a> {
     pub repeats: u16,
     /// Its samples, as [`crate::samples::pack`] packs them.
     pub packed: &'a [u8],
+    /// CRC-32 of the row's samples as they entered the core, words of 16 bits; none where the payload ends with the
+    /// samples. Only a board with the capability `entered` says it: what another one sends there has no meaning.
+    pub entered: Option<u32>,
 }
 
 impl<'a> RowOut<'a> {
@@ -102,6 +105,7 @@ impl<'a> RowOut<'a> {
             payload.extend_from_slice(&field.to_le_bytes());
         }
         payload.extend_from_slice(self.packed);
+        payload.extend(self.entered.into_iter().flat_map(u32::to_le_bytes));
     }
 
     pub(crate) fn read(mut fields: Fields<'a>) -> Result<Self, Malformed> {
@@ -114,6 +118,7 @@ impl<'a> RowOut<'a> {
             pauses: fields.u16()?,
             repeats: fields.u16()?,
             packed: packed_samples(&mut fields, place.width)?,
+            entered: fields.u32().ok(),
         };
         Ok(fields.end(row))
     }

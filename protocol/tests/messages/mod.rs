@@ -1,8 +1,9 @@
 //! Strategies for every message of the wire. Those that borrow their bytes are kept with the bytes.
 
 use halfrow_protocol::message::{
-    Bank, BoardNature, Capabilities, Commit, Configuration, Entries, Hello, Refusal, RefusalCode, Reset,
-    ResetLevel, RowIn, RowOut, RowPlace, Span, Status, Table, Welcome,
+    Bank, BoardNature, Burst, BurstMode, BurstState, Bursts, Capabilities, Commit, Configuration, Entries,
+    Expect, FrameRecord, Hello, Records, Refusal, RefusalCode, Reset, ResetLevel, RowIn, RowOut, RowPlace,
+    Span, Status, Table, TrappedRow, Welcome,
 };
 use halfrow_protocol::samples::packed_length;
 use halfrow_protocol::{MAX_PAYLOAD, Reply, Request};
@@ -17,6 +18,7 @@ pub(crate) enum OwnedRequest {
     Echo(Vec<u8>),
     TableWrite(Span, Vec<u8>),
     RowIn(RowPlace, Vec<u8>),
+    Expect(u16, Vec<[u8; Expect::BYTES]>),
 }
 
 impl OwnedRequest {
@@ -26,6 +28,7 @@ impl OwnedRequest {
             Self::Echo(bytes) => Request::Echo(bytes),
             Self::TableWrite(span, bytes) => Request::TableWrite(Entries { span: *span, bytes }),
             Self::RowIn(place, packed) => Request::RowIn(RowIn { place: *place, packed }),
+            Self::Expect(first, bytes) => Request::Expect(Expect { first: *first, bytes }),
         }
     }
 }
@@ -37,6 +40,8 @@ pub(crate) enum OwnedReply {
     Echo(Vec<u8>),
     TableRead(Span, Vec<u8>),
     RowOut(RowOut<'static>, Vec<u8>),
+    Records(Records<'static>, Vec<[u8; FrameRecord::BYTES]>),
+    Trap(TrappedRow<'static>, Vec<u8>),
 }
 
 impl OwnedReply {
@@ -46,6 +51,8 @@ impl OwnedReply {
             Self::Echo(bytes) => Reply::Echo(bytes),
             Self::TableRead(span, bytes) => Reply::TableRead(Entries { span: *span, bytes }),
             Self::RowOut(row, packed) => Reply::RowOut(RowOut { packed, ..*row }),
+            Self::Records(records, bytes) => Reply::Records(Records { bytes, ..*records }),
+            Self::Trap(row, packed) => Reply::Trap(Some(TrappedRow { packed, ..*row })),
         }
     }
 }
@@ -54,19 +61,22 @@ impl OwnedReply {
 pub(crate) fn request() -> impl Strategy<Value = OwnedRequest> {
     let plain = prop_oneof![
         hello().prop_map(Request::Hello),
-        select(vec![Request::Capabilities, Request::RowAck]),
+        select(vec![Request::Capabilities, Request::RowAck, Request::Trap]),
         any::<bool>().prop_map(|clear| Request::Status { clear }),
         reset().prop_map(Request::Reset),
         span().prop_map(Request::TableRead),
         span().prop_map(Request::TableCrc),
         commit().prop_map(Request::Commit),
         configuration().prop_map(Request::Configure),
+        burst().prop_map(Request::Burst),
+        any::<u32>().prop_map(|from| Request::Records { from }),
     ];
     prop_oneof![
         5 => plain.prop_map(OwnedRequest::Plain),
         1 => echo().prop_map(OwnedRequest::Echo),
         1 => entries().prop_map(|(span, bytes)| OwnedRequest::TableWrite(span, bytes)),
         1 => row().prop_map(|(place, packed)| OwnedRequest::RowIn(place, packed)),
+        1 => expect(),
     ]
 }
 
@@ -76,7 +86,8 @@ pub(crate) fn reply() -> impl Strategy<Value = OwnedReply> {
         welcome().prop_map(Reply::Hello),
         capabilities().prop_map(Reply::Capabilities),
         status().prop_map(Reply::Status),
-        select(vec![Reply::Reset, Reply::TableWrite, Reply::Configure]),
+        select(vec![Reply::Reset, Reply::TableWrite, Reply::Configure, Reply::Burst, Reply::Expect]),
+        Just(Reply::Trap(None)),
         any::<u32>().prop_map(Reply::TableCrc),
         any::<u8>().prop_map(|generation| Reply::Commit { generation }),
         refusal().prop_map(Reply::Refusal),
@@ -86,6 +97,8 @@ pub(crate) fn reply() -> impl Strategy<Value = OwnedReply> {
         1 => echo().prop_map(OwnedReply::Echo),
         1 => entries().prop_map(|(span, bytes)| OwnedReply::TableRead(span, bytes)),
         1 => row_out(),
+        1 => records(),
+        1 => trapped(),
     ]
 }
 
@@ -117,8 +130,8 @@ fn welcome() -> impl Strategy<Value = Welcome> {
 fn capabilities() -> impl Strategy<Value = Capabilities> {
     let nature = select(vec![BoardNature::Hardware, BoardNature::Simulation, BoardNature::Mock]);
     // Sixty characters are at most 240 bytes; a name has at most 255.
-    (any::<([u16; 5], [u8; 9], u32)>(), nature, "\\PC{0,60}").prop_map(
-        |((words, bytes, clock_hz), nature, name)| {
+    (any::<([u16; 5], [u8; 9], u32, bool)>(), proptest::option::of(bursts()), nature, "\\PC{0,60}").prop_map(
+        |((words, bytes, clock_hz, entered), bursts, nature, name)| {
             let [datapath, max_width, max_height, ring, least_blanking] = words;
             let [
                 depths,
@@ -147,6 +160,8 @@ fn capabilities() -> impl Strategy<Value = Capabilities> {
                 kernel_ports,
                 clock_source,
                 clock_hz,
+                bursts,
+                entered,
                 nature,
                 name,
             }
@@ -247,10 +262,65 @@ fn row() -> impl Strategy<Value = (RowPlace, Vec<u8>)> {
 }
 
 fn row_out() -> impl Strategy<Value = OwnedReply> {
-    (row(), any::<(u8, [u16; 4])>()).prop_map(|((place, packed), (generation, latencies))| {
-        let [first_latency, last_latency, pauses, repeats] = latencies;
-        let row = RowOut { place, generation, first_latency, last_latency, pauses, repeats, packed: &[] };
-        OwnedReply::RowOut(row, packed)
+    (row(), any::<(u8, [u16; 4], Option<u32>)>()).prop_map(
+        |((place, packed), (generation, latencies, entered))| {
+            let [first_latency, last_latency, pauses, repeats] = latencies;
+            let row = RowOut {
+                place,
+                generation,
+                first_latency,
+                last_latency,
+                pauses,
+                repeats,
+                packed: &[],
+                entered,
+            };
+            OwnedReply::RowOut(row, packed)
+        },
+    )
+}
+
+fn bursts() -> impl Strategy<Value = Bursts> {
+    any::<([u16; 3], bool)>().prop_map(|([content, records, least_frame_blanking], trap)| Bursts {
+        content,
+        records,
+        least_frame_blanking,
+        trap,
+    })
+}
+
+fn burst() -> impl Strategy<Value = Burst> {
+    let modes = [BurstMode::Fresh, BurstMode::Alternating, BurstMode::Repeating, BurstMode::Trapped];
+    (any::<([u32; 3], [u16; 2])>(), select(modes.to_vec())).prop_map(
+        |(([burst, frames, seed], [first_frame, frame_blanking]), mode)| Burst {
+            burst,
+            frames,
+            seed,
+            first_frame,
+            frame_blanking,
+            mode,
+        },
+    )
+}
+
+/// As many signatures as a packet takes are 1019.
+fn expect() -> impl Strategy<Value = OwnedRequest> {
+    let bytes = prop_oneof![3 => vec(any::<[u8; 4]>(), 0..9), 1 => vec(any::<[u8; 4]>(), 1000..=1019)];
+    (any::<u16>(), bytes).prop_map(|(first, bytes)| OwnedRequest::Expect(first, bytes))
+}
+
+/// As many records as a packet takes are 226.
+fn records() -> impl Strategy<Value = OwnedReply> {
+    let states = [BurstState::None, BurstState::UnderWay, BurstState::Ended];
+    let records = prop_oneof![3 => vec(any::<[u8; 18]>(), 0..9), 1 => vec(any::<[u8; 18]>(), 200..=226)];
+    (any::<(u32, u32)>(), select(states.to_vec()), records).prop_map(|((burst, from), state, records)| {
+        OwnedReply::Records(Records { burst, from, state, bytes: &[] }, records)
+    })
+}
+
+fn trapped() -> impl Strategy<Value = OwnedReply> {
+    (row(), any::<(u32, u32)>()).prop_map(|((RowPlace { row, width, .. }, packed), (frame, signature))| {
+        OwnedReply::Trap(TrappedRow { frame, row, width, signature, packed: &[] }, packed)
     })
 }
 

@@ -4,7 +4,10 @@ use std::error::Error;
 use std::hint::black_box;
 use std::sync::Arc;
 
-use halfrow_model::{Corrector, Frame, Interpolant, Kernel, ModelPath, TableSet, correct};
+use halfrow_model::{
+    Content, Corrector, Frame, Interpolant, Kernel, ModelPath, Phase, Signer, TableSet, correct,
+    frame_signature, row_signature,
+};
 
 use crate::Benchmark;
 use crate::scene::{HEIGHT, batch, frame, tables};
@@ -39,6 +42,7 @@ pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
             benchmarks.push(corrector(name, &one, &tables, vec![Corrector::new(path, &kernel)?]));
         }
         let kernel = Kernel::from(Interpolant::Hermite);
+        benchmarks.push(signer(path, &tables, &kernel)?);
         let threads = if path == ModelPath::Reference { &[][..] } else { &[1, 2] };
         for &threads in threads {
             let name = format!("batch {path} on {threads}");
@@ -63,6 +67,22 @@ fn copy(name: &str, frames: &Arc<Vec<Frame>>) -> Benchmark {
         }
     };
     Benchmark { name: name.to_owned(), run: Box::new(run) }
+}
+
+/// A frame of a burst made, corrected and signed.
+fn signer(path: ModelPath, tables: &Arc<TableSet>, kernel: &Kernel) -> Result<Benchmark, Box<dyn Error>> {
+    let (tables, content) = (Arc::clone(tables), Content { seed: 1, frame: 0 });
+    let mut signer = Signer::new(Corrector::new(path, kernel)?);
+    let made = content.frame(tables.geometry(), Phase::Grbg);
+    let rows: Vec<_> = correct(&tables, kernel, &made)?.rows().map(row_signature).collect();
+    let mut signed = Vec::new();
+    if signer.sign(&tables, content, &mut signed) != frame_signature(&rows) {
+        return Err(format!("the path {path} signs otherwise than the oracle").into());
+    }
+    let run = move || {
+        black_box(signer.sign(&tables, black_box(content), &mut signed));
+    };
+    Ok(Benchmark { name: format!("signed {path}"), run: Box::new(run) })
 }
 
 /// The frames in equal shares to as many threads as there are correctors, this one among them.

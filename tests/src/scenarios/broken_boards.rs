@@ -46,6 +46,15 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",table-banks=1,fault=row-factor,row=1079,bit=0,hidden=true",
         "row 1079's factor, bit 0",
     ),
+    fails("a row that changes on its way in", ",fault=spoilt-row", "not computed wrongly"),
+    fails(
+        "a path that is too slow",
+        ",fault=slow-path,one-in=2000",
+        "fails at the full pixel clock, seen in bit 5",
+    ),
+    fails("a bit that flips when warm", ",fault=warm-bit,row=1,bit=11", "in row 1 first"),
+    fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
+    fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
     expect("ERROR", 6, "another datapath", ",fault=wrong-datapath", &[], "this program judges datapath 1"),
 ];
 

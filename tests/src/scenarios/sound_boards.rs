@@ -34,6 +34,8 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("the longest pipeline", ",latency=32", &[W, "64", H, "72", R, "40"]),
     passes("the shortest pipeline", ",latency=4", &[W, "64", H, "72", R, "40"]),
     passes("two banks each way", ",row-banks-in=2,row-banks-out=2", &[W, "128", H, "72", R, "73.78"]),
+    passes("a board from before bursts", ",bursts=no,entered=no", &[W, "128", H, "72", R, "73.78"]),
+    passes("a board without a trap", ",bursts=untrapped", &[W, "128", H, "72", R, "73.78"]),
     passes("one bank of tables", ",table-banks=1", &[W, "128", H, "72", R, "73.78"]),
     passes("many banks", ",row-banks-in=255,row-banks-out=255", &[W, "128", H, "16"]),
     passes("more banks in than out", ",row-banks-in=16,row-banks-out=2", &[W, "128", H, "16"]),

@@ -33,12 +33,19 @@ const IMPOSSIBLE: &[Claim] = &[
     ("row_banks_out = 1", |board| board.row_banks_out = 1),
     ("step_ports = 0", |board| board.step_ports = 0),
     ("kernel_ports = 0", |board| board.kernel_ports = 0),
+    ("records = 0", |board| records(board, 0)),
+    ("records = 1", |board| records(board, 1)),
 ];
+
+fn records(board: &mut Capabilities, records: u16) {
+    board.bursts.iter_mut().for_each(|bursts| bursts.records = records);
+}
 
 /// What is unusual, and legal.
 const UNUSUAL: &[Claim] = &[
     ("the least", |board| (board.max_width, board.max_height, board.ring) = (64, 8, 64)),
     ("the most", |board| (board.max_width, board.max_height, board.ring) = (2592, 2048, 16_384)),
+    ("few records", |board| records(board, 2)),
     ("an odd width", |board| board.max_width = 2047),
     ("12 bits alone", |board| board.depths = 4),
     ("a depth to come", |board| board.depths = 0x0f),

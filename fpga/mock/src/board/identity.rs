@@ -3,6 +3,7 @@
 use halfrow_protocol::message::{BoardNature, Capabilities, Status};
 
 use super::Board;
+use super::bursts::capability;
 use crate::faults::Defects;
 use crate::options::TapCount;
 
@@ -45,6 +46,8 @@ impl Board {
             kernel_ports: KERNEL_PORTS,
             clock_source: 0,
             clock_hz: options.pixel_clock,
+            bursts: capability(options),
+            entered: options.entered,
             nature: BoardNature::Mock,
             name: "halfrow mock board".to_owned(),
         }
@@ -55,7 +58,7 @@ impl Board {
         let status = Status {
             next_row_in: self.rows.next_row_in(),
             next_row_out: self.rows.acknowledged(),
-            core_busy: u32::from(!self.player.banks.is_idle()),
+            core_busy: u32::from(self.is_busy()),
             generation: self.tables.generation().into(),
             ..self.status
         };

@@ -83,6 +83,9 @@ impl RowBanks {
 impl Board {
     /// Takes a row into its bank, or deals with one that came again.
     pub(super) fn row_in(&mut self, row: &RowIn<'_>) -> Result<(), Refused> {
+        if self.bursts.is_under_way() {
+            return Err((RefusalCode::Busy, 0));
+        }
         let place = row.place;
         if place.row_sequence < self.rows.next_to_play || self.rows.waiting.contains_key(&place.row_sequence)
         {
@@ -215,6 +218,7 @@ impl Board {
             pauses: row.pauses,
             repeats,
             packed: &packed,
+            entered: self.options.entered.then_some(row.entered),
         };
         let header = Header {
             kind: Kind::RowOut.code(),

@@ -54,6 +54,11 @@ impl Session {
         }
     }
 
+    /// Whether a session is open whose holder was not heard for too long.
+    pub(super) fn is_silent(&self, now: Duration) -> bool {
+        self.holder.as_ref().is_some_and(|holder| now.saturating_sub(holder.heard) >= SILENCE)
+    }
+
     pub(super) fn close(&mut self) {
         self.holder = None;
     }
@@ -91,6 +96,7 @@ impl Board {
         }
         if !self.session.was_opened_by(hello) {
             self.session.open(hello, now);
+            self.bursts.forget();
             self.drop_rows(RowBanks::new(self.options.row_banks_in));
             self.status = Status::default();
         }
@@ -105,6 +111,7 @@ impl Board {
 
     /// Drops what `reset` says. The session itself is closed when the reply is out.
     pub(super) fn reset(&mut self, reset: &Reset) {
+        self.bursts.abort();
         self.drop_rows(self.rows.restarted(reset.next_row));
         if reset.level == ResetLevel::Tables {
             self.tables = Tables::new(&self.options, self.fault);
@@ -117,6 +124,11 @@ impl Board {
     fn drop_rows(&mut self, rows: RowBanks) {
         self.rows = rows;
         self.tables.forget_commit();
+        self.empty_core();
+    }
+
+    /// Makes the core as it was before any row entered.
+    pub(super) fn empty_core(&mut self) {
         let settings = self.player.settings().clone();
         // The same build with the same settings stood before, so it can be made again.
         if let Ok(mut player) = Player::new(&self.options, self.fault)

@@ -12,7 +12,7 @@ use crate::tables::{self, Port, TableError};
 
 impl Board {
     pub(super) fn configure(&mut self, wanted: &Configuration) -> Result<(), Refused> {
-        if !self.player.banks.is_empty() || self.rows.is_waiting() {
+        if self.holds_rows() {
             return Err((RefusalCode::Busy, 0));
         }
         let settings = Settings {
@@ -35,12 +35,21 @@ impl Board {
         Ok(())
     }
 
+    /// Whether a row is in an in-bank, in the core or in an out-bank.
+    pub(super) fn holds_rows(&self) -> bool {
+        !self.player.banks.is_empty() || self.rows.is_waiting() || self.bursts.is_under_way()
+    }
+
     pub(super) fn write_entries(&mut self, entries: &Entries<'_>) -> Result<(), Refused> {
         let Span { table, bank, first, .. } = entries.span;
         if bank != Bank::Shadow {
             return Err((RefusalCode::Range, first));
         }
-        if self.player.banks.holds_generation(self.tables.shadow_generation()) {
+        let one_bank = self.options.table_banks == 1;
+        if self.player.banks.holds_generation(self.tables.shadow_generation())
+            || self.bursts.uses_shadow()
+            || one_bank && self.bursts.is_under_way()
+        {
             return Err((RefusalCode::Busy, 0));
         }
         let first = usize::from(first);
@@ -69,7 +78,7 @@ impl Board {
     /// The bytes of entries as the datapath's port reads them.
     pub(super) fn read_entries(&self, span: &Span) -> Result<Vec<u8>, Refused> {
         let Span { table, bank, port, first, count } = *span;
-        if !self.player.banks.is_idle() {
+        if self.is_busy() {
             return Err((RefusalCode::Busy, 0));
         }
         let (ports, entries) = match table {

@@ -68,6 +68,7 @@ pub(crate) struct CoreDefects {
 
 impl CoreDefects {
     /// What the taps carry.
+    #[inline]
     pub(crate) fn taps(&self, taps: [i32; TAPS]) -> [i32; TAPS] {
         self.dead_tap.map_or(taps, |dead| dead.apply(taps))
     }

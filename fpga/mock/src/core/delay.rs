@@ -23,6 +23,7 @@ impl DelayLine {
     }
 
     /// One pixel clock: what entered the line `clocks` ago leaves it.
+    #[inline]
     pub(crate) fn step(&mut self, made: Option<Leaving>) -> Option<Leaving> {
         let leaving = std::mem::replace(&mut self.stages[self.oldest], made);
         self.oldest += 1;

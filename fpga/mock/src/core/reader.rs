@@ -49,6 +49,7 @@ impl Reader {
     }
 
     /// One pixel clock: the sample of the next column, until the row is through.
+    #[inline(always)]
     pub(crate) fn make(&mut self, ring: &Ring, defects: &CoreDefects) -> Option<Leaving> {
         let column = self.column;
         if i32::from(column) >= self.row.width {
@@ -77,6 +78,7 @@ struct RowInRing {
 
 impl RowInRing {
     /// P(m): the row's sample at a column, or outside the row the nearest one of the same colour.
+    #[inline]
     fn sample(&self, ring: &Ring, column: i32) -> u16 {
         let column = column + self.offset;
         let inside = if column < 0 {

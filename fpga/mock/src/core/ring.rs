@@ -26,6 +26,7 @@ impl Ring {
     }
 
     /// Writes one sample and moves on.
+    #[inline]
     pub(crate) fn write(&mut self, sample: u16) {
         let cell = self.cell(self.next);
         self.memory[cell] = self.data_lines.apply(sample) & SAMPLE_MASK;
@@ -33,6 +34,7 @@ impl Ring {
     }
 
     /// The sample `column` columns after the address `base`, or what has been written over it since.
+    #[inline]
     pub(crate) fn read(&self, base: usize, column: usize) -> u16 {
         self.memory[self.cell(base + column)]
     }

@@ -38,6 +38,7 @@ impl Source {
     }
 
     /// The position of the present column; moves on to the next, S[j+1] = S[j] + 2Q.
+    #[inline]
     pub(crate) fn advance(&mut self) -> Position {
         let position = self.position();
         self.coordinate = (self.coordinate + self.step) & COORDINATE_MASK;

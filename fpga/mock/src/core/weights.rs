@@ -24,6 +24,7 @@ pub(crate) struct Weights {
 
 impl Weights {
     /// The kernel's weights at `x` of 2^-13 column, 0 ≤ x < 2^14, between those of the two nodes around it.
+    #[inline]
     pub(crate) fn at(kernel: &Kernel, x: u32) -> Self {
         let node = (x >> BETWEEN_BITS) as usize % (NODES - 1);
         let between = (x & ((1 << BETWEEN_BITS) - 1)) as i32;
@@ -43,6 +44,7 @@ impl Weights {
 
     /// The weighted sum of the taps, plus `rounding`, as a whole number. Five products suffice, since the weights of
     /// the output's own colour add up to one and those of the other to nothing.
+    #[inline]
     pub(crate) fn sum(&self, taps: [i32; TAPS], rounding: i32) -> i32 {
         let [g0, r1, g2, r3, g4, r5, g6] = taps;
         let own = self.g0 * (g0 - g2) + self.g4 * (g4 - g2) + self.g6 * (g6 - g2);

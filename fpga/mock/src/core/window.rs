@@ -15,7 +15,8 @@ pub(crate) const TAPS: usize = 7;
 /// The eight samples around the source column n. One enters when n moves on by one, in place of the leftmost.
 #[derive(Debug)]
 pub(crate) struct Window {
-    samples: [i32; SAMPLES],
+    /// Each sample twice, so that all of them stand side by side from the leftmost one on.
+    samples: [i32; 2 * SAMPLES],
     leftmost: usize,
     n: i32,
 }
@@ -23,22 +24,34 @@ pub(crate) struct Window {
 impl Window {
     /// The window at a row's start, loaded whole; `read` gives the row's sample at a column.
     pub(crate) fn load(n: i32, read: impl Fn(i32) -> u16) -> Self {
-        let samples = std::array::from_fn(|place| i32::from(read(n - LEFT + place as i32)));
-        Self { samples, leftmost: 0, n }
+        let mut window = Self { samples: [0; 2 * SAMPLES], leftmost: 0, n };
+        for column in n - LEFT..=n + RIGHT {
+            window.push(read(column));
+        }
+        window
     }
 
     /// Moves the window to the source column `n`, reading at most one sample. The port has no time for a second.
+    #[inline]
     pub(crate) fn follow(&mut self, n: i32, read: impl Fn(i32) -> u16) {
         if n != self.n {
             self.n = n;
-            self.samples[self.leftmost] = i32::from(read(n + RIGHT));
-            self.leftmost = (self.leftmost + 1) % SAMPLES;
+            self.push(read(n + RIGHT));
         }
     }
 
+    #[inline]
+    fn push(&mut self, sample: u16) {
+        let place = self.leftmost % SAMPLES;
+        self.samples[place] = sample.into();
+        self.samples[place + SAMPLES] = sample.into();
+        self.leftmost = (place + 1) % SAMPLES;
+    }
+
     /// The seven taps G0 to G6 of an output whose base column a is n, or n − 1 if `left_of_n`.
+    #[inline]
     pub(crate) fn taps(&self, left_of_n: bool) -> [i32; TAPS] {
-        let first = self.leftmost + usize::from(!left_of_n);
-        std::array::from_fn(|tap| self.samples[(first + tap) % SAMPLES])
+        let first = self.leftmost % SAMPLES + usize::from(!left_of_n);
+        std::array::from_fn(|tap| self.samples[first + tap])
     }
 }

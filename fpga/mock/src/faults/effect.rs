@@ -18,7 +18,12 @@ impl BoardFault {
     pub fn without_effect(&self, streamed: &Streamed) -> Option<String> {
         let Streamed { height, frames } = *streamed;
         match *self {
-            Self::RowFactor { row, .. } | Self::LostRow { row } | Self::DriftingTable { row, .. }
+            Self::RowFactor { row, .. }
+            | Self::LostRow { row }
+            | Self::DriftingTable { row, .. }
+            | Self::SpoiltRow { row, .. }
+            | Self::WarmBit { row, .. }
+            | Self::HiddenPause { row }
                 if usize::from(row) >= height =>
             {
                 let last = height.saturating_sub(1);

@@ -1,6 +1,6 @@
 //! The constants of a build, given as text.
 
-use halfrow_mock::{Core, Depth, OptionError, Options, TapCount};
+use halfrow_mock::{BurstBuild, Core, Depth, OptionError, Options, TapCount};
 use halfrow_pipe::{BoardOptions, ValueError};
 
 fn options(given: &[(&str, &str)]) -> Result<Options, OptionError> {
@@ -32,6 +32,10 @@ fn every_option_is_set_by_its_name() {
         ("depths", "8+12"),
         ("pixel-clock", "50000000"),
         ("serial", "144115188075855871"),
+        ("bursts", "untrapped"),
+        ("records", "1024"),
+        ("least-frame-blanking", "4095"),
+        ("entered", "no"),
     ];
     let expected = Options {
         latency: 32,
@@ -47,6 +51,10 @@ fn every_option_is_set_by_its_name() {
         pixel_clock: 50_000_000,
         // The largest number of 57 bits.
         serial: 0x01ff_ffff_ffff_ffff,
+        bursts: BurstBuild::Untrapped,
+        records: 1024,
+        least_frame_blanking: 4095,
+        entered: false,
     };
     assert_eq!(options(&given), Ok(expected));
 }
@@ -92,6 +100,8 @@ fn values_out_of_range_are_refused_with_the_range() {
 fn values_that_are_no_numbers_or_no_known_words_are_refused() {
     let refusal = |key, value| options(&[(key, value)]).unwrap_err().to_string();
     assert_eq!(refusal("ring", "big"), "ring=big is not a whole number; give one from 64 to 16384");
+    assert_eq!(refusal("bursts", "yes"), "bursts=yes is not known; give one of no, untrapped, trapped");
+    assert_eq!(refusal("records", "1"), "records=1 is out of range; give a number from 2 to 1024");
     assert_eq!(refusal("taps", "six"), "taps=six is not known; give one of five, seven");
     assert_eq!(refusal("depths", "8+9"), "depths=9 is not known; give one of 8, 10, 12");
 }

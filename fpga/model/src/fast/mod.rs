@@ -5,15 +5,18 @@
 //! the block of columns, so that 32 bits hold them; and rows of one row factor, above and below the lens's axis, share
 //! coordinates and weights.
 
+mod content;
 mod engine;
 mod nodes;
 mod path;
 mod scalar;
+mod signer;
 mod walk;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
 pub use path::{ModelPath, UnavailablePath, UnknownPath};
+pub use signer::Signer;
 
 use crate::corrector::check_frame;
 use crate::{CorrectError, Frame, Geometry, Kernel, RowFactor, TableSet};
@@ -93,20 +96,32 @@ impl Corrector {
         let mut lower = lower.rchunks_exact_mut(frame.width());
         for (row, output) in upper.chunks_exact_mut(frame.width()).enumerate() {
             let mirrored = frame.height() - 1 - row;
-            let [own, opposite] = [row, mirrored].map(|row| tables.row_factors()[row]);
             let inputs = [row, mirrored].map(|row| frame.row(row));
             match lower.next() {
-                None => self.correct_row(geometry, own, inputs[0], output),
-                Some(below) if own == opposite => {
-                    self.engine.correct_rows(&mut self.ends, geometry, own, inputs, [output, below]);
-                }
-                Some(below) => {
-                    self.correct_row(geometry, own, inputs[0], output);
-                    self.correct_row(geometry, opposite, inputs[1], below);
-                }
+                None => self.correct_row(geometry, tables.row_factors()[row], inputs[0], output),
+                Some(below) => self.correct_pair(tables, [row, mirrored], inputs, [output, below]),
             }
         }
         Ok(())
+    }
+
+    /// Corrects the rows of these numbers, together if they have one row factor.
+    fn correct_pair(
+        &mut self,
+        tables: &TableSet,
+        rows: [usize; 2],
+        inputs: [&[u16]; 2],
+        outputs: [&mut [u16]; 2],
+    ) {
+        let geometry = tables.geometry();
+        let factors = rows.map(|row| tables.row_factors()[row]);
+        if factors[0] == factors[1] {
+            self.engine.correct_rows(&mut self.ends, geometry, factors[0], inputs, outputs);
+            return;
+        }
+        for ((factor, input), output) in factors.into_iter().zip(inputs).zip(outputs) {
+            self.correct_row(geometry, factor, input, output);
+        }
     }
 
     /// The corrected frame, as [`crate::correct`] gives it.

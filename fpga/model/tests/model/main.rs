@@ -3,6 +3,7 @@
 // clippy.toml allows it inside #[test] functions, but not in the functions that several tests call.
 #![allow(clippy::unwrap_used)]
 
+mod at_speed;
 mod calibrated;
 mod camera;
 mod corrector;

@@ -42,8 +42,19 @@ const LENS: [&str; 8] =
 
 /// What a recording says of its run beside the options that make tables. Its time limit is on the board's clock, which
 /// leaves --timeout that of this computer.
-const RECORDED: [&str; 10] =
-    ["frame", "tables", "kernel", "phase", "raw", "repeat", "fail_fast", "seed", "take_over", "retry_limit"];
+const RECORDED: [&str; 11] = [
+    "frame",
+    "tables",
+    "kernel",
+    "phase",
+    "raw",
+    "repeat",
+    "at_speed",
+    "fail_fast",
+    "seed",
+    "take_over",
+    "retry_limit",
+];
 
 /// The options of a board.
 const BOARD: [&str; 4] = ["board", "timeout", "retry_limit", "take_over"];

@@ -58,6 +58,10 @@ pub(super) struct Arguments {
     /// Stream the frames this often
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000))]
     repeat: u32,
+    /// Let the board make frames at its full pixel clock for so many seconds of that clock, 0 for none
+    /// [default: 3 on hardware, three frames on any other board]
+    #[arg(long, value_name = "SECONDS", env = "HALFROW_AT_SPEED")]
+    at_speed: Option<f64>,
     /// Stop at the first frame that differs
     #[arg(long)]
     fail_fast: bool,
@@ -117,6 +121,12 @@ impl From<RestoreError> for Failure {
     fn from(error: RestoreError) -> Self {
         if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
     }
+}
+
+/// The time of an `option` in seconds.
+fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
+    let time = seconds.map(Duration::try_from_secs_f64).transpose();
+    time.map_err(|_| Failure::call(CallError::Seconds { option }))
 }
 
 /// What a run writes, with its places taken.
@@ -246,6 +256,7 @@ impl Arguments {
         Ok(Plan {
             frames,
             repeat: self.repeat,
+            at_speed: seconds("--at-speed", self.at_speed.or(settings.at_speed))?,
             fail_fast: self.fail_fast,
             seed: self.seed.or(settings.seed).unwrap_or(1),
             ..chosen.plan(self.lens.phase)
@@ -269,8 +280,7 @@ impl Arguments {
     /// How long a board may stay away.
     fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         let seconds = self.reconnect.or(settings.reconnect).filter(|_| self.record.is_none());
-        let patience = seconds.map(Duration::try_from_secs_f64).transpose();
-        patience.map_err(|_| Failure::call(CallError::Seconds { option: "--reconnect" }))
+        self::seconds("--reconnect", seconds)
     }
 
     /// Looks at all that is read and written, and takes the places of what is written.

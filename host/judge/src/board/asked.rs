@@ -76,5 +76,8 @@ fn changes(request: &Request<'_>) -> bool {
 }
 
 fn may_change(kind: Kind) -> bool {
-    matches!(kind, Kind::Reset | Kind::TableWrite | Kind::Commit | Kind::Configure)
+    matches!(
+        kind,
+        Kind::Reset | Kind::TableWrite | Kind::Commit | Kind::Configure | Kind::Burst | Kind::Expect
+    )
 }

@@ -146,7 +146,16 @@ mod tests {
             let place = RowPlace { row_sequence, frame: 0, row: row_sequence as u16, width: 2, last: false };
             let packed = &[sample, 0, 0];
             let (first_latency, last_latency, pauses, generation) = (44, 44, 0, 1);
-            let row = RowOut { place, generation, first_latency, last_latency, pauses, repeats, packed };
+            let row = RowOut {
+                place,
+                generation,
+                first_latency,
+                last_latency,
+                pauses,
+                repeats,
+                packed,
+                entered: None,
+            };
             conduct.row(number, &row, 9);
         }
         conduct.misconduct()

@@ -1,6 +1,7 @@
 //! A board: whatever answers the protocol behind a link. The only module that speaks the protocol.
 
 mod asked;
+mod bursts;
 mod conduct;
 mod conversation;
 pub mod deadlines;
@@ -20,6 +21,7 @@ use conversation::{Conversation, take_reply};
 use deadlines::{RetryLimit, Step};
 
 use crate::link::Link;
+pub(crate) use bursts::Trapped;
 pub(crate) use conduct::Misconduct;
 pub use conversation::Tally;
 pub use error::BoardError;
@@ -30,7 +32,7 @@ pub use stop::Stop;
 pub(crate) use tables::{ReadBack, TablePort};
 
 pub use halfrow_protocol::message::{
-    Bank, BoardNature, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,
+    Bank, BoardNature, Bursts, Capabilities, Datapath, RefusalCode, Status, Table, UnknownDatapath, Welcome,
 };
 
 /// How a session is opened.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::result::{
-    BoardKind, BoardReport, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome, Report,
+    BoardKind, BoardReport, Finding, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome, Report,
     StreetReport,
 };
 use crate::verdict::Verdict;
@@ -100,8 +100,21 @@ pub fn facts(report: &Report) -> String {
         _ => format!("{} of {} different", grouped(differences), count(samples, "sample")),
     });
     facts.extend(report.latency.map(|latency| format!("latency {}", measured(&latency))));
+    facts.extend(at_speed(report));
     facts.push(format!("{:.1} s", report.run.seconds));
     facts.join(", ")
+}
+
+/// What was judged at the full pixel clock; none where the run did not come to that.
+fn at_speed(report: &Report) -> Option<String> {
+    report.checks.iter().find_map(|check| match check.finding {
+        Finding::EqualAtSpeed { frames, clock_hz: 0, .. } => Some(format!("{} at speed", grouped(frames))),
+        Finding::EqualAtSpeed { frames, clock_hz, .. } => {
+            Some(format!("{} at {:.1} MHz", grouped(frames), f64::from(clock_hz) / 1e6))
+        }
+        Finding::PausedAtSpeed { .. } | Finding::NothingAtSpeed { .. } => Some("none at speed".to_owned()),
+        _ => None,
+    })
 }
 
 /// The latency of all rows in one sentence, without a full stop.

@@ -29,11 +29,13 @@ pub enum CheckName {
     TablesAfter,
     /// The board's own counters.
     Counters,
+    /// Frames that the board makes on its own, at the full pixel clock.
+    AtSpeed,
 }
 
 impl CheckName {
     /// All of them, in the order of a run.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Judge,
         Self::Identity,
         Self::Link,
@@ -43,6 +45,7 @@ impl CheckName {
         Self::Latency,
         Self::TablesAfter,
         Self::Counters,
+        Self::AtSpeed,
     ];
 
     /// As people and JSON write it.
@@ -58,6 +61,7 @@ impl CheckName {
             Self::Latency => "latency",
             Self::TablesAfter => "tables-after",
             Self::Counters => "counters",
+            Self::AtSpeed => "at-speed",
         }
     }
 }

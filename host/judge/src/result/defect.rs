@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Extent;
+
 /// A single defect of a board.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "code", content = "parameters", rename_all = "kebab-case")]
@@ -165,6 +167,29 @@ pub enum Defect {
         /// The first.
         first: usize,
     },
+    /// Rows enter the core otherwise than they were sent.
+    RowsChangedOnEntry {
+        /// How many.
+        rows: usize,
+        /// The first of them.
+        first: usize,
+        /// Its frame.
+        frame: u16,
+    },
+    /// Frames begin with the tables of the frame in front of them.
+    TablesChangeLate {
+        /// So many rows.
+        rows: usize,
+    },
+    /// What is right row by row is wrong at the full pixel clock.
+    OnlyAtSpeed {
+        /// A row in which it was seen.
+        row: Option<usize>,
+        /// Samples of that row that differ.
+        samples: usize,
+        /// Bits of them that do.
+        bits: Vec<u32>,
+    },
     /// None that is known explains most of the differences: where they lie.
     NoneKnown {
         /// Their rows.
@@ -248,7 +273,7 @@ impl Defect {
     /// Its code and its parameters.
     #[must_use]
     pub fn tagged(&self) -> (String, super::Parameters) {
-        super::finding::tagged(self)
+        super::problem::tagged(self)
     }
 }
 
@@ -336,51 +361,5 @@ pub enum RowSource {
     Input {
         /// Rows below.
         rows: isize,
-    },
-}
-
-/// Which rows or columns.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "kebab-case")]
-pub enum Extent {
-    /// A single one.
-    One {
-        /// Which.
-        at: usize,
-    },
-    /// All.
-    Every {},
-    /// All from one on.
-    From {
-        /// That one.
-        first: usize,
-    },
-    /// All between two, these included.
-    Between {
-        /// The first.
-        first: usize,
-        /// The last.
-        last: usize,
-    },
-    /// Only even ones.
-    Even {
-        /// How many.
-        count: usize,
-    },
-    /// Only odd ones.
-    Odd {
-        /// How many.
-        count: usize,
-    },
-    /// Some.
-    Some {
-        /// How many.
-        count: usize,
-        /// Of so many.
-        total: usize,
-        /// The first.
-        first: usize,
-        /// The last.
-        last: usize,
     },
 }

@@ -1,8 +1,8 @@
 //! One of every finding and of every defect, for the page of codes and for tests.
 
 use super::{
-    Account, BoardKind, ClampEnd, Counter, Counting, Defect, Doubt, Extent, Finding, MadeWith, Memory,
-    NotExercised, Problem, Reading, RowSource, StaleFrames, Suspect,
+    Account, BoardKind, BurstCount, ClampEnd, Counter, Counting, Defect, Doubt, Extent, Finding, MadeWith,
+    Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, StaleFrames, Suspect,
 };
 
 /// One of every finding that is no error.
@@ -19,6 +19,9 @@ pub fn findings() -> Vec<Finding> {
         Finding::TablesUnchanged {},
         Finding::TablesUnused {},
         Finding::CountersRight { rows: 17_280, damaged_unseen: 0 },
+        Finding::EqualAtSpeed { frames: 138, clock_hz: 96_000_000, seconds: Some(3.0), held_back: 0 },
+        Finding::PausedAtSpeed { frames: 138, paused: 2 },
+        Finding::NothingAtSpeed { reason: NoBurst::BoardMakesNone {} },
         Finding::NotReached {},
         Finding::AllRight {
             frames: 16,
@@ -28,7 +31,7 @@ pub fn findings() -> Vec<Finding> {
             reconnections: 0,
         },
     ];
-    passed.into_iter().chain(of_the_board()).chain(unjudged()).collect()
+    passed.into_iter().chain(of_the_board()).chain(on_entry_and_at_speed()).chain(unjudged()).collect()
 }
 
 fn of_the_board() -> [Finding; 18] {
@@ -67,11 +70,29 @@ fn of_the_board() -> [Finding; 18] {
     ]
 }
 
-fn unjudged() -> [Finding; 9] {
+/// On what entered the core, and on frames that the board made on its own.
+fn on_entry_and_at_speed() -> [Finding; 4] {
+    [
+        Finding::RowsEnteredChanged { rows: 9, row: 3, frame: 2 },
+        Finding::EntryMiscounted { rows: 9, row: 3, frame: 2 },
+        Finding::DiffersAtSpeed {
+            wrong: 2,
+            frames: 138,
+            first: 17,
+            repetition: Repetition::Trapped { frames: 19, row: 3 },
+            suspect: Some(Box::new(Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] })),
+        },
+        Finding::MiscountedAtSpeed { frame: 17, count: BurstCount::Rows, counted: 1079, right: 1080 },
+    ]
+}
+
+fn unjudged() -> [Finding; 11] {
     let reason = Problem::new("no-answer", "no answer to Echo in 8 tries; check that the board is powered");
     [
         Finding::RowLostOnce { row: 3, frame: 2 },
         Finding::RowLostAmongOthers { row: 3, frame: 2 },
+        Finding::BurstStalled { frame: 17, frames: 138, seconds: 5.0 },
+        Finding::BurstEndedEarly { came: 17, frames: 138 },
         Finding::RightInAnotherSession {
             found: Box::new(Finding::TableCrcWrong {}),
             doubt: Doubt::RequestsTwice { requests: 2 },
@@ -102,6 +123,8 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::Taps { taps: vec!["G0".to_owned(), "G6".to_owned()] },
         NotExercised::OneCentre { centre2: 1919 },
         NotExercised::CentreBits { bits: vec![8, 9, 10, 11] },
+        NotExercised::FullSpeed {},
+        NotExercised::TableChangeAtSpeed {},
         NotExercised::Depths { bits: vec![8, 10] },
     ]
 }
@@ -116,7 +139,12 @@ pub fn suspects() -> Vec<Suspect> {
     let seen = seen.map(|defect| Suspect { defect, account: samples.clone(), explained: 1.0 });
     let read = read_back().map(|defect| Suspect { defect, account: words.clone(), explained: 1.0 });
     let unknown = Suspect { defect: none_known(), account: Account::Nothing, explained: 0.0 };
-    seen.chain(read).chain([unknown]).collect()
+    let late = Suspect {
+        defect: Defect::TablesChangeLate { rows: 1 },
+        account: Account::Signatures { wrong: 2, explained: 2 },
+        explained: 1.0,
+    };
+    seen.chain(read).chain([late]).chain(without_share()).chain([unknown]).collect()
 }
 
 fn in_tables() -> Vec<Defect> {
@@ -200,6 +228,15 @@ fn read_back() -> impl Iterator<Item = Defect> {
         Defect::TableLevelStuck { table, value: 0 },
     ]
     .into_iter()
+}
+
+fn without_share() -> impl Iterator<Item = Suspect> {
+    [
+        Defect::RowsChangedOnEntry { rows: 9, first: 3, frame: 2 },
+        Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] },
+    ]
+    .into_iter()
+    .map(|defect| Suspect { defect, account: Account::Nothing, explained: 0.0 })
 }
 
 fn none_known() -> Defect {

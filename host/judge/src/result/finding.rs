@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Account, BoardKind, Counter, Defect, Parameters, Problem, wording};
+use super::problem::tagged;
+use super::{Account, BoardKind, BurstCount, Counter, Defect, Doubt, NoBurst, Problem, Repetition, wording};
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -67,6 +68,29 @@ pub enum Finding {
         rows: usize,
         /// Damaged packets that the board counts although nothing had to be sent again.
         damaged_unseen: u32,
+    },
+    /// Frames that the board made on its own are the reference's, at the full pixel clock.
+    EqualAtSpeed {
+        /// Frames.
+        frames: u32,
+        /// The pixel clock in hertz; 0 when the board names none.
+        clock_hz: u32,
+        /// How long they took on that clock, in seconds.
+        seconds: Option<f64>,
+        /// Frames that waited until the host had the records of earlier ones.
+        held_back: u32,
+    },
+    /// They are the reference's, and the enable was off in some.
+    PausedAtSpeed {
+        /// Frames.
+        frames: u32,
+        /// Those with pauses.
+        paused: u32,
+    },
+    /// The board made no frames on its own.
+    NothingAtSpeed {
+        /// Why.
+        reason: NoBurst,
     },
     /// The run ended before.
     NotReached {},
@@ -133,6 +157,64 @@ pub enum Finding {
         frames: usize,
         /// The likeliest cause.
         suspect: Option<Box<Defect>>,
+    },
+    /// Rows entered the core otherwise than they were sent, by the board's own CRC.
+    RowsEnteredChanged {
+        /// How many.
+        rows: usize,
+        /// The first of them.
+        row: usize,
+        /// Its frame.
+        frame: u16,
+    },
+    /// Rows came out right, and the board's CRC of what entered is another one.
+    EntryMiscounted {
+        /// How many.
+        rows: usize,
+        /// The first of them.
+        row: usize,
+        /// Its frame.
+        frame: u16,
+    },
+    /// Frames that the board made on its own have other signatures than the reference's.
+    DiffersAtSpeed {
+        /// How many.
+        wrong: u32,
+        /// Of so many.
+        frames: u32,
+        /// The first of them, counted from the first of the burst.
+        first: u32,
+        /// What making it again has shown.
+        repetition: Repetition,
+        /// The likeliest cause.
+        suspect: Option<Box<Defect>>,
+    },
+    /// A frame that the board made on its own has the right signature, and something else that it counts is wrong.
+    MiscountedAtSpeed {
+        /// The frame, counted from the first of the burst.
+        frame: u32,
+        /// What.
+        count: BurstCount,
+        /// What the board counts.
+        counted: u32,
+        /// What it should.
+        right: u32,
+    },
+    /// No frame followed in a burst.
+    BurstStalled {
+        /// The frame that was waited for, counted from the first of the burst.
+        frame: u32,
+        /// Frames of the burst.
+        frames: u32,
+        /// How long it was waited for, in seconds.
+        seconds: f64,
+    },
+    /// A burst ended before its last frame.
+    BurstEndedEarly {
+        /// Frames that came.
+        came: u32,
+        /// Frames of the burst.
+        frames: u32,
     },
     /// Rows take another latency than the board claims.
     LatencyWrong {
@@ -284,32 +366,6 @@ pub enum Finding {
     Problem(Box<Problem>),
 }
 
-/// Why a board may not be as the host made it, although it is sound.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(tag = "of", rename_all = "kebab-case")]
-pub enum Doubt {
-    /// Requests that change the board may have come to it twice.
-    RequestsTwice {
-        /// How many.
-        requests: u64,
-    },
-    /// The board counts other packets than were sent to it.
-    PacketsMiscounted {
-        /// What it counts.
-        counted: u64,
-        /// What was sent.
-        sent: u64,
-    },
-}
-
-impl Doubt {
-    /// It as a part of a sentence.
-    #[must_use]
-    pub fn sentence(self) -> String {
-        wording::because(self)
-    }
-}
-
 impl Finding {
     /// It in one sentence, without a full stop.
     #[must_use]
@@ -339,19 +395,4 @@ impl Finding {
         let (message, remedy) = (self.sentence(), self.remedy());
         Problem { code, parameters, message, remedy, causes: Vec::new() }
     }
-}
-
-impl From<Problem> for Finding {
-    fn from(problem: Problem) -> Self {
-        Self::Problem(Box::new(problem))
-    }
-}
-
-/// The code and the parameters of a finding or a defect.
-pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
-    let value = serde_json::to_value(value).unwrap_or_default();
-    let code = value.get("code").and_then(serde_json::Value::as_str).unwrap_or_default().to_owned();
-    let parameters =
-        value.get("parameters").and_then(serde_json::Value::as_object).cloned().unwrap_or_default();
-    (code, parameters)
 }

@@ -9,14 +9,17 @@
 //! is the code and its parameters, never the sentence.
 
 mod as_text;
+mod bursts;
 mod check;
 pub mod codes;
 pub(crate) mod comparison;
 mod counter;
 mod defect;
 mod document;
+mod doubt;
 mod evidence;
 pub mod examples;
+mod extent;
 mod finding;
 mod frames;
 mod identity;
@@ -34,12 +37,15 @@ use crate::verdict::{Cause, Verdict};
 use not_exercised::InWords;
 
 pub use crate::target::BoardKind;
+pub use bursts::{BurstCount, NoBurst, Repetition};
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
-pub use defect::{ClampEnd, Counting, Defect, Extent, MadeWith, Memory, Reading, RowSource, StaleFrames};
+pub use defect::{ClampEnd, Counting, Defect, MadeWith, Memory, Reading, RowSource, StaleFrames};
 pub use document::{Document, SCHEMA, Schema};
+pub use doubt::Doubt;
 pub use evidence::{Evidence, EvidenceReport};
-pub use finding::{Doubt, Finding};
+pub use extent::Extent;
+pub use finding::Finding;
 pub use frames::{FrameReport, FrameTiming, LatencyReport, Variation};
 pub use identity::Identity;
 pub use link::{LinkReport, Reconnection};

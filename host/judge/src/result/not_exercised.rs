@@ -59,6 +59,10 @@ pub enum NotExercised {
         /// The bits, from 0.
         bits: Vec<usize>,
     },
+    /// Frames that follow each other at the full pixel clock.
+    FullSpeed {},
+    /// A change of tables between two frames at the full pixel clock.
+    TableChangeAtSpeed {},
     /// Depths of the board that no frame had.
     Depths {
         /// Bits of a sample, each.
@@ -76,7 +80,7 @@ impl NotExercised {
     /// Its code and its parameters.
     #[must_use]
     pub fn tagged(&self) -> (String, Parameters) {
-        super::finding::tagged(self)
+        super::problem::tagged(self)
     }
 }
 

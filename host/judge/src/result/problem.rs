@@ -6,6 +6,7 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
+use super::Finding;
 use super::codes::{self, Coded};
 
 /// Parameters by name.
@@ -94,4 +95,18 @@ fn remedy(message: &str) -> Option<String> {
     let mut letters = asked.trim_end_matches('.').chars();
     let first = letters.next()?;
     Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+impl From<Problem> for Finding {
+    fn from(problem: Problem) -> Self {
+        Self::Problem(Box::new(problem))
+    }
+}
+
+/// The code and the parameters of a finding or a defect.
+pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
+    let value = serde_json::to_value(value).unwrap_or_default();
+    let code = value.get("code").and_then(Value::as_str).unwrap_or_default().to_owned();
+    let parameters = value.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
+    (code, parameters)
 }

@@ -42,6 +42,13 @@ pub enum Account {
         /// Other lines that would read alike.
         others: usize,
     },
+    /// Signatures of frames that the board made on its own.
+    Signatures {
+        /// Frames whose signature is another than the reference's.
+        wrong: usize,
+        /// Those of them that the defect gives.
+        explained: usize,
+    },
     /// The defect says where differences lie, and explains none.
     Nothing,
 }

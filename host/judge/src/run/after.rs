@@ -1,12 +1,12 @@
 //! What is judged when the last row has come back.
 
 use super::findings::End;
-use super::judge::Seen;
+use super::judge::{Seen, WrongEntry};
 use super::plan::{DECOY, Generation};
 use super::steps::Run;
 use crate::board::{Bank, Status};
 use crate::diagnosis::{self, Case, Uploaded};
-use crate::result::{CheckName, Counter, Finding, LatencyReport, Suspect};
+use crate::result::{Account, CheckName, Counter, Defect, Finding, LatencyReport, Suspect};
 
 impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
@@ -70,6 +70,9 @@ impl Run<'_> {
         }
         let differing = seen.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
         let (samples, frames) = (seen.samples(), seen.frames.len());
+        if let Some(WrongEntry { rows, row, frame }) = seen.wrong_entry {
+            return Err(changed_on_entry(rows, row, frame, differing > 0));
+        }
         if differing == 0 {
             return Ok(Finding::FramesEqual { frames, samples });
         }
@@ -136,6 +139,20 @@ impl Run<'_> {
             frames: &self.findings.seen.frames,
             evidence: &self.findings.seen.evidence,
         })
+    }
+}
+
+/// What came in otherwise than it was sent explains what came out, however that may look.
+fn changed_on_entry(rows: usize, row: usize, frame: u16, differs: bool) -> End {
+    if !differs {
+        return End::failed(CheckName::Frames, Finding::EntryMiscounted { rows, row, frame });
+    }
+    let defect = Defect::RowsChangedOnEntry { rows, first: row, frame };
+    let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 1.0 }];
+    End::Failed {
+        check: CheckName::Frames,
+        finding: Finding::RowsEnteredChanged { rows, row, frame },
+        suspects,
     }
 }
 

@@ -77,6 +77,10 @@ pub(super) struct Findings {
     pub(super) rows_counted: usize,
     /// What was left untouched of a board that is right.
     pub(super) not_exercised: Vec<NotExercised>,
+    /// What was left untouched at the full pixel clock.
+    pub(super) untested_at_speed: Vec<NotExercised>,
+    /// Bursts that were begun.
+    pub(super) bursts: u32,
     /// Why the board cannot have what the plan uploads.
     pub(super) misfit: Option<Misfit>,
 }
@@ -99,6 +103,8 @@ impl Findings {
             earlier: Earlier::default(),
             rows_counted: 0,
             not_exercised: Vec::new(),
+            untested_at_speed: Vec::new(),
+            bursts: 0,
             misfit: None,
         }
     }

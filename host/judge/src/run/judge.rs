@@ -3,10 +3,11 @@
 use std::collections::VecDeque;
 use std::iter::Take;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use halfrow_model::Frame;
+use halfrow_model::{Frame, row_signature};
 
 use super::exercised::SampleLevels;
 use super::kept::Kept;
@@ -27,8 +28,21 @@ pub(super) struct Seen {
     pub(super) wrong_generation: Option<Finding>,
     /// The first row with a wrong latency.
     pub(super) wrong_latency: Option<WrongLatency>,
+    /// The first row that entered the core otherwise than it was sent.
+    pub(super) wrong_entry: Option<WrongEntry>,
     /// The first row whose gaps are not those of the seed.
     pub(super) wrong_pauses: Option<Finding>,
+}
+
+/// Rows that entered the core otherwise than they were sent, by the board's own CRC.
+#[derive(Clone, Copy)]
+pub(super) struct WrongEntry {
+    /// How many.
+    pub(super) rows: usize,
+    /// The first of them.
+    pub(super) row: usize,
+    /// Its frame.
+    pub(super) frame: u16,
 }
 
 /// A row with another latency than the board claims, in pixel clocks.
@@ -70,6 +84,8 @@ pub(super) struct Manner {
     pub(super) keep_equal: bool,
     /// Bytes of frames that are kept, at most.
     pub(super) evidence_bytes: usize,
+    /// Whether the board says what entered its core.
+    pub(super) names_entered: bool,
     /// What the segment's frames are for.
     pub(super) variation: Option<Variation>,
     /// Board clocks that gaps keep each row of a frame waiting.
@@ -175,6 +191,14 @@ impl<'a> Judge<'a> {
         }
     }
 
+    fn check_entry(&mut self, row: &ReturnedRow<'_>, sent: &[u16]) {
+        let Some(entered) = row.entered.filter(|_| self.manner.names_entered) else { return };
+        if entered != row_signature(sent) {
+            let (row, frame) = (row.row, row.frame);
+            self.seen.wrong_entry.get_or_insert(WrongEntry { rows: 0, row, frame }).rows += 1;
+        }
+    }
+
     fn check_pauses(&mut self, row: &ReturnedRow<'_>) {
         let expected = self.manner.pauses.get(row.row).copied().unwrap_or_default();
         if row.pauses != expected {
@@ -248,6 +272,8 @@ impl RowTraffic for Judge<'_> {
         };
         self.check_latency(row);
         self.check_pauses(row);
+        let input = Arc::clone(&self.in_flight[place].prepared.input);
+        self.check_entry(row, input.row(row.row));
         self.progress.row();
         let frame = &mut self.in_flight[place];
         frame.returned[row.row] = true;
@@ -280,7 +306,6 @@ impl RowTraffic for Judge<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
     use std::sync::mpsc::channel;
 
     use halfrow_model::{BitDepth, Phase};
@@ -300,7 +325,16 @@ mod tests {
     fn give(judge: &mut Judge<'_>, frame: u16, row: usize, sample: u16) {
         let samples = &[sample; 64];
         let (first_latency, last_latency, pauses, generation) = (44, 44, 0, 2);
-        let row = ReturnedRow { frame, row, generation, first_latency, last_latency, pauses, samples };
+        let row = ReturnedRow {
+            frame,
+            row,
+            generation,
+            first_latency,
+            last_latency,
+            pauses,
+            entered: None,
+            samples,
+        };
         assert!(judge.returned(&row).is_continue());
     }
 
@@ -316,6 +350,7 @@ mod tests {
             fail_fast: false,
             keep_equal: false,
             evidence_bytes: 0,
+            names_entered: false,
             variation: None,
             pauses: vec![0; HEIGHT],
         };

@@ -22,7 +22,7 @@ const NARROWEST: u16 = 64;
 const LATENCY: std::ops::RangeInclusive<u8> = 3..=super::MAX_LATENCY;
 
 /// Of datapath 1.
-const RULES: [Rule; 11] = [
+const RULES: [Rule; 12] = [
     Rule {
         name: "max_width",
         legal: "rows have 64 to 2592 samples",
@@ -88,6 +88,12 @@ const RULES: [Rule; 11] = [
         legal: "a datapath that reads nodes has at least one port for them",
         value: |board| board.kernel_ports.into(),
         holds: |board| board.kernel_ports >= 1,
+    },
+    Rule {
+        name: "records",
+        legal: "a board that makes bursts keeps at least 2",
+        value: |board| board.bursts.map_or(0, |bursts| bursts.records),
+        holds: |board| board.bursts.is_none_or(|bursts| bursts.records >= 2),
     },
 ];
 

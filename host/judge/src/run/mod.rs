@@ -3,6 +3,7 @@
 //! The steps stand in `steps` in their order; each adds its check to the findings or ends the run.
 
 mod after;
+mod at_speed;
 mod conclude;
 mod exercised;
 mod findings;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
+use std::time::Duration;
 
 use halfrow_model::{
     Equidistant, Frame, FrameError, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet,
@@ -98,6 +99,9 @@ pub struct Plan {
     pub repeat: u32,
     /// What is set otherwise than `tables` have it, in frames of noise of their own.
     pub vary: Vary,
+    /// How long the board makes frames on its own, on its own clock: 3 s of hardware and some frames of any other board when
+    /// not given.
+    pub at_speed: Option<Duration>,
     /// End with the first frame that differs.
     pub fail_fast: bool,
     /// The seed of nonces, link test and noise.
@@ -157,6 +161,7 @@ impl Plan {
             frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
             repeat: 1,
             vary: Vary::default(),
+            at_speed: None,
             fail_fast: false,
             seed: 1,
         }

@@ -32,6 +32,9 @@ pub struct RecordedRun {
     /// A recording that does not say so holds no such frames.
     #[serde(default)]
     vary: Vary,
+    /// A recording that does not say so holds no such frames.
+    #[serde(default = "none_at_speed")]
+    at_speed: Option<Duration>,
     fail_fast: bool,
     take_over: bool,
     seed: u64,
@@ -91,6 +94,7 @@ impl RecordedRun {
             frames: plan.frames.iter().map(FrameSource::name).collect(),
             repeat: plan.repeat,
             vary: plan.vary,
+            at_speed: plan.at_speed,
             fail_fast: plan.fail_fast,
             take_over: options.take_over,
             seed: plan.seed,
@@ -117,6 +121,7 @@ impl RecordedRun {
             phase,
             repeat: run.repeat,
             vary: run.vary,
+            at_speed: run.at_speed,
             fail_fast: run.fail_fast,
             seed: run.seed,
             frames: run.frames(recording, file.tables.geometry(), phase)?,
@@ -159,6 +164,10 @@ impl RecordedRun {
             })
             .collect()
     }
+}
+
+fn none_at_speed() -> Option<Duration> {
+    Some(Duration::ZERO)
 }
 
 fn value<E: std::error::Error + Send + Sync + 'static>(error: E) -> RestoreError {

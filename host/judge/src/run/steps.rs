@@ -68,6 +68,7 @@ impl Run<'_> {
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.conclude(last)?;
+            self.at_speed(last)?;
             self.note_not_exercised();
             Ok(())
         })
@@ -120,6 +121,7 @@ impl Run<'_> {
             .identity
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
+        self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
     }
 
     fn identity(&mut self) -> Result<(), End> {

@@ -61,6 +61,7 @@ impl Run<'_> {
             fail_fast: self.plan.fail_fast,
             keep_equal: self.options.keep_equal,
             evidence_bytes: self.options.evidence_bytes,
+            names_entered: self.board.capabilities.entered,
             variation: self.plan.variation(geometry),
             pauses: pauses(gap_seed, geometry.width(), geometry.height()),
         }

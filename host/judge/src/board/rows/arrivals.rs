@@ -83,6 +83,7 @@ impl<'a> Arrivals<'a> {
             first_latency: found.first_latency,
             last_latency: found.last_latency,
             pauses: found.pauses,
+            entered: found.entered,
             samples: &self.unpacked,
         });
         while self.ahead.remove(&self.missing) {

@@ -25,6 +25,9 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
                 if others > 0 { "; other lines would read alike, so this is not certain" } else { "" };
             format!("{defect} gives {explained} of the {wrong} wrong words, and changes no other{unsure}")
         }
+        Account::Signatures { wrong, explained } => {
+            format!("{defect} gives the signatures of {explained} of the {wrong} wrong frames examined")
+        }
         Account::Nothing => defect,
     }
 }

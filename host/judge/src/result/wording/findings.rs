@@ -1,6 +1,6 @@
 //! What a finding says, and what it asks for.
 
-use super::{designer, evidence, place};
+use super::{at_speed, designer, evidence, place};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding};
 
 /// A finding in one sentence, without a full stop.
@@ -32,7 +32,7 @@ pub fn sentence(finding: &Finding) -> String {
             all_right((*frames, *samples), *latency, *board, *reconnections)
         }
         Finding::Problem(problem) => problem.sentence(),
-        wrong => of_board(wrong),
+        other => at_speed::sentence(other).unwrap_or_else(|| of_board(other)),
     }
 }
 
@@ -118,6 +118,14 @@ fn of_rows(finding: &Finding) -> String {
         Finding::GenerationWrong { row, frame, named, committed } => format!(
             "row {row} of frame {frame} names the tables of generation {named}, and generation {committed} was committed \
              for it"
+        ),
+        Finding::RowsEnteredChanged { rows, row, frame } => format!(
+            "{rows} rows were changed on their way into the core, not computed wrongly: the board's own CRC of what entered \
+             is not that of what was sent, first for row {row} of frame {frame}"
+        ),
+        Finding::EntryMiscounted { rows, row, frame } => format!(
+            "{rows} rows came out right, and the board's CRC of what entered the core is not that of what was sent, first \
+             for row {row} of frame {frame}"
         ),
         Finding::LatencyWrong { rows, row, frame, first, last, claimed } => format!(
             "{rows} rows have another latency than the board claims: row {row} of frame {frame} took {first} pixel clocks \
@@ -228,7 +236,8 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         }
         Finding::TableReadsWrong { defect, .. } => return Some(designer(defect)),
         Finding::TablesChanged { found } => return remedy(found),
-        Finding::SamplesDiffer { suspect: Some(suspect), .. } => return Some(designer(suspect)),
+        Finding::SamplesDiffer { suspect: Some(suspect), .. }
+        | Finding::DiffersAtSpeed { suspect: Some(suspect), .. } => return Some(designer(suspect)),
         Finding::SamplesDiffer { suspect: None, .. } => "Make a report and look at the difference maps.",
         Finding::EchoWrong {} => "Check the board's packet buffers: the link carried what the board sent.",
         Finding::TableCrcWrong {} => {
@@ -252,7 +261,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::RowSwallowed { .. } => {
             "Check the row banks and the row player: the board took the row and lost it inside."
         }
-        other => return asked_of_conduct(other),
+        other => return at_speed::remedy(other).or_else(|| asked_of_conduct(other)),
     };
     Some(asked.to_owned())
 }
@@ -287,6 +296,8 @@ fn asked_of_caller(finding: &Finding) -> Option<String> {
         Finding::CapabilityImpossible { .. } => {
             "Correct what the board says of itself (CAPABILITIES in protocol/WIRE.md), or load another bitstream.".to_owned()
         }
+        Finding::BurstStalled { .. } => "Check the board's clock, and run again.".to_owned(),
+        Finding::BurstEndedEarly { .. } => "Run again.".to_owned(),
         Finding::RowLostOnce { .. } => "Check cable and connectors, and run again.".to_owned(),
         Finding::RowLostAmongOthers { .. } => "Check cable, connectors and rate.".to_owned(),
         Finding::RightInAnotherSession { .. } | Finding::WrongOverDoubtfulLink { .. } => {

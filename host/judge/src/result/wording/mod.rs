@@ -1,5 +1,6 @@
 //! The sentences of all findings and defects, made here from their codes and parameters, and nowhere else.
 
+mod at_speed;
 mod evidence;
 mod findings;
 mod lines;
@@ -95,6 +96,11 @@ fn words(defect: &Defect) -> Words {
         Defect::RoundingMissing {} => logic::rounding(),
         Defect::ClampMissing { end } => logic::clamp(*end),
         Defect::ColumnPairsExchanged {} => logic::pairs_exchanged(),
+        Defect::RowsChangedOnEntry { rows, first, frame } => {
+            at_speed::changed_on_entry(*rows, *first, *frame)
+        }
+        Defect::TablesChangeLate { rows } => at_speed::tables_late(*rows),
+        Defect::OnlyAtSpeed { row, samples, bits } => at_speed::only_at_speed(*row, *samples, bits),
         other => places::words(other),
     }
 }

@@ -28,6 +28,10 @@ pub fn not_exercised(part: &NotExercised) -> String {
         NotExercised::CentreBits { bits } => {
             format!("{} of the optical centre's setting", some("bit", bits))
         }
+        NotExercised::FullSpeed {} => "frames at the full pixel clock without a pause".to_owned(),
+        NotExercised::TableChangeAtSpeed {} => {
+            "a change of tables between two frames at the full pixel clock".to_owned()
+        }
         NotExercised::Depths { bits } => {
             let depths: Vec<_> = bits.iter().map(u32::to_string).collect();
             format!("samples of {} bits", depths.join(" or "))

@@ -1,0 +1,282 @@
+//! Frames that the board makes, sends through the core without a pause, and signs: `fpga/AT-SPEED.md`.
+
+mod defects;
+mod signer;
+mod trap;
+
+use halfrow_protocol::message::{BurstMode, BurstState, FrameRecord};
+
+use crate::content;
+use crate::core::{Entering, RowBinding};
+use crate::faults::{BoardFault, Defects};
+use crate::options::Options;
+use crate::player::Player;
+use crate::settings::Settings;
+use crate::tables::{Bank, Tables};
+
+use signer::{RowInside, Signer};
+
+pub(crate) use defects::{BurstDefects, SlowPath, WarmBit};
+pub(crate) use trap::Trapped;
+
+/// What is fixed when a burst starts.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plan {
+    /// The burst's name.
+    pub(crate) burst: u32,
+    /// The seed of the content.
+    pub(crate) seed: u32,
+    /// The number of frame 0.
+    pub(crate) first_frame: u16,
+    /// Pixel clocks between two frames.
+    pub(crate) frame_blanking: u16,
+    /// Content and tables.
+    pub(crate) mode: BurstMode,
+}
+
+/// The burst of a session.
+#[derive(Debug)]
+struct Burst {
+    plan: Plan,
+    frames: u32,
+    /// Frames of which the first sample has entered.
+    begun: u32,
+    /// The next row of the frame that enters; none between frames.
+    row: Option<u16>,
+    /// Pixel clocks since the last sample entered.
+    since_row: u64,
+    /// Whether the next frame has had to wait for a record.
+    held_back: bool,
+    ended: bool,
+    /// The first frame whose record the host has not got.
+    unread: u32,
+}
+
+/// All that makes bursts.
+#[derive(Debug)]
+pub(crate) struct Bursts {
+    /// The most records that are kept.
+    most: usize,
+    least_frame_blanking: u16,
+    defects: BurstDefects,
+    burst: Option<Burst>,
+    signer: Signer,
+    samples: Vec<u16>,
+}
+
+impl Bursts {
+    pub(crate) fn new(options: &Options, fault: Option<BoardFault>) -> Self {
+        let Defects { burst, player, .. } = Defects::of(fault);
+        Self {
+            most: options.records.into(),
+            least_frame_blanking: options.least_frame_blanking,
+            defects: burst,
+            burst: None,
+            signer: Signer::new(options.max_height, burst, player.lost_row),
+            samples: Vec::new(),
+        }
+    }
+
+    pub(crate) fn state(&self) -> BurstState {
+        match &self.burst {
+            None => BurstState::None,
+            Some(burst) if burst.ended => BurstState::Ended,
+            Some(_) => BurstState::UnderWay,
+        }
+    }
+
+    pub(crate) fn is_under_way(&self) -> bool {
+        self.state() == BurstState::UnderWay
+    }
+
+    /// Whether rows of the shadow's tables may be inside the core.
+    pub(crate) fn uses_shadow(&self) -> bool {
+        self.is_under_way() && self.burst.as_ref().is_some_and(|it| it.plan.mode == BurstMode::Alternating)
+    }
+
+    /// The name of the session's last burst, 0 for none.
+    pub(crate) fn name(&self) -> u32 {
+        self.burst.as_ref().map_or(0, |burst| burst.plan.burst)
+    }
+
+    /// The last burst has so many frames, unless it has ended.
+    pub(crate) fn set_frames(&mut self, frames: u32) {
+        if let Some(burst) = &mut self.burst {
+            burst.frames = frames;
+        }
+    }
+
+    /// Starts a burst. All records are dropped, and in mode 3 what the trap holds.
+    pub(crate) fn start(&mut self, plan: Plan, frames: u32) {
+        self.signer.start(plan.mode);
+        self.burst = Some(Burst {
+            plan,
+            frames,
+            begun: 0,
+            row: None,
+            since_row: u64::MAX,
+            held_back: false,
+            ended: false,
+            unread: 0,
+        });
+    }
+
+    /// Ends the burst at once, without a record of what is inside, and empties the trap.
+    pub(crate) fn abort(&mut self) {
+        if let Some(burst) = &mut self.burst {
+            burst.ended = true;
+        }
+        self.signer.drop_inside();
+    }
+
+    /// Forgets the burst, as a new session does.
+    pub(crate) fn forget(&mut self) {
+        self.abort();
+        self.signer.records.clear();
+        self.burst = None;
+    }
+
+    /// Frees the records before `from`. Returns those that are left, or none if there cannot be such a frame.
+    pub(crate) fn records_from(&mut self, from: u32) -> Option<impl Iterator<Item = &FrameRecord>> {
+        let unread = self.burst.as_ref().map_or(0, |burst| burst.unread);
+        let freed = usize::try_from(from.checked_sub(unread)?).ok()?;
+        if freed > self.signer.records.len() {
+            return None;
+        }
+        self.signer.records.drain(..freed);
+        if let Some(burst) = &mut self.burst {
+            burst.unread = from;
+        }
+        Some(self.signer.records.iter())
+    }
+
+    /// Expects these signatures of the rows from `first` on, as far as there are such rows.
+    pub(crate) fn expect(&mut self, first: u16, signatures: impl Iterator<Item = u32>) {
+        let rows = self.signer.trap.expected.iter_mut().skip(first.into());
+        rows.zip(signatures).for_each(|(row, signature)| *row = signature);
+    }
+
+    /// The row that was trapped.
+    pub(crate) fn trapped(&self) -> Option<&Trapped> {
+        self.signer.trap.kept.as_ref()
+    }
+
+    /// Goes on with a burst that is under way: for about so many pixel clocks, to a whole row, or until it ends or waits
+    /// for a record.
+    pub(crate) fn run(&mut self, player: &mut Player, tables: &mut Tables, clocks: u64) {
+        let end = player.now() + clocks;
+        while let Some(burst) = self.burst.as_mut().filter(|burst| !burst.ended)
+            && player.now() < end
+        {
+            let wanted = burst.begun < burst.frames;
+            if let Some(row) = burst.row {
+                self.play(row, player, tables);
+            } else if wanted && ((burst.begun - burst.unread) as usize) < self.most {
+                let blanking = u64::from(burst.plan.frame_blanking).saturating_sub(burst.since_row);
+                self.signer.begin_frame(burst.begun, burst.held_back);
+                (burst.row, burst.held_back) = (Some(0), false);
+                burst.begun += 1;
+                self.blank(player, blanking);
+            } else {
+                // The rest of the last frame leaves meanwhile.
+                (burst.held_back, burst.ended) = (wanted, !wanted);
+                let rest = u64::from(player.delay()).saturating_sub(burst.since_row);
+                self.blank(player, rest);
+                break;
+            }
+        }
+    }
+
+    /// Plays a row of the frame under way, with the blanking before it.
+    fn play(&mut self, row: u16, player: &mut Player, tables: &mut Tables) {
+        let &Settings { width, height, centre2, depth, blanking, .. } = player.settings();
+        if row > 0 {
+            self.blank(player, blanking.into());
+        }
+        let Some(burst) = &mut self.burst else { return };
+        let frame = burst.begun - 1;
+        let (intended, taken) = burst.banks(frame, row, self.defects, self.least_frame_blanking);
+        let bound = tables.bind_from(taken, row);
+        let generation = if intended == Bank::Active { bound.generation } else { 0 };
+        let ends_frame = row + 1 == height;
+        burst.row = (!ends_frame).then_some(row + 1);
+        burst.since_row = 0;
+        self.samples.resize(width.into(), 0);
+        content::fill(&mut self.samples, depth, burst.plan.seed, burst.plan.number(frame), row);
+        let first_in = player.now();
+        let last_in = first_in + u64::from(width) - 1;
+        let follows = row > 0 || frame > 0;
+        self.signer.enter(RowInside { first_in, last_in, row, width, follows, ends_frame }, generation);
+        let binding = RowBinding { width, centre2, depth, factor: bound.factor, kernel: bound.kernel };
+        let mut begins = Some(&binding);
+        for &sample in &self.samples {
+            let (leaving, now) = player.clock(Some(Entering { sample, begins: begins.take() }));
+            if let Some(leaving) = leaving {
+                self.signer.collect(leaving, now);
+            }
+        }
+    }
+
+    /// Lets pixel clocks pass without a sample.
+    fn blank(&mut self, player: &mut Player, clocks: u64) {
+        for _ in 0..clocks {
+            if let (Some(leaving), now) = player.clock(None) {
+                self.signer.collect(leaving, now);
+            }
+        }
+        if let Some(burst) = &mut self.burst {
+            burst.since_row = burst.since_row.saturating_add(clocks);
+        }
+    }
+}
+
+impl Burst {
+    /// The bank that a row of a frame is to be made with, and the one that it is made with.
+    fn banks(&self, frame: u32, row: u16, defects: BurstDefects, least_blanking: u16) -> (Bank, Bank) {
+        let Plan { mode, frame_blanking, .. } = self.plan;
+        let bank = |frame: u32| match mode {
+            BurstMode::Alternating if !frame.is_multiple_of(2) => Bank::Shadow,
+            _ => Bank::Active,
+        };
+        let is_late = defects.late_swap && row == 0 && frame > 0 && frame_blanking == least_blanking;
+        (bank(frame), bank(if is_late { frame - 1 } else { frame }))
+    }
+}
+
+impl Plan {
+    /// The number of a frame, on which its content depends.
+    fn number(&self, frame: u32) -> u16 {
+        match self.mode {
+            BurstMode::Fresh | BurstMode::Alternating => self.first_frame.wrapping_add(frame as u16),
+            BurstMode::Repeating | BurstMode::Trapped => self.first_frame,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::depth::Depth;
+
+    /// Pixel clocks that a burst of three frames of four rows of 64 samples takes, which the core leaves after 44.
+    fn clocks(blanking: u16, frame_blanking: u16) -> u64 {
+        let options = Options::default();
+        let (mut player, mut tables) = (Player::new(&options, None).unwrap(), Tables::new(&options, None));
+        let settings =
+            Settings { width: 64, height: 4, centre2: 63, depth: Depth::Eight, blanking, gap_seed: 5 };
+        player.configure(settings).unwrap();
+        let mut bursts = Bursts::new(&options, None);
+        bursts.start(Plan { burst: 1, seed: 1, first_frame: 0, frame_blanking, mode: BurstMode::Fresh }, 3);
+        bursts.run(&mut player, &mut tables, u64::MAX);
+        assert_eq!((bursts.state(), bursts.signer.records.len()), (BurstState::Ended, 3));
+        player.now()
+    }
+
+    /// Neither is seen from outside, where a frame counts for its samples and latencies alone.
+    #[test]
+    fn between_rows_and_frames_pass_exactly_their_blankings() {
+        assert_eq!(clocks(0, 8), 3 * 4 * 64 + 2 * 8 + 44);
+        assert_eq!(clocks(7, 8), 3 * (4 * 64 + 3 * 7) + 2 * 8 + 44);
+        assert_eq!(clocks(7, 1000), 3 * (4 * 64 + 3 * 7) + 2 * 1000 + 44);
+    }
+}

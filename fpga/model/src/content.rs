@@ -1,0 +1,99 @@
+//! What a board makes of a seed, and how it signs what leaves (AT-SPEED.md, "Content" and "Signature"). Written to be
+//! read, since boards are judged by it.
+
+use crate::BitDepth;
+
+/// What the samples of a frame of a burst follow from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Content {
+    /// The burst's seed.
+    pub seed: u32,
+    /// The frame's number.
+    pub frame: u16,
+}
+
+/// One kind of content, which a row has from its first sample to its last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Noise,
+    Swing,
+    /// Columns are grouped by 2^p, of which the first group is high or low.
+    Toggle {
+        p: u32,
+        high: bool,
+    },
+    Steps,
+}
+
+/// A row before its first sample: its kind, and the draw d that told it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct RowStart {
+    pub(crate) kind: Kind,
+    pub(crate) x: u32,
+}
+
+impl Content {
+    /// Row `row`, below 4096.
+    pub(crate) fn start(self, row: usize) -> RowStart {
+        let d = draw((self.seed ^ (u32::from(self.frame) << 12 | row as u32)) | 1 << 31);
+        let kind = match d % 4 {
+            0 => Kind::Noise,
+            1 => Kind::Swing,
+            2 => Kind::Toggle { p: d >> 2 & 3, high: d >> 4 & 1 == 1 },
+            _ => Kind::Steps,
+        };
+        RowStart { kind, x: d }
+    }
+
+    /// The samples of row `row`, below 4096, each of `depth`.
+    pub fn row(self, row: usize, depth: BitDepth, samples: &mut [u16]) {
+        let RowStart { kind, mut x } = self.start(row);
+        let mut held = 0;
+        for (column, sample) in samples.iter_mut().enumerate() {
+            x = draw(x);
+            let level = (x >> 20) as u16 & depth.max();
+            *sample = match kind {
+                Kind::Noise => level,
+                Kind::Swing => full(x >= 1 << 31, depth),
+                Kind::Toggle { p, high } => full((column >> p) % 2 != usize::from(high), depth),
+                Kind::Steps if column == 0 || x.is_multiple_of(16) => level,
+                Kind::Steps => held,
+            };
+            held = *sample;
+        }
+    }
+}
+
+/// The largest sample or none.
+pub(crate) fn full(high: bool, depth: BitDepth) -> u16 {
+    if high { depth.max() } else { 0 }
+}
+
+/// The step of the generator (WIRE.md, section 5).
+pub(crate) fn draw(mut x: u32) -> u32 {
+    x ^= x << 13;
+    x ^= x >> 17;
+    x ^ x << 5
+}
+
+/// The signature of a row: the CRC-32 of its samples, words of 16 bits, little endian.
+#[must_use]
+pub fn row_signature(samples: &[u16]) -> u32 {
+    // Words of an array of their own are what compilers copy by vectors, and these stay in the nearest cache.
+    let mut words = [[0; 2]; 512];
+    let mut crc = crc32fast::Hasher::new();
+    for part in samples.chunks(words.len()) {
+        let words = &mut words[..part.len()];
+        words.iter_mut().zip(part).for_each(|(word, sample)| *word = sample.to_le_bytes());
+        crc.update(words.as_flattened());
+    }
+    crc.finalize()
+}
+
+/// The signature of a frame: the CRC-32 of its rows' signatures from the top, words of 32 bits, little endian.
+#[must_use]
+pub fn frame_signature(rows: &[u32]) -> u32 {
+    let mut crc = crc32fast::Hasher::new();
+    rows.iter().for_each(|row| crc.update(&row.to_le_bytes()));
+    crc.finalize()
+}

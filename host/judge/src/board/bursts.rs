@@ -1,0 +1,92 @@
+//! Bursts: frames that the board makes and signs on its own (AT-SPEED.md).
+
+use std::time::Duration;
+
+use halfrow_protocol::message::{Burst, BurstState, Expect, FrameRecord, Reply, Request};
+use halfrow_protocol::samples;
+
+use super::deadlines::Step;
+use super::{Board, BoardError};
+
+/// Records that a board had ready.
+#[derive(Clone, Debug)]
+pub(crate) struct Fetched {
+    /// How far the burst is.
+    pub(crate) state: BurstState,
+    /// One a frame, from the one on that was asked for.
+    pub(crate) records: Vec<FrameRecord>,
+}
+
+/// The row that a trap kept.
+#[derive(Clone, Debug)]
+pub(crate) struct Trapped {
+    /// The row of the frame.
+    pub(crate) row: usize,
+    /// Its signature by the board's count.
+    pub(crate) signature: u32,
+    /// Its samples.
+    pub(crate) samples: Vec<u16>,
+}
+
+impl Board {
+    /// Starts `burst`, or sets how many frames the one of its name has.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub(crate) fn burst(&mut self, burst: &Burst) -> Result<(), BoardError> {
+        let request = Request::Burst(*burst);
+        self.conversation
+            .request(&request, Step::Request, |reply| matches!(reply, Reply::Burst).then_some(()))
+    }
+
+    /// The records of `burst` from the frame `from` on that are made. The board may forget those before.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer, or answers for another burst.
+    pub(crate) fn records(&mut self, burst: u32, from: u32) -> Result<Fetched, BoardError> {
+        self.conversation.request(&Request::Records { from }, Step::Request, |reply| match reply {
+            Reply::Records(found) if (found.burst, found.from) == (burst, from) => {
+                Some(Fetched { state: found.state, records: found.records().collect() })
+            }
+            _ => None,
+        })
+    }
+
+    /// Says what signatures the rows of a repeating frame must have, from its row 0 on.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub(crate) fn expect(&mut self, signatures: &[u32]) -> Result<(), BoardError> {
+        for (index, signatures) in signatures.chunks(Expect::MOST).enumerate() {
+            let bytes: Vec<_> = signatures.iter().map(|signature| signature.to_le_bytes()).collect();
+            let first = (index * Expect::MOST) as u16;
+            let request = Request::Expect(Expect { first, bytes: &bytes });
+            self.conversation
+                .request(&request, Step::Request, |reply| matches!(reply, Reply::Expect).then_some(()))?;
+        }
+        Ok(())
+    }
+
+    /// The row that was trapped, if one was.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub(crate) fn trap(&mut self) -> Result<Option<Trapped>, BoardError> {
+        self.conversation.request(&Request::Trap, Step::Request, |reply| match reply {
+            Reply::Trap(kept) => Some(kept.map(|row| {
+                let mut samples = vec![0; row.width.into()];
+                samples::unpack(row.packed, &mut samples);
+                Trapped { row: row.row.into(), signature: row.signature, samples }
+            })),
+            _ => None,
+        })
+    }
+
+    /// Lets `time` pass on the link's clock, or less when something comes.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the link breaks, or the run was stopped.
+    pub(crate) fn idle(&mut self, time: Duration) -> Result<(), BoardError> {
+        self.conversation.exchange(time, || "waiting for frames that the board makes".to_owned(), |_| {})
+    }
+}

@@ -1,0 +1,65 @@
+//! What findings on bursts, frames that the board makes on its own, say beside their figures.
+
+use serde::{Deserialize, Serialize};
+
+/// Why there was no burst.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum NoBurst {
+    /// Nobody asked for one.
+    NotAskedFor {},
+    /// The board makes no frames on its own.
+    BoardMakesNone {},
+    /// It makes others than this program knows.
+    ContentUnknown {
+        /// Its content id.
+        content: u16,
+        /// The one that is known.
+        known: u16,
+    },
+}
+
+/// What making a frame again has shown that was wrong at speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum Repetition {
+    /// Its signature told enough.
+    NotNeeded {},
+    /// The board cannot keep a row that differs.
+    NoTrap {},
+    /// It was right every time.
+    AllRight {
+        /// How often.
+        frames: u32,
+    },
+    /// It was wrong again, and a row of it was kept.
+    Trapped {
+        /// Frames up to the first that was wrong.
+        frames: u32,
+        /// The row.
+        row: usize,
+    },
+    /// It was wrong again, and no row that differs was kept.
+    NothingTrapped {
+        /// Frames up to the first that was wrong.
+        frames: u32,
+    },
+    /// It could not be made again.
+    Impossible {},
+}
+
+/// What a board counts of a frame that it made on its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BurstCount {
+    /// Samples.
+    Samples,
+    /// Rows.
+    Rows,
+    /// The smallest latency.
+    LeastLatency,
+    /// The largest.
+    MostLatency,
+    /// The generation of its tables.
+    Generation,
+}

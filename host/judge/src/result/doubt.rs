@@ -1,0 +1,31 @@
+//! Why what was found may not be the board's.
+
+use serde::{Deserialize, Serialize};
+
+use super::wording;
+
+/// Why a board may not be as the host made it, although it is sound.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum Doubt {
+    /// Requests that change the board may have come to it twice.
+    RequestsTwice {
+        /// How many.
+        requests: u64,
+    },
+    /// The board counts other packets than were sent to it.
+    PacketsMiscounted {
+        /// What it counts.
+        counted: u64,
+        /// What was sent.
+        sent: u64,
+    },
+}
+
+impl Doubt {
+    /// It as a part of a sentence.
+    #[must_use]
+    pub fn sentence(self) -> String {
+        wording::because(self)
+    }
+}

@@ -1,0 +1,156 @@
+//! What frames at the full pixel clock have shown, and what enters the core.
+
+use super::places::list;
+use super::{LOGIC, TIMING, Words, place};
+use crate::result::{BurstCount, Finding, NoBurst, Repetition};
+
+pub(super) fn changed_on_entry(rows: usize, first: usize, frame: u16) -> Words {
+    let others = if rows > 1 { format!(", the first of {rows}") } else { String::new() };
+    Words {
+        part: "row's way in",
+        place: format!("the way of a row from its packet to the core, row {first} of frame {frame}{others}"),
+        defect: "the board's own CRC of what entered the core is not that of what was sent".to_owned(),
+        designer: "Check the banks that rows wait in, and the unpacking of samples in front of them."
+            .to_owned(),
+        technician: LOGIC,
+    }
+}
+
+pub(super) fn tables_late(rows: usize) -> Words {
+    let rows = if rows == 1 { "the first row".to_owned() } else { format!("the first {rows} rows") };
+    Words {
+        part: "stale tables",
+        place: "the change of table banks between two frames".to_owned(),
+        defect: format!("{rows} of a frame made with the tables of the frame in front"),
+        designer:
+            "Check when the switch of table banks takes effect where a frame follows another without a pause."
+                .to_owned(),
+        technician: TIMING,
+    }
+}
+
+pub(super) fn only_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) -> Words {
+    let at = |what: &str| format!("a path that fails at the full pixel clock{what}");
+    let ending = if bits.len() == 1 { "" } else { "s" };
+    let numbers = list(&bits.iter().map(|&bit| bit as usize).collect::<Vec<_>>());
+    let (place, seen) = match row {
+        None => (at(""), String::new()),
+        Some(row) => {
+            let differ = if samples == 1 { "one sample".to_owned() } else { format!("{samples} samples") };
+            (
+                at(&format!(", seen in bit{ending} {numbers} of the corrected samples")),
+                format!("; row {row} was kept, in which {differ} differ"),
+            )
+        }
+    };
+    Words {
+        part: "timing",
+        place,
+        defect: format!("what was streamed row by row is right, and what runs without a pause is not{seen}"),
+        designer: "Check the timing of the datapath at this clock, and its supply while every clock carries a sample."
+            .to_owned(),
+        technician: TIMING,
+    }
+}
+
+/// A finding on frames at speed, if it is one.
+pub(super) fn sentence(finding: &Finding) -> Option<String> {
+    Some(match finding {
+        Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back } => {
+            equal(*frames, *clock_hz, *seconds, *held_back)
+        }
+        Finding::PausedAtSpeed { frames, paused } => {
+            format!("{frames} frames, every sample equal, but not at speed: {paused} of them had pauses")
+        }
+        Finding::NothingAtSpeed { reason } => format!("nothing was tested at speed: {}", because(*reason)),
+        Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect } => {
+            let suspicion = suspect
+                .as_ref()
+                .map_or_else(String::new, |suspect| format!("; the suspect is {}", place(suspect)));
+            format!(
+                "{wrong} of {frames} frames differ at speed, the first is frame {first}{}{suspicion}",
+                shown(*repetition)
+            )
+        }
+        Finding::MiscountedAtSpeed { frame, count, counted, right } => {
+            format!(
+                "the board counts {counted} {} for frame {frame} at speed, and it is {right}",
+                words(*count)
+            )
+        }
+        Finding::BurstStalled { frame, frames, seconds } => format!(
+            "frame {frame} of {frames} at speed did not come in {seconds:.1} s; check the board's clock, and run again"
+        ),
+        Finding::BurstEndedEarly { came, frames } => {
+            format!("the board ended its frames at speed behind {came} of {frames}; run again")
+        }
+        _ => return None,
+    })
+}
+
+/// What to do about such a finding, or about rows that entered the core changed.
+pub(super) fn remedy(finding: &Finding) -> Option<String> {
+    let asked = match finding {
+        Finding::RowsEnteredChanged { .. } => {
+            "Check the banks that rows wait in, and the unpacking of samples in front of them."
+        }
+        Finding::EntryMiscounted { .. } => "Check the board's CRC unit: the samples themselves were right.",
+        Finding::MiscountedAtSpeed { .. } => {
+            "Check what the board counts of the frames that it makes: their samples were right."
+        }
+        _ => return None,
+    };
+    Some(asked.to_owned())
+}
+
+/// "138 frames at 96.0 MHz in 3.0 s, every sample equal"
+fn equal(frames: u32, clock_hz: u32, seconds: Option<f64>, held_back: u32) -> String {
+    let clock = match clock_hz {
+        0 => " without a pause".to_owned(),
+        hertz => format!(" at {:.1} MHz", f64::from(hertz) / 1e6),
+    };
+    let time = seconds.map_or_else(String::new, |seconds| match seconds {
+        short if short < 1.0 => format!(" in {:.1} ms", short * 1e3),
+        long => format!(" in {long:.1} s"),
+    });
+    let waited = match held_back {
+        0 => String::new(),
+        some => format!("; {some} of them waited until the records of others were read"),
+    };
+    format!("{frames} frames{clock}{time}, every sample equal{waited}")
+}
+
+fn because(reason: NoBurst) -> String {
+    match reason {
+        NoBurst::NotAskedFor {} => "it was not asked for".to_owned(),
+        NoBurst::BoardMakesNone {} => "the board makes no frames on its own".to_owned(),
+        NoBurst::ContentUnknown { content, known } => {
+            format!("the board makes frames of content {content}, and this program knows content {known}")
+        }
+    }
+}
+
+fn shown(repetition: Repetition) -> String {
+    match repetition {
+        Repetition::NotNeeded {} => String::new(),
+        Repetition::NoTrap {} => ", of which the board keeps no row".to_owned(),
+        Repetition::AllRight { frames } => format!("; made again by itself, it was right {frames} times"),
+        Repetition::Trapped { frames, row } => {
+            format!("; made again, it differed at try {frames}, in row {row} first")
+        }
+        Repetition::NothingTrapped { frames } => {
+            format!("; made again, it differed at try {frames}, and the board kept no row that does")
+        }
+        Repetition::Impossible {} => "; it could not be made again".to_owned(),
+    }
+}
+
+fn words(count: BurstCount) -> &'static str {
+    match count {
+        BurstCount::Samples => "samples",
+        BurstCount::Rows => "rows",
+        BurstCount::LeastLatency => "pixel clocks of least latency",
+        BurstCount::MostLatency => "pixel clocks of most latency",
+        BurstCount::Generation => "as generation",
+    }
+}

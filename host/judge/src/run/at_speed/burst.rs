@@ -1,0 +1,202 @@
+//! What a burst will be.
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use halfrow_model::{BitDepth, Content, MIN_WIDTH};
+use halfrow_protocol::message::{Burst, BurstMode};
+
+use crate::board::{Bursts, Capabilities};
+use crate::run::Plan;
+
+/// The pixel clock, in hertz, that a board is taken to have which names none: that of the paper's sensor.
+const USUAL_CLOCK: u32 = 96_000_000;
+/// 2^64 / golden ratio: spreads a run's seeds over all seeds of bursts.
+const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+/// The longest between two looks at the records, so that whoever stops the run need not wait.
+const LONGEST_LOOK: Duration = Duration::from_millis(250);
+/// The shortest, so that a link has time for others.
+const SHORTEST_LOOK: Duration = Duration::from_millis(10);
+/// What a board may keep a frame to itself, beside [`PATIENT_FRAMES`].
+const PATIENCE: Duration = Duration::from_secs(5);
+/// The frames that could have been made meanwhile.
+const PATIENT_FRAMES: u32 = 20;
+
+/// What a burst will be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct BurstPlan {
+    /// Its frames.
+    pub(super) frames: u32,
+    /// Content and tables of each.
+    pub(super) mode: BurstMode,
+    seed: u32,
+    first_frame: u16,
+    bursts: Bursts,
+    /// Pixel clocks from one frame's first sample to the next one's.
+    clocks: u64,
+    clock_hz: u32,
+    /// W·H.
+    pub(super) samples: u32,
+    /// H.
+    pub(super) rows: u16,
+    /// D, in pixel clocks.
+    pub(super) latency: u16,
+}
+
+impl BurstPlan {
+    /// A burst of no frame yet, as large as the tables of `plan`.
+    pub(super) fn new(plan: &Plan, capabilities: &Capabilities, bursts: Bursts, mode: BurstMode) -> Self {
+        let (width, height) = (plan.tables.geometry().width(), plan.tables.geometry().height());
+        let (blanking, between) = (capabilities.least_blanking, bursts.least_frame_blanking);
+        let row = width as u64 + u64::from(blanking);
+        Self {
+            frames: 0,
+            mode,
+            seed: telling_seed((plan.seed.wrapping_add(1).wrapping_mul(GOLDEN) >> 32) as u32),
+            first_frame: 0,
+            bursts,
+            clocks: row * height as u64 - u64::from(blanking) + u64::from(between),
+            clock_hz: if capabilities.clock_hz == 0 { USUAL_CLOCK } else { capabilities.clock_hz },
+            samples: (width * height) as u32,
+            rows: height as u16,
+            latency: width as u16 / 2 + u16::from(capabilities.latency),
+        }
+    }
+
+    /// The same content as frame `n` again and again, with the trap set.
+    pub(super) fn trapping(&self, n: u32, frames: u32) -> Self {
+        Self { frames, mode: BurstMode::Trapped, first_frame: self.content(n).frame, ..*self }
+    }
+
+    /// The request that starts it under the name `burst`.
+    pub(super) fn request(&self, burst: u32) -> Burst {
+        Burst {
+            burst,
+            frames: self.frames,
+            seed: self.seed,
+            first_frame: self.first_frame,
+            frame_blanking: self.bursts.least_frame_blanking,
+            mode: self.mode,
+        }
+    }
+
+    /// What frame `n` holds.
+    pub(super) fn content(&self, n: u32) -> Content {
+        let own = matches!(self.mode, BurstMode::Fresh | BurstMode::Alternating);
+        let frame = self.first_frame.wrapping_add(if own { n as u16 } else { 0 });
+        Content { seed: self.seed, frame }
+    }
+
+    /// Whether frame `n` is made with the tables of the other bank.
+    pub(super) fn is_of_shadow(&self, n: u32) -> bool {
+        self.mode == BurstMode::Alternating && n % 2 == 1
+    }
+
+    /// Whether the board can keep a row that differs.
+    pub(super) fn has_trap(&self) -> bool {
+        self.bursts.trap
+    }
+
+    /// The frames of `time` on the board's clock, at least one for each bank of tables.
+    pub(super) fn frames_in(&self, time: Duration) -> u32 {
+        let frames = time.as_secs_f64() * f64::from(self.clock_hz) / self.clocks as f64;
+        // The greatest number stands for a burst without an end.
+        (frames as u32).clamp(2, u32::MAX - 1)
+    }
+
+    /// How long `frames` take on the board's clock, in seconds.
+    pub(super) fn seconds(&self, frames: u32) -> f64 {
+        f64::from(frames) * self.clocks as f64 / f64::from(self.clock_hz)
+    }
+
+    /// How long one frame takes on the board's clock.
+    fn frame_time(&self) -> Duration {
+        Duration::from_secs_f64(self.seconds(1))
+    }
+
+    /// How long to wait for more records when `left` frames are to come: until the board's memory for them is half full.
+    pub(super) fn look_again_in(&self, left: u32) -> Duration {
+        let frames = left.min(u32::from(self.bursts.records / 2)).max(1);
+        self.frame_time().saturating_mul(frames).clamp(SHORTEST_LOOK, LONGEST_LOOK)
+    }
+
+    /// How long no record may come.
+    pub(super) fn patience(&self) -> Duration {
+        PATIENCE.max(self.frame_time().saturating_mul(PATIENT_FRAMES))
+    }
+}
+
+/// Of `drawn` and its three neighbours, whose row 0 each has another kind of content, the one in which that is noise, and
+/// so it is in the first 32 frames: a toggle that is constant in each colour would hide tables that change a row late.
+fn telling_seed(drawn: u32) -> u32 {
+    let levels = |seed: &u32| {
+        let mut row = [0; MIN_WIDTH];
+        Content { seed: *seed, frame: 0 }.row(0, BitDepth::Twelve, &mut row);
+        BTreeSet::from(row).len()
+    };
+    (0..4).map(|low| drawn ^ low).max_by_key(levels).unwrap_or(drawn)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(clock_hz: u32) -> BurstPlan {
+        BurstPlan {
+            frames: 3,
+            mode: BurstMode::Alternating,
+            seed: 1,
+            first_frame: 0xfffe,
+            bursts: Bursts { content: 1, records: 64, least_frame_blanking: 100, trap: true },
+            clocks: 1920 * 1080 + 100,
+            clock_hz,
+            samples: 1920 * 1080,
+            rows: 1080,
+            latency: 972,
+        }
+    }
+
+    /// 96 MHz / 2,073,700 clocks are 46.29 frames a second, 21.6 ms each.
+    #[test]
+    fn a_time_on_the_boards_clock_is_a_number_of_frames() {
+        let plan = plan(96_000_000);
+        let frames = |seconds| plan.frames_in(Duration::from_secs_f64(seconds));
+        assert_eq!([frames(3.0), frames(1.0), frames(0.001), frames(1e9)], [138, 46, 2, u32::MAX - 1]);
+        assert_eq!((plan.seconds(138) * 100.0).round(), 298.0);
+    }
+
+    #[test]
+    fn records_are_looked_for_before_the_board_has_no_room_for_more() {
+        let look = |clock_hz, left| plan(clock_hz).look_again_in(left).as_millis();
+        // 32 frames would be 691 ms.
+        assert_eq!([1000, 3].map(|left| look(96_000_000, left)), [250, 64]);
+        assert_eq!(look(1_000_000_000, 1), 10);
+        assert_eq!(plan(96_000_000).patience(), Duration::from_secs(5));
+        // 1 MHz: 2.07 s a frame.
+        assert_eq!(plan(1_000_000).patience().as_secs(), 41);
+    }
+
+    /// Of 64 draws from 4096 levels some 63 are different; steps have some five levels, the others two.
+    #[test]
+    fn row_0_is_noise_wherever_a_usual_burst_changes_tables() {
+        for drawn in (0..=u32::MAX).step_by(1 << 22) {
+            let seed = telling_seed(drawn);
+            for frame in 0..32 {
+                let mut row = [0; MIN_WIDTH];
+                Content { seed, frame }.row(0, BitDepth::Twelve, &mut row);
+                assert!(BTreeSet::from(row).len() > 48, "{drawn:08x}, frame {frame}");
+            }
+        }
+    }
+
+    #[test]
+    fn frames_are_numbered_modulo_2_to_the_16_and_repeat_where_they_should() {
+        let plan = plan(0);
+        let numbers = |plan: &BurstPlan| [0, 1, 2, 3].map(|n| plan.content(n).frame);
+        assert_eq!(numbers(&plan), [0xfffe, 0xffff, 0, 1]);
+        assert_eq!([0, 1, 2].map(|n| plan.is_of_shadow(n)), [false, true, false]);
+        let again = plan.trapping(3, 8);
+        assert_eq!(numbers(&again), [1; 4]);
+        assert!(!again.is_of_shadow(1));
+    }
+}

@@ -1,0 +1,140 @@
+//! Frames that the board makes on its own, at the full pixel clock (AT-SPEED.md).
+//!
+//! What is streamed is played a row at a time, since no link carries a video. A burst is played as one: the board makes and
+//! signs its frames, and what is judged are the signatures.
+
+mod burst;
+mod predicted;
+mod repeated;
+mod tables_late;
+mod watched;
+
+use std::time::Duration;
+
+use halfrow_protocol::message::BurstMode;
+
+use super::findings::End;
+use super::plan::{DECOY, Generation, Segment};
+use super::steps::Run;
+use crate::board::{Bank, BoardError, BoardNature, Bursts, RowTiming};
+use crate::progress::Step;
+use crate::result::{BurstCount, CheckName, Finding, NoBurst, NotExercised, Outcome, Suspect};
+use burst::BurstPlan;
+use watched::Watched;
+
+/// The content id that the model makes (AT-SPEED.md).
+const CONTENT: u16 = 1;
+/// How long a burst is on hardware when nothing is asked for, on the board's clock.
+const USUAL: Duration = Duration::from_secs(3);
+/// Its frames on anything else.
+const FEW: u32 = 3;
+
+impl Run<'_> {
+    /// Judges a burst, with the board back behind `last` if it goes away meanwhile.
+    pub(super) fn at_speed(&mut self, last: Option<&Segment>) -> Result<(), End> {
+        let bursts = match self.bursts() {
+            Ok(bursts) => bursts,
+            Err(reason) => {
+                self.findings.untested_at_speed = vec![NotExercised::FullSpeed {}];
+                let finding = Finding::NothingAtSpeed { reason };
+                self.findings.note(CheckName::AtSpeed, Outcome::Skipped, finding);
+                return Ok(());
+            }
+        };
+        self.progress.step(Step::AtSpeed);
+        loop {
+            match (self.judge_burst(bursts), last) {
+                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
+                (judged, _) => return judged,
+            }
+        }
+    }
+
+    /// The bursts that are to be judged, or why none are.
+    fn bursts(&self) -> Result<Bursts, NoBurst> {
+        if self.plan.at_speed == Some(Duration::ZERO) {
+            return Err(NoBurst::NotAskedFor {});
+        }
+        match self.board.capabilities.bursts {
+            None => Err(NoBurst::BoardMakesNone {}),
+            Some(bursts) if bursts.content != CONTENT => {
+                Err(NoBurst::ContentUnknown { content: bursts.content, known: CONTENT })
+            }
+            Some(bursts) => Ok(bursts),
+        }
+    }
+
+    fn judge_burst(&mut self, bursts: Bursts) -> Result<(), End> {
+        let of_board = |error: BoardError| End::board(CheckName::AtSpeed, &error);
+        self.board.configure(self.plan.tables.geometry(), RowTiming::default()).map_err(of_board)?;
+        let tables = self.tables_at_speed()?;
+        let plan = self.burst_plan(bursts, &tables);
+        let watched = self.watch(&plan, &tables, self.plan.fail_fast)?;
+        self.findings.untested_at_speed = untested(&plan, &watched);
+        if watched.wrong > 0 {
+            return Err(self.wrong_at_speed(&plan, &tables, &watched));
+        }
+        if let Some(finding) = watched.miscounted {
+            let suspects = miscount_suspects(&finding);
+            return Err(End::Failed { check: CheckName::AtSpeed, finding, suspects });
+        }
+        let finding = self.right_at_speed(&plan, &watched);
+        let outcome = if watched.paused > 0 { Outcome::Skipped } else { Outcome::Passed };
+        self.findings.note(CheckName::AtSpeed, outcome, finding);
+        Ok(())
+    }
+
+    /// What frames are made with by turns: the active tables, which have the factors and the kernel to judge with whatever
+    /// else was varied, and those of the other bank, which are the decoy's.
+    fn tables_at_speed(&mut self) -> Result<Vec<Generation>, End> {
+        let number = self.findings.seen.frames.last().map_or(0, |frame| frame.generation);
+        let active =
+            Generation { number, tables: self.plan.tables.clone(), kernel: self.plan.kernel.clone() };
+        let decoy = self.generations.iter().find(|generation| generation.number == DECOY).cloned();
+        let Some(decoy) = decoy.filter(|_| self.board.capabilities.table_banks > 1) else {
+            return Ok(vec![active]);
+        };
+        let uploaded = self.board.upload(&decoy.tables, &decoy.kernel);
+        uploaded.map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+        self.check_read_back(CheckName::AtSpeed, Bank::Shadow, &decoy)?;
+        Ok(vec![active, decoy])
+    }
+
+    fn burst_plan(&self, bursts: Bursts, tables: &[Generation]) -> BurstPlan {
+        let capabilities = &self.board.capabilities;
+        let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
+        let mut plan = BurstPlan::new(self.plan, capabilities, bursts, mode);
+        plan.frames = match self.plan.at_speed {
+            Some(time) => plan.frames_in(time),
+            None if capabilities.nature == BoardNature::Hardware => plan.frames_in(USUAL),
+            None => FEW,
+        };
+        plan
+    }
+
+    fn right_at_speed(&self, plan: &BurstPlan, watched: &Watched) -> Finding {
+        let Watched { frames, paused, held_back, .. } = *watched;
+        if paused > 0 {
+            return Finding::PausedAtSpeed { frames, paused };
+        }
+        let clock_hz = self.board.capabilities.clock_hz;
+        let seconds = (clock_hz > 0).then(|| plan.seconds(frames));
+        Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }
+    }
+}
+
+/// What loses or gains a clock at full speed alone; whatever else is miscounted is the counter's own fault.
+fn miscount_suspects(finding: &Finding) -> Vec<Suspect> {
+    use BurstCount::{LeastLatency, MostLatency};
+    let is_late = matches!(finding, Finding::MiscountedAtSpeed { count: LeastLatency | MostLatency, .. });
+    if is_late { vec![repeated::only_at_speed(None)] } else { Vec::new() }
+}
+
+/// What a burst left untested at the full pixel clock.
+fn untested(plan: &BurstPlan, watched: &Watched) -> Vec<NotExercised> {
+    if watched.paused > 0 {
+        return vec![NotExercised::FullSpeed {}];
+    }
+    let changes = plan.mode == BurstMode::Alternating;
+    if changes { Vec::new() } else { vec![NotExercised::TableChangeAtSpeed {}] }
+}

@@ -1,0 +1,43 @@
+//! The signatures that frames of a burst must have, predicted ahead of the board.
+
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread::Scope;
+
+use halfrow_model::Signer;
+
+use super::burst::BurstPlan;
+use crate::reference;
+use crate::run::Generation;
+
+/// Frames that may be predicted ahead of the board.
+const AHEAD: usize = 64;
+
+/// The signatures of the frames of `plan` in their order, each predicted on a thread of `scope`. That thread ends when the
+/// receiver is dropped.
+pub(super) fn ahead<'scope, 'run: 'scope>(
+    scope: &'scope Scope<'scope, '_>,
+    plan: BurstPlan,
+    tables: &'run [Generation],
+) -> Receiver<u32> {
+    let (sender, receiver) = sync_channel(AHEAD);
+    scope.spawn(move || {
+        let mut signers: Vec<_> = tables.iter().map(signer).collect();
+        let mut rows = Vec::new();
+        for n in 0..plan.frames {
+            let bank = usize::from(plan.is_of_shadow(n));
+            let (Some(signer), Some(Generation { tables, .. })) = (signers.get_mut(bank), tables.get(bank))
+            else {
+                break;
+            };
+            if sender.send(signer.sign(tables, plan.content(n), &mut rows)).is_err() {
+                break;
+            }
+        }
+    });
+    receiver
+}
+
+/// A signer of frames that are made with `generation`.
+pub(super) fn signer(generation: &Generation) -> Signer {
+    Signer::new(reference::corrector(&generation.kernel))
+}

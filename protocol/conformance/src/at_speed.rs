@@ -1,0 +1,125 @@
+//! Boards that make frames on their own, for the tests of `fpga/AT-SPEED.md`. A board that does not is asked nothing but what
+//! [`crate::burst_refusals`] says of it.
+
+use std::time::Duration;
+
+use halfrow_protocol::message::{
+    Burst, BurstMode, BurstState, Bursts, Configuration, FrameRecord, Reply, Request, Reset, ResetLevel,
+    RowPlace,
+};
+
+use crate::bench::{Bench, HELLO};
+use crate::frames::{Row, configuration};
+use crate::material::{GOLDEN_FACTOR, hermite, noise_row};
+use crate::uploads::TableSet;
+use crate::{Boards, Build, offered};
+
+/// The rows' signatures of the page's frame of four rows: 64 columns, 12 bits, seed 1, frame 0, behind [`golden_tables`].
+pub const ROWS: [u32; 4] = [0x3b58_4a0c, 0xa0a8_5d70, 0x068e_af3c, 0x4f53_a7e2];
+
+/// The CRC-32 of the content of these rows, which is their signature behind tables that change no sample.
+pub const CONTENTS: [u32; 4] = [0x3f30_8f73, 0x1470_85ad, 0x4de3_0b33, 0x4f53_a7e2];
+
+/// The signature of the page's frame of four rows.
+pub const FRAME: u32 = 0xc40b_35b2;
+
+/// The rows of that frame.
+pub const HEIGHT: u16 = 4;
+
+/// The tables of that frame: the golden factor in each row, and Hermite's kernel.
+#[must_use]
+pub fn golden_tables() -> TableSet {
+    TableSet::new(&[GOLDEN_FACTOR; HEIGHT as usize], &hermite())
+}
+
+/// One frame of that kind, as a burst of its own.
+pub const ONE: Burst =
+    Burst { burst: 0xb0, frames: 1, seed: 1, first_frame: 0, frame_blanking: 2000, mode: BurstMode::Fresh };
+
+/// A burst of the golden frame, over and over, until it is ended.
+pub const ENDLESS: Burst = Burst { frames: Burst::ENDLESS, mode: BurstMode::Repeating, ..ONE };
+
+/// What a board of this build says of its bursts; none if it makes none of the page's content.
+pub fn bursts_of(bench: &mut Bench) -> Option<Bursts> {
+    let answer = bench.done(&Request::Capabilities);
+    let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
+    capabilities.bursts.filter(|bursts| bursts.content == 1)
+}
+
+/// A board of a build that makes bursts, configured, with these tables as the active ones under generation 1, and empty.
+pub fn ready_with(
+    on: &dyn Boards,
+    build: &Build,
+    configuration: Configuration,
+    tables: &TableSet,
+) -> Option<(Bench, Bursts)> {
+    let build = offered(on, [build.clone()]).pop()?;
+    let mut bench = Bench::switched_on(on, &build);
+    bench.greet(&HELLO);
+    let bursts = bursts_of(&mut bench)?;
+    bench.done(&Request::Configure(configuration));
+    tables.upload(&mut bench);
+    bench.done(&tables.commit(1, 0));
+    activate(&mut bench, &configuration, 0);
+    Some((bench, bursts))
+}
+
+/// The same for the golden frame, of the default build.
+pub fn ready(on: &dyn Boards) -> Option<(Bench, Bursts)> {
+    ready_with(on, &Build::default(), configuration(HEIGHT), &golden_tables())
+}
+
+/// Lets a commit for `frame` take effect, and empties the core.
+pub fn activate(bench: &mut Bench, configuration: &Configuration, frame: u16) {
+    let &Configuration { width, height, .. } = configuration;
+    let place = RowPlace { row_sequence: 0, frame, row: 0, width, last: height == 1 };
+    bench.send(&Row { place, samples: noise_row(0, width) });
+    bench.done(&Request::Reset(Reset { level: ResetLevel::Rows, next_row: 0 }));
+    bench.window = 0;
+}
+
+/// What a board says of its burst.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Told {
+    /// The burst.
+    pub burst: u32,
+    /// How far it is.
+    pub state: BurstState,
+    /// The records from the frame on that was asked for.
+    pub records: Vec<FrameRecord>,
+}
+
+impl Bench {
+    /// The records from a frame on, those before which the board then drops.
+    pub fn records(&mut self, from: u32) -> Told {
+        let answer = self.done(&Request::Records { from });
+        let Reply::Records(records) = answer.reply() else { panic!("{answer:?}") };
+        assert_eq!(records.from, from);
+        Told { burst: records.burst, state: records.state, records: records.records().collect() }
+    }
+
+    /// The same, as soon as `enough` of it.
+    pub fn records_when(&mut self, from: u32, enough: impl Fn(&Told) -> bool) -> Told {
+        for _ in 0..3000 {
+            let told = self.records(from);
+            if enough(&told) {
+                return told;
+            }
+            self.now += Duration::from_millis(1);
+        }
+        panic!("what is waited for from frame {from} on does not come: {:?}", self.records(from));
+    }
+
+    /// The records of a burst that ends, all of which the board keeps.
+    pub fn signed(&mut self, burst: &Burst) -> Vec<FrameRecord> {
+        self.done(&Request::Burst(*burst));
+        let told = self.records_when(0, |told| told.state == BurstState::Ended);
+        assert_eq!(told.burst, burst.burst);
+        told.records
+    }
+
+    /// How far the burst is; no record is dropped.
+    pub fn burst_state(&mut self, unread: u32) -> BurstState {
+        self.records(unread).state
+    }
+}

@@ -1,0 +1,310 @@
+//! Frames that a board makes on its own: what is wrong with them is the board's, what is missing is nobody's, and what was not
+//! judged is said.
+
+use std::time::Duration;
+
+use halfrow::link;
+use halfrow::progress::Silent;
+use halfrow::result::{
+    BurstCount, Check, CheckName, Defect, Finding, NoBurst, NotExercised, Outcome, Repetition, Report,
+};
+use halfrow::run::{Plan, RunOptions, verify};
+use halfrow::verdict::{Cause, Verdict};
+use halfrow_mock::Options;
+use halfrow_protocol::message::{BurstMode, BurstState, FrameRecord, Records, Request};
+use halfrow_protocol::{Kind, Packet, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge_claims, judge_each};
+use halfrow_tests::system::{System, failed_check};
+
+const TINY: System = System::TINY;
+/// H of it.
+const HEIGHT: u32 = TINY.height as u32;
+
+fn check(report: &Report) -> &Check {
+    report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap()
+}
+
+/// A packet of records with others in their place, or with none.
+fn with_records(packet: &Passing, change: impl FnOnce(u32, BurstState, &mut Vec<FrameRecord>)) -> Passing {
+    let Some(Reply::Records(found)) = packet.reply() else { panic!("no records") };
+    let mut records: Vec<_> = found.records().collect();
+    change(found.from, found.state, &mut records);
+    let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
+    packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))
+}
+
+/// The report on a board of which `change` makes another record of frame 1 of its first burst.
+fn with_record(change: impl Fn(&mut FrameRecord) + Send + 'static) -> Report {
+    let mut done = false;
+    judge_each(&TINY, move |toward, packet| {
+        if done || toward == Toward::Board || !packet.is(Kind::Records) {
+            return packet;
+        }
+        with_records(&packet, |from, _, records| {
+            let place = 1_usize.checked_sub(from as usize);
+            if let Some(record) = place.and_then(|place| records.get_mut(place)) {
+                change(record);
+                done = true;
+            }
+        })
+    })
+}
+
+/// What a host asks for.
+fn request(packet: &Passing) -> Request<'_> {
+    Request::read(&Packet { header: packet.header, payload: &packet.payload }).unwrap()
+}
+
+#[test]
+fn a_sound_board_passes_with_three_frames_and_both_banks() {
+    let report = TINY.judge("");
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    let Finding::EqualAtSpeed { frames: 3, held_back: 0, .. } = check(&report).finding else {
+        panic!("{}", check(&report).detail())
+    };
+    assert_eq!(check(&report).outcome, Outcome::Passed);
+    let untested = |part: &NotExercised| {
+        matches!(part, NotExercised::FullSpeed {} | NotExercised::TableChangeAtSpeed {})
+    };
+    assert!(!report.not_exercised.iter().any(untested), "{:?}", report.not_exercised);
+}
+
+#[test]
+fn a_wrong_signature_fails_and_what_does_not_come_again_is_said() {
+    let report = with_record(|record| record.signature ^= 1);
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    let Finding::DiffersAtSpeed { wrong: 1, first: 1, repetition: Repetition::AllRight { .. }, .. } =
+        report.finding
+    else {
+        panic!("{}", report.headline())
+    };
+    assert!(report.headline().contains("made again by itself, it was right"), "{}", report.headline());
+    assert_eq!(report.suspects[0].defect, Defect::OnlyAtSpeed { row: None, samples: 0, bits: Vec::new() });
+}
+
+/// A fault of the mock, the place that is suspected, and a part of the sentence.
+type SpeedFault = (&'static str, &'static str, &'static str);
+
+/// What only frames at full speed show. 64 x 8 samples a frame, three frames.
+const SPEED_FAULTS: [SpeedFault; 5] = [
+    (
+        "slow-path,one-in=300",
+        "fails at the full pixel clock, seen in bit 5 of the corrected samples",
+        "made again",
+    ),
+    ("warm-bit", "fails at the full pixel clock, seen in bit 5 of the corrected samples", "in row 3 first"),
+    ("warm-bit,after=1,row=7,bit=11", "seen in bit 11 of the corrected samples", "in row 7 first"),
+    ("late-swap", "the change of table banks between two frames", "2 of 3 frames differ at speed"),
+    ("hidden-pause", "a path that fails at the full pixel clock", "45 pixel clocks of most latency"),
+];
+
+#[test]
+fn what_fails_at_full_speed_alone_passes_row_by_row_and_fails_in_a_burst() {
+    let judged = |fault: &str, at_speed: Option<Duration>| {
+        let candidate = link::open(&format!("mock,fault={fault}").parse().unwrap()).unwrap();
+        let plan = Plan { at_speed, fail_fast: false, ..TINY.plan() };
+        verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report
+    };
+    for (fault, place, sentence) in SPEED_FAULTS {
+        let unseen = judged(fault, Some(Duration::ZERO));
+        assert_eq!(unseen.verdict, Verdict::Pass, "{fault}: {}", unseen.headline());
+        let seen = judged(fault, None);
+        assert_eq!(failed_check(&seen), Some(CheckName::AtSpeed), "{fault}: {}", seen.headline());
+        assert!(seen.headline().contains(sentence), "{fault}: {}", seen.headline());
+        let suspected = seen.suspects.first().map(halfrow::result::Suspect::place).unwrap_or_default();
+        assert!(suspected.contains(place), "{fault}: {suspected}: {}", seen.headline());
+        assert!(seen.remedy().is_some(), "{fault}");
+    }
+}
+
+/// What a board counts, how it is spoilt, and what it should be.
+type Count = (BurstCount, fn(&mut FrameRecord), u32);
+
+#[test]
+fn every_count_of_a_record_is_compared() {
+    // TINY is 64 columns wide, and L of the mock is 12.
+    let latency = TINY.width as u32 / 2 + 12;
+    let counts: [Count; 5] = [
+        (BurstCount::Samples, |record| record.samples -= 1, TINY.width as u32 * HEIGHT),
+        (BurstCount::Rows, |record| record.rows += 1, HEIGHT),
+        (BurstCount::LeastLatency, |record| record.least_latency -= 1, latency),
+        (BurstCount::MostLatency, |record| record.most_latency += 1, latency),
+        (BurstCount::Generation, |record| record.generation = 1, 0),
+    ];
+    for (spoilt, change, expected) in counts {
+        let report = with_record(change);
+        assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+        let Finding::MiscountedAtSpeed { frame: 1, count, right, .. } = report.finding else {
+            panic!("{}", report.headline())
+        };
+        assert_eq!((count, right), (spoilt, expected));
+    }
+}
+
+#[test]
+fn pauses_make_frames_no_frames_at_speed_and_not_wrong() {
+    let report = with_record(|record| record.pauses = 7);
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(check(&report).finding, Finding::PausedAtSpeed { frames: 3, paused: 1 });
+    assert_eq!(check(&report).outcome, Outcome::Skipped);
+    assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
+}
+
+#[test]
+fn why_nothing_was_tested_at_speed_is_said() {
+    let (none, other) = (NoBurst::BoardMakesNone {}, NoBurst::ContentUnknown { content: 2, known: 1 });
+    let without = judge_claims(&TINY, |board| board.bursts = None);
+    let unknown = judge_claims(&TINY, |board| {
+        board.bursts.iter_mut().for_each(|bursts| bursts.content = 2);
+    });
+    let plan = Plan { at_speed: Some(Duration::ZERO), ..TINY.plan() };
+    let candidate = Altered::new(&Options::default(), |_, packet: Passing| vec![packet]).candidate();
+    let unasked = verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report;
+    for (report, reason) in [(without, none), (unknown, other), (unasked, NoBurst::NotAskedFor {})] {
+        assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+        assert_eq!(check(&report).finding, Finding::NothingAtSpeed { reason });
+        assert_eq!(check(&report).outcome, Outcome::Skipped);
+        assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
+    }
+}
+
+#[test]
+fn with_one_bank_the_change_of_tables_stays_untested() {
+    let report = TINY.judge(",table-banks=1");
+    assert!(matches!(check(&report).finding, Finding::EqualAtSpeed { frames: 3, .. }));
+    assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
+}
+
+/// The board says that the burst goes on, or that it is over, and gives no record.
+fn without_records(state: BurstState) -> Report {
+    judge_each(&TINY, move |toward, packet| match packet.reply() {
+        Some(Reply::Records(found)) if toward == Toward::Host => {
+            packet.saying(&Reply::Records(Records { state, bytes: &[], ..found }))
+        }
+        _ => packet,
+    })
+}
+
+#[test]
+fn frames_that_never_come_are_no_verdict() {
+    let report = without_records(BurstState::UnderWay);
+    assert_eq!(report.cause, Cause::Station, "{}", report.headline());
+    assert!(matches!(report.finding, Finding::BurstStalled { frame: 0, frames: 3, .. }));
+    for state in [BurstState::Ended, BurstState::None] {
+        let report = without_records(state);
+        assert_eq!(report.cause, Cause::Station, "{}", report.headline());
+        assert_eq!(report.finding, Finding::BurstEndedEarly { came: 0, frames: 3 });
+    }
+}
+
+/// A board that takes another seed than it is given makes other frames, each time.
+fn with_another_seed(toward: Toward, mut packet: Passing) -> Passing {
+    if toward == Toward::Board && packet.is(Kind::Burst) {
+        // WIRE.md, BURST: burst, frames, seed.
+        packet.payload[8] ^= 1;
+    }
+    packet
+}
+
+#[test]
+fn a_frame_that_is_wrong_again_has_its_first_wrong_row_trapped() {
+    let report = judge_each(&TINY, with_another_seed);
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    let Finding::DiffersAtSpeed { first: 0, repetition: Repetition::Trapped { row: 0, .. }, .. } =
+        report.finding
+    else {
+        panic!("{}", report.headline())
+    };
+    let places: Vec<_> = report.suspects.iter().map(|suspect| &suspect.defect).collect();
+    assert!(matches!(places[..], [Defect::OnlyAtSpeed { row: Some(0), samples: 1.., .. }, ..]), "{places:?}");
+}
+
+#[test]
+fn without_a_trap_it_is_said_that_no_row_was_kept() {
+    let report = judge_each(&TINY, |toward, packet| match packet.reply() {
+        Some(Reply::Capabilities(mut capabilities)) if toward == Toward::Host => {
+            capabilities.bursts.iter_mut().for_each(|bursts| bursts.trap = false);
+            packet.saying(&Reply::Capabilities(capabilities))
+        }
+        _ => with_another_seed(toward, packet),
+    });
+    let Finding::DiffersAtSpeed { repetition: Repetition::NoTrap {}, .. } = report.finding else {
+        panic!("{}", report.headline())
+    };
+    assert!(report.headline().contains("of which the board keeps no row"), "{}", report.headline());
+}
+
+/// A board that stays with the active tables makes every second frame wrong, all of it.
+#[test]
+fn frames_of_the_other_tables_are_known_by_their_signatures() {
+    let report = judge_each(&TINY, |toward, mut packet| {
+        if toward == Toward::Board
+            && packet.is(Kind::Burst)
+            && matches!(request(&packet), Request::Burst(burst) if burst.mode == BurstMode::Alternating)
+        {
+            packet.payload[16] = BurstMode::Fresh as u8;
+        }
+        packet
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    assert_eq!(report.suspects[0].defect, Defect::TablesChangeLate { rows: HEIGHT as usize });
+    assert!(matches!(
+        report.finding,
+        Finding::DiffersAtSpeed { first: 1, repetition: Repetition::NotNeeded {}, .. }
+    ));
+}
+
+#[test]
+fn a_row_that_changes_on_its_way_in_is_not_said_to_be_computed_wrongly() {
+    let report = judge_each(&TINY, |toward, mut packet| {
+        if toward == Toward::Board
+            && matches!(request(&packet), Request::RowIn(row) if row.place.frame == 2 && row.place.row == 3)
+        {
+            // The samples follow the place; black is not white.
+            packet.payload[12..].iter_mut().for_each(|byte| *byte ^= 0x11);
+        }
+        packet
+    });
+    assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
+    assert_eq!(report.finding, Finding::RowsEnteredChanged { rows: 1, row: 3, frame: 2 });
+    let defect = Defect::RowsChangedOnEntry { rows: 1, first: 3, frame: 2 };
+    assert_eq!(report.suspects[0].defect, defect);
+    assert!(report.headline().contains("not computed wrongly"), "{}", report.headline());
+}
+
+#[test]
+fn a_wrong_crc_of_what_entered_is_the_counts_fault_and_not_the_row_s() {
+    let mut done = false;
+    let report = judge_each(&TINY, move |_, mut packet| {
+        if packet.is(Kind::RowOut) && !done {
+            done = true;
+            // `entered` ends the packet.
+            packet.payload.last_mut().into_iter().for_each(|byte| *byte ^= 1);
+        }
+        packet
+    });
+    assert_eq!(
+        report.finding,
+        Finding::EntryMiscounted { rows: 1, row: 0, frame: 0 },
+        "{}",
+        report.headline()
+    );
+}
+
+/// What follows the samples means nothing on a board that does not say that it does.
+#[test]
+fn without_the_capability_nothing_is_read_behind_the_samples() {
+    let report = judge_each(&TINY, |toward, mut packet| {
+        if packet.is(Kind::RowOut) {
+            packet.payload.last_mut().into_iter().for_each(|byte| *byte ^= 1);
+        }
+        match packet.reply() {
+            Some(Reply::Capabilities(mut capabilities)) if toward == Toward::Host => {
+                capabilities.entered = false;
+                packet.saying(&Reply::Capabilities(capabilities))
+            }
+            _ => packet,
+        }
+    });
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+}
