@@ -3,6 +3,7 @@
 localparam [7:0] WIRE_VERSION = 8'd1;
 localparam [31:0] WIRE_MAGIC = 32'h31575248;          // "HRW1", the first byte in [7:0]
 localparam [15:0] DATAPATH_ID = 16'd1;                // of fpga/DATAPATH.md
+localparam [15:0] CONTENT_ID = 16'd1;                 // of fpga/AT-SPEED.md
 
 localparam [7:0] KIND_HELLO = 8'h00;
 localparam [7:0] KIND_CAPABILITIES = 8'h01;
@@ -17,6 +18,10 @@ localparam [7:0] KIND_CONFIGURE = 8'h18;
 localparam [7:0] KIND_ROW_IN = 8'h20;
 localparam [7:0] KIND_ROW_OUT = 8'h21;
 localparam [7:0] KIND_ROW_ACK = 8'h22;
+localparam [7:0] KIND_BURST = 8'h30;
+localparam [7:0] KIND_RECORDS = 8'h31;
+localparam [7:0] KIND_EXPECT = 8'h32;
+localparam [7:0] KIND_TRAP = 8'h33;
 localparam [7:0] KIND_REFUSAL = 8'h7f;
 
 localparam [3:0] REFUSAL_VERSION = 4'd1;
@@ -47,6 +52,8 @@ localparam [7:0] TAG_STEP_PORTS = 8'h0c;
 localparam [7:0] TAG_KERNEL_PORTS = 8'h0d;
 localparam [7:0] TAG_CLOCK_SOURCE = 8'h0e;
 localparam [7:0] TAG_CLOCK_HZ = 8'h0f;
+localparam [7:0] TAG_CONTENT = 8'h10;
+localparam [7:0] TAG_ENTERED = 8'h11;
 localparam [7:0] TAG_NATURE = 8'h20;
 localparam [7:0] TAG_NAME = 8'h21;
 
@@ -79,6 +86,7 @@ localparam [7:0] RESET_CLOSES = 8'd1;                 // level 1: the session, t
 localparam [7:0] RESET_WIPES = 8'd2;                  // level 2: configuration and tables, too; the greatest
 
 localparam [15:0] SPAN_BYTES = 16'd7;
+localparam [4:0] RECORD_BYTES = 5'd18;
 localparam [15:0] MOST_PAYLOAD = 16'd4080;            // bytes
 localparam NODES = 65;
 localparam [15:0] LEAST_WIDTH = 16'd64;
