@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Elaborates what parameters.ini says with Verilator, Icarus Verilog and yosys: a build that cannot be must fail in each of them and
-the failure must name the parameter; those at the ends of what is legal must pass. Every parameter of fpga/rtl is to be found there.
+"""Elaborates what parameters.ini says with Verilator, Icarus Verilog and yosys in turn: a build that cannot be must fail and the failure
+must name the parameter; those at the ends of what is legal must pass. Every parameter of fpga/rtl is to be found there.
+    fpga/checks/parameters.py [long] [MODULE...]     long: each build by all three
 """
 import concurrent.futures
 import configparser
@@ -15,6 +16,7 @@ import rtl
 
 HERE = pathlib.Path(__file__).resolve().parent
 OTHERS = ("legal", "any")
+TOOLS = ("verilator", "iverilog", "yosys")
 
 
 def declared(path):
@@ -56,14 +58,14 @@ def commands(source, folder):
     }
 
 
-def judged(module, parameter, values, work):
-    """What is wrong with a case: of an illegal one `parameter` is the parameter's name, of a legal one None."""
+def judged(module, parameter, values, tools, work):
+    """What is wrong with a case by some of TOOLS: of an illegal one `parameter` is the parameter's name, of a legal one None."""
     with tempfile.TemporaryDirectory(dir=work) as folder:
         source = pathlib.Path(folder) / "elaborated.v"
         source.write_text(wrapper(module, values))
         wrong = []
-        for tool, command in commands(source, folder).items():
-            done = subprocess.run(command, capture_output=True, text=True)
+        for tool in tools:
+            done = subprocess.run(commands(source, folder)[tool], capture_output=True, text=True)
             said = done.stdout + done.stderr
             shown = f"{tool}: {module} with {', '.join(f'{name}={value}' for name, value in values)}"
             if parameter is None and done.returncode != 0:
@@ -82,15 +84,19 @@ def main():
     missing = list(unlisted(cases))
     if missing:
         sys.exit("parameters: parameters.ini and fpga/rtl do not agree on\n  " + "\n  ".join(missing))
-    chosen = sys.argv[1:] or [section for section in cases.sections() if section != "inside"]
-    illegal = [(module, name, assignments(name, words)) for module in chosen for name, line in cases[module].items()
-               if name not in OTHERS for words in line.split(";")]
-    legal = [(module, None, assignments(None, words)) for module in chosen for words in cases[module]["legal"].split(";")]
+    words = sys.argv[1:]
+    each = TOOLS if "long" in words else None
+    chosen = [word for word in words if word != "long"] or [section for section in cases.sections() if section != "inside"]
+    illegal = [(module, name, assignments(name, told)) for module in chosen for name, line in cases[module].items()
+               if name not in OTHERS for told in line.split(";")]
+    legal = [(module, None, assignments(None, told)) for module in chosen for told in cases[module]["legal"].split(";")]
+    tried = [(*case, each or [TOOLS[number % len(TOOLS)]]) for number, case in enumerate(legal + illegal)]
     with tempfile.TemporaryDirectory() as work, concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        wrong = [line for lines in pool.map(lambda case: judged(*case, work), legal + illegal) for line in lines]
+        wrong = [line for lines in pool.map(lambda case: judged(*case, work), tried) for line in lines]
     if wrong:
         sys.exit("parameters: " + "\nparameters: ".join(wrong))
-    print(f"PASS {len(illegal)} builds that cannot be are refused by three tools, {len(legal)} at the ends of what is legal are not")
+    by = "by each of three tools" if each else "by one of three tools each"
+    print(f"PASS {len(illegal)} builds that cannot be are refused, {len(legal)} at the ends of what is legal are not, {by}")
 
 
 main()

@@ -1,5 +1,5 @@
 //! Boards that make frames on their own, for the tests of `fpga/AT-SPEED.md`. A board that does not is asked nothing but what
-//! [`crate::burst_refusals`] says of it.
+//! `burst_refusals` says of it.
 
 use std::time::Duration;
 
