@@ -108,9 +108,11 @@ pub fn facts(report: &Report) -> String {
 /// What was judged at the full pixel clock; none where the run did not come to that.
 fn at_speed(report: &Report) -> Option<String> {
     report.checks.iter().find_map(|check| match check.finding {
-        Finding::EqualAtSpeed { frames, clock_hz: 0, .. } => Some(format!("{} at speed", grouped(frames))),
+        Finding::EqualAtSpeed { frames, clock_hz: 0, .. } => {
+            Some(format!("{} at speed", count(frames, "frame")))
+        }
         Finding::EqualAtSpeed { frames, clock_hz, .. } => {
-            Some(format!("{} at {:.1} MHz", grouped(frames), f64::from(clock_hz) / 1e6))
+            Some(format!("{} at {:.1} MHz", count(frames, "frame"), f64::from(clock_hz) / 1e6))
         }
         Finding::PausedAtSpeed { .. } | Finding::NothingAtSpeed { .. } => Some("none at speed".to_owned()),
         _ => None,
