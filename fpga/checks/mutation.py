@@ -50,6 +50,8 @@ def try_all(module, section, place, count):
         with concurrent.futures.ThreadPoolExecutor(2) as pool, open(results, "a", buffering=1) as out:
             tried = {pool.submit(judge, number, checks): number for number in open_numbers}
             for one in concurrent.futures.as_completed(tried):
+                if one.exception():
+                    pool.shutdown(cancel_futures=True)
                 known[str(tried[one])] = one.result()
                 out.write(f"{tried[one]} {one.result()}\n")
     return [(number, fault, known[str(number)]) for number, fault in enumerate(faults, 1)]
