@@ -201,6 +201,6 @@ int main(int argc, char **argv) {
     host.hello();
     for (int k = 0; k < std::atoi(argv[1]); k++)
         host.play();
-    std::printf("%d taps: %lu samples equal, %lu clocks\n", TAPS, host.outputs, host.link.clocks);
+    std::printf("%d taps: %lu samples equal, %lu clocks\n", TAPS, host.outputs, host.link.lines.clocks);
     return 0;
 }

@@ -69,6 +69,7 @@ struct Pins {
     std::deque<uint8_t> to_board;
     Bytes piece;
     std::deque<Bytes> packets;               // that came whole
+    uint64_t clocks = 0;
 
     void heard_byte(uint8_t byte) {
         if (byte) {
@@ -134,7 +135,6 @@ struct Lines : Pins {
 // Bytes as they are. Either side is held up now and then.
 struct Lines : Pins {
     static constexpr int CLOCKS_TO_START = 4;
-    uint64_t clocks = 0;
 
     Lines() { board.camera_frame_valid = board.camera_line_valid = board.millisecond = board.rx_valid = 0; }
 
@@ -149,7 +149,6 @@ struct Lines : Pins {
         uint8_t data = board.tx_data;
         board.clk = 1;
         board.eval();
-        clocks++;
         if (taken)
             to_board.pop_front();
         if (given)
@@ -205,10 +204,9 @@ struct Lines : Pins {
 };
 #endif
 
-// The same with packets, and a count of clocks.
+// The same with packets.
 struct Link {
     Lines lines;
-    uint64_t clocks = 0;
 
     void start() {
         for (int k = 0; k < Lines::CLOCKS_TO_START; k++)
@@ -217,12 +215,12 @@ struct Link {
 
     void edge() {
         lines.clock();
-        clocks++;
+        lines.clocks++;
     }
 
     Bytes next_packet() {
-        for (uint64_t until = clocks + 20000000; lines.packets.empty(); edge())
-            if (clocks == until)
+        for (uint64_t until = lines.clocks + 20000000; lines.packets.empty(); edge())
+            if (lines.clocks == until)
                 fail("no answer within 20 million clocks");
         Bytes packet = lines.packets.front();
         lines.packets.pop_front();
