@@ -35,7 +35,7 @@ pub(crate) struct RowStart {
 impl Content {
     /// Row `row`, below 4096.
     pub(crate) fn start(self, row: usize) -> RowStart {
-        let d = draw((self.seed ^ (u32::from(self.frame) << 12 | row as u32)) | 1 << 31);
+        let d = xorshift32((self.seed ^ (u32::from(self.frame) << 12 | row as u32)) | 1 << 31);
         let kind = match d % 4 {
             0 => Kind::Noise,
             1 => Kind::Swing,
@@ -50,7 +50,7 @@ impl Content {
         let RowStart { kind, mut x } = self.start(row);
         let mut held = 0;
         for (column, sample) in samples.iter_mut().enumerate() {
-            x = draw(x);
+            x = xorshift32(x);
             let level = (x >> 20) as u16 & depth.max();
             *sample = match kind {
                 Kind::Noise => level,
@@ -69,8 +69,10 @@ pub(crate) fn full(high: bool, depth: BitDepth) -> u16 {
     if high { depth.max() } else { 0 }
 }
 
-/// The step of the generator (WIRE.md, section 5).
-pub(crate) fn draw(mut x: u32) -> u32 {
+/// The number that the generator draws behind `x` (WIRE.md, section 5), which is 0 for 0 alone.
+#[must_use]
+#[inline]
+pub fn xorshift32(mut x: u32) -> u32 {
     x ^= x << 13;
     x ^= x >> 17;
     x ^ x << 5

@@ -35,7 +35,7 @@ mod table;
 pub use bayer::{Colour, Phase, UnknownPhase};
 pub use calibrated::CalibratedLens;
 pub use camera::{Camera, CameraError, Residual, Target};
-pub use content::{Content, frame_signature, row_signature};
+pub use content::{Content, frame_signature, row_signature, xorshift32};
 pub use corrector::{CorrectError, Source, correct, correct_row, source, source_by_entry};
 pub use fast::{Corrector, ModelPath, Signer, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};

@@ -4,7 +4,7 @@
 //! of one kind are made side by side, the state of each in a lane of its own, which compilers make vectors of.
 
 use crate::BitDepth;
-use crate::content::{Content, Kind, full};
+use crate::content::{Content, Kind, full, xorshift32};
 
 /// Rows that are made side by side.
 const LANES: usize = 16;
@@ -89,9 +89,7 @@ fn draw_pair(x: &mut Pair, held: &mut Pair, sample: impl Fn(u32, u32) -> u32) ->
     let mut pair = [0; LANES];
     for shift in [0, 16] {
         for lane in 0..LANES {
-            x[lane] ^= x[lane] << 13;
-            x[lane] ^= x[lane] >> 17;
-            x[lane] ^= x[lane] << 5;
+            x[lane] = xorshift32(x[lane]);
             held[lane] = sample(x[lane], held[lane]);
             pair[lane] |= held[lane] << shift;
         }

@@ -1,5 +1,7 @@
 //! How long gaps keep the enable off, by the seed that they are drawn with (`protocol/WIRE.md`, section 5).
 
+use halfrow_model::xorshift32;
+
 /// The board clocks of each row of a frame of `height` rows, `width` samples each, for which gaps keep the enable off.
 pub(super) fn pauses(gap_seed: u32, width: usize, height: usize) -> Vec<u16> {
     if gap_seed == 0 {
@@ -7,9 +9,7 @@ pub(super) fn pauses(gap_seed: u32, width: usize, height: usize) -> Vec<u16> {
     }
     let mut x = gap_seed;
     let mut draw = || {
-        x ^= x << 13;
-        x ^= x >> 17;
-        x ^= x << 5;
+        x = xorshift32(x);
         x
     };
     let row = |row| {
