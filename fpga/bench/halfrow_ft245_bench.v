@@ -7,7 +7,7 @@ module halfrow_ft245_bench;
     // Times in 0.1 ns.
     localparam PAD = 50, PAD_DATA = 60, PAD_WR = 30;
     localparam PULSE = 300, GOOD_DATA = 140, ANSWER = 140, INACTIVE = 490, SETUP = 50, HOLD = 50, STROBE = 2500;
-    localparam BYTES = 300;
+    localparam BYTES = 120;
 
     reg        clk, rst, armed, rx_ready, tx_valid;
     reg  [7:0] tx_data;

@@ -217,7 +217,8 @@ endtask
 
 task resets;
     begin
-        for (n = 0; n < 100; n = n + 1) begin
+        asks = $test$plusargs("all") || $test$plusargs("fault") ? 100 : 30;
+        for (n = 0; n < asks; n = n + 1) begin
             settle;
             drop(n * 50, n % 3 == 0);
             configure(n % 4 == 0 ? 128 : 64, 3, n % 7, n % 2 * n);

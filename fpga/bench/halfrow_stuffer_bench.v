@@ -3,7 +3,7 @@
 `default_nettype none
 
 module halfrow_stuffer_bench;
-    localparam PACKETS = 60;
+    localparam PACKETS = 24;
 
     reg        clk, rst, in_valid, in_last, out_ready;
     reg  [7:0] in_data;

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Synthesises both tops for an ECP5 with the yosys that is on the path, prints what they take of an LFE5U-25F, and fails beyond
-budget.ini. It is what can be seen of a bitstream without placing it."""
+"""Synthesises tops for an ECP5 with the yosys that is on the path, prints what they take of an LFE5U-25F, and fails beyond
+budget.ini. It is what can be seen of a bitstream without placing it.
+    resources.py [KIND...]     uart, fifo; both if none is named"""
 import collections
 import concurrent.futures
 import configparser
@@ -35,8 +36,9 @@ def counted(cells):
 def main():
     budget = configparser.ConfigParser()
     budget.read(flow.BOARD / "budget.ini")
+    kinds = sys.argv[1:] or budget.sections()
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
-        found = {kind: counted(cells) for kind, cells in zip(budget.sections(), pool.map(synthesised, budget.sections()))}
+        found = {kind: counted(cells) for kind, cells in zip(kinds, pool.map(synthesised, kinds))}
     exceeded = []
     for kind, counts in found.items():
         shares = ", ".join(f"{counts[part]:,} {part} ({100 * counts[part] / of:.1f} %)" for part, of in LFE5U_25F.items())
