@@ -12,6 +12,7 @@ mod contradictions;
 mod corrected;
 mod documents;
 mod help;
+mod info;
 mod lenses;
 mod load;
 mod made_files;

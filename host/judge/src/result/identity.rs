@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::board::{Capabilities, Welcome};
+use crate::board::{Bursts, Capabilities, Welcome};
 
 /// What a board says of itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -39,6 +39,38 @@ pub struct Identity {
     pub row_banks_out: u8,
     /// The pixel clock in hertz, 0 when it stands for no real time.
     pub clock_hz: u32,
+    /// The frames that it makes on its own; none if it makes none.
+    #[serde(default)]
+    pub bursts: Option<BurstsOf>,
+    /// Whether each row comes back with the CRC-32 of what entered the core.
+    #[serde(default)]
+    pub entered: bool,
+}
+
+/// What a board makes on its own at the full pixel clock (AT-SPEED.md).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct BurstsOf {
+    /// The content id.
+    pub content: u16,
+    /// Records that it keeps until a host has them.
+    pub records: u16,
+    /// Fewest pixel clocks between two frames.
+    pub least_frame_blanking: u16,
+    /// Whether it keeps a row whose signature is not the expected one.
+    pub trap: bool,
+}
+
+impl BurstsOf {
+    fn of(bursts: Bursts) -> Self {
+        let Bursts { content, records, least_frame_blanking, trap } = bursts;
+        Self { content, records, least_frame_blanking, trap }
+    }
+
+    /// For people.
+    fn text(&self) -> String {
+        let trap = if self.trap { "a trap" } else { "no trap" };
+        format!("content {}, {} records, {trap}", self.content, self.records)
+    }
 }
 
 impl Identity {
@@ -63,6 +95,8 @@ impl Identity {
             row_banks_in: capabilities.row_banks_in,
             row_banks_out: capabilities.row_banks_out,
             clock_hz: capabilities.clock_hz,
+            bursts: capabilities.bursts.map(BurstsOf::of),
+            entered: capabilities.entered,
         }
     }
 
@@ -89,6 +123,8 @@ impl Identity {
             ("table banks", self.table_banks.to_string()),
             ("row banks", format!("{} in, {} out", self.row_banks_in, self.row_banks_out)),
             ("pixel clock", clock),
+            ("frames at speed", self.bursts.map_or_else(|| "none".to_owned(), |bursts| bursts.text())),
+            ("what entered", if self.entered { "signed" } else { "not signed" }.to_owned()),
         ]
     }
 }

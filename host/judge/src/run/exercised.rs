@@ -211,6 +211,8 @@ mod tests {
             row_banks_in: 2,
             row_banks_out: 2,
             clock_hz: 0,
+            bursts: None,
+            entered: false,
         }
     }
 

@@ -3,7 +3,7 @@
 use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
 use halfrow::result::{
-    Account, BoardKind, BoardReport, Check, CheckName, Defect, Evidence, EvidenceReport, Finding,
+    Account, BoardKind, BoardReport, BurstsOf, Check, CheckName, Defect, Evidence, EvidenceReport, Finding,
     FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, NotExercised, Outcome, Problem, Reading,
     Report, RunReport, Schema, StreetReport, Suspect, TablesReport,
 };
@@ -155,6 +155,8 @@ fn board() -> BoardReport {
         row_banks_in: 4,
         row_banks_out: 4,
         clock_hz: 0,
+        bursts: Some(BurstsOf { content: 1, records: 64, least_frame_blanking: 0, trap: true }),
+        entered: true,
     };
     BoardReport { kind: BoardKind::Mock, target: "mock,fault=flip".to_owned(), identity: Some(identity) }
 }

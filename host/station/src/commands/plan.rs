@@ -95,7 +95,12 @@ fn told(step: &Step) -> String {
                 Seed::Run => "of the run".to_owned(),
                 Seed::Fixed(seed) => seed.to_string(),
             };
-            format!("{} x {}, by {}, seed {seed}", judging.repeat, names.join(", "), judging.chosen.source)
+            let at_speed = match judging.at_speed {
+                None => String::new(),
+                Some(time) => format!(", {} s at full speed", time.as_secs_f64()),
+            };
+            let frames = names.join(", ");
+            format!("{} x {frames}{at_speed}, by {}, seed {seed}", judging.repeat, judging.chosen.source)
         }
     };
     let tries =

@@ -186,6 +186,9 @@ pub struct Judging {
     pub frames: Vec<FrameSource>,
     /// How often they are streamed.
     pub repeat: u32,
+    /// How long the board makes frames on its own at the full pixel clock behind them, on its clock, zero for none; if none is
+    /// said, as long as the judge does on its own.
+    pub at_speed: Option<Duration>,
     /// The seed of noise, gaps and nonces.
     pub seed: Seed,
 }

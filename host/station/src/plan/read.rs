@@ -199,6 +199,7 @@ fn link(text: &StepText) -> Result<Act, Fault> {
     let foreign = [
         text.frames.as_ref().map(|key| ("frames", key.span().start)),
         text.repeat.as_ref().map(|key| ("repeat", key.span().start)),
+        text.at_speed.as_ref().map(|key| ("at_speed", key.span().start)),
         text.seed.as_ref().map(|key| ("seed", key.span().start)),
         text.tables.as_ref().map(|_| ("tables", text.kind.span().start)),
     ];
@@ -226,7 +227,8 @@ fn verify(text: &StepText, tables: &TablesText, files: &mut Files) -> Result<Act
     };
     let frames = tables::frames(names.get_ref(), chosen.tables.geometry(), phase, files)?;
     let repeat = whole(text.repeat.as_ref(), 1, 1..=MOST_REPEATS)?;
-    let judging = Judging { chosen, phase, frames, repeat, seed: seed(text.seed.as_ref())? };
+    let at_speed = text.at_speed.as_ref().map(at_speed).transpose()?;
+    let judging = Judging { chosen, phase, frames, repeat, at_speed, seed: seed(text.seed.as_ref())? };
     let fits = judging.plan(0).check_length();
     fits.map_err(|error| Fault::input(names.span().start, "so many frames", error))?;
     Ok(Act::Verify(Box::new(judging)))
@@ -241,7 +243,7 @@ impl Judging {
             Seed::Fixed(seed) => seed,
         };
         let plan = self.chosen.clone().plan(self.phase).frames(self.frames.iter().cloned());
-        halfrow::Plan { repeat: self.repeat, seed, ..plan }
+        halfrow::Plan { repeat: self.repeat, at_speed: self.at_speed, seed, ..plan }
     }
 }
 
@@ -253,6 +255,15 @@ fn seed(text: Option<&Spanned<SeedText>>) -> Result<Seed, Fault> {
         Some((SeedText::Word(word), at)) => {
             Err(Fault::wrong(at, format!("`{word}` is no seed"), "write \"run\", or a whole number"))
         }
+    }
+}
+
+/// Seconds of the board's own frames, which may be none.
+fn at_speed(text: &Spanned<f64>) -> Result<Duration, Fault> {
+    if *text.get_ref() == 0.0 {
+        Ok(Duration::ZERO)
+    } else {
+        seconds(Some(text), Duration::ZERO, MOST_SECONDS)
     }
 }
 

@@ -102,6 +102,7 @@ pub(super) struct StepText {
     pub(super) timeout: Option<Spanned<f64>>,
     pub(super) frames: Option<Spanned<Vec<Spanned<String>>>>,
     pub(super) repeat: Option<Spanned<u32>>,
+    pub(super) at_speed: Option<Spanned<f64>>,
     pub(super) seed: Option<Spanned<SeedText>>,
     pub(super) tables: Option<TablesText>,
 }

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::Path;
+use std::time::Duration;
 
 use halfrow_station::plan::limits::{Blame, MEASUREMENTS};
 use halfrow_station::plan::{Act, JSON_SCHEMA, Plan, Seed};
@@ -36,6 +37,7 @@ retries = 1
 kind = "verify"
 frames = ["builtin:noise", "chart.pgm"]
 repeat = 2
+at_speed = 1.5
 seed = "run"
 timeout = 60
 [[step]]
@@ -107,6 +109,8 @@ fn a_plan_says_what_is_done_with_each_variant() {
     assert_ne!(judging(of_narrow, 2).chosen.tables, judging(of_wide, 2).chosen.tables);
     assert_ne!(judging(of_narrow, 2).chosen.kernel, judging(of_narrow, 3).chosen.kernel);
     assert_eq!((judging(of_wide, 2).seed, judging(of_wide, 3).seed), (Seed::Run, Seed::Fixed(7)));
+    let at_speed = [2, 3].map(|step| judging(of_wide, step).plan(0).at_speed);
+    assert_eq!(at_speed, [Some(Duration::from_millis(1500)), None]);
 }
 
 /// The hash is of the text and of what it names, by a calculation of its own: `sha256sum` of the same bytes.
@@ -132,7 +136,7 @@ fn the_hash_changes_with_the_text_and_with_every_file_that_it_names() {
 }
 
 /// What is replaced in the plan, by what, and what is said then.
-const BAD: [(&str, &str, &str); 36] = [
+const BAD: [(&str, &str, &str); 37] = [
     ("schema = 1", "schema = 2", "plan.toml:1: this program reads plans of schema 1, not 2; take the"),
     ("schema = 1", "schema = 1\nschma = 1", "plan.toml:2: unknown field `schma`"),
     ("version = \"7\"", "version = \"7\"\nversion = \"8\"", "plan.toml:5: duplicate key"),
@@ -186,45 +190,46 @@ const BAD: [(&str, &str, &str); 36] = [
         "wide.pgm",
         "plan.toml:27: wide.pgm is 128 x 16, and the tables are for 64 x 16; name a frame",
     ),
-    ("seed = \"run\"", "seed = \"rum\"", "plan.toml:29: `rum` is no seed; write \"run\""),
-    ("name = \"diagnostic tables\"\n", "", "plan.toml:32: two steps are called verify; give each a `name`"),
+    ("at_speed = 1.5", "at_speed = -1.0", "plan.toml:29: -1 seconds are none that a step can take; write"),
+    ("seed = \"run\"", "seed = \"rum\"", "plan.toml:30: `rum` is no seed; write \"run\""),
+    ("name = \"diagnostic tables\"\n", "", "plan.toml:33: two steps are called verify; give each a `name`"),
     (
         "\"latency.clocks\" = { most = 1004",
         "\"latency.clock\" = { most = 1004",
-        "plan.toml:38: nothing is measured that is called latency.clock; name",
+        "plan.toml:39: nothing is measured that is called latency.clock; name",
     ),
     (
         "\"run.seconds\" = { most = 60 }",
         "\"frames.samples_differing\" = { most = 3 }",
-        "plan.toml:40: no sample may differ, whatever",
+        "plan.toml:41: no sample may differ, whatever",
     ),
     (
         "unit = \"B/s\"",
         "unit = \"kB/s\"",
-        "plan.toml:39: link.together is measured in B/s, not in kB/s; write",
+        "plan.toml:40: link.together is measured in B/s, not in kB/s; write",
     ),
-    ("least = 1.1e6", "least = nan", "plan.toml:39: NaN is no limit; write a number"),
+    ("least = 1.1e6", "least = nan", "plan.toml:40: NaN is no limit; write a number"),
     (
         "{ most = 60 }",
         "{ most = 60, least = 61 }",
-        "plan.toml:40: nothing is at least 61 and at most 60; exchange",
+        "plan.toml:41: nothing is at least 61 and at most 60; exchange",
     ),
     (
         "(?<variant>[WN])",
         "[WN]",
-        "plan.toml:41: no serial number says that it is of the variant W; give the pattern",
+        "plan.toml:42: no serial number says that it is of the variant W; give the pattern",
     ),
     (
         "bad = \"CAN0306406152\"",
         "bad = \"CAN0306406153\"",
-        "plan.toml:46: the unit that checks a shift cannot be used: the check digit of `CAN0306406153` is wrong",
+        "plan.toml:47: the unit that checks a shift cannot be used: the check digit of `CAN0306406153` is wrong",
     ),
     (
         "bad = \"CAN0306406152\"",
         "bad = \"CAW080442957X\"",
-        "plan.toml:46: one unit is both good and bad; name",
+        "plan.toml:47: one unit is both good and bad; name",
     ),
-    ("hours = 8.0", "hours = 0.0", "plan.toml:47: no shift has 0 hours; write 0.1 to 168 hours"),
+    ("hours = 8.0", "hours = 0.0", "plan.toml:48: no shift has 0 hours; write 0.1 to 168 hours"),
 ];
 
 #[test]
@@ -241,7 +246,7 @@ fn every_bad_plan_is_refused_with_file_line_and_remedy() {
 fn limits_need_a_step_that_measures_and_a_plan_one_that_judges() {
     let link = "[[step]]\nkind = \"link\"\nseconds = 0.5\nretries = 1\n";
     let said = load(&WHOLE.replace(link, "")).map(|plan| plan.name).unwrap_err();
-    assert!(said.starts_with("plan.toml:35: no step of the plan measures link.together; add"), "{said}");
+    assert!(said.starts_with("plan.toml:36: no step of the plan measures link.together; add"), "{said}");
     let without = &WHOLE[..WHOLE.find("[[step]]\nkind = \"verify\"").unwrap()];
     let said = load(without).map(|plan| plan.name).unwrap_err();
     assert!(said.starts_with("plan.toml:22: no step judges the board; add"), "{said}");
@@ -250,7 +255,7 @@ fn limits_need_a_step_that_measures_and_a_plan_one_that_judges() {
     assert!(said.starts_with("plan.toml:1: the plan has no step; write"), "{said}");
     let open =
         load(&WHOLE.replace("{ most = 60 }", "{ blames = \"nobody\" }")).map(|plan| plan.name).unwrap_err();
-    assert!(open.starts_with("plan.toml:40: a limit without `least` and `most` limits nothing"), "{open}");
+    assert!(open.starts_with("plan.toml:41: a limit without `least` and `most` limits nothing"), "{open}");
 }
 
 #[test]

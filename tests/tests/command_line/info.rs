@@ -1,0 +1,18 @@
+//! What `info` says of a board.
+
+use halfrow_tests::program::halfrow;
+use serde_json::json;
+
+#[test]
+fn a_board_says_what_it_makes_at_full_speed() {
+    let said = |board| halfrow(["info", "--board", board]).stdout;
+    let whole = said("mock,records=8,least-frame-blanking=5");
+    assert!(whole.contains("\nframes at speed    content 1, 8 records, a trap\n"), "{whole}");
+    assert!(whole.contains("\nwhat entered       signed\n"), "{whole}");
+    let old = said("mock,bursts=no,entered=no");
+    assert!(old.contains("\nframes at speed    none\n"), "{old}");
+    assert!(old.contains("\nwhat entered       not signed\n"), "{old}");
+    let told = halfrow(["info", "--json", "--board", "mock,records=8,least-frame-blanking=5"]).json();
+    let bursts = json!({ "content": 1, "records": 8, "least_frame_blanking": 5, "trap": true });
+    assert_eq!(told["board"]["identity"]["bursts"], bursts);
+}
