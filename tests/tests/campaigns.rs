@@ -41,7 +41,7 @@ fn no_verdict_is_false(cases: &[Case], kept: &Kept) {
 
 #[test]
 fn every_single_fault_of_a_small_board_is_found() {
-    every_fault_is_found(&System::SMALL, 200);
+    every_fault_is_found(&System::SMALL, 100);
 }
 
 /// Where nothing is stretched no output lies near node 40, and rows of 64 samples never meet in a memory of 2048.
@@ -55,7 +55,7 @@ fn what_no_sample_can_show_is_left_to_read_back_or_to_nobody() {
 
 #[test]
 fn no_poor_link_gives_a_false_verdict() {
-    let mut cases = poor_links::draw(SEED, 0..300, poor_links::virtual_);
+    let mut cases = poor_links::draw(SEED, 0..150, poor_links::virtual_);
     cases.extend(poor_links::draw(SEED, 300..324, poor_links::real_and_short));
     // A board that swallows rows is given some ten seconds, which cost nothing on a virtual clock.
     let is_slow = |case: &Case| !matches!(case.way, Way::Virtual(_)) && case.broken.contains("lost-row");
