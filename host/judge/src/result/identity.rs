@@ -41,7 +41,7 @@ pub struct Identity {
     pub clock_hz: u32,
     /// The frames that it makes on its own; none if it makes none.
     #[serde(default)]
-    pub bursts: Option<BurstsOf>,
+    pub bursts: Option<BurstsReport>,
     /// Whether each row comes back with the CRC-32 of what entered the core.
     #[serde(default)]
     pub entered: bool,
@@ -49,7 +49,7 @@ pub struct Identity {
 
 /// What a board makes on its own at the full pixel clock (AT-SPEED.md).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct BurstsOf {
+pub struct BurstsReport {
     /// The content id.
     pub content: u16,
     /// Records that it keeps until a host has them.
@@ -60,7 +60,7 @@ pub struct BurstsOf {
     pub trap: bool,
 }
 
-impl BurstsOf {
+impl BurstsReport {
     fn of(bursts: Bursts) -> Self {
         let Bursts { content, records, least_frame_blanking, trap } = bursts;
         Self { content, records, least_frame_blanking, trap }
@@ -95,7 +95,7 @@ impl Identity {
             row_banks_in: capabilities.row_banks_in,
             row_banks_out: capabilities.row_banks_out,
             clock_hz: capabilities.clock_hz,
-            bursts: capabilities.bursts.map(BurstsOf::of),
+            bursts: capabilities.bursts.map(BurstsReport::of),
             entered: capabilities.entered,
         }
     }

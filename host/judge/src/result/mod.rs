@@ -47,7 +47,7 @@ pub use evidence::{Evidence, EvidenceReport};
 pub use extent::Extent;
 pub use finding::Finding;
 pub use frames::{FrameReport, FrameTiming, LatencyReport, Variation};
-pub use identity::{BurstsOf, Identity};
+pub use identity::{BurstsReport, Identity};
 pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};

@@ -3,9 +3,9 @@
 use halfrow::compare::Comparison;
 use halfrow::frames::street::EdgeDeviation;
 use halfrow::result::{
-    Account, BoardKind, BoardReport, BurstsOf, Check, CheckName, Defect, Evidence, EvidenceReport, Finding,
-    FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, NotExercised, Outcome, Problem, Reading,
-    Report, RunReport, Schema, StreetReport, Suspect, TablesReport,
+    Account, BoardKind, BoardReport, BurstsReport, Check, CheckName, Defect, Evidence, EvidenceReport,
+    Finding, FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, NotExercised, Outcome, Problem,
+    Reading, Report, RunReport, Schema, StreetReport, Suspect, TablesReport,
 };
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
@@ -155,7 +155,7 @@ fn board() -> BoardReport {
         row_banks_in: 4,
         row_banks_out: 4,
         clock_hz: 0,
-        bursts: Some(BurstsOf { content: 1, records: 64, least_frame_blanking: 0, trap: true }),
+        bursts: Some(BurstsReport { content: 1, records: 64, least_frame_blanking: 0, trap: true }),
         entered: true,
     };
     BoardReport { kind: BoardKind::Mock, target: "mock,fault=flip".to_owned(), identity: Some(identity) }

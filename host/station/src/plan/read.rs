@@ -260,15 +260,14 @@ fn seed(text: Option<&Spanned<SeedText>>) -> Result<Seed, Fault> {
 
 /// Seconds of the board's own frames, which may be none.
 fn at_speed(text: &Spanned<f64>) -> Result<Duration, Fault> {
-    if *text.get_ref() == 0.0 {
-        Ok(Duration::ZERO)
-    } else {
-        seconds(Some(text), Duration::ZERO, MOST_SECONDS)
-    }
+    if *text.get_ref() == 0.0 { Ok(Duration::ZERO) } else { some_seconds(text, MOST_SECONDS) }
 }
 
 fn seconds(text: Option<&Spanned<f64>>, otherwise: Duration, most: f64) -> Result<Duration, Fault> {
-    let Some(text) = text else { return Ok(otherwise) };
+    text.map_or(Ok(otherwise), |text| some_seconds(text, most))
+}
+
+fn some_seconds(text: &Spanned<f64>, most: f64) -> Result<Duration, Fault> {
     let seconds = *text.get_ref();
     if !(0.001..=most).contains(&seconds) {
         let remedy = format!("write a number of seconds, 0.001 to {most}");
