@@ -5,6 +5,11 @@
 
 use std::time::Duration;
 
+use halfrow::link;
+use halfrow::progress::Silent;
+use halfrow::result::{Report, SoakLength, SoakReport};
+use halfrow::run::{Plan, RunOptions, verify};
+use halfrow::verdict::Verdict;
 use halfrow_tests::campaign::{self, Found, Kind};
 use halfrow_tests::poor_links::{self, Case, Kept, Way};
 use halfrow_tests::program::Folder;
@@ -111,4 +116,37 @@ fn none_of_twenty_thousand_poor_links_gives_a_false_verdict() {
     let mut cases = poor_links::draw(SEED, 0..19_000, poor_links::virtual_);
     cases.extend(poor_links::draw(SEED, 19_000..20_000, poor_links::real));
     no_verdict_is_false(&cases, &kept);
+}
+
+/// Eight hours of the mock's clock, at which a burst has 2307 frames of 64 x 8 samples, and the host looks every 250 ms.
+#[allow(clippy::print_stdout)]
+fn soaked_for_eight_hours(target: &str) -> Report {
+    let plan =
+        Plan { soak: Some(SoakLength::Time { seconds: 28_800.0 }), fail_fast: false, ..System::TINY.plan() };
+    let candidate = link::open(&target.parse().unwrap()).unwrap();
+    let report = verify(&plan, candidate, &RunOptions::default(), &Silent).unwrap().report;
+    let soak = report.soak.as_ref().unwrap();
+    println!(
+        "{target}: {} in {} bursts, {} wrong; {}",
+        soak.frames,
+        soak.bursts,
+        soak.wrong,
+        report.headline()
+    );
+    assert!((28_800.0..28_801.0).contains(&soak.seconds), "{}", soak.seconds);
+    assert!(soak.frames > 1_000_000 && soak.bursts >= 480, "{soak:?}");
+    report
+}
+
+#[test]
+#[ignore = "minutes long; scripts/soak runs it"]
+fn eight_hours_are_judged_frame_by_frame() {
+    let sound = soaked_for_eight_hours("mock,pixel-clock=20000");
+    assert_eq!(sound.verdict, Verdict::Pass, "{}", sound.headline());
+    // Of some four million frames and two billion samples.
+    let broken = soaked_for_eight_hours("mock,pixel-clock=20000,fault=slow-path,one-in=400000000");
+    assert_eq!(broken.verdict, Verdict::Fail, "{}", broken.headline());
+    let soak = broken.soak.unwrap();
+    assert!((1..40).contains(&soak.wrong), "{soak:?}");
+    assert_eq!(soak.differences.len() as u64, soak.wrong.min(SoakReport::MOST_DIFFERENCES as u64));
 }

@@ -1,11 +1,12 @@
 //! Progress of a long run, for whoever watches: a bar on a terminal, plain lines otherwise, or nothing.
 
 use std::fmt::Write;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use halfrow::progress::{Event, Progress, Silent};
+use halfrow::progress::{Event, Progress, Silent, Soaked};
+use halfrow::report::wording::{count, grouped, span};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use crate::console;
@@ -36,7 +37,7 @@ impl Told {
         if quiet {
             Self::Nothing
         } else if console::is_watched() {
-            Self::Last(Bar::new().0)
+            Self::Last(Bar::new().bar)
         } else {
             Self::Lines
         }
@@ -75,7 +76,10 @@ fn seconds_left(rows: u64, expected: u64, time: Duration) -> Option<f64> {
 }
 
 /// A bar with rate and time left.
-struct Bar(ProgressBar);
+struct Bar {
+    bar: ProgressBar,
+    minutes: Minutes,
+}
 
 impl Bar {
     fn new() -> Self {
@@ -85,7 +89,7 @@ impl Bar {
             ProgressStyle::with_template("{spinner} {msg}")
                 .unwrap_or_else(|_| ProgressStyle::default_spinner()),
         );
-        Self(bar)
+        Self { bar, minutes: Minutes::default() }
     }
 }
 
@@ -93,13 +97,14 @@ impl Progress for Bar {
     fn event(&self, event: Event) {
         match event {
             Event::Step(step) => {
-                self.0.set_message(step.to_string());
-                self.0.tick();
+                self.bar.set_message(step.to_string());
+                self.bar.tick();
             }
             Event::RowsExpected(rows) => self.expect(rows),
-            Event::Frame(name) => self.0.set_message(name),
-            Event::Rows(count) => self.0.inc(count),
-            Event::Done => self.0.finish_and_clear(),
+            Event::Frame(name) => self.bar.set_message(name),
+            Event::Rows(count) => self.bar.inc(count),
+            Event::Soaked(soaked) => self.soaked(&soaked),
+            Event::Done => self.bar.finish_and_clear(),
         }
     }
 }
@@ -118,10 +123,65 @@ impl Bar {
                     let _ = write!(text, "  {seconds:.0} s left");
                 }
             };
-            self.0.set_style(style.with_key("rate", rate).with_key("left", left));
+            self.bar.set_style(style.with_key("rate", rate).with_key("left", left));
         }
-        self.0.set_length(rows);
+        self.bar.set_length(rows);
     }
+
+    fn soaked(&self, soaked: &Soaked) {
+        let (words, minute) = self.minutes.words(soaked);
+        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %  {msg}") {
+            self.bar.set_style(style);
+        }
+        self.bar.set_length(SOAK_STEPS);
+        self.bar.set_position((soaked.share() * SOAK_STEPS as f64) as u64);
+        if minute {
+            self.bar.suspend(|| console::diagnose(&words));
+        }
+        self.bar.set_message(words);
+    }
+}
+
+/// Steps of a soak's bar.
+const SOAK_STEPS: u64 = 1000;
+
+/// A soak's minutes, each of which is told once.
+#[derive(Default)]
+struct Minutes(Mutex<Option<SoakBegun>>);
+
+/// A soak that has begun.
+struct SoakBegun {
+    /// When, by this computer's clock.
+    at: Instant,
+    /// Its last minute that was told.
+    minute: u64,
+}
+
+impl Minutes {
+    /// How far it is, and whether another minute of it has passed.
+    fn words(&self, soaked: &Soaked) -> (String, bool) {
+        let mut begun = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let begun = begun.get_or_insert_with(|| SoakBegun { at: Instant::now(), minute: 0 });
+        let minute = soaked.time.as_secs() / 60;
+        let is_new = minute > begun.minute;
+        begun.minute = minute;
+        (soak_line(soaked, begun.at.elapsed()), is_new)
+    }
+}
+
+/// How far a soak is which has been watched for `time`.
+fn soak_line(soaked: &Soaked, time: Duration) -> String {
+    let Soaked { frames, wrong, .. } = *soaked;
+    let equal = if wrong == 0 { "all equal".to_owned() } else { format!("{} DIFFER", grouped(wrong)) };
+    let mut words = format!("{}: {}, {equal}", span(soaked.time.as_secs_f64()), count(frames, "frame"));
+    let (seconds, share) = (time.as_secs_f64(), soaked.share());
+    if seconds > 0.0 {
+        let _ = write!(words, ", {:.1} frames/s", frames as f64 / seconds);
+    }
+    if time >= TELLING_TIME && share > 0.0 {
+        let _ = write!(words, ", {} left", span(seconds * (1.0 / share - 1.0)));
+    }
+    words
 }
 
 /// A line every few seconds, for logs.
@@ -130,12 +190,19 @@ struct Lines {
     last: Mutex<Instant>,
     rows: AtomicU64,
     expected: AtomicU64,
+    minutes: Minutes,
 }
 
 impl Default for Lines {
     fn default() -> Self {
         let now = Instant::now();
-        Self { begun: now, last: Mutex::new(now), rows: AtomicU64::new(0), expected: AtomicU64::new(0) }
+        Self {
+            begun: now,
+            last: Mutex::new(now),
+            rows: AtomicU64::new(0),
+            expected: AtomicU64::new(0),
+            minutes: Minutes::default(),
+        }
     }
 }
 
@@ -148,6 +215,12 @@ impl Progress for Lines {
         match event {
             Event::RowsExpected(rows) => self.expected.store(rows, Ordering::Relaxed),
             Event::Rows(count) => self.count(count),
+            Event::Soaked(soaked) => {
+                let (words, minute) = self.minutes.words(&soaked);
+                if minute {
+                    console::diagnose(&words);
+                }
+            }
             _ => {}
         }
     }
@@ -174,6 +247,8 @@ fn line(rows: u64, expected: u64, time: Duration) -> String {
 
 #[cfg(test)]
 mod tests {
+    use halfrow::result::SoakLength;
+
     use super::*;
 
     #[test]
@@ -183,5 +258,31 @@ mod tests {
         assert_eq!(after(6684, 2), "6684 of 13368 rows, 3342 rows/s");
         assert_eq!(after(6684, 10), "6684 of 13368 rows, 668 rows/s, 10 s left");
         assert_eq!(line(5, 0, Duration::from_secs(9)), "5 of 0 rows, 1 rows/s, 0 s left");
+    }
+
+    #[test]
+    fn every_minute_of_a_soak_is_told_once() {
+        let minutes = Minutes::default();
+        let told = |seconds| {
+            let of = SoakLength::Time { seconds: 28_800.0 };
+            let soaked = Soaked { time: Duration::from_secs(seconds), frames: 46 * seconds, wrong: 0, of };
+            minutes.words(&soaked).1
+        };
+        assert_eq!(
+            [1, 59, 60, 61, 119, 130, 400, 401].map(told),
+            [false, false, true, false, false, true, true, false]
+        );
+    }
+
+    #[test]
+    fn a_soak_tells_what_was_judged_and_how_long_it_still_takes() {
+        let of = SoakLength::Time { seconds: 28_800.0 };
+        let soaked = |wrong| Soaked { time: Duration::from_secs(4320), frames: 199_872, wrong, of };
+        let hour_and_twelve = Duration::from_secs(4320);
+        assert_eq!(
+            soak_line(&soaked(0), hour_and_twelve),
+            "1 h 12 min: 199,872 frames, all equal, 46.3 frames/s, 6 h 48 min left"
+        );
+        assert!(soak_line(&soaked(2), hour_and_twelve).contains("199,872 frames, 2 DIFFER"));
     }
 }

@@ -6,7 +6,7 @@ use anstyle::{AnsiColor, Style};
 use comfy_table::{CellAlignment, Table, presets};
 
 use halfrow::report::wording::{self, grouped, mark, plain};
-use halfrow::result::{Outcome, Report, Suspect};
+use halfrow::result::{Outcome, Report, SoakReport, Suspect};
 use halfrow::verdict::Verdict;
 
 use crate::flags;
@@ -15,6 +15,8 @@ use crate::flags;
 const WIDTH: usize = 80;
 /// Rows of the table of frames.
 const MOST_FRAMES: usize = 20;
+/// Differences of a soak.
+const MOST_DIFFERENCES: usize = 10;
 /// Characters of a frame's name.
 const MOST_NAME: usize = 28;
 /// Columns of the labels on the left.
@@ -33,6 +35,7 @@ pub fn render(report: &Report) -> String {
     if !report.frames.is_empty() {
         sections.push(frames(report));
     }
+    sections.extend(report.soak.as_ref().map(soak));
     sections.push(figures(report));
     sections.extend(Some(advice(report)).filter(|advice| !advice.is_empty()));
     sections.push(verdict(report));
@@ -95,6 +98,20 @@ fn frames(report: &Report) -> String {
     text
 }
 
+/// What a soak judged, and when something differed.
+fn soak(soak: &SoakReport) -> String {
+    let mut text = String::new();
+    push(&mut text, "soak", Style::new(), &wording::soak(soak));
+    for difference in soak.differences.iter().take(MOST_DIFFERENCES) {
+        push(&mut text, "differs", RED, &wording::soak_difference(difference));
+    }
+    let left_out = soak.differences.len().saturating_sub(MOST_DIFFERENCES);
+    if left_out > 0 {
+        let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", wording::count(left_out, "more difference"));
+    }
+    text
+}
+
 fn figures(report: &Report) -> String {
     let mut text = String::new();
     let no_style = Style::new();
@@ -137,8 +154,8 @@ fn verdict(report: &Report) -> String {
 }
 
 fn push_suspect(text: &mut String, suspect: &Suspect) {
-    let share = wording::percent(suspect.explained);
-    let who = format!("{}, {} (explains {share} of the differences)", suspect.part(), suspect.place());
+    let share = wording::share(suspect).map_or_else(String::new, |share| format!(" ({share})"));
+    let who = format!("{}, {}{share}", suspect.part(), suspect.place());
     push(text, "suspect", BOLD, &who);
     push(text, "", BOLD, &suspect.evidence());
     push(text, "", BOLD, &format!("Next: {}", suspect.designer()));

@@ -53,7 +53,7 @@ pub use halfrow_model as model;
 pub use board::Stop;
 pub use link::{Candidate, Link, LinkError, Reopener};
 pub use probe::probe;
-pub use progress::{Event, Progress, Step};
+pub use progress::{Event, Progress, Soaked, Step};
 pub use report::ReportFolder;
 pub use result::Report;
 pub use run::{Finished, FrameSource, Misfit, Plan, RunOptions, verify};

@@ -16,9 +16,12 @@
 //! ```
 
 use std::fmt;
+use std::time::Duration;
+
+use crate::result::SoakLength;
 
 /// What a run does, as it does it.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Event {
     /// A step begins that moves no rows.
     Step(Step),
@@ -28,8 +31,35 @@ pub enum Event {
     Frame(String),
     /// As many rows came back, or were computed, since the last event of this kind.
     Rows(u64),
+    /// Frames of a soak were judged.
+    Soaked(Soaked),
     /// The run is over.
     Done,
+}
+
+/// How far a soak is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Soaked {
+    /// Since it began, on the link's clock.
+    pub time: Duration,
+    /// Frames judged.
+    pub frames: u64,
+    /// Those that differ.
+    pub wrong: u64,
+    /// How long it is to be.
+    pub of: SoakLength,
+}
+
+impl Soaked {
+    /// The share of it that is done, 0 to 1.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        let (done, all) = match self.of {
+            SoakLength::Time { seconds } => (self.time.as_secs_f64(), seconds),
+            SoakLength::Frames { frames } => (self.frames as f64, frames as f64),
+        };
+        if all > 0.0 { (done / all).min(1.0) } else { 1.0 }
+    }
 }
 
 /// A step of a run that moves no rows.

@@ -10,5 +10,6 @@ mod conduct;
 mod exercised;
 mod lost_rows;
 mod recordings;
+mod soak;
 mod stale_packets;
 mod stalls;

@@ -28,9 +28,10 @@ fn told(folder: &Folder, code: i32, arguments: &[&str]) -> Value {
 #[test]
 fn every_command_that_prints_a_result_prints_a_document() {
     let folder = Folder::new();
-    let calls: [(&str, Vec<&str>); 12] = [
+    let calls: [(&str, Vec<&str>); 13] = [
         ("verify", small("verify", &["--frame", "builtin:black"])),
         ("verify", small("verify", &["--list"])),
+        ("soak", small("soak", &["--frames", "5"])),
         ("correct", small("correct", &["builtin:black", "--model", "-o", "out.pgm"])),
         ("tables", small("tables", &["-o", "tables.json"])),
         ("lens", small("lens", &[])),

@@ -5,8 +5,9 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 18] = [
+const COMMANDS: [(&str, &str); 19] = [
     ("verify", "Judge a board"),
+    ("soak", "Judge a board for hours"),
     ("correct", "Correct frames"),
     ("tables", "Make a table file"),
     ("lens", "Tell a lens's figures"),

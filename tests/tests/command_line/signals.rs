@@ -47,6 +47,27 @@ fn an_interrupted_run_leaves_a_whole_report_that_says_so_and_a_recording() {
     }
 }
 
+/// Its minutes are those of the mock's clock, which stands still while it computes.
+#[test]
+fn an_interrupted_soak_has_told_its_minutes_and_leaves_what_was_judged() {
+    let folder = Folder::new();
+    let board = ["--board", "mock,pixel-clock=1000"];
+    let call = ["soak", "--json", "--hours", "8000", "--report", "out"].into_iter().chain(board);
+    let quiet =
+        started(&folder, small("soak", &["--quiet", "--hours", "0.1"]).into_iter().chain(board)).end();
+    assert_eq!((quiet.code, quiet.stderr.as_str()), (Some(0), ""), "{}", quiet.stdout);
+    let told = started(&folder, small("soak", &["--hours", "0.1"]).into_iter().chain(board)).end();
+    assert_eq!(told.stderr.lines().filter(|line| line.contains(" frames, all equal, ")).count(), 6);
+    let running = started(&folder, call.chain(["--width", "64", "--height", "8"]));
+    until_there_is(folder.path(), |name| name.contains("out"));
+    running.send("INT");
+    let ended = running.end();
+    assert_eq!(ended.code, Some(130), "{}", ended.stderr);
+    let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    assert_eq!(report, ended.json());
+    assert_eq!((&report["command"], &report["verdict"]), (&"soak".into(), &"ERROR".into()));
+}
+
 #[test]
 fn a_run_that_is_to_outlive_its_terminal_does() {
     let folder = Folder::new();

@@ -76,6 +76,13 @@ commands! {
     /// centre and the depth vary in frames of their own; a PASS names what no frame exercised. Exit codes: 0 PASS, 1 FAIL, 2 usage,
     /// 3 ERROR, 4 busy, 5 nothing judged, 6 identity or version refused, 129, 130 or 143 interrupted.
     Verify(super::verify::Arguments), "verify";
+    /// Judge a board for hours, by frames that it makes at its full pixel clock
+    ///
+    /// Some frames are streamed through it first. Then it makes one burst after the other, each with content of its own, tables and
+    /// kernel by turns, and goes on behind whatever differs. A board that goes away is waited for, 300 s unless --reconnect says
+    /// otherwise. The report says what was judged and when something differed, also of a soak that was interrupted. Exit codes are
+    /// those of verify; 5 if the board makes no frames.
+    Soak(super::soak::Arguments), "soak";
     /// Correct frames with the reference model, or with a board, unjudged
     Correct(super::correct::Arguments), "correct";
     /// Make a table file: a row factor for every row, and a kernel

@@ -21,8 +21,10 @@ mod link;
 mod load;
 mod optics;
 mod paper;
+mod run;
 mod schema;
 mod serve;
+mod soak;
 mod station;
 mod table_file;
 mod tables;
@@ -159,6 +161,7 @@ impl Cli {
         }
         match &self.0.command {
             Command::Verify(arguments) => verify::run(arguments, &context),
+            Command::Soak(arguments) => soak::run(arguments, &context),
             Command::Correct(arguments) => correct::run(arguments, &context),
             Command::Tables(arguments) => tables::run(arguments, &context),
             Command::Lens(arguments) => lens::run(arguments, &context),

@@ -199,15 +199,16 @@ impl Board {
     }
 
     /// Sets the counters back, and drops tables that an earlier session left: a board takes a generation that is active
-    /// already for a repeated packet, and would go on using the old tables under it.
+    /// already for a repeated packet, and would go on using the old tables under it. Says whether there were any.
     ///
     /// # Errors
     /// [`BoardError`] when no answer comes.
-    pub(crate) fn start_afresh(&mut self) -> Result<(), BoardError> {
-        if self.status(true)?.generation != 0 {
+    pub(crate) fn start_afresh(&mut self) -> Result<bool, BoardError> {
+        let had_tables = self.status(true)?.generation != 0;
+        if had_tables {
             self.reset(ResetLevel::Tables, Step::Request)?;
         }
-        Ok(())
+        Ok(had_tables)
     }
 
     /// Sets geometry and timing.

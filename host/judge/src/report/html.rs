@@ -3,6 +3,7 @@
 mod charts;
 mod evidence;
 mod facts;
+mod soak;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use png::EncodingError;
@@ -23,13 +24,14 @@ const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inlin
 /// The PNG encoder's.
 pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, EncodingError> {
     let pictures = evidence::sections(report, evidence)?;
-    let title = format!("{}: halfrow verify {}", report.verdict, plain(&report.board.target));
+    let title = format!("{}: halfrow {} {}", report.verdict, report.command(), plain(&report.board.target));
     let body = html! {
         (banner(report))
         main {
             (next(report))
             section { h2 { "Checks" } (checks(&report.checks)) }
             (facts::frames(report))
+            @if let Some(soak) = &report.soak { (soak::section(soak)) }
             (pictures)
             (facts::figures(report))
             (facts::not_exercised(report))
@@ -94,12 +96,12 @@ fn next(report: &Report) -> Markup {
     }
 }
 
-fn suspect(suspect: &Suspect) -> Markup {
+pub(super) fn suspect(suspect: &Suspect) -> Markup {
     html! {
         li {
             h3 {
                 (plain(suspect.part())) ", " (plain(&suspect.place()))
-                span.share { " explains " (wording::percent(suspect.explained)) " of the differences" }
+                @if let Some(share) = wording::share(suspect) { span.share { " " (share) } }
             }
             p { (plain(&suspect.evidence())) }
             p { strong { "Next: " } (plain(&suspect.designer())) }

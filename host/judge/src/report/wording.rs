@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use crate::result::{
-    BoardKind, BoardReport, Finding, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome, Report,
-    StreetReport,
+    Account, BoardKind, BoardReport, Finding, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome,
+    Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport, Suspect,
 };
 use crate::verdict::Verdict;
 
@@ -112,7 +112,7 @@ fn at_speed(report: &Report) -> Option<String> {
             Some(format!("{} at speed", count(frames, "frame")))
         }
         Finding::EqualAtSpeed { frames, clock_hz, .. } => {
-            Some(format!("{} at {:.1} MHz", count(frames, "frame"), f64::from(clock_hz) / 1e6))
+            Some(format!("{} at {}", count(frames, "frame"), hertz(clock_hz)))
         }
         Finding::PausedAtSpeed { .. } | Finding::NothingAtSpeed { .. } => Some("none at speed".to_owned()),
         _ => None,
@@ -195,6 +195,55 @@ pub fn link(link: &LinkReport) -> String {
     format!("{}: {}", link.name, parts.join(", "))
 }
 
+/// How much a suspect explains; none where there is nothing to count.
+#[must_use]
+pub fn share(suspect: &Suspect) -> Option<String> {
+    let counted = !matches!(suspect.account, Account::Nothing);
+    counted.then(|| format!("explains {} of the differences", percent(suspect.explained)))
+}
+
+/// How a board went away and came back, in one sentence without a full stop.
+#[must_use]
+pub fn away(away: &Reconnection) -> String {
+    let kept = match away.kept_tables {
+        None => "",
+        Some(true) => "; it had gone on, and had its tables still",
+        Some(false) => "; it had begun anew, without tables",
+    };
+    format!("for {:.1} s: {}{kept}", away.seconds_away, away.reason)
+}
+
+/// How much of a soak was judged, in one sentence without a full stop.
+#[must_use]
+pub fn soak(soak: &SoakReport) -> String {
+    let time = span(soak.seconds);
+    let mut words = match soak.asked {
+        SoakLength::Time { seconds } => format!("{time} of {}", span(seconds)),
+        SoakLength::Frames { frames } => format!("{} asked for, {time}", count(frames, "frame")),
+    };
+    let judged = format!(": {} in {}", count(soak.frames, "frame"), count(soak.bursts, "burst"));
+    words.push_str(&judged);
+    match soak.wrong {
+        0 => words.push_str(", none of which differs"),
+        wrong => words.push_str(&format!(", {} of which differ", grouped(wrong))),
+    }
+    if soak.paused > 0 {
+        words.push_str(&format!("; {} with pauses", grouped(soak.paused)));
+    }
+    words
+}
+
+/// When and how something differed in a soak, in one sentence without a full stop.
+#[must_use]
+pub fn soak_difference(difference: &SoakDifference) -> String {
+    let SoakDifference { seconds, seed, generation, finding, .. } = difference;
+    format!(
+        "behind {}, content of seed {seed:08x}, tables of generation {generation}: {}",
+        span(*seconds),
+        finding.sentence()
+    )
+}
+
 /// How a frame came out. Under the verdict ERROR nothing is the board's fault.
 #[must_use]
 pub(crate) fn frame_outcome(report: &Report, frame: &FrameReport) -> Outcome {
@@ -271,6 +320,29 @@ pub fn percent(share: f64) -> String {
     }
 }
 
+/// A frequency in the largest unit that leaves a whole digit: `96.0 MHz`.
+#[must_use]
+pub fn hertz(frequency: u32) -> String {
+    match frequency {
+        0..1_000 => format!("{frequency} Hz"),
+        1_000..1_000_000 => format!("{:.1} kHz", f64::from(frequency) / 1e3),
+        _ => format!("{:.1} MHz", f64::from(frequency) / 1e6),
+    }
+}
+
+/// A time in the two largest units that it has: `3.0 s`, `13 min 20 s`, `6 h 48 min`.
+#[must_use]
+pub fn span(seconds: f64) -> String {
+    // A time that is no number is none.
+    let whole = seconds.round().max(0.0) as u64;
+    match whole {
+        0..60 if seconds < 1.0 => format!("{:.1} ms", seconds.max(0.0) * 1e3),
+        0..60 => format!("{seconds:.1} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        _ => format!("{} h {} min", grouped(whole / 3600), whole % 3600 / 60),
+    }
+}
+
 /// Text from outside with its control characters spelt out, since boards and file names can hold any, and terminals
 /// obey some.
 #[must_use]
@@ -292,6 +364,12 @@ mod tests {
     fn every_third_digit_is_set_off() {
         let numbers = [0, 12, 999, 1_000, 33_177_600].map(grouped);
         assert_eq!(numbers, ["0", "12", "999", "1,000", "33,177,600"]);
+    }
+
+    #[test]
+    fn a_time_is_told_in_two_units() {
+        let spans = [0.0216, 3.0, 800.0, 24_480.0, 4_000_000.0].map(span);
+        assert_eq!(spans, ["21.6 ms", "3.0 s", "13 min 20 s", "6 h 48 min", "1,111 h 6 min"]);
     }
 
     #[test]

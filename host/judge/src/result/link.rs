@@ -47,4 +47,7 @@ pub struct Reconnection {
     pub reason: Problem,
     /// How long it was away, in seconds.
     pub seconds_away: f64,
+    /// Whether it still had its tables, so that it had not lost its power; none when it was not asked.
+    #[serde(default)]
+    pub kept_tables: Option<bool>,
 }

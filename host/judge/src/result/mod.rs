@@ -27,6 +27,7 @@ mod link;
 mod not_exercised;
 mod problem;
 mod sha256;
+mod soak;
 mod suspect;
 pub mod wording;
 
@@ -52,9 +53,10 @@ pub use link::{LinkReport, Reconnection};
 pub use not_exercised::NotExercised;
 pub use problem::{Parameters, Problem};
 pub use sha256::sha256;
+pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
 pub use suspect::{Account, Suspect};
 
-/// A finished run of `verify`.
+/// A finished run of `verify` or `soak`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Report {
     /// Which shape of JSON it has.
@@ -82,6 +84,9 @@ pub struct Report {
     pub street: Option<StreetReport>,
     /// What was kept for diagnosis and pictures.
     pub evidence: EvidenceReport,
+    /// Frames at the full pixel clock for hours; none but where they were asked for.
+    #[serde(default)]
+    pub soak: Option<SoakReport>,
     /// The link.
     pub link: LinkReport,
     /// What was uploaded.
@@ -91,6 +96,12 @@ pub struct Report {
 }
 
 impl Report {
+    /// The command that makes such a report.
+    #[must_use]
+    pub fn command(&self) -> &'static str {
+        if self.soak.is_some() { "soak" } else { "verify" }
+    }
+
     /// The result in one sentence.
     #[must_use]
     pub fn headline(&self) -> String {
@@ -131,6 +142,8 @@ struct Rest<'a> {
     latency: &'a Option<LatencyReport>,
     street: &'a Option<StreetReport>,
     evidence: &'a EvidenceReport,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    soak: Option<&'a SoakReport>,
     link: &'a LinkReport,
     tables: &'a TablesReport,
     run: &'a RunReport,
@@ -150,6 +163,7 @@ impl<'a> From<&'a Report> for Rest<'a> {
             latency: &report.latency,
             street: &report.street,
             evidence: &report.evidence,
+            soak: report.soak.as_ref(),
             link: &report.link,
             tables: &report.tables,
             run: &report.run,
@@ -161,7 +175,7 @@ impl Serialize for Report {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         Document {
             schema: self.schema,
-            command: "verify",
+            command: self.command(),
             verdict: Some(self.verdict),
             board: Some(&self.board),
             error: self.error().as_ref(),

@@ -8,8 +8,8 @@ use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::board::Tally;
 use crate::frames::street;
 use crate::result::{
-    Check, CheckName, Finding, LinkReport, Outcome, Report, RunReport, Schema, StreetReport, Suspect,
-    TablesReport,
+    Check, CheckName, Finding, LinkReport, Outcome, Report, RunReport, Schema, SoakReport, StreetReport,
+    Suspect, TablesReport,
 };
 use crate::verdict::Cause;
 
@@ -45,6 +45,7 @@ pub(super) fn conclude(
         frames: findings.seen.frames,
         latency: findings.seen.latency,
         street,
+        soak: findings.soak.or_else(|| plan.soak.map(SoakReport::new)),
         evidence: evidence_report,
         link: link(findings.link, &findings.tally),
         tables: tables(plan),

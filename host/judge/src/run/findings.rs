@@ -7,7 +7,8 @@ use super::judge::Seen;
 use super::{Candidate, Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
-    BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem, Suspect,
+    BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem, SoakReport,
+    Suspect,
 };
 use crate::verdict::Cause;
 
@@ -81,6 +82,8 @@ pub(super) struct Findings {
     pub(super) untested_at_speed: Vec<NotExercised>,
     /// Bursts that were begun.
     pub(super) bursts: u32,
+    /// What a soak came to.
+    pub(super) soak: Option<SoakReport>,
     /// Why the board cannot have what the plan uploads.
     pub(super) misfit: Option<Misfit>,
 }
@@ -105,6 +108,7 @@ impl Findings {
             not_exercised: Vec::new(),
             untested_at_speed: Vec::new(),
             bursts: 0,
+            soak: None,
             misfit: None,
         }
     }

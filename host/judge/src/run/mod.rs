@@ -142,7 +142,11 @@ fn run(
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
     let generations = plan.generations(&Build::of(&board.capabilities));
     let way_back = &mut way_back;
-    let end = Run { plan, board: &mut board, generations, options, way_back, progress, findings }.all_steps();
+    let end = {
+        let mut run =
+            Run { plan, board: &mut board, generations, sessions: 0, options, way_back, progress, findings };
+        run.all_steps()
+    };
     findings.note_link(&board);
     // Whatever happened, the next run must find the board free; a board that is gone need not be asked again.
     let reachable = !matches!(&end, Err(end) if end.is_unreachable());

@@ -10,7 +10,7 @@ use halfrow_model::{
 
 use super::variations::{Build, Vary, varied};
 use crate::frames::{Builtin, Scene};
-use crate::result::Variation;
+use crate::result::{SoakLength, Variation};
 
 /// Pixel clocks between two rows of the paper's sensor (MT9P031) at 1080p.
 pub(crate) const SENSOR_BLANKING: u16 = 900;
@@ -102,6 +102,8 @@ pub struct Plan {
     /// How long the board makes frames on its own, on its own clock: 3 s of hardware and some frames of any other board when
     /// not given.
     pub at_speed: Option<Duration>,
+    /// How long a soak is that takes the place of those frames, if there is one.
+    pub soak: Option<SoakLength>,
     /// End with the first frame that differs.
     pub fail_fast: bool,
     /// The seed of nonces, link test and noise.
@@ -162,6 +164,7 @@ impl Plan {
             repeat: 1,
             vary: Vary::default(),
             at_speed: None,
+            soak: None,
             fail_fast: false,
             seed: 1,
         }

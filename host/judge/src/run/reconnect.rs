@@ -59,7 +59,11 @@ impl WayBack {
             if let Some(board) = self.try_open(spent, findings.link.reconnections.len()) {
                 let away = left.elapsed();
                 findings.earlier.seconds += away;
-                findings.link.reconnections.push(Reconnection { reason, seconds_away: away.as_secs_f64() });
+                findings.link.reconnections.push(Reconnection {
+                    reason,
+                    seconds_away: away.as_secs_f64(),
+                    kept_tables: None,
+                });
                 return Ok(board);
             }
             if left.elapsed() > patience {
@@ -131,10 +135,19 @@ impl Run<'_> {
         Err(End::error(CheckName::Identity, Cause::Refused, Finding::BoardExchanged {}))
     }
 
+    /// Drops what the board has of an earlier session, and takes note of whether one that came back had it still.
+    pub(super) fn start_afresh(&mut self) -> Result<(), BoardError> {
+        let had_tables = self.board.start_afresh()?;
+        if let Some(last) = self.findings.link.reconnections.last_mut() {
+            last.kept_tables.get_or_insert(had_tables);
+        }
+        Ok(())
+    }
+
     /// Sets a board that may have forgotten everything. Frames begin with their row 0, since a board takes no other
     /// behind a greeting.
     fn restore(&mut self, segment: &Segment, at: usize) -> Result<(), End> {
-        self.board.start_afresh().map_err(|error| End::board(CheckName::Link, &error))?;
+        self.start_afresh().map_err(|error| End::board(CheckName::Link, &error))?;
         self.configure(segment)?;
         let next = segment.frames.get(at);
         let Some(frame) = next.or(segment.frames.last()) else { return Ok(()) };

@@ -12,7 +12,7 @@ use crate::result::{CheckName, Doubt, Finding};
 use crate::verdict::Cause;
 
 /// How often it is all done again until no request comes to the board twice.
-const LOOKS: u32 = 3;
+pub(super) const LOOKS: u32 = 3;
 /// Keeps the nonces of these sessions from those of boards that came back.
 const NONCE: u32 = 1 << 16;
 
@@ -21,13 +21,11 @@ impl Run<'_> {
     pub(super) fn look_again(&mut self, failed: End) -> Result<(), End> {
         let mut failed = failed;
         for look in 1..=LOOKS {
-            let Some(doubt) = self.doubt(&failed) else { return Err(failed) };
+            let Some(doubt) = self.doubt(failed.check().0) else { return Err(failed) };
             let (_, _, found) = failed.check();
             tracing::warn!("{}; looking again, since {}", found.sentence(), doubt.sentence());
             self.progress.step(Step::LookAgain);
-            let nonce = self.way_back.options.nonce.wrapping_add(NONCE + look);
-            let options = OpenOptions { nonce, ..self.way_back.options.clone() };
-            self.board.greet_again(&options).map_err(|error| End::board(CheckName::Link, &error))?;
+            self.open_session(look)?;
             (self.findings.seen, self.findings.rows_counted) = (Seen::default(), 0);
             match self.all_but_identity() {
                 Err(again @ End::Failed { .. }) => failed = again,
@@ -39,7 +37,7 @@ impl Run<'_> {
                 }
             }
         }
-        match self.doubt(&failed) {
+        match self.doubt(failed.check().0) {
             None => Err(failed),
             Some(doubt) => {
                 let (check, _, found) = failed.check();
@@ -49,15 +47,22 @@ impl Run<'_> {
         }
     }
 
-    /// Why the board may not be as the host made it in this session, although it is sound.
-    fn doubt(&mut self, failed: &End) -> Option<Doubt> {
+    /// Opens a session in which no copy of an earlier one's requests means anything, `number` of those of the run, from 1.
+    pub(super) fn open_session(&mut self, number: u32) -> Result<(), End> {
+        let nonce = self.way_back.options.nonce.wrapping_add(NONCE + number);
+        let options = OpenOptions { nonce, ..self.way_back.options.clone() };
+        self.board.greet_again(&options).map_err(|error| End::board(CheckName::Link, &error))
+    }
+
+    /// Why the board may not be as the host made it in this session, although it is sound and `check` found something.
+    pub(super) fn doubt(&mut self, check: CheckName) -> Option<Doubt> {
         let repeated = self.board.repeated_changes();
         if repeated > 0 {
             return Some(Doubt::RequestsTwice { requests: repeated });
         }
         let status = self.board.status(false).ok()?;
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
-        let counters_alone = failed.check().0 == CheckName::Counters;
+        let counters_alone = check == CheckName::Counters;
         let is_doubtful = counted > sent || counters_alone && counted != sent;
         is_doubtful.then_some(Doubt::PacketsMiscounted { counted, sent })
     }

@@ -30,6 +30,8 @@ pub(super) struct Run<'a> {
     pub(super) plan: &'a Plan,
     pub(super) board: &'a mut Board,
     pub(super) generations: Vec<Generation>,
+    /// Sessions that were opened so that no copy of an old request spoils what follows.
+    pub(super) sessions: u32,
     pub(super) options: &'a RunOptions,
     pub(super) way_back: &'a mut WayBack,
     pub(super) progress: &'a dyn Progress,
@@ -53,6 +55,8 @@ impl Run<'_> {
         self.findings.note_identity(self.board);
         self.identity()?;
         match self.all_but_identity() {
+            // A soak has looked again at each burst by itself.
+            Err(failed) if self.findings.soak.is_some() => Err(failed),
             Err(failed @ End::Failed { .. }) => self.look_again(failed),
             ended => ended,
         }
@@ -68,7 +72,10 @@ impl Run<'_> {
             self.persist(Self::link)?;
             let last = self.stream_all(&schedule, &frames)?;
             self.conclude(last)?;
-            self.at_speed(last)?;
+            match self.plan.soak {
+                Some(length) => self.soak(length, last)?,
+                None => self.at_speed(last)?,
+            }
             self.note_not_exercised();
             Ok(())
         })
@@ -165,7 +172,7 @@ impl Run<'_> {
                 return Err(End::failed(CheckName::Link, Finding::EchoWrong {}));
             }
         }
-        self.board.start_afresh().map_err(board_error)?;
+        self.start_afresh().map_err(board_error)?;
         self.findings.passed(CheckName::Link, Finding::EchoesReturned { bytes, echoes: patterns.len() });
         Ok(())
     }

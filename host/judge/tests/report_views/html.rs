@@ -105,3 +105,18 @@ fn evidence_of_a_frame_that_was_never_streamed_is_passed_over() {
     evidence[0].index = 99;
     assert!(!page(&report, &evidence).contains("<img"));
 }
+
+#[test]
+fn a_soak_is_shown_over_time_with_what_differed() {
+    let page = page(&made::soaked(), &[]);
+    assert!(page.contains("8 h 0 min of 8 h 0 min: 1,326,976 frames in 480 bursts, 2 of which differ."));
+    assert!(page.contains("Frames judged in each 2 min 8 s: at most 5,924"));
+    // The intervals without a frame have no bar, those in which frames differ one of their own.
+    let path = |class: &str| {
+        let rest = page.split(&format!("class=\"{class}\" d=\"")).nth(1).unwrap();
+        rest.split('"').next().unwrap().matches('M').count()
+    };
+    assert_eq!((path("judged"), path("wrong")), (224, 2));
+    assert!(page.contains("behind 2 h 13 min, content of seed 08d12e6a, tables of generation 2:"));
+    assert!(!self::page(&made::pass(), &[]).contains("over time"));
+}

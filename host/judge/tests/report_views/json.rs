@@ -22,9 +22,9 @@ fn assert_same_when_read_back(report: &Report) {
 fn a_report_reads_back_equal() {
     let mut away = made::error();
     let reason = Problem::of(&std::io::Error::from_raw_os_error(5));
-    away.link.reconnections = vec![Reconnection { reason, seconds_away: 0.1 + 0.2 }];
+    away.link.reconnections = vec![Reconnection { reason, seconds_away: 0.1 + 0.2, kept_tables: Some(true) }];
     let [pass, fail, error] = [made::pass(), made::fail().0, made::error()];
-    for report in [pass, fail, error, away] {
+    for report in [pass, fail, error, away, made::soaked()] {
         assert_same_when_read_back(&report);
     }
 }

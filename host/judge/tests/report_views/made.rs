@@ -5,7 +5,8 @@ use halfrow::frames::street::EdgeDeviation;
 use halfrow::result::{
     Account, BoardKind, BoardReport, BurstsReport, Check, CheckName, Defect, Evidence, EvidenceReport,
     Finding, FrameReport, FrameTiming, Identity, LatencyReport, LinkReport, NotExercised, Outcome, Problem,
-    Reading, Report, RunReport, Schema, StreetReport, Suspect, TablesReport,
+    Reading, Repetition, Report, RunReport, Schema, SoakChart, SoakDifference, SoakInterval, SoakLength,
+    SoakReport, StreetReport, Suspect, TablesReport,
 };
 use halfrow::verdict::{Cause, Verdict};
 use halfrow_model::{BitDepth, Frame, Phase};
@@ -32,12 +33,57 @@ pub(crate) fn pass() -> Report {
         ],
         not_exercised: vec![NotExercised::Depths { bits: vec![8, 10] }],
         latency: Some(latency(2160)),
+        soak: None,
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
         evidence: EvidenceReport::default(),
         link: link(),
         tables: tables(),
         run: run(),
         frames,
+    }
+}
+
+/// Eight hours of which two frames differed, and one minute the board was away.
+pub(crate) fn soaked() -> Report {
+    let defect = Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] };
+    let finding = Finding::DiffersAtSpeed {
+        wrong: 1,
+        frames: 2777,
+        first: 17,
+        repetition: Repetition::Trapped { frames: 18, row: 3 },
+        suspect: Some(Box::new(defect.clone())),
+    };
+    let suspects = vec![Suspect { defect, account: Account::Nothing, explained: 0.0 }];
+    let difference = |seconds| SoakDifference {
+        seconds,
+        seed: 0x08d1_2e6a,
+        generation: 2,
+        finding: finding.clone(),
+        suspects: suspects.clone(),
+    };
+    let interval = |index| SoakInterval {
+        frames: if index == 100 { 0 } else { 5924 },
+        wrong: u64::from(index == 62 || index == 200),
+    };
+    let soak = SoakReport {
+        asked: SoakLength::Time { seconds: 28_800.0 },
+        seconds: 28_800.5,
+        bursts: 480,
+        frames: 1_326_976,
+        wrong: 2,
+        paused: 0,
+        held_back: 0,
+        differences: vec![difference(7980.5), difference(25_700.0)],
+        chart: SoakChart { interval_seconds: 128.0, intervals: (0..225).map(interval).collect() },
+    };
+    Report {
+        verdict: Verdict::Fail,
+        cause: Cause::Different,
+        finding,
+        suspects,
+        soak: Some(soak),
+        not_exercised: Vec::new(),
+        ..pass()
     }
 }
 

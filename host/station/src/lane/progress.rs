@@ -49,7 +49,8 @@ impl Progress for Told<'_> {
                     so_far.expected += rows;
                 }
             }
-            Event::Done => {}
+            // No plan has a step of that kind.
+            Event::Soaked(_) | Event::Done => {}
         }
     }
 }

@@ -104,7 +104,7 @@ pub(super) fn link(link: &LinkReport) -> Markup {
             @if let Some(time) = link.round_trip_us { (pair("Round trip", format!("{} µs", grouped(time)))) }
             (pair("Time", format!("{:.3} s on the link's clock", link.seconds)))
             @for away in &link.reconnections {
-                (pair("Went away", format!("for {:.1} s: {}", away.seconds_away, away.reason)))
+                (pair("Went away", wording::away(away)))
             }
         } }
     }

@@ -2,6 +2,7 @@
 
 use super::places::list;
 use super::{LOGIC, TIMING, Words, place};
+use crate::report::wording::{count, grouped, hertz, span};
 use crate::result::{BurstCount, Finding, NoBurst, Repetition};
 
 pub(super) fn changed_on_entry(rows: usize, first: usize, frame: u16) -> Words {
@@ -68,7 +69,10 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
                 .as_ref()
                 .map_or_else(String::new, |suspect| format!("; the suspect is {}", place(suspect)));
             format!(
-                "{wrong} of {frames} frames differ at speed, the first is frame {first}{}{suspicion}",
+                "{} of {} frames differ at speed, the first is frame {}{}{suspicion}",
+                grouped(*wrong),
+                grouped(*frames),
+                grouped(*first),
                 shown(*repetition)
             )
         }
@@ -107,17 +111,14 @@ pub(super) fn remedy(finding: &Finding) -> Option<String> {
 fn equal(frames: u32, clock_hz: u32, seconds: Option<f64>, held_back: u32) -> String {
     let clock = match clock_hz {
         0 => " without a pause".to_owned(),
-        hertz => format!(" at {:.1} MHz", f64::from(hertz) / 1e6),
+        known => format!(" at {}", hertz(known)),
     };
-    let time = seconds.map_or_else(String::new, |seconds| match seconds {
-        short if short < 1.0 => format!(" in {:.1} ms", short * 1e3),
-        long => format!(" in {long:.1} s"),
-    });
+    let time = seconds.map_or_else(String::new, |seconds| format!(" in {}", span(seconds)));
     let waited = match held_back {
         0 => String::new(),
         some => format!("; {some} of them waited until the records of others were read"),
     };
-    format!("{frames} frames{clock}{time}, every sample equal{waited}")
+    format!("{}{clock}{time}, every sample equal{waited}", count(frames, "frame"))
 }
 
 fn because(reason: NoBurst) -> String {

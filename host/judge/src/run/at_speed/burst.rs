@@ -44,15 +44,23 @@ pub(super) struct BurstPlan {
 }
 
 impl BurstPlan {
-    /// A burst of no frame yet, as large as the tables of `plan`.
-    pub(super) fn new(plan: &Plan, capabilities: &Capabilities, bursts: Bursts, mode: BurstMode) -> Self {
+    /// A burst of no frame yet, as large as the tables of `plan`, whose seed is the draw `draw` from that of the plan.
+    pub(super) fn new(
+        plan: &Plan,
+        capabilities: &Capabilities,
+        bursts: Bursts,
+        mode: BurstMode,
+        draw: u32,
+    ) -> Self {
         let (width, height) = (plan.tables.geometry().width(), plan.tables.geometry().height());
         let (blanking, between) = (capabilities.least_blanking, bursts.least_frame_blanking);
         let row = width as u64 + u64::from(blanking);
         Self {
             frames: 0,
             mode,
-            seed: telling_seed((plan.seed.wrapping_add(1).wrapping_mul(GOLDEN) >> 32) as u32),
+            seed: telling_seed(
+                (plan.seed.wrapping_add(1 + u64::from(draw)).wrapping_mul(GOLDEN) >> 32) as u32,
+            ),
             first_frame: 0,
             bursts,
             clocks: row * height as u64 - u64::from(blanking) + u64::from(between),
@@ -92,6 +100,11 @@ impl BurstPlan {
         self.mode == BurstMode::Alternating && n % 2 == 1
     }
 
+    /// What content is drawn from.
+    pub(super) fn seed(&self) -> u32 {
+        self.seed
+    }
+
     /// Whether the board can keep a row that differs.
     pub(super) fn has_trap(&self) -> bool {
         self.bursts.trap
@@ -109,20 +122,20 @@ impl BurstPlan {
         f64::from(frames) * self.clocks as f64 / f64::from(self.clock_hz)
     }
 
-    /// How long one frame takes on the board's clock.
-    fn frame_time(&self) -> Duration {
-        Duration::from_secs_f64(self.seconds(1))
+    /// The same as a time.
+    pub(super) fn time_of(&self, frames: u32) -> Duration {
+        Duration::from_secs_f64(self.seconds(frames))
     }
 
     /// How long to wait for more records when `left` frames are to come: until the board's memory for them is half full.
     pub(super) fn look_again_in(&self, left: u32) -> Duration {
         let frames = left.min(u32::from(self.bursts.records / 2)).max(1);
-        self.frame_time().saturating_mul(frames).clamp(SHORTEST_LOOK, LONGEST_LOOK)
+        self.time_of(1).saturating_mul(frames).clamp(SHORTEST_LOOK, LONGEST_LOOK)
     }
 
     /// How long no record may come.
     pub(super) fn patience(&self) -> Duration {
-        PATIENCE.max(self.frame_time().saturating_mul(PATIENT_FRAMES))
+        PATIENCE.max(self.time_of(1).saturating_mul(PATIENT_FRAMES))
     }
 }
 

@@ -6,6 +6,7 @@
 mod burst;
 mod predicted;
 mod repeated;
+mod soak;
 mod tables_late;
 mod watched;
 
@@ -18,9 +19,9 @@ use super::plan::{DECOY, Generation, Segment};
 use super::steps::Run;
 use crate::board::{Bank, BoardError, BoardNature, Bursts, RowTiming};
 use crate::progress::Step;
-use crate::result::{BurstCount, CheckName, Finding, NoBurst, NotExercised, Outcome, Suspect};
+use crate::result::{BurstCount, CheckName, Finding, NoBurst, NotExercised, Outcome};
 use burst::BurstPlan;
-use watched::Watched;
+use watched::{EndsEarly, Watched};
 
 /// The content id that the model makes (AT-SPEED.md).
 const CONTENT: u16 = 1;
@@ -69,14 +70,19 @@ impl Run<'_> {
         self.board.configure(self.plan.tables.geometry(), RowTiming::default()).map_err(of_board)?;
         let tables = self.tables_at_speed()?;
         let plan = self.burst_plan(bursts, &tables);
-        let watched = self.watch(&plan, &tables, self.plan.fail_fast)?;
-        self.findings.untested_at_speed = untested(&plan, &watched);
+        let (ends_early, progress) = (EndsEarly { when_wrong: self.plan.fail_fast, at: None }, self.progress);
+        let mut told = |watched: &Watched, _| {
+            progress.frame(&format!("{}, {} of {}", Step::AtSpeed, watched.frames, plan.frames));
+        };
+        let (watched, ended) = self.watch(&plan, &tables, ends_early, &mut told);
+        ended?;
+        let changes = plan.mode == BurstMode::Alternating;
+        self.findings.untested_at_speed = untested(changes, watched.paused > 0);
         if watched.wrong > 0 {
             return Err(self.wrong_at_speed(&plan, &tables, &watched));
         }
         if let Some(finding) = watched.miscounted {
-            let suspects = miscount_suspects(&finding);
-            return Err(End::Failed { check: CheckName::AtSpeed, finding, suspects });
+            return Err(miscounted(finding));
         }
         let finding = self.right_at_speed(&plan, &watched);
         let outcome = if watched.paused > 0 { Outcome::Skipped } else { Outcome::Passed };
@@ -103,7 +109,7 @@ impl Run<'_> {
     fn burst_plan(&self, bursts: Bursts, tables: &[Generation]) -> BurstPlan {
         let capabilities = &self.board.capabilities;
         let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-        let mut plan = BurstPlan::new(self.plan, capabilities, bursts, mode);
+        let mut plan = BurstPlan::new(self.plan, capabilities, bursts, mode, 0);
         plan.frames = match self.plan.at_speed {
             Some(time) => plan.frames_in(time),
             None if capabilities.nature == BoardNature::Hardware => plan.frames_in(USUAL),
@@ -123,18 +129,19 @@ impl Run<'_> {
     }
 }
 
-/// What loses or gains a clock at full speed alone; whatever else is miscounted is the counter's own fault.
-fn miscount_suspects(finding: &Finding) -> Vec<Suspect> {
+/// What ends a run with a count that is wrong. What loses or gains a clock fails at full speed alone; whatever else is miscounted
+/// is the counter's own fault.
+fn miscounted(finding: Finding) -> End {
     use BurstCount::{LeastLatency, MostLatency};
     let is_late = matches!(finding, Finding::MiscountedAtSpeed { count: LeastLatency | MostLatency, .. });
-    if is_late { vec![repeated::only_at_speed(None)] } else { Vec::new() }
+    let suspects = if is_late { vec![repeated::only_at_speed(None)] } else { Vec::new() };
+    End::Failed { check: CheckName::AtSpeed, finding, suspects }
 }
 
-/// What a burst left untested at the full pixel clock.
-fn untested(plan: &BurstPlan, watched: &Watched) -> Vec<NotExercised> {
-    if watched.paused > 0 {
+/// What bursts left untested at the full pixel clock, in which tables changed or not, and frames had pauses or not.
+fn untested(tables_changed: bool, paused: bool) -> Vec<NotExercised> {
+    if paused {
         return vec![NotExercised::FullSpeed {}];
     }
-    let changes = plan.mode == BurstMode::Alternating;
-    if changes { Vec::new() } else { vec![NotExercised::TableChangeAtSpeed {}] }
+    if tables_changed { Vec::new() } else { vec![NotExercised::TableChangeAtSpeed {}] }
 }

@@ -23,13 +23,19 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
     scope.spawn(move || {
         let mut signers: Vec<_> = tables.iter().map(signer).collect();
         let mut rows = Vec::new();
+        let mut last = None;
         for n in 0..plan.frames {
-            let bank = usize::from(plan.is_of_shadow(n));
+            let (bank, content) = (usize::from(plan.is_of_shadow(n)), plan.content(n));
             let (Some(signer), Some(Generation { tables, .. })) = (signers.get_mut(bank), tables.get(bank))
             else {
                 break;
             };
-            if sender.send(signer.sign(tables, plan.content(n), &mut rows)).is_err() {
+            let signature = match last {
+                Some((same, signature)) if same == (bank, content) => signature,
+                _ => signer.sign(tables, content, &mut rows),
+            };
+            last = Some(((bank, content), signature));
+            if sender.send(signature).is_err() {
                 break;
             }
         }

@@ -4,11 +4,12 @@ use std::iter;
 use std::slice;
 
 use halfrow_model::{Content, Frame, Geometry, TableSet, row_signature};
+use halfrow_protocol::message::BurstMode;
 
 use super::burst::BurstPlan;
 use super::predicted::signer;
 use super::tables_late::tables_late;
-use super::watched::Watched;
+use super::watched::{EndsEarly, Watched};
 use super::{FEW, USUAL};
 use crate::board::{NumberedFrame, Trapped, Unjudged};
 use crate::compare::Comparison;
@@ -47,13 +48,15 @@ impl Run<'_> {
         let Watched { frames, wrong, .. } = *watched;
         let first = watched.wrong_frames.first().map_or(0, |frame| frame.n);
         let again = match tables_late(plan, tables, watched) {
-            Some(suspect) => Again { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] },
+            _ if plan.mode == BurstMode::Trapped => self.told_of_trap(plan, tables, watched),
+            Some(suspect) => Ok(Again { repetition: Repetition::NotNeeded {}, suspects: vec![suspect] }),
             // The signatures came under the board's own CRC, so the verdict stands whatever becomes of this.
-            None => self.make_again(plan, tables, first).unwrap_or_else(|end| {
-                tracing::warn!("the frame was not made again: {}", end.check().2.sentence());
-                Repetition::Impossible {}.into()
-            }),
+            None => self.make_again(plan, tables, first),
         };
+        let again = again.unwrap_or_else(|end| {
+            tracing::warn!("the frame was not made again: {}", end.check().2.sentence());
+            Repetition::Impossible {}.into()
+        });
         let Again { repetition, mut suspects } = again;
         if suspects.is_empty() {
             suspects.push(only_at_speed(None));
@@ -64,7 +67,6 @@ impl Run<'_> {
     }
 
     fn make_again(&mut self, plan: &BurstPlan, tables: &[Generation], n: u32) -> Result<Again, End> {
-        let of_board = |error| End::board(CheckName::AtSpeed, &error);
         let bank = usize::from(plan.is_of_shadow(n));
         let Some(generation) = tables.get(bank).filter(|_| plan.has_trap()) else {
             return Ok(Repetition::NoTrap {}.into());
@@ -75,16 +77,33 @@ impl Run<'_> {
         // Twice as far as the first time, since a board may have to become warm, and no longer than a usual burst.
         let most = plan.frames_in(2 * USUAL).max(2 * FEW);
         let plan = plan.trapping(n, n.saturating_add(1).saturating_mul(2).clamp(2 * FEW, most));
+        self.expect(&plan, generation)?;
+        let ends_early = EndsEarly { when_wrong: true, at: None };
+        let (watched, ended) = self.watch(&plan, slice::from_ref(generation), ends_early, &mut |_, _| {});
+        ended?;
+        self.told_of_trap(&plan, slice::from_ref(generation), &watched)
+    }
+
+    /// Has the board know the signatures of the frame that `plan` repeats with `generation`.
+    pub(super) fn expect(&mut self, plan: &BurstPlan, generation: &Generation) -> Result<(), End> {
         let mut signatures = Vec::new();
         signer(generation).sign(&generation.tables, plan.content(0), &mut signatures);
-        self.board.expect(&signatures).map_err(of_board)?;
-        let watched = self.watch(&plan, slice::from_ref(generation), true)?;
-        let Some(first) = watched.wrong_frames.first() else {
+        self.board.expect(&signatures).map_err(|error| End::board(CheckName::AtSpeed, &error))
+    }
+
+    /// What was kept of a burst in which one frame was repeated.
+    fn told_of_trap(
+        &mut self,
+        plan: &BurstPlan,
+        tables: &[Generation],
+        watched: &Watched,
+    ) -> Result<Again, End> {
+        let (Some(first), Some(generation)) = (watched.wrong_frames.first(), tables.first()) else {
             return Ok(Repetition::AllRight { frames: watched.frames }.into());
         };
         // Records come by the handful, so that others may be there behind it.
         let frames = first.n + 1;
-        let trapped = self.board.trap().map_err(of_board)?;
+        let trapped = self.board.trap().map_err(|error| End::board(CheckName::AtSpeed, &error))?;
         let row = trapped.as_ref().map(|trapped| trapped.row);
         let told = trapped.and_then(|trapped| self.suspects_of(generation, plan.content(0), &trapped));
         let (Some(row), Some(suspects)) = (row, told) else {
@@ -94,7 +113,7 @@ impl Run<'_> {
     }
 
     /// Makes the tables of the other bank the active ones, which takes a frame.
-    fn activate(&mut self, generation: &Generation) -> Result<(), End> {
+    pub(super) fn activate(&mut self, generation: &Generation) -> Result<(), End> {
         let of_board = |error| End::board(CheckName::AtSpeed, &error);
         let Generation { number, tables, kernel } = generation;
         let source = FrameSource::Builtin(crate::frames::Builtin::Noise);

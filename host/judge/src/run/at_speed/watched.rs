@@ -9,12 +9,20 @@ use halfrow_protocol::message::{Burst, BurstState, FrameRecord};
 use super::burst::BurstPlan;
 use super::predicted;
 use crate::board::{Board, BoardError};
-use crate::progress::{Progress, Step};
 use crate::result::{BurstCount, CheckName, Finding};
 use crate::run::findings::End;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 use crate::verdict::Cause;
+
+/// What ends a burst before its last frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct EndsEarly {
+    /// The first frame that is wrong.
+    pub(super) when_wrong: bool,
+    /// A time on the link's clock.
+    pub(super) at: Option<Duration>,
+}
 
 /// Frames with another signature that are kept.
 const KEPT: usize = 64;
@@ -26,6 +34,8 @@ pub(super) struct WrongFrame {
     pub(super) n: u32,
     /// The signature that it has.
     pub(super) found: u32,
+    /// When its record came, on the link's clock.
+    pub(super) at: Duration,
 }
 
 /// What a burst came to.
@@ -47,7 +57,8 @@ pub(super) struct Watched {
 
 impl Watched {
     /// Takes the record of the next frame, which must have the signature `expected`.
-    fn take(&mut self, plan: &BurstPlan, generation: u8, expected: u32, record: &FrameRecord) {
+    fn take(&mut self, watch: &Watch<'_>, expected: u32, record: &FrameRecord) {
+        let plan = watch.plan;
         let n = self.frames;
         self.frames += 1;
         self.paused += u32::from(record.pauses > 0);
@@ -55,11 +66,12 @@ impl Watched {
         if record.signature != expected {
             self.wrong += 1;
             if self.wrong_frames.len() < KEPT {
-                self.wrong_frames.push(WrongFrame { n, found: record.signature });
+                let at = watch.board.now();
+                self.wrong_frames.push(WrongFrame { n, found: record.signature, at });
             }
             return;
         }
-        let generation = if plan.is_of_shadow(n) { 0 } else { generation };
+        let generation = if plan.is_of_shadow(n) { 0 } else { watch.generation };
         let counts = [
             (BurstCount::Samples, record.samples, plan.samples),
             (BurstCount::Rows, record.rows.into(), plan.rows.into()),
@@ -82,71 +94,81 @@ struct Watch<'a> {
     burst: Burst,
     /// Of the active tables.
     generation: u8,
-    /// Whether the burst ends behind the first frame that is wrong.
-    ends_early: bool,
+    ends_early: EndsEarly,
     predicted: Receiver<u32>,
-    progress: &'a dyn Progress,
-    watched: Watched,
+    /// Told when records have come, and when it is on the link's clock.
+    told: &'a mut dyn FnMut(&Watched, Duration),
     /// How long no record has come.
     idle: Duration,
 }
 
 impl Watch<'_> {
     /// Takes the records that are there, and says whether they were the last.
-    fn look(&mut self) -> Result<bool, BoardError> {
-        let fetched = self.board.records(self.burst.burst, self.watched.frames)?;
+    fn look(&mut self, watched: &mut Watched) -> Result<bool, BoardError> {
+        let fetched = self.board.records(self.burst.burst, watched.frames)?;
         for record in &fetched.records {
             let Ok(expected) = self.predicted.recv() else { break };
-            self.watched.take(self.plan, self.generation, expected, record);
+            watched.take(self, expected, record);
             self.idle = Duration::ZERO;
         }
         if !fetched.records.is_empty() {
-            let Watched { frames, .. } = self.watched;
-            self.progress.frame(&format!("{}, {frames} of {}", Step::AtSpeed, self.plan.frames));
+            (self.told)(watched, self.board.now());
         }
-        if self.ends_early && self.watched.wrong > 0 && self.burst.frames > 0 {
+        if self.is_enough(watched) {
             self.burst.frames = 0;
             self.board.burst(&self.burst)?;
         }
         let is_over = fetched.records.is_empty() && fetched.state != BurstState::UnderWay;
-        Ok(is_over || self.watched.frames >= self.plan.frames)
+        Ok(is_over || watched.frames >= self.plan.frames)
     }
 
-    fn finish(mut self) -> Result<Watched, End> {
+    /// Whether a burst that goes on is to end.
+    fn is_enough(&self, watched: &Watched) -> bool {
+        let EndsEarly { when_wrong, at } = self.ends_early;
+        let is_late = at.is_some_and(|at| self.board.now() >= at);
+        self.burst.frames > 0 && (when_wrong && watched.wrong > 0 || is_late)
+    }
+
+    fn finish(mut self, watched: &mut Watched) -> Result<(), End> {
         let of_board = |error: BoardError| End::board(CheckName::AtSpeed, &error);
         let unclear = |finding| End::error(CheckName::AtSpeed, Cause::Station, finding);
         let frames = self.plan.frames;
-        while !self.look().map_err(of_board)? {
+        while !self.look(watched).map_err(of_board)? {
             if self.idle >= self.plan.patience() {
-                let (frame, seconds) = (self.watched.frames, self.idle.as_secs_f64());
+                let (frame, seconds) = (watched.frames, self.idle.as_secs_f64());
                 return Err(unclear(Finding::BurstStalled { frame, frames, seconds }));
             }
             // By what was meant to pass, since a recording has no clock between its exchanges.
-            let wait = self.plan.look_again_in(frames - self.watched.frames);
+            let wait = self.plan.look_again_in(frames - watched.frames);
             self.board.idle(wait).map_err(of_board)?;
             self.idle += wait;
         }
-        let came = self.watched.frames;
+        let came = watched.frames;
         if came < frames && self.burst.frames > 0 {
             return Err(unclear(Finding::BurstEndedEarly { came, frames }));
         }
-        Ok(self.watched)
+        Ok(())
     }
 }
 
 impl Run<'_> {
-    /// Has the board make the burst `plan` with `tables`, and compares every frame, or those up to the first that is wrong.
+    /// Has the board make the burst `plan` with `tables`, and compares every frame up to where it ends. Whenever records have come,
+    /// `told` hears what they came to so far, and when it is on the link's clock.
     pub(super) fn watch(
         &mut self,
         plan: &BurstPlan,
         tables: &[Generation],
-        ends_early: bool,
-    ) -> Result<Watched, End> {
+        ends_early: EndsEarly,
+        told: &mut dyn FnMut(&Watched, Duration),
+    ) -> (Watched, Result<(), End>) {
         // No other burst of the run has this name.
         self.findings.bursts += 1;
         let burst = plan.request(self.findings.bursts);
-        self.board.burst(&burst).map_err(|error| End::board(CheckName::AtSpeed, &error))?;
-        thread::scope(|scope| {
+        let mut watched = Watched::default();
+        if let Err(error) = self.board.burst(&burst) {
+            return (watched, Err(End::board(CheckName::AtSpeed, &error)));
+        }
+        let ended = thread::scope(|scope| {
             let watch = Watch {
                 board: self.board,
                 plan,
@@ -154,11 +176,11 @@ impl Run<'_> {
                 generation: tables.first().map_or(0, |active| active.number),
                 ends_early,
                 predicted: predicted::ahead(scope, *plan, tables),
-                progress: self.progress,
-                watched: Watched::default(),
+                told,
                 idle: Duration::ZERO,
             };
-            watch.finish()
-        })
+            watch.finish(&mut watched)
+        });
+        (watched, ended)
     }
 }

@@ -1,0 +1,194 @@
+//! The options that every run has which judges a board, and how it ends.
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+use clap::builder::FalseyValueParser;
+
+use super::board::BoardArguments;
+use super::files::Files;
+use super::given::Given;
+use super::inputs::file_hash;
+use super::optics::{self, LensArguments};
+use super::table_file::{NamedTables, TableArgument};
+use super::{CallError, Context, Failure};
+use crate::exit::Exit;
+use crate::settings::Settings;
+use crate::{console, flags, json, text};
+use halfrow::link::RecordingFile;
+use halfrow::optics::Chosen;
+use halfrow::report::ReportFolder;
+use halfrow::run::{self, Circumstances, Finished, Lack, RunOptions};
+
+#[derive(Debug, Args)]
+pub(super) struct RunArguments {
+    #[command(flatten)]
+    pub(super) board: BoardArguments,
+    #[command(flatten)]
+    tables: TableArgument,
+    #[arg(long, value_name = "NAME|FILE", help = optics::kernel_help(", instead of the table file's"), env = "HALFROW_KERNEL")]
+    kernel: Option<OsString>,
+    /// Write a report (JSON, JUnit, HTML) into this folder
+    #[arg(long, value_name = "FOLDER", env = "HALFROW_REPORT")]
+    report: Option<PathBuf>,
+    /// Go on when the board goes away and comes back within so many seconds [30 if no number is given]
+    #[arg(long, value_name = "SECONDS", num_args = 0..=1, require_equals = true, default_missing_value = "30")]
+    #[arg(env = "HALFROW_RECONNECT")]
+    reconnect: Option<f64>,
+    /// Replace what an earlier run has written
+    #[arg(long, env = "HALFROW_OVERWRITE", value_parser = FalseyValueParser::new())]
+    overwrite: bool,
+    /// Refuse to judge anything but hardware
+    #[arg(long, env = "HALFROW_REQUIRE_HARDWARE", value_parser = FalseyValueParser::new())]
+    require_hardware: bool,
+    /// Seed of noise, gaps, link test and what the board makes on its own
+    #[arg(long, value_name = "SEED", env = "HALFROW_SEED")]
+    seed: Option<u64>,
+    #[command(flatten)]
+    pub(super) lens: LensArguments,
+}
+
+/// Where a run writes, with the places taken.
+pub(super) struct Outputs {
+    /// The report's folder.
+    pub(super) report: Option<ReportFolder>,
+    /// The recording's file.
+    pub(super) recording: Option<RecordingFile>,
+}
+
+impl RunArguments {
+    /// The table file to judge with; none if the lens options make the tables.
+    pub(super) fn table_file(
+        &self,
+        given: &Given,
+        settings: &Settings,
+    ) -> Result<Option<NamedTables>, Failure> {
+        self.tables.read(given, &self.lens, settings)
+    }
+
+    /// Tables and kernel to judge with, of `tables` if there are any.
+    pub(super) fn chosen(&self, tables: Option<NamedTables>, settings: &Settings) -> Result<Chosen, Failure> {
+        let chosen = optics::choose(tables, &self.lens, self.kernel(settings))?;
+        chosen
+            .tables
+            .check_ring(chosen.tables.geometry().width().next_power_of_two())
+            .map_err(Failure::call)?;
+        Ok(chosen)
+    }
+
+    fn kernel<'a>(&'a self, settings: &'a Settings) -> Option<&'a OsStr> {
+        self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new))
+    }
+
+    /// The table file that is named, whether its tables will be taken or not.
+    pub(super) fn table_path<'a>(&'a self, settings: &'a Settings) -> Option<&'a PathBuf> {
+        self.tables.path(settings)
+    }
+
+    /// Tables and lens that are files.
+    pub(super) fn input_files(&self, settings: &Settings) -> Vec<PathBuf> {
+        let tables = self.table_path(settings).map(PathBuf::as_path);
+        tables.into_iter().chain(self.lens.file()).map(PathBuf::from).collect()
+    }
+
+    pub(super) fn seed(&self, settings: &Settings) -> u64 {
+        self.seed.or(settings.seed).unwrap_or(1)
+    }
+
+    /// How long a board may stay away; none if nothing is said of it.
+    pub(super) fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
+        seconds("--reconnect", self.reconnect.or(settings.reconnect))
+    }
+
+    /// How a run of files whose hashes are to be told is made.
+    pub(super) fn options(&self, files: &[PathBuf], settings: &Settings) -> Result<RunOptions, Failure> {
+        let circumstances = Circumstances {
+            arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
+            files: files
+                .iter()
+                .map(|path| file_hash(path))
+                .collect::<Result<_, _>>()
+                .map_err(Failure::call)?,
+            draws: run::Draws::draw(),
+        };
+        Ok(RunOptions {
+            timeout: self.board.timeout(settings)?,
+            stop: self.board.stop(settings)?,
+            retry_limit: self.board.retry_limit(settings),
+            reconnect: self.patience(settings)?,
+            take_over: self.board.take_over,
+            require_hardware: self.requires_hardware(settings),
+            keep_equal: self.report_path(settings).is_some(),
+            circumstances,
+            ..RunOptions::default()
+        })
+    }
+
+    pub(super) fn requires_hardware(&self, settings: &Settings) -> bool {
+        self.require_hardware || settings.require_hardware.unwrap_or(false)
+    }
+
+    fn report_path<'a>(&'a self, settings: &'a Settings) -> Option<&'a Path> {
+        self.report.as_deref().or(settings.report.as_deref())
+    }
+
+    /// Looks at all that is read, `inputs` among it, and written, and takes the places of what is written.
+    pub(super) fn outputs(
+        &self,
+        inputs: Vec<PathBuf>,
+        record: Option<&Path>,
+        context: &Context,
+    ) -> Result<Outputs, Failure> {
+        let settings = &context.settings;
+        let overwrite = self.overwrite || settings.overwrite.unwrap_or(false);
+        let report = self.report_path(settings);
+        Files::new(overwrite)
+            .reads(&context.settings_file)
+            .reads(inputs)
+            .reads_kernel(self.kernel(settings))
+            .reads(self.board.replayed(settings)?)
+            .writes_claimed("--record", record)
+            .writes_report("--report", report)
+            .check()
+            .map_err(Failure::call)?;
+        let report = report.map(|path| ReportFolder::prepare(path, overwrite)).transpose();
+        let recording = record.map(|path| RecordingFile::prepare(path, overwrite)).transpose();
+        Ok(Outputs {
+            report: report.map_err(Failure::call)?.map(|folder| folder.with_json(json::report)),
+            recording: recording.map_err(Failure::call)?,
+        })
+    }
+}
+
+/// The time of an `option` in seconds.
+pub(super) fn seconds(option: &'static str, seconds: Option<f64>) -> Result<Option<Duration>, Failure> {
+    let time = seconds.map(Duration::try_from_secs_f64).transpose();
+    time.map_err(|_| Failure::call(CallError::Seconds { option }))
+}
+
+/// Writes the report into its folder, if there is one, and prints it.
+pub(super) fn conclude(
+    mut finished: Finished,
+    folder: Option<ReportFolder>,
+    context: &Context,
+) -> Result<Exit, Failure> {
+    if let Some(Err(lack)) = folder.map(|folder| finished.commit(folder)) {
+        tell(&lack);
+    }
+    let report = &finished.report;
+    if context.json {
+        console::tell(&json::report(report).map_err(Failure::error)?);
+    } else {
+        console::tell(text::render(report).trim_end());
+    }
+    Ok(report.cause.into())
+}
+
+/// Says what a verdict that stands lacks.
+pub(super) fn tell(lack: &Lack) {
+    if !lack.is_told {
+        console::error(&flags::named(&lack.to_string()));
+    }
+}

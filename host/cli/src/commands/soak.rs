@@ -1,0 +1,84 @@
+//! `halfrow soak`
+
+use std::time::Duration;
+
+use clap::Args;
+
+use super::given::Given;
+use super::run::{RunArguments, conclude};
+use super::{Context, Failure};
+use crate::exit::Exit;
+use crate::progress;
+use crate::settings::Settings;
+use halfrow::frames::{Builtin, check_regular};
+use halfrow::result::SoakLength;
+use halfrow::run::{self, FrameSource, Plan, RunOptions};
+
+/// How long a board may stay away when nothing is said of it: longer than it takes somebody to come by and plug it in again.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    given: Given,
+    #[command(flatten)]
+    length: Length,
+    #[command(flatten)]
+    run: RunArguments,
+}
+
+#[derive(Debug, Args)]
+#[group(required = true, multiple = false)]
+struct Length {
+    /// How long, in hours of the link's clock
+    #[arg(long, value_name = "HOURS", value_parser = hours)]
+    hours: Option<f64>,
+    /// How many frames
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    frames: Option<u64>,
+}
+
+fn hours(text: &str) -> Result<f64, String> {
+    let hours = text.parse().ok().filter(|hours| (0.0001..=8760.0).contains(hours));
+    hours.ok_or_else(|| "give a number of hours, 0.0001 to 8760".to_owned())
+}
+
+impl Length {
+    /// What clap leaves: one of them is given.
+    fn asked(&self) -> SoakLength {
+        match (self.frames, self.hours) {
+            (Some(frames), _) => SoakLength::Frames { frames },
+            (None, hours) => SoakLength::Time { seconds: hours.unwrap_or_default() * 3600.0 },
+        }
+    }
+}
+
+pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
+    let settings = &context.settings;
+    let run = &arguments.run;
+    let files = run.input_files(settings);
+    files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
+    let (plan, options) = arguments.plan(settings)?;
+    run.board.check_fault(settings, &plan)?;
+    let outputs = run.outputs(files, None, context)?;
+    let candidate = run.board.candidate(settings)?;
+    let watched = progress::for_stderr(context.quiet || context.json);
+    let finished = run::verify(&plan, candidate, &options, watched.as_ref())?;
+    conclude(finished, outputs.report, context)
+}
+
+impl Arguments {
+    /// What is streamed first, and how long the board makes frames on its own.
+    fn plan(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
+        let tables = self.run.table_file(&self.given, settings)?;
+        let read: Vec<_> = match &tables {
+            Some(tables) => vec![tables.path.clone()],
+            None => self.run.lens.file().map(Into::into).into_iter().collect(),
+        };
+        let plan = self.run.chosen(tables, settings)?.plan(self.run.lens.phase);
+        let plan = plan.frames([FrameSource::Builtin(Builtin::Noise)]);
+        let plan = Plan { soak: Some(self.length.asked()), seed: self.run.seed(settings), ..plan };
+        let patience = self.run.patience(settings)?.unwrap_or(PATIENCE);
+        Ok((plan, RunOptions { reconnect: Some(patience), ..self.run.options(&read, settings)? }))
+    }
+}

@@ -1,0 +1,75 @@
+//! Frames judged over the hours of a soak, and what differed in them.
+
+use std::fmt::Write as _;
+
+use maud::{Markup, html};
+
+use super::suspect;
+use crate::report::wording::{self, grouped, plain, span};
+use crate::result::{SoakChart, SoakDifference, SoakInterval, SoakReport};
+
+/// The height of the tallest bar.
+const TALLEST: u64 = 100;
+/// The height of the lowest, so that few frames are seen beside many.
+const LOWEST: u64 = 2;
+/// The same of those that differ, which must strike the eye.
+const LOWEST_WRONG: u64 = 15;
+
+/// The part of the page.
+pub(super) fn section(soak: &SoakReport) -> Markup {
+    html! {
+        section {
+            h2 { "At speed, over time" }
+            p { (wording::soak(soak)) "." }
+            (chart(&soak.chart))
+            @if !soak.differences.is_empty() { (differences(&soak.differences)) }
+        }
+    }
+}
+
+/// A bar for each interval, as tall as its frames are many, red from below where frames differ.
+fn chart(chart: &SoakChart) -> Markup {
+    let most = chart.intervals.iter().map(|interval| interval.frames).max().unwrap_or(0);
+    let bars = |count: fn(&SoakInterval) -> u64, lowest: u64| {
+        let counts = chart.intervals.iter().map(count).enumerate().filter(|(_, count)| *count > 0);
+        counts.fold(String::new(), |mut path, (place, count)| {
+            let height = (count * TALLEST / most.max(1)).max(lowest);
+            let _ = write!(path, "M{place} {TALLEST}v-{height}h1v{height}z");
+            path
+        })
+    };
+    let interval = span(chart.interval_seconds);
+    let (whole, longest) = (chart.interval_seconds * chart.intervals.len() as f64, grouped(most));
+    let caption = format!("Frames judged in each {interval}: at most {longest}");
+    html! {
+        figure {
+            div.chart.time {
+                svg viewBox=(format!("0 0 {} {TALLEST}", chart.intervals.len().max(1)))
+                    preserveAspectRatio="none" role="img" aria-label=(caption) {
+                    title { (caption) }
+                    path.judged d=(bars(|interval| interval.frames, LOWEST)) {}
+                    path.wrong d=(bars(|interval| interval.wrong, LOWEST_WRONG)) {}
+                }
+            }
+            div.axis { span { "0" } span { (span(whole)) } }
+            figcaption { (caption) "; red, those that differ. A gap is time in which none was judged." }
+        }
+    }
+}
+
+fn differences(differences: &[SoakDifference]) -> Markup {
+    html! {
+        h3 { "What differed" }
+        ol.suspects { @for difference in differences {
+            li {
+                p { (plain(&wording::soak_difference(difference))) }
+                @if !difference.suspects.is_empty() {
+                    details {
+                        summary { "Suspects" }
+                        ol.suspects { @for it in &difference.suspects { (suspect(it)) } }
+                    }
+                }
+            }
+        } }
+    }
+}

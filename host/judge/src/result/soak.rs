@@ -1,0 +1,159 @@
+//! What frames that a board made at its full pixel clock for hours came to.
+
+use std::time::Duration;
+
+use serde::{Deserialize, Serialize};
+
+use super::{Finding, Suspect};
+
+/// Intervals of a [`SoakChart`].
+const MOST_INTERVALS: usize = 240;
+
+/// How long a soak is to be.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "of", rename_all = "kebab-case")]
+pub enum SoakLength {
+    /// A time on the link's clock.
+    Time {
+        /// It, in seconds.
+        seconds: f64,
+    },
+    /// Frames.
+    Frames {
+        /// So many.
+        frames: u64,
+    },
+}
+
+/// What a soak came to, up to where it ended.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SoakReport {
+    /// What was asked for.
+    pub asked: SoakLength,
+    /// How long it took on the link's clock, in seconds.
+    pub seconds: f64,
+    /// Bursts, each with content of its own.
+    pub bursts: u32,
+    /// Frames judged.
+    pub frames: u64,
+    /// Those with another signature than the reference's.
+    pub wrong: u64,
+    /// Those in which the enable was off, so that they were not at speed.
+    pub paused: u64,
+    /// Those that waited until the host had the records of earlier ones.
+    pub held_back: u64,
+    /// What differed, the first of each burst, in order; behind the first [`SoakReport::MOST_DIFFERENCES`] of them none is kept.
+    pub differences: Vec<SoakDifference>,
+    /// When frames were judged.
+    pub chart: SoakChart,
+}
+
+impl SoakReport {
+    /// Differences that are kept.
+    pub const MOST_DIFFERENCES: usize = 32;
+
+    /// Of a soak that has judged nothing yet.
+    pub(crate) fn new(asked: SoakLength) -> Self {
+        Self {
+            asked,
+            seconds: 0.0,
+            bursts: 0,
+            frames: 0,
+            wrong: 0,
+            paused: 0,
+            held_back: 0,
+            differences: Vec::new(),
+            chart: SoakChart::default(),
+        }
+    }
+}
+
+/// What differed in a burst.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SoakDifference {
+    /// When it was seen, in seconds of the link's clock since the soak began.
+    pub seconds: f64,
+    /// Seed of the burst's content (AT-SPEED.md).
+    pub seed: u32,
+    /// The generation of the tables that were active; every other frame of a burst may have those of the other bank.
+    pub generation: u8,
+    /// What was seen.
+    pub finding: Finding,
+    /// The parts that it points at, the likeliest first.
+    pub suspects: Vec<Suspect>,
+}
+
+/// Frames judged over time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SoakChart {
+    /// How long an interval is, in seconds.
+    pub interval_seconds: f64,
+    /// The intervals from the beginning on. One without a frame is one in which the board was away, or its tables were changed.
+    pub intervals: Vec<SoakInterval>,
+}
+
+/// What was judged in an interval.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SoakInterval {
+    /// Frames.
+    pub frames: u64,
+    /// Those with another signature.
+    pub wrong: u64,
+}
+
+impl Default for SoakChart {
+    fn default() -> Self {
+        Self { interval_seconds: 1.0, intervals: Vec::new() }
+    }
+}
+
+impl SoakChart {
+    /// Counts frames that were judged when `time` of the soak had passed. Intervals become twice as long when there are too many.
+    pub(crate) fn add(&mut self, time: Duration, judged: SoakInterval) {
+        let mut index = (time.as_secs_f64() / self.interval_seconds) as usize;
+        while index >= MOST_INTERVALS {
+            let pairs = self.intervals.chunks(2);
+            self.intervals =
+                pairs.map(|pair| pair.iter().copied().fold(SoakInterval::default(), sum)).collect();
+            self.interval_seconds *= 2.0;
+            index /= 2;
+        }
+        if self.intervals.len() <= index {
+            self.intervals.resize(index + 1, SoakInterval::default());
+        }
+        self.intervals[index] = sum(self.intervals[index], judged);
+    }
+}
+
+fn sum(one: SoakInterval, other: SoakInterval) -> SoakInterval {
+    SoakInterval { frames: one.frames + other.frames, wrong: one.wrong + other.wrong }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_chart_keeps_every_frame_in_its_place_however_long_it_becomes() {
+        let mut chart = SoakChart::default();
+        for second in 0..28_800 {
+            let wrong = u64::from(second == 14_400);
+            chart.add(Duration::from_secs(second), SoakInterval { frames: 46, wrong });
+        }
+        // 28,800 s / 128 s.
+        assert_eq!((chart.interval_seconds, chart.intervals.len()), (128.0, 225));
+        assert_eq!(chart.intervals.iter().map(|interval| interval.frames).sum::<u64>(), 46 * 28_800);
+        let wrong = chart.intervals.iter().position(|interval| interval.wrong > 0);
+        assert_eq!(wrong, Some(14_400 / 128));
+        assert!(chart.intervals.iter().all(|interval| interval.frames == 46 * 128));
+    }
+
+    #[test]
+    fn time_without_frames_is_an_empty_interval() {
+        let mut chart = SoakChart::default();
+        let judged = SoakInterval { frames: 1, wrong: 0 };
+        chart.add(Duration::ZERO, judged);
+        chart.add(Duration::from_millis(2500), judged);
+        assert_eq!(chart.intervals.iter().map(|interval| interval.frames).collect::<Vec<_>>(), [1, 0, 1]);
+    }
+}

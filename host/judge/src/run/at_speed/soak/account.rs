@@ -1,0 +1,173 @@
+//! What a soak has come to so far, and when it is over.
+
+use std::time::Duration;
+
+use crate::board::{Bursts, Capabilities};
+use crate::progress::Soaked;
+use crate::result::{
+    CheckName, Defect, Finding, Outcome, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect,
+};
+use crate::run::Plan;
+use crate::run::at_speed::burst::BurstPlan;
+use crate::run::at_speed::watched::Watched;
+use crate::run::findings::End;
+
+use super::played::Played;
+
+/// The longest burst, on the link's clock.
+const LONGEST_BURST: Duration = Duration::from_secs(60);
+/// Its most frames: behind them numbers of frames come again, and content with them.
+const MOST_FRAMES: u32 = 1 << 16;
+
+/// A soak under way.
+pub(super) struct Account {
+    pub(super) report: SoakReport,
+    /// When it began, on the run's clock.
+    begun: Duration,
+    /// What differed first, and the frames in front of its burst.
+    first: Option<(End, u64)>,
+    /// What differed first, may have come from the link, and was right in another session.
+    first_doubtful: Option<(End, u64)>,
+}
+
+impl Account {
+    /// One of length `asked` that begins at `begun` on the run's clock.
+    pub(super) fn new(asked: SoakLength, begun: Duration) -> Self {
+        let report = SoakReport::new(asked);
+        Self { report, begun, first: None, first_doubtful: None }
+    }
+
+    /// The time that is left behind `now`, on the run's clock; none if frames are counted.
+    fn time_left(&self, now: Duration) -> Option<Duration> {
+        let SoakLength::Time { seconds } = self.report.asked else { return None };
+        let length = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        Some(self.begun.saturating_add(length).saturating_sub(now))
+    }
+
+    /// The frames that are left; none if time is what counts.
+    fn frames_left(&self) -> Option<u64> {
+        let SoakLength::Frames { frames } = self.report.asked else { return None };
+        Some(frames.saturating_sub(self.report.frames))
+    }
+
+    pub(super) fn is_over(&self, now: Duration) -> bool {
+        self.frames_left() == Some(0) || self.time_left(now) == Some(Duration::ZERO)
+    }
+
+    /// The most frames that the burst may have which is planned as `plan` and may take `time`.
+    pub(super) fn frames_of_burst(&self, plan: &BurstPlan, time: Duration) -> u32 {
+        let left = self.frames_left().map_or(u32::MAX, |left| u32::try_from(left).unwrap_or(u32::MAX));
+        plan.frames_in(time).min(MOST_FRAMES).min(left)
+    }
+
+    /// The longest that the burst may take which begins at `now` on the run's clock.
+    pub(super) fn time_of_burst(&self, now: Duration) -> Duration {
+        self.time_left(now).map_or(LONGEST_BURST, |left| left.min(LONGEST_BURST))
+    }
+
+    /// Whether what differs is still looked into.
+    pub(super) fn has_room(&self) -> bool {
+        self.report.differences.len() < SoakReport::MOST_DIFFERENCES
+    }
+
+    /// Takes what came at `now` of a burst that stands at `watched`, and of which `before` is counted.
+    pub(super) fn add(&mut self, before: &mut SoakInterval, watched: &Watched, now: Duration) -> Soaked {
+        let all = SoakInterval { frames: watched.frames.into(), wrong: watched.wrong.into() };
+        let new = SoakInterval { frames: all.frames - before.frames, wrong: all.wrong - before.wrong };
+        *before = all;
+        let time = now.saturating_sub(self.begun);
+        self.report.frames += new.frames;
+        self.report.wrong += new.wrong;
+        self.report.chart.add(time, new);
+        let SoakReport { frames, wrong, asked, .. } = self.report;
+        Soaked { time, frames, wrong, of: asked }
+    }
+
+    /// Takes `end`, which is what differed in a burst that was just played, at `at` on the run's clock.
+    pub(super) fn keep(&mut self, played: &Played, at: Duration, end: End) {
+        let (suspects, first) = match &end {
+            End::Failed { suspects, .. } => (suspects.clone(), &mut self.first),
+            End::Error { .. } => (Vec::new(), &mut self.first_doubtful),
+        };
+        let finding = end.check().2.clone();
+        let before = self.report.frames - u64::from(played.watched.frames);
+        match first {
+            None => *first = Some((end, before)),
+            Some((first, _)) => tell_more(first, &suspects),
+        }
+        if self.has_room() {
+            let seconds = at.saturating_sub(self.begun).as_secs_f64();
+            let (seed, generation) = (played.plan.seed(), played.generation());
+            let difference = SoakDifference { seconds, seed, generation, finding, suspects };
+            self.report.differences.push(difference);
+        }
+    }
+
+    /// Ends it at `now` on the run's clock. What differed goes before all else, since nothing that came later makes it right; then
+    /// `ended`; then what may have come from the link.
+    pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
+        self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
+        match (self.first.take(), ended, self.first_doubtful.take()) {
+            (Some((end, before)), _, _) => Err(self.of_all_frames(end, before)),
+            (None, ended @ Err(_), _) | (None, ended, None) => ended,
+            (None, Ok(()), Some((doubtful, _))) => Err(doubtful),
+        }
+    }
+
+    /// What differed in a burst with `before` frames in front of it, counted over the whole soak.
+    fn of_all_frames(&self, end: End, before: u64) -> End {
+        match end {
+            End::Failed {
+                check,
+                finding: Finding::DiffersAtSpeed { first, repetition, suspect, .. },
+                suspects,
+            } => {
+                let (wrong, frames) = (counted(self.report.wrong), counted(self.report.frames));
+                let first = counted(before + u64::from(first));
+                let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect };
+                End::Failed { check, finding, suspects }
+            }
+            other => other,
+        }
+    }
+
+    /// What is said of frames that were all right, on a board with `capabilities`.
+    pub(super) fn all_right(
+        &self,
+        plan: &Plan,
+        capabilities: &Capabilities,
+        bursts: Bursts,
+    ) -> (CheckName, Outcome, Finding) {
+        let SoakReport { frames, paused, held_back, .. } = self.report;
+        let clock_hz = capabilities.clock_hz;
+        let frame =
+            BurstPlan::new(plan, capabilities, bursts, halfrow_protocol::message::BurstMode::Fresh, 0);
+        let seconds = (clock_hz > 0).then(|| frame.seconds(1) * frames as f64);
+        let (frames, paused, held_back) = (counted(frames), counted(paused), counted(held_back));
+        let (outcome, finding) = match paused {
+            0 => (Outcome::Passed, Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }),
+            _ => (Outcome::Skipped, Finding::PausedAtSpeed { frames, paused }),
+        };
+        (CheckName::AtSpeed, outcome, finding)
+    }
+}
+
+/// Takes over the suspects of another difference if they were seen in a row, and those of the first were not.
+fn tell_more(first: &mut End, others: &[Suspect]) {
+    let names_row = |suspects: &[Suspect]| {
+        let named = suspects.iter().find(|it| !matches!(it.defect, Defect::OnlyAtSpeed { row: None, .. }));
+        named.is_some()
+    };
+    if let End::Failed { finding: Finding::DiffersAtSpeed { suspect, .. }, suspects, .. } = first
+        && !names_row(suspects)
+        && names_row(others)
+    {
+        *suspect = others.first().map(|first| Box::new(first.defect.clone()));
+        *suspects = others.to_vec();
+    }
+}
+
+/// A count that stays at the greatest number of a finding.
+fn counted(count: u64) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}

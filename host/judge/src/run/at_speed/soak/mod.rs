@@ -1,0 +1,195 @@
+//! Bursts for hours: new content in each, tables and kernel by turns, every second one with the trap set, and on behind whatever
+//! differs.
+
+mod account;
+mod played;
+
+use std::time::Duration;
+
+use halfrow_protocol::message::BurstMode;
+
+use super::burst::BurstPlan;
+use super::watched::{EndsEarly, Watched};
+use crate::board::{Bank, BoardError, Bursts, RowTiming};
+use crate::progress::{Event, Step};
+use crate::result::{CheckName, Doubt, Finding, SoakInterval, SoakLength};
+use crate::run::findings::End;
+use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
+use crate::run::second_look::LOOKS;
+use crate::run::steps::Run;
+use crate::verdict::Cause;
+use account::Account;
+use played::Played;
+
+/// Whether a burst makes the same frame again and again, so that the board keeps a row of one that differs. What comes once in an
+/// hour would not come again when it is looked for.
+fn is_trapped(draw: u32) -> bool {
+    draw % 2 == 1
+}
+
+/// What differed in a burst, or in the tables in front of it.
+fn difference(played: &Result<Played, End>) -> Option<Finding> {
+    match played {
+        Ok(played) => played.finding(),
+        Err(End::Failed { finding, .. }) => Some(finding.clone()),
+        Err(End::Error { .. }) => None,
+    }
+}
+
+impl Run<'_> {
+    /// Judges bursts for as long as `length` says, with the board back behind `last` whenever it goes away. What differs does
+    /// not end it.
+    pub(in crate::run) fn soak(&mut self, length: SoakLength, last: Option<&Segment>) -> Result<(), End> {
+        let mut account = Account::new(length, self.clock());
+        let bursts = match self.bursts() {
+            Ok(bursts) => bursts,
+            Err(reason) => {
+                self.findings.soak = Some(account.report);
+                let finding = Finding::NothingAtSpeed { reason };
+                return Err(End::error(CheckName::AtSpeed, Cause::NothingJudged, finding));
+            }
+        };
+        self.progress.step(Step::AtSpeed);
+        let ended = self.all_bursts(&mut account, bursts, last);
+        let ended = account.end(self.clock(), ended);
+        if ended.is_ok() {
+            let capabilities = &self.board.capabilities;
+            let (check, outcome, finding) = account.all_right(self.plan, capabilities, bursts);
+            self.findings.note(check, outcome, finding);
+            let changes = capabilities.table_banks > 1;
+            self.findings.untested_at_speed = super::untested(changes, account.report.paused > 0);
+        }
+        self.findings.soak = Some(account.report);
+        ended
+    }
+
+    /// The run's clock: the link's, and those of links that broke.
+    fn clock(&self) -> Duration {
+        self.findings.earlier.seconds + self.board.now()
+    }
+
+    fn all_bursts(
+        &mut self,
+        account: &mut Account,
+        bursts: Bursts,
+        last: Option<&Segment>,
+    ) -> Result<(), End> {
+        while !account.is_over(self.clock()) {
+            match (self.one_burst(account, bursts), last) {
+                (Err(end), Some(last)) if end.is_outage() => {
+                    self.return_to(last, last.frames.len(), end)?;
+                    self.progress.step(Step::AtSpeed);
+                }
+                (judged, _) => judged?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Judges the next burst. If something differs that may have come from the link, it is made again in a session of its own.
+    fn one_burst(&mut self, account: &mut Account, bursts: Bursts) -> Result<(), End> {
+        let draw = account.report.bursts;
+        account.report.bursts += 1;
+        let mut doubtful: Option<(Finding, Doubt)> = None;
+        for _ in 0..=LOOKS {
+            let played = self.play(account, bursts, draw);
+            let Some(found) = difference(&played) else {
+                if let (Some((found, doubt)), Ok(played)) = (doubtful, &played) {
+                    let finding = Finding::RightInAnotherSession { found: Box::new(found), doubt };
+                    let end = End::error(CheckName::AtSpeed, Cause::Station, finding);
+                    account.keep(played, self.clock(), end);
+                }
+                return played.and_then(|played| played.ended);
+            };
+            let Some(doubt) = self.doubt(CheckName::AtSpeed) else {
+                let played = played?;
+                self.look_into(account, &played);
+                return played.ended;
+            };
+            tracing::warn!("{}; made again, since {}", found.sentence(), doubt.sentence());
+            self.open_another_session()?;
+            doubtful = Some((found, doubt));
+        }
+        let Some((found, doubt)) = doubtful else { return Ok(()) };
+        let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found), doubt };
+        Err(End::error(CheckName::AtSpeed, Cause::Station, finding))
+    }
+
+    /// Has the board make the burst of the draw `draw`, and compares every frame.
+    fn play(&mut self, account: &mut Account, bursts: Bursts, draw: u32) -> Result<Played, End> {
+        if self.board.repeated_changes() > 0 {
+            self.open_another_session()?;
+        }
+        let tables = self.tables_of_burst(draw)?;
+        let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
+        let mut plan = BurstPlan::new(self.plan, &self.board.capabilities, bursts, mode, draw);
+        let (now, earlier, progress) = (self.board.now(), self.findings.earlier.seconds, self.progress);
+        let time = account.time_of_burst(earlier + now);
+        plan.frames = account.frames_of_burst(&plan, time);
+        if let Some(active) = tables.first().filter(|_| is_trapped(draw) && plan.has_trap()) {
+            plan = plan.trapping(0, plan.frames);
+            self.expect(&plan, active)?;
+        }
+        let ends_early = EndsEarly { when_wrong: account.has_room(), at: Some(now + time) };
+        let mut before = SoakInterval::default();
+        let mut told = |watched: &Watched, now| {
+            progress.event(Event::Soaked(account.add(&mut before, watched, earlier + now)));
+        };
+        let (watched, ended) = self.watch(&plan, &tables, ends_early, &mut told);
+        let ended = ended.and_then(|()| self.pass_time(now + plan.time_of(watched.frames)));
+        told(&watched, self.board.now());
+        account.report.paused += u64::from(watched.paused);
+        account.report.held_back += u64::from(watched.held_back);
+        Ok(Played { plan, tables, watched, ended })
+    }
+
+    /// Waits until it is `then` on the link's clock. A board that is computed takes no time of that for its frames, and hours of it
+    /// would never pass.
+    fn pass_time(&mut self, then: Duration) -> Result<(), End> {
+        let left = then.saturating_sub(self.board.now());
+        if left.is_zero() {
+            return Ok(());
+        }
+        self.board.idle(left).map_err(|error| End::board(CheckName::AtSpeed, &error))
+    }
+
+    fn open_another_session(&mut self) -> Result<(), End> {
+        self.sessions += 1;
+        self.open_session(LOOKS + self.sessions)
+    }
+
+    /// Diagnoses what differed in a burst.
+    fn look_into(&mut self, account: &mut Account, played: &Played) {
+        let Played { plan, tables, watched, .. } = played;
+        let at = watched.wrong_frames.first().map(|first| self.findings.earlier.seconds + first.at);
+        let at = at.unwrap_or_else(|| self.clock());
+        let end = match &watched.miscounted {
+            _ if !account.has_room() => return,
+            Some(finding) if watched.wrong == 0 => super::miscounted(finding.clone()),
+            _ => self.wrong_at_speed(plan, tables, watched),
+        };
+        account.keep(played, at, end);
+    }
+
+    /// The tables and the kernel to judge with and the decoy's, each the active ones in two bursts out of four; those of the other
+    /// bank come with them where there is one.
+    fn tables_of_burst(&mut self, draw: u32) -> Result<Vec<Generation>, End> {
+        let of_board = |error: BoardError| End::board(CheckName::AtSpeed, &error);
+        self.start_afresh().map_err(of_board)?;
+        self.board.configure(self.plan.tables.geometry(), RowTiming::default()).map_err(of_board)?;
+        let mut tables: Vec<_> =
+            self.generations.iter().filter(|it| [DECOY, JUDGED].contains(&it.number)).cloned().collect();
+        if (draw / 2).is_multiple_of(2) {
+            tables.reverse();
+        }
+        tables.truncate(self.board.capabilities.table_banks.into());
+        for (place, generation) in tables.iter().enumerate() {
+            self.board.upload(&generation.tables, &generation.kernel).map_err(of_board)?;
+            self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
+            if place == 0 {
+                self.activate(generation)?;
+            }
+        }
+        Ok(tables)
+    }
+}

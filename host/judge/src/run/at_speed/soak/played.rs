@@ -1,0 +1,35 @@
+//! One burst of a soak.
+
+use crate::result::{Finding, Repetition};
+use crate::run::at_speed::burst::BurstPlan;
+use crate::run::at_speed::watched::Watched;
+use crate::run::findings::End;
+use crate::run::plan::Generation;
+
+/// A burst that is over, or broke.
+pub(super) struct Played {
+    pub(super) plan: BurstPlan,
+    pub(super) tables: Vec<Generation>,
+    pub(super) watched: Watched,
+    pub(super) ended: Result<(), End>,
+}
+
+impl Played {
+    /// What differed in it, before anybody has looked into that.
+    pub(super) fn finding(&self) -> Option<Finding> {
+        let Watched { frames, wrong, wrong_frames, miscounted, .. } = &self.watched;
+        let differs = wrong_frames.first().map(|first| Finding::DiffersAtSpeed {
+            wrong: *wrong,
+            frames: *frames,
+            first: first.n,
+            repetition: Repetition::NotNeeded {},
+            suspect: None,
+        });
+        differs.or_else(|| miscounted.clone())
+    }
+
+    /// The generation of the tables that were active.
+    pub(super) fn generation(&self) -> u8 {
+        self.tables.first().map_or(0, |active| active.number)
+    }
+}

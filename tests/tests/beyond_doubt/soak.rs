@@ -1,0 +1,294 @@
+//! Hours at the full pixel clock: all that was judged is told whatever ends them, what differs does not, and neither does a board
+//! that goes away.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::time::Duration;
+
+use halfrow::board::Stop;
+use halfrow::link::{self, Candidate};
+use halfrow::progress::{Event, Silent};
+use halfrow::result::{
+    CheckName, Defect, Finding, NoBurst, NotExercised, Repetition, Report, SoakDifference, SoakInterval,
+    SoakLength, SoakReport,
+};
+use halfrow::run::{Plan, RunOptions, verify};
+use halfrow::verdict::{Cause, StoppedBy, Verdict};
+use halfrow_mock::Options;
+use halfrow_protocol::message::{BurstState, FrameRecord, Records, Request};
+use halfrow_protocol::{Kind, Packet, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::patience::LIMIT;
+use halfrow_tests::program::Folder;
+use halfrow_tests::served::{Replug, Served};
+use halfrow_tests::system::{System, failed_check};
+
+const TINY: System = System::TINY;
+
+fn plan(length: SoakLength) -> Plan {
+    Plan { soak: Some(length), fail_fast: false, ..TINY.plan() }
+}
+
+/// A board whose bursts of a minute have 1153 frames: (64·8 + 8) clocks of 10 kHz each.
+fn slow() -> Options {
+    Options { pixel_clock: 10_000, ..Options::default() }
+}
+
+fn frames(frames: u64) -> SoakLength {
+    SoakLength::Frames { frames }
+}
+
+fn soaked_by(candidate: Candidate, length: SoakLength, options: &RunOptions) -> Report {
+    verify(&plan(length), candidate, options, &Silent).unwrap().report
+}
+
+fn soaked(target: &str, length: SoakLength) -> Report {
+    soaked_by(link::open(&target.parse().unwrap()).unwrap(), length, &RunOptions::default())
+}
+
+/// What a soak came to, whose parts must agree.
+fn soak(report: &Report) -> &SoakReport {
+    let soak = report.soak.as_ref().unwrap();
+    let charted = |count: fn(&SoakInterval) -> u64| -> u64 { soak.chart.intervals.iter().map(count).sum() };
+    assert_eq!((charted(|it| it.frames), charted(|it| it.wrong)), (soak.frames, soak.wrong), "{soak:?}");
+    assert_eq!(report.command(), "soak");
+    soak
+}
+
+/// The seeds of the bursts that a host asks for.
+fn seeds_of(length: SoakLength) -> (Report, Vec<u32>) {
+    let (sender, seeds) = std::sync::mpsc::channel();
+    let board = Altered::new(&slow(), move |toward, packet: Passing| {
+        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
+        if let (Toward::Board, Ok(Request::Burst(burst))) = (toward, read) {
+            sender.send(burst.seed).unwrap();
+        }
+        vec![packet]
+    });
+    let report = soaked_by(board.candidate(), length, &RunOptions::default());
+    (report, seeds.iter().collect())
+}
+
+#[test]
+fn a_sound_board_passes_with_all_frames_and_other_content_in_each_burst() {
+    let (report, mut seeds) = seeds_of(frames(3000));
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    let soak = soak(&report);
+    assert_eq!((soak.frames, soak.bursts, soak.wrong), (3000, 3, 0));
+    assert_eq!(seeds.len(), 3);
+    seeds.sort_unstable();
+    seeds.dedup();
+    assert_eq!(seeds.len(), 3, "{seeds:x?}");
+    let check = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
+    assert!(matches!(check.finding, Finding::EqualAtSpeed { frames: 3000, .. }), "{}", check.detail());
+    assert!(!report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
+}
+
+#[test]
+fn an_hour_is_one_on_the_links_clock() {
+    let report = soaked("mock,pixel-clock=10000", SoakLength::Time { seconds: 600.0 });
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    let soak = soak(&report);
+    assert!((600.0..601.0).contains(&soak.seconds), "{soak:?}");
+    // (64·8 + 8) clocks of 10 kHz each are 52 ms; a burst is a minute at most.
+    assert!(soak.bursts >= 10 && (11_530..11_550).contains(&soak.frames), "{soak:?}");
+}
+
+/// 20,000 frames have 10 million samples.
+#[test]
+fn what_comes_once_in_a_while_is_told_each_time_and_ends_nothing() {
+    let report = soaked("mock,pixel-clock=10000,fault=slow-path,one-in=1000000", frames(20_000));
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    let soak = soak(&report);
+    assert_eq!(soak.frames, 20_000);
+    assert!(soak.wrong > 4 && soak.differences.len() as u64 == soak.wrong, "{soak:?}");
+    assert!(report.headline().contains("of 20,000 frames differ"), "{}", report.headline());
+    let trapped = |difference: &&SoakDifference| {
+        matches!(difference.finding, Finding::DiffersAtSpeed { repetition: Repetition::Trapped { .. }, .. })
+    };
+    let trapped: Vec<_> = soak.differences.iter().filter(trapped).collect();
+    assert!(trapped.first().is_some_and(|first| first.suspects == report.suspects), "{soak:?}");
+    for difference in trapped {
+        let [first, ..] = &difference.suspects[..] else { panic!("{difference:?}") };
+        assert!(
+            matches!(&first.defect, Defect::OnlyAtSpeed { row: Some(_), bits, .. } if bits == &[5]),
+            "{first:?}"
+        );
+    }
+}
+
+#[test]
+fn a_board_that_is_always_wrong_is_looked_into_so_often_and_then_counted() {
+    let report = soaked("mock,pixel-clock=10000,fault=warm-bit,after=1", frames(50_000));
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    let soak = soak(&report);
+    assert_eq!((soak.frames, soak.differences.len()), (50_000, SoakReport::MOST_DIFFERENCES));
+    assert!(soak.wrong > 45_000, "{soak:?}");
+}
+
+/// Ends a soak when `frames` of it are judged.
+fn stopped_at(target: &str, frames: u32) -> Report {
+    let judged = Arc::new(AtomicU32::new(0));
+    let stop = Stop::when({
+        let judged = Arc::clone(&judged);
+        move || (judged.load(Ordering::Relaxed) >= frames).then_some(StoppedBy::Person)
+    });
+    let told = |event: Event| {
+        if let Event::Soaked(soaked) = event {
+            judged.store(soaked.frames as u32, Ordering::Relaxed);
+        }
+    };
+    let options = RunOptions { stop, ..RunOptions::default() };
+    let candidate = link::open(&target.parse().unwrap()).unwrap();
+    verify(&plan(self::frames(u64::MAX)), candidate, &options, &told).unwrap().report
+}
+
+#[test]
+fn an_interruption_leaves_what_was_judged_until_then() {
+    let report = stopped_at("mock,pixel-clock=10000", 5000);
+    assert_eq!((report.verdict, soak(&report).wrong), (Verdict::Error, 0), "{}", report.headline());
+    assert!(report.headline().contains("stopped by hand"), "{}", report.headline());
+    assert!(soak(&report).frames >= 5000);
+}
+
+#[test]
+fn what_differed_is_no_error_for_being_interrupted() {
+    let report = stopped_at("mock,pixel-clock=10000,fault=slow-path,one-in=1000000", 10_000);
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+    assert!(soak(&report).wrong > 0);
+}
+
+#[test]
+fn without_bursts_nothing_is_judged() {
+    let report = soaked("mock,bursts=no", frames(10));
+    assert_eq!(report.cause, Cause::NothingJudged, "{}", report.headline());
+    assert_eq!(report.finding, Finding::NothingAtSpeed { reason: NoBurst::BoardMakesNone {} });
+    assert_eq!(soak(&report).frames, 0);
+}
+
+#[test]
+fn with_one_bank_tables_change_between_bursts() {
+    let report = soaked("mock,pixel-clock=10000,table-banks=1,bursts=untrapped", frames(3000));
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
+}
+
+/// Unplugs the board amid its bursts, behind so many bytes.
+fn unplugged(byte: u64, replug: Replug) -> Report {
+    let folder = Folder::new();
+    let served = Served::unplugged_once("mock", &folder.path().join("board"), byte, Some(replug));
+    let candidate = link::open(&served.target().parse().unwrap()).unwrap();
+    let options = RunOptions { reconnect: Some(LIMIT), ..RunOptions::default() };
+    soaked_by(candidate, frames(4000), &options)
+}
+
+#[test]
+fn a_board_that_was_unplugged_is_judged_on_and_whether_it_had_its_power_is_said() {
+    // Frames that are streamed take some 50,000 bytes, and 4000 records 72,000.
+    for (replug, kept) in [
+        (Replug::Powered, true),
+        (Replug::Switched("mock".to_owned()), false),
+        (Replug::Reset("mock".to_owned()), false),
+    ] {
+        let what = format!("{replug:?}");
+        let report = unplugged(80_000, replug);
+        assert_eq!(report.verdict, Verdict::Pass, "{what}: {}", report.headline());
+        assert_eq!(soak(&report).frames, 4000, "{what}");
+        assert!(soak(&report).bursts >= 2, "{what}");
+        let kept_tables: Vec<_> = report.link.reconnections.iter().map(|away| away.kept_tables).collect();
+        assert_eq!(kept_tables, [Some(kept)], "{what}");
+    }
+}
+
+/// A link that delivers a copy of the request number `which` of a kind in front of the request number `before` of another.
+fn late_copy(which: (Kind, usize), before: (Kind, usize)) -> Report {
+    let (mut seen, mut waited) = (0, 0);
+    let mut copy: Option<Passing> = None;
+    let board = Altered::new(&slow(), move |toward, packet: Passing| {
+        if toward == Toward::Host {
+            return vec![packet];
+        }
+        waited += usize::from(packet.is(before.0));
+        let late = if waited > before.1 { copy.take() } else { None };
+        seen += usize::from(packet.is(which.0));
+        if packet.is(which.0) && seen == which.1 + 1 {
+            copy = Some(packet.clone());
+        }
+        late.into_iter().chain([packet]).collect()
+    });
+    let options = RunOptions { timeout: Some(Duration::from_secs(100)), ..RunOptions::default() };
+    soaked_by(board.candidate(), frames(3000), &options)
+}
+
+#[test]
+fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
+    for which in [Kind::Burst, Kind::TableWrite, Kind::Commit, Kind::Configure, Kind::Reset] {
+        for before in [(Kind::Burst, 1), (Kind::Records, 3), (Kind::Records, 30), (Kind::TableCrc, 20)] {
+            let report = late_copy((which, 1), before);
+            assert_ne!(report.verdict, Verdict::Fail, "{which:?} {before:?}: {}", report.headline());
+        }
+    }
+}
+
+/// The report on a board behind a link that loses every so many of its answers, and spoils every signature or none.
+fn over_a_link_that_loses(every: usize, spoilt: bool) -> Report {
+    let mut answers = 0;
+    let board = Altered::new(&slow(), move |toward, packet: Passing| {
+        if toward == Toward::Board {
+            return vec![packet];
+        }
+        answers += 1;
+        if answers % every == 0 {
+            return Vec::new();
+        }
+        match packet.reply() {
+            Some(Reply::Records(found)) if spoilt => {
+                let mut records: Vec<_> = found.records().collect();
+                records.iter_mut().for_each(|record| record.signature ^= 1);
+                let bytes: Vec<_> = records.iter().map(FrameRecord::to_bytes).collect();
+                vec![packet.saying(&Reply::Records(Records { bytes: &bytes, ..found }))]
+            }
+            _ => vec![packet],
+        }
+    });
+    soaked_by(board.candidate(), frames(5000), &RunOptions::default())
+}
+
+/// Answers that are lost make requests come twice, and with them doubt. A fault that stays is none of the link's.
+#[test]
+fn over_a_link_that_loses_answers_sound_boards_do_not_fail_and_broken_ones_do_not_pass() {
+    for every in [31, 53, 211] {
+        let sound = over_a_link_that_loses(every, false);
+        assert_eq!(sound.verdict, Verdict::Pass, "{every}: {}", sound.headline());
+        let broken = over_a_link_that_loses(every, true);
+        assert_eq!(failed_check(&broken), Some(CheckName::AtSpeed), "{every}: {}", broken.headline());
+    }
+    // Each burst has a request that comes twice.
+    let doubtful = over_a_link_that_loses(7, true);
+    assert_ne!(doubtful.verdict, Verdict::Pass, "{}", doubtful.headline());
+}
+
+/// A board that says what its host did not ask for gives no verdict, and what was judged before is told.
+#[test]
+fn records_that_end_too_soon_are_no_verdict() {
+    let mut left = 3;
+    let board = Altered::new(&Options::default(), move |_, packet: Passing| match packet.reply() {
+        Some(Reply::Records(found)) if left > 0 => {
+            left -= 1;
+            vec![packet.saying(&Reply::Records(found))]
+        }
+        Some(Reply::Records(found)) => {
+            let state = BurstState::Ended;
+            vec![packet.saying(&Reply::Records(Records { state, bytes: &[], ..found }))]
+        }
+        _ => vec![packet],
+    });
+    let report = soaked_by(board.candidate(), frames(10_000), &RunOptions::default());
+    assert_eq!(report.cause, Cause::Station, "{}", report.headline());
+    assert!(
+        matches!(report.finding, Finding::BurstEndedEarly { frames: 10_000, .. }),
+        "{}",
+        report.headline()
+    );
+    assert!(soak(&report).frames > 0);
+}
