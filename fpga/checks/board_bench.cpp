@@ -1,5 +1,5 @@
 // Drives a whole board, as written or as synthesised, at the pins of its link: HELLO, tables, rows, and compares what comes back with
-// datapath.hpp, every sample and every latency. It ends at the first difference, with status 1.
+// datapath.hpp, every sample and every latency; behind each frame a burst, if the board makes some, with its signatures. It ends at the first difference, with status 1.
 //   board_bench FRAMES SEED
 // Words with a + are the model's.
 #include "board_link.hpp"
@@ -20,7 +20,8 @@ struct Host {
     uint16_t sequence = 0;
     uint8_t session = 0, generation = 0;
     uint32_t window = 0, have = 0;           // rows that may be sent, rows that came back
-    uint64_t outputs = 0;
+    uint64_t outputs = 0, signatures = 0;
+    int frame_blanking = -1;                 // the least of a burst; none if the board makes no bursts
     std::deque<Bytes> rows;                  // ROW_OUT packets
 
     int draw(int count) { return random() % count; }
@@ -75,7 +76,11 @@ struct Host {
         Bytes list = ask(0x01, {});
         int found = 0;
         for (size_t at = 0; at < list.size(); at += 2 + list.at(at + 1))
+        {
             found += (list[at] == 0x05 && list.at(at + 2) == TAPS) + (list[at] == 0x06 && list.at(at + 2) == LATENCY);
+            if (list[at] == 0x10 && get(list, at + 2, 2) == 1)
+                frame_blanking = get(list, at + 6, 2);
+        }
         if (found != 2)
             fail("the capabilities are not those of this build");
     }
@@ -165,6 +170,43 @@ struct Host {
         send(0x22, {});
     }
 
+    // A record of frame n, AT-SPEED.md's Record.
+    void check_record(const Bytes &record, const Frame &frame, const std::vector<int64_t> &steps, uint32_t due) {
+        unsigned latency = frame.width / 2 + LATENCY;
+        if (get(record, 0, 4) != due)
+            fail("a signature differs");
+        if (get(record, 4, 4) != frame.width * steps.size() || get(record, 8, 2) != steps.size())
+            fail("a record counts other samples or rows");
+        if (get(record, 10, 2) != latency || get(record, 12, 2) != latency)
+            fail("a latency of a burst is not W/2 + L");
+        if (get(record, 14, 2) != 0 || record.at(16) != generation)
+            fail("a record has pauses, or another generation");
+        signatures++;
+    }
+
+    void burst(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel) {
+        constexpr unsigned FRAMES = 3, RECORD = 18, HEAD = 10;
+        uint32_t seed = random();
+        uint16_t number = random();
+        Bytes start;
+        put(start, generation, 4);           // its name
+        put(start, FRAMES, 4);
+        put(start, seed, 4);
+        put(start, number, 2);
+        put(start, frame_blanking + draw(50), 2);
+        put(start, 0, 1);                    // fresh content
+        ask(0x30, start);
+        for (unsigned got = 0; got < FRAMES;) {
+            Bytes from;
+            put(from, got, 4);
+            Bytes reply = ask(0x31, from);
+            for (unsigned k = 0, count = reply.at(9); k < count; k++, got++) {
+                auto record = reply.begin() + HEAD + RECORD * k;
+                check_record({record, record + RECORD}, frame, steps, signature(frame, steps, kernel, seed, number + got));
+            }
+        }
+    }
+
     void play() {
         int width = 64 + 2 * draw(20);
         Frame frame{width, 8 + 2 * draw(3), draw(2) ? width - 1 : draw(2 * width - 1)};
@@ -186,6 +228,8 @@ struct Host {
             }
             check_row(frame, row, steps[row], weights, samples[row]);
         }
+        if (frame_blanking >= 0)
+            burst(frame, steps, weights);
     }
 };
 
@@ -201,6 +245,6 @@ int main(int argc, char **argv) {
     host.hello();
     for (int k = 0; k < std::atoi(argv[1]); k++)
         host.play();
-    std::printf("%d taps: %lu samples equal, %lu clocks\n", TAPS, host.outputs, host.link.lines.clocks);
+    std::printf("%d taps: %lu samples and %lu signatures equal, %lu clocks\n", TAPS, host.outputs, host.signatures, host.link.lines.clocks);
     return 0;
 }

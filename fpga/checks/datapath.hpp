@@ -1,4 +1,5 @@
-// fpga/DATAPATH.md once more, for the checks of the netlist: the table, the kernels and the output sample.
+// fpga/DATAPATH.md and fpga/AT-SPEED.md once more, for the checks of the netlist: the table, the kernels, the output sample, and what
+// a burst enters and signs.
 #pragma once
 #include <array>
 #include <cmath>
@@ -84,4 +85,41 @@ inline uint32_t crc32(uint32_t crc, uint32_t value, int bytes) {
     for (int bit = 0; bit < 8 * bytes; bit++)
         crc = crc >> 1 ^ ((crc ^ value >> bit) & 1 ? 0xedb88320 : 0);
     return ~crc;
+}
+
+inline uint32_t drawn_after(uint32_t x) {
+    x ^= x << 13;
+    x ^= x >> 17;
+    return x ^ x << 5;
+}
+
+// A row of a burst, AT-SPEED.md's Content.
+inline Row content(uint32_t seed, uint16_t frame, int row, int width, int bits) {
+    uint32_t first = drawn_after((seed ^ (uint32_t(frame) * 4096 + row)) | 0x80000000), x = first;
+    int largest = (1 << bits) - 1, period = first >> 2 & 3, phase = first >> 4;
+    Row samples;
+    for (int j = 0; j < width; j++) {
+        x = drawn_after(x);
+        int level = x >> 20 & largest;
+        switch (first & 3) {
+        case 0: samples.push_back(level); break;
+        case 1: samples.push_back(x >> 31 ? largest : 0); break;
+        case 2: samples.push_back((j >> period) + phase & 1 ? largest : 0); break;
+        default: samples.push_back(j == 0 || x % 16 == 0 ? level : samples.back());
+        }
+    }
+    return samples;
+}
+
+// The signature of a frame of a burst whose row y has the factor steps[y].
+inline uint32_t signature(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel, uint32_t seed, uint16_t number) {
+    uint32_t all = 0;
+    for (size_t row = 0; row < steps.size(); row++) {
+        Row samples = content(seed, number, row, frame.width, frame.bits);
+        uint32_t one = 0;
+        for (int j = 0; j < frame.width; j++)
+            one = crc32(one, output(frame, steps[row], kernel, samples, j), 2);
+        all = crc32(all, one, 4);
+    }
+    return all;
 }
