@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use halfrow_protocol::message::BurstMode;
+
 use crate::board::{Bursts, Capabilities};
 use crate::progress::Soaked;
 use crate::result::{
@@ -26,7 +28,7 @@ pub(super) struct Account {
     begun: Duration,
     /// What differed first, and the frames in front of its burst.
     first: Option<(End, u64)>,
-    /// What differed first, may have come from the link, and was right in another session.
+    /// What differed first, may have come from the link, and did not differ in another session.
     first_doubtful: Option<(End, u64)>,
 }
 
@@ -66,7 +68,11 @@ impl Account {
     }
 
     /// Whether what differs is still looked into.
-    pub(super) fn has_room(&self) -> bool {
+    pub(super) fn wants_more(&self) -> bool {
+        self.first.is_none() || self.has_room()
+    }
+
+    fn has_room(&self) -> bool {
         self.report.differences.len() < SoakReport::MOST_DIFFERENCES
     }
 
@@ -101,6 +107,11 @@ impl Account {
             let difference = SoakDifference { seconds, seed, generation, finding, suspects };
             self.report.differences.push(difference);
         }
+    }
+
+    /// Takes `end`, which is what differed in a burst, may have come from the link, and could not be looked at again.
+    pub(super) fn leave_open(&mut self, end: End) {
+        self.first_doubtful.get_or_insert((end, self.report.frames));
     }
 
     /// Ends it at `now` on the run's clock. What differed goes before all else, since nothing that came later makes it right; then
@@ -140,8 +151,7 @@ impl Account {
     ) -> (CheckName, Outcome, Finding) {
         let SoakReport { frames, paused, held_back, .. } = self.report;
         let clock_hz = capabilities.clock_hz;
-        let frame =
-            BurstPlan::new(plan, capabilities, bursts, halfrow_protocol::message::BurstMode::Fresh, 0);
+        let frame = BurstPlan::new(plan, capabilities, bursts, BurstMode::Fresh, 0);
         let seconds = (clock_hz > 0).then(|| frame.seconds(1) * frames as f64);
         let (frames, paused, held_back) = (counted(frames), counted(paused), counted(held_back));
         let (outcome, finding) = match paused {

@@ -36,6 +36,12 @@ fn difference(played: &Result<Played, End>) -> Option<Finding> {
     }
 }
 
+/// What ends a soak in which something differed that may have come from the link, every time.
+fn wrong_over_doubtful_link((found, doubt): (Finding, Doubt)) -> End {
+    let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found), doubt };
+    End::error(CheckName::AtSpeed, Cause::Station, finding)
+}
+
 impl Run<'_> {
     /// Judges bursts for as long as `length` says, with the board back behind `last` whenever it goes away. What differs does
     /// not end it.
@@ -86,20 +92,39 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Judges the next burst. If something differs that may have come from the link, it is made again in a session of its own.
+    /// Judges the next burst.
     fn one_burst(&mut self, account: &mut Account, bursts: Bursts) -> Result<(), End> {
         let draw = account.report.bursts;
         account.report.bursts += 1;
-        let mut doubtful: Option<(Finding, Doubt)> = None;
+        let mut doubtful = None;
+        let settled = self.settle(account, bursts, draw, &mut doubtful);
+        if let (Err(_), Some(doubtful)) = (&settled, doubtful) {
+            account.leave_open(wrong_over_doubtful_link(doubtful));
+        }
+        settled
+    }
+
+    /// Judges the burst of the draw `draw`. If something differs that may have come from the link, it is `doubtful`, and made again in
+    /// a session of its own.
+    fn settle(
+        &mut self,
+        account: &mut Account,
+        bursts: Bursts,
+        draw: u32,
+        doubtful: &mut Option<(Finding, Doubt)>,
+    ) -> Result<(), End> {
         for _ in 0..=LOOKS {
             let played = self.play(account, bursts, draw);
             let Some(found) = difference(&played) else {
-                if let (Some((found, doubt)), Ok(played)) = (doubtful, &played) {
+                let played = played?;
+                if played.ended.is_ok()
+                    && let Some((found, doubt)) = doubtful.take()
+                {
                     let finding = Finding::RightInAnotherSession { found: Box::new(found), doubt };
                     let end = End::error(CheckName::AtSpeed, Cause::Station, finding);
-                    account.keep(played, self.clock(), end);
+                    account.keep(&played, self.clock(), end);
                 }
-                return played.and_then(|played| played.ended);
+                return played.ended;
             };
             let Some(doubt) = self.doubt(CheckName::AtSpeed) else {
                 let played = played?;
@@ -107,12 +132,10 @@ impl Run<'_> {
                 return played.ended;
             };
             tracing::warn!("{}; made again, since {}", found.sentence(), doubt.sentence());
+            *doubtful = Some((found, doubt));
             self.open_another_session()?;
-            doubtful = Some((found, doubt));
         }
-        let Some((found, doubt)) = doubtful else { return Ok(()) };
-        let finding = Finding::WrongOverDoubtfulLink { found: Box::new(found), doubt };
-        Err(End::error(CheckName::AtSpeed, Cause::Station, finding))
+        doubtful.take().map_or(Ok(()), |doubtful| Err(wrong_over_doubtful_link(doubtful)))
     }
 
     /// Has the board make the burst of the draw `draw`, and compares every frame.
@@ -130,7 +153,7 @@ impl Run<'_> {
             plan = plan.trapping(0, plan.frames);
             self.expect(&plan, active)?;
         }
-        let ends_early = EndsEarly { when_wrong: account.has_room(), at: Some(now + time) };
+        let ends_early = EndsEarly { when_wrong: account.wants_more(), at: Some(now + time) };
         let mut before = SoakInterval::default();
         let mut told = |watched: &Watched, now| {
             progress.event(Event::Soaked(account.add(&mut before, watched, earlier + now)));
@@ -164,7 +187,7 @@ impl Run<'_> {
         let at = watched.wrong_frames.first().map(|first| self.findings.earlier.seconds + first.at);
         let at = at.unwrap_or_else(|| self.clock());
         let end = match &watched.miscounted {
-            _ if !account.has_room() => return,
+            _ if !account.wants_more() => return,
             Some(finding) if watched.wrong == 0 => super::miscounted(finding.clone()),
             _ => self.wrong_at_speed(plan, tables, watched),
         };
