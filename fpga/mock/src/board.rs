@@ -23,6 +23,7 @@ use crate::options::{OptionError, Options};
 use crate::player::Player;
 use crate::tables::Tables;
 
+use bursts::CLOCKS_A_PACKET;
 use rows::RowBanks;
 use session::Session;
 
@@ -45,6 +46,8 @@ pub struct Board {
     configured: bool,
     rows: RowBanks,
     bursts: Bursts,
+    /// Pixel clocks that a burst goes on for with every packet.
+    clocks_a_packet: u64,
     status: Status,
 }
 
@@ -66,6 +69,7 @@ impl Board {
             configured: false,
             rows: RowBanks::new(options.row_banks_in),
             bursts: Bursts::new(options, fault),
+            clocks_a_packet: CLOCKS_A_PACKET,
             status: Status::default(),
         })
     }

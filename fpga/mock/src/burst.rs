@@ -164,7 +164,7 @@ impl Bursts {
     /// Goes on with a burst that is under way: for about so many pixel clocks, to a whole row, or until it ends or waits
     /// for a record.
     pub(crate) fn run(&mut self, player: &mut Player, tables: &mut Tables, clocks: u64) {
-        let end = player.now() + clocks;
+        let end = player.now().saturating_add(clocks);
         while let Some(burst) = self.burst.as_mut().filter(|burst| !burst.ended)
             && player.now() < end
         {

@@ -1,5 +1,6 @@
 // What stands in front of the core and behind it: test frames while a session is open, the sensor otherwise, both
-// through the same silicon. At each change the core is emptied for one clock.
+// through the same silicon. At each change the core is emptied for one clock. A burst's frames take the sensor's way
+// out.
 `default_nettype none
 
 module halfrow_multiplexer #(
@@ -9,7 +10,9 @@ module halfrow_multiplexer #(
     input  wire                rst,
     input  wire                session_open,
     input  wire                tables_ready, // high once the tables have contents
+    input  wire                burst,        // the test frames are a burst's
     output wire                camera_reset, // the sensor is not looked at
+    output wire                output_reset, // the image processor sees nothing
 
     input  wire                test_reset,   // one clock: test rows are dropped
     input  wire                test_enables, // test rows' enable of the next clock
@@ -27,7 +30,7 @@ module halfrow_multiplexer #(
     input  wire                camera_valid,
     input  wire                camera_start,
     input  wire [11:0]         camera_sample,
-    output wire                camera_out_valid,
+    output wire                shown_valid,  // an output that the image processor sees
 
     output wire                core_reset,
     output reg                 core_enable,  // a register, since all of the core hangs on it
@@ -55,6 +58,7 @@ module halfrow_multiplexer #(
         core_enable <= rst || !session_open || test_enables;
 
     assign camera_reset = rst || !camera || session_open;
+    assign output_reset = camera_reset && !burst;
     assign core_reset = rst || test_reset || (test != session_open);
 
     assign prepare = test ? test_prepare : camera_prepare && camera;
@@ -65,7 +69,7 @@ module halfrow_multiplexer #(
     assign in_sample = test ? test_sample : camera_sample;
 
     assign test_out_valid = out_valid && test;
-    assign camera_out_valid = out_valid && !test;
+    assign shown_valid = out_valid && (!test || burst);
 endmodule
 
 `default_nettype wire

@@ -100,6 +100,12 @@ module halfrow_bridge #(
     wire [1:0] depth;
     wire active_bank, commit_pending, frame_start;
     wire rows_waiting, rows_held, core_busy, shadow_in_use, rows_quiet;
+    wire burst_request, of_records, burst_rewind, burst_advance, burst_done, burst, silence;
+    wire [3:0] burst_refusal;
+    wire [2:0] burst_detail;
+    wire [8:0] records_length;
+    wire [7:0] records_byte;
+    wire records_begin, records_next, records_reply;
     wire row_accepted, row_left, row_repeated, row_unneeded, sample_over, latency_valid;
 
     wire step_write, node_write, table_bank, table_read;
@@ -127,6 +133,11 @@ module halfrow_bridge #(
         .session_open(session_open), .session(session), .configured(configured), .width(width), .height(height),
         .centre2(centre2), .blanking(blanking), .gap_seed(gap_seed), .depth(depth),
         .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal),
+        .burst_request(burst_request), .of_records(of_records), .burst_rewind(burst_rewind),
+        .burst_advance(burst_advance), .burst_done(burst_done), .burst_refusal(burst_refusal),
+        .burst_detail(burst_detail), .records_length(records_length), .records_begin(records_begin),
+        .records_next(records_next), .records_reply(records_reply), .records_byte(records_byte), .burst(burst),
+        .silence(silence),
         .acknowledge(acknowledge), .acknowledge_window(acknowledge_window),
         .drop_rows(drop_rows), .drop_next_row(drop_next_row), .new_session(new_session), .hold(hold),
         .acknowledged(acknowledged), .next_row_in(next_row_in), .rows_waiting(rows_waiting), .rows_held(rows_held),
@@ -144,7 +155,7 @@ module halfrow_bridge #(
     wire test_reset, test_enables, test_prepare, test_prepare_bank, test_valid, test_start, test_out_valid;
     wire [ROW_BITS-1:0] test_prepare_row;
     wire [11:0] test_sample;
-    wire prepared, out_valid, out_start, out_last;
+    wire prepared, out_valid, out_start, out_last, core_enable, burst_frame;
     wire [11:0] out_sample;
 
     halfrow_rows #(
@@ -153,10 +164,15 @@ module halfrow_bridge #(
     ) rows (
         .clk(clk), .rst(rst), .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal),
         .row_busy(row_busy), .packet_address(row_address), .packet_byte(packet_byte), .packet_length(packet_length),
+        .burst_request(burst_request), .of_records(of_records), .burst_rewind(burst_rewind),
+        .burst_advance(burst_advance), .burst_done(burst_done), .burst_refusal(burst_refusal),
+        .burst_detail(burst_detail), .records_length(records_length), .records_begin(records_begin),
+        .records_next(records_next), .records_reply(records_reply), .records_byte(records_byte), .burst(burst),
+        .silence(silence),
         .hold(hold), .acknowledge(acknowledge), .acknowledge_window(acknowledge_window),
         .drop_rows(drop_rows), .drop_next_row(drop_next_row), .new_session(new_session), .session(session),
         .width(width), .height(height), .blanking(blanking), .gap_seed(gap_seed), .depth(depth),
-        .generation(generation), .active_bank(active_bank), .commit_pending(commit_pending),
+        .configured(configured), .generation(generation), .active_bank(active_bank), .commit_pending(commit_pending),
         .commit_frame(commit_frame), .frame_start(frame_start), .frame_number(frame_number),
         .credit_window(credit_window), .acknowledged(acknowledged), .next_row_in(next_row_in),
         .rows_waiting(rows_waiting), .rows_held(rows_held), .core_busy(core_busy), .shadow_in_use(shadow_in_use),
@@ -170,10 +186,11 @@ module halfrow_bridge #(
         .core_reset(test_reset), .prepare(test_prepare), .prepare_row(test_prepare_row),
         .prepare_bank(test_prepare_bank), .prepared(prepared), .enables(test_enables), .in_valid(test_valid),
         .in_start(test_start), .in_sample(test_sample), .out_valid(test_out_valid), .out_start(out_start),
-        .out_last(out_last), .out_sample(out_sample));
+        .out_last(out_last), .out_sample(out_sample), .core_enable(core_enable), .frame_valid(burst_frame),
+        .pin_valid(isp_line_valid), .pin_sample(isp_data));
 
     // The sensor's rows.
-    wire camera_reset, camera_prepare, camera_prepare_bank, camera_valid, camera_start, camera_out_valid;
+    wire camera_reset, camera_prepare, camera_prepare_bank, camera_valid, camera_start, output_reset, shown_valid;
     wire camera_frame, row_missed;
     wire [ROW_BITS-1:0] camera_prepare_row;
     wire [11:0] camera_sample;
@@ -186,24 +203,25 @@ module halfrow_bridge #(
         .frame_valid(camera_frame), .row_missed(row_missed));
 
     halfrow_camera_output #(.TAPS(TAPS)) camera_output (
-        .clk(clk), .rst(camera_reset), .width(width), .frame_valid(camera_frame), .out_valid(camera_out_valid),
-        .out_sample(out_sample), .isp_frame_valid(isp_frame_valid), .isp_line_valid(isp_line_valid),
-        .isp_data(isp_data));
+        .clk(clk), .rst(output_reset), .width(width), .frame_valid(camera_frame || burst_frame),
+        .out_valid(shown_valid), .out_sample(out_sample), .isp_frame_valid(isp_frame_valid),
+        .isp_line_valid(isp_line_valid), .isp_data(isp_data));
 
     // Both through one core.
-    wire core_reset, core_enable, prepare, prepare_bank, in_valid, in_start;
+    wire core_reset, prepare, prepare_bank, in_valid, in_start;
     wire row_short, row_long, row_unprepared;
     wire [ROW_BITS-1:0] prepare_row;
     wire [11:0] in_sample;
 
     halfrow_multiplexer #(.ROW_BITS(ROW_BITS)) multiplexer (
-        .clk(clk), .rst(rst), .session_open(session_open), .tables_ready(idle), .camera_reset(camera_reset),
+        .clk(clk), .rst(rst), .session_open(session_open), .tables_ready(idle), .burst(burst),
+        .camera_reset(camera_reset), .output_reset(output_reset),
         .test_reset(test_reset), .test_enables(test_enables), .test_prepare(test_prepare),
         .test_prepare_row(test_prepare_row), .test_prepare_bank(test_prepare_bank), .test_valid(test_valid),
         .test_start(test_start), .test_sample(test_sample), .test_out_valid(test_out_valid),
         .camera_prepare(camera_prepare), .camera_prepare_row(camera_prepare_row),
         .camera_prepare_bank(camera_prepare_bank), .camera_valid(camera_valid), .camera_start(camera_start),
-        .camera_sample(camera_sample), .camera_out_valid(camera_out_valid),
+        .camera_sample(camera_sample), .shown_valid(shown_valid),
         .core_reset(core_reset), .core_enable(core_enable), .prepare(prepare), .prepare_row(prepare_row),
         .prepare_bank(prepare_bank), .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample),
         .out_valid(out_valid));
@@ -220,7 +238,7 @@ module halfrow_bridge #(
         .table_data(table_data), .table_read(table_read), .step_port(step_port), .node_port_0(node_port_0),
         .node_port_1(node_port_1));
 
-    wire unused = &{1'b0, packet_flags, configured}; // kinds tell replies from requests
+    wire unused = &{1'b0, packet_flags}; // kinds tell replies from requests
 
     assign camera_fault = !session_open && (row_short || row_long || row_unprepared || row_missed);
 

@@ -9,6 +9,7 @@ module halfrow_collector #(
     input  wire                   clk,
     input  wire                   rst,           // also while rows are dropped
 
+    input  wire                   burst,         // rows are a burst's: they are measured, and belong into no bank
     input  wire                   start,         // pulse: a row starts, its first sample is at the pins a clock later
     input  wire [OUT_BITS-1:0]    start_bank,
     input  wire                   start_tables,  // bank of the tables that it is bound to
@@ -51,7 +52,7 @@ module halfrow_collector #(
         if (rst)
             inside_banks <= {ROW_BANKS_OUT{1'b0}};
         else begin
-            if (start)
+            if (start && !burst)
                 inside_banks[start_bank] <= 1'b1;
             if (leaves)
                 inside_banks[leaving_bank] <= 1'b0;
@@ -80,11 +81,12 @@ module halfrow_collector #(
     wire [15:0] latency = now - (out_last ? last_in : first_in);
 
     assign column = out_start ? {COLUMN_BITS{1'b0}} : next_column;
-    assign sample_write = enable && out_valid && inside_banks[leaving_bank];
+    wire collects = enable && out_valid && (burst || inside_banks[leaving_bank]);
+    assign sample_write = collects && !burst;
     assign leaves = sample_write && out_last;
 
     always @(posedge clk) begin
-        if (sample_write) begin
+        if (collects) begin
             next_column <= column + 1'b1;
             if (out_start)
                 first <= latency;

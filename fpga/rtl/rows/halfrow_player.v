@@ -1,5 +1,6 @@
 // Plays rows into the core as a sensor would: decides at every clock whether a sample enters, a pixel clock passes
-// without one, or none passes. What it decides stands at the core's pins one clock later.
+// without one, or none passes. What it decides stands at the core's pins one clock later. In a burst none ever passes
+// without the enable.
 `default_nettype none
 
 module halfrow_player #(
@@ -11,7 +12,9 @@ module halfrow_player #(
 
     input  wire [11:0]            width,
     input  wire [15:0]            blanking,    // pixel clocks
-    input  wire [31:0]            gap_seed,
+    input  wire                   burst,          // rows are a burst's
+    input  wire [15:0]            frame_blanking, // between two of its frames
+    input  wire [31:0]            seed,           // of gaps, or the first draw of a burst's row that starts next
 
     input  wire                   row_ready,   // the next row may start
     input  wire                   row_0,       // it begins a frame
@@ -19,6 +22,8 @@ module halfrow_player #(
     output wire                   start,       // pulse: it does start
     output wire                   sample_read, // the sample of `column` is to be at the pins
     output wire [COLUMN_BITS-1:0] column,
+    output wire                   draws_first, // pulse: the generator is set to the seed
+    output wire [31:0]            draw,        // of a burst's sample
 
     output wire                   enables,     // `enable` of the next clock
     output reg                    enable,
@@ -28,7 +33,9 @@ module halfrow_player #(
     output reg  [15:0]            pauses,      // board clocks that gaps held the row up, complete with in_last
 
     output reg                    under_way,   // a row has started and its last sample has not entered
-    output wire                   flushing     // behind a frame
+    output wire                   flushing,    // behind a frame
+    output reg                    ends_frame,  // the row under way, or played last, ends one
+    output wire                   due          // the blanking has passed, and the next row may start
 );
     `include "halfrow_board.vh"
 
@@ -38,7 +45,6 @@ module halfrow_player #(
     reg in_row;
     reg [COLUMN_BITS-1:0] next_column, last_but_one;
     reg at_last; // next_column is the row's last
-    reg ends_frame; // the row under way or played last does
     reg paused;
     reg [1:0] draws;  // in front of the next row
     reg [15:0] blank; // pixel clocks that must pass before it
@@ -57,7 +63,7 @@ module halfrow_player #(
     wire last_enters = in_row && !pause && at_last;
     wire waits = row_ready && draws_done;
     wire draining = ends_frame && (flush != 12'd0 || !none_blank);
-    wire blank_passes = !in_row && !may_start && (row_ready ? waits : draining);
+    wire blank_passes = !in_row && !may_start && (burst || (row_ready ? waits : draining));
 
     wire draw_first = row_ready && draws == NO_DRAW && (!in_row || (at_last && !pause));
     wire draw_second = row_ready && draws == BLANKING_DRAWN && !in_row;
@@ -67,11 +73,14 @@ module halfrow_player #(
     assign start = may_start && !pause;
     assign sample_read = sample_enters;
     assign column = in_row ? next_column : {COLUMN_BITS{1'b0}};
+    assign draws_first = draw_first && (row_0 || burst);
+    assign due = !in_row && none_blank;
     assign flushing = !in_row && ends_frame && flush != 12'd0;
 
     halfrow_gaps gaps (
-        .clk(clk), .rst(rst), .seed(gap_seed), .restart(draw_first && row_0),
-        .draw(draw_first || draw_second || draw_sample), .drawn(drawn), .on(gaps_on));
+        .clk(clk), .rst(rst), .burst(burst), .seed(seed), .restart(draws_first),
+        .draw(burst ? sample_enters : draw_first || draw_second || draw_sample), .drawn(drawn), .next(draw),
+        .on(gaps_on));
 
     always @(posedge clk)
         if (rst)
@@ -97,7 +106,7 @@ module halfrow_player #(
             if (start)
                 ends_frame <= row_is_last;
             if (last_enters) begin
-                blank <= blanking;
+                blank <= burst && ends_frame ? frame_blanking : blanking;
                 flush <= {1'b0, width[11:1]} + L[11:0];
             end else if (blank_passes) begin
                 if (!none_blank)

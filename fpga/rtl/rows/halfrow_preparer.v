@@ -14,6 +14,9 @@ module halfrow_preparer #(
     input  wire [11:0]           height,
     output wire [ENTRY_BITS+2:0] place_address,
     input  wire [7:0]            place_byte,
+    input  wire                  burst,       // rows are a burst's: they have no places, but numbers
+    input  wire [11:0]           burst_row,
+    input  wire                  burst_other, // and tables of the bank that is not active
 
     output wire                  frame_start, // pulse: row 0 of `frame_number` is next
     output wire [15:0]           frame_number,
@@ -38,6 +41,7 @@ module halfrow_preparer #(
     reg [2:0] state;
     reg [1:0] count;
     reg [31:0] place; // frame, row
+    wire [7:0] number_byte = count[0] ? {4'd0, burst_row[11:8]} : burst_row[7:0];
     wire [11:0] last_row = height - 12'd1;
 
     assign place_address = {entry, 1'b1, count};
@@ -53,10 +57,10 @@ module halfrow_preparer #(
         if (state == IDLE)
             entry <= next_entry;
         if (state == FETCH)
-            place <= {place_byte, place[31:8]};
+            place <= {burst ? number_byte : place_byte, place[31:8]};
         if (state == BIND) begin
             row_generation <= generation;
-            row_bank <= active_bank;
+            row_bank <= active_bank ^ burst_other;
             row_is_last <= place[31:16] == {4'd0, last_row};
         end
     end

@@ -22,6 +22,7 @@ module halfrow_row_gate #(
     input  wire [11:0]             height,
     input  wire [COLUMN_BITS-1:0]  last_column,
     input  wire [1:0]              depth,         // 0: 8 bits, 1: 10, 2: 12
+    input  wire                    burst,         // one is under way
     input  wire                    has_generation,
     input  wire                    commit_pending,
     input  wire [15:0]             commit_frame,
@@ -116,6 +117,8 @@ module halfrow_row_gate #(
         is_unneeded = 1'b0;
         if (short)
             refusal = REFUSAL_PAYLOAD;
+        else if (burst)
+            refusal = REFUSAL_BUSY;
         else if (passed || known) begin
             is_again = !passed && has_result;
             is_unneeded = passed || !has_result;

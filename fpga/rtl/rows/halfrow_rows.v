@@ -1,5 +1,5 @@
 // The way of the rows: from ROW_IN packets through the in-banks, the player, the core, the collector and the
-// out-banks to ROW_OUT packets.
+// out-banks to ROW_OUT packets; and the rows that a burst makes instead, which go no further than the core.
 `default_nettype none
 
 module halfrow_rows #(
@@ -22,6 +22,22 @@ module halfrow_rows #(
     input  wire [7:0]          packet_byte,   // one clock behind its address
     input  wire [15:0]         packet_length,
 
+    // a BURST or RECORDS, likewise, from burst_request to burst_done
+    input  wire                burst_request,
+    input  wire                of_records,
+    output wire                burst_rewind,
+    output wire                burst_advance,
+    output wire                burst_done,
+    output wire [3:0]          burst_refusal,
+    output wire [2:0]          burst_detail,
+    output wire [8:0]          records_length, // bytes of the reply to RECORDS
+    input  wire                records_begin, // pulse: its first byte is wanted
+    input  wire                records_next,  // the next one is
+    input  wire                records_reply, // it is under way
+    output wire [7:0]          records_byte,  // two clocks later, 0 unless it is
+    output wire                burst,         // one is under way
+    input  wire                silence,       // pulse: it ends, and no row is dropped
+
     input  wire                hold,          // no further row starts: a request is carried out
     input  wire                acknowledge,   // pulse
     input  wire [31:0]         acknowledge_window,
@@ -37,6 +53,7 @@ module halfrow_rows #(
     input  wire [31:0]         gap_seed,
     input  wire [1:0]          depth,         // 0: 8 bits, 1: 10, 2: 12
 
+    input  wire                configured,
     input  wire [7:0]          generation,
     input  wire                active_bank,
     input  wire                commit_pending,
@@ -87,7 +104,11 @@ module halfrow_rows #(
     input  wire                out_valid,
     input  wire                out_start,
     input  wire                out_last,
-    input  wire [11:0]         out_sample
+    input  wire [11:0]         out_sample,
+    input  wire                core_enable,
+    output wire                frame_valid,   // of a burst's frames, as a sensor would have it at the core's pins
+    input  wire                pin_valid,     // what the image processor gets
+    input  wire [11:0]         pin_sample
 );
     `include "halfrow_board.vh"
 
@@ -109,6 +130,8 @@ module halfrow_rows #(
     localparam [ENTRY_BITS-1:0] BANKS_OUT = {{ENTRY_BITS-1{1'b0}}, 1'b1} << OUT_BITS;
 
     wire clear = rst || drop_rows;
+    wire burst_ends;
+    wire clear_core = clear || burst_ends; // nothing is inside it
     reg [COLUMN_BITS-1:0] last_column;
     always @(posedge clk) last_column <= width[COLUMN_BITS-1:0] - 1'b1;
 
@@ -121,7 +144,7 @@ module halfrow_rows #(
         .clk(clk), .rst(rst), .drop(drop_rows), .drop_next_row(drop_next_row),
         .acknowledge(acknowledge), .acknowledge_window(acknowledge_window), .settling(settling),
         .arrived(arrived), .arrived_bank(gate_entry[IN_BITS-1:0]),
-        .entered(in_last), .left(leaves), .sent(sent),
+        .entered(in_last && !burst), .left(leaves), .sent(sent),
         .acknowledged(acknowledged), .credit_window(credit_window), .next_row_in(next_row_in),
         .rows_entered(rows_entered), .rows_left(rows_left), .rows_sent(rows_sent), .next_entry(first_unentered),
         .leaving_entry(leaving_entry), .unsent_entry(unsent_entry),
@@ -148,7 +171,7 @@ module halfrow_rows #(
     ) gate (
         .clk(clk), .rst(clear), .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal), .busy(row_busy),
         .packet_address(packet_address), .packet_byte(packet_byte), .packet_length(packet_length[11:0]),
-        .width(width), .height(height), .last_column(last_column), .depth(depth),
+        .width(width), .height(height), .last_column(last_column), .depth(depth), .burst(burst),
         .has_generation(generation != 8'd0), .commit_pending(commit_pending), .commit_frame(commit_frame),
         .settling(settling), .acknowledged(acknowledged), .rows_entered(rows_entered), .rows_left(rows_left),
         .waiting(waiting), .played(played),
@@ -168,31 +191,39 @@ module halfrow_rows #(
     wire [ENTRY_BITS-1:0] rows_started = rows_entered + {{ENTRY_BITS-1{1'b0}}, under_way};
     wire row_there = waiting[next_entry[IN_BITS-1:0]] && rows_started < BANKS_OUT && !wanted_held;
 
-    wire preparer_busy, row_ready, start, next_row_0, next_is_last;
+    wire preparer_busy, row_ready, start, next_row_0, next_is_last, burst_row_there, burst_other;
+    wire [11:0] burst_row;
     wire [7:0] next_generation;
     wire [ENTRY_BITS-1:0] ready_entry;
 
     halfrow_preparer #(.ROW_BITS(ROW_BITS), .ENTRY_BITS(ENTRY_BITS)) preparer (
-        .clk(clk), .rst(clear), .row_there(row_there && !hold), .next_entry(next_entry), .height(height),
-        .place_address(prepare_address), .place_byte(prepare_byte),
+        .clk(clk), .rst(clear_core), .row_there(burst ? burst_row_there : row_there && !hold), .next_entry(next_entry),
+        .height(height), .place_address(prepare_address), .place_byte(prepare_byte),
+        .burst(burst), .burst_row(burst_row), .burst_other(burst_other),
         .frame_start(frame_start), .frame_number(frame_number), .generation(generation), .active_bank(active_bank),
         .prepare(prepare), .prepare_row(prepare_row), .prepared(prepared),
         .ready(row_ready), .start(start), .entry(ready_entry), .row_0(next_row_0), .row_is_last(next_is_last),
         .row_generation(next_generation), .row_bank(prepare_bank), .busy(preparer_busy));
 
-    wire sample_in_read, flushing, enable;
+    wire sample_in_read, flushing, enable, ends_frame, due, draws_first;
+    wire [31:0] first_draw, draw;
+    wire [15:0] frame_blanking;
     wire [COLUMN_BITS-1:0] column_played;
     wire [15:0] pauses;
 
     halfrow_player #(.TAPS(TAPS), .COLUMN_BITS(COLUMN_BITS)) player (
-        .clk(clk), .rst(clear), .width(width), .blanking(blanking), .gap_seed(gap_seed),
+        .clk(clk), .rst(clear_core), .width(width), .blanking(blanking),
+        .burst(burst), .frame_blanking(frame_blanking), .seed(first_draw),
         .row_ready(row_ready), .row_0(next_row_0), .row_is_last(next_is_last), .start(start),
-        .sample_read(sample_in_read), .column(column_played),
+        .sample_read(sample_in_read), .column(column_played), .draws_first(draws_first), .draw(draw),
         .enables(enables), .enable(enable), .in_valid(in_valid), .in_start(in_start), .in_last(in_last),
         .pauses(pauses),
-        .under_way(under_way), .flushing(flushing));
+        .under_way(under_way), .flushing(flushing), .ends_frame(ends_frame), .due(due));
 
     reg [IN_BITS-1:0] played_bank;
+    wire [11:0] sample_played, sample_made;
+    wire [31:0] burst_seed;
+    wire [15:0] burst_frame;
 
     always @(posedge clk)
         if (start)
@@ -201,22 +232,31 @@ module halfrow_rows #(
     halfrow_row_bank #(.ADDRESS_BITS(IN_BITS + COLUMN_BITS)) in_banks (
         .clk(clk), .write(sample_in_write), .write_address({gate_entry[IN_BITS-1:0], column_in}),
         .write_sample(sample_in), .read(sample_in_read),
-        .read_address({start ? ready_entry[IN_BITS-1:0] : played_bank, column_played}), .read_sample(in_sample));
+        .read_address({start ? ready_entry[IN_BITS-1:0] : played_bank, column_played}), .read_sample(sample_played));
 
-    wire sample_out_write, row_inside, other_tables;
+    halfrow_content content (
+        .clk(clk), .burst(burst), .depth(depth), .seed(burst_seed), .frame(burst_frame), .row(burst_row),
+        .gap_seed(gap_seed), .first(first_draw), .begins_row(draws_first), .enters(sample_in_read),
+        .row_starts(start), .column(column_played[3:0]), .draw(draw), .sample(sample_made));
+
+    assign in_sample = burst ? sample_made : sample_played;
+
+    wire sample_out_write, row_inside, other_tables, row_measured;
     wire [COLUMN_BITS-1:0] column_collected, column_sent;
     wire [OUT_BITS-1:0] left_bank, sent_bank;
     wire [15:0] left_pauses;
 
     halfrow_collector #(.OUT_BITS(OUT_BITS), .COLUMN_BITS(COLUMN_BITS)) collector (
-        .clk(clk), .rst(clear), .start(start), .start_bank(ready_entry[OUT_BITS-1:0]), .start_tables(prepare_bank),
+        .clk(clk), .rst(clear_core), .burst(burst), .start(start), .start_bank(ready_entry[OUT_BITS-1:0]),
+        .start_tables(prepare_bank),
         .active_bank(active_bank), .enable(enable), .in_valid(in_valid), .in_start(in_start), .in_last(in_last),
         .pauses(pauses),
-        .out_valid(out_valid), .out_start(out_start), .out_last(out_last),
+        .out_valid(burst ? pin_valid : out_valid), .out_start(out_start), .out_last(out_last),
         .leaving_bank(leaving_entry[OUT_BITS-1:0]), .sample_write(sample_out_write), .column(column_collected),
-        .leaves(leaves), .row_left(row_left), .left_bank(left_bank), .first_latency(first_latency),
+        .leaves(leaves), .row_left(row_measured), .left_bank(left_bank), .first_latency(first_latency),
         .last_latency(last_latency), .left_pauses(left_pauses), .row_inside(row_inside), .other_tables(other_tables));
 
+    assign row_left = row_measured && !burst;
     assign latency_valid = row_left;
 
     wire [3:0] head_index;
@@ -255,13 +295,33 @@ module halfrow_rows #(
         .row_flag(row_flag), .row_session(row_session), .row_taken(row_taken),
         .row_byte_valid(row_byte_valid), .row_byte(row_byte), .row_byte_ready(row_byte_ready), .idle(sender_idle));
 
-    assign core_reset = drop_rows;
+    wire burst_alternates, burst_quiet;
+    reg busy_for_burst;
+
+    always @(posedge clk)
+        busy_for_burst <= rows_waiting || rows_held || core_busy || commit_pending;
+
+    halfrow_burst #(.TABLE_BANKS(TABLE_BANKS)) bursts (
+        .clk(clk), .rst(rst), .request_start(burst_request), .of_records(of_records), .rewind(burst_rewind),
+        .advance(burst_advance), .packet_byte(packet_byte), .request_done(burst_done), .refusal(burst_refusal),
+        .detail(burst_detail), .ready(configured && generation != 8'd0), .busy(busy_for_burst),
+        .reply_length(records_length), .reply_begins(records_begin), .reply_advance(records_next),
+        .replying(records_reply), .reply_byte(records_byte), .burst(burst), .ends(burst_ends),
+        .drop(drop_rows || silence), .forget(drop_rows && new_session), .quiet(burst_quiet), .generation(generation),
+        .row_there(burst_row_there), .row(burst_row), .other_tables(burst_other), .seed(burst_seed),
+        .frame(burst_frame), .frame_blanking(frame_blanking), .alternates(burst_alternates),
+        .preparing(preparer_busy), .row_ready(row_ready), .row_is_last(next_is_last), .due(due), .start(start),
+        .in_last(in_last), .ends_frame(ends_frame), .frame_valid(frame_valid), .enable(core_enable),
+        .pin_valid(pin_valid), .pin_last(out_last), .pin_sample(pin_sample), .first_latency(first_latency),
+        .last_latency(last_latency));
+
+    assign core_reset = drop_rows || burst_ends;
     assign rows_waiting = waiting != {ROW_BANKS_IN{1'b0}};
     assign rows_held = row_inside || rows_left != {ENTRY_BITS{1'b0}};
-    assign core_busy = row_inside || preparer_busy;
-    assign shadow_in_use = TABLE_BANKS == 1 ? core_busy : other_tables;
-    assign quiet = !row_busy && !settling && !row_there && !preparer_busy && !under_way && !flushing && !enable
-                   && sender_idle;
+    assign core_busy = row_inside || preparer_busy || burst;
+    assign shadow_in_use = TABLE_BANKS == 1 ? core_busy : other_tables || burst_alternates;
+    assign quiet = !row_busy && !settling && !row_there && !preparer_busy && !under_way && !flushing
+                   && (burst || !enable) && sender_idle && burst_quiet;
 
     wire unused = &{1'b0, packet_length[15:12], ready_entry, leaving_entry};
 endmodule

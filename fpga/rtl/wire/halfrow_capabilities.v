@@ -15,9 +15,9 @@ module halfrow_capabilities #(
 ) (
     input  wire [7:0]  clock_source, // 0: the host's own, 1: PIXCLK, 2: a PLL
     input  wire [31:0] clock_hz,     // 0 when it is not known
-    input  wire [6:0]  index,
+    input  wire [7:0]  index,
     output wire [7:0]  value,
-    output wire [6:0]  length        // bytes
+    output wire [7:0]  length        // bytes
 );
     `include "halfrow_wire.vh"
     `include "halfrow_board.vh"
@@ -51,7 +51,7 @@ module halfrow_capabilities #(
         if (NAME_LENGTH < 1 || NAME_LENGTH > 68) halfrow_illegal_NAME has_1_to_68_bytes ();
     endgenerate
 
-    localparam FIXED = 58;
+    localparam FIXED = 67;
     localparam TOTAL = FIXED + NAME_LENGTH;
 
     localparam [15:0] MAX_WIDTH_16 = MAX_WIDTH[15:0];
@@ -66,13 +66,17 @@ module halfrow_capabilities #(
     localparam [7:0] ROW_BANKS_OUT_8 = ROW_BANKS_OUT[7:0];
     localparam [7:0] STEP_PORTS_8 = STEP_PORTS[7:0];
     localparam [7:0] KERNEL_PORTS_8 = KERNEL_PORTS[7:0];
+    localparam [15:0] BURST_RECORDS_16 = BURST_RECORDS[15:0];
+    localparam [15:0] LEAST_FRAME_BLANKING_16 = LEAST_FRAME_BLANKING[15:0];
+    localparam [7:0] TRAP_8 = 8'd0; // there is none
     localparam [7:0] NAME_LENGTH_8 = NAME_LENGTH[7:0];
 
     // {value, length, tag}, the first byte to go in [7:0]
-    wire [1023:0] list;
+    wire [2047:0] list;
     assign list[8*FIXED-1:0] = {
         NAME_LENGTH_8, TAG_NAME,
         NATURE, 8'd1, TAG_NATURE,
+        TRAP_8, LEAST_FRAME_BLANKING_16, BURST_RECORDS_16, CONTENT_ID, 8'd7, TAG_CONTENT,
         clock_hz, 8'd4, TAG_CLOCK_HZ,
         clock_source, 8'd1, TAG_CLOCK_SOURCE,
         KERNEL_PORTS_8, 8'd1, TAG_KERNEL_PORTS,
@@ -96,10 +100,10 @@ module halfrow_capabilities #(
             assign list[8*(FIXED+i) +: 8] = NAME[8*(NAME_LENGTH-1-i) +: 8];
         end
     endgenerate
-    assign list[1023:8*TOTAL] = {(1024-8*TOTAL){1'b0}};
+    assign list[2047:8*TOTAL] = {(2048-8*TOTAL){1'b0}};
 
     assign value = list[{index, 3'b000} +: 8];
-    assign length = TOTAL[6:0];
+    assign length = TOTAL[7:0];
 endmodule
 
 `default_nettype wire

@@ -61,6 +61,22 @@ module halfrow_dispatcher #(
     output wire                row_start,     // pulse: a ROW_IN packet lies in the receiver's buffer
     input  wire                row_done,      // pulse: it was dealt with
     input  wire [3:0]          row_refusal,   // with row_done: a refusal's code, or 0
+
+    output wire                burst_request, // pulse: a BURST or RECORDS lies in the receiver's buffer
+    output wire                of_records,    // it is the latter
+    input  wire                burst_rewind,  // pulse: its payload is read from the first byte on
+    input  wire                burst_advance, // by one byte
+    input  wire                burst_done,    // pulse: it was dealt with
+    input  wire [3:0]          burst_refusal, // with burst_done: a refusal's code, or 0
+    input  wire [2:0]          burst_detail,
+    input  wire [8:0]          records_length, // bytes of the reply to RECORDS
+    output wire                records_begin, // pulse: its first byte is wanted
+    output wire                records_next,  // the next one is
+    output wire                records_reply, // it is under way
+    input  wire [7:0]          records_byte,  // two clocks later, 0 unless it is
+    input  wire                burst,         // one is under way
+    output reg                 silence,       // pulse: and the host has been silent for too long
+
     output reg                 acknowledge,   // pulse, before the packet is carried out
     output wire [31:0]         acknowledge_window,
     output reg                 drop_rows,     // pulse: drop all rows and wait for drop_next_row
@@ -111,7 +127,7 @@ module halfrow_dispatcher #(
     endgenerate
 
     localparam IDLE = 4'd0, LOAD = 4'd1, JUDGE = 4'd2, TABLES = 4'd3, COUNTED = 4'd4, SETTLE = 4'd5, ROW = 4'd6,
-               ROW_WAIT = 4'd7, REFUSE = 4'd8, REPLY = 4'd9, SEND = 4'd10, DONE = 4'd11;
+               ROW_WAIT = 4'd7, REFUSE = 4'd8, REPLY = 4'd9, SEND = 4'd10, DONE = 4'd11, BURST = 4'd12;
 
     reg [3:0] state;
     reg [103:0] fields; // the payload's first 13 bytes, the first in [7:0]
@@ -126,7 +142,8 @@ module halfrow_dispatcher #(
     wire is_configure = packet_kind == KIND_CONFIGURE;
     wire of_session = session_open && packet_session == session;
     wire status_idle, tables_ready;
-    wire begins = state == IDLE && packet_valid && tables_ready;
+    wire silent;
+    wire begins = state == IDLE && packet_valid && tables_ready && !(burst && silent);
 
     assign packet_done = state == DONE;
     assign hold = state != IDLE && packet_kind != KIND_ROW_IN;
@@ -160,6 +177,8 @@ module halfrow_dispatcher #(
     wire greeted = accepted && is_hello;
     wire opens = accepted && welcome && !repeated;
 
+    wire closes = state == DONE && is_reset && !refused && level == RESET_CLOSES;
+
     always @(posedge clk) begin
         common_version <= is_hello && fields[71:65] == 7'd0 && fields[79:72] != 8'd0;
         take_over <= fields[87:80] != 8'd0;
@@ -168,8 +187,8 @@ module halfrow_dispatcher #(
     halfrow_session session_rules (
         .clk(clk), .rst(rst), .millisecond(millisecond), .nonce(fields[31:0]), .host(fields[63:32]),
         .heard(acknowledge),
-        .greet(greeted), .open(opens), .close(state == DONE && is_reset && !refused && level == RESET_CLOSES),
-        .repeated(repeated), .held(held), .tenths_left(tenths_left), .session_open(session_open), .session(session));
+        .greet(greeted), .open(opens), .close(silence || closes), .repeated(repeated), .held(held),
+        .tenths_left(tenths_left), .silent(silent), .session_open(session_open), .session(session));
 
     // RESET
     wire resets = accepted && is_reset;
@@ -213,9 +232,20 @@ module halfrow_dispatcher #(
         .table_entry(table_entry), .table_data(table_data), .table_read(table_read), .step_port(step_port),
         .node_port_0(node_port_0), .node_port_1(node_port_1));
 
+    // Bursts
+    wire of_bursts = packet_kind[7:1] == KIND_BURST[7:1];
+    wire advance_reply;
+
+    assign burst_request = accepted && of_bursts;
+    assign of_records = packet_kind[0];
+    assign records_reply = of_bursts && of_records && !refused;
+    assign records_begin = reply_taken && records_reply;
+    assign records_next = advance_reply;
+
+    always @(posedge clk) silence <= burst && silent && state == IDLE && !rst;
+
     // Counters
     wire [7:0] status_byte;
-    wire advance_reply;
     reg report;
 
     always @(posedge clk)
@@ -232,14 +262,14 @@ module halfrow_dispatcher #(
         .report_clears(level != 8'd0), .index(packet_address[5:0]), .take(advance_reply), .value(status_byte));
 
     wire [7:0] capabilities_byte;
-    wire [6:0] capabilities_length;
+    wire [7:0] capabilities_length;
 
     halfrow_capabilities #(
         .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .TAPS(TAPS), .RING_BITS(RING_BITS),
         .LEAST_BLANKING(LEAST_BLANKING), .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN),
         .ROW_BANKS_OUT(ROW_BANKS_OUT), .NATURE(NATURE), .NAME(NAME)
     ) capabilities (
-        .clock_source(clock_source), .clock_hz(clock_hz), .index(packet_address[6:0]), .value(capabilities_byte),
+        .clock_source(clock_source), .clock_hz(clock_hz), .index(packet_address[7:0]), .value(capabilities_byte),
         .length(capabilities_length));
 
     // The reply
@@ -256,12 +286,13 @@ module halfrow_dispatcher #(
         end else
             case (packet_kind)
                 KIND_HELLO: {source, length} <= {FROM_HELLO, 13'd22};
-                KIND_CAPABILITIES: {source, length} <= {FROM_CAPABILITIES, 6'd0, capabilities_length};
+                KIND_CAPABILITIES: {source, length} <= {FROM_CAPABILITIES, 5'd0, capabilities_length};
                 KIND_STATUS: {source, length} <= {FROM_STATUS, 13'd64};
                 KIND_ECHO: length <= packet_length[12:0];
                 KIND_TABLE_READ: {source, length} <= {FROM_TABLE, read_length};
                 KIND_TABLE_CRC: {source, length} <= {FROM_CRC, 13'd4};
                 KIND_COMMIT: {source, length} <= {FROM_COMMIT, 13'd1};
+                KIND_RECORDS: {source, length} <= {FROM_STATUS, 4'd0, records_length};
                 default: ;
             endcase
     end
@@ -275,16 +306,16 @@ module halfrow_dispatcher #(
     halfrow_reply #(.BUILD(BUILD)) reply (
         .clk(clk), .rst(rst), .begin_payload(reply_taken), .length(length[11:0]), .done(sent),
         .source(source), .index(packet_address), .advance(advance_reply), .packet_byte(packet_byte), .session(session),
-        .serial(serial), .capabilities_byte(capabilities_byte), .status_byte(status_byte), .crc(~crc),
+        .serial(serial), .capabilities_byte(capabilities_byte), .status_byte(status_byte | records_byte), .crc(~crc),
         .generation(fields[87:80]), .refusal({detail, packet_kind, 4'd0, code}), .table_byte_valid(table_byte_valid),
         .table_byte(table_byte), .table_byte_ready(table_byte_ready), .byte_valid(reply_byte_valid),
         .byte_data(reply_byte), .byte_ready(reply_byte_ready));
 
     // One counter reads the payload's start, the entries of a TABLE_WRITE and an ECHO, and counts the bytes of a reply.
     always @(posedge clk) begin
-        if (state == IDLE || state == JUDGE || reply_taken) packet_address <= 12'd0;
+        if (state == IDLE || state == JUDGE || reply_taken || burst_rewind) packet_address <= 12'd0;
         else if (rewind) packet_address <= 12'd7;
-        else if (state == LOAD || state == SETTLE || advance_table || advance_reply)
+        else if (state == LOAD || state == SETTLE || advance_table || advance_reply || burst_advance)
             packet_address <= packet_address + 12'd1;
     end
 
@@ -326,11 +357,18 @@ module halfrow_dispatcher #(
                     else {code, detail} <= {REFUSAL_RANGE, 13'd0, wrong_field};
                     if (rows_anywhere || out_of_range) state <= REFUSE;
                 end else if (of_tables) state <= TABLES;
+                else if (of_bursts) state <= BURST;
             end
             TABLES:
             begin
                 {code, detail} <= {table_refusal, table_detail};
                 if (tables_finished) state <= table_refusal != 4'd0 ? REFUSE : REPLY;
+            end
+            BURST:
+            if (burst_done) begin
+                code <= burst_refusal;
+                detail[2:0] <= burst_detail;
+                state <= burst_refusal != 4'd0 ? REFUSE : REPLY;
             end
             COUNTED: if (status_idle) state <= REPLY;
             SETTLE: if (settled && status_idle && tables_ready) state <= REPLY;

@@ -16,24 +16,26 @@ module halfrow_request (
     wire [7:0] first_byte = fields[7:0];
     wire span_kernel = fields[0];
     wire [15:0] count = fields[55:40];
-    reg [3:0] least; // bytes
+    reg [4:0] least; // bytes
     reg short, meaningless, count_too_large;
     reg [13:0] entries_length; // bytes of up to 1023 entries
     reg [15:0] behind_span;    // bytes
 
     always @* begin
         case (kind)
-            KIND_HELLO, KIND_COMMIT: least = 4'd11;
-            KIND_STATUS: least = 4'd1;
-            KIND_RESET: least = 4'd5;
-            KIND_TABLE_WRITE, KIND_TABLE_READ, KIND_TABLE_CRC: least = SPAN_BYTES[3:0];
-            KIND_CONFIGURE: least = 4'd13;
-            default: least = 4'd0;
+            KIND_HELLO, KIND_COMMIT: least = 5'd11;
+            KIND_STATUS: least = 5'd1;
+            KIND_RESET: least = 5'd5;
+            KIND_TABLE_WRITE, KIND_TABLE_READ, KIND_TABLE_CRC: least = SPAN_BYTES[4:0];
+            KIND_CONFIGURE: least = 5'd13;
+            KIND_BURST: least = 5'd17;
+            KIND_RECORDS: least = 5'd4;
+            default: least = 5'd0;
         endcase
     end
 
     always @(posedge clk) begin
-        short <= length[11:4] == 8'd0 && length[3:0] < least;
+        short <= length[11:5] == 7'd0 && length[4:0] < least;
         meaningless <= (kind == KIND_RESET && first_byte > RESET_WIPES)
                         || (kind[7:2] == KIND_TABLE_WRITE[7:2] && kind != KIND_COMMIT
                             && (fields[7:1] != 7'd0 || fields[15:9] != 7'd0));
@@ -46,7 +48,7 @@ module halfrow_request (
         read_length <= entries_length[12:0] + SPAN_BYTES[12:0];
         case (kind)
             KIND_HELLO, KIND_CAPABILITIES, KIND_STATUS, KIND_RESET, KIND_ECHO, KIND_TABLE_WRITE, KIND_TABLE_READ,
-            KIND_TABLE_CRC, KIND_COMMIT, KIND_CONFIGURE, KIND_ROW_IN, KIND_ROW_ACK:
+            KIND_TABLE_CRC, KIND_COMMIT, KIND_CONFIGURE, KIND_ROW_IN, KIND_ROW_ACK, KIND_BURST, KIND_RECORDS:
             unknown <= 1'b0;
             default: unknown <= 1'b1;
         endcase

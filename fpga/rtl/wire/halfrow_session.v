@@ -14,6 +14,7 @@ module halfrow_session (
     output wire        repeated,    // the HELLO is the one that opened the session
     output wire        held,        // another host has the board
     output reg  [6:0]  tenths_left, // of the holder's ten seconds, rounded up
+    output wire        silent,      // they have passed
     output reg         session_open,
     output wire [7:0]  session      // 0 for none
 );
@@ -28,6 +29,7 @@ module halfrow_session (
     reg [6:0] milliseconds;
     reg counting; // tenths_left is not 0
 
+    assign silent = !counting;
     assign session = session_open ? number : 8'd0;
     assign repeated = session_open && same_nonce && same_host;
     assign held = session_open && !same_host && counting;

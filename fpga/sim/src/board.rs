@@ -12,8 +12,8 @@ use crate::port::{Port, Step};
 use crate::uart::Uart;
 
 /// Steps without a byte taken after which a design that is not at rest never will be. The longest that it may work of
-/// itself is playing the rows of all its banks with the most blanking, a hundred thousand clocks a row.
-const PATIENCE: u32 = 1_000_000;
+/// itself is a burst up to its last free record: 16 frames of the greatest size, with blankings of a thousand clocks.
+const PATIENCE: u32 = 150_000_000;
 
 /// The 10 s rule is the only thing that time is for.
 const MOST_MILLISECONDS: u64 = 11_000;

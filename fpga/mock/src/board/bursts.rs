@@ -14,7 +14,7 @@ use crate::options::{BurstBuild, Options};
 
 /// Pixel clocks that a burst goes on for with every packet: a frame of 1920 x 1080, so that none waits for its reply for the
 /// length of a burst, and small frames are many.
-const CLOCKS_A_PACKET: u64 = 2_400_000;
+pub(super) const CLOCKS_A_PACKET: u64 = 2_400_000;
 
 /// The capability of a build.
 pub(super) fn capability(options: &Options) -> Option<message::Bursts> {
@@ -41,9 +41,15 @@ impl Board {
         !self.player.banks.is_idle() || self.bursts.is_under_way()
     }
 
+    /// Has a burst go on with every packet until it ends or waits for a record, as one does on a board that is clocked until
+    /// it is at rest.
+    pub fn go_on_to_rest(&mut self) {
+        self.clocks_a_packet = u64::MAX;
+    }
+
     /// Lets a burst go on.
     pub(super) fn go_on(&mut self) {
-        self.bursts.run(&mut self.player, &mut self.tables, CLOCKS_A_PACKET);
+        self.bursts.run(&mut self.player, &mut self.tables, self.clocks_a_packet);
     }
 
     /// Ends a burst whose host has been silent for too long, and its session.

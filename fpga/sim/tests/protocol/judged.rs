@@ -16,7 +16,9 @@ pub(crate) struct Judged {
 
 impl Judged {
     pub(crate) fn new(board: Board, options: &Options) -> Self {
-        Self { board, judge: halfrow_mock::Board::new(options, None).unwrap(), outgoing: Vec::new() }
+        let mut judge = halfrow_mock::Board::new(options, None).unwrap();
+        judge.go_on_to_rest();
+        Self { board, judge, outgoing: Vec::new() }
     }
 }
 

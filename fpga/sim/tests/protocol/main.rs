@@ -17,8 +17,14 @@ struct Simulated;
 
 /// The builds, as the suite and as the mock describe them.
 fn builds() -> [(halfrow_sim::Build, Build, Options); 4] {
-    // The Verilog makes no bursts and does not say what entered.
-    let mock = Options { bursts: BurstBuild::None, entered: false, ..Options::default() };
+    // The Verilog has no trap and does not say what entered.
+    let mock = Options {
+        bursts: BurstBuild::Untrapped,
+        records: 16,
+        least_frame_blanking: 128,
+        entered: false,
+        ..Options::default()
+    };
     let four = Build::default();
     [
         (

@@ -1,0 +1,296 @@
+// The numbers of a burst and of the frame that leaves: bytes of one small memory, counted and compared a byte a clock,
+// so that an event may have to wait for its turn. Carries out BURST and RECORDS, whose payloads it reads from the
+// receiver's buffer, and writes out a frame's record when the frame has left.
+`default_nettype none
+
+module halfrow_ledger #(
+    parameter TABLE_BANKS = 2
+) (
+    input  wire        clk,
+    input  wire        rst,
+
+    input  wire        start,          // pulse: a BURST or RECORDS lies in the receiver's buffer, up to `finished`
+    input  wire        of_records,     // it is the latter
+    output wire        rewind,         // pulse: its payload is read from the first byte on
+    output wire        advance,        // by one byte
+    input  wire [7:0]  packet_byte,    // one clock behind its address
+    output reg         finished,       // pulse: with refusal and detail
+    output reg  [3:0]  refusal,        // 0 for none
+    output reg  [2:0]  detail,
+    input  wire        ready,          // there are a configuration and tables
+    input  wire        busy,           // rows are in the board, a commit waits, or a burst is under way
+
+    output reg         starts,         // pulse: a burst, of what follows
+    output wire [31:0] seed,
+    output wire [15:0] first_frame,
+    output wire [15:0] frame_blanking,
+    output wire [1:0]  mode,
+    input  wire        under_way,
+    input  wire        drop,           // pulse: the burst ends at once
+    input  wire        forget,         // with drop: and there was none
+    output reg         named,          // there is one of this session
+    input  wire        frame_begins,   // pulse
+    output wire        more,           // there is another frame to be made; low for some clocks behind frame_begins
+
+    input  wire        given,          // pulses: an output
+    input  wire        paused,         // a clock without enable while a frame is inside
+    input  wire        row_left,       // a row; latencies and frame_left stay for 60 clocks
+    input  wire [15:0] first_latency,
+    input  wire [15:0] last_latency,
+    input  wire        frame_left,     // it was the frame's last
+    input  wire        signed_all,     // the signature is that of all rows that have left
+
+    input  wire [4:0]  kept,           // records that the host has not got
+    output wire        frees,          // pulse: it has got so many
+    output reg  [4:0]  freed,
+    output wire        record_write,   // of byte record_place of a record
+    output wire        head_write,     // or of the head of the reply to RECORDS
+    output wire [4:0]  record_place,
+    output wire [7:0]  record_byte,    // if it is a number of this memory's
+    output wire        recorded,       // pulse: with a record's last byte
+    output wire        idle
+);
+    `include "halfrow_wire.vh"
+
+    localparam [3:0] IDLE = 4'd0, SWEEP = 4'd1, ROWS = 4'd2, COMPARE = 4'd3, KEEP = 4'd4, BEGUN = 4'd5, FRAMES = 4'd6,
+                     SAMPLES = 4'd7, PAUSES = 4'd8, RECORD = 4'd9, LOOK = 4'd10, LOAD = 4'd11, ANEW = 4'd12,
+                     FROM = 4'd13, HEAD = 4'd14, JUDGE = 4'd15;
+    localparam [3:0] NONE = 4'd0;
+    localparam [4:0] LAST_OF_BURST = 5'd16, LAST_OF_FRAMES = 5'd7, LAST_OF_HEAD = 5'd9;
+    // Where the numbers lie, a frame's as in its record. The frames still to be made follow the name, as in BURST.
+    localparam [4:0] AT_UNREAD = 5'd0, AT_SAMPLES = 5'd4, AT_ROWS = 5'd8, AT_LEAST = 5'd10, AT_MOST = 5'd12,
+                     AT_PAUSES = 5'd14, AT_NAME = 5'd16, AT_FRAMES = 5'd20, AT_BEGUN = 5'd24;
+
+    reg [3:0] state;
+    reg [4:0] place; // byte of what is gone through
+    reg phase; // the packet's byte is there
+    reg again; // it is gone through once more: to store what was looked at, or the greatest number, or 0
+    wire of_packet = state == LOOK || state == LOAD || state == ANEW || state == FROM;
+    wire at_rest = state == IDLE;
+    wire step = phase || !of_packet;
+    reg [4:0] last_place;
+    wire last = step && place == last_place;
+
+    always @*
+        case (state)
+            SWEEP: last_place = 5'd31;
+            ROWS, COMPARE, KEEP, PAUSES: last_place = 5'd1;
+            RECORD: last_place = RECORD_BYTES - 5'd1;
+            LOOK, LOAD: last_place = LAST_OF_BURST;
+            ANEW: last_place = LAST_OF_FRAMES;
+            HEAD: last_place = LAST_OF_HEAD;
+            IDLE, JUDGE: last_place = 5'd0;
+            default: last_place = 5'd3;
+        endcase
+
+    // Events that wait, and what they add.
+    reg row_waits, frame_waits, begin_waits, request_waits, more_frames;
+    reg [6:0] given_wait, paused_wait, amount;
+    wire event_due = row_waits || begin_waits || request_waits;
+    wire samples_due = !event_due && given_wait != 7'd0;
+    wire pauses_due = !event_due && paused_wait != 7'd0 && !samples_due;
+    wire counted = !event_due && given_wait == 7'd0 && paused_wait == 7'd0;
+    wire begun = last && (state == FRAMES ? !again : state == BEGUN && !more_frames);
+
+    assign recorded = last && state == RECORD;
+    assign idle = at_rest && counted && !frame_waits;
+    assign more = more_frames && !begin_waits;
+
+    always @(posedge clk) begin
+        given_wait <= (at_rest && samples_due ? 7'd0 : given_wait) + {6'd0, given};
+        paused_wait <= (at_rest && pauses_due ? 7'd0 : paused_wait) + {6'd0, paused};
+        row_waits <= row_left || (row_waits && !at_rest);
+        frame_waits <= (row_left && frame_left) || (frame_waits && !recorded);
+        begin_waits <= frame_begins || (begin_waits && !begun);
+        request_waits <= start || (request_waits && !(at_rest && !row_waits && !begin_waits));
+        if (rst || drop || starts) begin
+            {given_wait, paused_wait} <= 14'd0;
+            {row_waits, frame_waits, begin_waits} <= 3'd0;
+        end
+        if (rst)
+            request_waits <= 1'b0;
+        if (at_rest)
+            amount <= samples_due ? given_wait : pauses_due ? paused_wait : {6'd0, row_waits || begin_waits};
+        else
+            amount <= 7'd0;
+    end
+
+    // Both latencies are held against both bounds.
+    reg of_last, of_most, measured;
+    wire [15:0] latency = of_last ? last_latency : first_latency;
+    wire [4:0] at_bound = (of_most ? AT_MOST : AT_LEAST) | place;
+
+    // The numbers.
+    (* ram_style = "distributed" *) reg [7:0] numbers [0:31];
+    reg [4:0] read_address;
+    reg [7:0] operand;
+    reg adds, subtracts, write, carry, zero;
+    wire first = place[1:0] == 2'd0;
+    wire [4:0] begun_byte = AT_BEGUN | {3'd0, place[1:0]};
+    wire [4:0] write_address = state == ANEW ? AT_NAME | place : read_address;
+    wire [7:0] stored = numbers[read_address];
+    wire [7:0] other = (stored & {8{adds || subtracts}}) ^ {8{subtracts}};
+    wire [9:0] sum = {1'b0, operand, 1'b1} + {1'b0, other, first ? subtracts : carry};
+    wire [7:0] result = sum[8:1];
+    wire all_zero = result == 8'd0 && (first || zero);
+    wire counts = state == ROWS || state == SAMPLES || state == PAUSES;
+    wire overflows = counts && !again && sum[9];
+
+    always @* begin
+        read_address = place;
+        {adds, subtracts, write} = 3'b000;
+        case (state)
+            SWEEP: write = 1'b1;
+            ROWS: {read_address, adds, write} = {AT_ROWS | place, !again, 1'b1};
+            COMPARE: {read_address, subtracts} = {at_bound, 1'b1};
+            KEEP: {read_address, write} = {at_bound, 1'b1};
+            BEGUN: {read_address, adds, write} = {AT_BEGUN | place, 2'b11};
+            FRAMES: {read_address, adds, write} = {AT_FRAMES | place, !again, 1'b1};
+            SAMPLES: {read_address, adds, write} = {AT_SAMPLES | place, !again, 1'b1};
+            PAUSES: {read_address, adds, write} = {AT_PAUSES | place, !again, 1'b1};
+            RECORD: write = !place[4] && place[3:2] != 2'd0;
+            LOOK: {read_address, subtracts} = {AT_NAME | place, 1'b1};
+            LOAD: {read_address, write} = {AT_NAME | place, place[4:3] == 2'd0};
+            ANEW: {read_address, subtracts, write} = {begun_byte, 1'b1, place[2]};
+            FROM: {subtracts, write} = {!again, again};
+            HEAD: read_address = place[2] ? AT_UNREAD | {3'd0, place[1:0]} : AT_NAME | place;
+            default: ;
+        endcase
+        if (of_packet)
+            operand = packet_byte;
+        else if (state == COMPARE || state == KEEP)
+            operand = place[0] ? latency[15:8] : latency[7:0];
+        else
+            operand = {1'b0, amount} | {8{state == FRAMES ? !again : counts && again}};
+    end
+
+    always @(posedge clk)
+        if (write && step)
+            numbers[write_address] <= result;
+
+    always @(posedge clk)
+        if (step) begin
+            carry <= sum[9];
+            if (state != LOOK || place[4:2] == 3'd0)
+                zero <= first && state == FROM ? 1'b1 : all_zero;
+            if (last && (state == FRAMES || state == ANEW) || (state == LOAD && place == LAST_OF_FRAMES))
+                more_frames <= !all_zero && (sum[9] || state != ANEW);
+            if (state == FROM && !again && first)
+                {far, freed} <= {result[7:5] != 3'd0, result[4:0]};
+        end
+
+    // What a BURST says. The last of its bytes to be looked at is the mode.
+    reg [71:0] fields;
+    reg unnamed, was_high, close, no_mode, other_mode, far;
+
+    always @(posedge clk)
+        if (step) begin
+            if (state == LOAD && place[4:3] != 2'd0)
+                fields <= {packet_byte, fields[71:8]};
+            if (state == LOOK && place[4:2] == 3'd0)
+                unnamed <= packet_byte == 8'd0 && (first || unnamed);
+            if (state == LOOK && place[3:0] == 4'd15)
+                close <= packet_byte == 8'd0 && !was_high; // below 128
+            was_high <= packet_byte[7];
+            no_mode <= packet_byte[7:2] != 6'd0;
+            other_mode <= packet_byte[0] && (packet_byte[1] || TABLE_BANKS == 1);
+        end
+
+    assign {mode, frame_blanking, first_frame, seed} = fields[65:0];
+    assign rewind = state == JUDGE;
+    assign advance = of_packet && step;
+    assign frees = last && state == FROM && again;
+    assign record_write = state == RECORD;
+    assign head_write = state == HEAD;
+    assign record_place = place;
+    assign record_byte = stored;
+
+    wire same = named && zero;
+    wire fits = zero && !far && freed <= kept;
+    wire bound_missed = !measured || sum[9] == of_most;
+    wire bound_done = last && (state == KEEP || (state == COMPARE && !bound_missed));
+
+    always @(posedge clk) begin
+        if (rst || recorded || starts)
+            measured <= 1'b0;
+        else if (bound_done && of_most)
+            measured <= 1'b1;
+        if (at_rest)
+            {of_last, of_most} <= 2'd0;
+        else if (bound_done)
+            {of_last, of_most} <= {of_last ^ of_most, !of_most};
+    end
+
+    always @(posedge clk) begin
+        starts <= !rst && last && state == LOAD;
+        finished <= 1'b0;
+        phase <= of_packet && !phase;
+        place <= last || at_rest ? 5'd0 : place + {4'd0, step};
+        if (last)
+            case (state)
+                IDLE: begin
+                    again <= 1'b0;
+                    refusal <= NONE;
+                    detail <= 3'd0;
+                    if (row_waits) state <= ROWS;
+                    else if (begin_waits) state <= BEGUN;
+                    else if (request_waits) state <= of_records ? FROM : LOOK;
+                    else if (samples_due) state <= SAMPLES;
+                    else if (pauses_due) state <= PAUSES;
+                    else if (frame_waits && signed_all) state <= RECORD;
+                end
+                SWEEP: state <= again ? LOAD : IDLE;
+                ROWS, SAMPLES, PAUSES: begin
+                    again <= overflows;
+                    if (!overflows) state <= state == ROWS ? COMPARE : IDLE;
+                end
+                COMPARE, KEEP: state <= !bound_done ? KEEP : of_last && of_most ? IDLE : COMPARE;
+                BEGUN: state <= more_frames ? FRAMES : IDLE;
+                LOOK: state <= JUDGE;
+                ANEW: begin
+                    again <= 1'b1;
+                    state <= sum[9] ? IDLE : FRAMES;
+                    finished <= sum[9];
+                end
+                FROM: state <= again ? HEAD : JUDGE;
+                JUDGE: begin
+                    again <= 1'b1;
+                    state <= IDLE;
+                    finished <= 1'b1;
+                    if (of_records ? fits : same && under_way && !no_mode) begin
+                        state <= of_records ? FROM : ANEW;
+                        finished <= 1'b0;
+                    end else if (of_records) refusal <= REFUSAL_RANGE;
+                    else if (no_mode) refusal <= REFUSAL_PAYLOAD;
+                    else if (same) refusal <= NONE;
+                    else if (!ready) refusal <= REFUSAL_NOT_READY;
+                    else if (unnamed) refusal <= REFUSAL_RANGE;
+                    else if (close) {refusal, detail} <= {REFUSAL_RANGE, 3'd4};
+                    else if (other_mode) {refusal, detail} <= {REFUSAL_RANGE, 3'd5};
+                    else if (busy) refusal <= REFUSAL_BUSY;
+                    else begin
+                        state <= SWEEP;
+                        finished <= 1'b0;
+                    end
+                end
+                default: begin // FRAMES, RECORD, LOAD, HEAD
+                    state <= IDLE;
+                    finished <= state == LOAD || state == HEAD || (state == FRAMES && again);
+                end
+            endcase
+        if (rst || drop) begin
+            state <= rst || forget ? SWEEP : IDLE;
+            {place, again, finished} <= 7'd0;
+        end
+    end
+
+    always @(posedge clk)
+        if (rst || (drop && forget))
+            named <= 1'b0;
+        else if (last && state == LOAD)
+            named <= 1'b1;
+
+    wire unused = &{1'b0, sum[0], fields[71:66], AT_SAMPLES};
+endmodule
+
+`default_nettype wire
