@@ -16,7 +16,7 @@ localparam GREATEST_HEIGHT = 2048;
 
 // Of bursts: records, and the fewest pixel clocks between two frames, in which the last record is made.
 localparam BURST_RECORDS = 16;
-localparam LEAST_FRAME_BLANKING = 128;
+localparam LEAST_FRAME_BLANKING = 256;
 
 // B
 localparam [1:0] DEPTH_8 = 2'd0;

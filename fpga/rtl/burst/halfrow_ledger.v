@@ -63,46 +63,62 @@ module halfrow_ledger #(
 
     reg [3:0] state;
     reg [4:0] place; // byte of what is gone through
-    reg phase; // the packet's byte is there
-    reg again; // it is gone through once more: to store what was looked at, or the greatest number, or 0
+    reg phase; // the byte and what it meets were fetched
+    reg again; // it is gone through once more, behind a look
+    reg judged; // a BURST was looked at, and sets how many frames there are
     wire of_packet = state == LOOK || state == LOAD || state == ANEW || state == FROM;
+    wire at_once = state == KEEP || state == SWEEP || state == RECORD || state == HEAD || state == JUDGE;
     wire at_rest = state == IDLE;
-    wire step = phase || !of_packet;
+    wire step = phase || at_rest || at_once;
     reg [4:0] last_place;
     wire last = step && place == last_place;
 
     always @*
         case (state)
             SWEEP: last_place = 5'd31;
-            ROWS, COMPARE, KEEP, PAUSES: last_place = 5'd1;
+            ROWS, COMPARE, KEEP, PAUSES, JUDGE: last_place = 5'd1;
             RECORD: last_place = RECORD_BYTES - 5'd1;
             LOOK, LOAD: last_place = LAST_OF_BURST;
             ANEW: last_place = LAST_OF_FRAMES;
             HEAD: last_place = LAST_OF_HEAD;
-            IDLE, JUDGE: last_place = 5'd0;
+            IDLE: last_place = 5'd0;
             default: last_place = 5'd3;
         endcase
 
     // Events that wait, and what they add.
+    reg paused_most; // more pauses than can be told; outputs and rows cannot be as many in a frame that ends
     reg row_waits, frame_waits, begin_waits, request_waits, more_frames;
     reg [6:0] given_wait, paused_wait, amount;
-    wire event_due = row_waits || begin_waits || request_waits;
-    wire samples_due = !event_due && given_wait != 7'd0;
-    wire pauses_due = !event_due && paused_wait != 7'd0 && !samples_due;
-    wire counted = !event_due && given_wait == 7'd0 && paused_wait == 7'd0;
+    reg carry, zero; // of the bytes so far
+    reg enough; // frames: no fewer than have begun
+    reg no_mode, far; // what a request wants: another mode, records that there cannot be
+    wire same = named && zero;
+    wire looked_at = state == JUDGE && !of_records && same && under_way && !no_mode;
+    wire given_any = given_wait != 7'd0;
+    wire paused_any = paused_wait != 7'd0;
+    // A frame that has left is recorded before the next one's outputs come.
+    wire begin_due = begin_waits && !row_waits && !frame_waits;
+    wire request_due = request_waits && !row_waits && !begin_waits && !frame_waits;
+    wire event_due = row_waits || (!frame_waits && (begin_waits || request_waits));
+    wire samples_due = !event_due && given_any;
+    wire pauses_due = !event_due && paused_any && !given_any;
     wire begun = last && (state == FRAMES ? !again : state == BEGUN && !more_frames);
 
     assign recorded = last && state == RECORD;
-    assign idle = at_rest && counted && !frame_waits;
+    assign idle = at_rest && !(event_due || frame_waits || given_any || paused_any);
     assign more = more_frames && !begin_waits;
 
     always @(posedge clk) begin
         given_wait <= (at_rest && samples_due ? 7'd0 : given_wait) + {6'd0, given};
         paused_wait <= (at_rest && pauses_due ? 7'd0 : paused_wait) + {6'd0, paused};
         row_waits <= row_left || (row_waits && !at_rest);
+        if (recorded || starts)
+            paused_most <= 1'b0;
+        else if (last && state == PAUSES)
+            paused_most <= paused_most || sum[9];
         frame_waits <= (row_left && frame_left) || (frame_waits && !recorded);
         begin_waits <= frame_begins || (begin_waits && !begun);
-        request_waits <= start || (request_waits && !(at_rest && !row_waits && !begin_waits));
+        request_waits <= start || (request_waits && !(at_rest && request_due)) || looked_at;
         if (rst || drop || starts) begin
             {given_wait, paused_wait} <= 14'd0;
             {row_waits, frame_waits, begin_waits} <= 3'd0;
@@ -110,8 +126,10 @@ module halfrow_ledger #(
         if (rst)
             request_waits <= 1'b0;
         if (at_rest)
-            amount <= samples_due ? given_wait : pauses_due ? paused_wait : {6'd0, row_waits || begin_waits};
-        else
+            amount <= samples_due ? given_wait : pauses_due ? paused_wait : {6'd0, begin_due};
+        else if (step)
+            amount <= {6'd0, last && state == KEEP}; // for ROWS
+        if (rst || drop)
             amount <= 7'd0;
     end
 
@@ -119,35 +137,34 @@ module halfrow_ledger #(
     reg of_last, of_most, measured;
     wire [15:0] latency = of_last ? last_latency : first_latency;
     wire [4:0] at_bound = (of_most ? AT_MOST : AT_LEAST) | place;
+    wire latency_high = state == KEEP || (place[0] && !phase); // for the next clock
 
     // The numbers.
     (* ram_style = "distributed" *) reg [7:0] numbers [0:31];
     reg [4:0] read_address;
-    reg [7:0] operand;
-    reg adds, subtracts, write, carry, zero;
+    reg [7:0] next_operand, operand, fetched;
+    reg adds, subtracts, write;
     wire first = place[1:0] == 2'd0;
     wire [4:0] begun_byte = AT_BEGUN | {3'd0, place[1:0]};
     wire [4:0] write_address = state == ANEW ? AT_NAME | place : read_address;
     wire [7:0] stored = numbers[read_address];
-    wire [7:0] other = (stored & {8{adds || subtracts}}) ^ {8{subtracts}};
-    wire [9:0] sum = {1'b0, operand, 1'b1} + {1'b0, other, first ? subtracts : carry};
+    wire [7:0] other = (fetched & {8{adds || subtracts}}) ^ {8{subtracts}};
+    wire [9:0] sum = {1'b0, operand, 1'b1} + {1'b0, other, first ? subtracts : carry && !at_once};
     wire [7:0] result = sum[8:1];
     wire all_zero = result == 8'd0 && (first || zero);
-    wire counts = state == ROWS || state == SAMPLES || state == PAUSES;
-    wire overflows = counts && !again && sum[9];
 
     always @* begin
         read_address = place;
         {adds, subtracts, write} = 3'b000;
         case (state)
             SWEEP: write = 1'b1;
-            ROWS: {read_address, adds, write} = {AT_ROWS | place, !again, 1'b1};
+            ROWS: {read_address, adds, write} = {AT_ROWS | place, 2'b11};
             COMPARE: {read_address, subtracts} = {at_bound, 1'b1};
-            KEEP: {read_address, write} = {at_bound, 1'b1};
+            KEEP: {read_address, write} = {at_bound, !measured || carry == of_most};
             BEGUN: {read_address, adds, write} = {AT_BEGUN | place, 2'b11};
-            FRAMES: {read_address, adds, write} = {AT_FRAMES | place, !again, 1'b1};
-            SAMPLES: {read_address, adds, write} = {AT_SAMPLES | place, !again, 1'b1};
-            PAUSES: {read_address, adds, write} = {AT_PAUSES | place, !again, 1'b1};
+            FRAMES: {read_address, adds, write} = {AT_FRAMES | place, !again || enough, 1'b1};
+            SAMPLES: {read_address, adds, write} = {AT_SAMPLES | place, 2'b11};
+            PAUSES: {read_address, adds, write} = {AT_PAUSES | place, 2'b11};
             RECORD: write = !place[4] && place[3:2] != 2'd0;
             LOOK: {read_address, subtracts} = {AT_NAME | place, 1'b1};
             LOAD: {read_address, write} = {AT_NAME | place, place[4:3] == 2'd0};
@@ -157,31 +174,36 @@ module halfrow_ledger #(
             default: ;
         endcase
         if (of_packet)
-            operand = packet_byte;
+            next_operand = packet_byte;
         else if (state == COMPARE || state == KEEP)
-            operand = place[0] ? latency[15:8] : latency[7:0];
+            next_operand = latency_high ? latency[15:8] : latency[7:0];
         else
-            operand = {1'b0, amount} | {8{state == FRAMES ? !again : counts && again}};
+            next_operand = {1'b0, amount} | {8{state == FRAMES && !again}};
+    end
+
+    always @(posedge clk) begin
+        fetched <= stored;
+        operand <= rst || drop ? 8'd0 : next_operand;
+        if (write && step)
+            numbers[write_address] <= result;
     end
 
     always @(posedge clk)
-        if (write && step)
-            numbers[write_address] <= result;
-
-    always @(posedge clk)
-        if (step) begin
+        if (step && !at_once) begin
             carry <= sum[9];
+            if (state == ANEW)
+                enough <= sum[9];
             if (state != LOOK || place[4:2] == 3'd0)
                 zero <= first && state == FROM ? 1'b1 : all_zero;
-            if (last && (state == FRAMES || state == ANEW) || (state == LOAD && place == LAST_OF_FRAMES))
-                more_frames <= !all_zero && (sum[9] || state != ANEW);
+            if ((last && state == FRAMES) || (state == LOAD && place == LAST_OF_FRAMES))
+                more_frames <= !all_zero;
             if (state == FROM && !again && first)
                 {far, freed} <= {result[7:5] != 3'd0, result[4:0]};
         end
 
     // What a BURST says. The last of its bytes to be looked at is the mode.
     reg [71:0] fields;
-    reg unnamed, was_high, close, no_mode, other_mode, far;
+    reg unnamed, close, other_mode;
 
     always @(posedge clk)
         if (step) begin
@@ -190,25 +212,24 @@ module halfrow_ledger #(
             if (state == LOOK && place[4:2] == 3'd0)
                 unnamed <= packet_byte == 8'd0 && (first || unnamed);
             if (state == LOOK && place[3:0] == 4'd15)
-                close <= packet_byte == 8'd0 && !was_high; // below 128
-            was_high <= packet_byte[7];
-            no_mode <= packet_byte[7:2] != 6'd0;
-            other_mode <= packet_byte[0] && (packet_byte[1] || TABLE_BANKS == 1);
+                close <= packet_byte == 8'd0; // below 256
+            if (state == LOOK) begin
+                no_mode <= packet_byte[7:2] != 6'd0;
+                other_mode <= packet_byte[0] && (packet_byte[1] || TABLE_BANKS == 1);
+            end
         end
 
     assign {mode, frame_blanking, first_frame, seed} = fields[65:0];
     assign rewind = state == JUDGE;
-    assign advance = of_packet && step;
+    assign advance = of_packet && !phase;
     assign frees = last && state == FROM && again;
     assign record_write = state == RECORD;
     assign head_write = state == HEAD;
     assign record_place = place;
-    assign record_byte = stored;
+    assign record_byte = stored | {8{paused_most && state == RECORD && place[4:1] == AT_PAUSES[4:1]}};
 
-    wire same = named && zero;
     wire fits = zero && !far && freed <= kept;
-    wire bound_missed = !measured || sum[9] == of_most;
-    wire bound_done = last && (state == KEEP || (state == COMPARE && !bound_missed));
+    wire bound_done = last && state == KEEP;
 
     always @(posedge clk) begin
         if (rst || recorded || starts)
@@ -224,7 +245,7 @@ module halfrow_ledger #(
     always @(posedge clk) begin
         starts <= !rst && last && state == LOAD;
         finished <= 1'b0;
-        phase <= of_packet && !phase;
+        phase <= !at_rest && !at_once && !phase;
         place <= last || at_rest ? 5'd0 : place + {4'd0, step};
         if (last)
             case (state)
@@ -232,33 +253,29 @@ module halfrow_ledger #(
                     again <= 1'b0;
                     refusal <= NONE;
                     detail <= 3'd0;
-                    if (row_waits) state <= ROWS;
-                    else if (begin_waits) state <= BEGUN;
-                    else if (request_waits) state <= of_records ? FROM : LOOK;
+                    if (row_waits) state <= COMPARE;
+                    else if (begin_due) state <= BEGUN;
+                    else if (request_due) state <= of_records ? FROM : judged ? ANEW : LOOK;
                     else if (samples_due) state <= SAMPLES;
                     else if (pauses_due) state <= PAUSES;
                     else if (frame_waits && signed_all) state <= RECORD;
                 end
                 SWEEP: state <= again ? LOAD : IDLE;
-                ROWS, SAMPLES, PAUSES: begin
-                    again <= overflows;
-                    if (!overflows) state <= state == ROWS ? COMPARE : IDLE;
-                end
-                COMPARE, KEEP: state <= !bound_done ? KEEP : of_last && of_most ? IDLE : COMPARE;
+                COMPARE: state <= KEEP;
+                KEEP: state <= of_last && of_most ? ROWS : COMPARE;
                 BEGUN: state <= more_frames ? FRAMES : IDLE;
                 LOOK: state <= JUDGE;
                 ANEW: begin
                     again <= 1'b1;
-                    state <= sum[9] ? IDLE : FRAMES;
-                    finished <= sum[9];
+                    state <= FRAMES;
                 end
                 FROM: state <= again ? HEAD : JUDGE;
                 JUDGE: begin
                     again <= 1'b1;
                     state <= IDLE;
-                    finished <= 1'b1;
-                    if (of_records ? fits : same && under_way && !no_mode) begin
-                        state <= of_records ? FROM : ANEW;
+                    finished <= !looked_at;
+                    if (of_records && fits) begin
+                        state <= FROM;
                         finished <= 1'b0;
                     end else if (of_records) refusal <= REFUSAL_RANGE;
                     else if (no_mode) refusal <= REFUSAL_PAYLOAD;
@@ -273,7 +290,7 @@ module halfrow_ledger #(
                         finished <= 1'b0;
                     end
                 end
-                default: begin // FRAMES, RECORD, LOAD, HEAD
+                default: begin
                     state <= IDLE;
                     finished <= state == LOAD || state == HEAD || (state == FRAMES && again);
                 end
@@ -282,6 +299,7 @@ module halfrow_ledger #(
             state <= rst || forget ? SWEEP : IDLE;
             {place, again, finished} <= 7'd0;
         end
+        judged <= !rst && !drop && (looked_at || (judged && !finished));
     end
 
     always @(posedge clk)

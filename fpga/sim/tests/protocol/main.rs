@@ -21,7 +21,7 @@ fn builds() -> [(halfrow_sim::Build, Build, Options); 4] {
     let mock = Options {
         bursts: BurstBuild::Untrapped,
         records: 16,
-        least_frame_blanking: 128,
+        least_frame_blanking: 256,
         entered: false,
         ..Options::default()
     };
