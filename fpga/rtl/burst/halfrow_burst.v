@@ -67,15 +67,17 @@ module halfrow_burst #(
     wire [1:0] mode;
     wire [15:0] first_frame;
     reg [1:0] frames_inside; // frames that have begun and have no record
-    wire frame_begins = burst && start && row == 12'd0;
-    wire frame_ends = burst && start && row_is_last; // of its rows none is left to start
-    wire over = burst && !more && !preparing && frames_inside == 2'd0;
+    reg started; // pulse: a row has
+    wire frame_begins = started && row == 12'd0;
+    wire frame_ends = started && row_is_last; // of its rows none is left to start
+    wire over = burst && !more && !preparing && !started && frames_inside == 2'd0;
 
-    assign row_there = burst && (row != 12'd0 || (more && free));
+    assign row_there = burst && !started && (row != 12'd0 || (more && free));
 
     always @(posedge clk) begin
         burst <= !rst && !drop && (starts || (burst && !over));
         ends <= burst && (over || drop);
+        started <= burst && start && !drop;
         if (rst || starts || drop)
             frames_inside <= 2'd0;
         else
@@ -91,7 +93,7 @@ module halfrow_burst #(
     always @(posedge clk) begin
         if (starts)
             row <= 12'd0;
-        else if (start)
+        else if (started)
             row <= row_is_last ? 12'd0 : row + 12'd1;
         if (starts)
             frame <= first_frame;
@@ -128,7 +130,7 @@ module halfrow_burst #(
         if (in_last)
             ended_leaves <= ends_frame;
         closing <= frames_inside != 2'd0 && !recorded && (closing || (row_left && ended_leaves));
-        stopped <= burst && !enable && frames_inside != 2'd0;
+        stopped <= burst && !enable && (started || frames_inside != 2'd0);
         stopped_early <= frames_inside[1] && !recorded && (stopped_early || stopped);
         early <= recorded && stopped_early;
     end
@@ -139,9 +141,12 @@ module halfrow_burst #(
         .clk(clk), .rst(rst || !burst), .valid(given), .last(given_last), .sample(given_sample),
         .next_frame(recorded), .signed_all(signed_all), .signature(signature));
 
-    wire [4:0] kept, freed, place;
-    wire frees, record_write, head_write;
-    wire [7:0] number_byte;
+    wire [4:0] kept, freed, next_place;
+    wire frees, record_next, head_next;
+    wire [7:0] next_number;
+    reg [4:0] place;
+    reg record_write, head_write;
+    reg [7:0] number_byte;
 
     halfrow_ledger #(.TABLE_BANKS(TABLE_BANKS)) ledger (
         .clk(clk), .rst(rst), .start(request_start), .of_records(of_records), .rewind(rewind), .advance(advance),
@@ -150,8 +155,14 @@ module halfrow_burst #(
         .mode(mode), .under_way(burst), .drop(drop), .forget(forget), .named(named), .frame_begins(frame_begins),
         .more(more), .given(given), .paused(early || (stopped && !closing)), .row_left(row_left),
         .first_latency(first_latency), .last_latency(last_latency), .frame_left(ended_leaves), .signed_all(signed_all),
-        .kept(kept), .frees(frees), .freed(freed), .record_write(record_write), .head_write(head_write),
-        .record_place(place), .record_byte(number_byte), .recorded(recorded), .idle(ledger_idle));
+        .kept(kept), .frees(frees), .freed(freed), .record_write(record_next), .head_write(head_next),
+        .record_place(next_place), .record_byte(next_number), .recorded(recorded), .idle(ledger_idle));
+
+    always @(posedge clk) begin
+        {record_write, head_write} <= {record_next, head_next};
+        place <= next_place;
+        number_byte <= next_number;
+    end
 
     // The bytes of a record and of the reply's head that are no numbers of the ledger's.
     wire [1:0] state = burst ? UNDER_WAY : named ? ENDED : NO_BURST;

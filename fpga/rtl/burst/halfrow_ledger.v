@@ -47,7 +47,7 @@ module halfrow_ledger #(
     output wire        head_write,     // or of the head of the reply to RECORDS
     output wire [4:0]  record_place,
     output wire [7:0]  record_byte,    // if it is a number of this memory's
-    output wire        recorded,       // pulse: with a record's last byte
+    output reg         recorded,       // pulse, behind a record's last byte
     output wire        idle
 );
     `include "halfrow_wire.vh"
@@ -104,19 +104,19 @@ module halfrow_ledger #(
     wire pauses_due = !event_due && paused_any && !given_any;
     wire begun = last && (state == FRAMES ? !again : state == BEGUN && !more_frames);
 
-    assign recorded = last && state == RECORD;
     assign idle = at_rest && !(event_due || frame_waits || given_any || paused_any);
     assign more = more_frames && !begin_waits;
 
     always @(posedge clk) begin
         given_wait <= (at_rest && samples_due ? 7'd0 : given_wait) + {6'd0, given};
         paused_wait <= (at_rest && pauses_due ? 7'd0 : paused_wait) + {6'd0, paused};
+        recorded <= !rst && last && state == RECORD;
         row_waits <= row_left || (row_waits && !at_rest);
         if (recorded || starts)
             paused_most <= 1'b0;
         else if (last && state == PAUSES)
             paused_most <= paused_most || sum[9];
-        frame_waits <= (row_left && frame_left) || (frame_waits && !recorded);
+        frame_waits <= (row_left && frame_left) || (frame_waits && !(last && state == RECORD));
         begin_waits <= frame_begins || (begin_waits && !begun);
         request_waits <= start || (request_waits && !(at_rest && request_due)) || looked_at;
         if (rst || drop || starts) begin
@@ -142,14 +142,14 @@ module halfrow_ledger #(
     // The numbers.
     (* ram_style = "distributed" *) reg [7:0] numbers [0:31];
     reg [4:0] read_address;
-    reg [7:0] next_operand, operand, fetched;
-    reg adds, subtracts, write;
+    reg [7:0] next_operand, operand, other; // what is added, a clock after it was fetched
+    reg adds, subtracts, write, carry_in;
     wire first = place[1:0] == 2'd0;
     wire [4:0] begun_byte = AT_BEGUN | {3'd0, place[1:0]};
     wire [4:0] write_address = state == ANEW ? AT_NAME | place : read_address;
     wire [7:0] stored = numbers[read_address];
-    wire [7:0] other = (fetched & {8{adds || subtracts}}) ^ {8{subtracts}};
-    wire [9:0] sum = {1'b0, operand, 1'b1} + {1'b0, other, first ? subtracts : carry && !at_once};
+    wire [7:0] next_other = (stored & {8{adds || subtracts}}) ^ {8{subtracts}};
+    wire [9:0] sum = {1'b0, operand, 1'b1} + {1'b0, other, carry_in};
     wire [7:0] result = sum[8:1];
     wire all_zero = result == 8'd0 && (first || zero);
 
@@ -182,8 +182,15 @@ module halfrow_ledger #(
     end
 
     always @(posedge clk) begin
-        fetched <= stored;
-        operand <= rst || drop ? 8'd0 : next_operand;
+        operand <= next_operand;
+        other <= next_other;
+        carry_in <= first ? subtracts : carry && !at_once;
+        if (rst || drop)
+            operand <= 8'd0;
+        if (rst || drop || phase) begin
+            other <= 8'd0;
+            carry_in <= 1'b0;
+        end
         if (write && step)
             numbers[write_address] <= result;
     end

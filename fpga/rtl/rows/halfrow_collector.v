@@ -67,15 +67,17 @@ module halfrow_collector #(
     always @(posedge clk)
         if (rst)
             now <= 16'd0;
-        else if (enable) begin
+        else if (enable)
             now <= now + 16'd1;
-            if (in_valid && in_start)
-                first_in <= now;
-            if (in_valid && in_last) begin
-                last_in <= now;
-                row_pauses <= pauses;
-            end
+
+    always @(posedge clk) begin
+        if (enable && in_valid && in_start)
+            first_in <= now;
+        if (enable && in_valid && in_last) begin
+            last_in <= now;
+            row_pauses <= pauses;
         end
+    end
 
     reg [COLUMN_BITS-1:0] next_column;
     wire [15:0] latency = now - (out_last ? last_in : first_in);
