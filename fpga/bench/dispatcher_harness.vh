@@ -1,7 +1,8 @@
 // A dispatcher between a receiver, a sender, a core and a row path that do as a bench says. Included in the bench's module,
 // behind its localparams MAX_WIDTH, MAX_HEIGHT, ROW_BITS, TAPS, LEAST_BLANKING, TABLE_BANKS, ROW_BANKS_IN, ROW_BANKS_OUT.
 localparam HELLO = 8'h00, CAPABILITIES = 8'h01, STATUS = 8'h02, RESET = 8'h03, ECHO = 8'h04, TABLE_WRITE = 8'h10,
-           TABLE_READ = 8'h11, TABLE_CRC = 8'h12, COMMIT = 8'h13, CONFIGURE = 8'h18, ROW_IN = 8'h20, ROW_ACK = 8'h22;
+           TABLE_READ = 8'h11, TABLE_CRC = 8'h12, COMMIT = 8'h13, CONFIGURE = 8'h18, ROW_IN = 8'h20, ROW_ACK = 8'h22,
+           BURST = 8'h30, RECORDS = 8'h31;
 localparam NONE = 0, VERSION_WRONG = 1, KIND_UNKNOWN = 2, PAYLOAD = 3, RANGE = 4, SESSION = 5, HELD = 6, BUSY = 7,
            NOT_READY = 8, TABLE_CRC_WRONG = 9, CREDIT = 10, OUTER_TAPS = 12;
 localparam STEPS = 0, KERNEL = 1, SHADOW = 0, ACTIVE = 1;
@@ -52,6 +53,41 @@ reg  [15:0] first_latency, last_latency;
 integer     acknowledges, row_starts, drops, new_sessions, held_clocks;
 reg  [31:0] last_acknowledge, last_drop;
 
+// The bursts, which read a packet's first bytes twice before they are done with it.
+wire        burst_request, of_records, records_begin, records_next, records_reply, silent;
+reg         burst, burst_done, burst_rewind, burst_advance;
+reg  [ 3:0] burst_refusal;
+reg  [ 2:0] burst_detail;
+reg  [ 7:0] record_index, record_first, record_second;
+integer     silences, burst_requests, read_place;
+
+always @(posedge clk) begin
+    record_index  <= records_begin ? 8'd0 : record_index + {7'd0, records_next};
+    record_first  <= record_index ^ 8'h5a;
+    record_second <= records_reply ? record_first : 8'd0;
+    if (silent) silences = silences + 1;
+end
+
+always @(posedge clk)
+    if (burst_request) begin
+        burst_requests = burst_requests + 1;
+        check(of_records === (packet_kind === RECORDS), "a request of bursts is taken for the other");
+        repeat (2) begin
+            for (read_place = 0; read_place < 3; read_place = read_place + 1) begin
+                @(negedge clk);
+                check(packet_address === read_place, "the place in a request of bursts");
+                @(negedge clk);
+                check(packet_byte === payload[read_place], "a byte of a request of bursts");
+                burst_advance = 1;
+                @(negedge clk) burst_advance = 0;
+            end
+            burst_rewind = 1;
+            @(negedge clk) burst_rewind = 0;
+        end
+        burst_done = 1;
+        @(negedge clk) burst_done = 0;
+    end
+
 // The core
 wire                step_write, node_write, table_bank, table_read;
 wire [ROW_BITS-1:0] table_entry;
@@ -94,7 +130,11 @@ halfrow_dispatcher #(
     .reply_taken(reply_taken), .reply_byte_valid(reply_byte_valid), .reply_byte(reply_byte),
     .reply_byte_ready(reply_byte_ready), .session_open(session_open), .session(session), .configured(configured),
     .width(width), .height(height), .centre2(centre2), .blanking(blanking), .gap_seed(gap_seed), .depth(depth),
-    .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal), .acknowledge(acknowledge),
+    .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal),
+    .burst_request(burst_request), .of_records(of_records), .burst_rewind(burst_rewind), .burst_advance(burst_advance),
+    .burst_done(burst_done), .burst_refusal(burst_refusal), .burst_detail(burst_detail), .records_length(9'd298),
+    .records_begin(records_begin), .records_next(records_next), .records_reply(records_reply),
+    .records_byte(record_second), .burst(burst), .silence(silent), .acknowledge(acknowledge),
     .acknowledge_window(acknowledge_window), .drop_rows(drop_rows), .drop_next_row(drop_next_row),
     .new_session(new_session), .hold(hold), .acknowledged(acknowledged), .next_row_in(next_row_in),
     .rows_waiting(rows_waiting), .rows_held(rows_held), .core_busy(core_busy), .shadow_in_use(shadow_in_use),
@@ -179,6 +219,7 @@ end
 task start_up;
     begin
         {packet_valid, crc_error, framing_error, millisecond, row_done} = 0;
+        {burst, burst_done, burst_rewind, burst_advance, burst_refusal, burst_detail, silences, burst_requests} = 0;
         {rows_waiting, rows_held, core_busy, shadow_in_use, frame_start} = 0;
         {row_accepted, row_left, row_repeated, row_unneeded, sample_over, latency_valid} = 0;
         {acknowledges, row_starts, drops, new_sessions, replies, got_total, writes, faults, clocks} = 0;

@@ -39,6 +39,52 @@ module halfrow_dispatcher_bench;
         end
     endtask
 
+    // Behind what is frozen: content 1, 16 records, 256 clocks between frames, no trap.
+    task capabilities;
+        begin
+            load_vector("capabilities-reply");
+            check(got_total == vector_total - 16 + 9, "the length of the capabilities");
+            for (i = 12; i < vector_total - 4; i = i + 1) check(got[i-12] === vector[i], "the capabilities");
+            check({got[got_total-9], got[got_total-8], got[got_total-7], got[got_total-6], got[got_total-5], got[got_total-4],
+                   got[got_total-3], got[got_total-2], got[got_total-1]} === 72'h100701001000000100, "the capability of bursts");
+        end
+    endtask
+
+    task bursts;
+        begin
+            what = "bursts";
+            for (k = 0; k < 17; k = k + 1) payload[k] = 8'h30 + k;
+            m = burst_requests;
+            give(BURST, 17, session);
+            replied(BURST, 0);
+            give(RECORDS, 4, session);
+            replied(RECORDS, 298);
+            for (k = 0; k < 298; k = k + 1) check(got[k] === (k[7:0] ^ 8'h5a), "a byte of the records");
+            {burst_refusal, burst_detail} = {4'd4, 3'd5};
+            give(BURST, 17, session);
+            refused(BURST, RANGE, 5);
+            give(RECORDS, 4, session);
+            refused(RECORDS, RANGE, 5);
+            {burst_refusal, burst_detail} = 7'd0;
+            check(burst_requests == m + 4, "a request of bursts gets there once");
+            // 10 s without a packet end a burst and its session, and drop no row. Without a burst they do not.
+            m = drops;
+            silences = 0;
+            milliseconds(10100);
+            check(session_open && silences == 0, "nobody is waited for without a burst");
+            give(ROW_ACK, 0, session);
+            burst = 1;
+            milliseconds(9999);
+            check(session_open && silences == 0, "10 s have not passed");
+            milliseconds(1);
+            repeat (3) @(negedge clk);
+            burst = 0;
+            check(!session_open && silences > 0 && drops == m, "10 s of silence");
+            hello(k, HOST, 1, 1, 0);
+            replied(HELLO, 22);
+        end
+    endtask
+
     task vectors;
         begin
             what = "the frozen packets";
@@ -46,7 +92,7 @@ module halfrow_dispatcher_bench;
             give_vector("hello-request");
             like_vector("hello-reply");
             give_vector("capabilities-request");
-            like_vector("capabilities-reply");
+            capabilities;
             give_vector("echo-request");
             like_vector("echo-reply");
             give_vector("echo-largest");
@@ -178,9 +224,9 @@ module halfrow_dispatcher_bench;
             for (k = 1; k < 256; k = k + 1)
                 case (k)
                     CAPABILITIES, ECHO, ROW_IN, ROW_ACK: ;
-                    STATUS, RESET, TABLE_WRITE, TABLE_READ, TABLE_CRC, COMMIT, CONFIGURE: begin
-                        m = k == STATUS ? 1 : k == RESET ? 5 : k == COMMIT ? 11 : k == CONFIGURE ? 13 : 7;
-                        for (i = 0; i < 16; i = i + 1) payload[i] = 0;
+                    STATUS, RESET, TABLE_WRITE, TABLE_READ, TABLE_CRC, COMMIT, CONFIGURE, BURST, RECORDS: begin
+                        m = k == BURST ? 17 : k == RECORDS ? 4 : k == STATUS ? 1 : k == RESET ? 5 : k == COMMIT ? 11 : k == CONFIGURE ? 13 : 7;
+                        for (i = 0; i < 20; i = i + 1) payload[i] = 0;
                         for (n = 0; n <= m + 1; n = n + 1) begin
                             give(k, n, session);
                             if (n < m) refused(k, PAYLOAD, 0);
@@ -377,6 +423,7 @@ module halfrow_dispatcher_bench;
             sessions;
             if (stall == 2) passed;
             payloads;
+            bursts;
             if (stall == 2) passed;
             settings;
             if (stall == 2) passed;

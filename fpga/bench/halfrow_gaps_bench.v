@@ -5,13 +5,16 @@ module halfrow_gaps_bench;
     reg clk = 0;
     always #5 clk = !clk;
 
-    reg         rst = 1, restart = 0, draw = 0, good = 1;
-    reg  [31:0] seed = 0, x;
+    reg         rst = 1, burst = 0, restart = 0, draw = 0, good = 1;
+    reg  [31:0] seed = 0, x, foreseen;
     wire [3:0]  drawn;
+    wire [31:0] next;
     wire        on;
     integer     n;
 
-    halfrow_gaps gaps (.clk(clk), .rst(rst), .seed(seed), .restart(restart), .draw(draw), .drawn(drawn), .on(on));
+    halfrow_gaps gaps (
+        .clk(clk), .rst(rst), .burst(burst), .seed(seed), .restart(restart), .draw(draw), .drawn(drawn), .next(next),
+        .on(on));
 
     task begin_with(input [31:0] wanted);
         begin
@@ -39,12 +42,21 @@ module halfrow_gaps_bench;
             x = x ^ x >> 17;
             x = x ^ x << 5;
             good = good && gaps.x === x && drawn === x[3:0];
+            good = good && (n == 0 || x === foreseen);
+            foreseen = next;
         end
         draw = 0;
         if (good)
             $display("PASS 10000 values of 1");
         else
             $display("FAIL 10000 values of 1");
+        burst = 1;
+        begin_with(1);
+        if (!on)
+            $display("PASS no gaps in a burst");
+        else
+            $display("FAIL no gaps in a burst");
+        burst = 0;
         begin_with(0);
         if (!on)
             $display("PASS no gaps with the seed 0");

@@ -125,7 +125,9 @@ module halfrow_rows_bench;
 
     halfrow_rows #(.TAPS(7)) rows (
         .clk(clk), .rst(rst), .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal), .row_busy(row_busy),
-        .packet_address(packet_address), .packet_byte(packet_byte), .packet_length(packet_length), .hold(1'b0),
+        .packet_address(packet_address), .packet_byte(packet_byte), .packet_length(packet_length),
+        .burst_request(1'b0), .of_records(1'b0), .records_begin(1'b0), .records_next(1'b0), .records_reply(1'b0),
+        .silence(1'b0), .configured(1'b1), .hold(1'b0),
         .acknowledge(acknowledge), .acknowledge_window(window), .drop_rows(drop_rows),
         .drop_next_row(drop_next_row), .new_session(new_session), .session(session), .width(width), .height(height),
         .blanking(blanking), .gap_seed(gap_seed), .depth(depth), .generation(generation), .active_bank(active_bank),
@@ -140,7 +142,8 @@ module halfrow_rows_bench;
         .row_byte(row_byte), .row_byte_ready(row_byte_ready), .core_reset(core_reset), .prepare(prepare),
         .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared), .enables(enables),
         .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample), .out_valid(out_valid), .out_start(out_start),
-        .out_last(out_last), .out_sample(out_sample));
+        .out_last(out_last), .out_sample(out_sample), .core_enable(enable),
+        .pin_valid(out_valid), .pin_sample(out_sample));
 
     always @(posedge clk) enable <= enables;
 

@@ -1,11 +1,13 @@
 // halfrow_player under rows that come whenever they like, beside WIRE.md's section "The player": what a host cannot see of it. The
-// monitor knows the page alone, its generator of gaps too; it sees the core's pins and when a row was there.
+// monitor knows the page alone, its generator of gaps too; it sees the core's pins and when a row was there. With BURST it
+// is AT-SPEED.md's Time: the rows of a frame are there in time, and no clock passes without the enable.
 `default_nettype none
 
 module player #(
     parameter W = 4,                         // columns
     parameter MOST_BLANKING = 2,
-    parameter GAPS = 1                       // 0: the seed 0
+    parameter GAPS = 1,                      // 0: the seed 0
+    parameter BURST = 0                      // 1: rows are a burst's
 ) (
     input wire clk,
     input wire wants_reset,
@@ -18,8 +20,10 @@ module player #(
     localparam SOON = 3;                     // clocks that two draws and a pause may take
 
     (* anyconst *) wire [15:0] blanking;
+    (* anyconst *) wire [15:0] frame_blanking;
     (* anyconst *) wire [3:0] seed_bits;
-    wire [31:0] seed = GAPS ? {seed_bits[3:1], 28'h5a17c3a, 1'b1} : 32'd0;
+    (* anyseq *) wire [31:0] first_draw;     // of a burst's row
+    wire [31:0] seed = BURST ? first_draw : GAPS ? {seed_bits[3:1], 28'h5a17c3a, 1'b1} : 32'd0;
 
     reg running = 1'b0;
     always @(posedge clk) running <= 1'b1;
@@ -35,18 +39,19 @@ module player #(
         if (rst) begin
             row_ready <= 1'b0;
             needs_row_0 <= 1'b1;
-        end else if (row_ready ? start : wants_row) begin
+        end else if (row_ready ? start : wants_row || (BURST && !needs_row_0)) begin
             row_ready <= !row_ready;
             if (row_ready)
                 needs_row_0 <= row_is_last;
             else begin
-                row_0 <= begins_frame || needs_row_0;
+                row_0 <= (begins_frame && !BURST) || needs_row_0;
                 row_is_last <= ends_frame;
             end
         end
 
     halfrow_player #(.TAPS(TAPS), .COLUMN_BITS(3)) dut (
-        .clk(clk), .rst(rst), .width(W[11:0]), .blanking(blanking), .gap_seed(seed),
+        .clk(clk), .rst(rst), .width(W[11:0]), .blanking(blanking), .burst(BURST != 0),
+        .frame_blanking(frame_blanking), .seed(seed),
         .row_ready(row_ready), .row_0(row_0), .row_is_last(row_is_last), .start(start), .sample_read(sample_read),
         .column(column), .enables(enables), .enable(enable), .in_valid(in_valid), .in_start(in_start), .in_last(in_last),
         .pauses(pauses), .under_way(under_way), .flushing(flushing));
@@ -79,9 +84,10 @@ module player #(
     wire [15:0] paused_now = (in_start ? 16'd0 : paused) + asks;
     wire [7:0]  due = blanking[7:0] + (GAPS && !entering_0 ? {4'd0, in_front[3:0]} : 8'd0);
     wire        ready_idle = row_ready && !inside && !in_valid;
+    wire [15:0] before_0 = BURST ? frame_blanking : blanking;
 
     always @(posedge clk) begin
-        assume (blanking <= MOST_BLANKING);
+        assume (blanking <= MOST_BLANKING && frame_blanking <= MOST_BLANKING + 2);
         if (start)
             {entering_0, entering_last} <= {row_0, row_is_last};
         if (rst) begin
@@ -92,7 +98,7 @@ module player #(
             held <= 3'd0;
             waited <= 3'd0;
         end else begin
-            waited <= ready_idle && row_0 && (first || blank >= blanking) ? waited + (waited != 3'd7) : 3'd0;
+            waited <= ready_idle && row_0 && (first || blank >= before_0) ? waited + (waited != 3'd7) : 3'd0;
             held <= enable || !(inside || ready_idle) ? 3'd0 : held + (held != 3'd7);
             if (in_valid) begin
                 x <= of_sample;
@@ -108,7 +114,11 @@ module player #(
     end
 
     reg was_ready = 1'b0;                    // a row was there when this clock was decided on
-    always @(posedge clk) was_ready <= row_ready && !rst;
+    reg was_running = 1'b0;
+    always @(posedge clk) begin
+        was_ready <= row_ready && !rst;
+        was_running <= !rst;
+    end
 
     always @(posedge clk)
         if (running && !rst) begin
@@ -123,10 +133,12 @@ module player #(
             if (in_start && !entering_0)
                 blanking_exact: assert (blank == due);
             if (in_start && entering_0)
-                blanking_at_least: assert (first || blank >= blanking);
-            if (!inside && !in_valid && !first && !was_ready)
+                blanking_at_least: assert (first || blank >= before_0);
+            if (BURST && was_running)
+                always_enabled: assert (enable);
+            if (!BURST && !inside && !in_valid && !first && !was_ready)
                 rest_comes_out: assert (enable == (frame_over && blank < (blanking > REST ? blanking : REST)));
-            if (first)
+            if (first && !BURST)
                 nothing_before: assert (!enable || in_start || was_ready);
             enters_soon: assert (held <= SOON);
             row_0_waits_for_nothing: assert (waited <= SOON + 1);

@@ -141,12 +141,9 @@ module halfrow_burst #(
         .clk(clk), .rst(rst || !burst), .valid(given), .last(given_last), .sample(given_sample),
         .next_frame(recorded), .signed_all(signed_all), .signature(signature));
 
-    wire [4:0] kept, freed, next_place;
-    wire frees, record_next, head_next;
-    wire [7:0] next_number;
-    reg [4:0] place;
-    reg record_write, head_write;
-    reg [7:0] number_byte;
+    wire [4:0] kept, freed, place;
+    wire frees, record_write, head_write;
+    wire [7:0] number_byte;
 
     halfrow_ledger #(.TABLE_BANKS(TABLE_BANKS)) ledger (
         .clk(clk), .rst(rst), .start(request_start), .of_records(of_records), .rewind(rewind), .advance(advance),
@@ -155,14 +152,8 @@ module halfrow_burst #(
         .mode(mode), .under_way(burst), .drop(drop), .forget(forget), .named(named), .frame_begins(frame_begins),
         .more(more), .given(given), .paused(early || (stopped && !closing)), .row_left(row_left),
         .first_latency(first_latency), .last_latency(last_latency), .frame_left(ended_leaves), .signed_all(signed_all),
-        .kept(kept), .frees(frees), .freed(freed), .record_write(record_next), .head_write(head_next),
-        .record_place(next_place), .record_byte(next_number), .recorded(recorded), .idle(ledger_idle));
-
-    always @(posedge clk) begin
-        {record_write, head_write} <= {record_next, head_next};
-        place <= next_place;
-        number_byte <= next_number;
-    end
+        .kept(kept), .frees(frees), .freed(freed), .record_write(record_write), .head_write(head_write),
+        .record_place(place), .record_byte(number_byte), .recorded(recorded), .idle(ledger_idle));
 
     // The bytes of a record and of the reply's head that are no numbers of the ledger's.
     wire [1:0] state = burst ? UNDER_WAY : named ? ENDED : NO_BURST;

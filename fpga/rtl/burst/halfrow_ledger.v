@@ -41,11 +41,11 @@ module halfrow_ledger #(
     input  wire        signed_all,     // the signature is that of all rows that have left
 
     input  wire [4:0]  kept,           // records that the host has not got
-    output wire        frees,          // pulse: it has got so many
+    output reg         frees,          // pulse: it has got so many
     output reg  [4:0]  freed,
-    output wire        record_write,   // of byte record_place of a record
-    output wire        head_write,     // or of the head of the reply to RECORDS
-    output wire [4:0]  record_place,
+    output reg         record_write,   // of byte record_place of a record
+    output reg         head_write,     // or of the head of the reply to RECORDS
+    output reg  [4:0]  record_place,
     output wire [7:0]  record_byte,    // if it is a number of this memory's
     output reg         recorded,       // pulse, behind a record's last byte
     output wire        idle
@@ -59,12 +59,13 @@ module halfrow_ledger #(
     localparam [4:0] LAST_OF_BURST = 5'd16, LAST_OF_FRAMES = 5'd7, LAST_OF_HEAD = 5'd9;
     // Where the numbers lie, a frame's as in its record. The frames still to be made follow the name, as in BURST.
     localparam [4:0] AT_UNREAD = 5'd0, AT_SAMPLES = 5'd4, AT_ROWS = 5'd8, AT_LEAST = 5'd10, AT_MOST = 5'd12,
-                     AT_PAUSES = 5'd14, AT_NAME = 5'd16, AT_FRAMES = 5'd20, AT_BEGUN = 5'd24;
+                     AT_PAUSES = 5'd14, AT_NAME = 5'd16, AT_FRAMES = 5'd20, AT_BEGUN = 5'd28;
 
     reg [3:0] state;
     reg [4:0] place; // byte of what is gone through
     reg phase; // the byte and what it meets were fetched
     reg again; // it is gone through once more, behind a look
+    reg wants_records; // and no burst
     reg judged; // a BURST was looked at, and sets how many frames there are
     wire of_packet = state == LOOK || state == LOAD || state == ANEW || state == FROM;
     wire at_once = state == KEEP || state == SWEEP || state == RECORD || state == HEAD || state == JUDGE;
@@ -86,14 +87,15 @@ module halfrow_ledger #(
         endcase
 
     // Events that wait, and what they add.
-    reg paused_most; // more pauses than can be told; outputs and rows cannot be as many in a frame that ends
+    // More pauses than can be told. A frame that ends has fewer outputs and rows than can be.
+    reg paused_most, all_paused;
     reg row_waits, frame_waits, begin_waits, request_waits, more_frames;
     reg [6:0] given_wait, paused_wait, amount;
     reg carry, zero; // of the bytes so far
     reg enough; // frames: no fewer than have begun
     reg no_mode, far; // what a request wants: another mode, records that there cannot be
     wire same = named && zero;
-    wire looked_at = state == JUDGE && !of_records && same && under_way && !no_mode;
+    wire looked_at = state == JUDGE && !wants_records && same && under_way && !no_mode;
     wire given_any = given_wait != 7'd0;
     wire paused_any = paused_wait != 7'd0;
     // A frame that has left is recorded before the next one's outputs come.
@@ -111,6 +113,7 @@ module halfrow_ledger #(
         given_wait <= (at_rest && samples_due ? 7'd0 : given_wait) + {6'd0, given};
         paused_wait <= (at_rest && pauses_due ? 7'd0 : paused_wait) + {6'd0, paused};
         recorded <= !rst && last && state == RECORD;
+        frees <= !rst && last && state == FROM && again;
         row_waits <= row_left || (row_waits && !at_rest);
         if (recorded || starts)
             paused_most <= 1'b0;
@@ -118,6 +121,8 @@ module halfrow_ledger #(
             paused_most <= paused_most || sum[9];
         frame_waits <= (row_left && frame_left) || (frame_waits && !(last && state == RECORD));
         begin_waits <= frame_begins || (begin_waits && !begun);
+        if (start)
+            wants_records <= of_records;
         request_waits <= start || (request_waits && !(at_rest && request_due)) || looked_at;
         if (rst || drop || starts) begin
             {given_wait, paused_wait} <= 14'd0;
@@ -136,43 +141,50 @@ module halfrow_ledger #(
     // Both latencies are held against both bounds.
     reg of_last, of_most, measured;
     wire [15:0] latency = of_last ? last_latency : first_latency;
-    wire [4:0] at_bound = (of_most ? AT_MOST : AT_LEAST) | place;
     wire latency_high = state == KEEP || (place[0] && !phase); // for the next clock
 
     // The numbers.
     (* ram_style = "distributed" *) reg [7:0] numbers [0:31];
-    reg [4:0] read_address;
-    reg [7:0] next_operand, operand, other; // what is added, a clock after it was fetched
-    reg adds, subtracts, write, carry_in;
+    reg [4:0] base;
+    reg [7:0] next_operand, operand, fetched; // what meets the memory's byte, and that
+    reg write, meets, negated, carry_in;
+    wire head_tail = state == HEAD && place[2]; // its second number is not one of the burst's
+    wire subtracts = state == COMPARE || state == LOOK || state == ANEW || (state == FROM && !again);
+    wire counts = state == ROWS || state == BEGUN || state == SAMPLES || state == PAUSES;
+    wire adds = counts || (state == FRAMES && (!again || enough));
+    wire [4:0] read_address = head_tail ? {3'd0, place[1:0]} : base | place;
     wire first = place[1:0] == 2'd0;
-    wire [4:0] begun_byte = AT_BEGUN | {3'd0, place[1:0]};
     wire [4:0] write_address = state == ANEW ? AT_NAME | place : read_address;
     wire [7:0] stored = numbers[read_address];
-    wire [7:0] next_other = (stored & {8{adds || subtracts}}) ^ {8{subtracts}};
+    wire [7:0] other = (fetched & {8{meets}}) ^ {8{negated}};
     wire [9:0] sum = {1'b0, operand, 1'b1} + {1'b0, other, carry_in};
     wire [7:0] result = sum[8:1];
     wire all_zero = result == 8'd0 && (first || zero);
 
-    always @* begin
-        read_address = place;
-        {adds, subtracts, write} = 3'b000;
+    always @*
         case (state)
-            SWEEP: write = 1'b1;
-            ROWS: {read_address, adds, write} = {AT_ROWS | place, 2'b11};
-            COMPARE: {read_address, subtracts} = {at_bound, 1'b1};
-            KEEP: {read_address, write} = {at_bound, !measured || carry == of_most};
-            BEGUN: {read_address, adds, write} = {AT_BEGUN | place, 2'b11};
-            FRAMES: {read_address, adds, write} = {AT_FRAMES | place, !again || enough, 1'b1};
-            SAMPLES: {read_address, adds, write} = {AT_SAMPLES | place, 2'b11};
-            PAUSES: {read_address, adds, write} = {AT_PAUSES | place, 2'b11};
-            RECORD: write = !place[4] && place[3:2] != 2'd0;
-            LOOK: {read_address, subtracts} = {AT_NAME | place, 1'b1};
-            LOAD: {read_address, write} = {AT_NAME | place, place[4:3] == 2'd0};
-            ANEW: {read_address, subtracts, write} = {begun_byte, 1'b1, place[2]};
-            FROM: {subtracts, write} = {!again, again};
-            HEAD: read_address = place[2] ? AT_UNREAD | {3'd0, place[1:0]} : AT_NAME | place;
-            default: ;
+            ROWS: base = AT_ROWS;
+            COMPARE, KEEP: base = of_most ? AT_MOST : AT_LEAST;
+            BEGUN, ANEW: base = AT_BEGUN;
+            FRAMES: base = AT_FRAMES;
+            SAMPLES: base = AT_SAMPLES;
+            PAUSES: base = AT_PAUSES;
+            LOOK, LOAD, HEAD: base = AT_NAME;
+            default: base = AT_UNREAD;
         endcase
+
+    always @*
+        case (state)
+            SWEEP, ROWS, BEGUN, FRAMES, SAMPLES, PAUSES: write = 1'b1;
+            KEEP: write = !measured || carry == of_most;
+            RECORD: write = !place[4] && place[3:2] != 2'd0;
+            LOAD: write = place[4:3] == 2'd0;
+            ANEW: write = place[2];
+            FROM: write = again;
+            default: write = 1'b0;
+        endcase
+
+    always @* begin
         if (of_packet)
             next_operand = packet_byte;
         else if (state == COMPARE || state == KEEP)
@@ -183,14 +195,14 @@ module halfrow_ledger #(
 
     always @(posedge clk) begin
         operand <= next_operand;
-        other <= next_other;
+        fetched <= stored;
+        meets <= adds || subtracts;
+        negated <= subtracts;
         carry_in <= first ? subtracts : carry && !at_once;
         if (rst || drop)
             operand <= 8'd0;
-        if (rst || drop || phase) begin
-            other <= 8'd0;
-            carry_in <= 1'b0;
-        end
+        if (rst || drop || phase)
+            {meets, negated, carry_in} <= 3'd0;
         if (write && step)
             numbers[write_address] <= result;
     end
@@ -207,6 +219,13 @@ module halfrow_ledger #(
             if (state == FROM && !again && first)
                 {far, freed} <= {result[7:5] != 3'd0, result[4:0]};
         end
+
+    always @(posedge clk) begin
+        record_write <= state == RECORD;
+        head_write <= state == HEAD;
+        record_place <= place;
+        all_paused <= paused_most && state == RECORD && place[4:1] == AT_PAUSES[4:1];
+    end
 
     // What a BURST says. The last of its bytes to be looked at is the mode.
     reg [71:0] fields;
@@ -229,11 +248,7 @@ module halfrow_ledger #(
     assign {mode, frame_blanking, first_frame, seed} = fields[65:0];
     assign rewind = state == JUDGE;
     assign advance = of_packet && !phase;
-    assign frees = last && state == FROM && again;
-    assign record_write = state == RECORD;
-    assign head_write = state == HEAD;
-    assign record_place = place;
-    assign record_byte = stored | {8{paused_most && state == RECORD && place[4:1] == AT_PAUSES[4:1]}};
+    assign record_byte = fetched | {8{all_paused}};
 
     wire fits = zero && !far && freed <= kept;
     wire bound_done = last && state == KEEP;
@@ -262,7 +277,7 @@ module halfrow_ledger #(
                     detail <= 3'd0;
                     if (row_waits) state <= COMPARE;
                     else if (begin_due) state <= BEGUN;
-                    else if (request_due) state <= of_records ? FROM : judged ? ANEW : LOOK;
+                    else if (request_due) state <= wants_records ? FROM : judged ? ANEW : LOOK;
                     else if (samples_due) state <= SAMPLES;
                     else if (pauses_due) state <= PAUSES;
                     else if (frame_waits && signed_all) state <= RECORD;
@@ -281,10 +296,10 @@ module halfrow_ledger #(
                     again <= 1'b1;
                     state <= IDLE;
                     finished <= !looked_at;
-                    if (of_records && fits) begin
+                    if (wants_records && fits) begin
                         state <= FROM;
                         finished <= 1'b0;
-                    end else if (of_records) refusal <= REFUSAL_RANGE;
+                    end else if (wants_records) refusal <= REFUSAL_RANGE;
                     else if (no_mode) refusal <= REFUSAL_PAYLOAD;
                     else if (same) refusal <= NONE;
                     else if (!ready) refusal <= REFUSAL_NOT_READY;
@@ -315,7 +330,7 @@ module halfrow_ledger #(
         else if (last && state == LOAD)
             named <= 1'b1;
 
-    wire unused = &{1'b0, sum[0], fields[71:66], AT_SAMPLES};
+    wire unused = &{1'b0, sum[0], fields[71:66]};
 endmodule
 
 `default_nettype wire

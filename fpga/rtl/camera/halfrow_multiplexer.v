@@ -44,6 +44,7 @@ module halfrow_multiplexer #(
 );
     reg test;
     reg camera; // never high together with `test`
+    reg started; // no reset a clock ago; all of the core hangs on its own
 
     always @(posedge clk)
         if (rst) begin
@@ -59,7 +60,10 @@ module halfrow_multiplexer #(
 
     assign camera_reset = rst || !camera || session_open;
     assign output_reset = camera_reset && !burst;
-    assign core_reset = rst || test_reset || (test != session_open);
+    always @(posedge clk)
+        started <= !rst;
+
+    assign core_reset = !started || test_reset || (test != session_open);
 
     assign prepare = test ? test_prepare : camera_prepare && camera;
     assign prepare_row = test ? test_prepare_row : camera_prepare_row;

@@ -51,8 +51,10 @@ module halfrow_capabilities #(
         if (NAME_LENGTH < 1 || NAME_LENGTH > 68) halfrow_illegal_NAME has_1_to_68_bytes ();
     endgenerate
 
-    localparam FIXED = 67;
-    localparam TOTAL = FIXED + NAME_LENGTH;
+    localparam FIXED = 58;
+    localparam BURST_BYTES = 9;
+    localparam BURSTS = FIXED + NAME_LENGTH;
+    localparam TOTAL = BURSTS + BURST_BYTES;
 
     localparam [15:0] MAX_WIDTH_16 = MAX_WIDTH[15:0];
     localparam [15:0] MAX_HEIGHT_16 = MAX_HEIGHT[15:0];
@@ -76,7 +78,6 @@ module halfrow_capabilities #(
     assign list[8*FIXED-1:0] = {
         NAME_LENGTH_8, TAG_NAME,
         NATURE, 8'd1, TAG_NATURE,
-        TRAP_8, LEAST_FRAME_BLANKING_16, BURST_RECORDS_16, CONTENT_ID, 8'd7, TAG_CONTENT,
         clock_hz, 8'd4, TAG_CLOCK_HZ,
         clock_source, 8'd1, TAG_CLOCK_SOURCE,
         KERNEL_PORTS_8, 8'd1, TAG_KERNEL_PORTS,
@@ -100,6 +101,8 @@ module halfrow_capabilities #(
             assign list[8*(FIXED+i) +: 8] = NAME[8*(NAME_LENGTH-1-i) +: 8];
         end
     endgenerate
+    assign list[8*BURSTS +: 8*BURST_BYTES] = {
+        TRAP_8, LEAST_FRAME_BLANKING_16, BURST_RECORDS_16, CONTENT_ID, 8'd7, TAG_CONTENT};
     assign list[2047:8*TOTAL] = {(2048-8*TOTAL){1'b0}};
 
     assign value = list[{index, 3'b000} +: 8];
