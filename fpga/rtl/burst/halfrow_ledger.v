@@ -161,17 +161,23 @@ module halfrow_ledger #(
     wire [7:0] result = sum[8:1];
     wire all_zero = result == 8'd0 && (first || zero);
 
-    always @*
-        case (state)
-            ROWS: base = AT_ROWS;
-            COMPARE, KEEP: base = of_most ? AT_MOST : AT_LEAST;
-            BEGUN, ANEW: base = AT_BEGUN;
-            FRAMES: base = AT_FRAMES;
-            SAMPLES: base = AT_SAMPLES;
-            PAUSES: base = AT_PAUSES;
-            LOOK, LOAD, HEAD: base = AT_NAME;
-            default: base = AT_UNREAD;
-        endcase
+    // A state's numbers are found before it begins, since what they add up to comes late in the clock.
+    always @(posedge clk)
+        if (rst || drop)
+            base <= AT_UNREAD;
+        else if (last)
+            case (state)
+                IDLE:
+                if (row_waits) base <= AT_LEAST;
+                else if (begin_due || (request_due && !wants_records && judged)) base <= AT_BEGUN;
+                else if (request_due) base <= wants_records ? AT_UNREAD : AT_NAME;
+                else base <= samples_due ? AT_SAMPLES : pauses_due ? AT_PAUSES : AT_UNREAD;
+                COMPARE: ;
+                KEEP: base <= !of_most ? AT_MOST : of_last ? AT_ROWS : AT_LEAST;
+                BEGUN, ANEW: base <= AT_FRAMES;
+                SWEEP, FROM: base <= AT_NAME;
+                default: base <= AT_UNREAD;
+            endcase
 
     always @*
         case (state)

@@ -131,7 +131,12 @@ module halfrow_rows #(
 
     wire clear = rst || drop_rows;
     wire burst_ends;
-    wire clear_core = clear || burst_ends; // nothing is inside it
+    reg restarting; // a clock behind rst, on which too much hangs
+    wire clear_core = restarting || drop_rows || burst_ends; // nothing is inside it
+
+    always @(posedge clk)
+        restarting <= rst;
+
     reg [COLUMN_BITS-1:0] last_column;
     always @(posedge clk) last_column <= width[COLUMN_BITS-1:0] - 1'b1;
 
