@@ -279,8 +279,6 @@ module halfrow_ledger #(
             case (state)
                 IDLE: begin
                     again <= 1'b0;
-                    refusal <= NONE;
-                    detail <= 3'd0;
                     if (row_waits) state <= COMPARE;
                     else if (begin_due) state <= BEGUN;
                     else if (request_due) state <= wants_records ? FROM : judged ? ANEW : LOOK;
@@ -300,23 +298,9 @@ module halfrow_ledger #(
                 FROM: state <= again ? HEAD : JUDGE;
                 JUDGE: begin
                     again <= 1'b1;
-                    state <= IDLE;
-                    finished <= !looked_at;
-                    if (wants_records && fits) begin
-                        state <= FROM;
-                        finished <= 1'b0;
-                    end else if (wants_records) refusal <= REFUSAL_RANGE;
-                    else if (no_mode) refusal <= REFUSAL_PAYLOAD;
-                    else if (same) refusal <= NONE;
-                    else if (!ready) refusal <= REFUSAL_NOT_READY;
-                    else if (unnamed) refusal <= REFUSAL_RANGE;
-                    else if (close) {refusal, detail} <= {REFUSAL_RANGE, 3'd4};
-                    else if (other_mode) {refusal, detail} <= {REFUSAL_RANGE, 3'd5};
-                    else if (busy) refusal <= REFUSAL_BUSY;
-                    else begin
-                        state <= SWEEP;
-                        finished <= 1'b0;
-                    end
+                    finished <= refused || (same && !wants_records && !looked_at);
+                    if (refused || (same && !wants_records)) state <= IDLE;
+                    else state <= wants_records ? FROM : SWEEP;
                 end
                 default: begin
                     state <= IDLE;
@@ -328,6 +312,25 @@ module halfrow_ledger #(
             {place, again, finished} <= 7'd0;
         end
         judged <= !rst && !drop && (looked_at || (judged && !finished));
+    end
+
+    // A request is judged twice: it is known behind the first time whether it is refused.
+    wire refused = refusal != NONE;
+
+    always @(posedge clk) begin
+        if (at_rest)
+            {refusal, detail} <= {NONE, 3'd0};
+        else if (state == JUDGE) begin
+            detail <= 3'd0;
+            if (wants_records) refusal <= fits ? NONE : REFUSAL_RANGE;
+            else if (no_mode) refusal <= REFUSAL_PAYLOAD;
+            else if (same) refusal <= NONE;
+            else if (!ready) refusal <= REFUSAL_NOT_READY;
+            else if (unnamed) refusal <= REFUSAL_RANGE;
+            else if (close) {refusal, detail} <= {REFUSAL_RANGE, 3'd4};
+            else if (other_mode) {refusal, detail} <= {REFUSAL_RANGE, 3'd5};
+            else if (busy) refusal <= REFUSAL_BUSY;
+        end
     end
 
     always @(posedge clk)

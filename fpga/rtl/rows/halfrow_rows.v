@@ -301,15 +301,17 @@ module halfrow_rows #(
         .row_byte_valid(row_byte_valid), .row_byte(row_byte), .row_byte_ready(row_byte_ready), .idle(sender_idle));
 
     wire burst_alternates, burst_quiet;
-    reg busy_for_burst;
+    reg ready_for_burst, busy_for_burst;
 
-    always @(posedge clk)
+    always @(posedge clk) begin
+        ready_for_burst <= configured && generation != 8'd0;
         busy_for_burst <= rows_waiting || rows_held || core_busy || commit_pending;
+    end
 
     halfrow_burst #(.TABLE_BANKS(TABLE_BANKS)) bursts (
         .clk(clk), .rst(rst), .request_start(burst_request), .of_records(of_records), .rewind(burst_rewind),
         .advance(burst_advance), .packet_byte(packet_byte), .request_done(burst_done), .refusal(burst_refusal),
-        .detail(burst_detail), .ready(configured && generation != 8'd0), .busy(busy_for_burst),
+        .detail(burst_detail), .ready(ready_for_burst), .busy(busy_for_burst),
         .reply_length(records_length), .reply_begins(records_begin), .reply_advance(records_next),
         .replying(records_reply), .reply_byte(records_byte), .burst(burst), .ends(burst_ends),
         .drop(drop_rows || silence), .forget(drop_rows && new_session), .quiet(burst_quiet), .generation(generation),

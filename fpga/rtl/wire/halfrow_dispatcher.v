@@ -63,7 +63,7 @@ module halfrow_dispatcher #(
     input  wire [3:0]          row_refusal,   // with row_done: a refusal's code, or 0
 
     output wire                burst_request, // pulse: a BURST or RECORDS lies in the receiver's buffer
-    output wire                of_records,    // it is the latter
+    output reg                 of_records,    // it is the latter
     input  wire                burst_rewind,  // pulse: its payload is read from the first byte on
     input  wire                burst_advance, // by one byte
     input  wire                burst_done,    // pulse: it was dealt with
@@ -233,16 +233,19 @@ module halfrow_dispatcher #(
         .node_port_0(node_port_0), .node_port_1(node_port_1));
 
     // Bursts
-    wire of_bursts = packet_kind[7:1] == KIND_BURST[7:1];
+    reg of_bursts;
     wire advance_reply;
 
     assign burst_request = accepted && of_bursts;
-    assign of_records = packet_kind[0];
     assign records_reply = of_bursts && of_records && !refused;
     assign records_begin = reply_taken && records_reply;
     assign records_next = advance_reply;
 
-    always @(posedge clk) silence <= burst && silent && state == IDLE && !rst;
+    always @(posedge clk) begin
+        of_bursts <= packet_kind[7:1] == KIND_BURST[7:1];
+        of_records <= packet_kind[0];
+        silence <= burst && silent && state == IDLE && !rst;
+    end
 
     // Counters
     wire [7:0] status_byte;
