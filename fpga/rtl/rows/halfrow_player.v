@@ -12,9 +12,9 @@ module halfrow_player #(
 
     input  wire [11:0]            width,
     input  wire [15:0]            blanking,    // pixel clocks
-    input  wire                   burst,          // rows are a burst's
-    input  wire [15:0]            frame_blanking, // between two of its frames
-    input  wire [31:0]            seed,           // of gaps, or the first draw of a burst's row that starts next
+    input  wire [31:0]            seed,        // of gaps, or the first draw of a burst's row that starts next
+    input  wire                   burst,       // rows are a burst's
+    input  wire [15:0]            frame_blanking, // pixel clocks between two of its frames
 
     input  wire                   row_ready,   // the next row may start
     input  wire                   row_0,       // it begins a frame
