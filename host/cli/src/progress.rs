@@ -130,10 +130,12 @@ impl Bar {
 
     fn soaked(&self, soaked: &Soaked) {
         let (words, minute) = self.minutes.words(soaked);
-        if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %  {msg}") {
+        if self.bar.length() != Some(SOAK_STEPS)
+            && let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} %  {msg}")
+        {
             self.bar.set_style(style);
+            self.bar.set_length(SOAK_STEPS);
         }
-        self.bar.set_length(SOAK_STEPS);
         self.bar.set_position((soaked.share() * SOAK_STEPS as f64) as u64);
         if minute {
             self.bar.suspend(|| console::diagnose(&words));

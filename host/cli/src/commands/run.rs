@@ -82,14 +82,18 @@ impl RunArguments {
         self.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new))
     }
 
-    /// The table file that is named, whether its tables will be taken or not.
-    pub(super) fn table_path<'a>(&'a self, settings: &'a Settings) -> Option<&'a PathBuf> {
-        self.tables.path(settings)
+    /// The table file that is named and is not that of `tables`.
+    pub(super) fn passed_over<'a>(
+        &'a self,
+        tables: Option<&NamedTables>,
+        settings: &'a Settings,
+    ) -> Option<&'a PathBuf> {
+        self.tables.path(settings).filter(|_| tables.is_none())
     }
 
     /// Tables and lens that are files.
     pub(super) fn input_files(&self, settings: &Settings) -> Vec<PathBuf> {
-        let tables = self.table_path(settings).map(PathBuf::as_path);
+        let tables = self.tables.path(settings).map(PathBuf::as_path);
         tables.into_iter().chain(self.lens.file()).map(PathBuf::from).collect()
     }
 
@@ -102,15 +106,17 @@ impl RunArguments {
         seconds("--reconnect", self.reconnect.or(settings.reconnect))
     }
 
-    /// How a run of files whose hashes are to be told is made.
-    pub(super) fn options(&self, files: &[PathBuf], settings: &Settings) -> Result<RunOptions, Failure> {
+    /// How a run is made that reads `files`, of whose hashes the report tells all but that of a table file `passed_over`.
+    pub(super) fn options(
+        &self,
+        files: &[PathBuf],
+        passed_over: Option<&PathBuf>,
+        settings: &Settings,
+    ) -> Result<RunOptions, Failure> {
+        let told = files.iter().filter(|path| Some(*path) != passed_over);
         let circumstances = Circumstances {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
-            files: files
-                .iter()
-                .map(|path| file_hash(path))
-                .collect::<Result<_, _>>()
-                .map_err(Failure::call)?,
+            files: told.map(|path| file_hash(path)).collect::<Result<_, _>>().map_err(Failure::call)?,
             draws: run::Draws::draw(),
         };
         Ok(RunOptions {

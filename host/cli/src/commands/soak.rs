@@ -1,5 +1,6 @@
 //! `halfrow soak`
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
@@ -58,7 +59,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let run = &arguments.run;
     let files = run.input_files(settings);
     files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
-    let (plan, options) = arguments.plan(settings)?;
+    let (plan, options) = arguments.plan(&files, settings)?;
     run.board.check_fault(settings, &plan)?;
     let outputs = run.outputs(files, None, context)?;
     let candidate = run.board.candidate(settings)?;
@@ -69,16 +70,16 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 
 impl Arguments {
     /// What is streamed first, and how long the board makes frames on its own.
-    fn plan(&self, settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
+    fn plan(&self, files: &[PathBuf], settings: &Settings) -> Result<(Plan, RunOptions), Failure> {
         let tables = self.run.table_file(&self.given, settings)?;
-        let read: Vec<_> = match &tables {
-            Some(tables) => vec![tables.path.clone()],
-            None => self.run.lens.file().map(Into::into).into_iter().collect(),
-        };
+        let passed_over = self.run.passed_over(tables.as_ref(), settings);
         let plan = self.run.chosen(tables, settings)?.plan(self.run.lens.phase);
         let plan = plan.frames([FrameSource::Builtin(Builtin::Noise)]);
         let plan = Plan { soak: Some(self.length.asked()), seed: self.run.seed(settings), ..plan };
         let patience = self.run.patience(settings)?.unwrap_or(PATIENCE);
-        Ok((plan, RunOptions { reconnect: Some(patience), ..self.run.options(&read, settings)? }))
+        Ok((
+            plan,
+            RunOptions { reconnect: Some(patience), ..self.run.options(files, passed_over, settings)? },
+        ))
     }
 }

@@ -162,14 +162,13 @@ impl Arguments {
         // Each is read more than once, since its hash is reported.
         files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
         let tables = self.run.table_file(&self.given, settings)?;
-        let passed_over = self.run.table_path(settings).filter(|_| tables.is_none());
+        let passed_over = self.run.passed_over(tables.as_ref(), settings);
         let is_free = tables.is_none() && frames.is_empty();
         let chosen = self.run.chosen(tables, settings)?;
         let plan = Plan { vary: self.vary(is_free), ..self.plan_of(chosen, frames, settings)? };
-        let told: Vec<_> = files.iter().filter(|path| Some(*path) != passed_over).cloned().collect();
         // A recording is of one link.
         let reconnect = self.run.patience(settings)?.filter(|_| self.record.is_none());
-        Ok((plan, RunOptions { reconnect, ..self.run.options(&told, settings)? }))
+        Ok((plan, RunOptions { reconnect, ..self.run.options(files, passed_over, settings)? }))
     }
 
     /// What is varied in a run of which neither tables nor frames are named: what the call does not say.

@@ -84,9 +84,7 @@ impl Run<'_> {
         if let Some(finding) = watched.miscounted {
             return Err(miscounted(finding));
         }
-        let finding = self.right_at_speed(&plan, &watched);
-        let outcome = if watched.paused > 0 { Outcome::Skipped } else { Outcome::Passed };
-        self.findings.note(CheckName::AtSpeed, outcome, finding);
+        self.note_right(&plan, watched.frames, watched.paused, watched.held_back);
         Ok(())
     }
 
@@ -118,14 +116,15 @@ impl Run<'_> {
         plan
     }
 
-    fn right_at_speed(&self, plan: &BurstPlan, watched: &Watched) -> Finding {
-        let Watched { frames, paused, held_back, .. } = *watched;
-        if paused > 0 {
-            return Finding::PausedAtSpeed { frames, paused };
-        }
+    /// Takes note of `frames` as `plan` has them that are all right, of which `paused` had pauses and `held_back` waited for a record.
+    fn note_right(&mut self, plan: &BurstPlan, frames: u32, paused: u32, held_back: u32) {
         let clock_hz = self.board.capabilities.clock_hz;
         let seconds = (clock_hz > 0).then(|| plan.seconds(frames));
-        Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }
+        let (outcome, finding) = match paused {
+            0 => (Outcome::Passed, Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }),
+            _ => (Outcome::Skipped, Finding::PausedAtSpeed { frames, paused }),
+        };
+        self.findings.note(CheckName::AtSpeed, outcome, finding);
     }
 }
 

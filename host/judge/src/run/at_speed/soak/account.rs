@@ -2,14 +2,8 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::message::BurstMode;
-
-use crate::board::{Bursts, Capabilities};
 use crate::progress::Soaked;
-use crate::result::{
-    CheckName, Defect, Finding, Outcome, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect,
-};
-use crate::run::Plan;
+use crate::result::{Defect, Finding, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect};
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::Watched;
 use crate::run::findings::End;
@@ -26,10 +20,10 @@ pub(super) struct Account {
     pub(super) report: SoakReport,
     /// When it began, on the run's clock.
     begun: Duration,
-    /// What differed first, and the frames in front of its burst.
-    first: Option<(End, u64)>,
+    /// What differed first, with its frame counted from the first of the soak.
+    first: Option<End>,
     /// What differed first, may have come from the link, and did not differ in another session.
-    first_doubtful: Option<(End, u64)>,
+    first_doubtful: Option<End>,
 }
 
 impl Account {
@@ -98,8 +92,8 @@ impl Account {
         let finding = end.check().2.clone();
         let before = self.report.frames - u64::from(played.watched.frames);
         match first {
-            None => *first = Some((end, before)),
-            Some((first, _)) => tell_more(first, &suspects),
+            None => *first = Some(counted_behind(before, end)),
+            Some(first) => tell_more(first, &suspects),
         }
         if self.has_room() {
             let seconds = at.saturating_sub(self.begun).as_secs_f64();
@@ -111,7 +105,7 @@ impl Account {
 
     /// Takes `end`, which is what differed in a burst, may have come from the link, and could not be looked at again.
     pub(super) fn leave_open(&mut self, end: End) {
-        self.first_doubtful.get_or_insert((end, self.report.frames));
+        self.first_doubtful.get_or_insert(end);
     }
 
     /// Ends it at `now` on the run's clock. What differed goes before all else, since nothing that came later makes it right; then
@@ -119,14 +113,14 @@ impl Account {
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
         self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
-            (Some((end, before)), _, _) => Err(self.of_all_frames(end, before)),
+            (Some(end), _, _) => Err(self.of_all_frames(end)),
             (None, ended @ Err(_), _) | (None, ended, None) => ended,
-            (None, Ok(()), Some((doubtful, _))) => Err(doubtful),
+            (None, Ok(()), Some(doubtful)) => Err(doubtful),
         }
     }
 
-    /// What differed in a burst with `before` frames in front of it, counted over the whole soak.
-    fn of_all_frames(&self, end: End, before: u64) -> End {
+    /// What differed first, as one of all that differed.
+    fn of_all_frames(&self, end: End) -> End {
         match end {
             End::Failed {
                 check,
@@ -134,39 +128,26 @@ impl Account {
                 suspects,
             } => {
                 let (wrong, frames) = (counted(self.report.wrong), counted(self.report.frames));
-                let first = counted(before + u64::from(first));
                 let finding = Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect };
                 End::Failed { check, finding, suspects }
             }
             other => other,
         }
     }
+}
 
-    /// What is said of frames that were all right, on a board with `capabilities`.
-    pub(super) fn all_right(
-        &self,
-        plan: &Plan,
-        capabilities: &Capabilities,
-        bursts: Bursts,
-    ) -> (CheckName, Outcome, Finding) {
-        let SoakReport { frames, paused, held_back, .. } = self.report;
-        let clock_hz = capabilities.clock_hz;
-        let frame = BurstPlan::new(plan, capabilities, bursts, BurstMode::Fresh, 0);
-        let seconds = (clock_hz > 0).then(|| frame.seconds(1) * frames as f64);
-        let (frames, paused, held_back) = (counted(frames), counted(paused), counted(held_back));
-        let (outcome, finding) = match paused {
-            0 => (Outcome::Passed, Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }),
-            _ => (Outcome::Skipped, Finding::PausedAtSpeed { frames, paused }),
-        };
-        (CheckName::AtSpeed, outcome, finding)
+/// What differed in a burst with `before` frames of the soak in front of it.
+fn counted_behind(before: u64, mut end: End) -> End {
+    if let End::Failed { finding: Finding::DiffersAtSpeed { first, .. }, .. } = &mut end {
+        *first = counted(before + u64::from(*first));
     }
+    end
 }
 
 /// Takes over the suspects of another difference if they were seen in a row, and those of the first were not.
 fn tell_more(first: &mut End, others: &[Suspect]) {
     let names_row = |suspects: &[Suspect]| {
-        let named = suspects.iter().find(|it| !matches!(it.defect, Defect::OnlyAtSpeed { row: None, .. }));
-        named.is_some()
+        suspects.iter().any(|it| !matches!(it.defect, Defect::OnlyAtSpeed { row: None, .. }))
     };
     if let End::Failed { finding: Finding::DiffersAtSpeed { suspect, .. }, suspects, .. } = first
         && !names_row(suspects)
@@ -178,6 +159,6 @@ fn tell_more(first: &mut End, others: &[Suspect]) {
 }
 
 /// A count that stays at the greatest number of a finding.
-fn counted(count: u64) -> u32 {
+pub(super) fn counted(count: u64) -> u32 {
     u32::try_from(count).unwrap_or(u32::MAX)
 }

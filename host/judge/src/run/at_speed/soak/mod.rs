@@ -18,7 +18,7 @@ use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
 use crate::run::second_look::LOOKS;
 use crate::run::steps::Run;
 use crate::verdict::Cause;
-use account::Account;
+use account::{Account, counted};
 use played::Played;
 
 /// Whether a burst makes the same frame again and again, so that the board keeps a row of one that differs. What comes once in an
@@ -60,10 +60,12 @@ impl Run<'_> {
         let ended = account.end(self.clock(), ended);
         if ended.is_ok() {
             let capabilities = &self.board.capabilities;
-            let (check, outcome, finding) = account.all_right(self.plan, capabilities, bursts);
-            self.findings.note(check, outcome, finding);
             let changes = capabilities.table_banks > 1;
-            self.findings.untested_at_speed = super::untested(changes, account.report.paused > 0);
+            let plan = BurstPlan::new(self.plan, capabilities, bursts, BurstMode::Fresh, 0);
+            let [frames, paused, held_back] =
+                [account.report.frames, account.report.paused, account.report.held_back].map(counted);
+            self.note_right(&plan, frames, paused, held_back);
+            self.findings.untested_at_speed = super::untested(changes, paused > 0);
         }
         self.findings.soak = Some(account.report);
         ended
