@@ -143,6 +143,7 @@ module halfrow_rows_bench;
         .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared), .enables(enables),
         .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample), .out_valid(out_valid), .out_start(out_start),
         .out_last(out_last), .out_sample(out_sample), .core_enable(enable),
+        .core_valid(in_valid), .core_start(in_start), .core_sample(in_sample),
         .pin_valid(out_valid), .pin_sample(out_sample));
 
     always @(posedge clk) enable <= enables;
@@ -236,7 +237,7 @@ module halfrow_rows_bench;
             end
         end else if (row_taken && row_valid) begin
             expect_equal("kind, flag", {row_kind, 7'd0, row_flag}, 16'h2100);
-            expect_equal("payload", row_length, 20 + width / 2 * 3);
+            expect_equal("payload", row_length, 24 + width / 2 * 3);
             expect_equal("number of the packet", row_sequence, packets[15:0]);
             packets = packets + 1;
             length = row_length;
@@ -252,7 +253,7 @@ module halfrow_rows_bench;
             expect_equal("frame", {bytes[5], bytes[4]}, frame_of[number[3:0]]);
             expect_equal("row", {bytes[7], bytes[6]}, row_of[number[3:0]]);
             expect_equal("width", {bytes[9], bytes[8]}, width_of[number[3:0]]);
-            expect_equal("bytes", length, 20 + width_of[number[3:0]] / 2 * 3);
+            expect_equal("bytes", length, 24 + width_of[number[3:0]] / 2 * 3);
             expect_equal("flags", bytes[10], last_of[number[3:0]]);
             expect_equal("generation", bytes[11], generation_of[number[3:0]]);
             expect_equal("first latency", {bytes[13], bytes[12]}, width_of[number[3:0]] / 2 + L);
@@ -264,10 +265,27 @@ module halfrow_rows_bench;
                 pair = {bytes[22 + column / 2 * 3], bytes[21 + column / 2 * 3], bytes[20 + column / 2 * 3]};
                 expect_equal("samples", pair, {sample_of(number, column + 1), sample_of(number, column)});
             end
+            expect_equal("entered", {bytes[length - 1], bytes[length - 2], bytes[length - 3], bytes[length - 4]},
+                         crc_of(number, width_of[number[3:0]]));
             if (number == next_new)
                 next_new = next_new + 1;
         end
     endtask
+
+    // CRC-32 of a row's samples as words of 16 bits, bit by bit.
+    function [31:0] crc_of(input [31:0] of_row, input integer samples);
+        integer   c, i;
+        reg [15:0] word;
+        begin
+            crc_of = 32'hffffffff;
+            for (c = 0; c < samples; c = c + 1) begin
+                word = sample_of(of_row, c);
+                for (i = 0; i < 16; i = i + 1)
+                    crc_of = {1'b0, crc_of[31:1]} ^ (crc_of[0] ^ word[i] ? 32'hedb88320 : 32'd0);
+            end
+            crc_of = ~crc_of;
+        end
+    endfunction
 
     // ---- the host
     reg [31:0] base = 0;                          // number of the first row of frame 0

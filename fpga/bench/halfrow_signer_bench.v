@@ -1,19 +1,20 @@
-// Signatures of drawn rows, close behind each other or with clocks between their outputs, against a register that takes one
-// bit a time. A row that is too short counts as it is; a frame is the CRC-32 of its rows' signatures.
+// Signatures of drawn rows, close behind each other or with clocks between their samples, against a register that takes one
+// bit a time. A row that is too short counts as it is; a frame is the CRC-32 of its rows' signatures. What came in front of a
+// row that begins anew counts for nothing.
 `default_nettype none
 
 module halfrow_signer_bench;
     reg clk = 0;
     always #5 clk = !clk;
 
-    reg         rst = 1, valid = 0, last = 0, next_frame = 0;
+    reg         rst = 1, anew = 0, valid = 0, last = 0, next_frame = 0;
     reg  [11:0] sample = 0;
     wire        signed_all;
-    wire [31:0] signature;
+    wire [31:0] row_signature, signature;
 
     halfrow_signer signer (
-        .clk(clk), .rst(rst), .valid(valid), .last(last), .sample(sample), .next_frame(next_frame),
-        .signed_all(signed_all), .signature(signature));
+        .clk(clk), .rst(rst), .anew(anew), .valid(valid), .last(last), .sample(sample), .next_frame(next_frame),
+        .signed_all(signed_all), .row_signature(row_signature), .signature(signature));
 
     reg     [31:0] row_crc, frame_crc;
     integer        frame, row, column, width, i, seed = 1, faults = 0, gaps;
@@ -37,6 +38,10 @@ module halfrow_signer_bench;
                 if (gaps) repeat ($random(seed) & 1) @(negedge clk);
             end
             for (i = 0; i < 32; i = i + 1) frame_crc = behind(frame_crc, !row_crc[i]);
+            if (!gaps && row_signature !== ~row_crc) begin
+                faults = faults + 1;
+                $display("FAIL row: %h, expected %h", row_signature, ~row_crc);
+            end
         end
     endtask
 
@@ -54,7 +59,8 @@ module halfrow_signer_bench;
     endtask
 
     initial begin
-        @(negedge clk) rst = 0;
+        anew = 1;
+        @(negedge clk) {anew, rst} = 2'b00;
         for (frame = 0; frame < 40; frame = frame + 1) begin
             gaps = frame & 1;
             frame_crc = 32'hFFFFFFFF;
@@ -63,8 +69,12 @@ module halfrow_signer_bench;
         end
         if (faults == 0) $display("PASS 40 frames of drawn rows");
         give_row(64);
-        rst = 1;
-        @(negedge clk) rst = 0;
+        repeat (5) begin // and the start of a row
+            valid = 1;
+            @(negedge clk) valid = 0;
+        end
+        {anew, rst} = 2'b11;
+        @(negedge clk) {anew, rst} = 2'b00;
         frame_crc = 32'hFFFFFFFF;
         give_row(64);
         look;

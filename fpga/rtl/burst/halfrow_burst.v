@@ -49,7 +49,11 @@ module halfrow_burst #(
     input  wire        ends_frame,    // the row at the pins is a frame's last
     output reg         frame_valid,   // as a sensor would have it at the core's pins
 
-    // what leaves
+    // what leaves of a burst, and what enters of other rows
+    input  wire        core_valid,    // a sample stands at the core's pins
+    input  wire        core_start,    // and is its row's first
+    input  wire [11:0] core_sample,
+    output wire [31:0] row_signature, // of the row that entered last, for 64 clocks
     input  wire        enable,        // the core's
     input  wire        pin_valid,     // an output stands at the pins
     input  wire        pin_last,      // and is its row's last
@@ -119,14 +123,15 @@ module halfrow_burst #(
     end
 
     // What leaves. A pause while two frames are inside is in front of the newer one's first output, too.
-    reg given, given_last, ended_leaves, closing, stopped, stopped_early, early;
-    reg [11:0] given_sample;
-    wire row_left = given && given_last;
+    reg given, entering, signed_last, ended_leaves, closing, stopped, stopped_early, early;
+    reg [11:0] signed_sample;
+    wire row_left = given && signed_last;
 
     always @(posedge clk) begin
         given <= burst && enable && pin_valid;
-        given_last <= pin_last;
-        given_sample <= pin_sample;
+        entering <= !burst && core_valid;
+        signed_last <= burst ? pin_last : in_last;
+        signed_sample <= burst ? pin_sample : core_sample;
         if (in_last)
             ended_leaves <= ends_frame;
         closing <= frames_inside != 2'd0 && !recorded && (closing || (row_left && ended_leaves));
@@ -138,8 +143,9 @@ module halfrow_burst #(
     wire [31:0] signature;
 
     halfrow_signer signer (
-        .clk(clk), .rst(rst || !burst), .valid(given), .last(given_last), .sample(given_sample),
-        .next_frame(recorded), .signed_all(signed_all), .signature(signature));
+        .clk(clk), .rst(rst || !burst), .anew(starts || (core_start && !burst)), .valid(given || entering),
+        .last(signed_last), .sample(signed_sample), .next_frame(recorded), .signed_all(signed_all),
+        .row_signature(row_signature), .signature(signature));
 
     wire [4:0] kept, freed, place;
     wire frees, record_write, head_write;

@@ -1,16 +1,18 @@
-// Signs what stands at the image processor's pins, AT-SPEED.md's Signature: each row as it passes, and the frame a bit
-// a clock behind each of its rows.
+// Signs rows as they pass, AT-SPEED.md's Signature: a burst's at the image processor's pins, others where they enter,
+// at the core's; and of a burst the frame, a bit a clock behind each of its rows.
 `default_nettype none
 
 module halfrow_signer (
     input  wire        clk,
-    input  wire        rst,        // also when a burst ends
+    input  wire        rst,        // also while there is no burst: of the frame
 
-    input  wire        valid,      // an output stands at the pins
+    input  wire        anew,       // pulse: the next sample is a row's first, whatever came in front of it
+    input  wire        valid,      // a sample stands at the pins
     input  wire        last,       // and is its row's last
     input  wire [11:0] sample,
     input  wire        next_frame, // pulse, while signed: the signature was taken, and the next row begins a frame
     output wire        signed_all, // all rows that have left are in the signature; each takes 33 clocks
+    output wire [31:0] row_signature, // a clock behind a row's last sample, up to the next row's
     output wire [31:0] signature   // of the frame
 );
     localparam [31:0] POLYNOMIAL = 32'hEDB88320;
@@ -30,7 +32,7 @@ module halfrow_signer (
     wire row_ends = valid && last;
 
     always @(posedge clk)
-        if (rst || row_ends)
+        if (anew || row_ends)
             row <= PRESET;
         else if (valid)
             row <= row_next;
@@ -45,6 +47,7 @@ module halfrow_signer (
 
     assign signed_all = place[5];
     assign signature = ~frame;
+    assign row_signature = ~row_signed;
 
     always @(posedge clk)
         if (rst)

@@ -152,6 +152,8 @@ module halfrow_bridge #(
         .node_port_1(node_port_1), .idle(idle));
 
     // Test rows.
+    wire core_valid, core_start;
+    wire [11:0] core_sample;
     wire test_reset, test_enables, test_prepare, test_prepare_bank, test_valid, test_start, test_out_valid;
     wire [ROW_BITS-1:0] test_prepare_row;
     wire [11:0] test_sample;
@@ -186,7 +188,8 @@ module halfrow_bridge #(
         .core_reset(test_reset), .prepare(test_prepare), .prepare_row(test_prepare_row),
         .prepare_bank(test_prepare_bank), .prepared(prepared), .enables(test_enables), .in_valid(test_valid),
         .in_start(test_start), .in_sample(test_sample), .out_valid(test_out_valid), .out_start(out_start),
-        .out_last(out_last), .out_sample(out_sample), .core_enable(core_enable), .frame_valid(burst_frame),
+        .out_last(out_last), .out_sample(out_sample), .core_enable(core_enable), .core_valid(core_valid),
+        .core_start(core_start), .core_sample(core_sample), .frame_valid(burst_frame),
         .pin_valid(isp_line_valid), .pin_sample(isp_data));
 
     // The sensor's rows.
@@ -208,10 +211,9 @@ module halfrow_bridge #(
         .isp_line_valid(isp_line_valid), .isp_data(isp_data));
 
     // Both through one core.
-    wire core_reset, prepare, prepare_bank, in_valid, in_start;
+    wire core_reset, prepare, prepare_bank;
     wire row_short, row_long, row_unprepared;
     wire [ROW_BITS-1:0] prepare_row;
-    wire [11:0] in_sample;
 
     halfrow_multiplexer #(.ROW_BITS(ROW_BITS)) multiplexer (
         .clk(clk), .rst(rst), .session_open(session_open), .tables_ready(idle), .burst(burst),
@@ -223,15 +225,15 @@ module halfrow_bridge #(
         .camera_prepare_bank(camera_prepare_bank), .camera_valid(camera_valid), .camera_start(camera_start),
         .camera_sample(camera_sample), .shown_valid(shown_valid),
         .core_reset(core_reset), .core_enable(core_enable), .prepare(prepare), .prepare_row(prepare_row),
-        .prepare_bank(prepare_bank), .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample),
-        .out_valid(out_valid));
+        .prepare_bank(prepare_bank), .in_valid(core_valid), .in_start(core_start),
+        .in_sample(core_sample), .out_valid(out_valid));
 
     halfrow_core #(
         .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS), .TABLE_BANKS(TABLE_BANKS)
     ) core (
         .clk(clk), .rst(core_reset), .enable(core_enable), .width(width), .centre2(centre2), .depth(depth),
         .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared),
-        .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample),
+        .in_valid(core_valid), .in_start(core_start), .in_sample(core_sample),
         .out_valid(out_valid), .out_start(out_start), .out_last(out_last), .out_sample(out_sample),
         .row_short(row_short), .row_long(row_long), .row_unprepared(row_unprepared),
         .step_write(step_write), .node_write(node_write), .table_bank(table_bank), .table_entry(table_entry),

@@ -26,7 +26,7 @@ module halfrow_row_sender #(
     output wire [ENTRY_BITS+2:0]  place_address,
     input  wire [7:0]             place_byte,
     output wire [OUT_BITS-1:0]    bank,         // whose row's head and samples are sent
-    output wire [3:0]             head_index,   // byte 8 to 19 of the payload, modulo 16
+    output wire [3:0]             head_index,   // byte 8 to 19, or 20 to 23 behind the samples, modulo 16
     input  wire [7:0]             head_byte,
     output reg                    counted,      // pulse: counted_byte becomes byte 18 or 19
     output reg                    counted_high, // byte 19
@@ -50,7 +50,7 @@ module halfrow_row_sender #(
     `include "halfrow_wire.vh"
 
     localparam IDLE = 2'd0, OFFER = 2'd1, HEAD = 2'd2, SAMPLES = 2'd3;
-    localparam [4:0] HEAD_BYTES = 5'd20;
+    localparam [4:0] HEAD_BYTES = 5'd20, ALL_BYTES = 5'd24; // without and with those behind the samples
 
     reg [1:0] state;
     reg [ENTRY_BITS-1:0] entry, waiting_entry;
@@ -69,13 +69,14 @@ module halfrow_row_sender #(
                          || (again_waiting && waiting_entry[OUT_BITS-1:0] == wanted_bank);
     assign place_held = dropped && state == HEAD;
 
-    reg [4:0] head;    // byte of the head
+    reg [4:0] head;    // byte of the head, which goes on behind the samples
     reg [1:0] phase;   // byte of three
     reg [3:0] earlier; // bits of the sample before
     wire move = (state == HEAD || state == SAMPLES) && (!row_byte_valid || row_byte_ready);
     wire last_of_head = head == HEAD_BYTES - 5'd1;
     wire head_ends = move && state == HEAD && last_of_head;
-    wire row_ends = move && state == SAMPLES && phase == 2'd2 && column == end_column;
+    wire samples_end = move && state == SAMPLES && phase == 2'd2 && column == end_column;
+    wire row_ends = move && state == HEAD && head == ALL_BYTES - 5'd1;
 
     assign place_address = {entry, head[2:0]};
     assign sent = row_ends && first_time && !dropped;
@@ -97,8 +98,8 @@ module halfrow_row_sender #(
             case (state)
                 IDLE: if ((unsent || again_waiting) && !drop) state <= OFFER;
                 OFFER: state <= row_taken ? HEAD : drop ? IDLE : OFFER;
-                HEAD: if (head_ends) state <= SAMPLES;
-                default: if (row_ends) state <= IDLE;
+                HEAD: state <= head_ends ? SAMPLES : row_ends ? IDLE : HEAD;
+                default: if (samples_end) state <= HEAD;
             endcase
 
     always @(posedge clk) begin
@@ -106,7 +107,7 @@ module halfrow_row_sender #(
             entry <= unsent ? unsent_entry : waiting_entry;
             first_time <= unsent;
             end_column <= width[COLUMN_BITS-1:0] + 1'b1;
-            row_length <= {4'd0, sample_bytes} + {11'd0, HEAD_BYTES};
+            row_length <= {4'd0, sample_bytes} + {11'd0, ALL_BYTES};
             row_sequence <= packets;
             row_session <= session;
         end
@@ -127,7 +128,7 @@ module halfrow_row_sender #(
     wire [9:0] next_count = {1'b0, head_byte, 1'b1} + {9'd0, high ? carry : !greatest[bank]};
     wire unused = &{1'b0, next_count[0]};
 
-    wire counts = head[4] && head[1];
+    wire counts = head[4] && !head[2] && head[1];
     wire [7:0] count_byte = first_time ? 8'd0 : next_count[8:1];
 
     assign head_index = head[3:0];
@@ -178,7 +179,7 @@ module halfrow_row_sender #(
         end else begin
             if (next_sample || (move && state == HEAD && head == HEAD_BYTES - 5'd2))
                 column <= column + 1'b1;
-            if (move && state == HEAD && !last_of_head)
+            if ((move && state == HEAD && !last_of_head) || samples_end)
                 head <= head + 5'd1;
             if (move && state == SAMPLES) begin
                 phase <= phase == 2'd2 ? 2'd0 : phase + 2'd1;

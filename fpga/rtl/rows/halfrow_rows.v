@@ -106,6 +106,9 @@ module halfrow_rows #(
     input  wire                out_last,
     input  wire [11:0]         out_sample,
     input  wire                core_enable,
+    input  wire                core_valid,    // what stands at the core's pins
+    input  wire                core_start,
+    input  wire [11:0]         core_sample,
     output wire                frame_valid,   // of a burst's frames, as a sensor would have it at the core's pins
     input  wire                pin_valid,     // what the image processor gets
     input  wire [11:0]         pin_sample
@@ -265,13 +268,15 @@ module halfrow_rows #(
     assign latency_valid = row_left;
 
     wire [3:0] head_index;
+    wire [31:0] entered;
     wire [7:0] head_byte, counted_byte;
     wire counted, counted_high;
 
     halfrow_row_heads #(.OUT_BITS(OUT_BITS)) heads (
         .clk(clk), .rst(rst), .start(start), .start_bank(ready_entry[OUT_BITS-1:0]), .width(width),
         .start_is_last(next_is_last), .start_generation(next_generation), .left(row_left), .left_bank(left_bank),
-        .first_latency(first_latency), .last_latency(last_latency), .pauses(left_pauses), .bank(sent_bank),
+        .first_latency(first_latency), .last_latency(last_latency), .pauses(left_pauses), .entered(entered),
+        .bank(sent_bank),
         .index(head_index), .value(head_byte), .replace(counted),
         .replace_high(counted_high), .replacement(counted_byte));
 
@@ -318,7 +323,8 @@ module halfrow_rows #(
         .row_there(burst_row_there), .row(burst_row), .other_tables(burst_other), .seed(burst_seed),
         .frame(burst_frame), .frame_blanking(frame_blanking), .alternates(burst_alternates),
         .preparing(preparer_busy), .row_ready(row_ready), .row_is_last(next_is_last), .due(due), .start(start),
-        .in_last(in_last), .ends_frame(ends_frame), .frame_valid(frame_valid), .enable(core_enable),
+        .in_last(in_last), .ends_frame(ends_frame), .frame_valid(frame_valid), .core_valid(core_valid),
+        .core_start(core_start), .core_sample(core_sample), .row_signature(entered), .enable(core_enable),
         .pin_valid(pin_valid), .pin_last(out_last), .pin_sample(pin_sample), .first_latency(first_latency),
         .last_latency(last_latency));
 

@@ -52,7 +52,7 @@ module halfrow_capabilities #(
     endgenerate
 
     localparam FIXED = 58;
-    localparam BURST_BYTES = 9;
+    localparam BURST_BYTES = 12; // and what entered
     localparam BURSTS = FIXED + NAME_LENGTH;
     localparam TOTAL = BURSTS + BURST_BYTES;
 
@@ -102,6 +102,7 @@ module halfrow_capabilities #(
         end
     endgenerate
     assign list[8*BURSTS +: 8*BURST_BYTES] = {
+        8'd1, 8'd1, TAG_ENTERED,
         TRAP_8, LEAST_FRAME_BLANKING_16, BURST_RECORDS_16, CONTENT_ID, 8'd7, TAG_CONTENT};
     assign list[2047:8*TOTAL] = {(2048-8*TOTAL){1'b0}};
 

@@ -17,12 +17,11 @@ struct Simulated;
 
 /// The builds, as the suite and as the mock describe them.
 fn builds() -> [(halfrow_sim::Build, Build, Options); 4] {
-    // The Verilog has no trap and does not say what entered.
+    // The Verilog has no trap.
     let mock = Options {
         bursts: BurstBuild::Untrapped,
         records: 16,
         least_frame_blanking: 256,
-        entered: false,
         ..Options::default()
     };
     let four = Build::default();
