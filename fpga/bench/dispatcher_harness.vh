@@ -2,7 +2,7 @@
 // behind its localparams MAX_WIDTH, MAX_HEIGHT, ROW_BITS, TAPS, LEAST_BLANKING, TABLE_BANKS, ROW_BANKS_IN, ROW_BANKS_OUT.
 localparam HELLO = 8'h00, CAPABILITIES = 8'h01, STATUS = 8'h02, RESET = 8'h03, ECHO = 8'h04, TABLE_WRITE = 8'h10,
            TABLE_READ = 8'h11, TABLE_CRC = 8'h12, COMMIT = 8'h13, CONFIGURE = 8'h18, ROW_IN = 8'h20, ROW_ACK = 8'h22,
-           BURST = 8'h30, RECORDS = 8'h31;
+           BURST = 8'h30, RECORDS = 8'h31, EXPECT = 8'h32, TRAP = 8'h33;
 localparam NONE = 0, VERSION_WRONG = 1, KIND_UNKNOWN = 2, PAYLOAD = 3, RANGE = 4, SESSION = 5, HELD = 6, BUSY = 7,
            NOT_READY = 8, TABLE_CRC_WRONG = 9, CREDIT = 10, OUTER_TAPS = 12;
 localparam STEPS = 0, KERNEL = 1, SHADOW = 0, ACTIVE = 1;
@@ -53,36 +53,43 @@ reg  [15:0] first_latency, last_latency;
 integer     acknowledges, row_starts, drops, new_sessions, held_clocks;
 reg  [31:0] last_acknowledge, last_drop;
 
-// The bursts, which read a packet's first bytes twice before they are done with it.
-wire        burst_request, of_records, records_begin, records_next, records_reply, silent;
+// The bursts, which read a packet's first bytes twice before they are done with it, of an EXPECT the first time from the
+// first signature on.
+wire        burst_request, answer_begin, answer_next, answering, silent;
 reg         burst, burst_done, burst_rewind, burst_advance;
 reg  [ 3:0] burst_refusal;
-reg  [ 2:0] burst_detail;
+wire [ 1:0] burst_kind;
+wire [31:0] expect_span;
+reg  [15:0] burst_detail;
 reg  [ 7:0] record_index, record_first, record_second;
-integer     silences, burst_requests, read_place;
+integer     silences, burst_requests, read_place, read_from;
 
 always @(posedge clk) begin
-    record_index  <= records_begin ? 8'd0 : record_index + {7'd0, records_next};
+    record_index  <= answer_begin ? 8'd0 : record_index + {7'd0, answer_next};
     record_first  <= record_index ^ 8'h5a;
-    record_second <= records_reply ? record_first : 8'd0;
+    record_second <= answering ? record_first : 8'd0;
     if (silent) silences = silences + 1;
 end
 
 always @(posedge clk)
     if (burst_request) begin
         burst_requests = burst_requests + 1;
-        check(of_records === (packet_kind === RECORDS), "a request of bursts is taken for the other");
+        check({6'h0c, burst_kind} === packet_kind, "a request of bursts is taken for another");
+        check(expect_span[15:0] === {payload[1], payload[0]} || packet_kind !== EXPECT, "the first row expected");
+        check(expect_span[31:16] === {payload[3], payload[2]} || packet_kind !== EXPECT, "how many rows are expected");
+        read_from = packet_kind === EXPECT ? 4 : 0;
         repeat (2) begin
-            for (read_place = 0; read_place < 3; read_place = read_place + 1) begin
+            for (read_place = read_from; read_place < read_from + 3; read_place = read_place + 1) begin
                 @(negedge clk);
                 check(packet_address === read_place, "the place in a request of bursts");
                 @(negedge clk);
-                check(packet_byte === payload[read_place], "a byte of a request of bursts");
+                check(packet_byte === payload[read_place] || read_place >= packet_length, "a byte of a request of bursts");
                 burst_advance = 1;
                 @(negedge clk) burst_advance = 0;
             end
             burst_rewind = 1;
             @(negedge clk) burst_rewind = 0;
+            read_from = 0;
         end
         burst_done = 1;
         @(negedge clk) burst_done = 0;
@@ -131,10 +138,10 @@ halfrow_dispatcher #(
     .reply_byte_ready(reply_byte_ready), .session_open(session_open), .session(session), .configured(configured),
     .width(width), .height(height), .centre2(centre2), .blanking(blanking), .gap_seed(gap_seed), .depth(depth),
     .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal),
-    .burst_request(burst_request), .of_records(of_records), .burst_rewind(burst_rewind), .burst_advance(burst_advance),
-    .burst_done(burst_done), .burst_refusal(burst_refusal), .burst_detail(burst_detail), .records_length(9'd298),
-    .records_begin(records_begin), .records_next(records_next), .records_reply(records_reply),
-    .records_byte(record_second), .burst(burst), .silence(silent), .acknowledge(acknowledge),
+    .burst_ready(1'b1), .burst_request(burst_request), .expect_span(expect_span), .burst_kind(burst_kind), .burst_rewind(burst_rewind), .burst_advance(burst_advance),
+    .burst_done(burst_done), .burst_refusal(burst_refusal), .burst_detail(burst_detail), .answer_length(12'd298),
+    .answer_begin(answer_begin), .answer_next(answer_next), .answering(answering),
+    .answer_byte(record_second), .burst(burst), .silence(silent), .acknowledge(acknowledge),
     .acknowledge_window(acknowledge_window), .drop_rows(drop_rows), .drop_next_row(drop_next_row),
     .new_session(new_session), .hold(hold), .acknowledged(acknowledged), .next_row_in(next_row_in),
     .rows_waiting(rows_waiting), .rows_held(rows_held), .core_busy(core_busy), .shadow_in_use(shadow_in_use),

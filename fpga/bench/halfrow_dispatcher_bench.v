@@ -39,14 +39,15 @@ module halfrow_dispatcher_bench;
         end
     endtask
 
-    // Behind what is frozen: content 1, 16 records, 256 clocks between frames, no trap.
+    // Behind what is frozen: content 1, 16 records, 256 clocks between frames, a trap; what entered is told.
     task capabilities;
         begin
             load_vector("capabilities-reply");
-            check(got_total == vector_total - 16 + 9, "the length of the capabilities");
+            check(got_total == vector_total - 16 + 12, "the length of the capabilities");
             for (i = 12; i < vector_total - 4; i = i + 1) check(got[i-12] === vector[i], "the capabilities");
-            check({got[got_total-9], got[got_total-8], got[got_total-7], got[got_total-6], got[got_total-5], got[got_total-4],
-                   got[got_total-3], got[got_total-2], got[got_total-1]} === 72'h100701001000000100, "the capability of bursts");
+            check({got[got_total-12], got[got_total-11], got[got_total-10], got[got_total-9], got[got_total-8], got[got_total-7],
+                   got[got_total-6], got[got_total-5], got[got_total-4]} === 72'h100701001000000101, "the capability of bursts");
+            check({got[got_total-3], got[got_total-2], got[got_total-1]} === 24'h110101, "the capability of what entered");
         end
     endtask
 
@@ -60,13 +61,22 @@ module halfrow_dispatcher_bench;
             give(RECORDS, 4, session);
             replied(RECORDS, 298);
             for (k = 0; k < 298; k = k + 1) check(got[k] === (k[7:0] ^ 8'h5a), "a byte of the records");
-            {burst_refusal, burst_detail} = {4'd4, 3'd5};
+            give(TRAP, 0, session);
+            replied(TRAP, 298);
+            for (k = 0; k < 298; k = k + 1) check(got[k] === (k[7:0] ^ 8'h5a), "a byte of the trapped row");
+            for (k = 0; k < 20; k = k + 1) payload[k] = 8'h30 + k;
+            give(EXPECT, 20, session);
+            replied(EXPECT, 0);
+            {burst_refusal, burst_detail} = {4'd4, 16'd5};
             give(BURST, 17, session);
             refused(BURST, RANGE, 5);
             give(RECORDS, 4, session);
             refused(RECORDS, RANGE, 5);
-            {burst_refusal, burst_detail} = 7'd0;
-            check(burst_requests == m + 4, "a request of bursts gets there once");
+            burst_detail = 16'hfedc;
+            give(EXPECT, 20, session);
+            refused(EXPECT, RANGE, 16'hfedc);
+            {burst_refusal, burst_detail} = 20'd0;
+            check(burst_requests == m + 7, "a request of bursts gets there once");
             // 10 s without a packet end a burst and its session, and drop no row. Without a burst they do not.
             m = drops;
             silences = 0;
@@ -223,9 +233,9 @@ module halfrow_dispatcher_bench;
             what = "kinds and payloads";
             for (k = 1; k < 256; k = k + 1)
                 case (k)
-                    CAPABILITIES, ECHO, ROW_IN, ROW_ACK: ;
-                    STATUS, RESET, TABLE_WRITE, TABLE_READ, TABLE_CRC, COMMIT, CONFIGURE, BURST, RECORDS: begin
-                        m = k == BURST ? 17 : k == RECORDS ? 4 : k == STATUS ? 1 : k == RESET ? 5 : k == COMMIT ? 11 : k == CONFIGURE ? 13 : 7;
+                    CAPABILITIES, ECHO, ROW_IN, ROW_ACK, TRAP: ;
+                    STATUS, RESET, TABLE_WRITE, TABLE_READ, TABLE_CRC, COMMIT, CONFIGURE, BURST, RECORDS, EXPECT: begin
+                        m = k == BURST ? 17 : k == RECORDS || k == EXPECT ? 4 : k == STATUS ? 1 : k == RESET ? 5 : k == COMMIT ? 11 : k == CONFIGURE ? 13 : 7;
                         for (i = 0; i < 20; i = i + 1) payload[i] = 0;
                         for (n = 0; n <= m + 1; n = n + 1) begin
                             give(k, n, session);

@@ -126,7 +126,7 @@ module halfrow_rows_bench;
     halfrow_rows #(.TAPS(7)) rows (
         .clk(clk), .rst(rst), .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal), .row_busy(row_busy),
         .packet_address(packet_address), .packet_byte(packet_byte), .packet_length(packet_length),
-        .burst_request(1'b0), .of_records(1'b0), .records_begin(1'b0), .records_next(1'b0), .records_reply(1'b0),
+        .burst_request(1'b0), .burst_kind(2'd0), .expect_span(32'd0), .answer_begin(1'b0), .answer_next(1'b0), .answering(1'b0),
         .silence(1'b0), .configured(1'b1), .hold(1'b0),
         .acknowledge(acknowledge), .acknowledge_window(window), .drop_rows(drop_rows),
         .drop_next_row(drop_next_row), .new_session(new_session), .session(session), .width(width), .height(height),

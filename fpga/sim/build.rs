@@ -51,7 +51,7 @@ const BUILDS: [Model; 7] = [
         class: "BridgeLean",
         name: "bridge_lean",
         top: BRIDGE,
-        parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4", "TABLE_BANKS=1", "TAPS=5"],
+        parameters: &["ROW_BANKS_IN=4", "ROW_BANKS_OUT=4", "TABLE_BANKS=1", "TAPS=5", "TRAP=0"],
     },
 ];
 

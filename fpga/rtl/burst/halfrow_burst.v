@@ -3,26 +3,33 @@
 `default_nettype none
 
 module halfrow_burst #(
-    parameter TABLE_BANKS = 2
+    parameter MAX_HEIGHT = 2048,
+    parameter COLUMN_BITS = 11,
+    parameter TABLE_BANKS = 2,
+    parameter TRAP = 1 // there is one
 ) (
     input  wire        clk,
     input  wire        rst,
 
-    // a BURST or RECORDS of the open session
+    // a BURST, RECORDS, EXPECT or TRAP of the open session
+    output wire        requests_ready, // high once requests may come
     input  wire        request_start, // pulse: it lies in the receiver's buffer, up to request_done
-    input  wire        of_records,    // it is the latter
+    input  wire [1:0]  request_kind,  // which it is, numbered so
+    input  wire [15:0] expect_first,  // of an EXPECT, whose first signature is read
+    input  wire [15:0] expect_count,
+    input  wire [11:0] packet_length,
     output wire        rewind,        // pulse: its payload is read from the first byte on
     output wire        advance,       // by one byte
     input  wire [7:0]  packet_byte,   // one clock behind its address
     output wire        request_done,  // pulse: with what follows
     output wire [3:0]  refusal,       // a code, or 0
-    output wire [2:0]  detail,
+    output wire [15:0] detail,
     input  wire        ready,         // there are a configuration and tables
     input  wire        busy,          // rows are in the board, a commit waits, or a burst is under way
-    output wire [8:0]  reply_length,  // bytes of the payload of the reply to RECORDS
+    output wire [11:0] reply_length,  // bytes of the payload of the reply to RECORDS or TRAP
     input  wire        reply_begins,  // pulse: its first byte is wanted
     input  wire        reply_advance, // the next one is
-    input  wire        replying,      // it is the reply to RECORDS that is under way
+    input  wire        replying,      // it is such a reply that is under way
     output reg  [7:0]  reply_byte,    // two clocks later, 0 unless `replying`
 
     output reg         burst,         // one is under way
@@ -32,6 +39,9 @@ module halfrow_burst #(
     output wire        quiet,         // nothing will happen without new input
 
     // to the rows' way
+    input  wire [11:0] width,
+    input  wire [11:0] height,
+    input  wire [11:0] sample_bytes,  // of a row, packed
     input  wire [7:0]  generation,
     output wire        row_there,     // `row` may be prepared
     output reg  [11:0] row,           // that starts next
@@ -61,10 +71,11 @@ module halfrow_burst #(
     input  wire [15:0] first_latency, // of the row, one clock later
     input  wire [15:0] last_latency
 );
+    `include "halfrow_wire.vh"
     `include "halfrow_board.vh"
 
     localparam [8:0] HEAD_BYTES = 9'd10;
-    localparam [1:0] ALTERNATING = 2'd1;
+    localparam [1:0] ALTERNATING = 2'd1, TRAPPED = 2'd3;
     localparam [1:0] NO_BURST = 2'd0, UNDER_WAY = 2'd1, ENDED = 2'd2;
 
     wire starts, more, free, recorded, signed_all, ledger_idle, named;
@@ -151,9 +162,20 @@ module halfrow_burst #(
     wire frees, record_write, head_write;
     wire [7:0] number_byte;
 
-    halfrow_ledger #(.TABLE_BANKS(TABLE_BANKS)) ledger (
-        .clk(clk), .rst(rst), .start(request_start), .of_records(of_records), .rewind(rewind), .advance(advance),
-        .packet_byte(packet_byte), .finished(request_done), .refusal(refusal), .detail(detail), .ready(ready),
+    wire carried_out, advance_ledger, trap_done, advance_trap;
+    wire [3:0] ledger_refusal, trap_refusal;
+    wire [2:0] ledger_detail;
+    wire [15:0] trap_detail;
+
+    assign request_done = carried_out || trap_done;
+    assign advance = advance_ledger || advance_trap;
+    assign refusal = ledger_refusal | trap_refusal;
+    assign detail = {13'd0, ledger_detail} | trap_detail;
+
+    halfrow_ledger #(.TABLE_BANKS(TABLE_BANKS), .TRAP(TRAP)) ledger (
+        .clk(clk), .rst(rst), .start(request_start && !request_kind[1]), .of_records(request_kind[0]),
+        .rewind(rewind), .advance(advance_ledger), .packet_byte(packet_byte), .finished(carried_out),
+        .refusal(ledger_refusal), .detail(ledger_detail), .ready(ready),
         .busy(busy), .starts(starts), .seed(seed), .first_frame(first_frame), .frame_blanking(frame_blanking),
         .mode(mode), .under_way(burst), .drop(drop), .forget(forget), .named(named), .frame_begins(frame_begins),
         .more(more), .given(given), .paused(early || (stopped && !closing)), .row_left(row_left),
@@ -180,14 +202,38 @@ module halfrow_burst #(
         .frees(frees), .freed(freed), .kept(kept), .reply_begins(reply_begins), .advance(reply_advance),
         .value(reply_value));
 
-    assign reply_length = {told, 4'd0} + {3'd0, told, 1'b0} + HEAD_BYTES;
+    wire [11:0] trap_length;
+    wire [7:0] trap_value;
+    wire [8:0] records_length = {told, 4'd0} + {3'd0, told, 1'b0} + HEAD_BYTES;
+
+    assign reply_length = request_kind[1] ? trap_length : {3'd0, records_length};
     assign quiet = ledger_idle && (!burst || (more && !free && frames_inside == 2'd0 && late));
 
     always @(posedge clk) begin
-        reply_byte <= reply_value & {8{replying}};
+        reply_byte <= (request_kind[1] ? trap_value : reply_value) & {8{replying}};
         if (head_write)
             told <= kept;
     end
+
+    generate
+        if (TRAP != 0) begin : with_trap
+            halfrow_trap #(.MAX_HEIGHT(MAX_HEIGHT), .COLUMN_BITS(COLUMN_BITS)) trap (
+                .clk(clk), .rst(rst), .ready(requests_ready),
+                .expect_start(request_start && request_kind == KIND_EXPECT[1:0]), .first(expect_first),
+                .count(expect_count), .packet_length(packet_length), .advance(advance_trap),
+                .packet_byte(packet_byte), .trap_start(request_start && request_kind == KIND_TRAP[1:0]),
+                .finished(trap_done), .refusal(trap_refusal), .detail(trap_detail), .reply_length(trap_length),
+                .reply_begins(reply_begins), .reply_advance(reply_advance), .value(trap_value),
+                .under_way(burst), .compares(mode == TRAPPED), .empty(drop || (starts && mode == TRAPPED)),
+                .width(width), .height(height), .sample_bytes(sample_bytes), .given(given), .last(signed_last),
+                .sample(signed_sample), .row_signature(row_signature), .frame_left(ended_leaves));
+        end else begin : without_trap
+            wire unused = &{1'b0, expect_first, expect_count, packet_length, width, height, sample_bytes};
+
+            assign requests_ready = 1'b1;
+            assign {trap_done, advance_trap, trap_refusal, trap_detail, trap_length, trap_value} = 42'd0;
+        end
+    endgenerate
 endmodule
 
 `default_nettype wire

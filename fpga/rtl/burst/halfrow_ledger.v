@@ -4,7 +4,8 @@
 `default_nettype none
 
 module halfrow_ledger #(
-    parameter TABLE_BANKS = 2
+    parameter TABLE_BANKS = 2,
+    parameter TRAP = 1
 ) (
     input  wire        clk,
     input  wire        rst,
@@ -247,7 +248,7 @@ module halfrow_ledger #(
                 close <= packet_byte == 8'd0; // below 256
             if (state == LOOK) begin
                 no_mode <= packet_byte[7:2] != 6'd0;
-                other_mode <= packet_byte[0] && (packet_byte[1] || TABLE_BANKS == 1);
+                other_mode <= packet_byte[0] && (packet_byte[1] ? TRAP == 0 : TABLE_BANKS == 1);
             end
         end
 

@@ -12,6 +12,7 @@ module halfrow_bridge #(
     parameter TABLE_BANKS = 2,            // 1 or 2
     parameter ROW_BANKS_IN = 2,           // powers of two
     parameter ROW_BANKS_OUT = 2,
+    parameter TRAP = 1,                   // there is one
     parameter [31:0] BUILD = 32'd0,       // the start of the commit
     parameter [7:0] NATURE = 8'd1,        // 1: hardware, 2: simulation
     parameter [8*69-1:0] NAME = "halfrow" // 1 to 68 bytes
@@ -100,12 +101,14 @@ module halfrow_bridge #(
     wire [1:0] depth;
     wire active_bank, commit_pending, frame_start;
     wire rows_waiting, rows_held, core_busy, shadow_in_use, rows_quiet;
-    wire burst_request, of_records, burst_rewind, burst_advance, burst_done, burst, silence;
+    wire burst_ready, burst_request, burst_rewind, burst_advance, burst_done, burst, silence;
+    wire [1:0] burst_kind;
+    wire [31:0] expect_span;
     wire [3:0] burst_refusal;
-    wire [2:0] burst_detail;
-    wire [8:0] records_length;
-    wire [7:0] records_byte;
-    wire records_begin, records_next, records_reply;
+    wire [15:0] burst_detail;
+    wire [11:0] answer_length;
+    wire [7:0] answer_byte;
+    wire answer_begin, answer_next, answering;
     wire row_accepted, row_left, row_repeated, row_unneeded, sample_over, latency_valid;
 
     wire step_write, node_write, table_bank, table_read;
@@ -118,7 +121,7 @@ module halfrow_bridge #(
         .POWER_UP_WIDTH(POWER_UP_WIDTH), .POWER_UP_HEIGHT(POWER_UP_HEIGHT),
         .ROW_BITS(ROW_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS),
         .LEAST_BLANKING(0), .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN),
-        .ROW_BANKS_OUT(ROW_BANKS_OUT), .BUILD(BUILD), .NATURE(NATURE), .NAME(NAME)
+        .ROW_BANKS_OUT(ROW_BANKS_OUT), .TRAP(TRAP), .BUILD(BUILD), .NATURE(NATURE), .NAME(NAME)
     ) dispatcher (
         .clk(clk), .rst(rst), .millisecond(millisecond), .clock_source(clock_source), .clock_hz(clock_hz),
         .serial(serial),
@@ -133,10 +136,11 @@ module halfrow_bridge #(
         .session_open(session_open), .session(session), .configured(configured), .width(width), .height(height),
         .centre2(centre2), .blanking(blanking), .gap_seed(gap_seed), .depth(depth),
         .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal),
-        .burst_request(burst_request), .of_records(of_records), .burst_rewind(burst_rewind),
+        .burst_ready(burst_ready), .burst_request(burst_request), .burst_kind(burst_kind),
+        .expect_span(expect_span), .burst_rewind(burst_rewind),
         .burst_advance(burst_advance), .burst_done(burst_done), .burst_refusal(burst_refusal),
-        .burst_detail(burst_detail), .records_length(records_length), .records_begin(records_begin),
-        .records_next(records_next), .records_reply(records_reply), .records_byte(records_byte), .burst(burst),
+        .burst_detail(burst_detail), .answer_length(answer_length), .answer_begin(answer_begin),
+        .answer_next(answer_next), .answering(answering), .answer_byte(answer_byte), .burst(burst),
         .silence(silence),
         .acknowledge(acknowledge), .acknowledge_window(acknowledge_window),
         .drop_rows(drop_rows), .drop_next_row(drop_next_row), .new_session(new_session), .hold(hold),
@@ -161,15 +165,16 @@ module halfrow_bridge #(
     wire [11:0] out_sample;
 
     halfrow_rows #(
-        .ROW_BITS(ROW_BITS), .COLUMN_BITS(COLUMN_BITS), .TAPS(TAPS), .TABLE_BANKS(TABLE_BANKS),
-        .ROW_BANKS_IN(ROW_BANKS_IN), .ROW_BANKS_OUT(ROW_BANKS_OUT)
+        .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .COLUMN_BITS(COLUMN_BITS), .TAPS(TAPS), .TABLE_BANKS(TABLE_BANKS),
+        .ROW_BANKS_IN(ROW_BANKS_IN), .ROW_BANKS_OUT(ROW_BANKS_OUT), .TRAP(TRAP)
     ) rows (
         .clk(clk), .rst(rst), .row_start(row_start), .row_done(row_done), .row_refusal(row_refusal),
         .row_busy(row_busy), .packet_address(row_address), .packet_byte(packet_byte), .packet_length(packet_length),
-        .burst_request(burst_request), .of_records(of_records), .burst_rewind(burst_rewind),
+        .burst_ready(burst_ready), .burst_request(burst_request), .burst_kind(burst_kind),
+        .expect_span(expect_span), .burst_rewind(burst_rewind),
         .burst_advance(burst_advance), .burst_done(burst_done), .burst_refusal(burst_refusal),
-        .burst_detail(burst_detail), .records_length(records_length), .records_begin(records_begin),
-        .records_next(records_next), .records_reply(records_reply), .records_byte(records_byte), .burst(burst),
+        .burst_detail(burst_detail), .answer_length(answer_length), .answer_begin(answer_begin),
+        .answer_next(answer_next), .answering(answering), .answer_byte(answer_byte), .burst(burst),
         .silence(silence),
         .hold(hold), .acknowledge(acknowledge), .acknowledge_window(acknowledge_window),
         .drop_rows(drop_rows), .drop_next_row(drop_next_row), .new_session(new_session), .session(session),

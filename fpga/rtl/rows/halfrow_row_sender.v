@@ -13,6 +13,7 @@ module halfrow_row_sender #(
     input  wire [7:0]             session,
 
     input  wire [11:0]            width,
+    output reg  [11:0]            sample_bytes, // of a row, packed
     input  wire                   unsent,       // row `unsent_entry` has left the core and was never sent
     input  wire [ENTRY_BITS-1:0]  unsent_entry,
     output wire                   sent,         // pulse: it has been
@@ -58,7 +59,6 @@ module halfrow_row_sender #(
     reg dropped; // while it was sent
     reg [COLUMN_BITS-1:0] end_column; // `column` when the row's last byte goes
     reg [15:0] packets;
-    reg [11:0] sample_bytes;
 
     assign bank = entry[OUT_BITS-1:0];
     assign row_kind = KIND_ROW_OUT;

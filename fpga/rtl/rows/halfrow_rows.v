@@ -3,12 +3,14 @@
 `default_nettype none
 
 module halfrow_rows #(
+    parameter MAX_HEIGHT = 2048,
     parameter ROW_BITS = 11,
     parameter COLUMN_BITS = 11, // 2 ** COLUMN_BITS samples a bank, at least the widest row's
     parameter TAPS = 7,
     parameter TABLE_BANKS = 2,
     parameter ROW_BANKS_IN = 2, // both powers of two, 2 to 64
-    parameter ROW_BANKS_OUT = 2
+    parameter ROW_BANKS_OUT = 2,
+    parameter TRAP = 1          // there is one
 ) (
     input  wire                clk,
     input  wire                rst,
@@ -22,19 +24,21 @@ module halfrow_rows #(
     input  wire [7:0]          packet_byte,   // one clock behind its address
     input  wire [15:0]         packet_length,
 
-    // a BURST or RECORDS, likewise, from burst_request to burst_done
+    // a BURST, RECORDS, EXPECT or TRAP, likewise, from burst_request to burst_done
+    output wire                burst_ready,   // high once such may come
     input  wire                burst_request,
-    input  wire                of_records,
+    input  wire [1:0]          burst_kind,    // which it is, numbered so
+    input  wire [31:0]         expect_span,   // of an EXPECT, whose first signature is read: its first row, their count
     output wire                burst_rewind,
     output wire                burst_advance,
     output wire                burst_done,
     output wire [3:0]          burst_refusal,
-    output wire [2:0]          burst_detail,
-    output wire [8:0]          records_length, // bytes of the reply to RECORDS
-    input  wire                records_begin, // pulse: its first byte is wanted
-    input  wire                records_next,  // the next one is
-    input  wire                records_reply, // it is under way
-    output wire [7:0]          records_byte,  // two clocks later, 0 unless it is
+    output wire [15:0]         burst_detail,
+    output wire [11:0]         answer_length, // bytes of the reply to RECORDS or TRAP
+    input  wire                answer_begin,  // pulse: its first byte is wanted
+    input  wire                answer_next,  // the next one is
+    input  wire                answering,     // it is under way
+    output wire [7:0]          answer_byte,  // two clocks later, 0 unless it is
     output wire                burst,         // one is under way
     input  wire                silence,       // pulse: it ends, and no row is dropped
 
@@ -116,6 +120,7 @@ module halfrow_rows #(
     `include "halfrow_board.vh"
 
     generate // what a build cannot have
+        if (MAX_HEIGHT < 1 || MAX_HEIGHT > GREATEST_HEIGHT) halfrow_illegal_MAX_HEIGHT is_1_to_2048 ();
         if (ROW_BITS < 1 || ROW_BITS > 16) halfrow_illegal_ROW_BITS is_1_to_16 ();
         if (COLUMN_BITS < 6 || COLUMN_BITS > 12) halfrow_illegal_COLUMN_BITS is_6_to_12 ();
         if (TAPS != 5 && TAPS != 7) halfrow_illegal_TAPS is_5_or_7 ();
@@ -124,6 +129,7 @@ module halfrow_rows #(
             halfrow_illegal_ROW_BANKS_IN is_a_power_of_two_from_2_to_64 ();
         if (ROW_BANKS_OUT < 2 || ROW_BANKS_OUT > 64 || (ROW_BANKS_OUT & (ROW_BANKS_OUT - 1)) != 0)
             halfrow_illegal_ROW_BANKS_OUT is_a_power_of_two_from_2_to_64 ();
+        if (TRAP != 0 && TRAP != 1) halfrow_illegal_TRAP is_0_or_1 ();
     endgenerate
 
     localparam IN_BITS = bits_for(ROW_BANKS_IN);
@@ -289,12 +295,13 @@ module halfrow_rows #(
         .read_sample(sample_sent));
 
     wire sender_idle;
+    wire [11:0] sample_bytes;
 
     halfrow_row_sender #(
         .OUT_BITS(OUT_BITS), .ENTRY_BITS(ENTRY_BITS), .COLUMN_BITS(COLUMN_BITS)
     ) row_sender (
         .clk(clk), .rst(rst), .drop(drop_rows), .new_session(new_session), .session(session), .width(width),
-        .unsent(rows_left != rows_sent), .unsent_entry(unsent_entry), .sent(sent),
+        .sample_bytes(sample_bytes), .unsent(rows_left != rows_sent), .unsent_entry(unsent_entry), .sent(sent),
         .again(again), .again_entry(gate_entry), .again_waiting(again_waiting),
         .wanted_bank(next_entry[OUT_BITS-1:0]), .wanted_held(wanted_held), .place_held(place_held),
         .place_address(send_address), .place_byte(send_byte), .bank(sent_bank),
@@ -313,12 +320,16 @@ module halfrow_rows #(
         busy_for_burst <= rows_waiting || rows_held || core_busy || commit_pending;
     end
 
-    halfrow_burst #(.TABLE_BANKS(TABLE_BANKS)) bursts (
-        .clk(clk), .rst(rst), .request_start(burst_request), .of_records(of_records), .rewind(burst_rewind),
-        .advance(burst_advance), .packet_byte(packet_byte), .request_done(burst_done), .refusal(burst_refusal),
+    halfrow_burst #(
+        .MAX_HEIGHT(MAX_HEIGHT), .COLUMN_BITS(COLUMN_BITS), .TABLE_BANKS(TABLE_BANKS), .TRAP(TRAP)
+    ) bursts (
+        .clk(clk), .rst(rst), .requests_ready(burst_ready), .request_start(burst_request), .request_kind(burst_kind),
+        .expect_first(expect_span[15:0]), .expect_count(expect_span[31:16]), .packet_length(packet_length[11:0]),
+        .width(width), .height(height), .sample_bytes(sample_bytes), .rewind(burst_rewind), .advance(burst_advance),
+        .packet_byte(packet_byte), .request_done(burst_done), .refusal(burst_refusal),
         .detail(burst_detail), .ready(ready_for_burst), .busy(busy_for_burst),
-        .reply_length(records_length), .reply_begins(records_begin), .reply_advance(records_next),
-        .replying(records_reply), .reply_byte(records_byte), .burst(burst), .ends(burst_ends),
+        .reply_length(answer_length), .reply_begins(answer_begin), .reply_advance(answer_next),
+        .replying(answering), .reply_byte(answer_byte), .burst(burst), .ends(burst_ends),
         .drop(drop_rows || silence), .forget(drop_rows && new_session), .quiet(burst_quiet), .generation(generation),
         .row_there(burst_row_there), .row(burst_row), .other_tables(burst_other), .seed(burst_seed),
         .frame(burst_frame), .frame_blanking(frame_blanking), .alternates(burst_alternates),

@@ -10,6 +10,7 @@ module halfrow_capabilities #(
     parameter TABLE_BANKS = 2,
     parameter ROW_BANKS_IN = 2,
     parameter ROW_BANKS_OUT = 2,
+    parameter TRAP = 1,                   // there is one
     parameter [7:0] NATURE = 8'd1,        // 1: hardware, 2: simulation
     parameter [8*69-1:0] NAME = "halfrow" // 1 to 68 bytes
 ) (
@@ -29,6 +30,7 @@ module halfrow_capabilities #(
         if (TABLE_BANKS != 1 && TABLE_BANKS != 2) halfrow_illegal_TABLE_BANKS is_1_or_2 ();
         if (ROW_BANKS_IN < 2 || ROW_BANKS_IN > 255) halfrow_illegal_ROW_BANKS_IN is_2_to_255 ();
         if (ROW_BANKS_OUT < 2 || ROW_BANKS_OUT > 255) halfrow_illegal_ROW_BANKS_OUT is_2_to_255 ();
+        if (TRAP != 0 && TRAP != 1) halfrow_illegal_TRAP is_0_or_1 ();
         if (NATURE != NATURE_HARDWARE && NATURE != NATURE_SIMULATION)
             halfrow_illegal_NATURE is_hardware_or_simulation ();
     endgenerate
@@ -70,7 +72,7 @@ module halfrow_capabilities #(
     localparam [7:0] KERNEL_PORTS_8 = KERNEL_PORTS[7:0];
     localparam [15:0] BURST_RECORDS_16 = BURST_RECORDS[15:0];
     localparam [15:0] LEAST_FRAME_BLANKING_16 = LEAST_FRAME_BLANKING[15:0];
-    localparam [7:0] TRAP_8 = 8'd0; // there is none
+    localparam [7:0] TRAP_8 = TRAP[7:0];
     localparam [7:0] NAME_LENGTH_8 = NAME_LENGTH[7:0];
 
     // {value, length, tag}, the first byte to go in [7:0]

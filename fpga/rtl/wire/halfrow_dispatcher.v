@@ -14,6 +14,7 @@ module halfrow_dispatcher #(
     parameter TABLE_BANKS = 2,            // 1 or 2
     parameter ROW_BANKS_IN = 2,
     parameter ROW_BANKS_OUT = 2,
+    parameter TRAP = 1,                   // there is one
     parameter [31:0] BUILD = 32'd0,       // the start of the commit
     parameter [7:0] NATURE = 8'd1,        // 1: hardware, 2: simulation
     parameter [8*69-1:0] NAME = "halfrow" // 1 to 68 bytes
@@ -62,20 +63,22 @@ module halfrow_dispatcher #(
     input  wire                row_done,      // pulse: it was dealt with
     input  wire [3:0]          row_refusal,   // with row_done: a refusal's code, or 0
 
-    output wire                burst_request, // pulse: a BURST or RECORDS lies in the receiver's buffer
-    output reg                 of_records,    // it is the latter
+    input  wire                burst_ready,   // high once requests of bursts may come
+    output wire                burst_request, // pulse: a BURST, RECORDS, EXPECT or TRAP lies in the receiver's buffer
+    output wire [1:0]          burst_kind,    // which it is, numbered so
+    output wire [31:0]         expect_span,   // of an EXPECT, whose first signature is read: its first row, their count
     input  wire                burst_rewind,  // pulse: its payload is read from the first byte on
     input  wire                burst_advance, // by one byte
     input  wire                burst_done,    // pulse: it was dealt with
     input  wire [3:0]          burst_refusal, // with burst_done: a refusal's code, or 0
-    input  wire [2:0]          burst_detail,
-    input  wire [8:0]          records_length, // bytes of the reply to RECORDS
-    output wire                records_begin, // pulse: its first byte is wanted
-    output wire                records_next,  // the next one is
-    output wire                records_reply, // it is under way
-    input  wire [7:0]          records_byte,  // two clocks later, 0 unless it is
+    input  wire [15:0]         burst_detail,
+    input  wire [11:0]         answer_length, // bytes of the reply to RECORDS or TRAP
+    output wire                answer_begin,  // pulse: its first byte is wanted
+    output wire                answer_next,  // the next one is
+    output wire                answering,     // it is under way
+    input  wire [7:0]          answer_byte,   // two clocks later, 0 unless it is
     input  wire                burst,         // one is under way
-    output reg                 silence,       // pulse: and the host has been silent for too long
+    output wire                silence,       // pulse: and the host has been silent for too long
 
     output reg                 acknowledge,   // pulse, before the packet is carried out
     output wire [31:0]         acknowledge_window,
@@ -141,13 +144,12 @@ module halfrow_dispatcher #(
     wire is_status = packet_kind == KIND_STATUS;
     wire is_configure = packet_kind == KIND_CONFIGURE;
     wire of_session = session_open && packet_session == session;
-    wire status_idle, tables_ready;
-    wire silent;
-    wire begins = state == IDLE && packet_valid && tables_ready && !(burst && silent);
+    wire status_idle, tables_ready, silent;
+    wire begins = state == IDLE && packet_valid && tables_ready && burst_ready && !(burst && silent);
 
     assign packet_done = state == DONE;
     assign hold = state != IDLE && packet_kind != KIND_ROW_IN;
-    assign idle = state == IDLE && !packet_valid && tables_ready && status_idle;
+    assign idle = state == IDLE && !packet_valid && tables_ready && burst_ready && status_idle;
     assign row_start = state == ROW;
     assign acknowledge_window = packet_window;
     always @(posedge clk) acknowledge <= begins && !is_hello && of_session;
@@ -161,7 +163,7 @@ module halfrow_dispatcher #(
         if (state == LOAD && packet_address[3:0] != 4'd0 && packet_address[3:1] != 3'd7)
             fields <= {packet_byte, fields[103:8]};
 
-    halfrow_request request (
+    halfrow_request #(.TRAP(TRAP)) request (
         .clk(clk), .kind(packet_kind), .length(packet_length), .fields(fields[55:0]), .unknown(unknown),
         .malformed(malformed), .read_length(read_length));
     reg judging; // the state is JUDGE
@@ -186,9 +188,9 @@ module halfrow_dispatcher #(
 
     halfrow_session session_rules (
         .clk(clk), .rst(rst), .millisecond(millisecond), .nonce(fields[31:0]), .host(fields[63:32]),
-        .heard(acknowledge),
-        .greet(greeted), .open(opens), .close(silence || closes), .repeated(repeated), .held(held),
-        .tenths_left(tenths_left), .silent(silent), .session_open(session_open), .session(session));
+        .heard(acknowledge), .greet(greeted), .open(opens), .close(closes), .repeated(repeated), .held(held),
+        .tenths_left(tenths_left), .burst(burst), .at_rest(state == IDLE), .silent(silent), .silence(silence),
+        .session_open(session_open), .session(session));
 
     // RESET
     wire resets = accepted && is_reset;
@@ -235,17 +237,14 @@ module halfrow_dispatcher #(
     // Bursts
     reg of_bursts;
     wire advance_reply;
-
     assign burst_request = accepted && of_bursts;
-    assign records_reply = of_bursts && of_records && !refused;
-    assign records_begin = reply_taken && records_reply;
-    assign records_next = advance_reply;
+    assign burst_kind = packet_kind[1:0];
+    assign expect_span = fields[31:0];
+    assign answering = of_bursts && burst_kind[0] && !refused;
+    assign answer_begin = reply_taken && answering;
+    assign answer_next = advance_reply;
 
-    always @(posedge clk) begin
-        of_bursts <= packet_kind[7:1] == KIND_BURST[7:1];
-        of_records <= packet_kind[0];
-        silence <= burst && silent && state == IDLE && !rst;
-    end
+    always @(posedge clk) of_bursts <= packet_kind[7:2] == KIND_BURST[7:2];
 
     // Counters
     wire [7:0] status_byte;
@@ -270,7 +269,7 @@ module halfrow_dispatcher #(
     halfrow_capabilities #(
         .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .TAPS(TAPS), .RING_BITS(RING_BITS),
         .LEAST_BLANKING(LEAST_BLANKING), .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN),
-        .ROW_BANKS_OUT(ROW_BANKS_OUT), .NATURE(NATURE), .NAME(NAME)
+        .ROW_BANKS_OUT(ROW_BANKS_OUT), .TRAP(TRAP), .NATURE(NATURE), .NAME(NAME)
     ) capabilities (
         .clock_source(clock_source), .clock_hz(clock_hz), .index(packet_address[7:0]), .value(capabilities_byte),
         .length(capabilities_length));
@@ -295,7 +294,7 @@ module halfrow_dispatcher #(
                 KIND_TABLE_READ: {source, length} <= {FROM_TABLE, read_length};
                 KIND_TABLE_CRC: {source, length} <= {FROM_CRC, 13'd4};
                 KIND_COMMIT: {source, length} <= {FROM_COMMIT, 13'd1};
-                KIND_RECORDS: {source, length} <= {FROM_STATUS, 4'd0, records_length};
+                KIND_RECORDS, KIND_TRAP: {source, length} <= {FROM_STATUS, 1'b0, answer_length};
                 default: ;
             endcase
     end
@@ -309,14 +308,15 @@ module halfrow_dispatcher #(
     halfrow_reply #(.BUILD(BUILD)) reply (
         .clk(clk), .rst(rst), .begin_payload(reply_taken), .length(length[11:0]), .done(sent),
         .source(source), .index(packet_address), .advance(advance_reply), .packet_byte(packet_byte), .session(session),
-        .serial(serial), .capabilities_byte(capabilities_byte), .status_byte(status_byte | records_byte), .crc(~crc),
+        .serial(serial), .capabilities_byte(capabilities_byte), .status_byte(status_byte | answer_byte), .crc(~crc),
         .generation(fields[87:80]), .refusal({detail, packet_kind, 4'd0, code}), .table_byte_valid(table_byte_valid),
         .table_byte(table_byte), .table_byte_ready(table_byte_ready), .byte_valid(reply_byte_valid),
         .byte_data(reply_byte), .byte_ready(reply_byte_ready));
 
-    // One counter reads the payload's start, the entries of a TABLE_WRITE and an ECHO, and counts the bytes of a reply.
+    // One counter reads the payload's start, what stands behind it, and an ECHO, and counts the bytes of a reply.
     always @(posedge clk) begin
-        if (state == IDLE || state == JUDGE || reply_taken || burst_rewind) packet_address <= 12'd0;
+        if (judging && of_bursts && burst_kind == KIND_EXPECT[1:0]) packet_address <= 12'd4;
+        else if (state == IDLE || state == JUDGE || reply_taken || burst_rewind) packet_address <= 12'd0;
         else if (rewind) packet_address <= 12'd7;
         else if (state == LOAD || state == SETTLE || advance_table || advance_reply || burst_advance)
             packet_address <= packet_address + 12'd1;
@@ -370,7 +370,7 @@ module halfrow_dispatcher #(
             BURST:
             if (burst_done) begin
                 code <= burst_refusal;
-                detail[2:0] <= burst_detail;
+                detail <= burst_detail;
                 state <= burst_refusal != 4'd0 ? REFUSE : REPLY;
             end
             COUNTED: if (status_idle) state <= REPLY;

@@ -1,7 +1,9 @@
 // What a request's kind is to the dispatcher, and whether its payload has all fields and each of them a meaning.
 `default_nettype none
 
-module halfrow_request (
+module halfrow_request #(
+    parameter TRAP = 1 // there is one
+) (
     input  wire        clk,
     input  wire [7:0]  kind,
     input  wire [15:0] length,     // bytes of payload, at most 4080
@@ -29,7 +31,7 @@ module halfrow_request (
             KIND_TABLE_WRITE, KIND_TABLE_READ, KIND_TABLE_CRC: least = SPAN_BYTES[4:0];
             KIND_CONFIGURE: least = 5'd13;
             KIND_BURST: least = 5'd17;
-            KIND_RECORDS: least = 5'd4;
+            KIND_RECORDS, KIND_EXPECT: least = 5'd4;
             default: least = 5'd0;
         endcase
     end
@@ -50,6 +52,7 @@ module halfrow_request (
             KIND_HELLO, KIND_CAPABILITIES, KIND_STATUS, KIND_RESET, KIND_ECHO, KIND_TABLE_WRITE, KIND_TABLE_READ,
             KIND_TABLE_CRC, KIND_COMMIT, KIND_CONFIGURE, KIND_ROW_IN, KIND_ROW_ACK, KIND_BURST, KIND_RECORDS:
             unknown <= 1'b0;
+            KIND_EXPECT, KIND_TRAP: unknown <= TRAP == 0;
             default: unknown <= 1'b1;
         endcase
     end

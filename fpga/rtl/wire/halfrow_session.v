@@ -1,7 +1,11 @@
 // Who has the board: the open session's number, the HELLO that opened it, and how long its holder may still be silent.
 `default_nettype none
 
-module halfrow_session (
+module halfrow_session #(
+    // how long a holder may be silent, other than in proofs
+    parameter TENTHS = 100,
+    parameter MILLISECONDS = 100 // of a tenth
+) (
     input  wire        clk,
     input  wire        rst,
     input  wire        millisecond, // pulse, once a millisecond
@@ -14,12 +18,14 @@ module halfrow_session (
     output wire        repeated,    // the HELLO is the one that opened the session
     output wire        held,        // another host has the board
     output reg  [6:0]  tenths_left, // of the holder's ten seconds, rounded up
+    input  wire        burst,       // one is under way, which they end
+    input  wire        at_rest,     // no packet is carried out
     output wire        silent,      // they have passed
+    output reg         silence,     // pulse: the burst ends, and the session
     output reg         session_open,
     output wire [7:0]  session      // 0 for none
 );
-    localparam [6:0] TENTHS = 7'd100;
-    localparam [6:0] LAST_OF_TENTH = 7'd99;
+    localparam [6:0] LAST_OF_TENTH = MILLISECONDS[6:0] - 7'd1;
     localparam [7:0] GREATEST = 8'd255;
 
     reg [7:0] number;
@@ -46,6 +52,9 @@ module halfrow_session (
             holder_host <= host;
         end
 
+    always @(posedge clk)
+        silence <= burst && silent && at_rest && !rst;
+
     always @(posedge clk) begin
         if (rst) begin
             session_open <= 1'b0;
@@ -53,14 +62,14 @@ module halfrow_session (
         end else if (open) begin
             session_open <= 1'b1;
             number <= number == GREATEST ? 8'd1 : number + 8'd1;
-        end else if (close) begin
+        end else if (close || silence) begin
             session_open <= 1'b0;
         end
     end
 
     always @(posedge clk) begin
         if (rst || heard || open || (greet && same_host)) begin
-            tenths_left <= TENTHS;
+            tenths_left <= TENTHS[6:0];
             milliseconds <= 7'd0;
             counting <= 1'b1;
         end else if (millisecond && counting) begin

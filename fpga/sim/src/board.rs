@@ -40,7 +40,7 @@ pub enum Build {
     /// Four row banks in, two out.
     #[cfg(feature = "builds")]
     FourRowBanksIn,
-    /// Five taps and one bank of tables, with four row banks each way.
+    /// Five taps, one bank of tables and no trap, with four row banks each way.
     #[cfg(feature = "builds")]
     FiveTapsOneBank,
 }

@@ -17,13 +17,7 @@ struct Simulated;
 
 /// The builds, as the suite and as the mock describe them.
 fn builds() -> [(halfrow_sim::Build, Build, Options); 4] {
-    // The Verilog has no trap.
-    let mock = Options {
-        bursts: BurstBuild::Untrapped,
-        records: 16,
-        least_frame_blanking: 256,
-        ..Options::default()
-    };
+    let mock = Options { records: 16, least_frame_blanking: 256, ..Options::default() };
     let four = Build::default();
     [
         (
@@ -39,7 +33,13 @@ fn builds() -> [(halfrow_sim::Build, Build, Options); 4] {
         (
             halfrow_sim::Build::FiveTapsOneBank,
             lean(),
-            Options { taps: TapCount::Five, latency: 11, table_banks: 1, ..mock.clone() },
+            Options {
+                taps: TapCount::Five,
+                latency: 11,
+                table_banks: 1,
+                bursts: BurstBuild::Untrapped,
+                ..mock.clone()
+            },
         ),
         (halfrow_sim::Build::FourRowBanks, four, mock),
     ]

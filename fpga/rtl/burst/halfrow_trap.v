@@ -1,0 +1,191 @@
+// The trap of fpga/AT-SPEED.md: what signatures a host expects of a frame's rows, and the first row of a burst that has
+// another one, kept with its samples until the trap is emptied. Carries out EXPECT and TRAP.
+`default_nettype none
+
+module halfrow_trap #(
+    parameter MAX_HEIGHT = 2048,
+    parameter COLUMN_BITS = 11
+) (
+    input  wire        clk,
+    input  wire        rst,
+    output reg         ready,         // no row is expected to have a signature from before rst
+
+    input  wire        expect_start,  // pulse: an EXPECT lies in the receiver's buffer, up to `finished`
+    input  wire [15:0] first,         // row that it names
+    input  wire [15:0] count,         // of signatures
+    input  wire [11:0] packet_length, // bytes
+    output wire        advance,       // by one byte; packet_byte is the first signature's two clocks behind the start
+    input  wire [7:0]  packet_byte,   // one clock behind its address
+    input  wire        trap_start,    // pulse: a TRAP does
+    output reg         finished,      // pulse: with what follows, which is 0 otherwise
+    output reg  [3:0]  refusal,
+    output wire [15:0] detail,
+    output reg  [11:0] reply_length,  // bytes of the payload of the reply to TRAP
+    input  wire        reply_begins,  // pulse: its first byte is wanted
+    input  wire        reply_advance, // the next one is
+    output reg  [7:0]  value,         // a clock later
+
+    input  wire        under_way,     // a burst is
+    input  wire        compares,      // and its rows are compared
+    input  wire        empty,         // pulse: nothing is kept, and the next row is row 0 of frame 0
+    input  wire [11:0] width,
+    input  wire [11:0] height,
+    input  wire [11:0] sample_bytes,  // of a row, packed
+    input  wire        given,         // an output
+    input  wire        last,          // it is its row's last
+    input  wire [11:0] sample,
+    input  wire [31:0] row_signature, // of the row, from a clock behind its last output on for 60 clocks
+    input  wire        frame_left     // it was the frame's last, likewise
+);
+    `include "halfrow_wire.vh"
+    `include "halfrow_board.vh"
+
+    localparam ADDRESS_BITS = bits_for(MAX_HEIGHT);
+    localparam [ADDRESS_BITS:0] ALL_ROWS = MAX_HEIGHT[ADDRESS_BITS:0];
+    localparam [3:0] NONE = 4'd0;
+    localparam [11:0] HEAD_BYTES = 12'd13;
+    // What stands at places of the reply: `kept`, then the head, then over and over the bytes of two samples.
+    localparam [3:0] AT_KEPT = 4'd15, AT_LOW = 4'd12, AT_HIGH = 4'd14;
+    // An output is written so many clocks late: the row in front has been compared before it is overwritten.
+    localparam LATE = 7;
+
+    // What is expected. The walk over rows that brings zeros behind rst brings the signatures of an EXPECT, too.
+    (* ram_style = "block" *) reg [7:0] expected [0:(4<<ADDRESS_BITS)-1];
+    reg judging, walking, short, too_far;
+    reg [ADDRESS_BITS:0] end_row, walk_row;
+    reg [1:0] walk_byte;
+    wire [16:0] behind = {1'b0, first} + {1'b0, count};
+    wire arrived = walk_row == end_row;
+    wire [3:0] verdict = short ? REFUSAL_PAYLOAD : under_way ? REFUSAL_BUSY : too_far ? REFUSAL_RANGE : NONE;
+
+    assign advance = judging || walking;
+    assign detail = first & {16{refusal == REFUSAL_RANGE}};
+
+    always @(posedge clk) begin
+        judging <= expect_start && !rst;
+        short <= count[15:10] != 6'd0 || count[9:0] >= packet_length[11:2];
+        too_far <= behind > MAX_HEIGHT[16:0];
+        refusal <= judging ? verdict : NONE;
+        finished <= !rst && (trap_start || (judging && verdict != NONE) || (walking && arrived && ready));
+        walking <= rst || (judging && verdict == NONE) || (walking && !arrived);
+        ready <= !rst && (ready || (walking && arrived));
+        if (rst)
+            end_row <= ALL_ROWS;
+        else if (expect_start)
+            end_row <= behind[ADDRESS_BITS:0];
+        if (rst)
+            {walk_row, walk_byte} <= {ADDRESS_BITS + 3{1'b0}};
+        else if (judging)
+            {walk_row, walk_byte} <= {first[ADDRESS_BITS:0], 2'd0};
+        else
+            {walk_row, walk_byte} <= {walk_row, walk_byte} + 1'b1;
+    end
+
+    // A row that has left is compared byte by byte.
+    reg kept;
+    reg [31:0] frame, signature;
+    reg [11:0] row;
+    reg in_frame; // the row is one
+    reg [1:0] part;
+    reg [3:0] place;
+    reg fetched, differs;
+    reg [7:0] expected_byte, signature_byte;
+    reg [LATE-1:0] late_given, late_last;
+    reg [12*LATE-1:0] late_sample;
+    wire write = late_given[LATE-1] && !kept;
+    wire settled = late_last[LATE-1] && !kept;
+    wire compared = late_last[1] || part != 2'd0;
+
+    always @(posedge clk) begin
+        if (walking && !arrived)
+            expected[{walk_row[ADDRESS_BITS-1:0], walk_byte}] <= packet_byte & {8{ready}};
+        expected_byte <= expected[{row[ADDRESS_BITS-1:0], part}];
+    end
+
+    always @(posedge clk) begin
+        late_given <= {late_given[LATE-2:0], given && compares};
+        late_last <= {late_last[LATE-2:0], given && last && compares};
+        late_sample <= {late_sample[12*LATE-13:0], sample};
+        part <= part + {1'b0, compared};
+        fetched <= compared;
+        if (late_last[0] && !kept)
+            signature <= row_signature;
+        signature_byte <= signature[{kept ? place[1:0] : part, 3'd0} +: 8];
+        differs <= (fetched && signature_byte != expected_byte) || (differs && !late_last[0]);
+        in_frame <= row != height;
+        if (rst || empty)
+            {late_given, late_last, part} <= {2 * LATE + 2{1'b0}};
+    end
+
+    always @(posedge clk) begin
+        if (rst || empty) begin
+            kept <= 1'b0;
+            row <= 12'd0;
+            frame <= 32'd0;
+        end else if (settled && differs && in_frame)
+            kept <= 1'b1;
+        else if (settled) begin
+            row <= frame_left ? 12'd0 : row + {11'd0, in_frame};
+            frame <= frame + {31'd0, frame_left};
+        end
+    end
+
+    // Its samples.
+    (* ram_style = "block" *) reg [11:0] samples [0:(1<<COLUMN_BITS)-1];
+    reg [COLUMN_BITS-1:0] column; // that is written next, or read
+    reg [11:0] kept_width, kept_bytes, read_sample;
+    reg [3:0] earlier; // bits of the sample before
+    reg told;
+    wire next_column = kept ? reply_advance && (place == AT_LOW || place == AT_HIGH) : write;
+
+    always @(posedge clk) begin
+        if (write)
+            samples[column] <= late_sample[12*LATE-1:12*LATE-12];
+        read_sample <= samples[column];
+    end
+
+    always @(posedge clk) begin
+        if (rst || empty || (reply_begins && kept) || settled)
+            column <= {COLUMN_BITS{1'b0}};
+        else
+            column <= column + {{COLUMN_BITS-1{1'b0}}, next_column};
+        if (!kept)
+            {kept_width, kept_bytes} <= {width, sample_bytes};
+    end
+
+    // What is told of it.
+    always @(posedge clk) begin
+        if (trap_start) begin
+            told <= kept;
+            reply_length <= kept ? kept_bytes + HEAD_BYTES : 12'd1;
+        end
+        if (reply_begins)
+            place <= AT_KEPT;
+        else if (reply_advance)
+            place <= place == AT_HIGH ? AT_LOW : place + 4'd1;
+        if (reply_advance && place == AT_LOW)
+            earlier <= read_sample[11:8];
+    end
+
+    reg [7:0] of_frame, of_row, of_sample;
+
+    always @* begin
+        of_frame = frame[{place[1:0], 3'd0} +: 8];
+        case (place[1:0])
+            2'd0: {of_row, of_sample} = {row[7:0], read_sample[7:0]};
+            2'd1: {of_row, of_sample} = {4'd0, row[11:8], read_sample[3:0], earlier};
+            2'd2: {of_row, of_sample} = {kept_width[7:0], read_sample[11:4]};
+            default: {of_row, of_sample} = {4'd0, kept_width[11:8], 7'd0, told};
+        endcase
+        case (place[3:2])
+            2'd0: value = of_frame;
+            2'd1: value = of_row;
+            2'd2: value = signature_byte;
+            default: value = of_sample;
+        endcase
+    end
+
+    wire unused = &{1'b0, packet_length[1:0]};
+endmodule
+
+`default_nettype wire
