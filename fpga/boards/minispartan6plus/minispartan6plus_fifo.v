@@ -27,6 +27,7 @@ module minispartan6plus_fifo (
     halfrow_fifo_bridge #(
         .POWER_UP_WIDTH(1920),
         .POWER_UP_HEIGHT(1080),
+        .TRAP(0),
         .BUILD(`HALFROW_BUILD),
         .NAME("miniSpartan6+ LX25 FIFO")
     ) bridge (

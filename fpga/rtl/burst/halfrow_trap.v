@@ -41,7 +41,6 @@ module halfrow_trap #(
     `include "halfrow_board.vh"
 
     localparam ADDRESS_BITS = bits_for(MAX_HEIGHT);
-    localparam [ADDRESS_BITS:0] ALL_ROWS = MAX_HEIGHT[ADDRESS_BITS:0];
     localparam [3:0] NONE = 4'd0;
     localparam [11:0] HEAD_BYTES = 12'd13;
     // What stands at places of the reply: `kept`, then the head, then over and over the bytes of two samples.
@@ -51,11 +50,12 @@ module halfrow_trap #(
 
     // What is expected. The walk over rows that brings zeros behind rst brings the signatures of an EXPECT, too.
     (* ram_style = "block" *) reg [7:0] expected [0:(4<<ADDRESS_BITS)-1];
-    reg judging, walking, short, too_far;
-    reg [ADDRESS_BITS:0] end_row, walk_row;
+    reg judging, walking, short, far;
+    reg [12:0] end_row; // of EXPECTs that go no further; counts are below 1024
+    reg [ADDRESS_BITS:0] walk_row;
     reg [1:0] walk_byte;
-    wire [16:0] behind = {1'b0, first} + {1'b0, count};
-    wire arrived = walk_row == end_row;
+    wire arrived = walk_row == end_row[ADDRESS_BITS:0];
+    wire too_far = far || {19'd0, end_row} > MAX_HEIGHT;
     wire [3:0] verdict = short ? REFUSAL_PAYLOAD : under_way ? REFUSAL_BUSY : too_far ? REFUSAL_RANGE : NONE;
 
     assign advance = judging || walking;
@@ -64,21 +64,20 @@ module halfrow_trap #(
     always @(posedge clk) begin
         judging <= expect_start && !rst;
         short <= count[15:10] != 6'd0 || count[9:0] >= packet_length[11:2];
-        too_far <= behind > MAX_HEIGHT[16:0];
+        far <= first[15:12] != 4'd0;
         refusal <= judging ? verdict : NONE;
         finished <= !rst && (trap_start || (judging && verdict != NONE) || (walking && arrived && ready));
         walking <= rst || (judging && verdict == NONE) || (walking && !arrived);
         ready <= !rst && (ready || (walking && arrived));
         if (rst)
-            end_row <= ALL_ROWS;
+            end_row <= MAX_HEIGHT[12:0];
         else if (expect_start)
-            end_row <= behind[ADDRESS_BITS:0];
+            end_row <= {1'b0, first[11:0]} + {3'd0, count[9:0]};
         if (rst)
             {walk_row, walk_byte} <= {ADDRESS_BITS + 3{1'b0}};
-        else if (judging)
-            {walk_row, walk_byte} <= {first[ADDRESS_BITS:0], 2'd0};
         else
-            {walk_row, walk_byte} <= {walk_row, walk_byte} + 1'b1;
+            {walk_row, walk_byte} <= (judging ? {first[ADDRESS_BITS:0], 2'd0} : {walk_row, walk_byte})
+                + {{ADDRESS_BITS+2{1'b0}}, !judging};
     end
 
     // A row that has left is compared byte by byte.
