@@ -115,10 +115,11 @@ module halfrow_trap_bench;
                 last = gaps; // without an output it means nothing
                 if (gaps) repeat ($random(seed) & 1) @(negedge clk);
                 {given, last} = {1'b1, n == width - 1};
+                reply_begins = n == 20 && !kept; // a host asks meanwhile
                 sample = $random(seed);
                 samples[n] = sample;
                 @(negedge clk);
-                given = 0;
+                {given, reply_begins} = 2'b00;
             end
             last = 0;
             frame_left = is_last;
