@@ -20,8 +20,9 @@ struct Host {
     uint16_t sequence = 0;
     uint8_t session = 0, generation = 0;
     uint32_t window = 0, have = 0;           // rows that may be sent, rows that came back
-    uint64_t outputs = 0, signatures = 0;
+    uint64_t outputs = 0, signatures = 0, trapped = 0;
     int frame_blanking = -1;                 // the least of a burst; none if the board makes no bursts
+    bool has_trap = false;
     std::deque<Bytes> rows;                  // ROW_OUT packets
 
     int draw(int count) { return random() % count; }
@@ -79,7 +80,7 @@ struct Host {
         {
             found += (list[at] == 0x05 && list.at(at + 2) == TAPS) + (list[at] == 0x06 && list.at(at + 2) == LATENCY);
             if (list[at] == 0x10 && get(list, at + 2, 2) == 1)
-                frame_blanking = get(list, at + 6, 2);
+                frame_blanking = get(list, at + 6, 2), has_trap = list.at(at + 8);
         }
         if (found != 2)
             fail("the capabilities are not those of this build");
@@ -166,6 +167,8 @@ struct Host {
             }
             outputs++;
         }
+        if (get(out, 32 + frame.width / 2 * 3, 4) != signature(samples))
+            fail("what entered is not what was sent");
         have++;
         send(0x22, {});
     }
@@ -184,17 +187,16 @@ struct Host {
         signatures++;
     }
 
-    void burst(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel) {
+    // Fresh content has other frames each time, trapped content the same.
+    void burst(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel, uint32_t seed, uint16_t number, bool fresh) {
         constexpr unsigned FRAMES = 3, RECORD = 18, HEAD = 10;
-        uint32_t seed = random();
-        uint16_t number = random();
         Bytes start;
-        put(start, generation, 4);           // its name
+        put(start, 2 * generation + fresh, 4); // its name
         put(start, FRAMES, 4);
         put(start, seed, 4);
         put(start, number, 2);
         put(start, frame_blanking + draw(50), 2);
-        put(start, 0, 1);                    // fresh content
+        put(start, fresh ? 0 : 3, 1);
         ask(0x30, start);
         for (unsigned got = 0; got < FRAMES;) {
             Bytes from;
@@ -202,9 +204,34 @@ struct Host {
             Bytes reply = ask(0x31, from);
             for (unsigned k = 0, count = reply.at(9); k < count; k++, got++) {
                 auto record = reply.begin() + HEAD + RECORD * k;
-                check_record({record, record + RECORD}, frame, steps, signature(frame, steps, kernel, seed, number + got));
+                check_record({record, record + RECORD}, frame, steps, signature(frame, steps, kernel, seed, number + (fresh ? got : 0)));
             }
         }
+    }
+
+    // A burst of which one row is expected to be another.
+    void trap(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel) {
+        uint32_t seed = random();
+        uint16_t number = random();
+        unsigned wrong = draw(steps.size());
+        std::vector<Row> due;
+        Bytes expected;
+        put(expected, 0, 2);
+        put(expected, steps.size(), 2);
+        for (size_t row = 0; row < steps.size(); row++) {
+            due.push_back(corrected(frame, steps[row], kernel, content(seed, number, row, frame.width, frame.bits)));
+            put(expected, signature(due[row]) ^ (row == wrong ? 1u << draw(32) : 0), 4);
+        }
+        ask(0x32, expected);
+        burst(frame, steps, kernel, seed, number, false);
+        Bytes kept = ask(0x33, {});
+        if (kept.at(0) != 1 || get(kept, 1, 4) != 0 || get(kept, 5, 2) != wrong || get(kept, 7, 2) != unsigned(frame.width)
+            || get(kept, 9, 4) != signature(due[wrong]) || kept.size() != 13u + frame.width / 2 * 3)
+            fail("another row is trapped");
+        for (int j = 0; j < frame.width; j++)
+            if (int(get(kept, 13 + j / 2 * 3, 3) >> 12 * (j % 2) & 0xfff) != due[wrong][j])
+                fail("a sample of the trapped row differs");
+        trapped++;
     }
 
     void play() {
@@ -229,7 +256,9 @@ struct Host {
             check_row(frame, row, steps[row], weights, samples[row]);
         }
         if (frame_blanking >= 0)
-            burst(frame, steps, weights);
+            burst(frame, steps, weights, random(), random(), true);
+        if (has_trap)
+            trap(frame, steps, weights);
     }
 };
 
@@ -245,6 +274,7 @@ int main(int argc, char **argv) {
     host.hello();
     for (int k = 0; k < std::atoi(argv[1]); k++)
         host.play();
-    std::printf("%d taps: %lu samples and %lu signatures equal, %lu clocks\n", TAPS, host.outputs, host.signatures, host.link.lines.clocks);
+    std::printf("%d taps: %lu samples, %lu signatures and %lu trapped rows equal, %lu clocks\n", TAPS, host.outputs, host.signatures,
+                host.trapped, host.link.lines.clocks);
     return 0;
 }

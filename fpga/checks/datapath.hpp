@@ -111,15 +111,27 @@ inline Row content(uint32_t seed, uint16_t frame, int row, int width, int bits) 
     return samples;
 }
 
+// The outputs of a row of a burst with such a factor.
+inline Row corrected(const Frame &frame, int64_t step, const Kernel &kernel, const Row &samples) {
+    Row outputs;
+    for (int j = 0; j < frame.width; j++)
+        outputs.push_back(output(frame, step, kernel, samples, j));
+    return outputs;
+}
+
+inline uint32_t signature(const Row &row) {
+    uint32_t crc = 0;
+    for (int sample : row)
+        crc = crc32(crc, sample, 2);
+    return crc;
+}
+
 // The signature of a frame of a burst whose row y has the factor steps[y].
 inline uint32_t signature(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel, uint32_t seed, uint16_t number) {
     uint32_t all = 0;
     for (size_t row = 0; row < steps.size(); row++) {
         Row samples = content(seed, number, row, frame.width, frame.bits);
-        uint32_t one = 0;
-        for (int j = 0; j < frame.width; j++)
-            one = crc32(one, output(frame, steps[row], kernel, samples, j), 2);
-        all = crc32(all, one, 4);
+        all = crc32(all, signature(corrected(frame, steps[row], kernel, samples)), 4);
     }
     return all;
 }

@@ -323,11 +323,11 @@ module halfrow_rows #(
     halfrow_burst #(
         .MAX_HEIGHT(MAX_HEIGHT), .COLUMN_BITS(COLUMN_BITS), .TABLE_BANKS(TABLE_BANKS), .TRAP(TRAP)
     ) bursts (
-        .clk(clk), .rst(rst), .requests_ready(burst_ready), .request_start(burst_request), .request_kind(burst_kind),
-        .expect_first(expect_span[15:0]), .expect_count(expect_span[31:16]), .packet_length(packet_length[11:0]),
-        .width(width), .height(height), .sample_bytes(sample_bytes), .rewind(burst_rewind), .advance(burst_advance),
-        .packet_byte(packet_byte), .request_done(burst_done), .refusal(burst_refusal),
-        .detail(burst_detail), .ready(ready_for_burst), .busy(busy_for_burst),
+        .clk(clk), .rst(restarting), .requests_ready(burst_ready), .request_start(burst_request),
+        .request_kind(burst_kind), .expect_first(expect_span[15:0]), .expect_count(expect_span[31:16]),
+        .packet_length(packet_length[11:0]), .width(width), .height(height), .sample_bytes(sample_bytes),
+        .rewind(burst_rewind), .advance(burst_advance), .packet_byte(packet_byte), .request_done(burst_done),
+        .refusal(burst_refusal), .detail(burst_detail), .ready(ready_for_burst), .busy(busy_for_burst),
         .reply_length(answer_length), .reply_begins(answer_begin), .reply_advance(answer_next),
         .replying(answering), .reply_byte(answer_byte), .burst(burst), .ends(burst_ends),
         .drop(drop_rows || silence), .forget(drop_rows && new_session), .quiet(burst_quiet), .generation(generation),
