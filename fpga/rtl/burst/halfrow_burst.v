@@ -33,6 +33,7 @@ module halfrow_burst #(
     output reg  [7:0]  reply_byte,    // two clocks later, 0 unless `replying`
 
     output reg         burst,         // one is under way
+    output reg         bursting,      // a clock later, for what takes a row's samples from one side or the other
     output reg         ends,          // pulse: it was, up to the clock before
     input  wire        drop,          // pulse: it ends at once
     input  wire        forget,        // with drop: there is none of this session
@@ -91,6 +92,7 @@ module halfrow_burst #(
 
     always @(posedge clk) begin
         burst <= !rst && !drop && (starts || (burst && !over));
+        bursting <= burst;
         ends <= burst && (over || drop);
         started <= burst && start && !drop;
         if (rst || starts || drop)
@@ -140,9 +142,9 @@ module halfrow_burst #(
 
     always @(posedge clk) begin
         given <= burst && enable && pin_valid;
-        entering <= !burst && core_valid;
-        signed_last <= burst ? pin_last : in_last;
-        signed_sample <= burst ? pin_sample : core_sample;
+        entering <= !bursting && core_valid;
+        signed_last <= bursting ? pin_last : in_last;
+        signed_sample <= bursting ? pin_sample : core_sample;
         if (in_last)
             ended_leaves <= ends_frame;
         closing <= frames_inside != 2'd0 && !recorded && (closing || (row_left && ended_leaves));
@@ -154,7 +156,7 @@ module halfrow_burst #(
     wire [31:0] signature;
 
     halfrow_signer signer (
-        .clk(clk), .rst(rst || !burst), .anew(starts || (core_start && !burst)), .valid(given || entering),
+        .clk(clk), .rst(rst || !burst), .anew(starts || (core_start && !bursting)), .valid(given || entering),
         .last(signed_last), .sample(signed_sample), .next_frame(recorded), .signed_all(signed_all),
         .row_signature(row_signature), .signature(signature));
 

@@ -97,22 +97,25 @@ module halfrow_ledger #(
     reg no_mode, far; // what a request wants: another mode, records that there cannot be
     wire same = named && zero;
     wire looked_at = state == JUDGE && !wants_records && same && under_way && !no_mode;
-    wire given_any = given_wait != 7'd0;
-    wire paused_any = paused_wait != 7'd0;
+    reg given_any, paused_any; // of these there are some
     // A frame that has left is recorded before the next one's outputs come.
     wire begin_due = begin_waits && !row_waits && !frame_waits;
     wire request_due = request_waits && !row_waits && !begin_waits && !frame_waits;
     wire event_due = row_waits || (!frame_waits && (begin_waits || request_waits));
     wire samples_due = !event_due && given_any;
     wire pauses_due = !event_due && paused_any && !given_any;
+    wire samples_taken = at_rest && samples_due;
+    wire pauses_taken = at_rest && pauses_due;
     wire begun = last && (state == FRAMES ? !again : state == BEGUN && !more_frames);
 
     assign idle = at_rest && !(event_due || frame_waits || given_any || paused_any);
     assign more = more_frames && !begin_waits;
 
     always @(posedge clk) begin
-        given_wait <= (at_rest && samples_due ? 7'd0 : given_wait) + {6'd0, given};
-        paused_wait <= (at_rest && pauses_due ? 7'd0 : paused_wait) + {6'd0, paused};
+        given_wait <= (samples_taken ? 7'd0 : given_wait) + {6'd0, given};
+        paused_wait <= (pauses_taken ? 7'd0 : paused_wait) + {6'd0, paused};
+        given_any <= given || (given_any && !samples_taken);
+        paused_any <= paused || (paused_any && !pauses_taken);
         recorded <= !rst && last && state == RECORD;
         frees <= !rst && last && state == FROM && again;
         row_waits <= row_left || (row_waits && !at_rest);
@@ -127,6 +130,7 @@ module halfrow_ledger #(
         request_waits <= start || (request_waits && !(at_rest && request_due)) || looked_at;
         if (rst || drop || starts) begin
             {given_wait, paused_wait} <= 14'd0;
+            {given_any, paused_any} <= 2'd0;
             {row_waits, frame_waits, begin_waits} <= 3'd0;
         end
         if (rst)

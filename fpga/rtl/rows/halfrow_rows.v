@@ -139,7 +139,7 @@ module halfrow_rows #(
     localparam [ENTRY_BITS-1:0] BANKS_OUT = {{ENTRY_BITS-1{1'b0}}, 1'b1} << OUT_BITS;
 
     wire clear = rst || drop_rows;
-    wire burst_ends;
+    wire bursting, burst_ends;
     reg restarting; // a clock behind rst, on which too much hangs
     wire clear_core = restarting || drop_rows || burst_ends; // nothing is inside it
 
@@ -249,11 +249,11 @@ module halfrow_rows #(
         .read_address({start ? ready_entry[IN_BITS-1:0] : played_bank, column_played}), .read_sample(sample_played));
 
     halfrow_content content (
-        .clk(clk), .burst(burst), .depth(depth), .seed(burst_seed), .frame(burst_frame), .row(burst_row),
+        .clk(clk), .burst(bursting), .depth(depth), .seed(burst_seed), .frame(burst_frame), .row(burst_row),
         .gap_seed(gap_seed), .first(first_draw), .begins_row(draws_first), .enters(sample_in_read),
         .row_starts(start), .column(column_played[3:0]), .draw(draw), .sample(sample_made));
 
-    assign in_sample = burst ? sample_made : sample_played;
+    assign in_sample = bursting ? sample_made : sample_played;
 
     wire sample_out_write, row_inside, other_tables, row_measured;
     wire [COLUMN_BITS-1:0] column_collected, column_sent;
@@ -329,10 +329,10 @@ module halfrow_rows #(
         .rewind(burst_rewind), .advance(burst_advance), .packet_byte(packet_byte), .request_done(burst_done),
         .refusal(burst_refusal), .detail(burst_detail), .ready(ready_for_burst), .busy(busy_for_burst),
         .reply_length(answer_length), .reply_begins(answer_begin), .reply_advance(answer_next),
-        .replying(answering), .reply_byte(answer_byte), .burst(burst), .ends(burst_ends),
-        .drop(drop_rows || silence), .forget(drop_rows && new_session), .quiet(burst_quiet), .generation(generation),
-        .row_there(burst_row_there), .row(burst_row), .other_tables(burst_other), .seed(burst_seed),
-        .frame(burst_frame), .frame_blanking(frame_blanking), .alternates(burst_alternates),
+        .replying(answering), .reply_byte(answer_byte), .burst(burst), .bursting(bursting),
+        .ends(burst_ends), .drop(drop_rows || silence), .forget(drop_rows && new_session), .quiet(burst_quiet),
+        .generation(generation), .row_there(burst_row_there), .row(burst_row), .other_tables(burst_other),
+        .seed(burst_seed), .frame(burst_frame), .frame_blanking(frame_blanking), .alternates(burst_alternates),
         .preparing(preparer_busy), .row_ready(row_ready), .row_is_last(next_is_last), .due(due), .start(start),
         .in_last(in_last), .ends_frame(ends_frame), .frame_valid(frame_valid), .core_valid(core_valid),
         .core_start(core_start), .core_sample(core_sample), .row_signature(entered), .enable(core_enable),
