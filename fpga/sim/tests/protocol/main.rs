@@ -5,7 +5,8 @@
 
 mod judged;
 
-use halfrow_conformance::frames::lean;
+use halfrow_conformance::at_speed::{HEIGHT, golden_tables, ready_with};
+use halfrow_conformance::frames::{configuration, lean};
 use halfrow_conformance::{Boards, Build, Subject};
 use halfrow_mock::{BurstBuild, Options, TapCount};
 use halfrow_sim::Board;
@@ -63,3 +64,13 @@ impl Boards for Simulated {
 }
 
 halfrow_conformance::conformance!(&crate::Simulated);
+
+/// The suite leaves out what a board says that it has not got.
+#[test]
+fn every_build_but_the_lean_one_has_the_trap_that_the_suite_tries() {
+    for (_, build, options) in builds() {
+        let (_, bursts) = ready_with(&Simulated, &build, configuration(HEIGHT), &golden_tables()).unwrap();
+        assert_eq!(bursts.trap, options.bursts == BurstBuild::Trapped);
+        assert_eq!(bursts.trap, build != lean());
+    }
+}
