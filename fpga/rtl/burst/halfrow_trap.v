@@ -134,7 +134,7 @@ module halfrow_trap #(
     reg [COLUMN_BITS-1:0] column; // that is written next, or read
     reg [11:0] kept_width, kept_bytes, read_sample;
     reg [3:0] earlier; // bits of the sample before
-    reg told;
+    reg told, begins; // a clock late, for which `told` has time
     wire next_column = kept ? reply_advance && (place == AT_LOW || place == AT_HIGH) : write;
 
     always @(posedge clk) begin
@@ -144,7 +144,7 @@ module halfrow_trap #(
     end
 
     always @(posedge clk) begin
-        if (rst || empty || (reply_begins && kept) || settled)
+        if (rst || empty || (begins && kept) || settled)
             column <= {COLUMN_BITS{1'b0}};
         else
             column <= column + {{COLUMN_BITS-1{1'b0}}, next_column};
@@ -158,7 +158,8 @@ module halfrow_trap #(
             told <= kept;
             reply_length <= kept ? kept_bytes + HEAD_BYTES : 12'd1;
         end
-        if (reply_begins)
+        begins <= reply_begins;
+        if (begins)
             place <= AT_KEPT;
         else if (reply_advance)
             place <= place == AT_HIGH ? AT_LOW : place + 4'd1;
