@@ -50,9 +50,12 @@ pub enum Build {
 pub enum Failure {
     /// It works for ever.
     #[error(
-        "the design was not at rest {PATIENCE} clocks behind the last byte that it took; look at its waveform with trace=FILE"
+        "the design was not at rest {clocks} clocks behind the last byte that it took; look at its waveform with trace=FILE"
     )]
-    Hung,
+    Hung {
+        /// That many.
+        clocks: u32,
+    },
     /// It does what a chip at its pins does not allow.
     #[error("the design breaks the FT2232H's rules at {} ns: {rule}", picoseconds / 1000)]
     Rule {
@@ -78,6 +81,7 @@ pub enum TraceError {
 /// rest.
 pub struct Board {
     machine: Box<dyn Machine>,
+    patience: u32,
     outgoing: Vec<u8>,
     /// Milliseconds that the design was told of.
     milliseconds: u64,
@@ -110,9 +114,16 @@ impl Board {
         Self::with(BytePort::new(functions, seed))
     }
 
-    fn with<P: Port + 'static>(mut port: P) -> Self {
+    pub(crate) fn with<P: Port + 'static>(mut port: P) -> Self {
         port.reset();
-        Self { machine: Box::new(Clocked(port)), outgoing: Vec::new(), milliseconds: 0, failure: None }
+        let machine = Box::new(Clocked(port));
+        Self { machine, patience: PATIENCE, outgoing: Vec::new(), milliseconds: 0, failure: None }
+    }
+
+    /// The same, given up after so many steps.
+    #[cfg(feature = "library")]
+    pub(crate) fn patient(self, patience: u32) -> Self {
+        Self { patience, ..self }
     }
 
     /// Writes a waveform of the whole design, from now on, to `path` in VCD. Builds for tests have none.
@@ -143,7 +154,7 @@ impl Endpoint for Board {
             return Err(failure.clone());
         }
         let milliseconds = self.pass(now);
-        let done = self.machine.run(milliseconds, bytes, &mut self.outgoing);
+        let done = self.machine.run(milliseconds, bytes, self.patience, &mut self.outgoing);
         self.failure = done.clone().err();
         done
     }
@@ -155,8 +166,15 @@ impl Endpoint for Board {
 
 /// A design and the far end of its link, whichever they are.
 trait Machine: Send {
-    /// Lets milliseconds pass, then hands over bytes, then clocks the design until it is at rest. Appends what it says.
-    fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure>;
+    /// Lets milliseconds pass, then hands over bytes, then clocks the design until it is at rest, or `patience` is at its end.
+    /// Appends what it says.
+    fn run(
+        &mut self,
+        milliseconds: u64,
+        bytes: &[u8],
+        patience: u32,
+        said: &mut Vec<u8>,
+    ) -> Result<(), Failure>;
 
     fn trace(&mut self, path: &Path) -> bool;
 }
@@ -164,7 +182,13 @@ trait Machine: Send {
 struct Clocked<P>(P);
 
 impl<P: Port> Machine for Clocked<P> {
-    fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure> {
+    fn run(
+        &mut self,
+        milliseconds: u64,
+        bytes: &[u8],
+        patience: u32,
+        said: &mut Vec<u8>,
+    ) -> Result<(), Failure> {
         for _ in 0..milliseconds {
             let Step { sent, .. } = self.0.step(None, true)?;
             said.extend(sent);
@@ -180,8 +204,8 @@ impl<P: Port> Machine for Clocked<P> {
                 bytes.next();
                 waited = 0;
             }
-            if waited == PATIENCE {
-                return Err(Failure::Hung);
+            if waited == patience {
+                return Err(Failure::Hung { clocks: patience });
             }
         }
         Ok(())

@@ -152,6 +152,36 @@ unsafe extern "C" {
     pub(crate) safe static halfrow_core_short5: Functions<CoreInputs, CoreOutputs>;
 }
 
+/// A board that was compiled apart, and which of its faults it has.
+#[cfg(feature = "library")]
+pub(crate) struct FaultyFunctions {
+    functions: &'static Functions<BridgeInputs, BridgeOutputs>,
+    fault: *mut u16,
+}
+
+#[cfg(feature = "library")]
+impl FaultyFunctions {
+    /// Of the library `path`, which stays loaded.
+    pub(crate) fn load(path: &Path) -> Result<Self, libloading::Error> {
+        // SAFETY: what runs when it is loaded is the start of Verilator's own library; it is never unloaded, so that what it
+        // offers is there for good; its two names stand in shim/faulty.h with these types.
+        unsafe {
+            let library = Box::leak(Box::new(libloading::Library::new(path)?));
+            let functions =
+                *library.get::<*const Functions<BridgeInputs, BridgeOutputs>>(b"halfrow_faulty")?;
+            let fault = *library.get::<*mut u16>(b"halfrow_fault")?;
+            Ok(Self { functions: &*functions, fault })
+        }
+    }
+
+    /// Its functions, with this fault from now on.
+    pub(crate) fn choose(&mut self, fault: u16) -> &'static Functions<BridgeInputs, BridgeOutputs> {
+        // SAFETY: it is a variable of the library's, which nothing reads but what this thread calls.
+        unsafe { *self.fault = fault };
+        self.functions
+    }
+}
+
 /// A verilated design with the inputs `I` and the outputs `O`.
 pub(crate) struct Design<I: 'static, O: 'static> {
     object: *mut c_void,

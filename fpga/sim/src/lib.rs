@@ -9,7 +9,8 @@
 //! [`Board`] is what stands at the end of a pipe, so the pipe's options and faults are the same for both. The
 //! clock of the pipe stands still while the design is simulated, as it does while the mock computes.
 //!
-//! [`Core`] is the corrector alone, clock by clock, for tests (feature `builds`).
+//! [`Core`] is the corrector alone, clock by clock, for tests (feature `builds`). [`FaultyBoard`] is a build with faults in it, of
+//! which a number chooses one (feature `library`).
 
 mod board;
 mod byte_port;
@@ -17,6 +18,8 @@ mod byte_port;
 mod core;
 mod ffi;
 mod ft2232h;
+#[cfg(feature = "library")]
+mod library;
 mod port;
 mod uart;
 
@@ -25,3 +28,5 @@ pub use crate::board::{Board, Build, Failure, Front, TraceError};
 pub use crate::core::{Core, CoreBuild};
 #[cfg(feature = "builds")]
 pub use crate::ffi::{CoreInputs, CoreOutputs};
+#[cfg(feature = "library")]
+pub use crate::library::{FaultyBoard, LibraryError};

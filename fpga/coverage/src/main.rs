@@ -1,0 +1,38 @@
+//! Judges a board that has faults in its Verilog, one at a time, by verify's own plan, and prints what found each.
+//! `scripts/hardware coverage` builds the boards and collects what this prints; fpga/checks/README.md says what comes of it.
+
+mod judged;
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use halfrow::Plan;
+use halfrow::model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
+use halfrow::run::Vary;
+use halfrow_sim::FaultyBoard;
+
+use judged::judge;
+
+const USAGE: &str = "halfrow-coverage LIBRARY WIDTH HEIGHT RADIUS FIRST LAST";
+
+// It is a tool of the project's own scripts, which read what it prints.
+#[allow(clippy::print_stdout)]
+fn main() -> Result<()> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    let [library, width, height, radius, first, last] = &words[..] else { bail!("usage: {USAGE}") };
+    let plan = plan(width.parse()?, height.parse()?, radius.parse()?)?;
+    let mut board = FaultyBoard::load(&PathBuf::from(library))?;
+    for fault in first.parse()?..=last.parse()? {
+        let judged = judge(&plan, &mut board, fault).with_context(|| format!("fault {fault}"))?;
+        println!("{}", serde_json::to_string(&judged)?);
+    }
+    Ok(())
+}
+
+/// What `halfrow verify --width W --height H --radius R` does.
+fn plan(width: usize, height: usize, radius: f64) -> Result<Plan> {
+    let lens = Equidistant::from_radius(radius)?;
+    let tables = TableSet::from_lens(Geometry::centred(width, height, BitDepth::Twelve)?, &lens, None)?;
+    let plan = Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens);
+    Ok(plan.varying(Vary { centre: true, depth: true }))
+}

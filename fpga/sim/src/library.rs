@@ -1,0 +1,37 @@
+//! A board with faults in it, compiled apart from this program (shim/faulty.h).
+
+use std::path::Path;
+
+use crate::board::Board;
+use crate::byte_port::BytePort;
+use crate::ffi::FaultyFunctions;
+
+/// A library that holds no faulty board.
+#[derive(Debug, thiserror::Error)]
+#[error("{path} cannot be used as a board with faults; build it with `scripts/hardware coverage`")]
+pub struct LibraryError {
+    path: String,
+    source: libloading::Error,
+}
+
+/// A build of the board with faults in it, of which a number chooses one.
+pub struct FaultyBoard(FaultyFunctions);
+
+impl FaultyBoard {
+    /// The build in the shared library `path`.
+    ///
+    /// # Errors
+    /// [`LibraryError`] when there is none.
+    pub fn load(path: &Path) -> Result<Self, LibraryError> {
+        let named = |source| LibraryError { path: path.display().to_string(), source };
+        FaultyFunctions::load(path).map(Self).map_err(named)
+    }
+
+    /// The board with this fault, 0 for none, switched on and reset. `seed` draws what its memories hold then; a board that is
+    /// not at rest `patience` clocks behind the last byte that it took never will be. The fault is that of every board of this
+    /// library that is alive.
+    pub fn switch_on(&mut self, fault: u16, seed: u32, patience: u32) -> Board {
+        let functions = self.0.choose(fault);
+        Board::with(BytePort::new(functions, seed)).patient(patience)
+    }
+}
