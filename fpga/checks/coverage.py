@@ -5,6 +5,7 @@ coverage.ini says where faults are put. yosys draws them into the netlist of the
 chooses one; RUNNER (halfrow-coverage) judges the board with each. What was found is kept in WORK, and a run that was stopped goes on.
 """
 import collections
+import concurrent.futures
 import configparser
 import hashlib
 import json
@@ -13,9 +14,8 @@ import re
 import shutil
 import subprocess
 import sys
-import threading
-import zlib
 
+import mutants
 import rtl
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -31,24 +31,11 @@ DRAW = "read_ilang {base}; select {modules} t:$mem* %d; mutate -list {count} -se
 WITH_FAULTS = "read_ilang {base}\n{faults}\nhierarchy -top {top}\nsplitnets\nwrite_verilog -noattr {made}\n"
 
 
-def run(command, log):
-    with open(log, "w") as out:
-        if subprocess.run([str(word) for word in command], stdout=out, stderr=subprocess.STDOUT).returncode != 0:
-            sys.exit(f"coverage: {command[0]} failed, see {log}")
-
-
-def sources():
-    """The CRC-32 of the board's sources."""
-    told = 0
-    for path in sorted(rtl.RTL.glob("**/*.v*"), key=lambda path: path.name):
-        told = zlib.crc32(path.read_bytes(), told)
-    return told
-
-
 def key(count, runner):
     """A hash of all that decides what a fault is and who finds it."""
-    told = hashlib.sha256(f"{count} {SEED} {SIZES} {sources()}".encode())
-    for path in [HERE / "coverage.py", HERE / "coverage.ini", *sorted(SHIM.iterdir()), pathlib.Path(runner)]:
+    told = hashlib.sha256(f"{count} {SEED} {SIZES}".encode())
+    own = [HERE / "coverage.py", HERE / "coverage.ini", HERE / "mutants.py", HERE / "rtl.py", pathlib.Path(runner)]
+    for path in [*own, *sorted(SHIM.iterdir()), *sorted(rtl.RTL.glob("**/*.v*"))]:
         told.update(path.read_bytes())
     return told.hexdigest()
 
@@ -58,7 +45,7 @@ def board(work):
     base = work / "board.il"
     if not base.exists():
         commands = rtl.read(TOP, ["NATURE=2"]) + BOARD.format(top=TOP, base=base.with_suffix(".new"))
-        run(["yosys", "-q", "-p", commands], work / "board.log")
+        mutants.run(["yosys", "-q", "-p", commands], work / "board.log")
         base.with_suffix(".new").rename(base)
     return base, re.findall(r"^module \\(\S+)", base.read_text(), re.MULTILINE)
 
@@ -77,10 +64,9 @@ def chosen(section, modules):
 
 def draw(place, base, modules, count):
     """The commands of yosys that put a block's faults in, one a fault."""
-    words = DRAW.format(base=base, modules=" ".join(modules), count=count + count // 4 + 10, seed=SEED, faults=place / "faults.txt")
-    run(["yosys", "-q", "-p", words], place / "draw.log")
-    drawn = [fault for fault in (place / "faults.txt").read_text().splitlines() if "-port CLK " not in fault][:count]
-    return [re.sub(r"fault 16 \d+", f"fault 16 {number}", fault) for number, fault in enumerate(drawn, 1)]
+    words = DRAW.format(base=base, modules=" ".join(modules), count=mutants.more(count), seed=SEED, faults=place / "faults.txt")
+    mutants.run(["yosys", "-q", "-p", words], place / "draw.log")
+    return mutants.numbered(place / "faults.txt", count)
 
 
 def library(place, base, faults):
@@ -89,63 +75,52 @@ def library(place, base, faults):
     if library.exists():
         return library
     (place / "faults.ys").write_text(WITH_FAULTS.format(base=base, faults="\n".join(faults), top=TOP, made=made))
-    run(["yosys", "-q", "-s", place / "faults.ys"], place / "yosys.log")
+    mutants.run(["yosys", "-q", "-s", place / "faults.ys"], place / "yosys.log")
     folder = place / "translated"
     shutil.rmtree(folder, ignore_errors=True)
-    run(["verilator", "--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal", "-Wno-lint", "-Wno-UNOPTFLAT",
+    mutants.run(["verilator", "--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal", "-Wno-lint", "-Wno-UNOPTFLAT",
          "--top-module", TOP, "--prefix", "Faulty", "--Mdir", folder, made], place / "verilator.log")
     root = subprocess.run(["verilator", "--getenv", "VERILATOR_ROOT"], capture_output=True, text=True, check=True).stdout.strip()
     include = pathlib.Path(root) / "include"
     sources = [SHIM / "faulty.h", *sorted(folder.glob("*.cpp"))]
     unit = place / "board.cpp"
     unit.write_text("".join(f'#include "{source.resolve()}"\n' for source in sources) + "DESIGN(faulty, Faulty)\n")
-    run(["g++", "-std=c++17", "-O2", "-w", "-shared", "-fPIC", "-fno-semantic-interposition", "-DVL_TIME_CONTEXT", "-DVM_TRACE=0",
+    mutants.run(["g++", "-std=c++17", "-O2", "-w", "-shared", "-fPIC", "-fno-semantic-interposition", "-DVL_TIME_CONTEXT", "-DVM_TRACE=0",
          "-DVM_COVERAGE=0", "-DVM_SC=0", f"-I{include}", f"-I{include / 'vltstd'}", f"-I{SHIM}", f"-I{folder}", unit, include / "verilated.cpp",
          include / "verilated_threads.cpp", "-lpthread", "-o", library.with_suffix(".new")], place / "compiler.log")
     library.with_suffix(".new").rename(library)
     return library
 
 
-def judge(runner, library, numbers, results):
-    """Judges faults one after the other, each by a call of RUNNER's, and keeps what it says."""
-    lock = threading.Lock()
-    left = list(reversed(numbers))
-
-    def some():
-        while True:
-            with lock:
-                if not left:
-                    return
-                number = str(left.pop())
-            said = subprocess.run([runner, library, *SIZES, number, number], capture_output=True, text=True)
-            if said.returncode != 0:
-                sys.exit(f"coverage: fault {number} of {library}: {said.stderr.strip()}")
-            with lock, open(results, "a") as out:
-                out.write(said.stdout)
-
-    threads = [threading.Thread(target=some) for _ in range(AT_ONCE)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+def judge(runner, library, number):
+    """What RUNNER says of the board with this fault."""
+    said = subprocess.run([runner, library, *SIZES, str(number)], capture_output=True, text=True)
+    if said.returncode != 0:
+        sys.exit(f"coverage: fault {number} of {library}: {said.stderr.strip()}")
+    return json.loads(said.stdout)
 
 
 def judged(runner, place, base, faults):
-    """What is known of each fault of a block, by number; 0 is none."""
+    """What is known of each fault of a block, by number; 0 is none, which must pass before the others are tried."""
     results = place / "results"
-    def known():
-        lines = results.read_text().splitlines() if results.exists() else []
-        return {found["fault"]: found for found in map(json.loads, lines)}
-    missing = [number for number in range(len(faults) + 1) if number not in known()]
-    if missing:
-        made = library(place, base, faults)
-        if 0 in missing:
-            judge(runner, made, [0], results)
-            missing.remove(0)
-        if known()[0]["verdict"] != "PASS":
-            sys.exit(f"coverage: the board without a fault does not pass, see {results}")
-        judge(runner, made, missing, results)
-    return known()
+    lines = results.read_text().splitlines() if results.exists() else []
+    known = {found["fault"]: found for found in map(json.loads, lines)}
+    missing = [number for number in range(len(faults) + 1) if number not in known]
+    if not missing:
+        return known
+    made = library(place, base, faults)
+    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool, open(results, "a", buffering=1) as out:
+        for numbers in (missing[:1], missing[1:]):
+            tried = [pool.submit(judge, runner, made, number) for number in numbers]
+            for one in concurrent.futures.as_completed(tried):
+                if one.exception():
+                    pool.shutdown(cancel_futures=True)
+                found = one.result()
+                known[found["fault"]] = found
+                out.write(json.dumps(found) + "\n")
+            if known[0]["verdict"] != "PASS":
+                sys.exit(f"coverage: the board without a fault does not pass, see {results}")
+    return known
 
 
 def finder(found):

@@ -44,7 +44,18 @@ CHOICE = """reg [15:0] mutsel;
 def run(command, log):
     with open(log, "w") as out:
         if subprocess.run([str(word) for word in command], stdout=out, stderr=subprocess.STDOUT).returncode != 0:
-            sys.exit(f"mutation: {command[0]} failed, see {log}")
+            sys.exit(f"{pathlib.Path(sys.argv[0]).stem}: {command[0]} failed, see {log}")
+
+
+def more(count):
+    """Faults to draw so that `count` are left without those of clocks."""
+    return count + count // 4 + 10
+
+
+def numbered(drawn, count):
+    """The first `count` of yosys' commands in the file `drawn`, without those that turn a clock; each is chosen by its number from 1 on."""
+    faults = [fault for fault in drawn.read_text().splitlines() if "-port CLK " not in fault][:count]
+    return [re.sub(r"(-ctrl \S+ \d+) \d+", rf"\g<1> {number}", fault) for number, fault in enumerate(faults, 1)]
 
 
 def header(module):
@@ -91,10 +102,9 @@ def draw(place, module, section, count, seed):
     """The commands of yosys that put faults in, one a fault."""
     without = "".join(f" *{name}*/* %d" for name in section.get("without", "").split())
     read = rtl.read(module, section.get("parameters", "").split())
-    commands = DRAW.format(read=read, module=module, place=place, without=without, count=count + count // 4 + 10, seed=seed)
+    commands = DRAW.format(read=read, module=module, place=place, without=without, count=more(count), seed=seed)
     run(["yosys", "-q", "-p", commands.replace("\n", " ")], place / "draw.log")
-    drawn = [fault for fault in (place / "faults.txt").read_text().splitlines() if not re.search("-port CLK ", fault)][:count]
-    return [re.sub(r"mutsel 16 \d+", f"mutsel 16 {number}", fault) for number, fault in enumerate(drawn, 1)]
+    return numbered(place / "faults.txt", count)
 
 
 def build(place, check, made, section):

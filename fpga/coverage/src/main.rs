@@ -1,11 +1,11 @@
-//! Judges a board that has faults in its Verilog, one at a time, by verify's own plan, and prints what found each.
+//! Judges a board that has one fault in its Verilog by verify's own plan, and prints what found it.
 //! `scripts/hardware coverage` builds the boards and collects what this prints; fpga/checks/README.md says what comes of it.
 
 mod judged;
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use halfrow::Plan;
 use halfrow::model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
 use halfrow::run::Vary;
@@ -13,19 +13,16 @@ use halfrow_sim::FaultyBoard;
 
 use judged::judge;
 
-const USAGE: &str = "halfrow-coverage LIBRARY WIDTH HEIGHT RADIUS FIRST LAST";
+const USAGE: &str = "halfrow-coverage LIBRARY WIDTH HEIGHT RADIUS FAULT";
 
 // It is a tool of the project's own scripts, which read what it prints.
 #[allow(clippy::print_stdout)]
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [library, width, height, radius, first, last] = &words[..] else { bail!("usage: {USAGE}") };
+    let [library, width, height, radius, fault] = &words[..] else { bail!("usage: {USAGE}") };
     let plan = plan(width.parse()?, height.parse()?, radius.parse()?)?;
     let mut board = FaultyBoard::load(&PathBuf::from(library))?;
-    for fault in first.parse()?..=last.parse()? {
-        let judged = judge(&plan, &mut board, fault).with_context(|| format!("fault {fault}"))?;
-        println!("{}", serde_json::to_string(&judged)?);
-    }
+    println!("{}", serde_json::to_string(&judge(&plan, &mut board, fault.parse()?)?)?);
     Ok(())
 }
 

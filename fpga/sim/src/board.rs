@@ -81,7 +81,6 @@ pub enum TraceError {
 /// rest.
 pub struct Board {
     machine: Box<dyn Machine>,
-    patience: u32,
     outgoing: Vec<u8>,
     /// Milliseconds that the design was told of.
     milliseconds: u64,
@@ -94,8 +93,8 @@ impl Board {
     pub fn new(front: Front, seed: u32) -> Self {
         match front {
             Front::Bytes => Self::of_build(Build::Shipped, seed),
-            Front::Uart => Self::with(Uart::new(seed)),
-            Front::Fifo => Self::with(Ft2232h::new(seed)),
+            Front::Uart => Self::with(Uart::new(seed), PATIENCE),
+            Front::Fifo => Self::with(Ft2232h::new(seed), PATIENCE),
         }
     }
 
@@ -111,19 +110,14 @@ impl Board {
             #[cfg(feature = "builds")]
             Build::FiveTapsOneBank => &ffi::halfrow_bridge_lean,
         };
-        Self::with(BytePort::new(functions, seed))
+        Self::with(BytePort::new(functions, seed), PATIENCE)
     }
 
-    pub(crate) fn with<P: Port + 'static>(mut port: P) -> Self {
+    /// A design behind `port`, given up after `patience` steps, reset.
+    pub(crate) fn with<P: Port + 'static>(mut port: P, patience: u32) -> Self {
         port.reset();
-        let machine = Box::new(Clocked(port));
-        Self { machine, patience: PATIENCE, outgoing: Vec::new(), milliseconds: 0, failure: None }
-    }
-
-    /// The same, given up after so many steps.
-    #[cfg(feature = "library")]
-    pub(crate) fn patient(self, patience: u32) -> Self {
-        Self { patience, ..self }
+        let machine = Box::new(Clocked { port, patience });
+        Self { machine, outgoing: Vec::new(), milliseconds: 0, failure: None }
     }
 
     /// Writes a waveform of the whole design, from now on, to `path` in VCD. Builds for tests have none.
@@ -154,7 +148,7 @@ impl Endpoint for Board {
             return Err(failure.clone());
         }
         let milliseconds = self.pass(now);
-        let done = self.machine.run(milliseconds, bytes, self.patience, &mut self.outgoing);
+        let done = self.machine.run(milliseconds, bytes, &mut self.outgoing);
         self.failure = done.clone().err();
         done
     }
@@ -166,37 +160,28 @@ impl Endpoint for Board {
 
 /// A design and the far end of its link, whichever they are.
 trait Machine: Send {
-    /// Lets milliseconds pass, then hands over bytes, then clocks the design until it is at rest, or `patience` is at its end.
-    /// Appends what it says.
-    fn run(
-        &mut self,
-        milliseconds: u64,
-        bytes: &[u8],
-        patience: u32,
-        said: &mut Vec<u8>,
-    ) -> Result<(), Failure>;
+    /// Lets milliseconds pass, then hands over bytes, then clocks the design until it is at rest. Appends what it says.
+    fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure>;
 
     fn trace(&mut self, path: &Path) -> bool;
 }
 
-struct Clocked<P>(P);
+struct Clocked<P> {
+    port: P,
+    /// Steps without a byte taken after which the design is given up.
+    patience: u32,
+}
 
 impl<P: Port> Machine for Clocked<P> {
-    fn run(
-        &mut self,
-        milliseconds: u64,
-        bytes: &[u8],
-        patience: u32,
-        said: &mut Vec<u8>,
-    ) -> Result<(), Failure> {
+    fn run(&mut self, milliseconds: u64, bytes: &[u8], said: &mut Vec<u8>) -> Result<(), Failure> {
         for _ in 0..milliseconds {
-            let Step { sent, .. } = self.0.step(None, true)?;
+            let Step { sent, .. } = self.port.step(None, true)?;
             said.extend(sent);
         }
         let mut bytes = bytes.iter().copied().peekable();
         let (mut waited, mut rested) = (0, 0);
         while rested < P::REST {
-            let Step { taken, sent, quiet } = self.0.step(bytes.peek().copied(), false)?;
+            let Step { taken, sent, quiet } = self.port.step(bytes.peek().copied(), false)?;
             said.extend(sent);
             rested = if quiet { rested + 1 } else { 0 };
             waited += 1;
@@ -204,14 +189,14 @@ impl<P: Port> Machine for Clocked<P> {
                 bytes.next();
                 waited = 0;
             }
-            if waited == patience {
-                return Err(Failure::Hung { clocks: patience });
+            if waited == self.patience {
+                return Err(Failure::Hung { clocks: self.patience });
             }
         }
         Ok(())
     }
 
     fn trace(&mut self, path: &Path) -> bool {
-        self.0.trace(path)
+        self.port.trace(path)
     }
 }

@@ -32,6 +32,6 @@ impl FaultyBoard {
     /// library that is alive.
     pub fn switch_on(&mut self, fault: u16, seed: u32, patience: u32) -> Board {
         let functions = self.0.choose(fault);
-        Board::with(BytePort::new(functions, seed)).patient(patience)
+        Board::with(BytePort::new(functions, seed), patience)
     }
 }
