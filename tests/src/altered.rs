@@ -5,6 +5,7 @@ use std::convert::Infallible;
 use std::fmt;
 use std::time::Duration;
 
+use halfrow::Plan;
 use halfrow::link::{Candidate, WireLink};
 use halfrow::result::Report;
 use halfrow::target::BoardKind;
@@ -13,7 +14,7 @@ use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_protocol::message::Capabilities;
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply};
 
-use crate::system::System;
+use crate::system::{System, judge_by_plan};
 
 /// Where a packet goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -146,11 +147,18 @@ pub fn judge_each(
 /// The report on a board that is sound but for what it says of itself.
 #[must_use]
 pub fn judge_claims(system: &System, change: impl Fn(&mut Capabilities) + Send + 'static) -> Report {
-    judge_each(system, move |_, packet| match packet.reply() {
+    judge_claims_by(&system.plan(), change)
+}
+
+/// The same by another plan.
+#[must_use]
+pub fn judge_claims_by(plan: &Plan, change: impl Fn(&mut Capabilities) + Send + 'static) -> Report {
+    let alter = move |_, packet: Passing| match packet.reply() {
         Some(Reply::Capabilities(mut capabilities)) => {
             change(&mut capabilities);
-            packet.saying(&Reply::Capabilities(capabilities))
+            vec![packet.saying(&Reply::Capabilities(capabilities))]
         }
-        _ => packet,
-    })
+        _ => vec![packet],
+    };
+    judge_by_plan(plan, Altered::new(&Options::default(), alter).candidate())
 }

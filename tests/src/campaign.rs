@@ -6,13 +6,14 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
+use halfrow::Plan;
 use halfrow::verdict::Verdict;
 
 use crate::dice::Dice;
 use crate::parallel;
 use halfrow::result::CheckName;
 
-use crate::system::{System, failed_check};
+use crate::system::{System, failed_check, judge_by_plan, open};
 
 /// The kinds of faults, and their share in a campaign, in tenths.
 const KINDS: [(Kind, usize); 5] = [
@@ -83,7 +84,7 @@ pub fn run(system: &System, count: usize, seed: u64) -> Campaign {
         kind: *kind,
         options: options.clone(),
         drawn: *drawn,
-        found: kind.search(system, options),
+        found: kind.search(system, &system.plan(), options),
     }))
 }
 
@@ -115,21 +116,22 @@ impl Kind {
         }
     }
 
-    /// Looks for a fault of this kind, given as options of a target: in the samples alone, and then in what reads back.
+    /// Looks for a fault of this kind by a plan of `system`, given as options of a target: in the samples alone, and then in what reads
+    /// back.
     ///
     /// # Panics
     /// When the run comes to anything but PASS or FAIL, or a check fails that has nothing to do with the fault.
     #[must_use]
-    pub fn search(self, system: &System, options: &str) -> Found {
+    pub fn search(self, system: &System, plan: &Plan, options: &str) -> Found {
         let is_in_table = matches!(self, Self::RowFactor | Self::KernelWord);
         let hidden = if is_in_table { ",hidden=true" } else { "" };
-        match check_of(system, &format!("{options}{hidden}")) {
+        match check_of(system, plan, &format!("{options}{hidden}")) {
             Some(CheckName::Frames | CheckName::AtSpeed) => return Found::BySamples,
             Some(other) => panic!("{options}: the check {other} failed, which looks at no samples"),
             None if !is_in_table => return Found::ByNothing,
             None => {}
         }
-        match check_of(system, options) {
+        match check_of(system, plan, options) {
             Some(CheckName::ReadBack) => Found::ByReadBack,
             Some(other) => panic!("{options}: {other} failed, and it should have been read-back"),
             None => Found::ByNothing,
@@ -147,8 +149,8 @@ impl Kind {
     }
 }
 
-fn check_of(system: &System, options: &str) -> Option<CheckName> {
-    let report = system.judge(options);
+fn check_of(system: &System, plan: &Plan, options: &str) -> Option<CheckName> {
+    let report = judge_by_plan(plan, open(&format!("{}{options}", system.board)));
     assert_ne!(report.verdict, Verdict::Error, "{options}: {}", report.headline());
     let check = failed_check(&report);
     assert_eq!(check.is_some(), report.verdict == Verdict::Fail, "{options}: {}", report.headline());

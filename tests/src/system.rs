@@ -96,9 +96,7 @@ impl System {
     }
 
     fn judge_by(&self, reconnect: Option<Duration>, candidate: Candidate) -> Report {
-        let circumstances = Circumstances::default();
-        let options = RunOptions { reconnect, circumstances, ..RunOptions::default() };
-        verify(&self.plan(), candidate, &options, &Silent).unwrap().report
+        judged(&self.plan(), reconnect, candidate)
     }
 
     /// The built-in frames, up to the first that differs.
@@ -115,7 +113,26 @@ impl System {
     }
 }
 
-fn open(target: &str) -> Candidate {
+/// The report on a board by this plan.
+///
+/// # Panics
+/// If the board cannot have what the plan uploads.
+#[must_use]
+pub fn judge_by_plan(plan: &Plan, candidate: Candidate) -> Report {
+    judged(plan, None, candidate)
+}
+
+fn judged(plan: &Plan, reconnect: Option<Duration>, candidate: Candidate) -> Report {
+    let options = RunOptions { reconnect, circumstances: Circumstances::default(), ..RunOptions::default() };
+    verify(plan, candidate, &options, &Silent).unwrap().report
+}
+
+/// The board that `target` leads to.
+///
+/// # Panics
+/// If there is no such board.
+#[must_use]
+pub fn open(target: &str) -> Candidate {
     let target: Target = target.parse().unwrap();
     link::open(&target).unwrap()
 }

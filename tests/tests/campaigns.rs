@@ -51,11 +51,18 @@ fn every_single_fault_of_a_small_board_is_found() {
 
 /// Where nothing is stretched no output lies near node 40, and rows of 64 samples never meet in a memory of 2048.
 #[test]
-fn what_no_sample_can_show_is_left_to_read_back_or_to_nobody() {
+fn what_no_streamed_sample_can_show_is_left_to_read_back_or_to_full_speed() {
     let unstretched = System { radius: 1e8, ..System::TINY };
-    let word = Kind::KernelWord.search(&unstretched, ",fault=kernel-word,node=40,bit=9");
-    let line = Kind::AddressLine.search(&System::TINY, ",fault=stuck-address,bit=10");
-    assert_eq!((word, line), (Found::ByReadBack, Found::ByNothing));
+    let searched = |at_speed| {
+        let by = |system: &System, kind: Kind, fault| {
+            kind.search(system, &Plan { at_speed, ..system.plan() }, fault)
+        };
+        let word = by(&unstretched, Kind::KernelWord, ",fault=kernel-word,node=40,bit=9");
+        (word, by(&System::TINY, Kind::AddressLine, ",fault=stuck-address,bit=10"))
+    };
+    assert_eq!(searched(Some(Duration::ZERO)), (Found::ByReadBack, Found::ByNothing));
+    // Corners at full speed stretch rows, and have rows that meet in the memory.
+    assert_eq!(searched(None), (Found::BySamples, Found::BySamples));
 }
 
 #[test]

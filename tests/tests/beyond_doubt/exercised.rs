@@ -1,26 +1,19 @@
 //! A PASS names what it did not put to the test, to the line: a fault there goes unseen, and one anywhere else does not.
 
-use halfrow::link::{self, Candidate};
-use halfrow::progress::Silent;
-use halfrow::result::{NotExercised, Report};
-use halfrow::run::{Plan, RunOptions, Vary, verify};
+use std::time::Duration;
+
+use halfrow::link::Candidate;
+use halfrow::result::NotExercised;
+use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Geometry, TableSet};
 use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward};
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, judge_by_plan, open};
 
 /// Few of the board's lines are used. Eight lines have the columns, and seven tell samples of the line memory apart.
 const SYSTEM: System = System { width: 160, height: 16, radius: 17.0, board: "mock", ring: 2048 };
-
-fn judged(plan: &Plan, candidate: Candidate) -> Report {
-    verify(plan, candidate, &RunOptions::default(), &Silent).unwrap().report
-}
-
-fn open(target: &str) -> Candidate {
-    link::open(&target.parse().unwrap()).unwrap()
-}
 
 /// The plan of `SYSTEM` with frames of 8 bits.
 fn eight_bits() -> Plan {
@@ -30,9 +23,21 @@ fn eight_bits() -> Plan {
     Plan { tables: TableSet::new(geometry, factors).unwrap(), ..plan }
 }
 
+/// A plan in which nothing but what is streamed is judged.
+fn streamed(plan: Plan) -> Plan {
+    Plan { at_speed: Some(Duration::ZERO), ..plan }
+}
+
 #[test]
 fn a_stuck_address_line_goes_unseen_exactly_where_the_pass_names_it() {
-    let sound = SYSTEM.judge("");
+    let unseen = unseen_address_lines(&streamed(SYSTEM.plan()));
+    assert_eq!(unseen, [7, 8, 9, 10]);
+    assert!(unseen_address_lines(&SYSTEM.plan()).is_empty());
+}
+
+/// Lines of the line memory that a PASS names, each of which goes unseen by this plan when it is stuck, and no other does.
+fn unseen_address_lines(plan: &Plan) -> Vec<usize> {
+    let sound = judge_by_plan(plan, open("mock"));
     let named = |line: usize| {
         let names = |part: &NotExercised| match part {
             NotExercised::LineMemoryAddress { lines } => lines.contains(&line),
@@ -42,19 +47,20 @@ fn a_stuck_address_line_goes_unseen_exactly_where_the_pass_names_it() {
     };
     for line in 0..11 {
         for value in 0..2 {
-            let verdict = SYSTEM.judge(&format!(",fault=stuck-address,bit={line},value={value}")).verdict;
+            let fault = format!("mock,fault=stuck-address,bit={line},value={value}");
+            let verdict = judge_by_plan(plan, open(&fault)).verdict;
             let expected = if named(line) { Verdict::Pass } else { Verdict::Fail };
             assert_eq!(verdict, expected, "line {line} at {value}");
         }
     }
-    assert!(named(7) && !named(6), "{:?}", sound.not_exercised);
+    (0..11).filter(|&line| named(line)).collect()
 }
 
 #[test]
 fn a_wrong_node_goes_unseen_exactly_where_the_pass_names_it() {
     // A lens that stretches next to nothing.
-    let system = System { radius: 2000.0, ..SYSTEM };
-    let sound = system.judge("");
+    let plan = streamed(System { radius: 2000.0, ..SYSTEM }.plan());
+    let sound = judge_by_plan(&plan, open("mock"));
     let named = |node: usize| {
         let names = |part: &NotExercised| match part {
             NotExercised::KernelNodes { nodes } => nodes.contains(&node),
@@ -64,9 +70,14 @@ fn a_wrong_node_goes_unseen_exactly_where_the_pass_names_it() {
     };
     for node in [0, 1, 2, 3, 30, 31, 32, 33, 34, 62, 63, 64] {
         // A high bit of a weight that is stored; the node that is hit is read right by the host.
-        let fault = format!(",fault=kernel-word,node={node},weight=g4,bit=13,hidden=true");
+        let fault = format!("mock,fault=kernel-word,node={node},weight=g4,bit=13,hidden=true");
         let expected = if named(node) { Verdict::Pass } else { Verdict::Fail };
-        assert_eq!(system.judge(&fault).verdict, expected, "node {node}: {:?}", sound.not_exercised);
+        assert_eq!(
+            judge_by_plan(&plan, open(&fault)).verdict,
+            expected,
+            "node {node}: {:?}",
+            sound.not_exercised
+        );
     }
     assert!(named(3) && !named(0), "{:?}", sound.not_exercised);
 }
@@ -74,16 +85,16 @@ fn a_wrong_node_goes_unseen_exactly_where_the_pass_names_it() {
 #[test]
 fn what_hides_behind_a_depth_is_named_and_found_where_the_depth_varies() {
     let stuck = "mock,fault=stuck-data,bit=9,value=0";
-    let (fixed, vary) = (eight_bits(), Vary { centre: false, depth: true });
-    let unseen = judged(&fixed, open(stuck));
+    let (fixed, vary) = (streamed(eight_bits()), Vary { centre: false, depth: true });
+    let unseen = judge_by_plan(&fixed, open(stuck));
     assert_eq!(unseen.verdict, Verdict::Pass);
     let bits = NotExercised::InputBits { bits: vec![8, 9, 10, 11] };
     assert!(unseen.not_exercised.contains(&bits), "{:?}", unseen.not_exercised);
     assert!(unseen.not_exercised.contains(&NotExercised::Depths { bits: vec![10, 12] }));
-    let seen = judged(&fixed.clone().varying(vary), open(stuck));
+    let seen = judge_by_plan(&fixed.clone().varying(vary), open(stuck));
     assert_eq!((seen.verdict, &seen.not_exercised[..]), (Verdict::Fail, &[][..]), "{}", seen.headline());
     assert_eq!(seen.suspects[0].place(), "line memory, data bit 9, stuck at 0");
-    let sound = judged(&fixed.varying(vary), open("mock"));
+    let sound = judge_by_plan(&fixed.varying(vary), open("mock"));
     assert_eq!(sound.verdict, Verdict::Pass, "{}", sound.headline());
     assert!(!sound.not_exercised.contains(&bits));
 }
@@ -102,12 +113,12 @@ fn ignoring_the_centre() -> Candidate {
 
 #[test]
 fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
-    let plan = SYSTEM.plan();
-    let unseen = judged(&plan, ignoring_the_centre());
+    let plan = streamed(SYSTEM.plan());
+    let unseen = judge_by_plan(&plan, ignoring_the_centre());
     assert_eq!(unseen.verdict, Verdict::Pass);
     assert!(unseen.not_exercised.contains(&NotExercised::OneCentre { centre2: 159 }));
     let varying = plan.varying(Vary { centre: true, depth: false });
-    let seen = judged(&varying, ignoring_the_centre());
+    let seen = judge_by_plan(&varying, ignoring_the_centre());
     assert_eq!(seen.verdict, Verdict::Fail, "{}", seen.headline());
     let differing: Vec<_> = seen
         .frames
@@ -116,5 +127,5 @@ fn a_board_that_ignores_the_centre_is_found_where_the_centre_varies() {
         .map(|frame| frame.variation)
         .collect();
     assert!(matches!(differing[..], [Some(_)]), "{differing:?}");
-    assert_eq!(judged(&varying, open("mock")).verdict, Verdict::Pass);
+    assert_eq!(judge_by_plan(&varying, open("mock")).verdict, Verdict::Pass);
 }

@@ -1,5 +1,6 @@
 //! What findings on bursts, frames that the board makes on its own, say beside their figures.
 
+use halfrow_model::Geometry;
 use serde::{Deserialize, Serialize};
 
 /// Why there was no burst.
@@ -17,6 +18,26 @@ pub enum NoBurst {
         /// The one that is known.
         known: u16,
     },
+}
+
+/// Settings that no plan has, at which a board made frames on its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Corner {
+    /// W.
+    pub width: usize,
+    /// H.
+    pub height: usize,
+    /// Bits of a sample.
+    pub bits: u32,
+    /// C, twice the column of the centre.
+    pub centre2: u32,
+}
+
+impl From<&Geometry> for Corner {
+    fn from(geometry: &Geometry) -> Self {
+        let (width, height, centre2) = (geometry.width(), geometry.height(), geometry.centre2());
+        Self { width, height, bits: geometry.depth().bits(), centre2 }
+    }
 }
 
 /// What making a frame again has shown that was wrong at speed.

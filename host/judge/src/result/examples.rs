@@ -1,8 +1,8 @@
 //! One of every finding and of every defect, for the page of codes and for tests.
 
 use super::{
-    Account, BoardKind, BurstCount, ClampEnd, Counter, Counting, Defect, Doubt, Extent, Finding, MadeWith,
-    Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, StaleFrames, Suspect,
+    Account, BoardKind, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt, Extent, Finding,
+    MadeWith, Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, StaleFrames, Suspect,
 };
 
 /// One of every finding that is no error.
@@ -19,7 +19,13 @@ pub fn findings() -> Vec<Finding> {
         Finding::TablesUnchanged {},
         Finding::TablesUnused {},
         Finding::CountersRight { rows: 17_280, damaged_unseen: 0 },
-        Finding::EqualAtSpeed { frames: 138, clock_hz: 96_000_000, seconds: Some(3.0), held_back: 0 },
+        Finding::EqualAtSpeed {
+            frames: 138,
+            clock_hz: 96_000_000,
+            seconds: Some(3.0),
+            held_back: 0,
+            corners: 4,
+        },
         Finding::PausedAtSpeed { frames: 138, paused: 2 },
         Finding::NothingAtSpeed { reason: NoBurst::BoardMakesNone {} },
         Finding::NotReached {},
@@ -71,7 +77,7 @@ fn of_the_board() -> [Finding; 18] {
 }
 
 /// On what entered the core, and on frames that the board made on its own.
-fn on_entry_and_at_speed() -> [Finding; 4] {
+fn on_entry_and_at_speed() -> [Finding; 5] {
     [
         Finding::RowsEnteredChanged { rows: 9, row: 3, frame: 2 },
         Finding::EntryMiscounted { rows: 9, row: 3, frame: 2 },
@@ -83,6 +89,15 @@ fn on_entry_and_at_speed() -> [Finding; 4] {
             suspect: Some(Box::new(Defect::OnlyAtSpeed { row: Some(3), samples: 1, bits: vec![11] })),
         },
         Finding::MiscountedAtSpeed { frame: 17, count: BurstCount::Rows, counted: 1079, right: 1080 },
+        Finding::InCorner {
+            corner: Corner { width: 1364, height: 24, bits: 8, centre2: 1365 },
+            found: Box::new(Finding::MiscountedAtSpeed {
+                frame: 1,
+                count: BurstCount::Rows,
+                counted: 23,
+                right: 24,
+            }),
+        },
     ]
 }
 

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::problem::tagged;
-use super::{Account, BoardKind, BurstCount, Counter, Defect, Doubt, NoBurst, Problem, Repetition, wording};
+use super::{Account, BoardKind, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, Problem, Repetition};
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -79,6 +78,9 @@ pub enum Finding {
         seconds: Option<f64>,
         /// Frames that waited until the host had the records of earlier ones.
         held_back: u32,
+        /// Other settings at which frames were equal as well.
+        #[serde(default)]
+        corners: u32,
     },
     /// They are the reference's, and the enable was off in some.
     PausedAtSpeed {
@@ -199,6 +201,13 @@ pub enum Finding {
         counted: u32,
         /// What it should.
         right: u32,
+    },
+    /// What was found of frames that the board made on its own with settings that no plan has.
+    InCorner {
+        /// The settings.
+        corner: Corner,
+        /// What was found.
+        found: Box<Finding>,
     },
     /// No frame followed in a burst.
     BurstStalled {
@@ -364,35 +373,4 @@ pub enum Finding {
     /// An error of the station, the link or the call.
     #[serde(untagged)]
     Problem(Box<Problem>),
-}
-
-impl Finding {
-    /// It in one sentence, without a full stop.
-    #[must_use]
-    pub fn sentence(&self) -> String {
-        wording::sentence(self)
-    }
-
-    /// What to do about it, if there is something to do.
-    #[must_use]
-    pub fn remedy(&self) -> Option<String> {
-        wording::remedy(self)
-    }
-
-    /// Its code.
-    #[must_use]
-    pub fn code(&self) -> String {
-        tagged(self).0
-    }
-
-    /// It as the reason why there is no result.
-    #[must_use]
-    pub fn as_problem(&self) -> Problem {
-        if let Self::Problem(problem) = self {
-            return (**problem).clone();
-        }
-        let (code, parameters) = tagged(self);
-        let (message, remedy) = (self.sentence(), self.remedy());
-        Problem { code, parameters, message, remedy, causes: Vec::new() }
-    }
 }

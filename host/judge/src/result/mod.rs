@@ -38,7 +38,7 @@ use crate::verdict::{Cause, Verdict};
 use not_exercised::InWords;
 
 pub use crate::target::BoardKind;
-pub use bursts::{BurstCount, NoBurst, Repetition};
+pub use bursts::{BurstCount, Corner, NoBurst, Repetition};
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
 pub use defect::{ClampEnd, Counting, Defect, MadeWith, Memory, Reading, RowSource, StaleFrames};

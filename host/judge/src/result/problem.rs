@@ -6,8 +6,8 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::Finding;
 use super::codes::{self, Coded};
+use super::{Finding, wording};
 
 /// Parameters by name.
 pub type Parameters = Map<String, Value>;
@@ -95,6 +95,37 @@ fn remedy(message: &str) -> Option<String> {
     let mut letters = asked.trim_end_matches('.').chars();
     let first = letters.next()?;
     Some(format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+impl Finding {
+    /// It in one sentence, without a full stop.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        wording::sentence(self)
+    }
+
+    /// What to do about it, if there is something to do.
+    #[must_use]
+    pub fn remedy(&self) -> Option<String> {
+        wording::remedy(self)
+    }
+
+    /// Its code.
+    #[must_use]
+    pub fn code(&self) -> String {
+        tagged(self).0
+    }
+
+    /// It as the reason why there is no result.
+    #[must_use]
+    pub fn as_problem(&self) -> Problem {
+        if let Self::Problem(problem) = self {
+            return (**problem).clone();
+        }
+        let (code, parameters) = tagged(self);
+        let (message, remedy) = (self.sentence(), self.remedy());
+        Problem { code, parameters, message, remedy, causes: Vec::new() }
+    }
 }
 
 impl From<Problem> for Finding {

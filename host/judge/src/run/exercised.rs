@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_model::{Frame, Geometry, NODES, RowFactor, Source, TableSet, source};
+use halfrow_model::{Frame, NODES, RowFactor, Source, TableSet, source};
 
 use super::plan::Generation;
 use crate::result::{Identity, NotExercised};
@@ -62,15 +62,16 @@ pub(super) fn not_exercised(
     generations: &[&Generation],
     samples: SampleLevels,
 ) -> Vec<NotExercised> {
-    let Some(first) = generations.first() else { return Vec::new() };
-    let geometry = first.tables.geometry();
+    if generations.is_empty() {
+        return Vec::new();
+    }
     let tables: Vec<_> = generations.iter().map(|generation| &generation.tables).collect();
     let depth = board.depths.iter().copied().max().unwrap_or_default().into();
     let (nodes, taps) = unused_of_kernel(generations, board.taps);
     [
         some(samples.input.constant(depth), |bits| NotExercised::InputBits { bits }),
         some(samples.output.constant(depth), |bits| NotExercised::OutputBits { bits }),
-        some(column_lines(geometry, board), |lines| NotExercised::ColumnAddress { lines }),
+        some(column_lines(&tables, board), |lines| NotExercised::ColumnAddress { lines }),
         some(line_memory_lines(&tables, board), |lines| NotExercised::LineMemoryAddress { lines }),
         some(row_table_lines(&tables, board), |lines| NotExercised::RowTableAddress { lines }),
         some(factor_bits(&tables), |bits| NotExercised::RowFactorBits { bits }),
@@ -95,8 +96,9 @@ fn lines(entries: usize) -> std::ops::Range<usize> {
 }
 
 /// Lines of the board's widest row that are 0 at every column of these.
-fn column_lines(geometry: &Geometry, board: &Identity) -> Vec<usize> {
-    lines(board.max_width.into()).filter(|line| (geometry.width() - 1) >> line == 0).collect()
+fn column_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
+    let last = tables.iter().map(|tables| tables.geometry().width() - 1).max().unwrap_or_default();
+    lines(board.max_width.into()).filter(|line| last >> line == 0).collect()
 }
 
 /// Lines of the ring that may be stuck unseen. A sample's place is also that of the one 2^line later then, so it must still
@@ -189,7 +191,7 @@ fn unused_depths(tables: &[&TableSet], board: &Identity) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
-    use halfrow_model::{BitDepth, Interpolant, Kernel, Phase};
+    use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, Phase};
 
     use super::*;
 

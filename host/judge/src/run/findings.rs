@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use super::judge::Seen;
+use super::plan::Generation;
 use super::{Candidate, Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
@@ -80,6 +81,8 @@ pub(super) struct Findings {
     pub(super) not_exercised: Vec<NotExercised>,
     /// What was left untouched at the full pixel clock.
     pub(super) untested_at_speed: Vec<NotExercised>,
+    /// Tables that frames in corners were made with, at the full pixel clock.
+    pub(super) corners: Vec<Generation>,
     /// Bursts that were begun.
     pub(super) bursts: u32,
     /// What a soak came to.
@@ -107,6 +110,7 @@ impl Findings {
             rows_counted: 0,
             not_exercised: Vec::new(),
             untested_at_speed: Vec::new(),
+            corners: Vec::new(),
             bursts: 0,
             soak: None,
             misfit: None,

@@ -123,7 +123,8 @@ impl Run<'_> {
         let Findings { board, seen, .. } = &*self.findings;
         let used =
             |generation: &&Generation| seen.frames.iter().any(|frame| frame.generation == generation.number);
-        let generations: Vec<_> = self.generations.iter().filter(used).collect();
+        let corners = &self.findings.corners;
+        let generations: Vec<_> = self.generations.iter().filter(used).chain(corners).collect();
         self.findings.not_exercised = board
             .identity
             .as_ref()

@@ -3,7 +3,7 @@
 use super::places::list;
 use super::{LOGIC, TIMING, Words, place};
 use crate::report::wording::{count, grouped, hertz, span};
-use crate::result::{BurstCount, Finding, NoBurst, Repetition};
+use crate::result::{BurstCount, Corner, Finding, NoBurst, Repetition};
 
 pub(super) fn changed_on_entry(rows: usize, first: usize, frame: u16) -> Words {
     let others = if rows > 1 { format!(", the first of {rows}") } else { String::new() };
@@ -57,9 +57,14 @@ pub(super) fn only_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
 /// A finding on frames at speed, if it is one.
 pub(super) fn sentence(finding: &Finding) -> Option<String> {
     Some(match finding {
-        Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back } => {
-            equal(*frames, *clock_hz, *seconds, *held_back)
+        Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back, corners } => {
+            equal(*frames, *clock_hz, *seconds, *held_back) + &elsewhere(*corners)
         }
+        Finding::InCorner { corner: Corner { width, height, bits, centre2 }, found } => format!(
+            "with frames of {width} x {height}, {bits} bits, centre {:.1}, drawn tables and kernels: {}",
+            f64::from(*centre2) / 2.0,
+            found.sentence()
+        ),
         Finding::PausedAtSpeed { frames, paused } => {
             format!("{frames} frames, every sample equal, but not at speed: {paused} of them had pauses")
         }
@@ -102,6 +107,7 @@ pub(super) fn remedy(finding: &Finding) -> Option<String> {
         Finding::MiscountedAtSpeed { .. } => {
             "Check what the board counts of the frames that it makes: their samples were right."
         }
+        Finding::InCorner { found, .. } => return found.remedy(),
         _ => return None,
     };
     Some(asked.to_owned())
@@ -119,6 +125,13 @@ fn equal(frames: u32, clock_hz: u32, seconds: Option<f64>, held_back: u32) -> St
         some => format!("; {some} of them waited until the records of others were read"),
     };
     format!("{}{clock}{time}, every sample equal{waited}", count(frames, "frame"))
+}
+
+fn elsewhere(corners: u32) -> String {
+    match corners {
+        0 => String::new(),
+        some => format!("; so it is with {} that no frame of the run has", count(some, "setting")),
+    }
 }
 
 fn because(reason: NoBurst) -> String {

@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use halfrow_model::{BitDepth, Content, MIN_WIDTH};
+use halfrow_model::{BitDepth, Content, Geometry, MIN_WIDTH};
 use halfrow_protocol::message::{Burst, BurstMode};
 
 use crate::board::{Bursts, Capabilities};
-use crate::run::Plan;
 
 /// The pixel clock, in hertz, that a board is taken to have which names none: that of the paper's sensor.
 const USUAL_CLOCK: u32 = 96_000_000;
@@ -44,23 +43,22 @@ pub(super) struct BurstPlan {
 }
 
 impl BurstPlan {
-    /// A burst of no frame yet, as large as the tables of `plan`, whose seed is the draw `draw` from that of the plan.
+    /// A burst of no frame yet, as large as `geometry`, whose seed is the draw `draw` from that of the run.
     pub(super) fn new(
-        plan: &Plan,
+        geometry: &Geometry,
+        seed: u64,
         capabilities: &Capabilities,
         bursts: Bursts,
         mode: BurstMode,
         draw: u32,
     ) -> Self {
-        let (width, height) = (plan.tables.geometry().width(), plan.tables.geometry().height());
+        let (width, height) = (geometry.width(), geometry.height());
         let (blanking, between) = (capabilities.least_blanking, bursts.least_frame_blanking);
         let row = width as u64 + u64::from(blanking);
         Self {
             frames: 0,
             mode,
-            seed: telling_seed(
-                (plan.seed.wrapping_add(1 + u64::from(draw)).wrapping_mul(GOLDEN) >> 32) as u32,
-            ),
+            seed: telling_seed((seed.wrapping_add(1 + u64::from(draw)).wrapping_mul(GOLDEN) >> 32) as u32),
             first_frame: 0,
             bursts,
             clocks: row * height as u64 - u64::from(blanking) + u64::from(between),

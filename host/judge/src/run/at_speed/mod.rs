@@ -4,6 +4,7 @@
 //! signs its frames, and what is judged are the signatures.
 
 mod burst;
+mod corners;
 mod predicted;
 mod repeated;
 mod soak;
@@ -12,14 +13,16 @@ mod watched;
 
 use std::time::Duration;
 
+use halfrow_model::Geometry;
 use halfrow_protocol::message::BurstMode;
 
 use super::findings::End;
 use super::plan::{DECOY, Generation, Segment};
 use super::steps::Run;
-use crate::board::{Bank, BoardError, BoardNature, Bursts, RowTiming};
+use crate::board::{Bank, BoardNature, Bursts, RowTiming};
 use crate::progress::Step;
-use crate::result::{BurstCount, CheckName, Finding, NoBurst, NotExercised, Outcome};
+use crate::reference::correct;
+use crate::result::{BurstCount, CheckName, Corner, Finding, NoBurst, NotExercised, Outcome};
 use burst::BurstPlan;
 use watched::{EndsEarly, Watched};
 
@@ -29,6 +32,8 @@ const CONTENT: u16 = 1;
 const USUAL: Duration = Duration::from_secs(3);
 /// Its frames on anything else.
 const FEW: u32 = 3;
+/// The draw of the first corner's content, far from those of a soak.
+const FIRST_CORNER: u32 = 1 << 31;
 
 impl Run<'_> {
     /// Judges a burst, with the board back behind `last` if it goes away meanwhile.
@@ -66,26 +71,89 @@ impl Run<'_> {
     }
 
     fn judge_burst(&mut self, bursts: Bursts) -> Result<(), End> {
-        let of_board = |error: BoardError| End::board(CheckName::AtSpeed, &error);
-        self.board.configure(self.plan.tables.geometry(), RowTiming::default()).map_err(of_board)?;
+        self.set(self.plan.tables.geometry())?;
         let tables = self.tables_at_speed()?;
         let plan = self.burst_plan(bursts, &tables);
+        let watched = self.judge_frames(&plan, &tables)?;
+        let corners = self.judge_corners(bursts)?;
+        let changes = plan.mode == BurstMode::Alternating;
+        self.findings.untested_at_speed = untested(changes, watched.paused > 0);
+        self.note_right(&plan, watched.frames, watched.paused, watched.held_back, corners);
+        Ok(())
+    }
+
+    fn set(&mut self, geometry: &Geometry) -> Result<(), End> {
+        let configured = self.board.configure(geometry, RowTiming::default());
+        configured.map_err(|error| End::board(CheckName::AtSpeed, &error))
+    }
+
+    /// Has the board make the burst, and ends the run with a frame or a count that is wrong.
+    fn judge_frames(&mut self, plan: &BurstPlan, tables: &[Generation]) -> Result<Watched, End> {
         let (ends_early, progress) = (EndsEarly { when_wrong: self.plan.fail_fast, at: None }, self.progress);
         let mut told = |watched: &Watched, _| {
             progress.frame(&format!("{}, {} of {}", Step::AtSpeed, watched.frames, plan.frames));
         };
-        let (watched, ended) = self.watch(&plan, &tables, ends_early, &mut told);
+        let (watched, ended) = self.watch(plan, tables, ends_early, &mut told);
         ended?;
-        let changes = plan.mode == BurstMode::Alternating;
-        self.findings.untested_at_speed = untested(changes, watched.paused > 0);
         if watched.wrong > 0 {
-            return Err(self.wrong_at_speed(&plan, &tables, &watched));
+            return Err(self.wrong_at_speed(plan, tables, &watched));
         }
-        if let Some(finding) = watched.miscounted {
-            return Err(miscounted(finding));
+        match watched.miscounted.clone() {
+            Some(finding) => Err(miscounted(finding)),
+            None => Ok(watched),
         }
-        self.note_right(&plan, watched.frames, watched.paused, watched.held_back);
-        Ok(())
+    }
+
+    /// Judges frames in each corner of what the board can be set to, and returns how many corners those are.
+    fn judge_corners(&mut self, bursts: Bursts) -> Result<u32, End> {
+        let capabilities = self.board.capabilities.clone();
+        let corners = corners::corners(&capabilities, self.plan.seed);
+        for (place, tables) in (0..).zip(&corners) {
+            let Some(geometry) = tables.first().map(|active| *active.tables.geometry()) else { continue };
+            let in_corner = |end| match end {
+                End::Failed { check, finding, suspects } => {
+                    let (corner, found) = (Corner::from(&geometry), Box::new(finding));
+                    End::Failed { check, finding: Finding::InCorner { corner, found }, suspects }
+                }
+                error => error,
+            };
+            self.upload_corner(tables).map_err(in_corner)?;
+            let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
+            let mut plan =
+                BurstPlan::new(&geometry, self.plan.seed, &capabilities, bursts, mode, FIRST_CORNER + place);
+            plan.frames = 2;
+            let watched = self.judge_frames(&plan, tables).map_err(in_corner)?;
+            if watched.paused == 0 {
+                self.note_exercised(&plan, tables);
+            }
+        }
+        Ok(corners.len() as u32)
+    }
+
+    /// Takes note of what the frames of `plan`, one a bank, put to the test.
+    fn note_exercised(&mut self, plan: &BurstPlan, tables: &[Generation]) {
+        for (n, generation) in (0..).zip(tables) {
+            let input = plan.content(n).frame(generation.tables.geometry(), self.plan.phase);
+            if let Ok(expected) = correct(&generation.tables, &generation.kernel, &input) {
+                self.findings.seen.levels.note(&input, &expected);
+            }
+        }
+        self.findings.corners.extend_from_slice(tables);
+    }
+
+    /// Makes the first of `tables` the active ones and the second those of the other bank.
+    fn upload_corner(&mut self, tables: &[Generation]) -> Result<(), End> {
+        for (place, generation) in tables.iter().enumerate() {
+            self.set(generation.tables.geometry())?;
+            let uploaded = self.board.upload(&generation.tables, &generation.kernel);
+            uploaded.map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+            self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
+            if let Some(first_row) = repeated::upper_part(generation, 1).filter(|_| place == 0) {
+                self.set(first_row.tables.geometry())?;
+                self.activate(&first_row)?;
+            }
+        }
+        tables.first().map_or(Ok(()), |active| self.set(active.tables.geometry()))
     }
 
     /// What frames are made with by turns: the active tables, which have the factors and the kernel to judge with whatever
@@ -107,7 +175,8 @@ impl Run<'_> {
     fn burst_plan(&self, bursts: Bursts, tables: &[Generation]) -> BurstPlan {
         let capabilities = &self.board.capabilities;
         let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-        let mut plan = BurstPlan::new(self.plan, capabilities, bursts, mode, 0);
+        let mut plan =
+            BurstPlan::new(self.plan.tables.geometry(), self.plan.seed, capabilities, bursts, mode, 0);
         plan.frames = match self.plan.at_speed {
             Some(time) => plan.frames_in(time),
             None if capabilities.nature == BoardNature::Hardware => plan.frames_in(USUAL),
@@ -116,12 +185,13 @@ impl Run<'_> {
         plan
     }
 
-    /// Takes note of `frames` as `plan` has them that are all right, of which `paused` had pauses and `held_back` waited for a record.
-    fn note_right(&mut self, plan: &BurstPlan, frames: u32, paused: u32, held_back: u32) {
+    /// Takes note of `frames` as `plan` has them that are all right, of which `paused` had pauses and `held_back` waited for a record,
+    /// and of those in so many corners.
+    fn note_right(&mut self, plan: &BurstPlan, frames: u32, paused: u32, held_back: u32, corners: u32) {
         let clock_hz = self.board.capabilities.clock_hz;
         let seconds = (clock_hz > 0).then(|| plan.seconds(frames));
         let (outcome, finding) = match paused {
-            0 => (Outcome::Passed, Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back }),
+            0 => (Outcome::Passed, Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back, corners }),
             _ => (Outcome::Skipped, Finding::PausedAtSpeed { frames, paused }),
         };
         self.findings.note(CheckName::AtSpeed, outcome, finding);

@@ -188,7 +188,7 @@ impl Run<'_> {
 }
 
 /// The tables of the first `rows` rows.
-fn upper_part(generation: &Generation, rows: usize) -> Option<Generation> {
+pub(super) fn upper_part(generation: &Generation, rows: usize) -> Option<Generation> {
     let Generation { number, tables, kernel } = generation;
     let own = tables.geometry();
     let geometry = Geometry::new(own.width(), rows, own.depth(), own.centre2()).ok()?;

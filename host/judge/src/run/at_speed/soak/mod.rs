@@ -61,10 +61,17 @@ impl Run<'_> {
         if ended.is_ok() {
             let capabilities = &self.board.capabilities;
             let changes = capabilities.table_banks > 1;
-            let plan = BurstPlan::new(self.plan, capabilities, bursts, BurstMode::Fresh, 0);
+            let plan = BurstPlan::new(
+                self.plan.tables.geometry(),
+                self.plan.seed,
+                capabilities,
+                bursts,
+                BurstMode::Fresh,
+                0,
+            );
             let [frames, paused, held_back] =
                 [account.report.frames, account.report.paused, account.report.held_back].map(counted);
-            self.note_right(&plan, frames, paused, held_back);
+            self.note_right(&plan, frames, paused, held_back, 0);
             self.findings.untested_at_speed = super::untested(changes, paused > 0);
         }
         self.findings.soak = Some(account.report);
@@ -147,7 +154,14 @@ impl Run<'_> {
         }
         let tables = self.tables_of_burst(draw)?;
         let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-        let mut plan = BurstPlan::new(self.plan, &self.board.capabilities, bursts, mode, draw);
+        let mut plan = BurstPlan::new(
+            self.plan.tables.geometry(),
+            self.plan.seed,
+            &self.board.capabilities,
+            bursts,
+            mode,
+            draw,
+        );
         let (now, earlier, progress) = (self.board.now(), self.findings.earlier.seconds, self.progress);
         let time = account.time_of_burst(earlier + now);
         plan.frames = account.frames_of_burst(&plan, time);

@@ -1,0 +1,78 @@
+//! Settings that no plan has, each for two frames at the full pixel clock: other sizes, depths, centres, factors and kernels, so
+//! that every bit of a setting, of an address and of a weight has a turn at both levels. A burst costs a link next to nothing.
+
+use halfrow_model::{Geometry, Kernel, MIN_WIDTH, NODES, RowFactor, TableSet};
+use rand_core::Rng;
+use rand_pcg::Pcg64Mcg;
+
+use crate::board::Capabilities;
+use crate::run::Generation;
+use crate::run::variations::Build;
+
+/// Samples that a frame of a corner has about, where its rows are long.
+const SAMPLES: usize = 1 << 15;
+/// The generation of the first corner's tables. The others follow; none of them is one of a plan's.
+const FIRST: u8 = 64;
+/// Bits of a setting, by turns 0 and 1, and the other way round.
+const BY_TURNS: [usize; 2] = [0x5555, 0xaaaa];
+/// Shifts that make a weight of 16 bits one with any sign and size, and one with which few samples reach the end of their range.
+const WILD: u32 = 0;
+const CALM: u32 = 3;
+
+/// Tables for each corner of what a board can be set to, for each of its banks of tables; drawn by `seed`.
+pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generation>> {
+    let build = Build::of(capabilities);
+    let mut draws = Pcg64Mcg::new(u128::from(seed) | 1 << 64);
+    let most = usize::from(capabilities.max_width).min(build.ring);
+    let rows = usize::from(capabilities.max_height);
+    let long = |width: usize| (SAMPLES / width).min(rows);
+    let by_turns = BY_TURNS.map(|bits| fit(bits, most).max(MIN_WIDTH) & !1);
+    let sizes = [by_turns[0], by_turns[1], most & !1].map(|width| (width, long(width)));
+    // One row less than most has the other level in most bits.
+    let tall = (MIN_WIDTH, rows.saturating_sub(1).max(1));
+    let corner = |(place, (width, height)): (usize, (usize, usize))| {
+        let depth = *build.depths.get(place % build.depths.len().max(1))?;
+        let last = 2 * width - 2;
+        let centre2 = [fit(BY_TURNS[place % 2], last), fit(BY_TURNS[place % 2], last), last, 0][place];
+        let geometry = Geometry::new(width, height, depth, centre2 as u32).ok()?;
+        let banks = [CALM, WILD].into_iter().take(build.table_banks.into());
+        let tables = banks.map(|size| {
+            let number = FIRST + 2 * place as u8 + u8::from(size == WILD);
+            let kernel = drawn_kernel(build.taps, size, &mut draws)?;
+            Some(Generation { number, tables: drawn_factors(geometry, build.ring, &mut draws)?, kernel })
+        });
+        tables.collect()
+    };
+    sizes.into_iter().chain([tall]).enumerate().filter_map(corner).collect()
+}
+
+/// As many low bits of `pattern` as make no more than `most`.
+fn fit(pattern: usize, most: usize) -> usize {
+    let bits = (1..=usize::BITS - most.leading_zeros()).rev();
+    bits.map(|bits| pattern & ((1 << bits) - 1)).find(|&value| value <= most).unwrap_or(0)
+}
+
+/// The largest factor, and others of every size that a board's ring of `ring` samples can have.
+fn drawn_factors(geometry: Geometry, ring: usize, draws: &mut Pcg64Mcg) -> Option<TableSet> {
+    let row = Geometry::new(geometry.width(), 1, geometry.depth(), geometry.centre2()).ok()?;
+    let is_legal = |factor: &RowFactor| {
+        TableSet::new(row, vec![*factor]).is_ok_and(|tables| tables.check_ring(ring).is_ok())
+    };
+    let factor = |_| {
+        let drawn = RowFactor::new(draws.next_u32() & ((1 << 24) - 1) | 1).unwrap_or(RowFactor::ONE);
+        let nearer = drawn.midpoint(RowFactor::ONE);
+        [drawn, nearer, nearer.midpoint(RowFactor::ONE)].into_iter().find(is_legal).unwrap_or(RowFactor::ONE)
+    };
+    let others = (1..geometry.height()).map(factor);
+    TableSet::new(geometry, std::iter::once(RowFactor::ONE).chain(others).collect()).ok()
+}
+
+/// Weights of any sign, and any size that 16 bits shifted down by `size` have.
+fn drawn_kernel(taps: u8, size: u32, draws: &mut Pcg64Mcg) -> Option<Kernel> {
+    let weight = |tap: usize, drawn: u32| {
+        let is_outer = tap == 0 || tap == 4;
+        if is_outer && taps < 7 { 0 } else { (drawn >> 16) as i16 >> size }
+    };
+    let nodes = (0..NODES).map(|_| std::array::from_fn(|tap| weight(tap, draws.next_u32())));
+    Kernel::from_nodes(nodes.collect()).ok()
+}
