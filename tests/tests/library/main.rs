@@ -6,6 +6,7 @@
 mod evidence;
 mod logs;
 mod outside;
+mod parts;
 mod tree;
 mod words;
 

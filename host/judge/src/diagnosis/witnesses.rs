@@ -135,7 +135,7 @@ fn uploaded<'a>(case: &Case<'a>, generation: u8) -> Option<Uploaded<'a>> {
     case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation).copied()
 }
 
-/// The rows of one frame. A frame of another size than its tables bears no witness.
+/// The rows of one frame, whole or the first ones. A frame of another size than its tables bears no witness.
 fn rows<'a>(case: &Case<'a>, evidence: &'a Evidence) -> Vec<Witness<'a>> {
     let uploaded = case.frames.get(evidence.index).and_then(|frame| uploaded(case, frame.generation));
     let Some(uploaded) = uploaded.filter(|uploaded| fits(evidence, uploaded.tables.geometry())) else {
@@ -170,9 +170,10 @@ fn telling<'a>(equal: Vec<Witness<'a>>, differ: &BTreeSet<usize>) -> Vec<Witness
 }
 
 fn fits(evidence: &Evidence, geometry: &Geometry) -> bool {
+    let rows = evidence.input.height();
     [&evidence.input, &evidence.found, &evidence.expected]
         .iter()
-        .all(|frame| (frame.width(), frame.height()) == (geometry.width(), geometry.height()))
+        .all(|frame| frame.width() == geometry.width() && frame.height() == rows && rows <= geometry.height())
 }
 
 /// The rows in an order of which every beginning is spread evenly over the whole, with no period.

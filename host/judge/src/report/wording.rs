@@ -72,12 +72,17 @@ pub fn remedy(report: &Report) -> Option<String> {
     report.remedy().filter(|remedy| !said(remedy) && !in_headline(remedy))
 }
 
-/// A frame's name, with what is set otherwise for it.
+/// A frame's name, with what is set otherwise for it, and how much of it was streamed where that is not all.
 #[must_use]
 pub fn frame_name(frame: &FrameReport) -> Cow<'_, str> {
-    match frame.variation {
-        None => plain(&frame.name),
-        Some(variation) => format!("{}, {variation}", plain(&frame.name)).into(),
+    let mut name = plain(&frame.name);
+    if let Some(variation) = frame.variation {
+        name = format!("{name}, {variation}").into();
+    }
+    match frame.first_rows {
+        None => name,
+        Some(1) => format!("{name}, row 0 alone").into(),
+        Some(rows) => format!("{name}, its first {rows} rows").into(),
     }
 }
 

@@ -9,6 +9,8 @@ use serde::{Deserialize, Serialize};
 pub enum NoBurst {
     /// Nobody asked for one.
     NotAskedFor {},
+    /// It is none of the parts that the run was to judge.
+    LeftOut {},
     /// The board makes no frames on its own.
     BoardMakesNone {},
     /// It makes others than this program knows.

@@ -29,6 +29,9 @@ pub struct FrameReport {
     pub variation: Option<Variation>,
     /// How it compares.
     pub comparison: Comparison,
+    /// How many rows were streamed, from the first one on, of a frame that was not streamed whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub first_rows: Option<usize>,
     /// Rows that came back.
     pub rows: usize,
     /// From when the frame before it had come back until it had, by the wall's clock, in seconds.

@@ -121,10 +121,11 @@ fn skip_the_rest(checks: &mut Vec<Check>) {
 
 /// The built-in street, when it came back whole and was kept.
 fn street(plan: &Plan, seen: &Seen) -> Option<StreetReport> {
-    let street = seen
-        .evidence
-        .iter()
-        .find(|evidence| seen.frames.get(evidence.index).is_some_and(|frame| frame.name == STREET))?;
+    let street = seen.evidence.iter().find(|evidence| {
+        seen.frames
+            .get(evidence.index)
+            .is_some_and(|frame| frame.name == STREET && frame.first_rows.is_none())
+    })?;
     Some(StreetReport {
         before: street::edge_deviation(&street.input, &plan.scene(0))?,
         after: street::edge_deviation(&street.found, &plan.scene(0))?,

@@ -83,6 +83,8 @@ pub(super) struct Findings {
     pub(super) untested_at_speed: Vec<NotExercised>,
     /// Tables that frames in corners were made with, at the full pixel clock.
     pub(super) corners: Vec<Generation>,
+    /// Generations of the plan that whole frames were made with, at the full pixel clock.
+    pub(super) whole_at_speed: Vec<u8>,
     /// Bursts that were begun.
     pub(super) bursts: u32,
     /// What a soak came to.
@@ -111,6 +113,7 @@ impl Findings {
             not_exercised: Vec::new(),
             untested_at_speed: Vec::new(),
             corners: Vec::new(),
+            whole_at_speed: Vec::new(),
             bursts: 0,
             soak: None,
             misfit: None,

@@ -88,6 +88,8 @@ pub(super) struct Manner {
     pub(super) names_entered: bool,
     /// What the segment's frames are for.
     pub(super) variation: Option<Variation>,
+    /// The rows that its frames have, if those are not all.
+    pub(super) first_rows: Option<usize>,
     /// Board clocks that gaps keep each row of a frame waiting.
     pub(super) pauses: Vec<u16>,
 }
@@ -231,6 +233,7 @@ impl<'a> Judge<'a> {
             generation,
             timing: self.timing,
             variation: self.manner.variation,
+            first_rows: self.manner.first_rows,
             comparison,
             rows,
             seconds: now.duration_since(self.since).as_secs_f64(),
@@ -352,6 +355,7 @@ mod tests {
             evidence_bytes: 0,
             names_entered: false,
             variation: None,
+            first_rows: None,
             pauses: vec![0; HEIGHT],
         };
         let mut judge =

@@ -15,12 +15,14 @@ mod legal;
 mod lost_row;
 mod misfit;
 mod options;
+mod parts;
 mod patterns;
 mod pauses;
 mod plan;
 mod prepared;
 mod reconnect;
 mod recorded;
+mod schedule;
 mod second_look;
 mod steps;
 mod streaming;
@@ -42,6 +44,7 @@ pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
 pub(crate) use golden::{CannotJudge, GoldenError};
 pub use misfit::{Misfit, misfit};
 pub use options::RunOptions;
+pub use parts::{Part, Selection};
 pub use plan::{
     DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing, TooManyFrames,
 };

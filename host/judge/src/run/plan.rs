@@ -4,10 +4,9 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use halfrow_model::{
-    Equidistant, Frame, FrameError, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet,
-};
+use halfrow_model::{Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet};
 
+use super::parts::{Part, Selection};
 use super::variations::{Build, Vary, varied};
 use crate::frames::{Builtin, Scene};
 use crate::result::{SoakLength, Variation};
@@ -24,6 +23,17 @@ pub struct Generation {
     pub tables: TableSet,
     /// The kernel.
     pub kernel: Kernel,
+}
+
+impl Generation {
+    /// The same for frames of the first `rows` rows.
+    pub(super) fn upper(&self, rows: usize) -> Option<Self> {
+        let Self { number, tables, kernel } = self;
+        let own = tables.geometry();
+        let geometry = Geometry::new(own.width(), rows, own.depth(), own.centre2()).ok()?;
+        let tables = TableSet::new(geometry, tables.row_factors().get(..rows)?.to_vec()).ok()?;
+        Some(Self { number: *number, tables, kernel: kernel.clone() })
+    }
 }
 
 /// The most frames that a plan can have, all repetitions counted: frame numbers have 16 bits, and seven frames of noise
@@ -99,6 +109,8 @@ pub struct Plan {
     pub repeat: u32,
     /// What is set otherwise than `tables` have it, in frames of noise of their own.
     pub vary: Vary,
+    /// The parts that are judged; all of them when not given.
+    pub parts: Option<Selection>,
     /// How long the board makes frames on its own, on its own clock: 3 s of hardware and some frames of any other board when
     /// not given.
     pub at_speed: Option<Duration>,
@@ -139,6 +151,8 @@ pub struct ScheduledFrame {
     pub source: FrameSource,
     /// The generation that must correct it.
     pub generation: u8,
+    /// The part of the run that it is.
+    pub part: Part,
 }
 
 /// The generation of the decoy tables.
@@ -163,6 +177,7 @@ impl Plan {
             frames: Builtin::ALL.into_iter().map(FrameSource::Builtin).collect(),
             repeat: 1,
             vary: Vary::default(),
+            parts: None,
             at_speed: None,
             soak: None,
             fail_fast: false,
@@ -222,7 +237,7 @@ impl Plan {
     }
 
     /// The judged tables with another centre, and with other depths.
-    fn varied(&self, build: &Build) -> impl Iterator<Item = Generation> {
+    pub(super) fn varied(&self, build: &Build) -> impl Iterator<Item = Generation> {
         let tables = varied(&self.tables, self.vary, build).into_iter().zip(VARIED..);
         tables.map(|(tables, number)| Generation { number, tables, kernel: self.kernel.clone() })
     }
@@ -240,64 +255,6 @@ impl Plan {
         match Kernel::from_nodes(nodes) {
             Ok(kernel) if kernel != self.kernel => kernel,
             _ => Kernel::from(Interpolant::Linear),
-        }
-    }
-
-    /// The run, segment by segment: a frame with the decoy; another one with the decoy and, close behind it, the frames to judge; then
-    /// noise with the sensor's blanking, and noise with gaps; last a frame for each other centre or depth. A board with one bank of tables cannot change them between two
-    /// frames that follow closely, so there the second segment begins with the frames to judge.
-    #[must_use]
-    pub fn schedule(&self, build: &Build) -> Vec<Segment> {
-        let mut numbers = 0..=u16::MAX;
-        let mut frame = |source: FrameSource, generation| ScheduledFrame {
-            number: numbers.next().unwrap_or_default(),
-            source,
-            generation,
-        };
-        let noise = || FrameSource::Builtin(Builtin::Noise);
-        let first = vec![frame(noise(), DECOY)];
-        let mut judged = Vec::new();
-        if build.table_banks > 1 {
-            judged.push(frame(noise(), DECOY));
-        }
-        let first_judged = 1 + judged.len() as u16;
-        for _ in 0..self.repeat {
-            judged.extend(self.frames.iter().map(|source| frame(source.clone(), JUDGED)));
-        }
-        let sensor = vec![frame(noise(), JUDGED)];
-        let gaps = vec![frame(noise(), JUDGED)];
-        let geometry = *self.tables.geometry();
-        let varied: Vec<_> = self
-            .varied(build)
-            .map(|generation| {
-                let frame = frame(noise(), generation.number);
-                let (geometry, commit) =
-                    (*generation.tables.geometry(), Some((frame.generation, frame.number)));
-                Segment { geometry, timing: Timing::Least, commit, frames: vec![frame] }
-            })
-            .collect();
-        let segment = |timing, commit, frames| Segment { geometry, timing, commit, frames };
-        let mut segments = vec![
-            segment(Timing::Least, Some((DECOY, 0)), first),
-            segment(Timing::Least, Some((JUDGED, first_judged)), judged),
-            segment(Timing::Sensor, None, sensor),
-            segment(Timing::Gaps((self.seed as u32) | 1), None, gaps),
-        ];
-        segments.extend(varied);
-        segments
-    }
-
-    /// The samples of a scheduled frame of `geometry`, that of its segment. Noise is drawn anew for every frame.
-    ///
-    /// # Errors
-    /// [`FrameError`] when a built-in frame cannot be made.
-    pub fn render(&self, scheduled: &ScheduledFrame, geometry: &Geometry) -> Result<Arc<Frame>, FrameError> {
-        match &scheduled.source {
-            FrameSource::File { frame, .. } => Ok(Arc::clone(frame)),
-            FrameSource::Builtin(builtin) => {
-                let scene = Scene { geometry: *geometry, ..self.scene(scheduled.number.into()) };
-                builtin.render(&scene).map(Arc::new)
-            }
         }
     }
 

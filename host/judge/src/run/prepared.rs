@@ -63,9 +63,10 @@ impl Prepared {
         generations: &[Generation],
     ) -> Result<Self, PrepareError> {
         let name = frame.source.name();
-        let decoy = generations.iter().find(|generation| generation.number == frame.generation);
+        let own = generations.iter().find(|generation| generation.number == frame.generation);
+        let own = own.and_then(|generation| generation.upper(geometry.height()));
         let (tables, kernel) =
-            decoy.map_or((&plan.tables, &plan.kernel), |found| (&found.tables, &found.kernel));
+            own.as_ref().map_or((&plan.tables, &plan.kernel), |found| (&found.tables, &found.kernel));
         let input = plan
             .render(frame, geometry)
             .map_err(|source| PrepareError::Render { name: name.clone(), source })?;

@@ -151,7 +151,8 @@ impl Run<'_> {
         self.configure(segment)?;
         let next = segment.frames.get(at);
         let Some(frame) = next.or(segment.frames.last()) else { return Ok(()) };
-        self.commit(frame.generation, frame.number)?;
+        let rows = segment.geometry.height();
+        self.commit(frame.generation, frame.number, rows)?;
         let later = segment.commit.filter(|(number, _)| *number != frame.generation);
         if next.is_none() || later.is_some() {
             // Tables become the active ones when a frame enters.
@@ -163,6 +164,6 @@ impl Run<'_> {
             let played = self.board.stream(&mut Unjudged(iter::once(played)));
             played.map_err(|error| End::board(CheckName::Frames, &error))?;
         }
-        later.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame))
+        later.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame, rows))
     }
 }

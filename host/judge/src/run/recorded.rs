@@ -8,7 +8,7 @@ use std::time::Duration;
 use halfrow_model::{Equidistant, Frame, FrameError, Geometry, LensError, Phase, UnknownPhase};
 use serde::{Deserialize, Serialize};
 
-use super::{Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions, Vary};
+use super::{Circumstances, Draws, FrameSource, JUDGED, Plan, RunOptions, Selection, Vary};
 use crate::board::Sent;
 use crate::board::deadlines::RetryLimit;
 use crate::frames::UnknownBuiltin;
@@ -32,6 +32,9 @@ pub struct RecordedRun {
     /// A recording that does not say so holds no such frames.
     #[serde(default)]
     vary: Vary,
+    /// A recording that does not say so has all of them.
+    #[serde(default)]
+    parts: Option<Selection>,
     /// A recording that does not say so holds no such frames.
     #[serde(default = "none_at_speed")]
     at_speed: Option<Duration>,
@@ -94,6 +97,7 @@ impl RecordedRun {
             frames: plan.frames.iter().map(FrameSource::name).collect(),
             repeat: plan.repeat,
             vary: plan.vary,
+            parts: plan.parts.clone(),
             at_speed: plan.at_speed,
             fail_fast: plan.fail_fast,
             take_over: options.take_over,
@@ -121,6 +125,7 @@ impl RecordedRun {
             phase,
             repeat: run.repeat,
             vary: run.vary,
+            parts: run.parts.clone(),
             at_speed: run.at_speed,
             fail_fast: run.fail_fast,
             seed: run.seed,

@@ -87,9 +87,8 @@ impl Run<'_> {
         schedule: &'s [Segment],
         source: &Receiver<Result<Prepared, PrepareError>>,
     ) -> Result<Option<&'s Segment>, End> {
-        let height = self.plan.tables.geometry().height() as u64;
-        let frames: usize = schedule.iter().map(|segment| segment.frames.len()).sum();
-        self.progress.rows_expected(frames as u64 * height);
+        let rows = schedule.iter().map(|segment| segment.frames.len() * segment.geometry.height());
+        self.progress.rows_expected(rows.sum::<usize>() as u64);
         let mut last = None;
         for segment in schedule {
             // Tables that have changed are not replaced, since they are read back behind the last frame.
@@ -121,15 +120,25 @@ impl Run<'_> {
     /// What the frames left untouched of the board, as far as that is known.
     fn note_not_exercised(&mut self) {
         let Findings { board, seen, .. } = &*self.findings;
-        let used =
-            |generation: &&Generation| seen.frames.iter().any(|frame| frame.generation == generation.number);
-        let corners = &self.findings.corners;
-        let generations: Vec<_> = self.generations.iter().filter(used).chain(corners).collect();
+        let used: Vec<_> =
+            self.generations.iter().filter_map(|generation| self.used_of(generation)).collect();
+        let generations: Vec<_> = used.iter().chain(&self.findings.corners).collect();
         self.findings.not_exercised = board
             .identity
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
+    }
+
+    /// The rows of `generation` that frames were made with, if there were any.
+    fn used_of(&self, generation: &Generation) -> Option<Generation> {
+        let Findings { seen, whole_at_speed, .. } = &*self.findings;
+        let height = generation.tables.geometry().height();
+        if whole_at_speed.contains(&generation.number) {
+            return generation.upper(height);
+        }
+        let made = seen.frames.iter().filter(|frame| frame.generation == generation.number);
+        generation.upper(made.map(|frame| frame.first_rows.unwrap_or(height)).max()?)
     }
 
     fn identity(&mut self) -> Result<(), End> {

@@ -63,6 +63,7 @@ impl Run<'_> {
             evidence_bytes: self.options.evidence_bytes,
             names_entered: self.board.capabilities.entered,
             variation: self.plan.variation(geometry),
+            first_rows: Some(geometry.height()).filter(|&rows| rows < self.plan.tables.geometry().height()),
             pauses: pauses(gap_seed, geometry.width(), geometry.height()),
         }
     }

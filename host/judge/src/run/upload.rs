@@ -11,7 +11,8 @@ impl Run<'_> {
     /// Sets the board for a segment, its tables included.
     pub(super) fn prepare(&mut self, segment: &Segment) -> Result<(), End> {
         self.configure(segment)?;
-        segment.commit.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame))
+        let rows = segment.geometry.height();
+        segment.commit.map_or(Ok(()), |(number, first_frame)| self.commit(number, first_frame, rows))
     }
 
     pub(super) fn configure(&mut self, segment: &Segment) -> Result<(), End> {
@@ -24,19 +25,23 @@ impl Run<'_> {
         configured.map_err(|error| End::board(CheckName::Upload, &error))
     }
 
-    /// Uploads a generation, to be used from `first_frame` on.
-    pub(super) fn commit(&mut self, number: u8, first_frame: u16) -> Result<(), End> {
+    /// Uploads a generation, to be used from `first_frame` on, which has so many rows.
+    pub(super) fn commit(&mut self, number: u8, first_frame: u16, rows: usize) -> Result<(), End> {
         let generation = self.generations.iter().find(|generation| generation.number == number).cloned();
-        generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame))
+        generation.map_or(Ok(()), |generation| self.upload(&generation, first_frame, rows))
     }
 
-    fn upload(&mut self, generation: &Generation, first_frame: u16) -> Result<(), End> {
+    /// Whole tables whatever the frames have of them, since frames at speed are whole.
+    fn upload(&mut self, generation: &Generation, first_frame: u16, rows: usize) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         self.board.upload(tables, kernel).map_err(|error| End::board(CheckName::Upload, &error))?;
-        let (rows, nodes) = (tables.row_factors().len(), kernel.nodes().len());
-        self.findings.passed(CheckName::Upload, Finding::TablesUploaded { rows, nodes, generation: *number });
+        let (entries, nodes) = (tables.row_factors().len(), kernel.nodes().len());
+        let uploaded = Finding::TablesUploaded { rows: entries, nodes, generation: *number };
+        self.findings.passed(CheckName::Upload, uploaded);
         let ports = self.check_read_back(CheckName::ReadBack, Bank::Shadow, generation)?;
-        self.board.commit(tables, kernel, first_frame, *number).map_err(|error| match error {
+        let upper = generation.upper(rows);
+        let committed = upper.as_ref().map_or(tables, |upper| &upper.tables);
+        self.board.commit(committed, kernel, first_frame, *number).map_err(|error| match error {
             BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::TableCrc => {
                 End::failed(CheckName::ReadBack, Finding::CommitCrcWrong {})
             }

@@ -205,6 +205,7 @@ impl Seen {
             generation,
             timing: FrameTiming::LeastBlanking { clocks: 0 },
             variation: None,
+            first_rows: None,
             seconds: 0.0,
             rows: input.height(),
             comparison,

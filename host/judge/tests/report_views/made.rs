@@ -177,6 +177,7 @@ pub(crate) fn equal_frame((number, name): (u16, &str)) -> FrameReport {
         generation: 2,
         timing: FrameTiming::LeastBlanking { clocks: 0 },
         variation: None,
+        first_rows: None,
         comparison: Comparison { samples: 1920 * 1080, ..Comparison::new(1920, 1080) },
         rows: 1080,
         seconds: 0.75,

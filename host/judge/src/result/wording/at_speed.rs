@@ -137,6 +137,7 @@ fn elsewhere(corners: u32) -> String {
 fn because(reason: NoBurst) -> String {
     match reason {
         NoBurst::NotAskedFor {} => "it was not asked for".to_owned(),
+        NoBurst::LeftOut {} => "it was left out".to_owned(),
         NoBurst::BoardMakesNone {} => "the board makes no frames on its own".to_owned(),
         NoBurst::ContentUnknown { content, known } => {
             format!("the board makes frames of content {content}, and this program knows content {known}")

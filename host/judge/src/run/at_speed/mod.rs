@@ -17,7 +17,8 @@ use halfrow_model::Geometry;
 use halfrow_protocol::message::BurstMode;
 
 use super::findings::End;
-use super::plan::{DECOY, Generation, Segment};
+use super::parts::Part;
+use super::plan::{DECOY, Generation, JUDGED, Segment};
 use super::steps::Run;
 use crate::board::{Bank, BoardNature, Bursts, RowTiming};
 use crate::progress::Step;
@@ -61,6 +62,9 @@ impl Run<'_> {
         if self.plan.at_speed == Some(Duration::ZERO) {
             return Err(NoBurst::NotAskedFor {});
         }
+        if self.plan.amount(Part::AtSpeed) == 0 {
+            return Err(NoBurst::LeftOut {});
+        }
         match self.board.capabilities.bursts {
             None => Err(NoBurst::BoardMakesNone {}),
             Some(bursts) if bursts.content != CONTENT => {
@@ -75,7 +79,11 @@ impl Run<'_> {
         let tables = self.tables_at_speed()?;
         let plan = self.burst_plan(bursts, &tables);
         let watched = self.judge_frames(&plan, &tables)?;
-        let corners = self.judge_corners(bursts)?;
+        let corners = if self.plan.amount(Part::Corners) > 0 { self.judge_corners(bursts)? } else { 0 };
+        if watched.paused == 0 {
+            let made_with = [JUDGED, DECOY].into_iter().take(tables.len());
+            self.findings.whole_at_speed = made_with.collect();
+        }
         let changes = plan.mode == BurstMode::Alternating;
         self.findings.untested_at_speed = untested(changes, watched.paused > 0);
         self.note_right(&plan, watched.frames, watched.paused, watched.held_back, corners);
@@ -148,7 +156,7 @@ impl Run<'_> {
             let uploaded = self.board.upload(&generation.tables, &generation.kernel);
             uploaded.map_err(|error| End::board(CheckName::AtSpeed, &error))?;
             self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
-            if let Some(first_row) = repeated::upper_part(generation, 1).filter(|_| place == 0) {
+            if let Some(first_row) = generation.upper(1).filter(|_| place == 0) {
                 self.set(first_row.tables.geometry())?;
                 self.activate(&first_row)?;
             }
@@ -182,6 +190,8 @@ impl Run<'_> {
             None if capabilities.nature == BoardNature::Hardware => plan.frames_in(USUAL),
             None => FEW,
         };
+        let most = u32::try_from(self.plan.amount(Part::AtSpeed)).unwrap_or(u32::MAX);
+        plan.frames = plan.frames.min(most.max(2));
         plan
     }
 

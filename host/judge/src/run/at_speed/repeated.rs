@@ -3,7 +3,7 @@
 use std::iter;
 use std::slice;
 
-use halfrow_model::{Content, Frame, Geometry, TableSet, row_signature};
+use halfrow_model::{Content, Frame, row_signature};
 use halfrow_protocol::message::BurstMode;
 
 use super::burst::BurstPlan;
@@ -14,12 +14,13 @@ use super::{FEW, USUAL};
 use crate::board::{NumberedFrame, Trapped, Unjudged};
 use crate::compare::Comparison;
 use crate::diagnosis::{self, Case, Uploaded};
+use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
     Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Repetition, Suspect,
 };
 use crate::run::findings::End;
-use crate::run::plan::{FrameSource, Generation, ScheduledFrame};
+use crate::run::plan::Generation;
 use crate::run::steps::Run;
 
 /// Differing samples below which a row is too little to tell one defect from another.
@@ -116,11 +117,10 @@ impl Run<'_> {
     pub(super) fn activate(&mut self, generation: &Generation) -> Result<(), End> {
         let of_board = |error| End::board(CheckName::AtSpeed, &error);
         let Generation { number, tables, kernel } = generation;
-        let source = FrameSource::Builtin(crate::frames::Builtin::Noise);
-        let scheduled = ScheduledFrame { number: u16::MAX, source, generation: *number };
-        let Ok(frame) = self.plan.render(&scheduled, tables.geometry()) else { return Ok(()) };
-        self.board.commit(tables, kernel, scheduled.number, *number).map_err(of_board)?;
-        let frame = NumberedFrame { number: scheduled.number, frame };
+        let scene = Scene { geometry: *tables.geometry(), ..self.plan.scene(u16::MAX.into()) };
+        let Ok(frame) = Builtin::Noise.render(&scene) else { return Ok(()) };
+        self.board.commit(tables, kernel, u16::MAX, *number).map_err(of_board)?;
+        let frame = NumberedFrame { number: u16::MAX, frame: frame.into() };
         self.board.stream(&mut Unjudged(iter::once(frame))).map_err(of_board)
     }
 
@@ -139,7 +139,7 @@ impl Run<'_> {
         if !is_row || row_signature(samples) != *signature {
             return None;
         }
-        let generation = upper_part(generation, row + 1)?;
+        let generation = generation.upper(row + 1)?;
         let input = content.frame(generation.tables.geometry(), self.plan.phase);
         let expected = correct(&generation.tables, &generation.kernel, &input).ok()?;
         let mut found = expected.samples().to_vec();
@@ -174,6 +174,7 @@ impl Run<'_> {
             generation: *number,
             timing: FrameTiming::LeastBlanking { clocks: self.board.capabilities.least_blanking },
             variation: None,
+            first_rows: None,
             rows: tables.geometry().height(),
             comparison,
             seconds: 0.0,
@@ -185,15 +186,6 @@ impl Run<'_> {
             evidence: slice::from_ref(evidence),
         })
     }
-}
-
-/// The tables of the first `rows` rows.
-pub(super) fn upper_part(generation: &Generation, rows: usize) -> Option<Generation> {
-    let Generation { number, tables, kernel } = generation;
-    let own = tables.geometry();
-    let geometry = Geometry::new(own.width(), rows, own.depth(), own.centre2()).ok()?;
-    let tables = TableSet::new(geometry, tables.row_factors()[..rows].to_vec()).ok()?;
-    Some(Generation { number: *number, tables, kernel: kernel.clone() })
 }
 
 /// What fails at the full pixel clock alone, seen in `row` if one was trapped: its number, what it should be, what it is.

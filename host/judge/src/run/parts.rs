@@ -1,0 +1,175 @@
+//! The parts that a run is made of, and a selection of them.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use halfrow_model::Geometry;
+use serde::{Deserialize, Serialize};
+
+use super::plan::{Plan, ScheduledFrame, Segment};
+use super::variations::Build;
+
+/// A part of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Part {
+    /// Noise that the decoy's tables correct.
+    Decoy,
+    /// The same once more, with frames to judge close behind it, so that tables change between rows that follow each other.
+    /// A board with one bank of tables has none.
+    Swap,
+    /// The frame of the plan at this place, as often as the plan repeats it.
+    Judged(usize),
+    /// Noise with the sensor's blanking.
+    SensorBlanking,
+    /// Noise with gaps in and between rows.
+    Gaps,
+    /// Noise with another optical centre.
+    Centre,
+    /// Noise of so many bits a sample.
+    Depth(u32),
+    /// Frames that the board makes on its own at the full pixel clock.
+    AtSpeed,
+    /// The same in corners of what the board can be set to.
+    Corners,
+}
+
+impl fmt::Display for Part {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Decoy => formatter.write_str("decoy"),
+            Self::Swap => formatter.write_str("table change"),
+            Self::Judged(place) => write!(formatter, "frame {place}"),
+            Self::SensorBlanking => formatter.write_str("sensor blanking"),
+            Self::Gaps => formatter.write_str("gaps"),
+            Self::Centre => formatter.write_str("centre"),
+            Self::Depth(bits) => write!(formatter, "{bits} bits"),
+            Self::AtSpeed => formatter.write_str("at speed"),
+            Self::Corners => formatter.write_str("corners"),
+        }
+    }
+}
+
+/// The parts that are judged, and how much of each: rows of what is streamed, frames at speed, 1 for the corners. A streamed
+/// frame of fewer rows than the tables have is its first ones.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "Vec<(Part, usize)>", into = "Vec<(Part, usize)>")]
+pub struct Selection(BTreeMap<Part, usize>);
+
+impl From<Vec<(Part, usize)>> for Selection {
+    fn from(parts: Vec<(Part, usize)>) -> Self {
+        parts.into_iter().fold(Self::least(), |selection, (part, amount)| selection.with(part, amount))
+    }
+}
+
+impl From<Selection> for Vec<(Part, usize)> {
+    fn from(selection: Selection) -> Self {
+        selection.0.into_iter().collect()
+    }
+}
+
+impl Selection {
+    /// The least that makes a verdict: one row of the first frame to judge. It brings the tables into effect as well, without
+    /// which a board makes no frames of its own.
+    #[must_use]
+    pub fn least() -> Self {
+        Self(BTreeMap::from([(Part::Judged(0), 1)]))
+    }
+
+    /// How much of `part` there is; 0 when it is not among them.
+    #[must_use]
+    pub fn amount(&self, part: Part) -> usize {
+        self.0.get(&part).copied().unwrap_or_default()
+    }
+
+    /// The same with at least so much of `part`, and with what that is nothing without: a change of tables follows a
+    /// frame with the decoy and comes before as many rows to judge, and corners follow two frames at speed.
+    #[must_use]
+    pub fn with(&self, part: Part, amount: usize) -> Self {
+        let mut parts = self.0.clone();
+        let mut raise = |part, least: usize| {
+            let had = parts.entry(part).or_default();
+            *had = least.max(*had);
+            *had
+        };
+        if amount > 0 {
+            raise(part, amount);
+        }
+        let (judged, swapped) = (raise(Part::Judged(0), 1), self.amount(Part::Swap));
+        if part == Part::Swap || swapped > 0 {
+            raise(Part::Decoy, 1);
+            // One height for both, since the core runs empty between two heights.
+            let together = raise(Part::Swap, judged);
+            raise(Part::Judged(0), together);
+        }
+        if part == Part::Corners {
+            raise(Part::AtSpeed, 2);
+        }
+        Self(parts)
+    }
+
+    /// Every part of `parts`, whole.
+    #[must_use]
+    pub fn all(parts: impl IntoIterator<Item = Part>) -> Self {
+        parts.into_iter().fold(Self::least(), |selection, part| selection.with(part, usize::MAX))
+    }
+
+    /// What is streamed of a whole schedule.
+    pub(super) fn of(&self, schedule: Vec<Segment>) -> Vec<Segment> {
+        let (mut active, mut streamed) = (None, Vec::new());
+        for Segment { geometry, timing, frames, .. } in schedule {
+            let rows = |frame: &ScheduledFrame| self.amount(frame.part).min(geometry.height());
+            let selected = frames.into_iter().filter(|frame| rows(frame) > 0);
+            for frames in runs(selected, rows) {
+                let generation = frames.last().map(|last| last.generation);
+                let first = frames.iter().find(|frame| Some(frame.generation) == generation);
+                let commit = first.filter(|_| generation != active).map(|it| (it.generation, it.number));
+                active = generation;
+                let geometry = of_height(&geometry, frames.first().map_or(0, rows));
+                streamed.push(Segment { geometry, timing, commit, frames });
+            }
+        }
+        streamed
+    }
+}
+
+/// `frames` in runs of the same number of rows.
+fn runs(
+    frames: impl Iterator<Item = ScheduledFrame>,
+    rows: impl Fn(&ScheduledFrame) -> usize,
+) -> Vec<Vec<ScheduledFrame>> {
+    let mut runs: Vec<Vec<ScheduledFrame>> = Vec::new();
+    for frame in frames {
+        match runs.last_mut() {
+            Some(run) if run.last().map(&rows) == Some(rows(&frame)) => run.push(frame),
+            _ => runs.push(vec![frame]),
+        }
+    }
+    runs
+}
+
+/// The same with another number of rows, if frames can have so many.
+pub(super) fn of_height(geometry: &Geometry, rows: usize) -> Geometry {
+    let other = Geometry::new(geometry.width(), rows, geometry.depth(), geometry.centre2());
+    other.unwrap_or(*geometry)
+}
+
+impl Plan {
+    /// Every part of a run on a board of this build, in the order of its schedule.
+    #[must_use]
+    pub fn parts(&self, build: &Build) -> Vec<Part> {
+        let frames = self.whole_schedule(build).into_iter().flat_map(|segment| segment.frames);
+        let mut parts: Vec<Part> = Vec::new();
+        for part in frames.map(|frame| frame.part).chain([Part::AtSpeed, Part::Corners]) {
+            if !parts.contains(&part) {
+                parts.push(part);
+            }
+        }
+        parts
+    }
+
+    /// How much of `part` there is to be judged; everything when none are selected.
+    pub(super) fn amount(&self, part: Part) -> usize {
+        self.parts.as_ref().map_or(usize::MAX, |selection| selection.amount(part))
+    }
+}

@@ -1,0 +1,140 @@
+//! Runs of some of their parts.
+
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use halfrow::frames::Builtin;
+use halfrow::result::{CheckName, Finding, NoBurst, NotExercised, Outcome, Report};
+use halfrow::run::{Build, FrameSource, Part, Plan, Selection};
+use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
+use halfrow_protocol::Kind;
+use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
+
+const ROWS: usize = 16;
+
+fn plan(parts: Option<Selection>) -> Plan {
+    let system = System { height: ROWS, ..System::TINY };
+    Plan { parts, fail_fast: false, ..system.plan() }
+}
+
+fn judged(board: &str, parts: Selection) -> Report {
+    judge_by_plan(&plan(Some(parts)), open(board))
+}
+
+/// What the host sends in a run by `plan`.
+fn sent(plan: &Plan) -> Vec<Passing> {
+    let packets = Arc::new(Mutex::new(Vec::new()));
+    let seen = Arc::clone(&packets);
+    let alter = move |toward, passing: Passing| {
+        if toward == Toward::Board {
+            seen.lock().unwrap().push(passing.clone());
+        }
+        vec![passing]
+    };
+    let report = judge_by_plan(plan, Altered::new(&Options::default(), alter).candidate());
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    packets.lock().unwrap().clone()
+}
+
+#[test]
+fn all_parts_are_the_run_as_it_is_without_a_selection_to_the_byte() {
+    let _alone = crate::RUNS.lock();
+    let vary = halfrow::run::Vary { centre: true, depth: true };
+    let whole = plan(None).varying(vary);
+    let parts = Selection::all(whole.parts(&Build::full(64)));
+    assert_eq!(parts.amount(Part::Centre), usize::MAX);
+    let (expected, found) = (sent(&whole), sent(&Plan { parts: Some(parts), ..whole }));
+    assert!(expected.iter().filter(|packet| packet.is(Kind::RowIn)).count() > 200);
+    assert!(expected == found);
+}
+
+#[test]
+fn one_row_and_a_burst_are_a_run() {
+    let _alone = crate::RUNS.lock();
+    let least = Selection::least().with(Part::AtSpeed, 2);
+    let report = judged("mock", least.clone());
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    let [frame] = &report.frames[..] else { panic!("{:?}", report.frames) };
+    assert_eq!((frame.first_rows, frame.rows, frame.comparison.samples), (Some(1), 1, 64));
+    let at_speed = report.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
+    assert!(matches!(at_speed.finding, Finding::EqualAtSpeed { frames: 2, corners: 0, .. }), "{at_speed:?}");
+
+    // Both need what is behind row 0.
+    for fault in ["row-factor,row=9,hidden=true", "warm-bit,after=1,row=9"] {
+        let report = judged(&format!("mock,fault={fault}"), least.clone());
+        assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{fault}: {}", report.headline());
+    }
+    let whole = judged("mock", least.with(Part::Corners, 1));
+    let at_speed = whole.checks.iter().find(|check| check.name == CheckName::AtSpeed).unwrap();
+    assert!(matches!(at_speed.finding, Finding::EqualAtSpeed { corners: 4, .. }), "{at_speed:?}");
+}
+
+#[test]
+fn a_row_that_is_wrong_is_found_with_it_and_not_without() {
+    let _alone = crate::RUNS.lock();
+    let spoilt = "mock,fault=spoilt-row,row=9,entered=no";
+    for part in [Part::Judged(2), Part::Gaps, Part::SensorBlanking, Part::Decoy, Part::Swap] {
+        let [without, with] = [9, 10].map(|rows| judged(spoilt, Selection::least().with(part, rows)));
+        assert_eq!(without.verdict, Verdict::Pass, "{part}: {}", without.headline());
+        assert_eq!(failed_check(&with), Some(CheckName::Frames), "{part}: {}", with.headline());
+        let cut: Vec<_> = with.frames.iter().filter(|frame| frame.first_rows == Some(10)).collect();
+        let differ: Vec<_> = cut.iter().map(|frame| frame.comparison.first.unwrap().row).collect();
+        assert_eq!(differ, vec![9; if part == Part::Swap { 2 } else { 1 }], "{part}");
+        assert!(!with.suspects.is_empty(), "{part}");
+    }
+}
+
+#[test]
+fn frames_at_another_centre_and_depth_can_be_cut_too() {
+    let _alone = crate::RUNS.lock();
+    let parts = Selection::least().with(Part::Centre, 10).with(Part::Depth(8), 3).with(Part::Swap, 4);
+    let vary = halfrow::run::Vary { centre: true, depth: true };
+    let judged = |board| judge_by_plan(&plan(Some(parts.clone())).varying(vary), open(board));
+    let report = judged("mock");
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    let rows: Vec<_> = report.frames.iter().map(|frame| (frame.rows, frame.generation)).collect();
+    // One row of the decoy comes before the change of tables.
+    assert_eq!(rows, [(1, 1), (4, 1), (4, 2), (10, 3), (3, 4)]);
+    let report = judged("mock,fault=spoilt-row,row=9,entered=no");
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    let differs: Vec<_> = report.frames.iter().map(|frame| frame.comparison.differences > 0).collect();
+    assert_eq!(differs, [false, false, false, true, false]);
+}
+
+#[test]
+fn what_was_left_out_is_not_called_exercised() {
+    let _alone = crate::RUNS.lock();
+    let speed = |report: &Report| {
+        report.checks.iter().find(|check| check.name == CheckName::AtSpeed).map(|check| {
+            (check.outcome, matches!(check.finding, Finding::NothingAtSpeed { reason: NoBurst::LeftOut {} }))
+        })
+    };
+    let rows_told = |report: &Report| {
+        report
+            .not_exercised
+            .iter()
+            .any(|part| matches!(part, NotExercised::RowTableAddress { lines } if lines.contains(&1)))
+    };
+    let report = judged("mock", Selection::least());
+    assert_eq!(speed(&report), Some((Outcome::Skipped, true)));
+    assert!(rows_told(&report), "{:?}", report.not_exercised);
+    assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
+    // Frames at speed are made with every row.
+    let report = judged("mock", Selection::least().with(Part::AtSpeed, 2));
+    assert!(!rows_told(&report), "{:?}", report.not_exercised);
+}
+
+#[test]
+fn a_frame_of_a_file_is_cut_like_any() {
+    let _alone = crate::RUNS.lock();
+    let whole = plan(None);
+    let scene = whole.scene(7);
+    let frame = Arc::new(Builtin::Noise.render(&scene).unwrap());
+    let file = FrameSource::File { path: "own.pgm".into(), frame };
+    let plan =
+        Plan { at_speed: Some(Duration::ZERO), parts: Some(Selection::least()), ..whole.frames([file]) };
+    let report = judge_by_plan(&plan, open("mock"));
+    assert_eq!((report.verdict, report.frames[0].first_rows), (Verdict::Pass, Some(1)));
+}
