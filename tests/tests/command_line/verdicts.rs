@@ -65,8 +65,43 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
 fn the_list_names_every_frame_and_opens_no_board() {
     let ended = halfrow(small("verify", &["--list", "--board", "mock,fault=disconnect,byte=0"]));
     assert_eq!(ended.code, Some(0));
-    assert_eq!(ended.stdout.lines().count(), 19);
+    let listed = ended.stdout.lines().take_while(|line| !line.is_empty());
+    assert_eq!(listed.count(), 19);
     assert!(ended.stdout.contains("builtin:zone-plate"), "{}", ended.stdout);
+}
+
+/// The prices of parts at each link that a list is for.
+fn listed_prices(board: &str) -> Vec<(f64, Vec<(String, f64)>)> {
+    let listed = halfrow(["verify", "--list", "--json", "--board", board]).json();
+    let links = listed["prices"].as_array().cloned().unwrap_or_default();
+    let part = |it: &serde_json::Value| {
+        (it["part"].as_str().unwrap_or_default().to_owned(), it["seconds"].as_f64().unwrap_or_default())
+    };
+    let parts = |link: &serde_json::Value| link["parts"].as_array().unwrap().iter().map(part).collect();
+    links.iter().map(|link| (link["bytes_per_second"].as_f64().unwrap(), parts(link))).collect()
+}
+
+#[test]
+fn the_list_prices_each_part_at_the_link_that_the_target_names_or_at_usual_ones() {
+    let usual = listed_prices("mock");
+    assert_eq!(usual.iter().map(|(rate, _)| *rate).collect::<Vec<_>>(), [300e3, 1200e3, 5000e3]);
+    let price = |parts: &[(String, f64)], name: &str| parts.iter().find(|part| part.0 == name).unwrap().1;
+    // 1080 rows of 2880 bytes of samples, and 26 of place and figures with 18 of their packet and 11 stuffed in.
+    let row = 2880 + 26 + 18 + 11;
+    for (rate, parts) in &usual {
+        let carried = f64::from(row * 1079) / rate;
+        let street = price(parts, "builtin:street");
+        // At 5 MB/s the round trip is longer than the board has banks for.
+        let most = if *rate < 5e6 { 1.02 } else { 1.3 };
+        assert!((carried..carried * most + 0.01).contains(&street), "{street} {carried}");
+        // Three frames on the mock cost a link their tables, and their 65 ms.
+        assert!(price(parts, "at speed") < 0.2 + 5000.0 / rate, "{rate}");
+    }
+    let [(rate, own)] = &listed_prices("mock,speed=1200000")[..] else { panic!() };
+    assert_eq!((*rate, own), (1.2e6, &usual[1].1));
+    let text = halfrow(["verify", "--list", "--board", "mock,speed=1200000"]).stdout;
+    let last = text.lines().last().unwrap_or_default();
+    assert!(last.starts_with("the whole run") && last.ends_with(" s"), "{text}");
 }
 
 #[test]

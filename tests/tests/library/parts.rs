@@ -3,9 +3,10 @@
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use halfrow::board::{Board, OpenOptions};
 use halfrow::frames::Builtin;
 use halfrow::result::{CheckName, Finding, NoBurst, NotExercised, Outcome, Report};
-use halfrow::run::{Build, FrameSource, Part, Plan, Selection};
+use halfrow::run::{Build, FrameSource, Part, Plan, Prices, Rates, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
 use halfrow_protocol::Kind;
@@ -48,6 +49,36 @@ fn all_parts_are_the_run_as_it_is_without_a_selection_to_the_byte() {
     let (expected, found) = (sent(&whole), sent(&Plan { parts: Some(parts), ..whole }));
     assert!(expected.iter().filter(|packet| packet.is(Kind::RowIn)).count() > 200);
     assert!(expected == found);
+}
+
+/// On a virtual clock none of this is by chance. Rows of 64 samples are cheaper than they are taken to be, and pixel clocks
+/// take the mock no time.
+#[test]
+fn a_price_is_what_a_run_takes_and_a_little_more() {
+    let _alone = crate::RUNS.lock();
+    let least = Selection::least();
+    let selections = [
+        least.clone(),
+        least.with(Part::AtSpeed, 3),
+        least.with(Part::Corners, 1),
+        least.with(Part::Swap, 16).with(Part::Gaps, 7),
+        Selection::all(plan(None).parts(&Build::full(64))),
+    ];
+    let boards =
+        [("mock,speed=20000", 0.7), ("mock,speed=300000,delay=0.002", 0.8), ("mock,speed=5000000", 0.15)];
+    for (board, least_share) in boards {
+        let mut opened =
+            Board::open(open(board).link, &OpenOptions::default()).map_err(|(error, _)| error).unwrap();
+        let rates = Rates::of(&mut opened).unwrap();
+        for selection in &selections {
+            let plan = plan(Some(selection.clone()));
+            let prices = Prices::new(&plan, &opened.capabilities, rates);
+            let price = prices.opening() + prices.seconds(selection);
+            let taken = judge_by_plan(&plan, open(board)).link.seconds;
+            assert!(taken <= price, "{board}, {selection:?}: {taken} s for {price} s");
+            assert!(taken > least_share * price, "{board}, {selection:?}: {taken} s for {price} s");
+        }
+    }
 }
 
 #[test]

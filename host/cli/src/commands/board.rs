@@ -65,7 +65,7 @@ impl BoardArguments {
         Ok(target.address.filter(|_| target.kind == "replay").map(PathBuf::from))
     }
 
-    fn target(&self, settings: &Settings) -> Result<Target, Failure> {
+    pub(super) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
         match (&self.board, &settings.board) {
             (Some(target), _) => Ok(target.clone()),
             (None, Some(text)) => text.parse().map_err(Failure::call),

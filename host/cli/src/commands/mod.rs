@@ -18,6 +18,7 @@ mod kernel;
 mod lens;
 mod line;
 mod link;
+mod listing;
 mod load;
 mod optics;
 mod paper;

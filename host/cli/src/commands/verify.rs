@@ -4,21 +4,19 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
-use serde::Serialize;
 
-use super::document::print_result;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, frame_sources};
+use super::listing;
 use super::run::{RunArguments, conclude, seconds, tell};
-use super::{Context, Failure, print};
+use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
 use halfrow::frames::{Builtin, check_regular};
 use halfrow::link::{Candidate, Lost, Recorder, Recording};
 use halfrow::optics::Chosen;
-use halfrow::result::Variation;
-use halfrow::run::{self, Build, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Timing, Vary};
+use halfrow::run::{self, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -37,7 +35,7 @@ pub(super) struct Arguments {
     /// Stop at the first frame that differs
     #[arg(long)]
     fail_fast: bool,
-    /// Only list what would be streamed
+    /// Only list what would be streamed, and what each part would cost on the link
     #[arg(long)]
     list: bool,
     /// Keep every byte of the run with its time, for replay:FILE
@@ -58,7 +56,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let (plan, options) = arguments.planned(recording.as_ref(), frames, &files, settings)?;
     if arguments.list {
         board.candidate_of(settings, recording)?;
-        return list(&plan, context.json);
+        return listing::list(&plan, &board.target(settings)?, context.json);
     }
     let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;
     let mut candidate = board.candidate_of(settings, recording)?;
@@ -81,49 +79,6 @@ impl From<RestoreError> for Failure {
     fn from(error: RestoreError) -> Self {
         if error.is_other_datapath() { Self::refused(error) } else { Self::call(error) }
     }
-}
-
-/// A frame that would be streamed.
-#[derive(Serialize)]
-struct Listed {
-    number: u16,
-    name: String,
-    tables: &'static str,
-    timing: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    variation: Option<Variation>,
-}
-
-/// Prints what would be streamed.
-fn list(plan: &Plan, as_json: bool) -> Result<Exit, Failure> {
-    let listed = listing(plan);
-    if as_json {
-        print_result("verify", Exit::Pass, None, serde_json::json!({ "listed": listed }))?;
-        return Ok(Exit::Pass);
-    }
-    let line = |Listed { number, name, tables, timing, variation }: &Listed| {
-        let variation = variation.map_or_else(String::new, |variation| format!(", {variation}"));
-        format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}{variation}")
-    };
-    print(&listed.iter().map(line).collect::<Vec<_>>().join("\n"))?;
-    Ok(Exit::Pass)
-}
-
-fn listing(plan: &Plan) -> Vec<Listed> {
-    let mut listed = Vec::new();
-    for segment in plan.schedule(&Build::full(plan.tables.geometry().width())) {
-        let timing = match segment.timing {
-            Timing::Least => "least blanking",
-            Timing::Sensor => "sensor blanking",
-            Timing::Gaps(_) => "gaps",
-        };
-        let variation = plan.variation(&segment.geometry);
-        listed.extend(segment.frames.iter().map(|frame| {
-            let tables = if frame.generation == run::DECOY { "decoy" } else { "judged" };
-            Listed { number: frame.number, name: frame.source.name(), tables, timing, variation }
-        }));
-    }
-    listed
 }
 
 impl Arguments {

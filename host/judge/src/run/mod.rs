@@ -20,6 +20,7 @@ mod patterns;
 mod pauses;
 mod plan;
 mod prepared;
+mod prices;
 mod reconnect;
 mod recorded;
 mod schedule;
@@ -49,6 +50,7 @@ pub use plan::{
     DECOY, FrameSource, Generation, JUDGED, MOST_FRAMES, Plan, ScheduledFrame, Segment, Timing, TooManyFrames,
 };
 pub(crate) use prepared::PrepareError;
+pub use prices::{Prices, Rates, usual_capabilities};
 pub use recorded::{RecordedRun, RestoreError};
 pub use variations::{Build, Vary};
 

@@ -6,7 +6,7 @@ use std::fmt;
 use halfrow_model::Geometry;
 use serde::{Deserialize, Serialize};
 
-use super::plan::{Plan, ScheduledFrame, Segment};
+use super::plan::{FrameSource, Plan, ScheduledFrame, Segment};
 use super::variations::Build;
 
 /// A part of a run.
@@ -166,6 +166,16 @@ impl Plan {
             }
         }
         parts
+    }
+
+    /// The name of a part for people, a frame's own included.
+    #[must_use]
+    pub fn name_of(&self, part: Part) -> String {
+        let source = match part {
+            Part::Judged(place) => self.frames.get(place).map(FrameSource::name),
+            _ => None,
+        };
+        source.unwrap_or_else(|| part.to_string())
     }
 
     /// How much of `part` there is to be judged; everything when none are selected.

@@ -6,10 +6,11 @@ use std::time::Duration;
 use halfrow_model::{BitDepth, Content, Geometry, MIN_WIDTH};
 use halfrow_protocol::message::{Burst, BurstMode};
 
+use super::price::clock_hz;
 use crate::board::{Bursts, Capabilities};
 
 /// The pixel clock, in hertz, that a board is taken to have which names none: that of the paper's sensor.
-const USUAL_CLOCK: u32 = 96_000_000;
+pub(super) const USUAL_CLOCK: u32 = 96_000_000;
 /// 2^64 / golden ratio: spreads a run's seeds over all seeds of bursts.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The longest between two looks at the records, so that whoever stops the run need not wait.
@@ -62,7 +63,7 @@ impl BurstPlan {
             first_frame: 0,
             bursts,
             clocks: row * height as u64 - u64::from(blanking) + u64::from(between),
-            clock_hz: if capabilities.clock_hz == 0 { USUAL_CLOCK } else { capabilities.clock_hz },
+            clock_hz: clock_hz(capabilities),
             samples: (width * height) as u32,
             rows: height as u16,
             latency: width as u16 / 2 + u16::from(capabilities.latency),

@@ -6,6 +6,7 @@
 mod burst;
 mod corners;
 mod predicted;
+mod price;
 mod repeated;
 mod soak;
 mod tables_late;
@@ -20,15 +21,16 @@ use super::findings::End;
 use super::parts::Part;
 use super::plan::{DECOY, Generation, JUDGED, Segment};
 use super::steps::Run;
-use crate::board::{Bank, BoardNature, Bursts, RowTiming};
+use crate::board::{Bank, Bursts, RowTiming};
 use crate::progress::Step;
 use crate::reference::correct;
 use crate::result::{BurstCount, CheckName, Corner, Finding, NoBurst, NotExercised, Outcome};
 use burst::BurstPlan;
+pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
 use watched::{EndsEarly, Watched};
 
 /// The content id that the model makes (AT-SPEED.md).
-const CONTENT: u16 = 1;
+pub(super) const CONTENT: u16 = 1;
 /// How long a burst is on hardware when nothing is asked for, on the board's clock.
 const USUAL: Duration = Duration::from_secs(3);
 /// Its frames on anything else.
@@ -183,13 +185,7 @@ impl Run<'_> {
     fn burst_plan(&self, bursts: Bursts, tables: &[Generation]) -> BurstPlan {
         let capabilities = &self.board.capabilities;
         let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-        let mut plan =
-            BurstPlan::new(self.plan.tables.geometry(), self.plan.seed, capabilities, bursts, mode, 0);
-        plan.frames = match self.plan.at_speed {
-            Some(time) => plan.frames_in(time),
-            None if capabilities.nature == BoardNature::Hardware => plan.frames_in(USUAL),
-            None => FEW,
-        };
+        let mut plan = price::usual_burst(self.plan, capabilities, bursts, mode);
         let most = u32::try_from(self.plan.amount(Part::AtSpeed)).unwrap_or(u32::MAX);
         plan.frames = plan.frames.min(most.max(2));
         plan

@@ -1,0 +1,153 @@
+//! `halfrow verify --list`: what would be streamed, and what each part costs.
+
+use serde::Serialize;
+
+use super::document::print_result;
+use super::{Failure, print};
+use crate::exit::Exit;
+use halfrow::board::{BoardNature, Capabilities};
+use halfrow::result::Variation;
+use halfrow::run::{self, Build, Part, Plan, Prices, Rates, Selection, Timing, usual_capabilities};
+use halfrow::target::Target;
+
+/// Links that prices are told for when the target does not say how fast its own is: two UARTs, and a FIFO.
+const USUAL_LINKS: [(&str, f64); 3] =
+    [("3 Mbaud", 300_000.0), ("12 Mbaud", 1_200_000.0), ("FIFO, 5 MB/s", 5_000_000.0)];
+/// A round trip over a link that nobody has asked, in seconds.
+const ROUND_TRIP: f64 = 0.001;
+
+/// A frame that would be streamed.
+#[derive(Serialize)]
+struct Listed {
+    number: u16,
+    name: String,
+    tables: &'static str,
+    timing: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    variation: Option<Variation>,
+}
+
+/// What a run costs on a link.
+#[derive(Serialize)]
+struct OnLink {
+    link: String,
+    bytes_per_second: f64,
+    round_trip: f64,
+    parts: Vec<Priced>,
+    /// What every run has, greeting and one row included.
+    every_run: f64,
+    whole_run: f64,
+}
+
+/// What a part adds to the least run.
+#[derive(Serialize)]
+struct Priced {
+    part: String,
+    /// Rows, or frames at speed.
+    amount: usize,
+    seconds: f64,
+}
+
+/// Prints what would be streamed to the board behind `target`, which is not opened, and what it would cost.
+pub(super) fn list(plan: &Plan, target: &Target, as_json: bool) -> Result<Exit, Failure> {
+    let (listed, links) = (listing(plan), on_links(plan, target));
+    if as_json {
+        let listed = serde_json::json!({ "listed": listed, "prices": links });
+        print_result("verify", Exit::Pass, None, listed)?;
+        return Ok(Exit::Pass);
+    }
+    let line = |Listed { number, name, tables, timing, variation }: &Listed| {
+        let variation = variation.map_or_else(String::new, |variation| format!(", {variation}"));
+        format!("{number:>4}  {name:<24} {tables:<6} tables, {timing}{variation}")
+    };
+    let mut lines: Vec<_> = listed.iter().map(line).collect();
+    if !links.is_empty() {
+        lines.push(String::new());
+        lines.extend(table(&links));
+    }
+    print(&lines.join("\n"))?;
+    Ok(Exit::Pass)
+}
+
+fn listing(plan: &Plan) -> Vec<Listed> {
+    let mut listed = Vec::new();
+    for segment in plan.schedule(&Build::full(plan.tables.geometry().width())) {
+        let timing = match segment.timing {
+            Timing::Least => "least blanking",
+            Timing::Sensor => "sensor blanking",
+            Timing::Gaps(_) => "gaps",
+        };
+        let variation = plan.variation(&segment.geometry);
+        listed.extend(segment.frames.iter().map(|frame| {
+            let tables = if frame.generation == run::DECOY { "decoy" } else { "judged" };
+            Listed { number: frame.number, name: frame.source.name(), tables, timing, variation }
+        }));
+    }
+    listed
+}
+
+fn on_links(plan: &Plan, target: &Target) -> Vec<OnLink> {
+    let nature = match target.kind.as_str() {
+        "mock" => BoardNature::Mock,
+        "sim" => BoardNature::Simulation,
+        _ => BoardNature::Hardware,
+    };
+    // What a recording holds has been streamed.
+    if target.kind == "replay" {
+        return Vec::new();
+    }
+    let capabilities = usual_capabilities(plan, nature);
+    let on_link = |(link, bytes_per_second)| on_link(plan, &capabilities, link, bytes_per_second);
+    match stated_rate(target) {
+        Some(rate) => vec![on_link((target.to_string(), rate))],
+        None => USUAL_LINKS.map(|(link, rate)| on_link((link.to_owned(), rate))).into(),
+    }
+}
+
+/// The bytes a second that a target says of its link.
+fn stated_rate(target: &Target) -> Option<f64> {
+    let number = |key: &str| {
+        let option = target.options.iter().find(|(name, _)| name == key);
+        option.and_then(|(_, value)| value.parse::<f64>().ok()).filter(|rate| rate.is_finite() && *rate > 0.0)
+    };
+    // A byte on a UART has ten bits.
+    number("speed").or_else(|| number("baud").map(|baud| baud / 10.0))
+}
+
+fn on_link(plan: &Plan, capabilities: &Capabilities, link: String, bytes_per_second: f64) -> OnLink {
+    let rates = Rates { bytes_per_second, round_trip: ROUND_TRIP };
+    let prices = Prices::new(plan, capabilities, rates);
+    let parts = prices.parts();
+    let priced = |&part: &Part| Priced {
+        part: plan.name_of(part),
+        amount: prices.most(part),
+        seconds: prices.of_part(part),
+    };
+    OnLink {
+        link,
+        bytes_per_second,
+        round_trip: ROUND_TRIP,
+        parts: parts.iter().map(priced).collect(),
+        every_run: prices.opening() + prices.seconds(&Selection::least()),
+        whole_run: prices.opening() + prices.seconds(&Selection::all(parts)),
+    }
+}
+
+/// The prices, a line a part and a column a link.
+fn table(links: &[OnLink]) -> Vec<String> {
+    let line = |name: &str, amount: String, of: &dyn Fn(&OnLink) -> String| {
+        links
+            .iter()
+            .fold(format!("{name:<40} {amount:>6}"), |line, link| line + &format!(" {:>14}", of(link)))
+    };
+    let seconds = |seconds: f64| format!("{seconds:.3} s");
+    let parts = links.first().map_or(&[][..], |link| &link.parts);
+    let part = |(place, part): (usize, &Priced)| {
+        let of = |link: &OnLink| link.parts.get(place).map_or_else(String::new, |part| seconds(part.seconds));
+        line(&part.part, part.amount.to_string(), &of)
+    };
+    let head = line("part", "rows".to_owned(), &|link| link.link.clone());
+    let every = line("every run", String::new(), &|link| seconds(link.every_run));
+    let whole = line("the whole run", String::new(), &|link| seconds(link.whole_run));
+    [head, every].into_iter().chain(parts.iter().enumerate().map(part)).chain([whole]).collect()
+}

@@ -1,0 +1,76 @@
+//! What frames at speed cost.
+
+use halfrow_model::Geometry;
+use halfrow_protocol::message::BurstMode;
+
+use super::burst::{BurstPlan, USUAL_CLOCK};
+use super::{FEW, USUAL, corners};
+use crate::board::{BoardNature, Bursts, Capabilities};
+use crate::run::prices::Prices;
+use crate::run::{Generation, Plan};
+
+/// Payload of a request for records, and of the reply beside these.
+const LOOK: (usize, usize) = (4, 10);
+/// Bytes of a record.
+const RECORD: usize = 18;
+
+/// The burst of a usual run, with as many frames as `plan` has on a board of these `capabilities`.
+pub(super) fn usual_burst(
+    plan: &Plan,
+    capabilities: &Capabilities,
+    bursts: Bursts,
+    mode: BurstMode,
+) -> BurstPlan {
+    let mut burst = BurstPlan::new(plan.tables.geometry(), plan.seed, capabilities, bursts, mode, 0);
+    burst.frames = match plan.at_speed {
+        Some(time) => burst.frames_in(time),
+        None if capabilities.nature == BoardNature::Hardware => burst.frames_in(USUAL),
+        None => FEW,
+    };
+    burst
+}
+
+/// The pixel clock of a board, in hertz.
+pub(in crate::run) fn clock_hz(capabilities: &Capabilities) -> u32 {
+    if capabilities.clock_hz == 0 { USUAL_CLOCK } else { capabilities.clock_hz }
+}
+
+/// The frames of the usual burst; none on a board that makes no bursts.
+pub(in crate::run) fn most_frames(prices: &Prices<'_>) -> usize {
+    let frames = |bursts| usual_burst(prices.plan, prices.capabilities, bursts, BurstMode::Fresh).frames;
+    prices.capabilities.bursts.map_or(0, frames) as usize
+}
+
+/// A usual burst of `frames` frames: settings, the tables of the other bank, and every look at the records.
+pub(in crate::run) fn price_of_frames(prices: &Prices<'_>, frames: u32) -> f64 {
+    let other_bank = if prices.capabilities.table_banks > 1 { prices.upload() } else { 0.0 };
+    prices.short_request() + other_bank + watching(prices, prices.plan.tables.geometry(), frames)
+}
+
+/// All corners: tables for each bank, a row that brings the first into effect, two frames.
+pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
+    let corner = |tables: &Vec<Generation>| {
+        let Some(geometry) = tables.first().map(|first| first.tables.geometry()) else { return 0.0 };
+        let uploads = tables.len() as f64 * (prices.short_request() + prices.upload_of(geometry.height()));
+        let activated = prices.short_request() + prices.commit() + prices.rows(1, geometry.width(), 0);
+        uploads + activated + prices.short_request() + watching(prices, geometry, 2)
+    };
+    corners::corners(prices.capabilities, prices.plan.seed).iter().map(corner).sum()
+}
+
+/// A burst of `frames` frames, from the request on: each look takes the records that are there by then.
+fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
+    let Some(bursts) = prices.capabilities.bursts else { return 0.0 };
+    let burst = BurstPlan::new(geometry, prices.plan.seed, prices.capabilities, bursts, BurstMode::Fresh, 0);
+    let (mut seconds, mut had) = (prices.short_request(), 0);
+    loop {
+        let made = (seconds / burst.seconds(1)) as u32;
+        let come = made.saturating_sub(had).min(bursts.records.into()).min(frames - had);
+        seconds += prices.rates.request(LOOK.0, LOOK.1 + come as usize * RECORD);
+        had += come;
+        if had >= frames {
+            return seconds;
+        }
+        seconds += burst.look_again_in(frames - had).as_secs_f64();
+    }
+}

@@ -1,0 +1,254 @@
+//! What the parts of a run cost on a link, in seconds.
+
+use std::time::Duration;
+
+use halfrow_protocol::MAX_PAYLOAD;
+use halfrow_protocol::message::{Commit, Span};
+use serde::{Deserialize, Serialize};
+
+use super::at_speed;
+use super::parts::{Part, Selection};
+use super::patterns::patterns;
+use super::plan::{Plan, SENSOR_BLANKING, Segment, Timing};
+use super::variations::Build;
+use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
+
+/// Bytes of a packet beside its payload, with the stuffing's first code byte and the zero behind it.
+const PACKET: usize = 18;
+/// Bytes of which the stuffing makes one more.
+const STUFFED: usize = 254;
+/// Bytes of a row's place, and of what the board says behind it of a row that comes back, the CRC of what entered included.
+const PLACE: usize = 14;
+const SAID: usize = 12;
+/// Payload that a row costs at least: a link stands still between shorter ones, while they are acknowledged.
+const SMALL: usize = 300;
+/// Payload of requests and replies that are neither rows nor tables, the longest of them.
+const SHORT: usize = 64;
+/// The reply that tells a board's capabilities, and its name.
+const CAPABILITIES: usize = 320;
+/// Clocks that a commit of the longest tables takes (WIRE.md, "Reply times").
+const COMMIT: usize = 28_000;
+/// Round trips that are looked at, and packets of the longest kind where a link does not know its speed.
+const LOOKS: u32 = 3;
+
+/// How fast a link is.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rates {
+    /// Bytes a second each way.
+    pub bytes_per_second: f64,
+    /// From a short request to its answer, in seconds, beside the time of its bytes.
+    pub round_trip: f64,
+}
+
+impl Rates {
+    /// Those of the link to `board`, by a short look at it: the longest of a few round trips, and where the link does not
+    /// know its speed, what the longest packets take.
+    ///
+    /// # Errors
+    /// [`BoardError`] when an answer does not come.
+    pub fn of(board: &mut Board) -> Result<Self, BoardError> {
+        let short = longest(board, &[])?;
+        let bytes_per_second = match board.bytes_per_second() {
+            Some(known) => known,
+            // They go there and back, one way after the other.
+            None => 2.0 * (wire(MAX_PAYLOAD) - wire(0)) as f64 / (longest(board, &[0; MAX_PAYLOAD])? - short),
+        };
+        // One that carries everything at once takes no time for any byte.
+        let bytes_per_second = if bytes_per_second > 0.0 { bytes_per_second } else { f64::INFINITY };
+        Ok(Self { bytes_per_second, round_trip: (short - 2.0 * wire(0) as f64 / bytes_per_second).max(0.0) })
+    }
+
+    /// A request with a payload of `out` bytes, and its reply with one of `back`.
+    pub(super) fn request(&self, out: usize, back: usize) -> f64 {
+        self.round_trip + (wire(out) + wire(back)) as f64 / self.bytes_per_second
+    }
+}
+
+/// The longest of a few round trips of `bytes`, in seconds.
+fn longest(board: &mut Board, bytes: &[u8]) -> Result<f64, BoardError> {
+    let mut longest = Duration::ZERO;
+    for _ in 0..LOOKS {
+        longest = longest.max(board.echo(bytes)?.1);
+    }
+    Ok(longest.as_secs_f64())
+}
+
+/// The bytes on the wire of a packet with a payload of so many.
+fn wire(payload: usize) -> usize {
+    PACKET + payload + payload / STUFFED
+}
+
+/// What the parts of a plan cost on a board.
+#[derive(Debug)]
+pub struct Prices<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) capabilities: &'a Capabilities,
+    pub(super) rates: Rates,
+    whole: Vec<Segment>,
+    corners: f64,
+}
+
+impl<'a> Prices<'a> {
+    /// On a board of these `capabilities`, over a link of these `rates`.
+    #[must_use]
+    pub fn new(plan: &'a Plan, capabilities: &'a Capabilities, rates: Rates) -> Self {
+        let whole = plan.whole_schedule(&Build::of(capabilities));
+        let prices = Self { plan, capabilities, rates, whole, corners: 0.0 };
+        let corners = at_speed::price_of_corners(&prices);
+        Self { corners, ..prices }
+    }
+
+    /// Every part that there is on this board.
+    #[must_use]
+    pub fn parts(&self) -> Vec<Part> {
+        let parts = self.plan.parts(&Build::of(self.capabilities)).into_iter();
+        parts.filter(|part| self.has_bursts() || !matches!(part, Part::AtSpeed | Part::Corners)).collect()
+    }
+
+    fn has_bursts(&self) -> bool {
+        self.plan.at_speed != Some(Duration::ZERO)
+            && self.capabilities.bursts.is_some_and(|bursts| bursts.content == at_speed::CONTENT)
+    }
+
+    /// How much there is of `part`: rows, frames at speed, or 1.
+    #[must_use]
+    pub fn most(&self, part: Part) -> usize {
+        match part {
+            Part::AtSpeed => at_speed::most_frames(self),
+            Part::Corners => 1,
+            _ => self.plan.tables.geometry().height(),
+        }
+    }
+
+    /// What a run of `selection` takes, from the link test on.
+    #[must_use]
+    pub fn seconds(&self, selection: &Selection) -> f64 {
+        self.every_run() + self.streamed(selection) + self.at_speed(selection)
+    }
+
+    /// What `part` adds to the least run, with what it is nothing without.
+    #[must_use]
+    pub fn of_part(&self, part: Part) -> f64 {
+        let least = Selection::least();
+        self.seconds(&least.with(part, self.most(part))) - self.seconds(&least)
+    }
+
+    /// Greeting and capabilities, which are over before anything can be chosen.
+    #[must_use]
+    pub fn opening(&self) -> f64 {
+        self.short_request() + self.rates.request(0, CAPABILITIES)
+    }
+
+    /// The link test, the counters before and behind all rows, the end of the session.
+    fn every_run(&self) -> f64 {
+        let echoes = patterns(self.plan.seed).into_iter().map(|bytes| bytes.len());
+        echoes.map(|bytes| self.rates.request(bytes, bytes)).sum::<f64>() + 5.0 * self.short_request()
+    }
+
+    fn streamed(&self, selection: &Selection) -> f64 {
+        let segments = selection.of(self.whole.clone());
+        segments.iter().map(|segment| self.segment(segment)).sum::<f64>() + self.read_back()
+    }
+
+    fn segment(&self, segment: &Segment) -> f64 {
+        let rows = segment.frames.len() * segment.geometry.height();
+        let width = segment.geometry.width();
+        let between = match segment.timing {
+            Timing::Least => self.capabilities.least_blanking.into(),
+            Timing::Sensor => SENSOR_BLANKING.into(),
+            // One clock in eight is off, and up to 15 come between two rows.
+            Timing::Gaps(_) => usize::from(self.capabilities.least_blanking) + 15 + width.div_ceil(8),
+        };
+        let before = if segment.is_varied() { self.read_back() } else { 0.0 };
+        let tables = segment.commit.map_or(0.0, |_| self.upload() + self.commit());
+        before + tables + self.short_request() + self.rows(rows, width, between)
+    }
+
+    /// So many rows that follow each other. The slowest of way out, pixel clock and way back counts, or where answers take
+    /// long what the board's banks have room for meanwhile. The first two go out before anything comes back, since a row
+    /// leaves while the next one enters.
+    pub(super) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
+        let packed = (3 * width).div_ceil(2);
+        let carried = |payload| wire(payload) as f64 / self.rates.bytes_per_second;
+        let (out, back) = (carried(PLACE + packed), carried(PLACE + SAID + packed).max(carried(SMALL)));
+        let played = self.clocks(width + between);
+        let alone = 2.0 * (out + played) + self.rates.round_trip;
+        // One of them has the row that the next one pushes out.
+        let banks = self.capabilities.row_banks_in.min(self.capabilities.row_banks_out).saturating_sub(1);
+        let in_banks = (self.rates.round_trip + out + back + 2.0 * played) / f64::from(banks.max(1));
+        alone + rows as f64 * back.max(played).max(in_banks)
+    }
+
+    /// The plan's tables, written and read back.
+    pub(super) fn upload(&self) -> f64 {
+        self.upload_of(self.plan.tables.geometry().height())
+    }
+
+    /// Tables of so many rows, written and read back.
+    pub(super) fn upload_of(&self, height: usize) -> f64 {
+        let written = [(Table::RowFactors, height), (Table::Kernel, halfrow_model::NODES)];
+        let write = |(table, entries): (Table, usize)| {
+            let at_once = Board::entries_at_once(table);
+            let packets = (0..entries).step_by(at_once).map(|first| at_once.min(entries - first));
+            packets.map(|count| self.rates.request(Span::BYTES + count * table.entry_bytes(), 0)).sum::<f64>()
+        };
+        written.into_iter().map(write).sum::<f64>() + self.read_back()
+    }
+
+    /// The CRC of both tables by every port.
+    fn read_back(&self) -> f64 {
+        let Capabilities { step_ports, kernel_ports, max_height, .. } = self.capabilities;
+        let ports = f64::from(*step_ports) + f64::from(*kernel_ports);
+        ports * (self.rates.request(Span::BYTES, 4) + self.clocks(4 * usize::from(*max_height)))
+    }
+
+    /// A commit, for which the board reads both tables through every port.
+    pub(super) fn commit(&self) -> f64 {
+        self.rates.request(size_of::<Commit>(), 1) + self.clocks(COMMIT)
+    }
+
+    pub(super) fn short_request(&self) -> f64 {
+        self.rates.request(SHORT, SHORT)
+    }
+
+    fn clocks(&self, clocks: usize) -> f64 {
+        clocks as f64 / f64::from(at_speed::clock_hz(self.capabilities))
+    }
+
+    fn at_speed(&self, selection: &Selection) -> f64 {
+        let frames = selection.amount(Part::AtSpeed).min(self.most(Part::AtSpeed));
+        if frames == 0 || !self.has_bursts() {
+            return 0.0;
+        }
+        let corners = if selection.amount(Part::Corners) > 0 { self.corners } else { 0.0 };
+        at_speed::price_of_frames(self, frames as u32) + corners
+    }
+}
+
+/// What a board is taken to be that nobody has asked: one that has everything, for rows as wide as those of `plan` or 1920.
+#[must_use]
+pub fn usual_capabilities(plan: &Plan, nature: BoardNature) -> Capabilities {
+    let geometry = plan.tables.geometry();
+    let build = Build::full(geometry.width().max(1920));
+    Capabilities {
+        datapath: crate::tables::DATAPATH.id(),
+        max_width: build.ring as u16,
+        max_height: geometry.height().max(2048) as u16,
+        depths: 7,
+        taps: build.taps,
+        latency: 12,
+        ring: build.ring as u16,
+        least_blanking: 0,
+        table_banks: build.table_banks,
+        row_banks_in: 4,
+        row_banks_out: 4,
+        step_ports: 1,
+        kernel_ports: 2,
+        clock_source: 0,
+        clock_hz: 0,
+        bursts: Some(Bursts { content: at_speed::CONTENT, records: 64, least_frame_blanking: 8, trap: true }),
+        entered: true,
+        nature,
+        name: String::new(),
+    }
+}
