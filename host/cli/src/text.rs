@@ -122,6 +122,9 @@ fn figures(report: &Report) -> String {
         push(&mut text, "street", no_style, &wording::street(street));
     }
     push(&mut text, "link", no_style, &wording::link(&report.link));
+    for told in report.within.iter().flat_map(wording::within) {
+        push(&mut text, "within", no_style, &told);
+    }
     if let Some(untouched) = wording::not_exercised(report) {
         push(&mut text, "limits", no_style, &untouched);
     }

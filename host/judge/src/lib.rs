@@ -31,6 +31,7 @@
 pub mod board;
 pub mod compare;
 pub mod correction;
+pub mod coverage;
 pub mod diagnosis;
 pub mod kernels;
 pub mod lenses;

@@ -40,6 +40,7 @@ fn a_recording_takes_no_option_that_it_decides_itself() {
         ["--reconnect=5", "--fail-fast"],
         ["--fail-fast", "--json"],
         ["--take-over", "-q"],
+        ["--within", "5"],
     ] {
         let call: Vec<_> = REPLAY.into_iter().chain(option).collect();
         let name = if option[0] == "--reconnect=5" { "--fail-fast" } else { option[0] };

@@ -30,6 +30,7 @@ mod station;
 mod streams;
 mod varied;
 mod verdicts;
+mod within;
 
 use halfrow_tests::program::{Ended, Folder};
 

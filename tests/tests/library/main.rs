@@ -8,6 +8,7 @@ mod logs;
 mod outside;
 mod parts;
 mod tree;
+mod within;
 mod words;
 
 use std::sync::Mutex;

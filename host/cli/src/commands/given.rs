@@ -25,6 +25,8 @@ pub(super) enum Decider {
     Recording,
     /// A table file, whatever it holds.
     Tables,
+    /// A time, for which the frames are chosen.
+    Within,
     /// The model, which corrects without a board.
     Model,
     /// Frames none of which is a file.
@@ -42,7 +44,7 @@ const LENS: [&str; 8] =
 
 /// What a recording says of its run beside the options that make tables. Its time limit is on the board's clock, which
 /// leaves --timeout that of this computer.
-const RECORDED: [&str; 11] = [
+const RECORDED: [&str; 12] = [
     "frame",
     "tables",
     "kernel",
@@ -51,6 +53,7 @@ const RECORDED: [&str; 11] = [
     "repeat",
     "at_speed",
     "fail_fast",
+    "within",
     "seed",
     "take_over",
     "retry_limit",
@@ -65,6 +68,7 @@ impl Decider {
         let options: &[&[&str]] = match self {
             Self::Recording => &[&RECORDED, &["reconnect"], &IN_TABLE_FILES, &LENS],
             Self::Tables => &[&LENS],
+            Self::Within => &[&["frame", "repeat"]],
             Self::Model | Self::NoBoardItem => &[&BOARD],
             Self::NoFrameFile => &[&["raw"]],
         };
@@ -79,6 +83,7 @@ impl Decider {
                  board"
             }
             Self::Tables => "is for making tables, and the file of --tables holds some; give one of them",
+            Self::Within => "does nothing beside --within, which chooses the frames; give one of them",
             Self::Model => "does nothing beside --model, which corrects without a board; give one of them",
             Self::NoFrameFile => {
                 "is for files without a header, and no frame is a file; leave it out, or name a file"

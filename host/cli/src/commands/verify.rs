@@ -32,6 +32,9 @@ pub(super) struct Arguments {
     /// [default: 3 on hardware, three frames on any other board]
     #[arg(long, value_name = "SECONDS", env = "HALFROW_AT_SPEED")]
     at_speed: Option<f64>,
+    /// Take of the run what finds most faults a second, for so many seconds in all
+    #[arg(long, value_name = "SECONDS", value_parser = within, conflicts_with_all = ["record", "list"])]
+    within: Option<f64>,
     /// Stop at the first frame that differs
     #[arg(long)]
     fail_fast: bool,
@@ -45,6 +48,11 @@ pub(super) struct Arguments {
     run: RunArguments,
     #[command(flatten)]
     input: InputArguments,
+}
+
+fn within(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|&seconds: &f64| seconds > 0.0 && seconds <= 1e6);
+    seconds.ok_or_else(|| "give a number of seconds, more than 0 and at most 1000000".to_owned())
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
@@ -114,6 +122,9 @@ impl Arguments {
         if frames.iter().all(|frame| frame.file().is_none()) {
             self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
         }
+        if self.within.is_some() {
+            self.given.refuse_void(Decider::Within, &settings.keys()).map_err(Failure::call)?;
+        }
         // Each is read more than once, since its hash is reported.
         files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
         let tables = self.run.table_file(&self.given, settings)?;
@@ -144,15 +155,17 @@ impl Arguments {
             frames,
             repeat: self.repeat,
             at_speed: seconds("--at-speed", self.at_speed.or(settings.at_speed))?,
+            within: seconds("--within", self.within)?,
             fail_fast: self.fail_fast,
             seed: self.run.seed(settings),
             ..chosen.plan(phase)
         })
     }
 
-    /// The frames that are named; none stands for the built-in ones.
+    /// The frames that are named; none stands for the built-in ones, which alone there is a choice of.
     fn frames(&self, settings: &Settings) -> Result<Vec<FrameName>, Failure> {
         match settings.frame.as_deref() {
+            _ if self.within.is_some() => return Ok(Vec::new()),
             Some(names) if self.frame.is_empty() => FrameName::all(names),
             _ => FrameName::all(&self.frame),
         }

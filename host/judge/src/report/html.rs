@@ -4,6 +4,7 @@ mod charts;
 mod evidence;
 mod facts;
 mod soak;
+mod within;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use png::EncodingError;
@@ -35,6 +36,7 @@ pub fn render(report: &Report, evidence: &[Evidence]) -> Result<String, Encoding
             (pictures)
             (facts::figures(report))
             (facts::not_exercised(report))
+            @if let Some(within) = &report.within { (within::section(within)) }
             (facts::link(&report.link))
             (facts::board(report))
             (facts::run(report))

@@ -1,5 +1,7 @@
 //! The words and figures that the views share, here and in programs, so that all of them say the same.
 
+mod within;
+
 use std::borrow::Cow;
 
 use crate::result::{
@@ -7,6 +9,8 @@ use crate::result::{
     Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport, Suspect,
 };
 use crate::verdict::Verdict;
+
+pub use within::within;
 
 /// What a check's outcome is called. The loud ones are those to act on.
 #[must_use]
@@ -81,8 +85,8 @@ pub fn frame_name(frame: &FrameReport) -> Cow<'_, str> {
     }
     match frame.first_rows {
         None => name,
-        Some(1) => format!("{name}, row 0 alone").into(),
-        Some(rows) => format!("{name}, its first {rows} rows").into(),
+        Some(1) => format!("{name}, row 0").into(),
+        Some(rows) => format!("{name}, {rows} rows").into(),
     }
 }
 

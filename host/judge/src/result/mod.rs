@@ -29,6 +29,7 @@ mod problem;
 mod sha256;
 mod soak;
 mod suspect;
+mod within;
 pub mod wording;
 
 use serde::{Deserialize, Serialize};
@@ -55,6 +56,7 @@ pub use problem::{Parameters, Problem};
 pub use sha256::sha256;
 pub use soak::{SoakChart, SoakDifference, SoakInterval, SoakLength, SoakReport};
 pub use suspect::{Account, Suspect};
+pub use within::{CoveragePoint, WithinPart, WithinReport};
 
 /// A finished run of `verify` or `soak`.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
@@ -87,6 +89,9 @@ pub struct Report {
     /// Frames at the full pixel clock for hours; none but where they were asked for.
     #[serde(default)]
     pub soak: Option<SoakReport>,
+    /// What was taken of the run, where it had to keep within a time.
+    #[serde(default)]
+    pub within: Option<WithinReport>,
     /// The link.
     pub link: LinkReport,
     /// What was uploaded.
@@ -144,6 +149,8 @@ struct Rest<'a> {
     evidence: &'a EvidenceReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     soak: Option<&'a SoakReport>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    within: Option<&'a WithinReport>,
     link: &'a LinkReport,
     tables: &'a TablesReport,
     run: &'a RunReport,
@@ -164,6 +171,7 @@ impl<'a> From<&'a Report> for Rest<'a> {
             street: &report.street,
             evidence: &report.evidence,
             soak: report.soak.as_ref(),
+            within: report.within.as_ref(),
             link: &report.link,
             tables: &report.tables,
             run: &report.run,

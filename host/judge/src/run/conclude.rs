@@ -45,6 +45,7 @@ pub(super) fn conclude(
         frames: findings.seen.frames,
         latency: findings.seen.latency,
         street,
+        within: findings.within,
         soak: findings.soak.or_else(|| plan.soak.map(SoakReport::new)),
         evidence: evidence_report,
         link: link(findings.link, &findings.tally),

@@ -9,7 +9,7 @@ use super::{Candidate, Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
     BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem, SoakReport,
-    Suspect,
+    Suspect, WithinReport,
 };
 use crate::verdict::Cause;
 
@@ -87,6 +87,8 @@ pub(super) struct Findings {
     pub(super) whole_at_speed: Vec<u8>,
     /// Bursts that were begun.
     pub(super) bursts: u32,
+    /// What was taken of a run that must keep within a time.
+    pub(super) within: Option<WithinReport>,
     /// What a soak came to.
     pub(super) soak: Option<SoakReport>,
     /// Why the board cannot have what the plan uploads.
@@ -115,6 +117,7 @@ impl Findings {
             corners: Vec::new(),
             whole_at_speed: Vec::new(),
             bursts: 0,
+            within: None,
             soak: None,
             misfit: None,
         }

@@ -4,6 +4,7 @@ use halfrow_model::{Kernel, TableError, TableSet, Taps};
 use halfrow_protocol::message::{BoardNature, Datapath, UnknownDatapath};
 
 use super::plan::TooManyFrames;
+use super::within::WithinError;
 use crate::board::Capabilities;
 
 /// Why a board cannot have tables, a kernel or frames: the call does not fit the board, or the board not this program, so
@@ -44,6 +45,9 @@ pub enum Misfit {
     /// More frames than any run can have.
     #[error(transparent)]
     TooManyFrames(#[from] TooManyFrames),
+    /// The time that there is does not suffice.
+    #[error(transparent)]
+    Within(#[from] WithinError),
 }
 
 impl Misfit {

@@ -29,6 +29,7 @@ mod steps;
 mod streaming;
 mod upload;
 mod variations;
+mod within;
 
 use tracing::error_span;
 
@@ -53,6 +54,7 @@ pub(crate) use prepared::PrepareError;
 pub use prices::{Prices, Rates, usual_capabilities};
 pub use recorded::{RecordedRun, RestoreError};
 pub use variations::{Build, Vary};
+pub use within::WithinError;
 
 /// What the report says of the run beside its findings.
 #[derive(Clone, Debug, Default)]
@@ -145,13 +147,17 @@ fn run(
     progress.step(Step::OpenTheBoard);
     let mut board = way_back.open(link, findings)?;
     tracing::info!("session {} with {}", board.welcome.session, board.capabilities.name);
-    let generations = plan.generations(&Build::of(&board.capabilities));
-    let way_back = &mut way_back;
-    let end = {
-        let mut run =
-            Run { plan, board: &mut board, generations, sessions: 0, options, way_back, progress, findings };
-        run.all_steps()
+    let chosen = match plan.within {
+        None => Ok(plan.clone()),
+        Some(limit) => within::choose(plan, limit, &mut board, findings),
     };
+    let end = chosen.and_then(|plan| {
+        let generations = plan.generations(&Build::of(&board.capabilities));
+        let (board, way_back) = (&mut board, &mut way_back);
+        let mut run =
+            Run { plan: &plan, board, generations, sessions: 0, options, way_back, progress, findings };
+        run.all_steps()
+    });
     findings.note_link(&board);
     // Whatever happened, the next run must find the board free; a board that is gone need not be asked again.
     let reachable = !matches!(&end, Err(end) if end.is_unreachable());

@@ -83,7 +83,7 @@ impl Selection {
     }
 
     /// The same with at least so much of `part`, and with what that is nothing without: a change of tables follows a
-    /// frame with the decoy and comes before as many rows to judge, and corners follow two frames at speed.
+    /// frame with the decoy and comes before as many rows to judge, and corners follow three frames at speed.
     #[must_use]
     pub fn with(&self, part: Part, amount: usize) -> Self {
         let mut parts = self.0.clone();
@@ -103,7 +103,7 @@ impl Selection {
             raise(Part::Judged(0), together);
         }
         if part == Part::Corners {
-            raise(Part::AtSpeed, 2);
+            raise(Part::AtSpeed, 3);
         }
         Self(parts)
     }

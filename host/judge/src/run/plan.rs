@@ -111,6 +111,9 @@ pub struct Plan {
     pub vary: Vary,
     /// The parts that are judged; all of them when not given.
     pub parts: Option<Selection>,
+    /// How long the run may take on the link's clock: what finds most a second is taken of it then. None for the whole run,
+    /// or the `parts`. What is chosen depends on the link, so a recording of such a run cannot be judged again.
+    pub within: Option<Duration>,
     /// How long the board makes frames on its own, on its own clock: 3 s of hardware and some frames of any other board when
     /// not given.
     pub at_speed: Option<Duration>,
@@ -178,6 +181,7 @@ impl Plan {
             repeat: 1,
             vary: Vary::default(),
             parts: None,
+            within: None,
             at_speed: None,
             soak: None,
             fail_fast: false,

@@ -98,6 +98,10 @@ impl<'a> Prices<'a> {
         Self { corners, ..prices }
     }
 
+    pub(crate) fn plan(&self) -> &'a Plan {
+        self.plan
+    }
+
     /// Every part that there is on this board.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {

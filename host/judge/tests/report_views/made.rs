@@ -34,6 +34,7 @@ pub(crate) fn pass() -> Report {
         not_exercised: vec![NotExercised::Depths { bits: vec![8, 10] }],
         latency: Some(latency(2160)),
         soak: None,
+        within: None,
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
         evidence: EvidenceReport::default(),
         link: link(),

@@ -4,9 +4,10 @@ use halfrow_protocol::message::{Malformed, UnknownDatapath};
 
 use super::codes;
 use crate::board::BoardError;
+use crate::coverage::FaultsError;
 use crate::link::{LinkError, OpenError, RecordingError, SerialError, TcpError, UsbError, UsbFailure};
 use crate::link_test::LinkTestError;
-use crate::run::{CannotJudge, GoldenError, Misfit, PrepareError, RestoreError, TooManyFrames};
+use crate::run::{CannotJudge, GoldenError, Misfit, PrepareError, RestoreError, TooManyFrames, WithinError};
 use crate::target::TargetError;
 
 #[cfg(feature = "sim")]
@@ -121,6 +122,16 @@ codes! {
         Taps => "kernel-has-too-many-taps",
         = Ring,
         = TooManyFrames,
+        = Within,
+    }
+    WithinError {
+        TooFew [seconds, least] => "seconds-too-few-for-verdict",
+        AtSpeed [seconds, least] => "seconds-too-few-at-speed",
+        = Faults,
+    }
+    FaultsError {
+        Form [what] => "fault-table-unreadable",
+        Fault [fault, what] => "fault-table-wrong",
     }
     GoldenError {
         Unmade [what] => "golden-values-not-made",

@@ -65,7 +65,8 @@ fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
     let (mut seconds, mut had) = (prices.short_request(), 0);
     loop {
         let made = (seconds / burst.seconds(1)) as u32;
-        let come = made.saturating_sub(had).min(bursts.records.into()).min(frames - had);
+        // Half of the board's memory is made while the other half is fetched.
+        let come = made.saturating_sub(had).min(u32::from(bursts.records / 2).max(1)).min(frames - had);
         seconds += prices.rates.request(LOOK.0, LOOK.1 + come as usize * RECORD);
         had += come;
         if had >= frames {

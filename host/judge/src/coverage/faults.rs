@@ -1,0 +1,293 @@
+//! The table of faults by parts.
+
+use std::collections::BTreeMap;
+
+use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
+use serde::Deserialize;
+
+use crate::frames::Builtin;
+use crate::run::{FrameSource, Part, Plan, Selection, Vary};
+
+/// Frames at speed that faults were looked for with.
+pub(super) const FRAMES: usize = 3;
+/// It, as it was measured.
+const TABLE: &str = include_str!("faults.json");
+
+/// A table of faults that cannot be used.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum FaultsError {
+    /// It is not written as it must be.
+    #[error(
+        "the table of faults cannot be read, since {what}; make it again with `scripts/hardware coverage`"
+    )]
+    Form {
+        /// What is wrong with it.
+        what: String,
+    },
+    /// A fault in it cannot be.
+    #[error(
+        "fault {fault} of the table of faults {what}; make the table again with `scripts/hardware coverage`"
+    )]
+    Fault {
+        /// Its place, from 0.
+        fault: usize,
+        /// What is wrong with it.
+        what: String,
+    },
+}
+
+/// The file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    seed: u64,
+    width: usize,
+    height: usize,
+    radius: f64,
+    faults: Vec<Line>,
+}
+
+/// A fault in it. A frame is its number in the whole schedule, and the first row of it that differs.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Line {
+    block: String,
+    frames: Vec<(usize, usize)>,
+    at_speed: bool,
+    corners: bool,
+    always: bool,
+}
+
+/// What finds a fault: all of that which is known to.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Fault {
+    /// Any run.
+    pub(super) always: bool,
+    /// So many rows of a part that is streamed.
+    pub(super) rows: Vec<(Part, usize)>,
+    /// Frames at speed.
+    pub(super) at_speed: bool,
+    /// The corners.
+    pub(super) corners: bool,
+}
+
+impl Fault {
+    /// Whether a run of `selection` finds it.
+    pub(super) fn is_found(&self, selection: &Selection) -> bool {
+        self.always
+            || self.rows.iter().any(|&(part, rows)| selection.amount(part) >= rows)
+            || self.at_speed && selection.amount(Part::AtSpeed) >= FRAMES
+            || self.corners && selection.amount(Part::Corners) > 0
+    }
+}
+
+/// Which faults there are, alike ones together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Faults {
+    /// What they were measured with.
+    given: Given,
+    /// How many there are of each.
+    pub(super) groups: BTreeMap<Fault, usize>,
+}
+
+/// What a table was measured with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Given {
+    /// Columns.
+    width: usize,
+    /// Rows.
+    height: usize,
+    /// The lens's radius, in pixels.
+    radius: f64,
+    /// The run's seed.
+    seed: u64,
+}
+
+impl Given {
+    /// Whether `plan` has these tables, and the usual kernel, frames and variations.
+    fn is_of(&self, plan: &Plan) -> bool {
+        let Self { width, height, radius, seed } = *self;
+        let usual = || {
+            let lens = Equidistant::from_radius(radius).ok()?;
+            let geometry = Geometry::centred(width, height, BitDepth::Twelve).ok()?;
+            Some(Plan::new(TableSet::from_lens(geometry, &lens, None).ok()?, Interpolant::Hermite.into()))
+        };
+        let builtin = |source: &FrameSource| match source {
+            FrameSource::Builtin(builtin) => Some(*builtin),
+            FrameSource::File { .. } => None,
+        };
+        plan.frames.iter().map(builtin).eq(Builtin::ALL.map(Some))
+            && plan.vary == Vary { centre: true, depth: true }
+            && (plan.repeat, plan.seed) == (1, seed)
+            && usual().is_some_and(|usual| (&plan.tables, &plan.kernel) == (&usual.tables, &usual.kernel))
+    }
+}
+
+/// Which faults of a table to take.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// All.
+    All,
+    /// Those at even places.
+    Even,
+    /// Those at odd ones.
+    Odd,
+}
+
+impl Faults {
+    /// The table that was measured.
+    ///
+    /// # Errors
+    /// [`FaultsError`] when it cannot be used.
+    pub fn measured(which: Which) -> Result<Self, FaultsError> {
+        Self::read(TABLE, which)
+    }
+
+    /// # Errors
+    /// [`FaultsError`], which names what is wrong.
+    fn read(text: &str, which: Which) -> Result<Self, FaultsError> {
+        let Table { seed, width, height, radius, faults } =
+            serde_json::from_str(text).map_err(|error| FaultsError::Form { what: error.to_string() })?;
+        let mut groups = BTreeMap::new();
+        for (place, line) in faults.iter().enumerate() {
+            let fault = line.fault(height).map_err(|what| FaultsError::Fault { fault: place, what })?;
+            let is_taken = match which {
+                Which::All => true,
+                Which::Even => place % 2 == 0,
+                Which::Odd => place % 2 == 1,
+            };
+            if is_taken {
+                *groups.entry(fault).or_default() += 1;
+            }
+        }
+        Ok(Self { given: Given { width, height, radius, seed }, groups })
+    }
+
+    /// Whether they were measured with what `plan` streams.
+    #[must_use]
+    pub fn are_of(&self, plan: &Plan) -> bool {
+        self.given.is_of(plan)
+    }
+
+    /// The columns and rows that they were measured with.
+    #[must_use]
+    pub fn size(&self) -> (usize, usize) {
+        (self.given.width, self.given.height)
+    }
+
+    /// How many there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.groups.values().sum()
+    }
+
+    /// How many of them a run of `selection` finds.
+    #[must_use]
+    pub fn found(&self, selection: &Selection) -> usize {
+        self.groups.iter().filter(|(fault, _)| fault.is_found(selection)).map(|(_, count)| count).sum()
+    }
+
+    /// The same for frames of `height` rows, in proportion: what the first tenth of the rows finds there is taken to be
+    /// found by the first tenth here.
+    #[must_use]
+    pub fn scaled(&self, height: usize) -> Self {
+        let of = |rows: usize| (rows * height).div_ceil(self.given.height.max(1)).clamp(1, height.max(1));
+        let mut groups = BTreeMap::new();
+        for (fault, count) in &self.groups {
+            let rows = fault.rows.iter().map(|&(part, rows)| (part, of(rows))).collect();
+            *groups.entry(Fault { rows, ..fault.clone() }).or_default() += count;
+        }
+        Self { given: self.given, groups }
+    }
+}
+
+impl Line {
+    /// What finds it, in frames of `height` rows, or what is wrong with it.
+    fn fault(&self, height: usize) -> Result<Fault, String> {
+        let Self { block, frames, at_speed, corners, always } = self;
+        if block.is_empty() {
+            return Err("names no block".to_owned());
+        }
+        let mut rows = BTreeMap::new();
+        for &(number, row) in frames {
+            let part = part_of(number).ok_or_else(|| format!("names frame {number}, which no run has"))?;
+            if row >= height {
+                return Err(format!("names row {row} of {height}"));
+            }
+            if rows.insert(part, row + 1).is_some() {
+                return Err(format!("names frame {number} twice"));
+            }
+        }
+        let rows = rows.into_iter().collect();
+        Ok(Fault { always: *always, rows, at_speed: *at_speed, corners: *corners })
+    }
+}
+
+/// The part that has this number in the whole schedule of a usual run on a board with two banks of tables and every depth.
+fn part_of(number: usize) -> Option<Part> {
+    let judged = (0..Builtin::ALL.len()).map(Part::Judged);
+    let behind = [Part::SensorBlanking, Part::Gaps, Part::Centre, Part::Depth(8), Part::Depth(10)];
+    [Part::Decoy, Part::Swap].into_iter().chain(judged).chain(behind).nth(number)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEAD: &str = r#"{"seed": 1, "width": 64, "height": 16, "radius": 40.0, "faults": ["#;
+    const FOUND: &str = r#""at_speed": false, "corners": false, "always": false}"#;
+
+    fn read(line: &str) -> Result<Faults, FaultsError> {
+        Faults::read(&format!("{HEAD}{line}]}}"), Which::All)
+    }
+
+    #[test]
+    fn the_table_in_the_repository_can_be_read_in_whole_and_in_halves() {
+        let [all, even, odd] =
+            [Which::All, Which::Even, Which::Odd].map(|which| Faults::measured(which).unwrap());
+        assert_eq!(all.count(), even.count() + odd.count());
+        assert!(even.count() - odd.count() < 2 && all.groups.len() < all.count());
+        let parts = [Part::Decoy, Part::Swap, Part::Gaps, Part::AtSpeed, Part::Corners];
+        assert!(all.found(&Selection::all(parts)) > all.found(&Selection::least()));
+    }
+
+    #[test]
+    fn what_is_wrong_with_a_table_is_named() {
+        let line =
+            |block: &str, frames: &str| format!(r#"{{"block": "{block}", "frames": {frames}, {FOUND}"#);
+        let wrong = |text: &str| read(text).unwrap_err().to_string();
+        assert!(
+            wrong(&line("core", "[[19, 0]]"))
+                .contains("fault 0 of the table of faults names frame 19, which no run has")
+        );
+        assert!(wrong(&line("core", "[[0, 16]]")).contains("names row 16 of 16"));
+        assert!(wrong(&line("core", "[[3, 1], [3, 2]]")).contains("names frame 3 twice"));
+        assert!(wrong(&line("", "[]")).contains("names no block"));
+        assert!(wrong(r#"{"block": "core"}"#).contains("missing field"));
+        assert!(wrong(&line("core", "[]").replace("always", "ever")).contains("unknown field `ever`"));
+    }
+
+    #[test]
+    fn alike_faults_are_one_group_and_rows_are_taken_in_proportion() {
+        let line = |frames: &str| format!(r#"{{"block": "core", "frames": {frames}, {FOUND}"#);
+        let faults =
+            read(&[line("[[0, 3]]"), line("[[0, 3]]"), line("[[1, 0], [2, 15]]"), line("[]")].join(","))
+                .unwrap();
+        assert_eq!((faults.count(), faults.groups.len()), (4, 3));
+        let least = Selection::least();
+        let found = |selection: &Selection| faults.found(selection);
+        assert_eq!(
+            [found(&least), found(&least.with(Part::Decoy, 3)), found(&least.with(Part::Decoy, 4))],
+            [0, 0, 2]
+        );
+        assert_eq!(
+            [found(&least.with(Part::Judged(0), 15)), found(&least.with(Part::Judged(0), 16))],
+            [0, 1]
+        );
+        // 4 of 16 rows are 270 of 1080, and 1 is 68.
+        let scaled = faults.scaled(1080);
+        let found = |part, rows| scaled.found(&least.with(part, rows));
+        assert_eq!([found(Part::Decoy, 269), found(Part::Decoy, 270)], [0, 2]);
+        assert_eq!([found(Part::Swap, 67), found(Part::Swap, 68)], [0, 1]);
+    }
+}

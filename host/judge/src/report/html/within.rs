@@ -1,0 +1,56 @@
+//! What was taken of a run that had to keep within a time, and what longer ones find.
+
+use std::fmt::Write as _;
+
+use maud::{Markup, html};
+
+use crate::report::wording::{self, grouped, span};
+use crate::result::WithinReport;
+
+/// Width and height of the chart.
+const WIDE: f64 = 240.0;
+const HIGH: f64 = 100.0;
+
+/// The part of the page.
+pub(super) fn section(within: &WithinReport) -> Markup {
+    html! {
+        section {
+            h2 { "Within " (span(within.seconds)) }
+            @for told in wording::within(within) { p { (told) "." } }
+            (chart(within))
+        }
+    }
+}
+
+/// Faults found over time, a step for each part that is taken, up to where nothing more is found or the time is over,
+/// whichever is later.
+fn chart(within: &WithinReport) -> Markup {
+    let (Some(last), most) = (within.curve.last(), within.faults.max(1)) else { return Markup::default() };
+    let longest = last.seconds.max(within.seconds).max(f64::MIN_POSITIVE);
+    let across = |seconds: f64| seconds / longest * WIDE;
+    let mut path = String::new();
+    for point in &within.curve {
+        let height = point.found as f64 / most as f64 * HIGH;
+        let (left, width) = (across(point.seconds), WIDE - across(point.seconds));
+        let _ = write!(path, "M{left:.1} {HIGH}v-{height:.1}h{width:.1}V{HIGH}z");
+    }
+    let limit = format!("M{:.1} 0h1v{HIGH}h-1z", across(within.seconds).min(WIDE - 1.0));
+    let caption = format!(
+        "Single faults found in so many seconds over this link, of {} measured: at most {}",
+        grouped(within.faults),
+        grouped(last.found)
+    );
+    html! {
+        figure {
+            div.chart.time {
+                svg viewBox=(format!("0 0 {WIDE} {HIGH}")) preserveAspectRatio="none" role="img" aria-label=(caption) {
+                    title { (caption) }
+                    path.judged d=(path) {}
+                    path.wrong d=(limit) {}
+                }
+            }
+            div.axis { span { "0" } span { (span(longest)) } }
+            figcaption { (caption) "; red, the time that there was." }
+        }
+    }
+}

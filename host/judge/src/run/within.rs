@@ -1,0 +1,127 @@
+//! A run that must not take longer than it is told: what is taken of it is chosen when the board is open and the link known.
+
+use std::time::Duration;
+
+use super::findings::{End, Findings};
+use super::parts::{Part, Selection};
+use super::plan::Plan;
+use super::prices::{Prices, Rates};
+use super::{Misfit, misfit};
+use crate::board::Board;
+use crate::coverage::{self, Faults, FaultsError, Which};
+use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport};
+use crate::verdict::Cause;
+
+/// The share of the time that is kept for what no price knows: a retry, a host that is late.
+const KEPT: f64 = 0.05;
+
+/// A time in which a run cannot do what it is to.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum WithinError {
+    /// It is over before a row is judged.
+    #[error("{seconds} s are too few for any verdict over this link; give at least {least} s")]
+    TooFew {
+        /// The time.
+        seconds: f64,
+        /// The least that would do, rounded up.
+        least: f64,
+    },
+    /// The frames at speed that were asked for do not fit.
+    #[error(
+        "the frames at speed that are asked for do not fit into {seconds} s; give at least {least} s, or ask for fewer"
+    )]
+    AtSpeed {
+        /// The time.
+        seconds: f64,
+        /// The least that would do, rounded up.
+        least: f64,
+    },
+    /// What was measured cannot be read.
+    #[error(transparent)]
+    Faults(#[from] FaultsError),
+}
+
+/// Chooses what to take of `plan` on `board`, for all of its time on the link.
+///
+/// # Errors
+/// [`End`] when the board does not answer, or the time does not suffice.
+pub(super) fn choose(
+    plan: &Plan,
+    limit: Duration,
+    board: &mut Board,
+    findings: &mut Findings,
+) -> Result<Plan, End> {
+    // A board that cannot have the plan's tables is told so where it is identified.
+    if misfit(&plan.tables, &plan.kernel, &board.capabilities).is_some() {
+        return Ok(plan.clone());
+    }
+    let rates = Rates::of(board).map_err(|error| End::board(CheckName::Link, &error))?;
+    let capabilities = board.capabilities.clone();
+    let prices = Prices::new(plan, &capabilities, rates);
+    let spent = board.now().as_secs_f64();
+    match chosen(&prices, limit.as_secs_f64(), spent) {
+        Ok((selection, report)) => {
+            findings.within = Some(report);
+            Ok(Plan { parts: Some(selection), ..plan.clone() })
+        }
+        Err(error) => {
+            let misfit = Misfit::Within(error);
+            let end = End::error(CheckName::Identity, Cause::Refused, Problem::of(&misfit));
+            findings.misfit = Some(misfit);
+            Err(end)
+        }
+    }
+}
+
+fn chosen(prices: &Prices<'_>, seconds: f64, spent: f64) -> Result<(Selection, WithinReport), WithinError> {
+    let faults = Faults::measured(Which::All)?;
+    let left = seconds * (1.0 - KEPT) - spent;
+    let least_for = |selection: &Selection| {
+        let least = (spent + prices.seconds(selection)) / (1.0 - KEPT);
+        (prices.seconds(selection) > left).then(|| (least * 1000.0).ceil() / 1000.0)
+    };
+    let mut from = Selection::least();
+    if let Some(least) = least_for(&from) {
+        return Err(WithinError::TooFew { seconds, least });
+    }
+    if prices.plan().at_speed.is_some() && prices.parts().contains(&Part::AtSpeed) {
+        from = from.with(Part::AtSpeed, prices.most(Part::AtSpeed));
+        if let Some(least) = least_for(&from) {
+            return Err(WithinError::AtSpeed { seconds, least });
+        }
+    }
+    let choice = coverage::choose(prices, &faults, &from, left);
+    let report = report(prices, &faults, &choice, (seconds, spent));
+    Ok((choice.selection, report))
+}
+
+fn report(
+    prices: &Prices<'_>,
+    faults: &Faults,
+    choice: &coverage::Choice,
+    (seconds, spent): (f64, f64),
+) -> WithinReport {
+    let plan = prices.plan();
+    let part = |part: Part| WithinPart {
+        part: plan.name_of(part),
+        taken: choice.selection.amount(part).min(prices.most(part)),
+        of: prices.most(part),
+    };
+    let here = faults.scaled(plan.tables.geometry().height());
+    let steps = coverage::steps(prices, faults, &Selection::least(), f64::INFINITY);
+    let points = steps
+        .iter()
+        .map(|(selection, price)| CoveragePoint { seconds: spent + price, found: here.found(selection) });
+    WithinReport {
+        seconds,
+        expected_seconds: spent + choice.seconds,
+        bytes_per_second: Some(prices.rates.bytes_per_second).filter(|rate| rate.is_finite()),
+        round_trip: prices.rates.round_trip,
+        parts: prices.parts().into_iter().map(part).collect(),
+        found: here.found(&choice.selection),
+        faults: here.count(),
+        measured: faults.are_of(plan),
+        measured_at: faults.size().into(),
+        curve: points.collect(),
+    }
+}

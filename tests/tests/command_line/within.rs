@@ -1,0 +1,74 @@
+//! `verify --within SECONDS`.
+
+use serde_json::Value;
+
+use super::{refused, small};
+use halfrow_tests::program::{Folder, command, finish};
+
+const SLOW: &str = "mock,speed=20000";
+
+fn call<'a>(options: &[&'a str]) -> Vec<&'a str> {
+    small("verify", &[&["--board", SLOW], options].concat())
+}
+
+#[test]
+fn what_is_no_time_and_what_does_nothing_beside_one_is_refused() {
+    let folder = Folder::new();
+    for seconds in ["0", "-1", "nan", "inf", "-inf", "1e7", "soon", ""] {
+        let option = format!("--within={seconds}");
+        refused(&folder, &call(&[&option]), "give a number of seconds, more than 0 and at most 1000000");
+    }
+    for option in [["--frame", "builtin:black"], ["--repeat", "2"]] {
+        let sentence = format!("{} does nothing beside --within", option[0]);
+        refused(&folder, &call(&[&["--within", "5"], &option[..]].concat()), &sentence);
+    }
+    refused(&folder, &call(&["--within", "5", "--record", "run.rec"]), "cannot be used with");
+    refused(&folder, &call(&["--within", "5", "--list"]), "cannot be used with");
+}
+
+#[test]
+fn too_few_seconds_end_with_2_and_the_least_that_this_link_needs() {
+    let folder = Folder::new();
+    let said = |options: &[&str]| {
+        let ended = folder.halfrow(call(&[&["--json"], options].concat()));
+        assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
+        ended.json()["error"].clone()
+    };
+    let error = said(&["--within", "0.3"]);
+    assert_eq!(error["code"], "seconds-too-few-for-verdict");
+    let least = error["parameters"]["least"].as_f64().unwrap();
+    assert_eq!(error["parameters"]["seconds"], 0.3);
+    let sentence = format!("give at least {least} s");
+    refused(&folder, &call(&["--within", "0.3"]), &sentence);
+    let enough = folder.halfrow(call(&["-q", "--within", &least.to_string()]));
+    assert_eq!(enough.code, Some(0), "{}{}", enough.stdout, enough.stderr);
+
+    let error = said(&["--within", "3", "--at-speed", "3"]);
+    assert_eq!(error["code"], "seconds-too-few-at-speed");
+    assert!(error["parameters"]["least"].as_f64().unwrap() > 3.0, "{error}");
+}
+
+#[test]
+fn frames_of_the_environment_are_passed_over() {
+    let mut run = command(call(&["-q", "--json", "--within", "3"]));
+    let ended = finish(run.env("HALFROW_FRAME", "missing.pgm"));
+    assert_eq!(ended.code, Some(0), "{}{}", ended.stdout, ended.stderr);
+}
+
+#[test]
+fn what_was_taken_and_left_out_stands_in_text_json_and_page() {
+    let folder = Folder::new();
+    let text = folder.halfrow(call(&["-q", "--within", "2.5", "--report", "out"]));
+    assert_eq!(text.code, Some(0), "{}{}", text.stdout, text.stderr);
+    for told in ["within   expected to take", "within   covers", "within   leaves out", "rows"] {
+        assert!(text.stdout.contains(told), "{told}: {}", text.stdout);
+    }
+    let report: Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+    let within = &report["within"];
+    assert_eq!(within["seconds"], 2.5);
+    assert!(report["link"]["seconds"].as_f64().unwrap() <= 2.5, "{}", report["link"]);
+    let cut = report["frames"].as_array().unwrap().iter().filter(|frame| frame["first_rows"].is_u64());
+    assert!(cut.count() > 0, "{}", report["frames"]);
+    let page = String::from_utf8(folder.read("out/report.html")).unwrap();
+    assert!(page.contains("Within 2.5 s") && page.contains("Single faults found"), "no chart");
+}

@@ -1,0 +1,143 @@
+//! Runs that must keep within a time.
+
+use std::time::Duration;
+
+use halfrow::frames::Builtin;
+use halfrow::progress::Silent;
+use halfrow::result::{CheckName, Report, WithinReport};
+use halfrow::run::{FrameSource, Misfit, Plan, RunOptions, Vary, WithinError, verify};
+use halfrow::verdict::Verdict;
+use halfrow_tests::system::{System, failed_check, open};
+
+const ROWS: usize = 16;
+/// The time of a whole run over this is 5.7 s.
+const SLOW: &str = "mock,speed=20000";
+
+fn plan(seconds: f64) -> Plan {
+    let system = System { height: ROWS, ..System::TINY };
+    let vary = Vary { centre: true, depth: true };
+    let within = Some(Duration::from_secs_f64(seconds));
+    Plan { within, vary, fail_fast: false, ..system.plan() }
+}
+
+fn judged(board: &str, plan: &Plan) -> Result<Report, Misfit> {
+    verify(plan, open(board), &RunOptions::default(), &Silent).map(|finished| finished.report)
+}
+
+fn within(report: &Report) -> &WithinReport {
+    report.within.as_ref().unwrap()
+}
+
+fn taken(report: &Report, part: &str) -> usize {
+    within(report).parts.iter().find(|it| it.part == part).unwrap().taken
+}
+
+#[test]
+fn a_run_ends_within_its_time_on_the_links_clock_and_takes_more_the_more_it_has() {
+    let _alone = crate::RUNS.lock();
+    for board in [SLOW, "mock,speed=60000,delay=0.002", "mock,speed=100000,delay=0.0002"] {
+        let mut last = (0, 0);
+        for seconds in [1.0, 1.5, 2.5, 4.0, 6.0, 12.0] {
+            let report = judged(board, &plan(seconds)).unwrap();
+            assert_eq!(report.verdict, Verdict::Pass, "{board}: {}", report.headline());
+            let within = within(&report);
+            assert!(report.link.seconds <= seconds, "{board}: {} of {seconds} s", report.link.seconds);
+            assert!(report.link.seconds <= within.expected_seconds, "{board}: {within:?}");
+            assert!(within.expected_seconds <= 0.95 * seconds, "{board}: {within:?}");
+            let rows: usize = report.frames.iter().map(|frame| frame.rows).sum();
+            assert!((within.found, rows) >= last, "{board}: {rows} rows in {seconds} s");
+            last = (within.found, rows);
+        }
+        // 19 frames of 16 rows.
+        assert_eq!(last.1, 19 * ROWS, "{board}");
+    }
+}
+
+#[test]
+fn a_link_that_takes_no_time_has_time_for_everything() {
+    let _alone = crate::RUNS.lock();
+    let report = judged("mock", &plan(1.0)).unwrap();
+    let within = within(&report);
+    assert!(within.parts.iter().all(|part| part.taken == part.of), "{within:?}");
+    assert!(within.bytes_per_second.is_none());
+    assert!(report.frames.iter().all(|frame| frame.first_rows.is_none()));
+    let points = within.curve.windows(2);
+    assert!(
+        within.curve.len() > 2 && points.into_iter().all(|two| two[0].found < two[1].found),
+        "{within:?}"
+    );
+    assert_eq!(within.curve.last().map(|last| last.found), Some(within.found));
+}
+
+#[test]
+fn what_is_covered_is_found_and_what_is_left_out_passes_and_is_named() {
+    let _alone = crate::RUNS.lock();
+    let Err(Misfit::Within(WithinError::TooFew { least, .. })) = judged(SLOW, &plan(0.2)) else { panic!() };
+    let short = plan(least + 0.15);
+    let sound = judged(SLOW, &short).unwrap();
+    // Every kind of sample meets the stuck line in the first row.
+    let found = judged(&format!("{SLOW},fault=stuck-data"), &short).unwrap();
+    assert_eq!(failed_check(&found), Some(CheckName::Frames), "{}", found.headline());
+
+    let most = report_rows(&sound);
+    assert!((2..ROWS).contains(&most), "{:?}", within(&sound));
+    let behind = format!("{SLOW},entered=no,fault=spoilt-row,row={most}");
+    let unseen = judged(&behind, &short).unwrap();
+    assert_eq!(unseen.verdict, Verdict::Pass, "{}", unseen.headline());
+    let told = halfrow::report::wording::within(within(&unseen));
+    let cut = format!("({most} of {ROWS})");
+    assert!(told[1].starts_with("covers ") && told[1].contains(&cut), "{told:?}");
+    assert!(told[2].starts_with("leaves out ") && told[2].contains("gaps"), "{told:?}");
+    let seen = judged(&behind, &plan(30.0)).unwrap();
+    assert_eq!(failed_check(&seen), Some(CheckName::Frames), "{}", seen.headline());
+}
+
+/// The most rows of any frame.
+fn report_rows(report: &Report) -> usize {
+    report.frames.iter().map(|frame| frame.rows).max().unwrap_or_default()
+}
+
+#[test]
+fn a_time_that_does_not_suffice_is_refused_with_the_least_that_does() {
+    let _alone = crate::RUNS.lock();
+    let refused = |plan: &Plan| match judged(SLOW, plan) {
+        Err(Misfit::Within(error)) => error,
+        other => panic!("{:?}", other.map(|report| report.headline())),
+    };
+    let WithinError::TooFew { seconds, least } = refused(&plan(0.2)) else { panic!() };
+    assert!(seconds == 0.2 && (0.8..1.1).contains(&least), "{least}");
+    let report = judged(SLOW, &plan(least)).unwrap();
+    assert_eq!((report.verdict, report.frames.len()), (Verdict::Pass, 1));
+    assert!(report.link.seconds <= least);
+    assert!(judged(SLOW, &plan(least - 0.002)).is_err());
+
+    let at_speed = |seconds| Plan { at_speed: Some(Duration::from_millis(10)), ..plan(seconds) };
+    // 10 ms are 930 frames of 1,024 clocks and 8; their records of 18 bytes take 0.84 s.
+    let WithinError::AtSpeed { least, .. } = refused(&at_speed(1.8)) else { panic!() };
+    assert!((1.8..3.0).contains(&least), "{least}");
+    let report = judged(SLOW, &at_speed(least)).unwrap();
+    assert!(report.link.seconds <= least, "{} of {least} s", report.link.seconds);
+    assert_eq!(taken(&report, "at speed"), 930, "{:?}", within(&report));
+}
+
+#[test]
+fn the_share_of_faults_is_told_for_what_was_measured_alone() {
+    let _alone = crate::RUNS.lock();
+    let usual = System { height: ROWS, radius: 40.0, ..System::TINY };
+    let told = |plan: Plan| {
+        let report = judged("mock", &Plan { vary: Vary { centre: true, depth: true }, ..plan }).unwrap();
+        halfrow::report::wording::within(within(&report)).pop().unwrap()
+    };
+    let measured = Plan { within: Some(Duration::from_secs(1)), ..usual.plan() };
+    assert!(told(measured.clone()).contains("single faults of the Verilog that were measured"));
+    let others = [
+        Plan { seed: 2, ..measured.clone() },
+        measured.clone().frames([FrameSource::Builtin(Builtin::Noise)]),
+        Plan { within: measured.within, ..System { height: 8, ..usual }.plan() },
+    ];
+    for other in others {
+        let told = told(other);
+        assert!(told.starts_with("coverage of this plan was not measured"), "{told}");
+        assert!(told.ends_with("64 x 16"), "{told}");
+    }
+}
