@@ -1,6 +1,6 @@
 //! A board in this process as a link: on its pipe's virtual clock, or paced as a real one would be.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use halfrow_pipe::{Broken, Endpoint, Pipe};
 
@@ -11,14 +11,18 @@ use super::{Link, LinkError};
 pub struct WireLink<B: Endpoint> {
     pipe: Pipe<B>,
     board: &'static str,
-    paced: bool,
+    /// When what was exchanged is over on a wire in real time; none where nobody waits for that.
+    due: Option<Instant>,
 }
+
+/// How far a host may be late and the wire be busy all the same: what chips and kernels hold for it.
+const BUFFERED: Duration = Duration::from_millis(10);
 
 impl<B: Endpoint> WireLink<B> {
     /// A link over `pipe` to what is called `board`; `paced` lets its clock run as fast as the wall's and no faster.
     #[must_use]
     pub fn new(pipe: Pipe<B>, board: &'static str, paced: bool) -> Self {
-        Self { pipe, board, paced }
+        Self { pipe, board, due: paced.then(Instant::now) }
     }
 }
 
@@ -34,8 +38,11 @@ where
     ) -> Result<usize, LinkError> {
         let before = self.pipe.now();
         let moved = self.pipe.exchange(outgoing, incoming, wait);
-        if self.paced {
-            std::thread::sleep(self.pipe.now().saturating_sub(before));
+        if let Some(due) = &mut self.due {
+            let now = Instant::now();
+            *due += self.pipe.now().saturating_sub(before);
+            std::thread::sleep(due.saturating_duration_since(now));
+            *due = (*due).max(now.checked_sub(BUFFERED).unwrap_or(now));
         }
         moved.map_err(|broken| match broken {
             Broken::Disconnected { .. } => LinkError::Closed { link: self.name(), at: self.now() },
@@ -54,10 +61,29 @@ where
     }
 
     fn name(&self) -> String {
-        let (board, clock) = (self.board, if self.paced { "paced" } else { "virtual clock" });
+        let (board, clock) = (self.board, if self.due.is_some() { "paced" } else { "virtual clock" });
         match self.pipe.bytes_per_second() {
             Some(rate) => format!("{board}'s wire ({rate:.0} bytes/s, {clock})"),
             None => format!("{board}'s wire (unlimited, {clock})"),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::open;
+
+    /// Whatever the computer does meanwhile: a wire that were ahead would judge boards in less time than they take.
+    #[test]
+    fn a_paced_wire_is_never_ahead_of_the_wall() {
+        let mut link = open(&"mock,pace=real,speed=20000".parse().unwrap()).unwrap().link;
+        let (begun, mut incoming) = (Instant::now(), Vec::new());
+        for _ in 0..20 {
+            link.exchange(&[1; 50], &mut incoming, Duration::ZERO).unwrap();
+            link.exchange(&[], &mut incoming, Duration::from_millis(4)).unwrap();
+            assert!(begun.elapsed() + BUFFERED >= link.now(), "{:?}", link.now());
+        }
+        assert!(link.now() >= Duration::from_millis(50), "{:?}", link.now());
     }
 }
