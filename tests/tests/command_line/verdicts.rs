@@ -99,6 +99,9 @@ fn the_list_prices_each_part_at_the_link_that_the_target_names_or_at_usual_ones(
     }
     let [(rate, own)] = &listed_prices("mock,speed=1200000")[..] else { panic!() };
     assert_eq!((*rate, own), (1.2e6, &usual[1].1));
+    // 3 Mbaud are 300,000 bytes a second, and nobody opens the port.
+    let [(rate, _)] = &listed_prices("serial:/dev/no-such-port,baud=3000000")[..] else { panic!() };
+    assert_eq!(*rate, 3e5);
     let text = halfrow(["verify", "--list", "--board", "mock,speed=1200000"]).stdout;
     let last = text.lines().last().unwrap_or_default();
     assert!(last.starts_with("the whole run") && last.ends_with(" s"), "{text}");

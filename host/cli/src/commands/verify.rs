@@ -14,9 +14,10 @@ use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
 use halfrow::frames::{Builtin, check_regular};
-use halfrow::link::{Candidate, Lost, Recorder, Recording};
+use halfrow::link::{Candidate, Lost, Recorder, Recording, kinds};
 use halfrow::optics::Chosen;
 use halfrow::run::{self, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
+use halfrow::target::BoardKind;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -63,8 +64,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let files = arguments.input_files(&frames, settings);
     let (plan, options) = arguments.planned(recording.as_ref(), frames, &files, settings)?;
     if arguments.list {
-        board.candidate_of(settings, recording)?;
-        return listing::list(&plan, &board.target(settings)?, context.json);
+        let target = board.target(settings)?;
+        // A device need not be there to know what a run over it costs.
+        if kinds::of(&target).is_none_or(|kind| kind.board != BoardKind::Hardware) {
+            board.candidate_of(settings, recording)?;
+        }
+        return listing::list(&plan, &target, context.json);
     }
     let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;
     let mut candidate = board.candidate_of(settings, recording)?;
