@@ -28,8 +28,12 @@ const SHORT: usize = 64;
 const CAPABILITIES: usize = 320;
 /// Clocks that a commit of the longest tables takes (WIRE.md, "Reply times").
 const COMMIT: usize = 28_000;
-/// Round trips that are looked at, and packets of the longest kind where a link does not know its speed.
+/// Round trips that are looked at.
 const LOOKS: u32 = 3;
+/// How long packets of the longest kind go there and back where a link does not know its speed, and how many at most, since a
+/// virtual clock may stand still.
+const LONG_LOOK: Duration = Duration::from_millis(100);
+const LONG_LOOKS: u32 = 16;
 
 /// How fast a link is.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -50,7 +54,7 @@ impl Rates {
         let short = round_trips(board, &[])?;
         let bytes_per_second = match board.bytes_per_second() {
             Some(known) => known,
-            None => carried(short.0, round_trips(board, &[0; MAX_PAYLOAD])?.1),
+            None => carried(short.0, long_round_trip(board)?),
         };
         let round_trip = short.1 - 2.0 * wire(0) as f64 / bytes_per_second;
         Ok(Self { bytes_per_second, round_trip: round_trip.max(0.0) })
@@ -70,6 +74,16 @@ fn round_trips(board: &mut Board, bytes: &[u8]) -> Result<(f64, f64), BoardError
         (shortest, longest) = (shortest.min(took), longest.max(took));
     }
     Ok((shortest.as_secs_f64(), longest.as_secs_f64()))
+}
+
+/// What a round trip of the longest packet takes on average, in seconds.
+fn long_round_trip(board: &mut Board) -> Result<f64, BoardError> {
+    let (mut took, mut looks) = (Duration::ZERO, 0);
+    while took < LONG_LOOK && looks < LONG_LOOKS {
+        took += board.echo(&[0; MAX_PAYLOAD])?.1;
+        looks += 1;
+    }
+    Ok(took.as_secs_f64() / f64::from(looks))
 }
 
 /// The bytes a second of a link over which the shortest packet takes `short` seconds and the longest one `long`, there and
