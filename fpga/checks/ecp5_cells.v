@@ -1,5 +1,5 @@
 // Models of the ECP5 cells that yosys' library leaves empty, in the forms that synth_ecp5 makes of an inferred memory or product: a
-// block RAM with ports of one width, the old word where a port reads and writes at once, no output register, no reset, contents and
+// block RAM with ports of one width or an idle port B, the old word where a port reads and writes at once, no output register, no reset, contents and
 // outputs that begin as 0; a product without registers. Other forms end the simulation. TO_Q: picoseconds from the clock to the word.
 `default_nettype none
 `timescale 1ps / 1ps
@@ -110,7 +110,7 @@ module DP16KD (
         DOB1, DOB0} = WIDE ? out_b[35:18] : out_b[17:0];
 
     // The old word is what a port gives that writes, if anything reads it.
-    wire known = DATA_WIDTH_A == DATA_WIDTH_B && REGMODE_A == "NOREG" && REGMODE_B == "NOREG" && CSDECODE_A == "0b000"
+    wire known = (DATA_WIDTH_A == DATA_WIDTH_B || !CEB) && REGMODE_A == "NOREG" && REGMODE_B == "NOREG" && CSDECODE_A == "0b000"
         && CSDECODE_B == "0b000" && CLKAMUX == "CLKA" && CLKBMUX == "CLKB" && (WIDE || (WRITEMODE_A == "READBEFOREWRITE"
         && WRITEMODE_B == "READBEFOREWRITE"));
 
