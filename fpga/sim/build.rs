@@ -111,8 +111,11 @@ impl Verilator {
         command.args(["--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal"]);
         command.args(is_traced.then_some("--trace"));
         command.args(["--top-module", model.top.module, "--prefix", model.class]).arg("--Mdir").arg(folder);
-        let identity = IDENTITY.iter().filter(|_| model.top.module != CORE.module);
-        command.args(model.parameters.iter().chain(identity).map(|parameter| format!("-G{parameter}")));
+        command.args(model.parameters.iter().map(|parameter| format!("-G{parameter}")));
+        if model.top.module != CORE.module {
+            command.args(IDENTITY.map(|parameter| format!("-G{parameter}")));
+            command.arg(format!("-GBUILD=32'h{:08x}", checksum(rtl)));
+        }
         command.arg(format!("-I{}", rtl.display()));
         for group in folders(rtl) {
             command.arg("-y").arg(&group);
@@ -177,6 +180,19 @@ fn folders(within: &Path) -> Vec<PathBuf> {
     let mut folders: Vec<_> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
     folders.sort();
     folders
+}
+
+/// The CRC-32 of the Verilog, by which a simulated board's build is known (fpga/checks/table.py).
+fn checksum(rtl: &Path) -> u32 {
+    let folders = folders(rtl);
+    let files_in =
+        |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let mut files: Vec<_> = folders.iter().map(PathBuf::as_path).chain([rtl]).flat_map(files_in).collect();
+    files.retain(|path| path.extension().is_some_and(|kind| kind == "v" || kind == "vh"));
+    files.sort();
+    let mut checksum = crc32fast::Hasher::new();
+    files.iter().flat_map(fs::read).for_each(|text| checksum.update(&text));
+    checksum.finalize()
 }
 
 /// What a command prints, if it runs and succeeds.
