@@ -7,16 +7,20 @@ chooses one; RUNNER (halfrow-coverage) judges the board with each. What was foun
 import collections
 import concurrent.futures
 import configparser
+import dataclasses
 import hashlib
 import json
 import pathlib
+import random
 import re
 import shutil
 import subprocess
 import sys
 
 import mutants
+import proofs
 import rtl
+import table
 
 HERE = pathlib.Path(__file__).resolve().parent
 SHIM = HERE.parent / "sim" / "shim"
@@ -24,6 +28,15 @@ SEED = 1
 TOP = "halfrow_bridge"
 # Width, height and the lens's radius in pixels.
 SIZES = ["64", "16", "40"]
+# The same of a board with a fault that is proven to make no difference, for so many of those.
+LONG = ["200", "48", "120"]
+CHECKED = 100
+# So many faults of a block that are found must not be proven.
+CONTROLS = 5
+# Only of so many is the table in the repository.
+FAULTS = 2100
+CLASSES = {"frames": "samples", "at-speed": "signature", "latency": "latency", "counters": "counters", "read-back": "read-back",
+           "tables-after": "read-back", "identity": "read-back", "upload": "read-back", "link": "counters"}
 AT_ONCE = 2
 BOARD = "uniquify; prep -top {top}; wreduce; opt -full; opt_clean -purge; write_ilang {base}"
 # Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port. Nor is a clock that is turned.
@@ -92,9 +105,9 @@ def library(place, base, faults):
     return library
 
 
-def judge(runner, library, number):
+def judge(runner, library, number, sizes=SIZES):
     """What RUNNER says of the board with this fault."""
-    said = subprocess.run([runner, library, *SIZES, str(number)], capture_output=True, text=True)
+    said = subprocess.run([runner, library, *sizes, str(number)], capture_output=True, text=True)
     if said.returncode != 0:
         sys.exit(f"coverage: fault {number} of {library}: {said.stderr.strip()}")
     return json.loads(said.stdout)
@@ -123,9 +136,63 @@ def judged(runner, place, base, faults):
     return known
 
 
-def finder(found):
-    """What a run ended by: PASS, or its verdict and the first check that did not pass."""
-    return " ".join([found["verdict"], *found["checks"][:1]])
+def known_proofs(place, base, faults, found):
+    """For each fault that nothing finds, the module in which it is proven to make no difference, or none; by number. Some of those that are found must
+    not be."""
+    kept = place / "proofs"
+    lines = kept.read_text().splitlines() if kept.exists() else []
+    known = {line["fault"]: line["proof"] for line in map(json.loads, lines)}
+    left = [number for number in range(1, len(faults) + 1) if found[number]["verdict"] == "PASS"]
+    others = [number for number in range(1, len(faults) + 1) if found[number]["verdict"] == "FAIL"]
+    controls = random.Random(SEED).sample(others, min(CONTROLS, len(others)))
+    missing = [number for number in controls + left if number not in known]
+    if missing:
+        prover = proofs.Prover(place / "proof", base, {number: faults[number - 1] for number in controls + left})
+        with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool, open(kept, "a", buffering=1) as out:
+            for number, proof in zip(missing, pool.map(prover.proof, missing)):
+                known[number] = proof
+                out.write(json.dumps({"fault": number, "proof": proof}) + "\n")
+    for number in controls:
+        if known[number]:
+            sys.exit(f"coverage: fault {number} of {place.name} is found and proven to make no difference; mend fpga/checks/proofs.py")
+    return {number: known[number] for number in left}
+
+
+def check_proofs(work, runner, blocks):
+    """Judges some boards with faults that are proven to make no difference for longer, at another size."""
+    proven = [(block.name, number) for block in blocks for number, proof in block.proofs.items() if proof]
+    drawn = random.Random(SEED).sample(proven, min(CHECKED, len(proven)))
+    kept = work / "checked"
+    done = kept.read_text().splitlines() if kept.exists() else []
+    with concurrent.futures.ThreadPoolExecutor(AT_ONCE) as pool, open(kept, "a", buffering=1) as out:
+        missing = [one for one in drawn if " ".join(map(str, one)) not in done]
+        tried = {one: pool.submit(judge, runner, work / one[0] / "board.so", one[1], LONG) for one in missing}
+        for (name, number), judging in tried.items():
+            if judging.result()["verdict"] != "PASS":
+                sys.exit(f"coverage: fault {number} of {name} is proven to make no difference, and is found at {LONG}; mend fpga/checks/proofs.py")
+            out.write(f"{name} {number}\n")
+    return len(drawn)
+
+
+def by(found, proof):
+    """What finds a fault: a class of table.py."""
+    if found["verdict"] == "ERROR":
+        return "error"
+    return CLASSES[found["checks"][0]] if found["checks"] else "equivalent" if proof else "left"
+
+
+@dataclasses.dataclass
+class Block:
+    """A block's faults, and what is known of each by its number."""
+
+    name: str
+    faults: list
+    found: dict
+    proofs: dict
+
+    def classes(self):
+        """The class of each fault."""
+        return {number: by(self.found[number], self.proofs.get(number)) for number in range(1, len(self.faults) + 1)}
 
 
 def main():
@@ -139,14 +206,19 @@ def main():
         work.mkdir()
         mark.write_text(key(count, runner))
     base, modules = board(work)
+    blocks = []
     for name in only or sections.sections():
         place = work / name.replace(" ", "_")
         place.mkdir(exist_ok=True)
         faults = draw(place, base, chosen(sections[name], modules), count * sections.getint(name, "share") // 1000)
         found = judged(runner, place, base, faults)
-        counts = collections.Counter(finder(found[number]) for number in range(1, len(faults) + 1))
-        told = ", ".join(f"{check} {number}" for check, number in counts.most_common())
-        print(f"{name}: {len(faults)} faults: {told}", flush=True)
+        blocks.append(Block(place.name, faults, found, known_proofs(place, base, faults, found)))
+        counts = collections.Counter(blocks[-1].classes().values())
+        print(f"{name}: {len(faults)} faults: " + ", ".join(f"{number} {what}" for what, number in counts.most_common()), flush=True)
+    checked = check_proofs(work, runner, blocks)
+    print(f"{checked} of the proofs checked by simulation at {' x '.join(LONG[:2])}")
+    if not only and count == FAULTS:
+        table.write(blocks, checked, sections, SEED, SIZES)
 
 
 main()

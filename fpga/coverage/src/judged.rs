@@ -1,9 +1,10 @@
-//! One board with one fault, judged.
+//! One board with one fault, judged: by the whole run, and by parts of it.
 
 use anyhow::Result;
 use halfrow::link::WireLink;
 use halfrow::progress::Silent;
-use halfrow::result::{CheckName, Outcome};
+use halfrow::result::{CheckName, Finding, FrameReport, Outcome, Report};
+use halfrow::run::{Part, Selection};
 use halfrow::target::BoardKind;
 use halfrow::{Candidate, Plan, RunOptions, Verdict};
 use halfrow_pipe::{Pipe, PipeOptions};
@@ -24,36 +25,64 @@ pub(crate) struct Judged {
     finding: String,
     /// Every check that did not pass, the first one first.
     checks: Vec<CheckName>,
-    /// The streamed frames that differ, by number.
-    frames: Vec<u16>,
-    /// How long the run took by the wall's clock.
+    /// The streamed frames that differ, by number, each with its first row that does.
+    frames: Vec<(u16, usize)>,
+    /// Whether the least that can be selected finds it.
+    least: bool,
+    /// Whether frames at speed alone find it.
+    at_speed: bool,
+    /// Whether corners alone do.
+    corners: bool,
+    /// How long the whole run took by the wall's clock.
     seconds: f64,
 }
 
-/// Judges the board with this fault, 0 for none.
+/// Judges the board with this fault, 0 for none, by `plan` and, if that finds it, by parts of it.
 pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<Judged> {
-    let board = board.switch_on(fault, SEED, PATIENCE);
-    let pipe = Pipe::new(board, PipeOptions::default(), None);
-    let link = WireLink::new(pipe, "the board with a fault", false);
-    let candidate = Candidate::new("fault", BoardKind::Sim, link);
-    let report = halfrow::verify(plan, candidate, &RunOptions::default(), &Silent)?.report;
-    let not_passed = |outcome| matches!(outcome, Outcome::Failed | Outcome::Error);
+    let whole = report(plan, board, fault)?;
+    let mut by = |selection: Selection, is_asked: bool| {
+        let plan = Plan { parts: Some(selection), ..plan.clone() };
+        is_asked.then(|| report(&plan, board, fault)).transpose()
+    };
+    let least = by(Selection::least(), whole.verdict != Verdict::Pass)?.is_some_and(|part| is_found(&part));
+    // A board that hangs does so for minutes, each time.
+    let is_asked = whole.verdict == Verdict::Fail && !least;
+    let at_speed = by(Selection::all([Part::AtSpeed]), is_asked)?.is_some_and(|part| is_found(&part));
+    let corners = by(Selection::all([Part::Corners]), is_asked)?.is_some_and(|part| is_in_corner(&part));
     Ok(Judged {
         fault,
-        verdict: report.verdict,
-        finding: report.finding.code(),
-        checks: report
-            .checks
-            .iter()
-            .filter(|check| not_passed(check.outcome))
-            .map(|check| check.name)
-            .collect(),
-        frames: report
-            .frames
-            .iter()
-            .filter(|frame| frame.comparison.differences > 0)
-            .map(|frame| frame.number)
-            .collect(),
-        seconds: report.run.seconds,
+        verdict: whole.verdict,
+        finding: whole.finding.code(),
+        checks: not_passed(&whole),
+        frames: whole.frames.iter().filter_map(first_that_differs).collect(),
+        least,
+        at_speed,
+        corners,
+        seconds: whole.run.seconds,
     })
+}
+
+fn report(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<Report> {
+    let pipe = Pipe::new(board.switch_on(fault, SEED, PATIENCE), PipeOptions::default(), None);
+    let link = WireLink::new(pipe, "the board with a fault", false);
+    let candidate = Candidate::new("fault", BoardKind::Sim, link);
+    Ok(halfrow::verify(plan, candidate, &RunOptions::default(), &Silent)?.report)
+}
+
+fn is_found(report: &Report) -> bool {
+    report.verdict != Verdict::Pass
+}
+
+fn not_passed(report: &Report) -> Vec<CheckName> {
+    let not_passed = |outcome| matches!(outcome, Outcome::Failed | Outcome::Error);
+    report.checks.iter().filter(|check| not_passed(check.outcome)).map(|check| check.name).collect()
+}
+
+fn first_that_differs(frame: &FrameReport) -> Option<(u16, usize)> {
+    Some((frame.number, frame.comparison.first.as_ref()?.row))
+}
+
+/// Whether it was found in a corner, which comes behind the frames at speed.
+fn is_in_corner(report: &Report) -> bool {
+    matches!(report.finding, Finding::InCorner { .. })
 }

@@ -1,0 +1,108 @@
+"""The table of faults by what finds them: fpga/checks/coverage.md for people, host/judge/src/coverage/faults.json for runs."""
+import collections
+import json
+import pathlib
+import re
+import zlib
+
+import rtl
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+PAGE = ROOT / "fpga" / "checks" / "coverage.md"
+FAULTS = ROOT / "host" / "judge" / "src" / "coverage" / "faults.json"
+CLASSES = ["samples", "signature", "latency", "counters", "read-back", "error", "equivalent", "left"]
+HEAD = """# What a run finds
+
+Made by `scripts/hardware coverage`, which says how in `coverage.py` and `proofs.py`; nobody writes it by hand. {count:,} single faults that yosys drew
+with seed {seed} in the board's Verilog of build `{build}`, each judged by what `halfrow verify --width {width} --height {height} --radius {radius}` does.
+
+Found: {found:,} of the {open:,} that are not proven to make no difference, {share:.1f} %. {checked} drawn ones of the {equivalent} proofs were checked by simulation at
+another size.
+
+| Block | Faults | Samples | Signature | Latency | Counters | Read-back | Error | Equivalent | Left |
+|---|---|---|---|---|---|---|---|---|---|
+"""
+LEFT = """
+## Left
+
+What no run finds and no proof settles, by where it is, and what would find it.
+
+"""
+
+
+def build():
+    """What the simulated board says it was built from: the CRC-32 of the Verilog (fpga/sim/build.rs)."""
+    check = 0
+    for path in sorted(path for path in rtl.RTL.glob("**/*") if path.suffix in (".v", ".vh")):
+        check = zlib.crc32(path.read_bytes(), check)
+    return f"{check:08x}"
+
+
+def line(block, number):
+    """A fault as runs read it."""
+    found = block.found[number]
+    own = {key: found[key] for key in ("frames", "at_speed", "corners")}
+    frames = [] if found["least"] else own["frames"]
+    return {"block": block.name, **own, "frames": frames, "always": found["least"], "whole": found["verdict"] != "PASS"}
+
+
+def where(fault):
+    """A fault's place: file and line, or its module and cell where yosys does not say."""
+    source = re.search(r"-src \S*/(\w+\.v):(\d+)", fault)
+    if source:
+        return source[1], int(source[2])
+    return re.search(r"-module \S*?([^.\s]+) ", fault)[1], 0
+
+
+def name(fault):
+    mode, cell, port = (re.search(rf"-{key} (\S+)", fault)[1] for key in ("mode", "cell", "port"))
+    file, at = where(fault)
+    bit = re.search(r"-portbit (\d+)", fault)[1]
+    kind = cell.split("$")[1] if cell.startswith("$") and not cell.startswith("$auto") else "register" if "ff.cc" in cell else cell.rpartition("/")[2]
+    return f"{file}:{at} `{kind}` {port}[{bit}] {mode}"
+
+
+def remedy(section, fault):
+    """What would find it, by coverage.ini: lines `file:first-last words`."""
+    file, at = where(fault)
+    for entry in section.get("left", "").strip().splitlines():
+        place, _, words = entry.strip().partition(" ")
+        of, _, lines = place.partition(":")
+        first, _, last = lines.partition("-")
+        if of == file and (not lines or int(first) <= at <= int(last or first)):
+            return words
+    return "not known"
+
+
+def left(block, section):
+    """The block's faults that are left, with what would find them."""
+    groups = collections.defaultdict(list)
+    for number, what in block.classes().items():
+        if what == "left":
+            fault = block.faults[number - 1]
+            groups[remedy(section, fault)].append(f"{number} {name(fault)}")
+    told = [f"- {words}: {len(names)}. " + "; ".join(names) for words, names in sorted(groups.items())]
+    return f"### {block.name.replace('_', ' ')}\n\n" + "\n".join(told) + "\n" if told else ""
+
+
+def write(blocks, checked, sections, seed, sizes):
+    """Both files, anew."""
+    total = collections.Counter()
+    rows = []
+    for block in blocks:
+        counts = collections.Counter(block.classes().values())
+        total += counts
+        rows.append((block.name.replace("_", " "), counts))
+    rows.append(("all", total))
+    numbers = {"count": total.total(), "equivalent": total["equivalent"], "open": total.total() - total["equivalent"]}
+    numbers["found"] = numbers["open"] - total["left"]
+    numbers["share"] = 100 * numbers["found"] / numbers["open"]
+    width, height, radius = sizes
+    page = HEAD.format(seed=seed, build=build(), width=width, height=height, radius=radius, checked=checked, **numbers)
+    page += "".join(f"| {of} | {counts.total():,} | " + " | ".join(f"{counts[one]:,}" for one in CLASSES) + " |\n" for of, counts in rows)
+    page += LEFT + "\n".join(filter(None, (left(block, sections[block.name.replace("_", " ")]) for block in blocks)))
+    PAGE.write_text(page)
+    head = {"seed": seed, "width": int(width), "height": int(height), "radius": float(radius), "build": build(), "equivalent": total["equivalent"]}
+    lines = [line(block, number) for block in blocks for number, what in block.classes().items() if what != "equivalent"]
+    text = ",\n".join(json.dumps(one) for one in lines)
+    FAULTS.write_text(json.dumps(head)[:-1] + ', "faults": [\n' + text + "\n]}\n")
