@@ -128,6 +128,9 @@ fn figures(report: &Report) -> String {
     if let Some(untouched) = wording::not_exercised(report) {
         push(&mut text, "limits", no_style, &untouched);
     }
+    if let Some(share) = wording::coverage(report) {
+        push(&mut text, "coverage", no_style, &share);
+    }
     text
 }
 

@@ -6,6 +6,7 @@ use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
 use serde::Deserialize;
 
 use crate::frames::Builtin;
+use crate::result::CoverageReport;
 use crate::run::{FrameSource, Part, Plan, Selection, Vary};
 
 /// Frames at speed that faults were looked for with.
@@ -44,10 +45,12 @@ struct Table {
     width: usize,
     height: usize,
     radius: f64,
+    build: String,
+    equivalent: usize,
     faults: Vec<Line>,
 }
 
-/// A fault in it. A frame is its number in the whole schedule, and the first row of it that differs.
+/// A fault in it that is not proven to make no difference. A frame is its number in the whole schedule, and the first row of it that differs.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Line {
@@ -56,6 +59,7 @@ struct Line {
     at_speed: bool,
     corners: bool,
     always: bool,
+    whole: bool,
 }
 
 /// What finds a fault: all of that which is known to.
@@ -69,6 +73,8 @@ pub(super) struct Fault {
     pub(super) at_speed: bool,
     /// The corners.
     pub(super) corners: bool,
+    /// A whole run.
+    pub(super) whole: bool,
 }
 
 impl Fault {
@@ -86,6 +92,10 @@ impl Fault {
 pub struct Faults {
     /// What they were measured with.
     given: Given,
+    /// The build that they were put into.
+    build: String,
+    /// How many more there are that are proven to make no difference.
+    equivalent: usize,
     /// How many there are of each.
     pub(super) groups: BTreeMap<Fault, usize>,
 }
@@ -110,7 +120,8 @@ impl Given {
         let usual = || {
             let lens = Equidistant::from_radius(radius).ok()?;
             let geometry = Geometry::centred(width, height, BitDepth::Twelve).ok()?;
-            Some(Plan::new(TableSet::from_lens(geometry, &lens, None).ok()?, Interpolant::Hermite.into()))
+            let tables = TableSet::from_lens(geometry, &lens, None).ok()?;
+            Some(Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens))
         };
         let builtin = |source: &FrameSource| match source {
             FrameSource::Builtin(builtin) => Some(*builtin),
@@ -119,7 +130,10 @@ impl Given {
         plan.frames.iter().map(builtin).eq(Builtin::ALL.map(Some))
             && plan.vary == Vary { centre: true, depth: true }
             && (plan.repeat, plan.seed) == (1, seed)
-            && usual().is_some_and(|usual| (&plan.tables, &plan.kernel) == (&usual.tables, &usual.kernel))
+            && usual().is_some_and(|usual| {
+                (&plan.tables, &plan.kernel) == (&usual.tables, &usual.kernel)
+                    && (plan.lens, plan.centre_y, plan.phase) == (usual.lens, usual.centre_y, usual.phase)
+            })
     }
 }
 
@@ -146,7 +160,7 @@ impl Faults {
     /// # Errors
     /// [`FaultsError`], which names what is wrong.
     fn read(text: &str, which: Which) -> Result<Self, FaultsError> {
-        let Table { seed, width, height, radius, faults } =
+        let Table { seed, width, height, radius, build, equivalent, faults } =
             serde_json::from_str(text).map_err(|error| FaultsError::Form { what: error.to_string() })?;
         let mut groups = BTreeMap::new();
         for (place, line) in faults.iter().enumerate() {
@@ -160,13 +174,24 @@ impl Faults {
                 *groups.entry(fault).or_default() += 1;
             }
         }
-        Ok(Self { given: Given { width, height, radius, seed }, groups })
+        Ok(Self { given: Given { width, height, radius, seed }, build, equivalent, groups })
     }
 
-    /// Whether they were measured with what `plan` streams.
+    /// Whether they were measured with what `plan` streams, in a board of this build.
     #[must_use]
-    pub fn are_of(&self, plan: &Plan) -> bool {
-        self.given.is_of(plan)
+    pub fn are_of(&self, plan: &Plan, build: &str) -> bool {
+        self.build == build && self.given.is_of(plan)
+    }
+
+    /// What a whole run by `plan` on a board of this build finds; none when that was not measured.
+    #[must_use]
+    pub fn whole(&self, plan: &Plan, build: &str) -> Option<CoverageReport> {
+        let is_whole = plan.parts.is_none() && plan.at_speed.is_none() && plan.soak.is_none();
+        (is_whole && self.are_of(plan, build)).then(|| CoverageReport {
+            found: self.groups.iter().filter(|(fault, _)| fault.whole).map(|(_, count)| count).sum(),
+            faults: self.count(),
+            equivalent: self.equivalent,
+        })
     }
 
     /// The columns and rows that they were measured with.
@@ -197,14 +222,14 @@ impl Faults {
             let rows = fault.rows.iter().map(|&(part, rows)| (part, of(rows))).collect();
             *groups.entry(Fault { rows, ..fault.clone() }).or_default() += count;
         }
-        Self { given: self.given, groups }
+        Self { groups, ..self.clone() }
     }
 }
 
 impl Line {
     /// What finds it, in frames of `height` rows, or what is wrong with it.
     fn fault(&self, height: usize) -> Result<Fault, String> {
-        let Self { block, frames, at_speed, corners, always } = self;
+        let Self { block, frames, at_speed, corners, always, whole } = self;
         if block.is_empty() {
             return Err("names no block".to_owned());
         }
@@ -218,8 +243,11 @@ impl Line {
                 return Err(format!("names frame {number} twice"));
             }
         }
+        if !whole && (*always || *at_speed || *corners || !rows.is_empty()) {
+            return Err("is found by a part and not by the whole".to_owned());
+        }
         let rows = rows.into_iter().collect();
-        Ok(Fault { always: *always, rows, at_speed: *at_speed, corners: *corners })
+        Ok(Fault { always: *always, rows, at_speed: *at_speed, corners: *corners, whole: *whole })
     }
 }
 
@@ -232,10 +260,12 @@ fn part_of(number: usize) -> Option<Part> {
 
 #[cfg(test)]
 mod tests {
+    use halfrow_model::Phase;
+
     use super::*;
 
-    const HEAD: &str = r#"{"seed": 1, "width": 64, "height": 16, "radius": 40.0, "faults": ["#;
-    const FOUND: &str = r#""at_speed": false, "corners": false, "always": false}"#;
+    const HEAD: &str = r#"{"seed": 1, "width": 64, "height": 16, "radius": 40.0, "build": "0a0b0c0d", "equivalent": 7, "faults": ["#;
+    const FOUND: &str = r#""at_speed": false, "corners": false, "always": false, "whole": true}"#;
 
     fn read(line: &str) -> Result<Faults, FaultsError> {
         Faults::read(&format!("{HEAD}{line}]}}"), Which::All)
@@ -265,6 +295,30 @@ mod tests {
         assert!(wrong(&line("", "[]")).contains("names no block"));
         assert!(wrong(r#"{"block": "core"}"#).contains("missing field"));
         assert!(wrong(&line("core", "[]").replace("always", "ever")).contains("unknown field `ever`"));
+    }
+
+    #[test]
+    fn what_a_whole_run_finds_is_told_of_the_measured_plan_on_the_measured_build_alone() {
+        let line = |found: &str| format!(r#"{{"block": "core", "frames": [], {found}"#);
+        let unfound = FOUND.replace(r#""whole": true"#, r#""whole": false"#);
+        let faults = read(&[line(FOUND), line(FOUND), line(&unfound)].join(",")).unwrap();
+        let lens = Equidistant::from_radius(40.0).unwrap();
+        let geometry = Geometry::centred(64, 16, BitDepth::Twelve).unwrap();
+        let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
+        let plan = Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens);
+        let plan = plan.varying(Vary { centre: true, depth: true });
+        let told = Some(CoverageReport { found: 2, faults: 3, equivalent: 7 });
+        assert_eq!(faults.whole(&plan, "0a0b0c0d"), told);
+        assert_eq!(faults.whole(&plan, "00000000"), None);
+        let others = [
+            Plan { seed: 2, ..plan.clone() },
+            Plan { at_speed: Some(std::time::Duration::ZERO), ..plan.clone() },
+            Plan { parts: Some(Selection::least()), ..plan.clone() },
+            Plan { kernel: Interpolant::Linear.into(), ..plan.clone() },
+            Plan { vary: Vary::default(), ..plan.clone() },
+            Plan { phase: Phase::Rggb, ..plan.clone() },
+        ];
+        assert!(others.iter().all(|other| faults.whole(other, "0a0b0c0d").is_none()));
     }
 
     #[test]

@@ -69,6 +69,7 @@ fn properties(report: &Report) -> Vec<(&'static str, String)> {
         ("seed", report.run.seed.to_string()),
     ];
     list.extend(wording::not_exercised(report).map(|parts| ("not_exercised", parts)));
+    list.extend(wording::coverage(report).map(|share| ("coverage", share)));
     if let Some(identity) = &report.board.identity {
         list.push(("board.name", identity.name.clone()));
         list.push(("board.serial", identity.serial.clone()));

@@ -1,5 +1,6 @@
 //! The words and figures that the views share, here and in programs, so that all of them say the same.
 
+mod coverage;
 mod within;
 
 use std::borrow::Cow;
@@ -10,6 +11,7 @@ use crate::result::{
 };
 use crate::verdict::Verdict;
 
+pub use coverage::coverage;
 pub use within::within;
 
 /// What a check's outcome is called. The loud ones are those to act on.

@@ -14,6 +14,7 @@ mod check;
 pub mod codes;
 pub(crate) mod comparison;
 mod counter;
+mod coverage;
 mod defect;
 mod document;
 mod doubt;
@@ -42,6 +43,7 @@ pub use crate::target::BoardKind;
 pub use bursts::{BurstCount, Corner, NoBurst, Repetition};
 pub use check::{Check, CheckName, Outcome};
 pub use counter::Counter;
+pub use coverage::CoverageReport;
 pub use defect::{ClampEnd, Counting, Defect, MadeWith, Memory, Reading, RowSource, StaleFrames};
 pub use document::{Document, SCHEMA, Schema};
 pub use doubt::Doubt;
@@ -92,6 +94,9 @@ pub struct Report {
     /// What was taken of the run, where it had to keep within a time.
     #[serde(default)]
     pub within: Option<WithinReport>,
+    /// What share of the Verilog's faults the run finds, under PASS; none when that was not measured.
+    #[serde(default)]
+    pub coverage: Option<CoverageReport>,
     /// The link.
     pub link: LinkReport,
     /// What was uploaded.
@@ -151,6 +156,7 @@ struct Rest<'a> {
     soak: Option<&'a SoakReport>,
     #[serde(skip_serializing_if = "Option::is_none")]
     within: Option<&'a WithinReport>,
+    coverage: Option<CoverageReport>,
     link: &'a LinkReport,
     tables: &'a TablesReport,
     run: &'a RunReport,
@@ -172,6 +178,7 @@ impl<'a> From<&'a Report> for Rest<'a> {
             evidence: &report.evidence,
             soak: report.soak.as_ref(),
             within: report.within.as_ref(),
+            coverage: report.coverage,
             link: &report.link,
             tables: &report.tables,
             run: &report.run,

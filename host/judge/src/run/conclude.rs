@@ -6,10 +6,11 @@ use super::findings::{End, Findings};
 use super::judge::{STREET, Seen};
 use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::board::Tally;
+use crate::coverage::{Faults, Which};
 use crate::frames::street;
 use crate::result::{
-    Check, CheckName, Finding, LinkReport, Outcome, Report, RunReport, Schema, SoakReport, StreetReport,
-    Suspect, TablesReport,
+    Check, CheckName, CoverageReport, Finding, LinkReport, Outcome, Report, RunReport, Schema, SoakReport,
+    StreetReport, Suspect, TablesReport,
 };
 use crate::verdict::Cause;
 
@@ -31,6 +32,7 @@ pub(super) fn conclude(
     skip_the_rest(&mut findings.checks);
     let street = street(plan, &findings.seen);
     let is_pass = ending.cause == Cause::Equal;
+    let coverage = if is_pass { coverage(plan, &findings) } else { None };
     let not_exercised = if is_pass { findings.not_exercised } else { Vec::new() };
     let (evidence, evidence_report) = findings.seen.evidence.finish();
     let report = Report {
@@ -46,6 +48,7 @@ pub(super) fn conclude(
         latency: findings.seen.latency,
         street,
         within: findings.within,
+        coverage,
         soak: findings.soak.or_else(|| plan.soak.map(SoakReport::new)),
         evidence: evidence_report,
         link: link(findings.link, &findings.tally),
@@ -53,6 +56,12 @@ pub(super) fn conclude(
         run: run(plan, &options.circumstances, started),
     };
     Finished { report, evidence }
+}
+
+/// What the run finds of the faults that were measured in a board of this build.
+fn coverage(plan: &Plan, findings: &Findings) -> Option<CoverageReport> {
+    let build = &findings.board.identity.as_ref()?.build;
+    Faults::measured(Which::All).ok()?.whole(plan, build)
 }
 
 fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunReport {

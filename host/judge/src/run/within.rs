@@ -66,11 +66,12 @@ pub(super) fn choose(
     let kept = if board.bytes_per_second().is_some() { KEPT } else { KEPT_UNSURE };
     let mut time = Time { seconds: limit.as_secs_f64(), spent: board.now().as_secs_f64(), kept };
     // On a link with a clock of its own choosing takes no time. On any other it takes as long once more.
-    let tried = chosen(&prices, time);
+    let build = format!("{:08x}", board.welcome.build);
+    let tried = chosen(&prices, &build, time);
     let took = board.now().as_secs_f64() - time.spent;
     let chosen = if took > 0.0 {
         time.spent += 2.0 * took + HOST;
-        chosen(&prices, time)
+        chosen(&prices, &build, time)
     } else {
         tried
     };
@@ -99,7 +100,7 @@ struct Time {
     kept: f64,
 }
 
-fn chosen(prices: &Prices<'_>, time: Time) -> Result<(Selection, WithinReport), WithinError> {
+fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, WithinReport), WithinError> {
     let faults = Faults::measured(Which::All)?;
     let Time { seconds, spent, kept } = time;
     let left = seconds * (1.0 - kept) - spent;
@@ -118,7 +119,8 @@ fn chosen(prices: &Prices<'_>, time: Time) -> Result<(Selection, WithinReport), 
         }
     }
     let choice = coverage::choose(prices, &faults, &from, left);
-    let report = report(prices, &faults, &choice, time);
+    let measured = faults.are_of(prices.plan(), build);
+    let report = WithinReport { measured, ..report(prices, &faults, &choice, time) };
     Ok((choice.selection, report))
 }
 
@@ -147,7 +149,7 @@ fn report(
         parts: prices.parts().into_iter().map(part).collect(),
         found: here.found(&choice.selection),
         faults: here.count(),
-        measured: faults.are_of(plan),
+        measured: false,
         measured_at: faults.size().into(),
         curve: points.collect(),
     }

@@ -1,6 +1,6 @@
 use halfrow::compare::Comparison;
 use halfrow::report;
-use halfrow::result::{Evidence, Report};
+use halfrow::result::{BoardKind, BoardReport, CoverageReport, Evidence, Report};
 
 use crate::made;
 
@@ -43,6 +43,22 @@ fn nothing_from_outside_becomes_markup() {
 fn a_pass_lists_what_was_not_exercised() {
     assert!(page(&made::pass(), &[]).contains("<li>samples of 8 or 10 bits</li>"));
     assert!(!page(&made::fail().0, &[]).contains("Not exercised"));
+}
+
+#[test]
+fn a_pass_says_what_share_of_faults_it_stands_for_where_it_may() {
+    let of = |kind, coverage| {
+        let report = made::pass();
+        let report = Report { board: BoardReport { kind, ..report.board }, coverage, ..report };
+        report::wording::coverage(&report)
+    };
+    // 99.95 % would be rounded up.
+    let measured = Some(CoverageReport { found: 1999, faults: 2000, equivalent: 100 });
+    let share = "finds 99.9 % of 2,000 single faults of the Verilog at this geometry";
+    assert_eq!(of(BoardKind::Sim, measured).as_deref(), Some(share));
+    assert_eq!(of(BoardKind::Hardware, None).as_deref(), Some("of this plan was not measured"));
+    assert_eq!(of(BoardKind::Mock, measured), None);
+    assert_eq!(report::wording::coverage(&Report { coverage: measured, ..made::fail().0 }), None);
 }
 
 #[test]

@@ -35,6 +35,7 @@ pub(crate) fn pass() -> Report {
         latency: Some(latency(2160)),
         soak: None,
         within: None,
+        coverage: None,
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
         evidence: EvidenceReport::default(),
         link: link(),

@@ -1,0 +1,21 @@
+//! What is said of the faults that a run finds.
+
+use super::grouped;
+use crate::result::{BoardKind, CoverageReport, Report};
+use crate::verdict::Verdict;
+
+/// What share of the Verilog's faults a PASS stands for, without a full stop; none of a board that is not made of it, and where it
+/// is told of the parts of a run.
+#[must_use]
+pub fn coverage(report: &Report) -> Option<String> {
+    let is_told = report.verdict == Verdict::Pass && report.within.is_none() && report.soak.is_none();
+    if !is_told || report.board.kind == BoardKind::Mock {
+        return None;
+    }
+    let Some(CoverageReport { found, faults, .. }) = report.coverage else {
+        return Some("of this plan was not measured".to_owned());
+    };
+    // Never more than was measured.
+    let share = (1000 * found / faults.max(1)) as f64 / 10.0;
+    Some(format!("finds {share:.1} % of {} single faults of the Verilog at this geometry", grouped(faults)))
+}
