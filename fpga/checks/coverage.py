@@ -137,8 +137,8 @@ def judged(runner, place, base, faults):
 
 
 def known_proofs(place, base, faults, found):
-    """For each fault that nothing finds, the module in which it is proven to make no difference, or none; by number. Some of those that are found must
-    not be."""
+    """For each fault that nothing finds, the module in which it is proven to make no difference, or none; by number. Some of those that are
+    found must not be."""
     kept = place / "proofs"
     lines = kept.read_text().splitlines() if kept.exists() else []
     known = {line["fault"]: line["proof"] for line in map(json.loads, lines)}

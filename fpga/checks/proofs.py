@@ -1,7 +1,7 @@
 """Whether a single fault makes no difference: yosys and yosys-abc prove the design with it equal to the one without.
 
-A fault is tried in the module that it is in, then in each one above it but the whole board. At the module's ports anything may come at any clock, and the
-outputs of both must be equal at every clock. Assumptions:
+A fault is tried in the module that it is in, then in each one above it but the whole board. At the module's ports anything may come at any
+clock, and the outputs of both must be equal at every clock. Assumptions:
     - registers begin at 0, as the FPGA's do;
     - a memory gives the same in both as long as the same goes into it, and at its ports what is not written or read may differ;
     - LEGAL: where a proof says so, only until a row is flagged that is short, long or unprepared. The player makes none

@@ -13,11 +13,11 @@ FAULTS = ROOT / "host" / "judge" / "src" / "coverage" / "faults.json"
 CLASSES = ["samples", "signature", "latency", "counters", "read-back", "error", "equivalent", "left"]
 HEAD = """# What a run finds
 
-Made by `scripts/hardware coverage`, which says how in `coverage.py` and `proofs.py`; nobody writes it by hand. {count:,} single faults that yosys drew
-with seed {seed} in the board's Verilog of build `{build}`, each judged by what `halfrow verify --width {width} --height {height} --radius {radius}` does.
+Made by `scripts/hardware coverage`, as `coverage.py` and `proofs.py` say; nobody writes it by hand. {count:,} single faults that yosys drew with
+seed {seed} in the board's Verilog of build `{build}`, each judged by what `halfrow verify --width {width} --height {height} --radius {radius}` does.
 
-Found: {found:,} of the {open:,} that are not proven to make no difference, {share:.1f} %. {checked} drawn ones of the {equivalent} proofs were checked by simulation at
-another size.
+Found: {found:,} of the {open:,} that are not proven to make no difference, {share:.1f} %. {checked} drawn ones of the {equivalent} proofs were
+checked by simulation at another size. How a fault is found says what failed first; an error is never a pass.
 
 | Block | Faults | Samples | Signature | Latency | Counters | Read-back | Error | Equivalent | Left |
 |---|---|---|---|---|---|---|---|---|---|
@@ -47,11 +47,11 @@ def line(block, number):
 
 
 def where(fault):
-    """A fault's place: file and line, or its module and cell where yosys does not say."""
+    """A fault's place: file and line, or line 0 of its instance's where yosys does not say."""
     source = re.search(r"-src \S*/(\w+\.v):(\d+)", fault)
     if source:
         return source[1], int(source[2])
-    return re.search(r"-module \S*?([^.\s]+) ", fault)[1], 0
+    return "halfrow_" + re.search(r"-module \S*?([^.\s]+) ", fault)[1] + ".v", 0
 
 
 def name(fault):
@@ -63,15 +63,9 @@ def name(fault):
 
 
 def remedy(section, fault):
-    """What would find it, by coverage.ini: lines `file:first-last words`."""
-    file, at = where(fault)
-    for entry in section.get("left", "").strip().splitlines():
-        place, _, words = entry.strip().partition(" ")
-        of, _, lines = place.partition(":")
-        first, _, last = lines.partition("-")
-        if of == file and (not lines or int(first) <= at <= int(last or first)):
-            return words
-    return "not known"
+    """What would find it, as coverage.ini has it by file."""
+    words = dict(entry.strip().split(" ", 1) for entry in section["left"].strip().splitlines())
+    return words.get(where(fault)[0], "not known")
 
 
 def left(block, section):
