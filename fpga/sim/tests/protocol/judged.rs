@@ -7,6 +7,9 @@ use halfrow_pipe::Endpoint;
 use halfrow_protocol::{Decoder, Header, Kind};
 use halfrow_sim::{Board, Failure};
 
+/// Where WELCOME has its four bytes of BUILD (WIRE.md).
+const BUILD_AT: usize = 10;
+
 /// A board, and the mock that was built as it is.
 pub(crate) struct Judged {
     board: Board,
@@ -57,8 +60,15 @@ fn packets(mut wire: &[u8]) -> Vec<(Header, Vec<u8>)> {
     let (mut decoder, mut packets) = (Decoder::new(), Vec::new());
     while let Some(packet) = decoder.next(&mut wire) {
         let packet = packet.unwrap();
-        let own = packet.header.kind == Kind::Capabilities.code();
-        packets.push((packet.header, if own { Vec::new() } else { packet.payload.to_vec() }));
+        let mut payload = packet.payload.to_vec();
+        match packet.header.kind {
+            kind if kind == Kind::Capabilities.code() => payload.clear(),
+            kind if kind == Kind::Hello.code() => {
+                payload.iter_mut().skip(BUILD_AT).take(4).for_each(|byte| *byte = 0)
+            }
+            _ => {}
+        }
+        packets.push((packet.header, payload));
     }
     packets
 }
