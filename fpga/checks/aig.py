@@ -62,7 +62,7 @@ class Graph:
         return seen
 
     def write(self, path, bad):
-        """Writes what decides `bad` in AIGER's binary form, and returns its number of nodes."""
+        """Writes what decides `bad` in AIGER's binary form."""
         seen = self.cone(bad)
         inputs = [made for made in self.inputs if made >> 1 in seen]
         latches = [made for made in self.latches if made >> 1 in seen]
@@ -81,7 +81,6 @@ class Graph:
             for node in ands:
                 low, high = sorted(map(name, self.nodes[node]))
                 out.write(packed(2 * number[node] - high) + packed(high - low))
-        return len(ands)
 
 
 def packed(value):

@@ -29,7 +29,7 @@ TOP = "halfrow_bridge"
 # Width, height and the lens's radius in pixels.
 SIZES = ["64", "16", "40"]
 # The same of a board with a fault that is proven to make no difference, for so many of those.
-LONG = ["200", "48", "120"]
+LONG = ["96", "24", "60"]
 CHECKED = 100
 # So many faults of a block that are found must not be proven.
 CONTROLS = 5
