@@ -188,7 +188,7 @@ impl Faults {
     pub fn whole(&self, plan: &Plan, build: &str) -> Option<CoverageReport> {
         let is_whole = plan.parts.is_none() && plan.at_speed.is_none() && plan.soak.is_none();
         (is_whole && self.are_of(plan, build)).then(|| CoverageReport {
-            found: self.groups.iter().filter(|(fault, _)| fault.whole).map(|(_, count)| count).sum(),
+            found: self.found_by_whole(),
             faults: self.count(),
             equivalent: self.equivalent,
         })
@@ -206,7 +206,13 @@ impl Faults {
         self.groups.values().sum()
     }
 
-    /// How many of them a run of `selection` finds.
+    /// How many of them a whole run finds: also those of which no part is known that does by itself.
+    #[must_use]
+    pub fn found_by_whole(&self) -> usize {
+        self.groups.iter().filter(|(fault, _)| fault.whole).map(|(_, count)| count).sum()
+    }
+
+    /// How many of them a run of `selection` is known to find.
     #[must_use]
     pub fn found(&self, selection: &Selection) -> usize {
         self.groups.iter().filter(|(fault, _)| fault.is_found(selection)).map(|(_, count)| count).sum()

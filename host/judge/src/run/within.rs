@@ -141,13 +141,18 @@ fn report(
     let points = steps
         .iter()
         .map(|(selection, price)| CoveragePoint { seconds: spent + price, found: here.found(selection) });
+    let parts: Vec<_> = prices.parts().into_iter().map(part).collect();
     WithinReport {
         seconds,
         expected_seconds: spent + choice.seconds,
         bytes_per_second: Some(prices.rates.bytes_per_second).filter(|rate| rate.is_finite()),
         round_trip: prices.rates.round_trip,
-        parts: prices.parts().into_iter().map(part).collect(),
-        found: here.found(&choice.selection),
+        found: if parts.iter().all(|part| part.taken == part.of) {
+            here.found_by_whole()
+        } else {
+            here.found(&choice.selection)
+        },
+        parts,
         faults: here.count(),
         measured: false,
         measured_at: faults.size().into(),
