@@ -64,7 +64,7 @@ fn packets(mut wire: &[u8]) -> Vec<(Header, Vec<u8>)> {
         match packet.header.kind {
             kind if kind == Kind::Capabilities.code() => payload.clear(),
             kind if kind == Kind::Hello.code() => {
-                payload.iter_mut().skip(BUILD_AT).take(4).for_each(|byte| *byte = 0)
+                payload.iter_mut().skip(BUILD_AT).take(4).for_each(|byte| *byte = 0);
             }
             _ => {}
         }
