@@ -65,7 +65,8 @@ fn a_link_that_takes_no_time_has_time_for_everything() {
         within.curve.len() > 2 && points.into_iter().all(|two| two[0].found < two[1].found),
         "{within:?}"
     );
-    assert_eq!(within.curve.last().map(|last| last.found), Some(within.found));
+    // A whole run finds also what no part of it is known to.
+    assert!(within.curve.last().is_some_and(|last| last.found <= within.found), "{within:?}");
 }
 
 #[test]
@@ -79,14 +80,14 @@ fn what_is_covered_is_found_and_what_is_left_out_passes_and_is_named() {
     assert_eq!(failed_check(&found), Some(CheckName::Frames), "{}", found.headline());
 
     let most = report_rows(&sound);
-    assert!((2..ROWS).contains(&most), "{:?}", within(&sound));
+    assert!((1..ROWS).contains(&most), "{:?}", within(&sound));
     let behind = format!("{SLOW},entered=no,fault=spoilt-row,row={most}");
     let unseen = judged(&behind, &short).unwrap();
     assert_eq!(unseen.verdict, Verdict::Pass, "{}", unseen.headline());
     let told = halfrow::report::wording::within(within(&unseen));
     let cut = format!("({most} of {ROWS})");
     assert!(told[1].starts_with("covers ") && told[1].contains(&cut), "{told:?}");
-    assert!(told[2].starts_with("leaves out ") && told[2].contains("gaps"), "{told:?}");
+    assert!(told[2].starts_with("leaves out ") && told[2].contains("8 bits"), "{told:?}");
     let seen = judged(&behind, &plan(30.0)).unwrap();
     assert_eq!(failed_check(&seen), Some(CheckName::Frames), "{}", seen.headline());
 }
