@@ -44,13 +44,18 @@ DRAW = "read_ilang {base}; select {modules} t:$mem* %d; mutate -list {count} -se
 WITH_FAULTS = "read_ilang {base}\n{faults}\nhierarchy -top {top}\nsplitnets\nwrite_verilog -noattr {made}\n"
 
 
-def key(count, runner):
-    """A hash of all that decides what a fault is and who finds it."""
-    told = hashlib.sha256(f"{count} {SEED} {SIZES}".encode())
-    own = [HERE / "coverage.py", HERE / "coverage.ini", HERE / "mutants.py", HERE / "rtl.py", pathlib.Path(runner)]
-    for path in [*own, *sorted(SHIM.iterdir()), *sorted(rtl.RTL.glob("**/*.v*"))]:
+def key(paths, words=""):
+    """A hash of these files and words."""
+    told = hashlib.sha256(words.encode())
+    for path in paths:
         told.update(path.read_bytes())
     return told.hexdigest()
+
+
+def judging_key(count, runner):
+    """A hash of all that decides what a fault is and who finds it."""
+    own = [HERE / "coverage.py", HERE / "coverage.ini", HERE / "mutants.py", HERE / "rtl.py", pathlib.Path(runner)]
+    return key([*own, *sorted(SHIM.iterdir()), *sorted(rtl.RTL.glob("**/*.v*"))], f"{count} {SEED} {SIZES}")
 
 
 def board(work):
@@ -139,7 +144,7 @@ def judged(runner, place, base, faults):
 def known_proofs(place, base, faults, found):
     """For each fault that nothing finds, the module in which it is proven to make no difference, or none; by number. Some of those that are
     found must not be."""
-    kept = place / "proofs"
+    kept = place / f"proofs_{key([HERE / 'proofs.py', HERE / 'aig.py'])[:8]}"
     lines = kept.read_text().splitlines() if kept.exists() else []
     known = {line["fault"]: line["proof"] for line in map(json.loads, lines)}
     left = [number for number in range(1, len(faults) + 1) if found[number]["verdict"] == "PASS"]
@@ -201,10 +206,10 @@ def main():
     sections.read(HERE / "coverage.ini")
     work.mkdir(parents=True, exist_ok=True)
     mark = work / "key"
-    if not mark.exists() or mark.read_text() != key(count, runner):
+    if not mark.exists() or mark.read_text() != judging_key(count, runner):
         shutil.rmtree(work)
         work.mkdir()
-        mark.write_text(key(count, runner))
+        mark.write_text(judging_key(count, runner))
     base, modules = board(work)
     blocks = []
     for name in only or sections.sections():
