@@ -205,11 +205,11 @@ def main():
     sections = configparser.ConfigParser()
     sections.read(HERE / "coverage.ini")
     work.mkdir(parents=True, exist_ok=True)
-    mark = work / "key"
-    if not mark.exists() or mark.read_text() != judging_key(count, runner):
+    mark, now = work / "key", judging_key(count, runner)
+    if not mark.exists() or mark.read_text() != now:
         shutil.rmtree(work)
         work.mkdir()
-        mark.write_text(judging_key(count, runner))
+        mark.write_text(now)
     base, modules = board(work)
     blocks = []
     for name in only or sections.sections():

@@ -41,9 +41,9 @@ def build():
 def line(block, number):
     """A fault as runs read it."""
     found = block.found[number]
-    own = {key: found[key] for key in ("frames", "at_speed", "corners")}
-    frames = [] if found["least"] else own["frames"]
-    return {"block": block.name, **own, "frames": frames, "always": found["least"], "whole": found["verdict"] != "PASS"}
+    frames = [] if found["least"] else found["frames"]
+    return {"block": block.name, "frames": frames, "at_speed": found["at_speed"], "corners": found["corners"],
+            "always": found["least"], "whole": found["verdict"] != "PASS"}
 
 
 def where(fault):

@@ -14,8 +14,6 @@ pub struct Choice {
     pub selection: Selection,
     /// What it costs from the link test on, in seconds.
     pub seconds: f64,
-    /// Whether something more was taken than what finds faults: the rest of the run in its order.
-    pub is_filled: bool,
 }
 
 /// Of the run that `prices` are of what finds most of `faults` a second, `from` on, until `seconds` are spent; and when
@@ -24,8 +22,8 @@ pub struct Choice {
 pub fn choose(prices: &Prices<'_>, faults: &Faults, from: &Selection, seconds: f64) -> Choice {
     let steps = steps(prices, faults, from, seconds);
     let selection = steps.last().map_or(from, |(selection, _)| selection);
-    let filled = fill(prices, selection.clone(), seconds);
-    Choice { seconds: prices.seconds(&filled), is_filled: filled != *selection, selection: filled }
+    let selection = fill(prices, selection.clone(), seconds);
+    Choice { seconds: prices.seconds(&selection), selection }
 }
 
 /// The steps of such a choice, the first of them `from`, each with its price.

@@ -1,18 +1,23 @@
 //! The table of faults by parts.
 
 use std::collections::BTreeMap;
+use std::sync::LazyLock;
 
 use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
 use serde::Deserialize;
 
 use crate::frames::Builtin;
 use crate::result::CoverageReport;
-use crate::run::{FrameSource, Part, Plan, Selection, Vary};
+use crate::run::{Build, FEW_AT_SPEED, FrameSource, Part, Plan, Selection, Vary};
 
 /// Frames at speed that faults were looked for with.
-pub(super) const FRAMES: usize = 3;
+pub(super) const FRAMES: usize = FEW_AT_SPEED as usize;
+/// The widest rows of the board that faults were put into.
+const BOARD_WIDTH: usize = 2048;
 /// It, as it was measured.
 const TABLE: &str = include_str!("faults.json");
+/// All of it, which is long and read once.
+static ALL: LazyLock<Result<Faults, FaultsError>> = LazyLock::new(|| Faults::measured(Which::All));
 
 /// A table of faults that cannot be used.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -114,26 +119,35 @@ struct Given {
 }
 
 impl Given {
+    /// The usual run with these tables; none if there are no such tables.
+    fn plan(&self) -> Option<Plan> {
+        let Self { width, height, radius, seed } = *self;
+        let lens = Equidistant::from_radius(radius).ok()?;
+        let geometry = Geometry::centred(width, height, BitDepth::Twelve).ok()?;
+        let tables = TableSet::from_lens(geometry, &lens, None).ok()?;
+        let plan = Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens);
+        Some(Plan { seed, ..plan.varying(Vary { centre: true, depth: true }) })
+    }
+
     /// Whether `plan` has these tables, and the usual kernel, frames and variations.
     fn is_of(&self, plan: &Plan) -> bool {
-        let Self { width, height, radius, seed } = *self;
-        let usual = || {
-            let lens = Equidistant::from_radius(radius).ok()?;
-            let geometry = Geometry::centred(width, height, BitDepth::Twelve).ok()?;
-            let tables = TableSet::from_lens(geometry, &lens, None).ok()?;
-            Some(Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens))
-        };
         let builtin = |source: &FrameSource| match source {
             FrameSource::Builtin(builtin) => Some(*builtin),
             FrameSource::File { .. } => None,
         };
         plan.frames.iter().map(builtin).eq(Builtin::ALL.map(Some))
-            && plan.vary == Vary { centre: true, depth: true }
-            && (plan.repeat, plan.seed) == (1, seed)
-            && usual().is_some_and(|usual| {
+            && self.plan().is_some_and(|usual| {
                 (&plan.tables, &plan.kernel) == (&usual.tables, &usual.kernel)
                     && (plan.lens, plan.centre_y, plan.phase) == (usual.lens, usual.centre_y, usual.phase)
+                    && (plan.vary, plan.repeat, plan.seed) == (usual.vary, usual.repeat, usual.seed)
             })
+    }
+
+    /// The parts of its frames, by number, on a board that has everything.
+    fn parts(&self) -> BTreeMap<usize, Part> {
+        let schedule = self.plan().map(|plan| plan.schedule(&Build::full(BOARD_WIDTH)));
+        let frames = schedule.into_iter().flatten().flat_map(|segment| segment.frames);
+        frames.map(|frame| (frame.number.into(), frame.part)).collect()
     }
 }
 
@@ -149,10 +163,18 @@ pub enum Which {
 }
 
 impl Faults {
-    /// The table that was measured.
+    /// All faults that were measured.
     ///
     /// # Errors
-    /// [`FaultsError`] when it cannot be used.
+    /// [`FaultsError`] when their table cannot be used.
+    pub fn all() -> Result<&'static Self, FaultsError> {
+        ALL.as_ref().map_err(Clone::clone)
+    }
+
+    /// These of the faults that were measured.
+    ///
+    /// # Errors
+    /// [`FaultsError`] when their table cannot be used.
     pub fn measured(which: Which) -> Result<Self, FaultsError> {
         Self::read(TABLE, which)
     }
@@ -162,9 +184,11 @@ impl Faults {
     fn read(text: &str, which: Which) -> Result<Self, FaultsError> {
         let Table { seed, width, height, radius, build, equivalent, faults } =
             serde_json::from_str(text).map_err(|error| FaultsError::Form { what: error.to_string() })?;
-        let mut groups = BTreeMap::new();
+        let given = Given { width, height, radius, seed };
+        let (parts, mut groups) = (given.parts(), BTreeMap::new());
         for (place, line) in faults.iter().enumerate() {
-            let fault = line.fault(height).map_err(|what| FaultsError::Fault { fault: place, what })?;
+            let fault =
+                line.fault(height, &parts).map_err(|what| FaultsError::Fault { fault: place, what })?;
             let is_taken = match which {
                 Which::All => true,
                 Which::Even => place % 2 == 0,
@@ -174,7 +198,7 @@ impl Faults {
                 *groups.entry(fault).or_default() += 1;
             }
         }
-        Ok(Self { given: Given { width, height, radius, seed }, build, equivalent, groups })
+        Ok(Self { given, build, equivalent, groups })
     }
 
     /// Whether they were measured with what `plan` streams, in a board of this build.
@@ -233,15 +257,16 @@ impl Faults {
 }
 
 impl Line {
-    /// What finds it, in frames of `height` rows, or what is wrong with it.
-    fn fault(&self, height: usize) -> Result<Fault, String> {
+    /// What finds it, in frames of `height` rows and with these numbers, or what is wrong with it.
+    fn fault(&self, height: usize, parts: &BTreeMap<usize, Part>) -> Result<Fault, String> {
         let Self { block, frames, at_speed, corners, always, whole } = self;
         if block.is_empty() {
             return Err("names no block".to_owned());
         }
         let mut rows = BTreeMap::new();
         for &(number, row) in frames {
-            let part = part_of(number).ok_or_else(|| format!("names frame {number}, which no run has"))?;
+            let part =
+                *parts.get(&number).ok_or_else(|| format!("names frame {number}, which no run has"))?;
             if row >= height {
                 return Err(format!("names row {row} of {height}"));
             }
@@ -255,13 +280,6 @@ impl Line {
         let rows = rows.into_iter().collect();
         Ok(Fault { always: *always, rows, at_speed: *at_speed, corners: *corners, whole: *whole })
     }
-}
-
-/// The part that has this number in the whole schedule of a usual run on a board with two banks of tables and every depth.
-fn part_of(number: usize) -> Option<Part> {
-    let judged = (0..Builtin::ALL.len()).map(Part::Judged);
-    let behind = [Part::SensorBlanking, Part::Gaps, Part::Centre, Part::Depth(8), Part::Depth(10)];
-    [Part::Decoy, Part::Swap].into_iter().chain(judged).chain(behind).nth(number)
 }
 
 #[cfg(test)]

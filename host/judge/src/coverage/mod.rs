@@ -3,6 +3,5 @@
 mod choice;
 mod faults;
 
-pub use choice::steps;
-pub use choice::{Choice, choose};
+pub use choice::{Choice, choose, steps};
 pub use faults::{Faults, FaultsError, Which};

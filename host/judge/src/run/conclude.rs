@@ -6,7 +6,7 @@ use super::findings::{End, Findings};
 use super::judge::{STREET, Seen};
 use super::{Circumstances, Finished, Plan, RunOptions};
 use crate::board::Tally;
-use crate::coverage::{Faults, Which};
+use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
     Check, CheckName, CoverageReport, Finding, LinkReport, Outcome, Report, RunReport, Schema, SoakReport,
@@ -61,7 +61,7 @@ pub(super) fn conclude(
 /// What the run finds of the faults that were measured in a board of this build.
 fn coverage(plan: &Plan, findings: &Findings) -> Option<CoverageReport> {
     let build = &findings.board.identity.as_ref()?.build;
-    Faults::measured(Which::All).ok()?.whole(plan, build)
+    Faults::all().ok()?.whole(plan, build)
 }
 
 fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunReport {

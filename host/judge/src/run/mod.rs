@@ -42,6 +42,7 @@ use findings::{End, Findings};
 use reconnect::WayBack;
 use steps::{MAX_LATENCY, Run};
 
+pub(crate) use at_speed::FEW as FEW_AT_SPEED;
 pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
 pub(crate) use golden::{CannotJudge, GoldenError};
 pub use misfit::{Misfit, misfit};

@@ -6,6 +6,7 @@ use std::fmt;
 use halfrow_model::Geometry;
 use serde::{Deserialize, Serialize};
 
+use super::at_speed::FEW;
 use super::plan::{FrameSource, Plan, ScheduledFrame, Segment};
 use super::variations::Build;
 
@@ -83,7 +84,7 @@ impl Selection {
     }
 
     /// The same with at least so much of `part`, and with what that is nothing without: a change of tables follows a
-    /// frame with the decoy and comes before as many rows to judge, and corners follow three frames at speed.
+    /// frame with the decoy and comes before as many rows to judge, and corners follow a few frames at speed.
     #[must_use]
     pub fn with(&self, part: Part, amount: usize) -> Self {
         let mut parts = self.0.clone();
@@ -103,7 +104,7 @@ impl Selection {
             raise(Part::Judged(0), together);
         }
         if part == Part::Corners {
-            raise(Part::AtSpeed, 3);
+            raise(Part::AtSpeed, FEW as usize);
         }
         Self(parts)
     }

@@ -8,7 +8,7 @@ use super::plan::Plan;
 use super::prices::{Prices, Rates};
 use super::{Misfit, misfit};
 use crate::board::Board;
-use crate::coverage::{self, Faults, FaultsError, Which};
+use crate::coverage::{self, Faults, FaultsError};
 use crate::result::{CheckName, CoveragePoint, Problem, WithinPart, WithinReport};
 use crate::verdict::Cause;
 
@@ -101,7 +101,7 @@ struct Time {
 }
 
 fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, WithinReport), WithinError> {
-    let faults = Faults::measured(Which::All)?;
+    let faults = Faults::all()?;
     let Time { seconds, spent, kept } = time;
     let left = seconds * (1.0 - kept) - spent;
     let least_for = |selection: &Selection| {
@@ -118,15 +118,16 @@ fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, Wi
             return Err(WithinError::AtSpeed { seconds, least });
         }
     }
-    let choice = coverage::choose(prices, &faults, &from, left);
+    let choice = coverage::choose(prices, faults, &from, left);
     let measured = faults.are_of(prices.plan(), build);
-    let report = WithinReport { measured, ..report(prices, &faults, &choice, time) };
+    let report = report(prices, faults, measured, &choice, time);
     Ok((choice.selection, report))
 }
 
 fn report(
     prices: &Prices<'_>,
     faults: &Faults,
+    measured: bool,
     choice: &coverage::Choice,
     Time { seconds, spent, .. }: Time,
 ) -> WithinReport {
@@ -154,7 +155,7 @@ fn report(
         },
         parts,
         faults: here.count(),
-        measured: false,
+        measured,
         measured_at: faults.size().into(),
         curve: points.collect(),
     }

@@ -34,7 +34,7 @@ pub(super) const CONTENT: u16 = 1;
 /// How long a burst is on hardware when nothing is asked for, on the board's clock.
 const USUAL: Duration = Duration::from_secs(3);
 /// Its frames on anything else.
-const FEW: u32 = 3;
+pub(crate) const FEW: u32 = 3;
 /// The draw of the first corner's content, far from those of a soak.
 const FIRST_CORNER: u32 = 1 << 31;
 

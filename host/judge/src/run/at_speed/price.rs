@@ -1,7 +1,7 @@
 //! What frames at speed cost.
 
 use halfrow_model::Geometry;
-use halfrow_protocol::message::BurstMode;
+use halfrow_protocol::message::{BurstMode, FrameRecord};
 
 use super::burst::{BurstPlan, USUAL_CLOCK};
 use super::{FEW, USUAL, corners};
@@ -11,8 +11,6 @@ use crate::run::{Generation, Plan};
 
 /// Payload of a request for records, and of the reply beside these.
 const LOOK: (usize, usize) = (4, 10);
-/// Bytes of a record.
-const RECORD: usize = 18;
 
 /// The burst of a usual run, with as many frames as `plan` has on a board of these `capabilities`.
 pub(super) fn usual_burst(
@@ -67,7 +65,7 @@ fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
         let made = (seconds / burst.seconds(1)) as u32;
         // Half of the board's memory is made while the other half is fetched.
         let come = made.saturating_sub(had).min(u32::from(bursts.records / 2).max(1)).min(frames - had);
-        seconds += prices.rates.request(LOOK.0, LOOK.1 + come as usize * RECORD);
+        seconds += prices.rates.request(LOOK.0, LOOK.1 + come as usize * FrameRecord::BYTES);
         had += come;
         if had >= frames {
             return seconds;
