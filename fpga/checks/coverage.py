@@ -36,7 +36,8 @@ CONTROLS = 5
 # Only of so many is the table in the repository.
 FAULTS = 2100
 CLASSES = {"frames": "samples", "at-speed": "signature", "latency": "latency", "counters": "counters", "read-back": "read-back",
-           "tables-after": "read-back", "identity": "read-back", "upload": "read-back", "link": "counters"}
+           "tables-after": "read-back", "identity": "read-back", "upload": "read-back", "link": "counters",
+           "rules": "rules"}
 AT_ONCE = 2
 BOARD = "uniquify; prep -top {top}; wreduce; opt -full; opt_clean -purge; write_ilang {base}"
 # Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port. Nor is a clock that is turned.

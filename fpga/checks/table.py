@@ -10,7 +10,7 @@ import rtl
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 PAGE = ROOT / "fpga" / "checks" / "coverage.md"
 FAULTS = ROOT / "host" / "judge" / "src" / "coverage" / "faults.json"
-CLASSES = ["samples", "signature", "latency", "counters", "read-back", "error", "equivalent", "left"]
+CLASSES = ["samples", "signature", "latency", "counters", "read-back", "rules", "error", "equivalent", "left"]
 HEAD = """# What a run finds
 
 Made by `scripts/hardware coverage`, as `coverage.py` and `proofs.py` say; nobody writes it by hand. {count:,} single faults that yosys drew with
@@ -19,8 +19,8 @@ seed {seed} in the board's Verilog of build `{build}`, each judged by what `half
 Found: {found:,} of the {open:,} that are not proven to make no difference, {share:.1f} %. {checked} drawn ones of the {equivalent} proofs were
 checked by simulation at another size. How a fault is found says what failed first; an error is never a pass.
 
-| Block | Faults | Samples | Signature | Latency | Counters | Read-back | Error | Equivalent | Left |
-|---|---|---|---|---|---|---|---|---|---|
+| Block | Faults | Samples | Signature | Latency | Counters | Read-back | Rules | Error | Equivalent | Left |
+|---|---|---|---|---|---|---|---|---|---|---|
 """
 LEFT = """
 ## Left
@@ -42,7 +42,7 @@ def line(block, number):
     """A fault as runs read it."""
     found = block.found[number]
     frames = [] if found["least"] else found["frames"]
-    return {"block": block.name, "frames": frames, "at_speed": found["at_speed"], "corners": found["corners"],
+    return {"block": block.name, "frames": frames, "at_speed": found["at_speed"], "corners": found["corners"], "rules": found["rules"],
             "always": found["least"], "whole": found["verdict"] != "PASS"}
 
 

@@ -14,7 +14,7 @@ use halfrow_tests::campaign::{self, Found, Kind};
 use halfrow_tests::poor_links::{self, Case, Kept, Way};
 use halfrow_tests::program::Folder;
 use halfrow_tests::proxy::Suffers;
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, streamed};
 
 /// Any drawing will do; this one can be drawn again.
 const SEED: u64 = 20_140_401;
@@ -53,16 +53,14 @@ fn every_single_fault_of_a_small_board_is_found() {
 #[test]
 fn what_no_streamed_sample_can_show_is_left_to_read_back_or_to_full_speed() {
     let unstretched = System { radius: 1e8, ..System::TINY };
-    let searched = |at_speed| {
-        let by = |system: &System, kind: Kind, fault| {
-            kind.search(system, &Plan { at_speed, ..system.plan() }, fault)
-        };
+    let searched = |of: fn(Plan) -> Plan| {
+        let by = |system: &System, kind: Kind, fault| kind.search(system, &of(system.plan()), fault);
         let word = by(&unstretched, Kind::KernelWord, ",fault=kernel-word,node=40,bit=9");
         (word, by(&System::TINY, Kind::AddressLine, ",fault=stuck-address,bit=10"))
     };
-    assert_eq!(searched(Some(Duration::ZERO)), (Found::ByReadBack, Found::ByNothing));
+    assert_eq!(searched(streamed), (Found::ByReadBack, Found::ByNothing));
     // Corners at full speed stretch rows, and have rows that meet in the memory.
-    assert_eq!(searched(None), (Found::BySamples, Found::BySamples));
+    assert_eq!(searched(|plan| plan), (Found::BySamples, Found::BySamples));
 }
 
 #[test]

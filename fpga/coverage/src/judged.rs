@@ -33,6 +33,8 @@ pub(crate) struct Judged {
     at_speed: bool,
     /// Whether corners alone do.
     corners: bool,
+    /// Whether the wire's rules alone do.
+    rules: bool,
     /// How long the whole run took by the wall's clock.
     seconds: f64,
 }
@@ -49,6 +51,7 @@ pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<
     let is_asked = whole.verdict == Verdict::Fail && !least;
     let at_speed = by(Selection::all([Part::AtSpeed]), is_asked)?.is_some_and(|part| is_found(&part));
     let corners = by(Selection::all([Part::Corners]), is_asked)?.is_some_and(|part| is_in_corner(&part));
+    let rules = by(Selection::all([Part::Rules]), is_asked)?.is_some_and(|part| is_found(&part));
     Ok(Judged {
         fault,
         verdict: whole.verdict,
@@ -58,6 +61,7 @@ pub(crate) fn judge(plan: &Plan, board: &mut FaultyBoard, fault: u16) -> Result<
         least,
         at_speed,
         corners,
+        rules,
         seconds: whole.run.seconds,
     })
 }

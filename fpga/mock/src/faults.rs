@@ -75,6 +75,8 @@ pub enum BoardFault {
         /// Whether the rows are named after the new generation all the same.
         hidden: bool,
     },
+    /// A commit is taken whatever the tables read back as.
+    UncheckedCommit,
     /// A bit of a table entry flips while the board runs, under every generation.
     DriftingTable {
         /// Rows of the generation that are played before.
@@ -258,6 +260,9 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
             })
         },
     ),
+    fault("unchecked-commit", "a commit is taken whatever CRC it names", &[], |_| {
+        Ok(BoardFault::UncheckedCommit)
+    }),
     fault("wrong-datapath", "the board claims another datapath id", &[], |_| Ok(BoardFault::WrongDatapath)),
     fault(
         "spoilt-row",

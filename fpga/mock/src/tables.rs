@@ -98,6 +98,8 @@ pub(crate) struct TableDefects {
     pub(crate) stale: Option<Stale>,
     /// A bit of a factor flips while the board runs.
     pub(crate) drift: Option<Drift>,
+    /// A commit is taken whatever the tables read back as.
+    pub(crate) unchecked: bool,
 }
 
 /// A bit of an entry that is not as it was written.
@@ -274,6 +276,11 @@ impl Tables {
     #[must_use]
     pub fn has_commit(&self) -> bool {
         self.commit.is_some()
+    }
+
+    /// Whether a commit is taken whatever they read back as.
+    pub(crate) fn is_unchecked(&self) -> bool {
+        self.defects.unchecked
     }
 
     /// Whether this generation is the active one, or waits for its frame.

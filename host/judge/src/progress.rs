@@ -73,6 +73,8 @@ pub enum Step {
     TestTheLink,
     /// The board makes frames on its own.
     AtSpeed,
+    /// What must be refused is tried.
+    Rules,
     /// Everything is done again, since an old copy of a request may have spoilt it.
     LookAgain,
     /// The board went away, and the run waits for it.
@@ -86,6 +88,7 @@ impl fmt::Display for Step {
             Self::OpenTheBoard => "opening the board",
             Self::TestTheLink => "testing the link",
             Self::AtSpeed => "frames at the full pixel clock",
+            Self::Rules => "what the board must refuse",
             Self::LookAgain => "looking again, in a session of its own",
             Self::WaitForTheBoard => "waiting for the board to come back",
         })

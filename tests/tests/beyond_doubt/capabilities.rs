@@ -1,12 +1,9 @@
 //! Boards that say of themselves what no board can be: refused, by name, and never judged.
 
-use std::time::Duration;
-
-use halfrow::Plan;
 use halfrow::verdict::Cause;
 use halfrow_protocol::message::Capabilities;
 use halfrow_tests::altered::{judge_claims, judge_claims_by};
-use halfrow_tests::system::System;
+use halfrow_tests::system::{System, streamed};
 
 /// A capability by its name in WIRE.md, and what it is set to.
 type Claim = (&'static str, fn(&mut Capabilities));
@@ -71,9 +68,8 @@ fn a_board_that_cannot_be_is_refused_by_the_capability_s_name() {
 #[test]
 fn a_board_that_is_only_unusual_is_judged() {
     for &(claim, change) in UNUSUAL {
-        // Corners would be those of a board that there is not.
-        let plan = Plan { at_speed: Some(Duration::ZERO), ..System::TINY.plan() };
-        let report = judge_claims_by(&plan, change);
+        // Corners would be those of a board that there is not, and what it must refuse too.
+        let report = judge_claims_by(&streamed(System::TINY.plan()), change);
         assert_eq!(report.cause, Cause::Equal, "{claim}: {}", report.headline());
     }
 }

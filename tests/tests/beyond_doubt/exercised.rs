@@ -1,7 +1,5 @@
 //! A PASS names what it did not put to the test, to the line: a fault there goes unseen, and one anywhere else does not.
 
-use std::time::Duration;
-
 use halfrow::link::Candidate;
 use halfrow::result::NotExercised;
 use halfrow::run::{Plan, Vary};
@@ -10,7 +8,7 @@ use halfrow_mock::Options;
 use halfrow_model::{BitDepth, Geometry, TableSet};
 use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward};
-use halfrow_tests::system::{System, judge_by_plan, open};
+use halfrow_tests::system::{System, judge_by_plan, open, streamed};
 
 /// Few of the board's lines are used. Eight lines have the columns, and seven tell samples of the line memory apart.
 const SYSTEM: System = System { width: 160, height: 16, radius: 17.0, board: "mock", ring: 2048 };
@@ -21,11 +19,6 @@ fn eight_bits() -> Plan {
     let (own, factors) = (plan.tables.geometry(), plan.tables.row_factors().to_vec());
     let geometry = Geometry::new(own.width(), own.height(), BitDepth::Eight, own.centre2()).unwrap();
     Plan { tables: TableSet::new(geometry, factors).unwrap(), ..plan }
-}
-
-/// A plan in which nothing but what is streamed is judged.
-fn streamed(plan: Plan) -> Plan {
-    Plan { at_speed: Some(Duration::ZERO), ..plan }
 }
 
 #[test]

@@ -10,6 +10,7 @@ mod conduct;
 mod exercised;
 mod lost_rows;
 mod recordings;
+mod rules;
 mod soak;
 mod stale_packets;
 mod stalls;

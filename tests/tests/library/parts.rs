@@ -61,6 +61,7 @@ fn a_price_is_what_a_run_takes_and_a_little_more() {
         least.clone(),
         least.with(Part::AtSpeed, 3),
         least.with(Part::Corners, 1),
+        least.with(Part::Rules, 1),
         least.with(Part::Swap, 16).with(Part::Gaps, 7),
         Selection::all(plan(None).parts(&Build::full(64))),
     ];
@@ -152,6 +153,7 @@ fn what_was_left_out_is_not_called_exercised() {
     assert_eq!(speed(&report), Some((Outcome::Skipped, true)));
     assert!(rows_told(&report), "{:?}", report.not_exercised);
     assert!(report.not_exercised.contains(&NotExercised::FullSpeed {}));
+    assert!(report.not_exercised.contains(&NotExercised::Rules {}));
     // Frames at speed are made with every row.
     let report = judged("mock", Selection::least().with(Part::AtSpeed, 2));
     assert!(!rows_told(&report), "{:?}", report.not_exercised);

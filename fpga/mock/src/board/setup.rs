@@ -126,7 +126,7 @@ impl Board {
         ] {
             for port in 0..ports {
                 let span = Span { table, bank: Bank::Shadow, port, first: 0, count };
-                if crc32fast::hash(&self.read_entries(&span)?) != crc {
+                if !self.tables.is_unchecked() && crc32fast::hash(&self.read_entries(&span)?) != crc {
                     return Err((RefusalCode::TableCrc, table as u16));
                 }
             }

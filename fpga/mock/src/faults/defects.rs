@@ -49,6 +49,7 @@ impl Defects {
             Some(BoardFault::DriftingTable { after, row, bit }) => {
                 tables.drift = Some(Drift { after, row, bit });
             }
+            Some(BoardFault::UncheckedCommit) => tables.unchecked = true,
             Some(BoardFault::WrongDatapath) => claims.datapath = 1,
             Some(BoardFault::SpoiltRow { row, column, bit }) => {
                 player.spoilt = Some(SpoiltSample { row, column, bit });

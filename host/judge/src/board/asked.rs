@@ -8,6 +8,40 @@ use halfrow_protocol::{Kind, Packet, Request};
 /// Requests that are remembered. Only copies of the last few can still be under way over a link that keeps their order.
 const KEPT: usize = 16;
 
+/// A request to be sent.
+#[derive(Clone, Copy)]
+pub(super) enum Asking<'a> {
+    /// One as the protocol has it.
+    Request(&'a Request<'a>),
+    /// Any payload of a kind.
+    Bytes(Kind, &'a [u8]),
+}
+
+impl Asking<'_> {
+    pub(super) fn kind(&self) -> Kind {
+        match self {
+            Self::Request(request) => request.kind(),
+            Self::Bytes(kind, _) => *kind,
+        }
+    }
+
+    /// Appends the payload.
+    pub(super) fn write(&self, payload: &mut Vec<u8>) {
+        match self {
+            Self::Request(request) => request.write(payload),
+            Self::Bytes(_, bytes) => payload.extend_from_slice(bytes),
+        }
+    }
+
+    /// Whether a second copy that comes late, behind others, may leave the board other than it was.
+    fn changes(&self) -> bool {
+        match self {
+            Self::Request(Request::Status { clear }) => *clear,
+            other => may_change(other.kind()),
+        }
+    }
+}
+
 /// A request that was sent.
 struct Asked {
     sequence: u16,
@@ -32,9 +66,9 @@ pub(super) struct Stray {
 pub(super) struct LastAsked(VecDeque<Asked>);
 
 impl LastAsked {
-    pub(super) fn asked(&mut self, request: &Request<'_>, sequence: u16, now: Duration) {
+    pub(super) fn asked(&mut self, asking: &Asking<'_>, sequence: u16, now: Duration) {
         self.0.truncate(KEPT - 1);
-        self.0.push_front(Asked { sequence, changes: changes(request), begun: now, took: None, again: 0 });
+        self.0.push_front(Asked { sequence, changes: asking.changes(), begun: now, took: None, again: 0 });
     }
 
     /// The last request is sent once more. Says whether that may change the board.
@@ -67,17 +101,15 @@ impl LastAsked {
     }
 }
 
-/// Whether a second copy of a request that comes late, behind others, may leave the board other than it was.
-fn changes(request: &Request<'_>) -> bool {
-    match request {
-        Request::Status { clear } => *clear,
-        other => may_change(other.kind()),
-    }
-}
-
 fn may_change(kind: Kind) -> bool {
     matches!(
         kind,
-        Kind::Reset | Kind::TableWrite | Kind::Commit | Kind::Configure | Kind::Burst | Kind::Expect
+        Kind::Reset
+            | Kind::TableWrite
+            | Kind::Commit
+            | Kind::Configure
+            | Kind::RowIn
+            | Kind::Burst
+            | Kind::Expect
     )
 }

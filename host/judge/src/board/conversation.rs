@@ -5,7 +5,7 @@ use std::time::Duration;
 use halfrow_protocol::message::{RefusalCode, Reply, Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
-use super::asked::{LastAsked, Stray};
+use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
 use super::{BoardError, Stop};
@@ -88,6 +88,8 @@ pub(super) struct Conversation {
     pub(super) repeated_changes: u64,
     /// The row sequence number behind all rows that were sent in this session.
     rows_sent: u32,
+    /// Rows that may come back although nobody takes them.
+    pub(super) unwanted: u32,
     asked: LastAsked,
     /// The longest that an answer was held back that had been asked for again.
     slowest: Duration,
@@ -112,6 +114,7 @@ impl Conversation {
             conduct: Conduct::default(),
             repeated_changes: 0,
             rows_sent: 0,
+            unwanted: 0,
             asked: LastAsked::default(),
             slowest: Duration::ZERO,
             stop,
@@ -120,7 +123,7 @@ impl Conversation {
 
     /// Forgets the session, and what belongs to it.
     pub(super) fn leave_session(&mut self) {
-        (self.session, self.credit, self.acknowledged, self.rows_sent) = (0, 0, 0, 0);
+        (self.session, self.credit, self.acknowledged, self.rows_sent, self.unwanted) = (0, 0, 0, 0, 0);
         self.conduct = Conduct::default();
         self.asked = LastAsked::default();
         self.repeated_changes = 0;
@@ -173,9 +176,9 @@ impl Conversation {
         self.outgoing.len()
     }
 
-    /// Bytes without meaning, so that the board's decoder is at a packet's beginning.
-    pub(super) fn queue_zeros(&mut self) {
-        self.outgoing.extend_from_slice(&[0, 0]);
+    /// So many bytes without meaning, behind which the board's decoder is at a packet's beginning.
+    pub(super) fn queue_zeros(&mut self, zeros: usize) {
+        self.outgoing.resize(self.outgoing.len() + zeros, 0);
     }
 
     pub(super) fn next_sequence(&mut self) -> u16 {
@@ -186,6 +189,13 @@ impl Conversation {
     /// Queues `request` under `sequence`.
     pub(super) fn queue(&mut self, request: &Request<'_>, sequence: u16) {
         self.queue_packet(request.kind(), sequence, |payload| request.write(payload));
+    }
+
+    /// Sends `asking` and waits for nothing: its answer means nothing when it comes.
+    pub(super) fn tell(&mut self, asking: &Asking<'_>) {
+        let sequence = self.next_sequence();
+        self.asked.asked(asking, sequence, self.now());
+        self.queue_packet(asking.kind(), sequence, |payload| asking.write(payload));
     }
 
     /// Queues a row under the next number, its samples packed where they go.
@@ -262,7 +272,10 @@ impl Conversation {
                     if self.session != 0 {
                         self.credit = self.credit.max(packet.header.window);
                         self.conduct.packet(&packet, self.rows_sent);
-                        strays.extend(self.asked.answered(&packet, now));
+                        if let Some(stray) = self.asked.answered(&packet, now) {
+                            strays.push(stray);
+                            continue;
+                        }
                     }
                     take(&packet);
                 }
@@ -287,13 +300,13 @@ impl Conversation {
     /// Asks until a reply that `accept` takes has come.
     pub(super) fn ask(
         &mut self,
-        request: &Request<'_>,
+        asking: &Asking<'_>,
         step: Step,
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<Kept, BoardError> {
-        let (kind, sequence, begun) = (request.kind(), self.next_sequence(), self.now());
+        let (kind, sequence, begun) = (asking.kind(), self.next_sequence(), self.now());
         let attempts = step.deadline().attempts;
-        self.asked.asked(request, sequence, begun);
+        self.asked.asked(asking, sequence, begun);
         let mut attempt = 0;
         while attempt < attempts {
             if attempt > 0 {
@@ -302,7 +315,7 @@ impl Conversation {
                 self.count_retry()?;
             }
             if attempt == 0 || self.is_drained() {
-                self.queue(request, sequence);
+                self.queue_packet(kind, sequence, |payload| asking.write(payload));
             }
             // The reply may be as long as the longest packet.
             let bytes = self.outgoing.len() + halfrow_protocol::MAX_PACKET;
@@ -343,7 +356,9 @@ impl Conversation {
                 answer = Some(Kept { header, payload: packet.payload.to_vec() });
             }
         })?;
-        self.tally.strays += rows;
+        let unwanted = rows.min(self.unwanted.into());
+        self.unwanted -= unwanted as u32;
+        self.tally.strays += rows - unwanted;
         Ok(answer)
     }
 
@@ -362,7 +377,7 @@ impl Conversation {
         step: Step,
         take: impl FnOnce(Reply<'_>) -> Option<T>,
     ) -> Result<T, BoardError> {
-        let answer = self.ask(request, step, |_| true)?;
+        let answer = self.ask(&Asking::Request(request), step, |_| true)?;
         take_reply(request.kind(), &answer, take)
     }
 }

@@ -7,6 +7,7 @@ mod conversation;
 pub mod deadlines;
 mod error;
 mod rows;
+mod said;
 mod sent;
 mod stop;
 mod tables;
@@ -17,16 +18,18 @@ use halfrow_model::Geometry;
 use halfrow_protocol::message::{Configuration, Hello, Reply, Request, Reset, ResetLevel};
 use halfrow_protocol::{Kind, VERSION};
 
+use asked::Asking;
 use conversation::{Conversation, take_reply};
 use deadlines::{RetryLimit, Step};
 
 use crate::link::Link;
-pub(crate) use bursts::Trapped;
+pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub use conversation::Tally;
 pub use error::BoardError;
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
 pub(crate) use rows::{Unjudged, Unreturned};
+pub(crate) use said::Said;
 pub(crate) use sent::Sent;
 pub use stop::Stop;
 pub(crate) use tables::{ReadBack, TablePort};
@@ -233,7 +236,7 @@ impl Board {
     /// # Errors
     /// [`BoardError`]; rows that came back before it were handed over.
     pub fn stream(&mut self, traffic: &mut dyn RowTraffic) -> Result<(), BoardError> {
-        rows::stream(&mut self.conversation, traffic)
+        rows::stream(&mut self.conversation, traffic, 0)
     }
 
     /// Streams frames without ever asking for a row again, and returns the first row that does not come back within its
@@ -274,7 +277,12 @@ impl Board {
     fn reset(&mut self, level: ResetLevel, step: Step) -> Result<(), BoardError> {
         // Beyond every row that can be under way: credit is never further ahead than a board has banks.
         let next_row = self.conversation.credit;
-        let reset = Request::Reset(Reset { level, next_row });
+        self.reset_to(Reset { level, next_row }, step)
+    }
+
+    fn reset_to(&mut self, reset: Reset, step: Step) -> Result<(), BoardError> {
+        let next_row = reset.next_row;
+        let reset = Request::Reset(reset);
         self.conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.acknowledged = next_row;
         Ok(())
@@ -301,8 +309,8 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         version_max: VERSION,
         take_over: options.take_over,
     };
-    conversation.queue_zeros();
-    let answer = conversation.ask(&Request::Hello(hello), Step::Hello, |packet| {
+    conversation.queue_zeros(2);
+    let answer = conversation.ask(&Asking::Request(&Request::Hello(hello)), Step::Hello, |packet| {
         // A stale reply has another nonce; anything else that carries our number is for us.
         !matches!(Reply::read(packet), Ok(Reply::Hello(welcome)) if welcome.nonce != hello.nonce)
     })?;

@@ -1,4 +1,5 @@
-//! What a recorded host sent: the frames, put together from their rows.
+//! What a recorded host sent: the frames, put together from their rows. Of what was sent under one number the first counts: a run
+//! streams its frames before all else.
 
 use std::collections::BTreeMap;
 
@@ -25,7 +26,7 @@ impl Sent {
                 let Ok(packet) = packet else { continue };
                 match Request::read(&packet) {
                     Ok(Request::Commit(commit)) => {
-                        sent.first_frames.insert(commit.generation, commit.first_frame);
+                        sent.first_frames.entry(commit.generation).or_insert(commit.first_frame);
                     }
                     Ok(Request::RowIn(row)) if wanted(row.place.frame) => sent.keep(&row),
                     _ => {}
@@ -36,9 +37,11 @@ impl Sent {
     }
 
     fn keep(&mut self, row: &RowIn<'_>) {
-        let mut unpacked = vec![0; usize::from(row.place.width)];
-        samples::unpack(row.packed, &mut unpacked);
-        self.rows.insert((row.place.frame, row.place.row), unpacked);
+        self.rows.entry((row.place.frame, row.place.row)).or_insert_with(|| {
+            let mut unpacked = vec![0; usize::from(row.place.width)];
+            samples::unpack(row.packed, &mut unpacked);
+            unpacked
+        });
     }
 
     /// The samples of frame `number`, `width` × `height`; rows that were never sent are black.

@@ -37,7 +37,7 @@ impl ReadBack {
 
 impl Board {
     /// Every port that the datapath reads tables by.
-    fn table_ports(&self) -> Vec<TablePort> {
+    pub(crate) fn table_ports(&self) -> Vec<TablePort> {
         let ports = |table, count| (0..count).map(move |port| TablePort { table, port });
         ports(Table::RowFactors, self.capabilities.step_ports)
             .chain(ports(Table::Kernel, self.capabilities.kernel_ports))

@@ -65,7 +65,8 @@ fn gains(prices: &Prices<'_>, faults: &Faults, selection: &Selection) -> BTreeMa
     for (fault, count) in faults.groups.iter().filter(|(fault, _)| !fault.is_found(selection)) {
         let at_speed = fault.at_speed.then_some((Part::AtSpeed, FRAMES));
         let corners = fault.corners.then_some((Part::Corners, 1));
-        let finding = fault.rows.iter().copied().chain(at_speed).chain(corners);
+        let rules = fault.rules.then_some((Part::Rules, 1));
+        let finding = fault.rows.iter().copied().chain(at_speed).chain(corners).chain(rules);
         for place in finding.filter(|(part, _)| parts.contains(part)) {
             *gains.entry(place).or_default() += count;
         }

@@ -63,6 +63,7 @@ struct Line {
     frames: Vec<(usize, usize)>,
     at_speed: bool,
     corners: bool,
+    rules: bool,
     always: bool,
     whole: bool,
 }
@@ -78,6 +79,8 @@ pub(super) struct Fault {
     pub(super) at_speed: bool,
     /// The corners.
     pub(super) corners: bool,
+    /// The wire's rules.
+    pub(super) rules: bool,
     /// A whole run.
     pub(super) whole: bool,
 }
@@ -89,6 +92,7 @@ impl Fault {
             || self.rows.iter().any(|&(part, rows)| selection.amount(part) >= rows)
             || self.at_speed && selection.amount(Part::AtSpeed) >= FRAMES
             || self.corners && selection.amount(Part::Corners) > 0
+            || self.rules && selection.amount(Part::Rules) > 0
     }
 }
 
@@ -259,7 +263,7 @@ impl Faults {
 impl Line {
     /// What finds it, in frames of `height` rows and with these numbers, or what is wrong with it.
     fn fault(&self, height: usize, parts: &BTreeMap<usize, Part>) -> Result<Fault, String> {
-        let Self { block, frames, at_speed, corners, always, whole } = self;
+        let Self { block, frames, at_speed, corners, rules, always, whole } = self;
         if block.is_empty() {
             return Err("names no block".to_owned());
         }
@@ -274,11 +278,18 @@ impl Line {
                 return Err(format!("names frame {number} twice"));
             }
         }
-        if !whole && (*always || *at_speed || *corners || !rows.is_empty()) {
+        if !whole && (*always || *at_speed || *corners || *rules || !rows.is_empty()) {
             return Err("is found by a part and not by the whole".to_owned());
         }
         let rows = rows.into_iter().collect();
-        Ok(Fault { always: *always, rows, at_speed: *at_speed, corners: *corners, whole: *whole })
+        Ok(Fault {
+            always: *always,
+            rows,
+            at_speed: *at_speed,
+            corners: *corners,
+            rules: *rules,
+            whole: *whole,
+        })
     }
 }
 
@@ -289,7 +300,8 @@ mod tests {
     use super::*;
 
     const HEAD: &str = r#"{"seed": 1, "width": 64, "height": 16, "radius": 40.0, "build": "0a0b0c0d", "equivalent": 7, "faults": ["#;
-    const FOUND: &str = r#""at_speed": false, "corners": false, "always": false, "whole": true}"#;
+    const FOUND: &str =
+        r#""at_speed": false, "corners": false, "rules": false, "always": false, "whole": true}"#;
 
     fn read(line: &str) -> Result<Faults, FaultsError> {
         Faults::read(&format!("{HEAD}{line}]}}"), Which::All)

@@ -31,11 +31,13 @@ pub enum CheckName {
     Counters,
     /// Frames that the board makes on its own, at the full pixel clock.
     AtSpeed,
+    /// What the board must refuse, keep and end.
+    Rules,
 }
 
 impl CheckName {
     /// All of them, in the order of a run.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Judge,
         Self::Identity,
         Self::Link,
@@ -46,6 +48,7 @@ impl CheckName {
         Self::TablesAfter,
         Self::Counters,
         Self::AtSpeed,
+        Self::Rules,
     ];
 
     /// As people and JSON write it.
@@ -62,6 +65,7 @@ impl CheckName {
             Self::TablesAfter => "tables-after",
             Self::Counters => "counters",
             Self::AtSpeed => "at-speed",
+            Self::Rules => "rules",
         }
     }
 }

@@ -1,8 +1,9 @@
 //! One of every finding and of every defect, for the page of codes and for tests.
 
 use super::{
-    Account, BoardKind, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt, Extent, Finding,
-    MadeWith, Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, StaleFrames, Suspect,
+    Account, Answer, BoardKind, BurstCount, ClampEnd, Corner, Counter, Counting, Defect, Doubt, Extent,
+    Finding, MadeWith, Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, Rule,
+    StaleFrames, Suspect,
 };
 
 /// One of every finding that is no error.
@@ -28,6 +29,8 @@ pub fn findings() -> Vec<Finding> {
         },
         Finding::PausedAtSpeed { frames: 138, paused: 2 },
         Finding::NothingAtSpeed { reason: NoBurst::BoardMakesNone {} },
+        Finding::RulesKept { requests: 612 },
+        Finding::RulesLeftOut {},
         Finding::NotReached {},
         Finding::AllRight {
             frames: 16,
@@ -37,7 +40,13 @@ pub fn findings() -> Vec<Finding> {
             reconnections: 0,
         },
     ];
-    passed.into_iter().chain(of_the_board()).chain(on_entry_and_at_speed()).chain(unjudged()).collect()
+    passed
+        .into_iter()
+        .chain(of_the_board())
+        .chain(on_entry_and_at_speed())
+        .chain(on_rules())
+        .chain(unjudged())
+        .collect()
 }
 
 fn of_the_board() -> [Finding; 18] {
@@ -74,6 +83,16 @@ fn of_the_board() -> [Finding; 18] {
         Finding::RowNumberedTwice { row: 3, frame: 2, number: 513 },
         Finding::RowOutOfOrder { row: 3, frame: 2 },
     ]
+}
+
+/// What is wrong about the wire's rules.
+fn on_rules() -> [Finding; 1] {
+    [Finding::RuleBroken {
+        rule: Rule::CommitCrc,
+        request: "Commit".to_owned(),
+        right: Answer::Refused { code: 9, detail: 1 },
+        found: Answer::Replied { payload: "55".to_owned() },
+    }]
 }
 
 /// On what entered the core, and on frames that the board made on its own.
@@ -140,6 +159,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::CentreBits { bits: vec![8, 9, 10, 11] },
         NotExercised::FullSpeed {},
         NotExercised::TableChangeAtSpeed {},
+        NotExercised::Rules {},
         NotExercised::Depths { bits: vec![8, 10] },
     ]
 }

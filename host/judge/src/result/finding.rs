@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Account, BoardKind, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, Problem, Repetition};
+use super::{
+    Account, Answer, BoardKind, BurstCount, Corner, Counter, Defect, Doubt, NoBurst, Problem, Repetition,
+    Rule,
+};
 
 /// What a check or a whole run came to. In JSON `{"code": …, "parameters": …}`; a [`Problem`] has its own code.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -94,6 +97,13 @@ pub enum Finding {
         /// Why.
         reason: NoBurst,
     },
+    /// The board refuses, keeps and ends what it must.
+    RulesKept {
+        /// Requests that it answered as it must.
+        requests: usize,
+    },
+    /// Whether it does was left out of the run.
+    RulesLeftOut {},
     /// The run ended before.
     NotReached {},
     /// Everything was judged, and all of it is right.
@@ -302,6 +312,17 @@ pub enum Finding {
         frame: u16,
         /// The row's number in the session.
         sequence: u32,
+    },
+    /// A request was not answered as the wire's rules have it.
+    RuleBroken {
+        /// The rule.
+        rule: Rule,
+        /// The request.
+        request: String,
+        /// What must be said to it.
+        right: Answer,
+        /// What was said.
+        found: Answer,
     },
     /// Two different `ROW_OUT` packets have the same number.
     RowNumberedTwice {

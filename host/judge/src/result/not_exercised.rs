@@ -63,6 +63,8 @@ pub enum NotExercised {
     FullSpeed {},
     /// A change of tables between two frames at the full pixel clock.
     TableChangeAtSpeed {},
+    /// What the board must refuse, keep and end.
+    Rules {},
     /// Depths of the board that no frame had.
     Depths {
         /// Bits of a sample, each.

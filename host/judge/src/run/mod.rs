@@ -23,6 +23,7 @@ mod prepared;
 mod prices;
 mod reconnect;
 mod recorded;
+mod rules;
 mod schedule;
 mod second_look;
 mod steps;

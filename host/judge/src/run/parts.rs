@@ -33,6 +33,8 @@ pub enum Part {
     AtSpeed,
     /// The same in corners of what the board can be set to.
     Corners,
+    /// What the board must refuse, keep and end.
+    Rules,
 }
 
 impl fmt::Display for Part {
@@ -47,11 +49,12 @@ impl fmt::Display for Part {
             Self::Depth(bits) => write!(formatter, "{bits} bits"),
             Self::AtSpeed => formatter.write_str("at speed"),
             Self::Corners => formatter.write_str("corners"),
+            Self::Rules => formatter.write_str("rules"),
         }
     }
 }
 
-/// The parts that are judged, and how much of each: rows of what is streamed, frames at speed, 1 for the corners. A streamed
+/// The parts that are judged, and how much of each: rows of what is streamed, frames at speed, 1 for the corners and for the rules. A streamed
 /// frame of fewer rows than the tables have is its first ones.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<(Part, usize)>", into = "Vec<(Part, usize)>")]
@@ -161,7 +164,7 @@ impl Plan {
     pub fn parts(&self, build: &Build) -> Vec<Part> {
         let frames = self.whole_schedule(build).into_iter().flat_map(|segment| segment.frames);
         let mut parts: Vec<Part> = Vec::new();
-        for part in frames.map(|frame| frame.part).chain([Part::AtSpeed, Part::Corners]) {
+        for part in frames.map(|frame| frame.part).chain([Part::AtSpeed, Part::Corners, Part::Rules]) {
             if !parts.contains(&part) {
                 parts.push(part);
             }

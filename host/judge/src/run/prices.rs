@@ -10,6 +10,7 @@ use super::at_speed;
 use super::parts::{Part, Selection};
 use super::patterns::patterns;
 use super::plan::{Plan, SENSOR_BLANKING, Segment, Timing};
+use super::rules;
 use super::variations::Build;
 use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
 
@@ -140,7 +141,7 @@ impl<'a> Prices<'a> {
     pub fn most(&self, part: Part) -> usize {
         match part {
             Part::AtSpeed => at_speed::most_frames(self),
-            Part::Corners => 1,
+            Part::Corners | Part::Rules => 1,
             _ => self.plan.tables.geometry().height(),
         }
     }
@@ -148,7 +149,8 @@ impl<'a> Prices<'a> {
     /// What a run of `selection` takes, from the link test on.
     #[must_use]
     pub fn seconds(&self, selection: &Selection) -> f64 {
-        self.every_run() + self.streamed(selection) + self.at_speed(selection)
+        let rules = if selection.amount(Part::Rules) > 0 { rules::price(self) } else { 0.0 };
+        self.every_run() + self.streamed(selection) + self.at_speed(selection) + rules
     }
 
     /// What `part` adds to the least run, with what it is nothing without.

@@ -17,7 +17,7 @@ use super::variations::Build;
 use crate::board::{Board, Datapath, UnknownDatapath};
 use crate::progress::{Progress, Step};
 use crate::reference;
-use crate::result::{CheckName, Finding, Problem};
+use crate::result::{CheckName, Finding, NotExercised, Problem};
 use crate::tables::DATAPATH;
 use crate::target::BoardKind;
 use crate::verdict::Cause;
@@ -74,7 +74,10 @@ impl Run<'_> {
             self.conclude(last)?;
             match self.plan.soak {
                 Some(length) => self.soak(length, last)?,
-                None => self.at_speed(last)?,
+                None => {
+                    self.at_speed(last)?;
+                    self.rules(last)?;
+                }
             }
             self.note_not_exercised();
             Ok(())
@@ -128,6 +131,7 @@ impl Run<'_> {
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
+        self.findings.not_exercised.extend(self.findings.rules_untried.then_some(NotExercised::Rules {}));
     }
 
     /// The rows of `generation` that frames were made with, if there were any.

@@ -38,12 +38,16 @@ pub(crate) struct Unreturned {
     pub returned: u32,
 }
 
-/// Streams all frames of `traffic` through the board. Rows are numbered from `conversation.acknowledged` on.
+/// Streams all frames of `traffic` through the board, of which it was given so many rows already. Rows are numbered from
+/// `conversation.acknowledged` on.
 pub(super) fn stream(
     conversation: &mut Conversation,
     traffic: &mut dyn RowTraffic,
+    given: u32,
 ) -> Result<(), BoardError> {
-    Stream::new(conversation, traffic, Step::Row.deadline().attempts).run()
+    let mut stream = Stream::new(conversation, traffic, Step::Row.deadline().attempts);
+    stream.sent += given;
+    stream.run()
 }
 
 /// The same, up to the first row that does not come back at once.

@@ -1,6 +1,6 @@
 //! What a finding says, and what it asks for.
 
-use super::{at_speed, designer, evidence, place};
+use super::{at_speed, designer, evidence, place, rules};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding};
 
 /// A finding in one sentence, without a full stop.
@@ -32,7 +32,9 @@ pub fn sentence(finding: &Finding) -> String {
             all_right((*frames, *samples), *latency, *board, *reconnections)
         }
         Finding::Problem(problem) => problem.sentence(),
-        other => at_speed::sentence(other).unwrap_or_else(|| of_board(other)),
+        other => {
+            at_speed::sentence(other).or_else(|| rules::sentence(other)).unwrap_or_else(|| of_board(other))
+        }
     }
 }
 
@@ -261,6 +263,7 @@ pub fn remedy(finding: &Finding) -> Option<String> {
         Finding::RowSwallowed { .. } => {
             "Check the row banks and the row player: the board took the row and lost it inside."
         }
+        Finding::RuleBroken { .. } => rules::REMEDY,
         other => return at_speed::remedy(other).or_else(|| asked_of_conduct(other)),
     };
     Some(asked.to_owned())

@@ -7,6 +7,7 @@ mod lines;
 mod logic;
 mod not_exercised;
 mod places;
+mod rules;
 mod tables;
 
 use super::{Defect, Memory};

@@ -14,10 +14,10 @@ const SAMPLES: usize = 1 << 15;
 /// The generation of the first corner's tables. The others follow; none of them is one of a plan's.
 const FIRST: u8 = 64;
 /// Bits of a setting, by turns 0 and 1, and the other way round.
-const BY_TURNS: [usize; 2] = [0x5555, 0xaaaa];
+pub(in crate::run) const BY_TURNS: [usize; 2] = [0x5555, 0xaaaa];
 /// Shifts that make a weight of 16 bits one with any sign and size, and one with which few samples reach the end of their range.
 const WILD: u32 = 0;
-const CALM: u32 = 3;
+pub(in crate::run) const CALM: u32 = 3;
 
 /// Tables for each corner of what a board can be set to, for each of its banks of tables; drawn by `seed`.
 pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generation>> {
@@ -47,13 +47,17 @@ pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generat
 }
 
 /// As many low bits of `pattern` as make no more than `most`.
-fn fit(pattern: usize, most: usize) -> usize {
+pub(in crate::run) fn fit(pattern: usize, most: usize) -> usize {
     let bits = (1..=usize::BITS - most.leading_zeros()).rev();
     bits.map(|bits| pattern & ((1 << bits) - 1)).find(|&value| value <= most).unwrap_or(0)
 }
 
 /// The largest factor, and others of every size that a board's ring of `ring` samples can have.
-fn drawn_factors(geometry: Geometry, ring: usize, draws: &mut Pcg64Mcg) -> Option<TableSet> {
+pub(in crate::run) fn drawn_factors(
+    geometry: Geometry,
+    ring: usize,
+    draws: &mut Pcg64Mcg,
+) -> Option<TableSet> {
     let row = Geometry::new(geometry.width(), 1, geometry.depth(), geometry.centre2()).ok()?;
     let is_legal = |factor: &RowFactor| {
         TableSet::new(row, vec![*factor]).is_ok_and(|tables| tables.check_ring(ring).is_ok())
@@ -68,7 +72,7 @@ fn drawn_factors(geometry: Geometry, ring: usize, draws: &mut Pcg64Mcg) -> Optio
 }
 
 /// Weights of any sign, and any size that 16 bits shifted down by `size` have.
-fn drawn_kernel(taps: u8, size: u32, draws: &mut Pcg64Mcg) -> Option<Kernel> {
+pub(in crate::run) fn drawn_kernel(taps: u8, size: u32, draws: &mut Pcg64Mcg) -> Option<Kernel> {
     let weight = |tap: usize, drawn: u32| {
         let is_outer = tap == 0 || tap == 4;
         if is_outer && taps < 7 { 0 } else { (drawn >> 16) as i16 >> size }

@@ -29,6 +29,8 @@ use burst::BurstPlan;
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
 use watched::{EndsEarly, Watched};
 
+pub(super) use corners::{BY_TURNS, CALM, drawn_factors, drawn_kernel, fit};
+
 /// The content id that the model makes (AT-SPEED.md).
 pub(super) const CONTENT: u16 = 1;
 /// How long a burst is on hardware when nothing is asked for, on the board's clock.
@@ -61,11 +63,16 @@ impl Run<'_> {
 
     /// The bursts that are to be judged, or why none are.
     fn bursts(&self) -> Result<Bursts, NoBurst> {
+        match self.plan.amount(Part::AtSpeed) {
+            0 => Err(NoBurst::LeftOut {}),
+            _ => self.known_bursts(),
+        }
+    }
+
+    /// The bursts that the board makes, or why none are known or wanted.
+    pub(super) fn known_bursts(&self) -> Result<Bursts, NoBurst> {
         if self.plan.at_speed == Some(Duration::ZERO) {
             return Err(NoBurst::NotAskedFor {});
-        }
-        if self.plan.amount(Part::AtSpeed) == 0 {
-            return Err(NoBurst::LeftOut {});
         }
         match self.board.capabilities.bursts {
             None => Err(NoBurst::BoardMakesNone {}),

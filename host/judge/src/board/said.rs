@@ -1,0 +1,157 @@
+//! Requests of any form, and what a board says to them: for whoever wants to know what it refuses.
+
+use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
+use halfrow_protocol::{Kind, Packet, samples};
+
+use super::asked::Asking;
+use super::deadlines::Step;
+use super::{Board, BoardError, RowTraffic, rows};
+
+/// What a board said to a request.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Said {
+    /// It refused.
+    Refused(Refusal),
+    /// It replied with this payload.
+    Replied(Vec<u8>),
+}
+
+/// A row that came once more.
+#[derive(Clone, Debug)]
+pub(crate) struct CameAgain {
+    /// How often it was sent before, as the board counts.
+    pub(crate) repeats: u16,
+    /// Of the tables that made it.
+    pub(crate) generation: u8,
+    /// Its samples.
+    pub(crate) samples: Vec<u16>,
+}
+
+/// What `packet` says of the row at `place`, if it says anything.
+fn came_again(packet: &Packet<'_>, place: &RowPlace) -> Option<CameAgain> {
+    let Ok(Reply::RowOut(row)) = Reply::read(packet) else { return None };
+    let mut samples = vec![0; row.place.width.into()];
+    samples::unpack(row.packed, &mut samples);
+    let came = CameAgain { repeats: row.repeats, generation: row.generation, samples };
+    (row.place == *place).then_some(came)
+}
+
+impl Board {
+    /// Sends a request of `kind` with any payload, and returns what the board says to it.
+    ///
+    /// # Errors
+    /// [`BoardError`] when it says nothing, or nothing that its kind can say.
+    pub(crate) fn ask(&mut self, kind: Kind, payload: &[u8]) -> Result<Said, BoardError> {
+        let answer = self.conversation.ask(&Asking::Bytes(kind, payload), Step::Request, |_| true)?;
+        let packet = answer.packet();
+        // What a reply says is looked at byte by byte by whoever asks.
+        if packet.header.kind == kind.code() && kind != Kind::Refusal {
+            return Ok(Said::Replied(packet.payload.to_vec()));
+        }
+        match Reply::read(&packet).map_err(|source| BoardError::Malformed { kind, source })? {
+            Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
+            Reply::Refusal(refusal) => Ok(Said::Refused(refusal)),
+            _ => Err(BoardError::Unexpected { kind }),
+        }
+    }
+
+    /// Sends a row, and waits for nothing.
+    pub(crate) fn give(&mut self, place: &RowPlace, samples: &[u16]) {
+        self.conversation.queue_row(place, samples);
+    }
+
+    /// Streams frames of which the first `given` rows were given, and hands back every row.
+    ///
+    /// # Errors
+    /// [`BoardError`]; rows that came back before it were handed over.
+    pub(crate) fn stream_given(
+        &mut self,
+        given: u32,
+        traffic: &mut dyn RowTraffic,
+    ) -> Result<(), BoardError> {
+        rows::stream(&mut self.conversation, traffic, given)
+    }
+
+    /// The row sequence number before which rows may be sent, as far as the board has said.
+    #[must_use]
+    pub(crate) fn credit(&self) -> u32 {
+        self.conversation.credit
+    }
+
+    /// Drops the rows inside the board, which then waits for row sequence number `next_row`, one that was not sent yet.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub(crate) fn go_on_from(&mut self, next_row: u32) -> Result<(), BoardError> {
+        self.reset_to(Reset { level: ResetLevel::Rows, next_row }, Step::Request)
+    }
+
+    /// Waits for a row that was given and is not acknowledged, and returns it with its samples. It is asked for again, first of
+    /// all if it `is_there` already.
+    ///
+    /// # Errors
+    /// [`BoardError`] when it does not come.
+    pub(crate) fn again(
+        &mut self,
+        place: &RowPlace,
+        samples: &[u16],
+        is_there: bool,
+    ) -> Result<CameAgain, BoardError> {
+        let attempts = Step::Row.deadline().attempts;
+        for attempt in 0..attempts {
+            if is_there || attempt > 0 {
+                self.conversation.queue_row(place, samples);
+            }
+            let bytes = self.conversation.queued() + halfrow_protocol::MAX_PACKET;
+            let deadline = self.conversation.waited + self.conversation.wait_for(Step::Row, attempt, bytes);
+            while let Some(wait) =
+                deadline.checked_sub(self.conversation.waited).filter(|wait| !wait.is_zero())
+            {
+                let mut came = None;
+                let doing = || format!("waiting for row {} once more", place.row);
+                self.conversation
+                    .exchange(wait, doing, |packet| came = came.take().or(came_again(packet, place)))?;
+                if let Some(came) = came {
+                    return Ok(came);
+                }
+            }
+            self.conversation.count_retry()?;
+        }
+        Err(BoardError::RowMissing { place: *place, attempts })
+    }
+
+    /// Counts all rows before `row_sequence` as come back.
+    pub(crate) fn acknowledge(&mut self, row_sequence: u32) {
+        self.conversation.acknowledged = row_sequence;
+    }
+
+    /// Starts `burst`, and drops it and all rows as soon as so many bytes without meaning have gone to the board behind it.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses to drop it, or does not answer.
+    pub(crate) fn cut(&mut self, burst: &Burst, bytes: usize) -> Result<(), BoardError> {
+        self.conversation.tell(&Asking::Request(&Request::Burst(*burst)));
+        self.drop_rows_behind(bytes, 0)
+    }
+
+    /// Drops all rows as soon as so many bytes without meaning have gone to the board. So many of those that it was given may come
+    /// back before.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses, or does not answer.
+    pub(crate) fn drop_rows_behind(&mut self, bytes: usize, given: u32) -> Result<(), BoardError> {
+        self.conversation.unwanted = given;
+        self.conversation.queue_zeros(bytes);
+        let dropped = self.drop_rows();
+        self.conversation.unwanted = 0;
+        dropped
+    }
+
+    /// Drops rows, configuration and tables.
+    ///
+    /// # Errors
+    /// [`BoardError`] when the board refuses or does not answer.
+    pub(crate) fn forget(&mut self) -> Result<(), BoardError> {
+        self.reset(ResetLevel::Tables, Step::Request)
+    }
+}

@@ -1,0 +1,92 @@
+//! The wire's rules that a run tries on purpose, and what a board says to it.
+
+use serde::{Deserialize, Serialize};
+
+/// A rule of protocol/WIRE.md or fpga/AT-SPEED.md that a run tries on purpose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// A request that is cut short, or has a field without meaning, is refused.
+    Payload,
+    /// A kind that is no request is refused.
+    Kind,
+    /// A configuration out of range is refused, and the field named.
+    Configuration,
+    /// A span that is not in a table is refused.
+    Span,
+    /// A table's entry out of range is refused, and nothing of its packet is written.
+    Entry,
+    /// An entry is written where it belongs, and read from there.
+    Address,
+    /// A commit of tables that read back otherwise is refused.
+    CommitCrc,
+    /// A commit that names tables which are active or pending is answered, generation 0 is refused, and another is not both.
+    Generation,
+    /// A commit takes effect with its frame, and not before.
+    CommitFrame,
+    /// What would touch tables of a pending commit is refused.
+    Pending,
+    /// RESET forgets a pending commit.
+    Forgotten,
+    /// A row out of place is refused.
+    RowPlace,
+    /// A row beyond the window is refused.
+    Credit,
+    /// What must not be done with rows inside is refused.
+    Inside,
+    /// Rows come back in place whatever was refused between them.
+    Rows,
+    /// A row comes again as often as it is asked for, until it is acknowledged.
+    Again,
+    /// Rows of the greatest width come back right.
+    Wide,
+    /// Rows have their number, however great.
+    RowNumber,
+    /// A burst that cannot be is refused.
+    Burst,
+    /// What must not be done while a burst is under way is refused.
+    UnderWay,
+    /// Records are kept until the host has them, and told again.
+    Records,
+    /// A burst ends where it is told to.
+    Ended,
+    /// A RESET ends a burst wherever it is.
+    Cut,
+    /// Every frame repeats the first where a burst is to.
+    Repeated,
+    /// The first row with another signature than expected is kept.
+    Trap,
+    /// A board without configuration or tables is not ready.
+    NotReady,
+    /// RESET leaves tables as they are at power-up.
+    PowerUp,
+}
+
+/// What is said to a request.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Answer {
+    /// A refusal.
+    Refused {
+        /// The refusal's code (WIRE.md, section 6).
+        code: u8,
+        /// Its detail.
+        detail: u16,
+    },
+    /// A reply.
+    Replied {
+        /// Its payload in hexadecimal, the first bytes.
+        payload: String,
+    },
+    /// A row as it must be.
+    Row {
+        /// Its place in its frame.
+        row: usize,
+        /// The frame.
+        frame: u16,
+    },
+    /// A row that is not as it must be, in samples, latency, pauses or generation.
+    OtherRow {},
+    /// Nothing, although requests behind it are answered.
+    Nothing {},
+}

@@ -1,0 +1,87 @@
+//! What the wire's rules have shown.
+
+use halfrow_protocol::message::RefusalCode;
+
+use crate::report::wording::count;
+use crate::result::{Answer, Finding, Rule};
+
+/// What to do about any of them.
+pub(super) const REMEDY: &str = "Check how the board takes requests apart, and try it with the conformance tests; what it must refuse stands in protocol/WIRE.md.";
+
+/// A finding on rules, if it is one.
+pub(super) fn sentence(finding: &Finding) -> Option<String> {
+    Some(match finding {
+        Finding::RulesKept { requests } => {
+            format!("{} answered as the wire's rules have it", count(*requests, "request"))
+        }
+        Finding::RulesLeftOut {} => "left out of this run".to_owned(),
+        Finding::RuleBroken { rule, request, right, found } => {
+            format!("the board must {}, and {} ({})", must(right, request), did(found), meaning(*rule))
+        }
+        _ => return None,
+    })
+}
+
+fn must(right: &Answer, request: &str) -> String {
+    match right {
+        Answer::Refused { code, detail } => {
+            format!("refuse {request} as `{}`, detail {detail}", reason(*code))
+        }
+        Answer::Replied { payload } if payload.is_empty() => format!("carry out {request}"),
+        Answer::Replied { payload } => format!("answer {request} with {payload}"),
+        Answer::Row { row, frame } => format!("return row {row} of frame {frame} as it is made"),
+        Answer::OtherRow {} => format!("answer {request} with another row"),
+        Answer::Nothing {} => format!("leave {request} unanswered"),
+    }
+}
+
+fn did(found: &Answer) -> String {
+    match found {
+        Answer::Refused { code, detail } => format!("refused as `{}`, detail {detail}", reason(*code)),
+        Answer::Replied { payload } if payload.is_empty() => "carried it out".to_owned(),
+        Answer::Replied { payload } => format!("answered with {payload}"),
+        Answer::Row { row, frame } => format!("returned row {row} of frame {frame}"),
+        Answer::OtherRow {} => "returned another".to_owned(),
+        Answer::Nothing {} => "did not".to_owned(),
+    }
+}
+
+/// The reason's name in WIRE.md, section 6.
+fn reason(code: u8) -> String {
+    let Some(reason) = RefusalCode::from_code(code) else { return format!("code {code}") };
+    let letters = format!("{reason:?}");
+    let words = letters.split_inclusive(char::is_uppercase).map(str::to_lowercase);
+    words.collect()
+}
+
+fn meaning(rule: Rule) -> &'static str {
+    match rule {
+        Rule::Payload => "a request is cut short or has a field without meaning",
+        Rule::Kind => "the kind is no request",
+        Rule::Configuration => "a configuration out of range",
+        Rule::Span => "a span that is in no table",
+        Rule::Entry => "a table's entry out of range",
+        Rule::Address => "entries keep to their places",
+        Rule::CommitCrc => "a commit with another CRC than the tables have",
+        Rule::Generation => "which generations a commit may name",
+        Rule::CommitFrame => "a commit takes effect with its frame",
+        Rule::Pending => "a commit is pending",
+        Rule::Forgotten => "RESET forgets a pending commit",
+        Rule::RowPlace => "a row out of place",
+        Rule::Credit => "a row beyond the window",
+        Rule::Inside => "a row is inside the core",
+        Rule::Rows => "rows come back in place",
+        Rule::Again => "a row comes again until it is acknowledged",
+        Rule::Wide => "rows of the greatest width",
+        Rule::RowNumber => "numbers of rows",
+        Rule::Burst => "what a burst can be",
+        Rule::UnderWay => "a burst is under way",
+        Rule::Records => "records are kept until the host has them",
+        Rule::Ended => "a burst ends where it is told to",
+        Rule::Cut => "RESET ends a burst",
+        Rule::Repeated => "a burst repeats its first frame",
+        Rule::Trap => "the first row with another signature than expected is kept",
+        Rule::NotReady => "a board without configuration or tables",
+        Rule::PowerUp => "RESET leaves tables as they are at power-up",
+    }
+}

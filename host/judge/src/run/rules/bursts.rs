@@ -1,0 +1,283 @@
+//! Bursts that must be refused, that wait for the host, that end early, and what they leave behind.
+
+use std::ops::Range;
+use std::time::Duration;
+
+use halfrow_model::{Content, Signer};
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{
+    Bank, Burst, BurstMode, BurstState, Commit, Entries, Expect, FrameRecord, RefusalCode, Request, RowIn,
+    RowPlace, Span, Table,
+};
+use halfrow_protocol::samples::pack;
+
+use super::{Rules, of_board};
+use crate::board::{BoardError, Fetched};
+use crate::reference::corrector;
+use crate::result::{Answer, Rule};
+use crate::run::at_speed::clock_hz;
+use crate::run::findings::End;
+
+/// How many records are taken each time that a burst waits for free ones.
+const TAKEN: [u32; 4] = [5, 1, 9, 4];
+/// The most records that are made and asked for again.
+const RECORDS: u32 = 64;
+/// Frames of a burst that is to be right: every board has records for two.
+const FEW: u32 = 2;
+/// How long a burst may take beside the time that its frames take on the board's clock.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Bytes that go to the board between the beginning of a burst and its end, so that it is cut at another place each time.
+const BYTES_TO_CUT: [usize; 8] = [0, 5, 11, 40, 77, 130, 211, 400];
+/// The seed's greatest bit, so that it is not a small number.
+const FAR: u32 = 0xa5a5_0000;
+
+impl Rules<'_, '_> {
+    pub(super) fn bursts(&mut self) -> Result<(), End> {
+        self.bursts_refused()?;
+        self.waiting()?;
+        self.ended_early()?;
+        self.cut()?;
+        self.repeating()
+    }
+
+    /// A burst of so many small frames under a name of its own; none if the board makes none.
+    pub(super) fn small_burst(&self, frames: u32) -> Option<Burst> {
+        let bursts = self.run.known_bursts().ok()?;
+        Some(Burst {
+            burst: self.run.findings.bursts + 1,
+            frames,
+            seed: self.small.seed ^ FAR,
+            first_frame: 0xfffe,
+            frame_blanking: bursts.least_frame_blanking,
+            mode: BurstMode::Fresh,
+        })
+    }
+
+    /// Starts a burst, and returns it.
+    pub(super) fn start(&mut self, burst: Burst) -> Result<Burst, End> {
+        self.run.findings.bursts += 1;
+        self.replied(Rule::Burst, &Request::Burst(burst), Vec::new())?;
+        Ok(burst)
+    }
+
+    fn bursts_refused(&mut self) -> Result<(), End> {
+        let Some(right) = self.small_burst(1) else { return Ok(()) };
+        let mut wrong = vec![(0, Burst { burst: 0, ..right })];
+        let blanking = right.frame_blanking;
+        wrong.extend(blanking.checked_sub(1).map(|frame_blanking| (4, Burst { frame_blanking, ..right })));
+        wrong.extend((blanking > 0).then_some((4, Burst { frame_blanking: 0, ..right })));
+        if self.capabilities.table_banks < 2 {
+            wrong.push((5, Burst { mode: BurstMode::Alternating, ..right }));
+        }
+        if !self.has_trap() {
+            wrong.push((5, Burst { mode: BurstMode::Trapped, ..right }));
+        }
+        for (field, burst) in wrong {
+            self.refused(Rule::Burst, &Request::Burst(burst), RefusalCode::Range, field)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn has_trap(&self) -> bool {
+        self.capabilities.bursts.is_some_and(|bursts| bursts.trap)
+    }
+
+    /// The record of frame `n` of `burst`, made at the full pixel clock.
+    fn record(&self, signer: &mut Signer, burst: &Burst, n: u32) -> FrameRecord {
+        let own = burst.mode == BurstMode::Fresh || burst.mode == BurstMode::Alternating;
+        let frame = burst.first_frame.wrapping_add(if own { n as u16 } else { 0 });
+        let tables = self.small.tables[0].of(self.small.rows());
+        let content = Content { seed: burst.seed, frame };
+        let geometry = &self.small.geometry;
+        FrameRecord {
+            signature: signer.sign(&tables, content, &mut Vec::new()),
+            samples: (geometry.width() * geometry.height()) as u32,
+            rows: geometry.height() as u16,
+            least_latency: self.small.latency(geometry),
+            most_latency: self.small.latency(geometry),
+            pauses: 0,
+            generation: super::rows::GENERATION,
+            held_back: false,
+        }
+    }
+
+    /// What must be said of `burst` to whoever asks for `frames`, of which those in `held` waited for a record.
+    fn records(&self, burst: &Burst, frames: Range<u32>, state: BurstState, held: &[u32]) -> Vec<u8> {
+        let mut signer = Signer::new(corrector(&self.small.tables[0].kernel));
+        let records = frames.clone().map(|n| {
+            let held_back = held.contains(&n);
+            FrameRecord { held_back, ..self.record(&mut signer, burst, n) }.to_bytes()
+        });
+        let mut said = Vec::new();
+        said.extend(burst.burst.to_le_bytes());
+        said.extend(frames.start.to_le_bytes());
+        said.extend([state as u8, frames.len() as u8]);
+        said.extend(records.flatten());
+        said
+    }
+
+    /// How long so many small frames take on the board's clock.
+    fn time_of(&self, frames: u32) -> Duration {
+        let (geometry, blanking) = (&self.small.geometry, usize::from(self.capabilities.least_blanking));
+        let between = self.capabilities.bursts.map_or(0, |bursts| bursts.least_frame_blanking);
+        let clocks = geometry.height() * (geometry.width() + blanking) + usize::from(between);
+        Duration::from_secs_f64(f64::from(frames) * clocks as f64 / f64::from(clock_hz(&self.capabilities)))
+    }
+
+    /// Looks at `burst` from frame `from` on until `is_so`, which takes about as long as `frames` of it.
+    pub(super) fn look(
+        &mut self,
+        burst: &Burst,
+        from: u32,
+        frames: u32,
+        is_so: impl Fn(&Fetched) -> bool,
+    ) -> Result<Fetched, End> {
+        let (mut idle, mut passed) = (self.time_of(frames), Duration::ZERO);
+        while passed < PATIENCE {
+            let fetched = self.run.board.records(burst.burst, from).map_err(of_board)?;
+            if is_so(&fetched) {
+                return Ok(fetched);
+            }
+            self.run.board.idle(idle).map_err(of_board)?;
+            (passed, idle) = (passed + idle, 2 * idle);
+        }
+        let (right, found) = (Answer::Replied { payload: String::new() }, Answer::Nothing {});
+        Err(super::broken(Rule::Ended, Kind::Records, right, found))
+    }
+
+    /// A burst that waits for free records again and again: what is refused meanwhile, and what it tells again.
+    fn waiting(&mut self) -> Result<(), End> {
+        let kept = self.capabilities.bursts.map_or(0, |bursts| u32::from(bursts.records)).min(RECORDS);
+        let taken = TAKEN.map(|taken| taken.min(kept));
+        let all = kept + taken.iter().sum::<u32>();
+        let Some(burst) = self.small_burst(2 * all) else { return Ok(()) };
+        let burst = self.start(burst)?;
+        let (mut from, mut held) = (0, Vec::new());
+        for taken in taken {
+            self.look(&burst, from, kept, |fetched| fetched.records.len() as u32 == kept)?;
+            if from == 0 {
+                self.busy_with_burst(&burst)?;
+                // Fewer frames than were asked for first.
+                self.replied(Rule::Ended, &Request::Burst(Burst { frames: all, ..burst }), Vec::new())?;
+            }
+            self.told(&burst, from..from + kept, BurstState::UnderWay, &held)?;
+            self.never_told(from..from + kept)?;
+            held.push(from + kept);
+            from += taken;
+        }
+        self.look(&burst, from, kept, |fetched| fetched.state == BurstState::Ended)?;
+        self.told(&burst, from..all, BurstState::Ended, &held)?;
+        // One that has ended goes on no more, and its records stay behind a RESET.
+        self.replied(Rule::Ended, &Request::Burst(Burst { frames: 2 * all, ..burst }), Vec::new())?;
+        self.drop_rows()?;
+        for from in from..=all {
+            self.told(&burst, from..all, BurstState::Ended, &held)?;
+        }
+        self.never_told(all..all)
+    }
+
+    /// The records of `frames` and no others must be there, of which those in `held` waited for a free one; they free those before.
+    fn told(
+        &mut self,
+        burst: &Burst,
+        frames: Range<u32>,
+        state: BurstState,
+        held: &[u32],
+    ) -> Result<(), End> {
+        let records = self.records(burst, frames.clone(), state, held);
+        self.replied(Rule::Records, &Request::Records { from: frames.start }, records)
+    }
+
+    /// What lies before or beyond the records of `frames` is refused.
+    fn never_told(&mut self, frames: Range<u32>) -> Result<(), End> {
+        let before = frames.start.checked_sub(1);
+        let beyond = (0..u32::BITS).filter_map(|bit| frames.end.checked_add(1 << bit));
+        for from in before.into_iter().chain(beyond) {
+            self.refused(Rule::Records, &Request::Records { from }, RefusalCode::Range, 0)?;
+        }
+        Ok(())
+    }
+
+    fn busy_with_burst(&mut self, burst: &Burst) -> Result<(), End> {
+        let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
+        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1 };
+        let width = self.small.geometry.width();
+        let mut packed = Vec::new();
+        pack(&vec![0; width], &mut packed);
+        let row_sequence = self.run.board.acknowledged();
+        let place = RowPlace { row_sequence, frame: 0, row: 0, width: width as u16, last: false };
+        let mut requests = vec![
+            Request::TableRead(span),
+            Request::TableCrc(span),
+            Request::Commit(commit),
+            Request::Configure(self.configuration()),
+            Request::RowIn(RowIn { place, packed: &packed }),
+        ];
+        requests.extend(
+            (0..u32::BITS)
+                .filter(|&bit| burst.burst != 1 << bit)
+                .map(|bit| Request::Burst(Burst { burst: burst.burst ^ 1 << bit, ..*burst })),
+        );
+        if self.has_trap() {
+            requests.push(Request::Expect(Expect { first: 0, bytes: &[] }));
+        }
+        if self.capabilities.table_banks < 2 {
+            requests.push(Request::TableWrite(Entries { span: Span { count: 0, ..span }, bytes: &[] }));
+        }
+        for request in requests {
+            self.refused(Rule::UnderWay, &request, RefusalCode::Busy, 0)?;
+        }
+        Ok(())
+    }
+
+    /// One without an end, that is told to end.
+    fn ended_early(&mut self) -> Result<(), End> {
+        let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
+        let burst = self.start(burst)?;
+        self.look(&burst, 0, FEW, |fetched| fetched.records.len() > 1)?;
+        self.replied(Rule::Ended, &Request::Burst(Burst { frames: 0, ..burst }), Vec::new())?;
+        let ended = self.look(&burst, 0, FEW, |fetched| fetched.state == BurstState::Ended)?;
+        let came = ended.records.len() as u32;
+        self.told(&burst, 0..came, BurstState::Ended, &[])?;
+        self.never_told(0..came)
+    }
+
+    /// Bursts that are cut, each at another place, with rows and a burst behind each that must be right.
+    fn cut(&mut self) -> Result<(), End> {
+        for bytes in BYTES_TO_CUT {
+            let Some(burst) = self.small_burst(Burst::ENDLESS) else { return Ok(()) };
+            self.run.findings.bursts += 1;
+            self.run.board.cut(&burst, bytes).map_err(of_board)?;
+            // Where the request was lost there is none.
+            if let Some(came) = self.came_of(&burst)? {
+                let records = self.records(&burst, 0..came, BurstState::Ended, &[]);
+                self.replied(Rule::Cut, &Request::Records { from: 0 }, records)?;
+            }
+            self.right_frames(&[super::rows::FRAME])?;
+            self.right_burst(Rule::Cut, BurstMode::Fresh)?;
+        }
+        Ok(())
+    }
+
+    /// The records that there are of `burst`; none if the last burst is another.
+    fn came_of(&mut self, burst: &Burst) -> Result<Option<u32>, End> {
+        match self.run.board.records(burst.burst, 0) {
+            Ok(fetched) => Ok(Some(fetched.records.len() as u32)),
+            Err(BoardError::Unexpected { .. }) => Ok(None),
+            Err(error) => Err(of_board(error)),
+        }
+    }
+
+    /// A burst whose records must all be right.
+    fn right_burst(&mut self, rule: Rule, mode: BurstMode) -> Result<(), End> {
+        let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
+        let burst = self.start(Burst { mode, ..burst })?;
+        self.look(&burst, 0, FEW, |fetched| fetched.state == BurstState::Ended)?;
+        let records = self.records(&burst, 0..FEW, BurstState::Ended, &[]);
+        self.replied(rule, &Request::Records { from: 0 }, records)
+    }
+
+    fn repeating(&mut self) -> Result<(), End> {
+        self.right_burst(Rule::Repeated, BurstMode::Repeating)
+    }
+}

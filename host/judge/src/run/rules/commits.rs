@@ -1,0 +1,143 @@
+//! Commits that must be refused, and when those take effect that are not.
+
+use std::mem;
+
+use halfrow_protocol::message::{Bank, Commit, Entries, RefusalCode, Request, Span, Table};
+
+use super::Rules;
+use super::compared::Compared;
+use crate::result::Rule;
+use crate::run::findings::End;
+
+/// Generations that differ in every bit.
+const FIRST: u8 = 0x55;
+const SECOND: u8 = 0xaa;
+/// The frame that the second takes effect with.
+const FRAME: u16 = 0x5a5a;
+/// The most banks of rows at which tables are changed.
+const BANKS: u8 = 8;
+
+impl Rules<'_, '_> {
+    pub(super) fn commits(&mut self) -> Result<(), End> {
+        // One row a frame.
+        self.configure(1)?;
+        self.upload(0)?;
+        self.commit(0, FIRST, FRAME)?;
+        self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))?;
+        self.upload(1)?;
+        self.wrong_sums()?;
+        if self.capabilities.table_banks > 1 {
+            self.pending()?;
+            self.forgotten()?;
+            self.at_each_bank()?;
+        }
+        Ok(())
+    }
+
+    /// The request that commits the small tables at `place`, of which a frame has one row.
+    fn commit_of(&self, place: usize, generation: u8, first_frame: u16) -> Commit {
+        let tables = &self.small.tables[place];
+        Commit {
+            steps_crc: crc32fast::hash(&tables.of(1).to_bytes()),
+            kernel_crc: crc32fast::hash(&tables.kernel.to_bytes()),
+            first_frame,
+            generation,
+        }
+    }
+
+    fn commit(&mut self, place: usize, generation: u8, first_frame: u16) -> Result<(), End> {
+        let request = Request::Commit(self.commit_of(place, generation, first_frame));
+        self.replied(Rule::Generation, &request, vec![generation])
+    }
+
+    /// Frames of one row each, which the small tables at `place` must make as `generation`.
+    fn one_rows(&mut self, rule: Rule, frames: &[u16], (generation, place): (u8, usize)) -> Result<(), End> {
+        let made = self.small.made(place, 1, generation);
+        let compared = frames
+            .iter()
+            .fold(Compared::default(), |compared, &number| compared.with(&self.small, number, &made));
+        self.frames(rule, compared)
+    }
+
+    /// Generation 0, and each bit of both CRCs wrong.
+    fn wrong_sums(&mut self) -> Result<(), End> {
+        let right = self.commit_of(1, !FIRST, FRAME);
+        let unnamed = Request::Commit(Commit { generation: 0, ..right });
+        self.refused(Rule::Generation, &unnamed, RefusalCode::Range, 0)?;
+        for bit in 0..u32::BITS {
+            let steps = Request::Commit(Commit { steps_crc: right.steps_crc ^ 1 << bit, ..right });
+            self.refused(Rule::CommitCrc, &steps, RefusalCode::TableCrc, Table::RowFactors as u16)?;
+            let kernel = Request::Commit(Commit { kernel_crc: right.kernel_crc ^ 1 << bit, ..right });
+            self.refused(Rule::CommitCrc, &kernel, RefusalCode::TableCrc, Table::Kernel as u16)?;
+        }
+        self.others_refused(FIRST)
+    }
+
+    /// With `active` tables: a commit that names them changes nothing, and one whose generation differs in a bit is another.
+    fn others_refused(&mut self, active: u8) -> Result<(), End> {
+        let wrong = Commit { steps_crc: !0, generation: active, ..self.commit_of(0, 0, FRAME) };
+        self.replied(Rule::Generation, &Request::Commit(wrong), vec![active])?;
+        for bit in 0..u8::BITS {
+            let other = Request::Commit(Commit { generation: active ^ 1 << bit, ..wrong });
+            self.refused(Rule::CommitCrc, &other, RefusalCode::TableCrc, Table::RowFactors as u16)?;
+        }
+        Ok(())
+    }
+
+    fn pending(&mut self) -> Result<(), End> {
+        self.commit(1, SECOND, FRAME)?;
+        for generation in [FIRST, SECOND] {
+            let again = Commit { generation, kernel_crc: 0, ..self.commit_of(1, 0, FRAME) };
+            self.replied(Rule::Generation, &Request::Commit(again), vec![generation])?;
+        }
+        self.busy_with_commit(SECOND)?;
+        let others: Vec<u16> = (0..u16::BITS).map(|bit| FRAME ^ 1 << bit).collect();
+        self.one_rows(Rule::CommitFrame, &others, (FIRST, 0))?;
+        self.one_rows(Rule::CommitFrame, &[FRAME, FRAME + 1], (SECOND, 1))?;
+        self.upload(0)?;
+        self.others_refused(SECOND)
+    }
+
+    /// With the commit of `generation` pending: another one, and what would touch its tables.
+    fn busy_with_commit(&mut self, generation: u8) -> Result<(), End> {
+        for bit in 0..u8::BITS {
+            let another = Commit { generation: generation ^ 1 << bit, ..self.commit_of(1, 0, FRAME) };
+            self.refused(Rule::Pending, &Request::Commit(another), RefusalCode::Busy, 0)?;
+        }
+        let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 0 };
+        let write = Request::TableWrite(Entries { span, bytes: &[] });
+        self.refused(Rule::Pending, &write, RefusalCode::Busy, 0)?;
+        self.small_burst(1)
+            .map_or(Ok(()), |burst| self.refused(Rule::Pending, &Request::Burst(burst), RefusalCode::Busy, 0))
+    }
+
+    /// What was pending is not any more behind a RESET, and its tables are where they were.
+    fn forgotten(&mut self) -> Result<(), End> {
+        self.commit(0, FIRST, FRAME)?;
+        self.busy_with_commit(FIRST)?;
+        self.drop_rows()?;
+        self.one_rows(Rule::Forgotten, &[FRAME], (SECOND, 1))?;
+        self.sums(Rule::Forgotten, Bank::Shadow, 0)?;
+        self.commit(0, FIRST, FRAME)?;
+        self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))
+    }
+
+    /// Tables that change while the row in front still leaves, whichever bank that has.
+    fn at_each_bank(&mut self) -> Result<(), End> {
+        let (mut active, mut next) = ((FIRST, 0), (SECOND, 1));
+        for before in 0..u16::from(self.capabilities.row_banks_out.min(BANKS)) {
+            self.upload(next.1)?;
+            self.commit(next.1, next.0, FRAME)?;
+            let old = self.small.made(active.1, 1, active.0);
+            let new = self.small.made(next.1, 1, next.0);
+            let compared = (0..=before)
+                .fold(Compared::default(), |compared, number| compared.with(&self.small, number, &old));
+            let compared = [FRAME, FRAME + 1]
+                .into_iter()
+                .fold(compared, |compared, number| compared.with(&self.small, number, &new));
+            self.frames(Rule::CommitFrame, compared)?;
+            mem::swap(&mut active, &mut next);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,77 @@
+//! Frames that must come back right.
+
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+use halfrow_model::{Frame, Kernel, TableSet};
+
+use super::small::Small;
+use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
+use crate::reference::correct;
+use crate::run::pauses::pauses;
+
+/// What makes a frame.
+#[derive(Clone)]
+pub(super) struct Made {
+    pub(super) generation: u8,
+    pub(super) tables: TableSet,
+    pub(super) kernel: Kernel,
+    /// The seed of its gaps.
+    pub(super) gap_seed: u32,
+}
+
+/// What a frame must come back as.
+struct Right {
+    number: u16,
+    generation: u8,
+    frame: Frame,
+    latency: u16,
+    pauses: Vec<u16>,
+}
+
+/// Frames that must come back right.
+#[derive(Default)]
+pub(super) struct Compared {
+    frames: VecDeque<NumberedFrame>,
+    right: Vec<Right>,
+    /// The first row that is not: its place in its frame, and the frame.
+    pub(super) wrong: Option<(usize, u16)>,
+}
+
+impl Compared {
+    /// With frame `number` behind the others.
+    pub(super) fn with(mut self, small: &Small, number: u16, made: &Made) -> Self {
+        let Made { generation, tables, kernel, gap_seed } = made;
+        let numbered = small.frame(number, tables);
+        if let Ok(frame) = correct(tables, kernel, &numbered.frame) {
+            let (latency, generation) = (small.latency(tables.geometry()), *generation);
+            let pauses = pauses(*gap_seed, frame.width(), frame.height());
+            self.right.push(Right { number, generation, frame, latency, pauses });
+        }
+        self.frames.push_back(numbered);
+        self
+    }
+
+    fn is_right(&self, row: &ReturnedRow<'_>) -> bool {
+        let right = self.right.iter().find(|right| right.number == row.frame);
+        right.is_some_and(|right| {
+            [row.first_latency, row.last_latency] == [right.latency; 2]
+                && right.generation == row.generation
+                && right.pauses.get(row.row) == Some(&row.pauses)
+                && right.frame.row(row.row) == row.samples
+        })
+    }
+}
+
+impl RowTraffic for Compared {
+    fn next_frame(&mut self) -> Option<NumberedFrame> {
+        self.frames.pop_front()
+    }
+
+    fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
+        if !self.is_right(row) {
+            self.wrong.get_or_insert((row.row, row.frame));
+        }
+        ControlFlow::Continue(())
+    }
+}

@@ -1,0 +1,202 @@
+//! What a board must refuse, keep, end and tell again (WIRE.md, AT-SPEED.md): what no frame shows, tried on purpose.
+//!
+//! It is all done with rows of the least width, so that it costs a link little, and last, since it leaves a board with no tables.
+
+mod bursts;
+mod commits;
+mod compared;
+mod power_up;
+mod price;
+mod requests;
+mod rows;
+mod small;
+mod tables;
+mod trap;
+mod wide;
+
+use std::mem;
+
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{Refusal, RefusalCode, Request};
+
+use super::findings::End;
+use super::parts::Part;
+use super::plan::Segment;
+use super::steps::Run;
+use crate::board::{BoardError, Capabilities, RowTiming, Said};
+use crate::progress::Step;
+use crate::result::{Answer, CheckName, Finding, Outcome, Rule};
+use compared::Compared;
+pub(super) use price::price;
+use small::Small;
+
+/// Bytes of a reply that a finding tells.
+const TOLD: usize = 32;
+
+impl Run<'_> {
+    /// Tries the rules, with the board back behind `last` if it goes away meanwhile.
+    pub(super) fn rules(&mut self, last: Option<&Segment>) -> Result<(), End> {
+        if self.plan.amount(Part::Rules) == 0 {
+            self.findings.rules_untried = true;
+            self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
+            return Ok(());
+        }
+        self.progress.step(Step::Rules);
+        loop {
+            let Some(rules) = Rules::new(self) else { return Ok(()) };
+            match (rules.all(), last) {
+                (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
+                (Err(end), _) => return Err(end),
+                (Ok(requests), _) => {
+                    self.findings.passed(CheckName::Rules, Finding::RulesKept { requests });
+                    return Ok(());
+                }
+            }
+        }
+    }
+}
+
+/// A board whose rules are tried.
+struct Rules<'a, 'run> {
+    run: &'a mut Run<'run>,
+    capabilities: Capabilities,
+    small: Small,
+    /// Requests that were answered as they must be.
+    right: usize,
+    /// Rows of a frame, as the board is set.
+    height: usize,
+    /// Rows of the next frame that the board was given.
+    given: u32,
+}
+
+impl<'a, 'run> Rules<'a, 'run> {
+    fn new(run: &'a mut Run<'run>) -> Option<Self> {
+        let capabilities = run.board.capabilities.clone();
+        let small = Small::new(&capabilities, run.plan.seed, run.plan.phase)?;
+        Some(Self { run, capabilities, small, right: 0, height: 0, given: 0 })
+    }
+
+    /// Tries all of them, and returns how many requests were answered as they must be.
+    fn all(mut self) -> Result<usize, End> {
+        self.drop_rows()?;
+        self.requests()?;
+        self.tables()?;
+        self.commits()?;
+        self.rows()?;
+        self.wide()?;
+        if self.run.known_bursts().is_ok() {
+            self.bursts()?;
+            self.trap()?;
+        }
+        self.power_up()?;
+        Ok(self.right)
+    }
+
+    /// Asks, and ends with anything but the answer `right`; a reply may have more bytes than that.
+    fn must(&mut self, rule: Rule, kind: Kind, payload: &[u8], right: &Said) -> Result<(), End> {
+        let found = match self.run.board.ask(kind, payload) {
+            Ok(said) if is_as(&said, right) => {
+                self.right += 1;
+                return Ok(());
+            }
+            Ok(said) => answer(&said),
+            Err(error @ BoardError::NoAnswer { .. }) => self.nothing(&error)?,
+            Err(error) => return Err(End::board(CheckName::Rules, &error)),
+        };
+        Err(broken(rule, kind, answer(right), found))
+    }
+
+    /// What stands in place of an answer that did not come: nothing, if the board had the request each time and answers others.
+    fn nothing(&mut self, silence: &BoardError) -> Result<Answer, End> {
+        let damaged = self.run.board.tally().damaged_in;
+        let status = self.run.board.status(false).map_err(|_| End::board(CheckName::Rules, silence))?;
+        let is_whole = u64::from(status.packets) == self.run.board.packets_since_clear()
+            && damaged == self.run.board.tally().damaged_in;
+        if is_whole { Ok(Answer::Nothing {}) } else { Err(End::board(CheckName::Rules, silence)) }
+    }
+
+    /// Asks what must be refused.
+    fn refused(
+        &mut self,
+        rule: Rule,
+        request: &Request<'_>,
+        code: RefusalCode,
+        detail: u16,
+    ) -> Result<(), End> {
+        self.bytes_refused(rule, request.kind(), &payload(request), code, detail)
+    }
+
+    fn bytes_refused(
+        &mut self,
+        rule: Rule,
+        kind: Kind,
+        payload: &[u8],
+        code: RefusalCode,
+        detail: u16,
+    ) -> Result<(), End> {
+        self.must(rule, kind, payload, &Said::Refused(Refusal { code, kind: kind.code(), detail }))
+    }
+
+    /// Asks what must be answered with `reply`.
+    fn replied(&mut self, rule: Rule, request: &Request<'_>, reply: Vec<u8>) -> Result<(), End> {
+        self.must(rule, request.kind(), &payload(request), &Said::Replied(reply))
+    }
+
+    /// Sets the board for small frames of so many rows.
+    fn configure(&mut self, rows: usize) -> Result<(), End> {
+        self.height = rows;
+        let geometry = self.small.of_height(rows);
+        self.run.board.configure(&geometry, RowTiming::default()).map_err(of_board)
+    }
+
+    fn drop_rows(&mut self) -> Result<(), End> {
+        self.run.board.drop_rows().map_err(of_board)
+    }
+
+    /// Streams frames, which must come back as `compared` has them.
+    fn frames(&mut self, rule: Rule, mut compared: Compared) -> Result<(), End> {
+        let given = mem::take(&mut self.given);
+        self.run.board.stream_given(given, &mut compared).map_err(of_board)?;
+        match compared.wrong {
+            None => Ok(()),
+            Some((row, frame)) => Err(other_row(rule, row, frame)),
+        }
+    }
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "what map_err hands over")]
+fn of_board(error: BoardError) -> End {
+    End::board(CheckName::Rules, &error)
+}
+
+fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {
+    let request = format!("{kind:?}");
+    End::failed(CheckName::Rules, Finding::RuleBroken { rule, request, right, found })
+}
+
+fn other_row(rule: Rule, row: usize, frame: u16) -> End {
+    broken(rule, Kind::RowIn, Answer::Row { row, frame }, Answer::OtherRow {})
+}
+
+fn payload(request: &Request<'_>) -> Vec<u8> {
+    let mut payload = Vec::new();
+    request.write(&mut payload);
+    payload
+}
+
+fn is_as(said: &Said, right: &Said) -> bool {
+    match (said, right) {
+        (Said::Replied(said), Said::Replied(right)) => said.starts_with(right),
+        (said, right) => said == right,
+    }
+}
+
+fn answer(said: &Said) -> Answer {
+    match said {
+        Said::Refused(refusal) => Answer::Refused { code: refusal.code as u8, detail: refusal.detail },
+        Said::Replied(payload) => {
+            let told = &payload[..payload.len().min(TOLD)];
+            Answer::Replied { payload: told.iter().map(|byte| format!("{byte:02x}")).collect() }
+        }
+    }
+}

@@ -1,0 +1,85 @@
+//! A board that has forgotten all: not ready for rows, and its tables as they are at power-up.
+
+use halfrow_model::{NODES, RowFactor};
+use halfrow_protocol::message::{
+    Bank, Commit, NODE_BYTES, RefusalCode, Request, RowIn, RowPlace, Span, Table,
+};
+use halfrow_protocol::samples::pack;
+
+use super::{Rules, of_board};
+use crate::result::Rule;
+use crate::run::findings::End;
+
+/// The generation of tables that no frame uses.
+const GENERATION: u8 = 0xff;
+
+impl Rules<'_, '_> {
+    pub(super) fn power_up(&mut self) -> Result<(), End> {
+        self.run.board.forget().map_err(of_board)?;
+        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: GENERATION };
+        self.not_ready(&Request::Commit(commit))?;
+        self.not_ready_for_rows()?;
+        self.configure(self.small.rows())?;
+        self.not_ready_for_rows()?;
+        for bank in [Bank::Shadow, Bank::Active] {
+            self.as_at_power_up(bank)?;
+        }
+        self.tallest()
+    }
+
+    /// The tables of the tallest frames but one are committed whole: of almost all heights most bits are set.
+    fn tallest(&mut self) -> Result<(), End> {
+        let rows = self.capabilities.max_height.saturating_sub(1).max(1);
+        self.configure(rows.into())?;
+        let steps_crc = crc32fast::hash(&row_factors(rows));
+        let kernel_crc = crc32fast::hash(&nodes());
+        let right = Commit { steps_crc, kernel_crc, first_frame: 0, generation: GENERATION };
+        let other = Commit { steps_crc: crc32fast::hash(&row_factors(rows - 1)), ..right };
+        self.refused(
+            Rule::CommitCrc,
+            &Request::Commit(other),
+            RefusalCode::TableCrc,
+            Table::RowFactors as u16,
+        )?;
+        self.replied(Rule::Generation, &Request::Commit(right), vec![right.generation])
+    }
+
+    fn not_ready(&mut self, request: &Request<'_>) -> Result<(), End> {
+        self.refused(Rule::NotReady, request, RefusalCode::NotReady, 0)
+    }
+
+    fn not_ready_for_rows(&mut self) -> Result<(), End> {
+        let (width, last) = (self.small.geometry.width(), self.small.rows() == 1);
+        let row_sequence = self.run.board.acknowledged();
+        let place = RowPlace { row_sequence, frame: 0, row: 0, width: width as u16, last };
+        let mut packed = Vec::new();
+        pack(&vec![0; width], &mut packed);
+        self.not_ready(&Request::RowIn(RowIn { place, packed: &packed }))?;
+        self.small_burst(1).map_or(Ok(()), |burst| self.not_ready(&Request::Burst(burst)))
+    }
+
+    fn as_at_power_up(&mut self, bank: Bank) -> Result<(), End> {
+        for port in self.run.board.table_ports() {
+            let (count, bytes) = match port.table {
+                Table::RowFactors => {
+                    (self.capabilities.max_height, row_factors(self.capabilities.max_height))
+                }
+                Table::Kernel => (NODES as u16, nodes()),
+            };
+            let span = Span { table: port.table, bank, port: port.port, first: 0, count };
+            let crc = crc32fast::hash(&bytes).to_le_bytes().to_vec();
+            self.replied(Rule::PowerUp, &Request::TableCrc(span), crc)?;
+        }
+        Ok(())
+    }
+}
+
+/// So many row factors, as they are at power-up.
+fn row_factors(rows: u16) -> Vec<u8> {
+    RowFactor::ONE.get().to_le_bytes().repeat(rows.into())
+}
+
+/// All nodes, as they are at power-up.
+fn nodes() -> Vec<u8> {
+    vec![0; NODES * NODE_BYTES]
+}

@@ -1,0 +1,256 @@
+//! Rows that must be refused, in front of rows that must come back right.
+
+use std::mem;
+
+use halfrow_protocol::message::{Bank, Commit, RefusalCode, Request, RowIn, RowPlace, Span, Table};
+use halfrow_protocol::samples::pack;
+
+use super::compared::Compared;
+use super::{Rules, of_board, other_row};
+use crate::board::BoardError;
+use crate::reference::correct;
+use crate::result::{CheckName, Counter, Finding, Rule};
+use crate::run::at_speed::{BY_TURNS, fit};
+use crate::run::findings::End;
+
+/// The generation that rows are made with.
+pub(super) const GENERATION: u8 = 0x96;
+/// The frame whose rows are given out of order.
+pub(super) const FRAME: u16 = 0x1234;
+/// How often a row is given that is to be inside the core.
+const LOOKS: u32 = 8;
+/// How often a row is asked for again.
+const AGAIN: u16 = 3;
+/// The least bit of a row's number that a session does not reach by counting.
+const FAR: u32 = 8;
+/// Bytes that go to the board between rows and the RESET that drops them.
+const BYTES_TO_CUT: [usize; 8] = [0, 3, 9, 17, 30, 50, 77, 120];
+
+impl Rules<'_, '_> {
+    pub(super) fn rows(&mut self) -> Result<(), End> {
+        self.rows_again()?;
+        self.first_rows()?;
+        if self.height > 2 {
+            self.second_rows()?;
+            self.last_rows()?;
+            self.early_row()?;
+            self.again()?;
+            self.cut_rows()?;
+        }
+        self.heights()?;
+        self.numbers()
+    }
+
+    /// Has the board make rows with the small tables, and tries it.
+    pub(super) fn rows_again(&mut self) -> Result<(), End> {
+        let rows = self.small.rows();
+        self.configure(rows)?;
+        self.upload(0)?;
+        let tables = &self.small.tables[0];
+        let commit = self.run.board.commit(&tables.of(rows), &tables.kernel, FRAME, GENERATION);
+        commit.map_err(of_board)?;
+        self.right_frames(&[FRAME])
+    }
+
+    /// Frames of which every row must come back right.
+    pub(super) fn right_frames(&mut self, frames: &[u16]) -> Result<(), End> {
+        let made = self.small.made(0, self.height, GENERATION);
+        let compared = frames
+            .iter()
+            .fold(Compared::default(), |compared, &number| compared.with(&self.small, number, &made));
+        self.frames(Rule::Rows, compared)
+    }
+
+    /// Row `row` of the frame, under the number that it has if the frame is the next one.
+    fn place(&self, row: u16) -> RowPlace {
+        RowPlace {
+            row_sequence: self.run.board.acknowledged() + u32::from(row),
+            frame: FRAME,
+            row,
+            width: self.small.geometry.width() as u16,
+            last: usize::from(row) + 1 == self.height,
+        }
+    }
+
+    fn row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
+        let mut packed = Vec::new();
+        pack(&vec![0; place.width.into()], &mut packed);
+        self.refused(rule, &Request::RowIn(RowIn { place, packed: &packed }), code, 0)
+    }
+
+    /// Behind a RESET nothing but row 0 in its place, and nothing beyond the window.
+    fn first_rows(&mut self) -> Result<(), End> {
+        self.drop_rows()?;
+        let first = self.place(0);
+        let second = RowPlace { row_sequence: first.row_sequence, ..self.place(1) };
+        let wrong = [
+            second,
+            RowPlace { width: first.width + 2, ..first },
+            RowPlace { row: self.height as u16, ..first },
+            RowPlace { last: !first.last, ..first },
+        ];
+        for place in wrong {
+            self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
+        }
+        let credit = self.run.board.credit();
+        let beyond = (0..u32::BITS).filter_map(|bit| credit.checked_add(1 << bit));
+        for row_sequence in beyond.chain([credit]) {
+            let place = RowPlace { row_sequence, ..first };
+            self.row_refused(Rule::Credit, place, RefusalCode::Credit)?;
+        }
+        self.right_frames(&[FRAME])?;
+        // Behind the last row of a frame comes row 0.
+        let behind = RowPlace { row_sequence: self.run.board.acknowledged(), ..self.place(1) };
+        self.row_refused(Rule::RowPlace, behind, RefusalCode::Row)
+    }
+
+    /// Gives row `row` of the frame, which is one of the first two: for those there is credit.
+    fn give(&mut self, row: u16) {
+        let place = self.place(row);
+        let tables = self.small.tables[0].of(self.height);
+        let frame = self.small.frame(FRAME, &tables);
+        self.run.board.give(&place, frame.frame.row(row.into()));
+        self.given = self.given.max(u32::from(row) + 1);
+    }
+
+    /// Gives row 0, and waits until it is inside the core.
+    fn enter(&mut self) -> Result<(), End> {
+        for _ in 0..LOOKS {
+            self.give(0);
+            if self.run.board.status(false).map_err(of_board)?.core_busy == 1 {
+                return Ok(());
+            }
+        }
+        let place = self.place(0);
+        Err(of_board(BoardError::RowMissing { place, attempts: LOOKS }))
+    }
+
+    /// With row 0 inside: other rows than row 1, and all that must wait until it has left.
+    fn second_rows(&mut self) -> Result<(), End> {
+        self.enter()?;
+        self.busy_with_row()?;
+        let second = self.place(1);
+        let bits = (0..u16::BITS).map(|bit| 1 << bit);
+        let frames = bits.clone().map(|bit| RowPlace { frame: FRAME ^ bit, ..second });
+        let rows = bits.filter(|bit| second.row ^ bit != 0);
+        let rows = rows.map(|bit| RowPlace { row: second.row ^ bit, ..second });
+        let others = [
+            RowPlace { width: second.width + 2, ..second },
+            RowPlace { width: 2 * second.width, ..second },
+            RowPlace { last: true, ..second },
+        ];
+        for place in frames.chain(rows).chain(others) {
+            self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
+        }
+        self.right_frames(&[FRAME])
+    }
+
+    fn busy_with_row(&mut self) -> Result<(), End> {
+        let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
+        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: !GENERATION };
+        let requests = [
+            Request::TableRead(span),
+            Request::TableCrc(span),
+            Request::Commit(commit),
+            Request::Configure(self.configuration()),
+        ];
+        for request in requests {
+            self.refused(Rule::Inside, &request, RefusalCode::Busy, 0)?;
+        }
+        Ok(())
+    }
+
+    /// A last row that is not said to be one.
+    fn last_rows(&mut self) -> Result<(), End> {
+        self.configure(2)?;
+        self.give(0);
+        let place = RowPlace { last: false, ..self.place(1) };
+        self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
+        self.right_frames(&[FRAME])?;
+        self.configure(self.small.rows())
+    }
+
+    /// A row that comes before the one in front of it.
+    fn early_row(&mut self) -> Result<(), End> {
+        self.give(1);
+        self.give(0);
+        self.right_frames(&[FRAME, FRAME + 1])
+    }
+
+    /// A row comes as often as it is asked for, until it is acknowledged.
+    fn again(&mut self) -> Result<(), End> {
+        self.configure(2)?;
+        let tables = &self.small.tables[0];
+        let row_factors = tables.of(2);
+        let frame = self.small.frame(FRAME, &row_factors).frame;
+        let right = correct(&row_factors, &tables.kernel, &frame).ok();
+        self.give(0);
+        self.give(1);
+        let first = RowPlace { last: false, ..self.place(0) };
+        let calm = self.run.board.tally().retries;
+        for repeats in 0..=AGAIN {
+            let came = self.run.board.again(&first, frame.row(0), repeats > 0).map_err(of_board)?;
+            let is_counted = came.repeats == repeats || self.run.board.tally().retries > calm;
+            let is_right = right.as_ref().is_none_or(|right| right.row(0) == came.samples);
+            if !is_counted || !is_right || came.generation != GENERATION {
+                return Err(other_row(Rule::Again, 0, FRAME));
+            }
+        }
+        self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given));
+        self.configure(self.small.rows())
+    }
+
+    /// Rows that are dropped while they leave, each time at another place, with rows behind them that must be right.
+    fn cut_rows(&mut self) -> Result<(), End> {
+        for bytes in BYTES_TO_CUT {
+            self.give(0);
+            self.give(1);
+            let given = mem::take(&mut self.given);
+            self.run.board.drop_rows_behind(bytes, given).map_err(of_board)?;
+            self.right_frames(&[FRAME])?;
+        }
+        Ok(())
+    }
+
+    /// Last rows that are none, whatever bits of the height are set; the row in front of them has not come.
+    fn heights(&mut self) -> Result<(), End> {
+        for bits in BY_TURNS {
+            let rows = fit(bits, self.capabilities.max_height.into()).max(1);
+            self.configure(rows)?;
+            let (last, row_sequence) = (rows as u16 - 1, self.run.board.acknowledged() + 1);
+            let place = RowPlace { row_sequence, row: last, last: true, ..self.place(0) };
+            let others = (0..u16::BITS).map(|bit| RowPlace { row: last ^ 1 << bit, ..place });
+            let beyond = RowPlace { row: rows as u16, last: false, ..place };
+            for place in others.chain([RowPlace { last: false, ..place }, beyond]) {
+                self.row_refused(Rule::RowPlace, place, RefusalCode::Row)?;
+            }
+        }
+        self.configure(self.small.rows())
+    }
+
+    /// Numbers on both sides of each power of two.
+    fn numbers(&mut self) -> Result<(), End> {
+        for bit in FAR..u32::BITS {
+            let next_row = (1 << bit) - 2;
+            if next_row > self.run.board.credit() {
+                self.run.board.go_on_from(next_row).map_err(of_board)?;
+                self.right_frames(&[FRAME])?;
+                self.counted()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The board must count the rows that came back as the host does.
+    fn counted(&mut self) -> Result<(), End> {
+        let status = self.run.board.status(false).map_err(of_board)?;
+        let right = self.run.board.acknowledged();
+        let counts = [(Counter::NextRowIn, status.next_row_in), (Counter::NextRowOut, status.next_row_out)];
+        match counts.into_iter().find(|&(_, counted)| counted != right) {
+            None => Ok(()),
+            Some((counter, counted)) => {
+                Err(End::failed(CheckName::Rules, Finding::CounterWrong { counter, counted, right }))
+            }
+        }
+    }
+}

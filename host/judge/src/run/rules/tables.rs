@@ -1,0 +1,126 @@
+//! Tables that must be refused, and entries at all places.
+
+use halfrow_model::RowFactor;
+use halfrow_protocol::message::{Bank, Entries, NODE_BYTES, NODES, RefusalCode, Request, Span, Table};
+
+use super::small::Tables;
+use super::{Rules, of_board};
+use crate::board::{Board, TablePort};
+use crate::result::Rule;
+use crate::run::findings::End;
+
+const NODE_COUNT: u16 = NODES as u16;
+
+impl Rules<'_, '_> {
+    pub(super) fn tables(&mut self) -> Result<(), End> {
+        self.upload(0)?;
+        self.spans()?;
+        self.entries()?;
+        self.sums(Rule::Entry, Bank::Shadow, 0)?;
+        self.addresses()
+    }
+
+    /// Writes the small tables at `place` into the shadow bank.
+    pub(super) fn upload(&mut self, place: usize) -> Result<(), End> {
+        let Tables { kernel, .. } = &self.small.tables[place];
+        let tables = self.small.tables[place].of(self.small.tall);
+        self.run.board.upload(&tables, kernel).map_err(of_board)
+    }
+
+    /// Every port must read the small tables at `place` in `bank`.
+    pub(super) fn sums(&mut self, rule: Rule, bank: Bank, place: usize) -> Result<(), End> {
+        for TablePort { table, port } in self.run.board.table_ports() {
+            let tables = &self.small.tables[place];
+            let bytes = match table {
+                Table::RowFactors => tables.of(self.small.tall).to_bytes(),
+                Table::Kernel => tables.kernel.to_bytes(),
+            };
+            let count = (bytes.len() / table.entry_bytes()) as u16;
+            let request = Request::TableCrc(Span { table, bank, port, first: 0, count });
+            self.replied(rule, &request, crc32fast::hash(&bytes).to_le_bytes().to_vec())?;
+        }
+        Ok(())
+    }
+
+    fn entries_of(&self, table: Table) -> u16 {
+        if table == Table::Kernel { NODE_COUNT } else { self.capabilities.max_height }
+    }
+
+    /// Spans past the end, of ports that are not there, into the active bank, of more than a packet holds.
+    fn spans(&mut self) -> Result<(), End> {
+        for port in self.run.board.table_ports().into_iter().filter(|port| port.port == 0) {
+            let table = port.table;
+            let entries = self.entries_of(table);
+            let shadow = Span { table, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
+            let ports = match table {
+                Table::RowFactors => self.capabilities.step_ports,
+                Table::Kernel => self.capabilities.kernel_ports,
+            };
+            let bits = (0..u16::BITS).map(|bit| 1_u16 << bit);
+            let beyond = bits.clone().filter(|&first| first >= entries).map(|first| Span { first, ..shadow });
+            let long = bits.filter(|&count| count > entries).map(|count| Span { count, ..shadow });
+            let ends = [(entries - 1, 2), (entries, 1), (2, entries - 1), (u16::MAX, u16::MAX)];
+            let ends = ends.map(|(first, count)| Span { first, count, ..shadow });
+            let no_port = Span { first: 3, port: ports, ..shadow };
+            for span in beyond.chain(long).chain(ends).chain([no_port]) {
+                let request = Request::TableCrc(span);
+                self.refused(Rule::Span, &request, RefusalCode::Range, span.first)?;
+            }
+            let first = Span { first: 1, bank: Bank::Active, ..shadow };
+            for span in [first, Span { first: entries - 1, count: 2, ..shadow }] {
+                let bytes = vec![1; usize::from(span.count) * table.entry_bytes()];
+                let request = Request::TableWrite(Entries { span, bytes: &bytes });
+                self.refused(Rule::Span, &request, RefusalCode::Range, span.first)?;
+            }
+            let most = Board::entries_at_once(table) as u16;
+            if most < entries {
+                let request = Request::TableRead(Span { count: most + 1, ..shadow });
+                self.refused(Rule::Span, &request, RefusalCode::Range, 0)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Row factors out of range, and weights of taps that are not there, behind entries that are right.
+    fn entries(&mut self) -> Result<(), End> {
+        let one = RowFactor::ONE.get();
+        let beyond = (RowFactor::BITS..u32::BITS).map(|bit| 1 << bit);
+        // One that is right before it, if there is room for two.
+        let before = self.capabilities.max_height.saturating_sub(1).min(1);
+        for wrong in [0, one + 1, one | 1 << 12].into_iter().chain(beyond.filter(|&value| value > one)) {
+            let entries = [one].into_iter().take(before.into()).chain([wrong]);
+            let bytes: Vec<u8> = entries.flat_map(u32::to_le_bytes).collect();
+            let (table, bank, count) = (Table::RowFactors, Bank::Shadow, before + 1);
+            let span = Span { table, bank, port: 0, first: 0, count };
+            let request = Request::TableWrite(Entries { span, bytes: &bytes });
+            self.refused(Rule::Entry, &request, RefusalCode::Range, before)?;
+        }
+        let outer: &[usize] = if self.capabilities.taps < 7 { &[0, NODE_BYTES - 1] } else { &[] };
+        for outer in outer {
+            let mut bytes = [0; 2 * NODE_BYTES];
+            bytes[NODE_BYTES + outer] = 1;
+            let span = Span { table: Table::Kernel, bank: Bank::Shadow, port: 0, first: 7, count: 2 };
+            let request = Request::TableWrite(Entries { span, bytes: &bytes });
+            self.refused(Rule::Entry, &request, RefusalCode::Taps, 8)?;
+        }
+        Ok(())
+    }
+
+    /// Another row factor at each place that has one bit of an address, and all of them read.
+    fn addresses(&mut self) -> Result<(), End> {
+        let places = (0..u16::BITS).map(|bit| 1 << bit).filter(|&first| first < self.capabilities.max_height);
+        let places: Vec<_> = places.chain([0, self.capabilities.max_height - 1]).collect();
+        let entry = |first: u16| (u32::from(first) + 1).to_le_bytes();
+        let span = |first| Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first, count: 1 };
+        for &first in &places {
+            let request = Request::TableWrite(Entries { span: span(first), bytes: &entry(first) });
+            self.replied(Rule::Address, &request, Vec::new())?;
+        }
+        for &first in &places {
+            let bytes = entry(first);
+            let reply = super::payload(&Request::TableWrite(Entries { span: span(first), bytes: &bytes }));
+            self.replied(Rule::Address, &Request::TableRead(span(first)), reply)?;
+        }
+        Ok(())
+    }
+}

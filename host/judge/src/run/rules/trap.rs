@@ -1,0 +1,74 @@
+//! Rows whose signatures are expected otherwise than they are, so that the board keeps them.
+
+use halfrow_model::{Content, row_signature};
+use halfrow_protocol::message::{Burst, BurstMode, BurstState, Expect, RefusalCode, Request};
+use halfrow_protocol::samples::pack;
+
+use super::{Rules, of_board};
+use crate::reference::correct;
+use crate::result::Rule;
+use crate::run::findings::End;
+
+/// What TRAP says when no row was kept.
+const NOTHING_KEPT: [u8; 1] = [0];
+
+impl Rules<'_, '_> {
+    /// Each bit of a signature expected wrong, in one row and in another.
+    pub(super) fn trap(&mut self) -> Result<(), End> {
+        if !self.has_trap() {
+            return Ok(());
+        }
+        self.configure(self.small.tall)?;
+        let past = Expect { first: self.capabilities.max_height - 1, bytes: &[[0; Expect::BYTES]; 2] };
+        self.refused(Rule::Trap, &Request::Expect(past), RefusalCode::Range, past.first)?;
+        let rows = self.trapped_rows()?;
+        let signatures: Vec<u32> = rows.iter().map(|row| row_signature(row)).collect();
+        self.trapping(&signatures)?;
+        self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())?;
+        for bit in 0..u32::BITS {
+            let row = bit as usize % rows.len();
+            let mut expected = signatures.clone();
+            expected[row] ^= 1 << bit;
+            // Only the first one is kept.
+            if let Some(last) = expected.last_mut().filter(|_| row + 1 < rows.len()) {
+                *last = !*last;
+            }
+            self.trapping(&expected)?;
+            self.kept(row, &rows[row])?;
+        }
+        self.drop_rows()?;
+        self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())
+    }
+
+    fn trap_burst(&self) -> Option<Burst> {
+        self.small_burst(2).map(|burst| Burst { mode: BurstMode::Trapped, ..burst })
+    }
+
+    /// The rows of the frame that is repeated, as they must leave.
+    fn trapped_rows(&self) -> Result<Vec<Vec<u16>>, End> {
+        let tables = self.small.tables[0].of(self.height);
+        let content = self.trap_burst().map(|burst| Content { seed: burst.seed, frame: burst.first_frame });
+        let input = content.map(|content| content.frame(tables.geometry(), self.small.phase));
+        let frame = input.and_then(|input| correct(&tables, &self.small.tables[0].kernel, &input).ok());
+        Ok(frame
+            .map_or_else(Vec::new, |frame| (0..frame.height()).map(|row| frame.row(row).to_vec()).collect()))
+    }
+
+    /// Has the board repeat a frame whose rows are expected to have these signatures.
+    fn trapping(&mut self, signatures: &[u32]) -> Result<(), End> {
+        let Some(burst) = self.trap_burst() else { return Ok(()) };
+        self.run.board.expect(signatures).map_err(of_board)?;
+        let burst = self.start(burst)?;
+        self.look(&burst, 0, burst.frames, |fetched| fetched.state == BurstState::Ended).map(drop)
+    }
+
+    /// Row `row` of the first frame must have been kept.
+    fn kept(&mut self, row: usize, samples: &[u16]) -> Result<(), End> {
+        let mut kept = vec![1, 0, 0, 0, 0];
+        kept.extend((row as u16).to_le_bytes());
+        kept.extend((samples.len() as u16).to_le_bytes());
+        kept.extend(row_signature(samples).to_le_bytes());
+        pack(samples, &mut kept);
+        self.replied(Rule::Trap, &Request::Trap, kept)
+    }
+}

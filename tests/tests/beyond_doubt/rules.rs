@@ -1,0 +1,192 @@
+//! What a board must refuse, keep and end: one that does otherwise fails, wherever it does, and a sound one never.
+
+use halfrow::result::{Answer, Check, CheckName, Finding, NotExercised, Outcome, Report, Rule};
+use halfrow::run::{Part, Plan, Selection};
+use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
+use halfrow_protocol::message::{Refusal, RowOut, TrappedRow};
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
+
+/// The frame in which rows are given out of order.
+const FRAME: u16 = 0x1234;
+
+/// The least run with the rules.
+fn plan() -> Plan {
+    Plan { parts: Some(Selection::least().with(Part::Rules, 1)), ..System::TINY.plan() }
+}
+
+fn check(report: &Report) -> &Check {
+    report.checks.iter().find(|check| check.name == CheckName::Rules).unwrap()
+}
+
+/// The report on a board of which `alter` makes something else of what it says; none takes it away.
+fn saying(mut alter: impl FnMut(Passing) -> Option<Passing> + Send + 'static) -> Report {
+    let altered = move |toward, packet| match toward {
+        Toward::Board => vec![packet],
+        Toward::Host => alter(packet).into_iter().collect(),
+    };
+    judge_by_plan(&plan(), Altered::new(&Options::default(), altered).candidate())
+}
+
+fn refusal(packet: &Passing) -> Option<Refusal> {
+    match packet.reply() {
+        Some(Reply::Refusal(refusal)) => Some(refusal),
+        _ => None,
+    }
+}
+
+/// The packet as the reply of its kind, empty.
+fn carried_out(packet: &Passing, refusal: Refusal) -> Passing {
+    let mut header = packet.header;
+    header.kind = refusal.kind;
+    Passing { header, payload: Vec::new() }
+}
+
+fn broken(report: &Report) -> (Rule, &Answer, &Answer) {
+    assert_eq!(failed_check(report), Some(CheckName::Rules), "{}", report.headline());
+    assert!(report.remedy().is_some());
+    match &report.finding {
+        Finding::RuleBroken { rule, right, found, .. } => (*rule, right, found),
+        other => panic!("{}", other.sentence()),
+    }
+}
+
+#[test]
+fn builds_of_every_kind_keep_the_rules() {
+    let small = "max-height=1,max-width=64,records=2,table-banks=1,row-banks-in=2,row-banks-out=2,taps=five";
+    let others = "row-banks-in=5,row-banks-out=7,records=64,least-blanking=30,latency=9,ring=4096";
+    for options in ["", "table-banks=1", "bursts=no,entered=no", "bursts=untrapped", others] {
+        let report = judge_by_plan(&plan(), open(format!("mock,{options}").trim_end_matches(',')));
+        assert_eq!(report.verdict, Verdict::Pass, "{options}: {}", report.headline());
+        let Finding::RulesKept { requests } = check(&report).finding else {
+            panic!("{}", check(&report).detail())
+        };
+        assert!(requests > 300, "{options}: {requests}");
+    }
+    for (height, options) in [(1, small), (2, "max-height=2"), (3, "max-height=3")] {
+        let low = Plan { parts: plan().parts, ..System { height, ..System::TINY }.plan() };
+        let report = judge_by_plan(&low, open(&format!("mock,{options}")));
+        assert_eq!(report.verdict, Verdict::Pass, "{options}: {}", report.headline());
+    }
+}
+
+#[test]
+fn each_refusal_that_does_not_come_fails() {
+    let (mut taken, mut rules) = (0, Vec::new());
+    // Some of several hundred, and no two stretches of the same length.
+    for place in (0..600).step_by(17) {
+        let mut count = 0;
+        let report = saying(move |packet| {
+            let Some(refusal) = refusal(&packet) else { return Some(packet) };
+            count += 1;
+            Some(if count == place + 1 { carried_out(&packet, refusal) } else { packet })
+        });
+        if report.verdict == Verdict::Pass {
+            break;
+        }
+        let (rule, right, found) = broken(&report);
+        assert!(
+            matches!(right, Answer::Refused { .. }) && matches!(found, Answer::Replied { .. }),
+            "{rule:?}"
+        );
+        rules.push(rule);
+        taken += 1;
+    }
+    assert!(taken > 25, "{taken}");
+    rules.dedup();
+    assert!(rules.len() > 8, "{rules:?}");
+}
+
+#[test]
+fn a_refusal_for_another_reason_or_with_another_detail_fails() {
+    for detail in [false, true] {
+        let report = saying(move |packet| {
+            let Some(refusal) = refusal(&packet).filter(|refusal| refusal.kind == Kind::Configure.code())
+            else {
+                return Some(packet);
+            };
+            let code = if detail { refusal.code } else { halfrow::board::RefusalCode::Busy };
+            let other = Refusal { code, detail: refusal.detail ^ u16::from(detail), ..refusal };
+            Some(packet.saying(&Reply::Refusal(other)))
+        });
+        let (rule, ..) = broken(&report);
+        // A configuration that is cut short is refused first, without a detail.
+        assert!([Rule::Payload, Rule::Configuration].contains(&rule), "{rule:?}");
+    }
+}
+
+/// It may be the link that loses the same each time, but what was asked is said.
+#[test]
+fn a_board_that_says_nothing_where_it_must_refuse_is_told_of() {
+    let report = saying(|packet| {
+        let is_row = refusal(&packet).is_some_and(|refusal| refusal.kind == Kind::RowIn.code());
+        (!is_row).then_some(packet)
+    });
+    let Finding::WrongOverDoubtfulLink { found, .. } = &report.finding else {
+        panic!("{}", report.headline())
+    };
+    assert!(
+        matches!(**found, Finding::RuleBroken { found: Answer::Nothing {}, .. }),
+        "{}",
+        report.headline()
+    );
+    assert_eq!(report.verdict, Verdict::Error);
+}
+
+/// Both copies of a request may be lost as well, and then nothing is said of the board.
+#[test]
+fn a_link_that_loses_what_must_be_refused_does_not() {
+    let alter = |toward, packet: Passing| {
+        let is_short_row = packet.is(Kind::RowIn) && packet.payload.len() > 14 + 96;
+        let lost = toward == Toward::Board && is_short_row;
+        if lost { Vec::new() } else { vec![packet] }
+    };
+    let report = judge_by_plan(&plan(), Altered::new(&Options::default(), alter).candidate());
+    assert_eq!(
+        (report.verdict, check(&report).outcome),
+        (Verdict::Error, Outcome::Error),
+        "{}",
+        report.headline()
+    );
+}
+
+#[test]
+fn a_row_that_comes_back_wrong_behind_what_was_refused_fails() {
+    let report = saying(|packet| {
+        let Some(Reply::RowOut(row)) = packet.reply() else { return Some(packet) };
+        if row.place.frame != FRAME || row.place.row != 2 {
+            return Some(packet);
+        }
+        let mut packed = row.packed.to_vec();
+        packed[3] ^= 4;
+        Some(packet.saying(&Reply::RowOut(RowOut { packed: &packed, ..row })))
+    });
+    let right = Answer::Row { row: 2, frame: FRAME };
+    assert_eq!(broken(&report), (Rule::Rows, &right, &Answer::OtherRow {}), "{}", report.headline());
+}
+
+#[test]
+fn a_row_that_is_trapped_otherwise_than_it_is_fails() {
+    let report = saying(|packet| match packet.reply() {
+        Some(Reply::Trap(Some(kept))) => {
+            let other = TrappedRow { row: kept.row + 1, ..kept };
+            Some(packet.saying(&Reply::Trap(Some(other))))
+        }
+        _ => Some(packet),
+    });
+    assert_eq!(broken(&report).0, Rule::Trap);
+}
+
+#[test]
+fn a_commit_that_is_not_checked_passes_but_for_the_rules() {
+    let fault = "mock,fault=unchecked-commit";
+    let report = judge_by_plan(&plan(), open(fault));
+    assert_eq!(broken(&report).0, Rule::CommitCrc, "{}", report.headline());
+    let without = Plan { parts: Some(Selection::least().with(Part::Corners, 1)), ..System::TINY.plan() };
+    let report = judge_by_plan(&without, open(fault));
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert_eq!(check(&report).finding, Finding::RulesLeftOut {});
+    assert!(report.not_exercised.contains(&NotExercised::Rules {}));
+}
