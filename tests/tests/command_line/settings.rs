@@ -112,7 +112,7 @@ fn limits_come_from_the_file_too() {
     let slow = ["--board", "mock,speed=1000"];
     assert_eq!(run(&folder, "timeout = 20\n", None, &slow).code, Some(3));
     assert_eq!(run(&folder, "timeout = 20\n", Some(("HALFROW_TIMEOUT", "100000")), &slow).code, Some(0));
-    let poor = ["--board", "mock,fault=truncate,rate=0.03,seed=1"];
+    let poor = ["--board", "mock,fault=truncate,rate=0.05,seed=1"];
     assert_eq!(run(&folder, "retry_limit = 100\n", None, &poor).code, Some(0));
     assert_eq!(run(&folder, "retry_limit = 0\n", None, &poor).code, Some(3));
 }

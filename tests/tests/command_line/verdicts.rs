@@ -153,7 +153,7 @@ fn a_run_ends_at_its_time_limit() {
 
 #[test]
 fn a_stricter_limit_on_retries_makes_a_link_too_poor() {
-    let board = "mock,fault=truncate,rate=0.03,seed=1";
+    let board = "mock,fault=truncate,rate=0.05,seed=1";
     let lenient = halfrow(small("verify", &["--board", board, "--retry-limit", "100"]));
     assert_eq!(lenient.code, Some(0), "{}", lenient.stdout);
     let strict = halfrow(small("verify", &["--board", board, "--retry-limit", "0"]));

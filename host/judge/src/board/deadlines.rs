@@ -26,8 +26,9 @@ pub struct Deadline {
     pub attempts: u32,
 }
 
-/// The most that is waited for an answer that a link is known to hold back.
-const LONGEST: Duration = Duration::from_secs(5);
+/// The most that is waited for an answer that a link is known to hold back: a third try comes before a board takes a host that is
+/// silent for 10 s for gone.
+const LONGEST: Duration = Duration::from_secs(3);
 
 impl Step {
     /// The table. A link that stands still for 10 s, after which the board may be another host's, is waited for.

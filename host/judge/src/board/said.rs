@@ -27,13 +27,13 @@ pub(crate) struct CameAgain {
     pub(crate) samples: Vec<u16>,
 }
 
-/// What `packet` says of the row at `place`, if it says anything.
-fn came_again(packet: &Packet<'_>, place: &RowPlace) -> Option<CameAgain> {
+/// What `packet` says of the row at `place`, if it is one that was sent so many times before.
+fn came_again(packet: &Packet<'_>, place: &RowPlace, repeats: u16) -> Option<CameAgain> {
     let Ok(Reply::RowOut(row)) = Reply::read(packet) else { return None };
     let mut samples = vec![0; row.place.width.into()];
     samples::unpack(row.packed, &mut samples);
     let came = CameAgain { repeats: row.repeats, generation: row.generation, samples };
-    (row.place == *place).then_some(came)
+    (row.place == *place && row.repeats >= repeats).then_some(came)
 }
 
 impl Board {
@@ -86,20 +86,20 @@ impl Board {
         self.reset_to(Reset { level: ResetLevel::Rows, next_row }, Step::Request)
     }
 
-    /// Waits for a row that was given and is not acknowledged, and returns it with its samples. It is asked for again, first of
-    /// all if it `is_there` already.
+    /// Waits for the first of two rows that were given and are not acknowledged, as it comes when it was sent `repeats` times before or
+    /// more often. It is asked for again, first of all if that is not the first time, and then with the one that pushes it out.
     ///
     /// # Errors
     /// [`BoardError`] when it does not come.
     pub(crate) fn again(
         &mut self,
-        place: &RowPlace,
-        samples: &[u16],
-        is_there: bool,
+        rows: [(&RowPlace, &[u16]); 2],
+        repeats: u16,
     ) -> Result<CameAgain, BoardError> {
-        let attempts = Step::Row.deadline().attempts;
+        let (attempts, [(place, _), _]) = (Step::Row.deadline().attempts, rows);
         for attempt in 0..attempts {
-            if is_there || attempt > 0 {
+            let asked = if attempt > 0 { 2 } else { repeats.min(1).into() };
+            for (place, samples) in rows.into_iter().take(asked) {
                 self.conversation.queue_row(place, samples);
             }
             let bytes = self.conversation.queued() + halfrow_protocol::MAX_PACKET;
@@ -109,8 +109,9 @@ impl Board {
             {
                 let mut came = None;
                 let doing = || format!("waiting for row {} once more", place.row);
-                self.conversation
-                    .exchange(wait, doing, |packet| came = came.take().or(came_again(packet, place)))?;
+                self.conversation.exchange(wait, doing, |packet| {
+                    came = came.take().or(came_again(packet, place, repeats));
+                })?;
                 if let Some(came) = came {
                     return Ok(came);
                 }

@@ -259,9 +259,17 @@ impl Rules<'_, '_> {
         Ok(())
     }
 
-    /// The records that there are of `burst`; none if the last burst is another.
+    /// How many records there are of `burst`, which a RESET has ended; none if the last burst is another. A link may have delivered
+    /// the RESET in front of it, and then it takes another one.
     fn came_of(&mut self, burst: &Burst) -> Result<Option<u32>, End> {
-        match self.run.board.records(burst.burst, 0) {
+        let records = match self.run.board.records(burst.burst, 0) {
+            Ok(fetched) if fetched.state == BurstState::UnderWay => {
+                self.drop_rows()?;
+                self.run.board.records(burst.burst, 0)
+            }
+            records => records,
+        };
+        match records {
             Ok(fetched) => Ok(Some(fetched.records.len() as u32)),
             Err(BoardError::Unexpected { .. }) => Ok(None),
             Err(error) => Err(of_board(error)),

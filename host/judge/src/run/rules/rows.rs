@@ -186,18 +186,26 @@ impl Rules<'_, '_> {
         let right = correct(&row_factors, &tables.kernel, &frame).ok();
         self.give(0);
         self.give(1);
-        let first = RowPlace { last: false, ..self.place(0) };
-        let calm = self.run.board.tally().retries;
+        let (first, second) = (self.place(0), self.place(1));
+        let rows = [(&first, frame.row(0)), (&second, frame.row(1))];
+        let retries = self.run.board.tally().retries;
         for repeats in 0..=AGAIN {
-            let came = self.run.board.again(&first, frame.row(0), repeats > 0).map_err(of_board)?;
-            let is_counted = came.repeats == repeats || self.run.board.tally().retries > calm;
+            let came = self.run.board.again(rows, repeats).map_err(of_board)?;
             let is_right = right.as_ref().is_none_or(|right| right.row(0) == came.samples);
-            if !is_counted || !is_right || came.generation != GENERATION {
+            let is_counted = came.repeats == repeats || !self.is_calm(retries)?;
+            if !is_right || !is_counted || came.generation != GENERATION {
                 return Err(other_row(Rule::Again, 0, FRAME));
             }
         }
         self.run.board.acknowledge(first.row_sequence + mem::take(&mut self.given));
         self.configure(self.small.rows())
+    }
+
+    /// Whether nothing was sent again behind so many `retries`, and nothing came to the board twice.
+    fn is_calm(&mut self, retries: u64) -> Result<bool, End> {
+        let status = self.run.board.status(false).map_err(of_board)?;
+        let board = &self.run.board;
+        Ok(board.tally().retries == retries && u64::from(status.packets) == board.packets_since_clear())
     }
 
     /// Rows that are dropped while they leave, each time at another place, with rows behind them that must be right.
