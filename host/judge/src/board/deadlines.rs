@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_link_that_holds_answers_back_is_given_half_as_long_again_but_not_for_ever() {
         let wait = |slowest| Step::Row.wait(0, 0, None, Duration::from_millis(slowest)).as_millis();
-        assert_eq!([wait(100), wait(1000), wait(3000), wait(60_000)], [250, 1500, 4500, 5000]);
+        assert_eq!([wait(100), wait(1000), wait(2000), wait(60_000)], [250, 1500, 3000, 3000]);
     }
 
     #[test]
