@@ -6,13 +6,13 @@ use std::time::Duration;
 use halfrow_model::{Content, Signer};
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{
-    Bank, Burst, BurstMode, BurstState, Commit, Entries, Expect, FrameRecord, RefusalCode, Request, RowIn,
-    RowPlace, Span, Table,
+    Bank, Burst, BurstMode, BurstState, Commit, Entries, Expect, FrameRecord, Records, RefusalCode, Request,
+    RowIn, RowPlace, Span, Table,
 };
 use halfrow_protocol::samples::pack;
 
 use super::{Rules, of_board};
-use crate::board::{BoardError, Fetched};
+use crate::board::{BoardError, Fetched, Said};
 use crate::reference::corrector;
 use crate::result::{Answer, Rule};
 use crate::run::at_speed::clock_hz;
@@ -20,15 +20,19 @@ use crate::run::findings::End;
 
 /// How many records are taken each time that a burst waits for free ones.
 const TAKEN: [u32; 4] = [5, 1, 9, 4];
-/// The most records that are made and asked for again.
-const RECORDS: u32 = 64;
 /// Frames of a burst that is to be right: every board has records for two.
 const FEW: u32 = 2;
 /// How long a burst may take beside the time that its frames take on the board's clock.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Bytes that go to the board between the beginning of a burst and its end, so that it is cut at another place each time.
 const BYTES_TO_CUT: [usize; 8] = [0, 5, 11, 40, 77, 130, 211, 400];
-/// The seed's greatest bit, so that it is not a small number.
+/// Bytes of RECORDS' reply in front of the records, and some of those of a record (AT-SPEED.md).
+const HEAD: usize = 10;
+const PAUSES_LOW: usize = 14;
+const PAUSES_HIGH: usize = 15;
+const FLAGS: usize = 17;
+const HELD_BACK: u8 = 1;
+/// Keeps the seed of bursts from that of frames.
 const FAR: u32 = 0xa5a5_0000;
 
 impl Rules<'_, '_> {
@@ -147,7 +151,10 @@ impl Rules<'_, '_> {
 
     /// A burst that waits for free records again and again: what is refused meanwhile, and what it tells again.
     fn waiting(&mut self) -> Result<(), End> {
-        let kept = self.capabilities.bursts.map_or(0, |bursts| u32::from(bursts.records)).min(RECORDS);
+        let kept = self.capabilities.bursts.map_or(0, |bursts| u32::from(bursts.records));
+        if kept as usize > Records::MOST {
+            return Ok(());
+        }
         let taken = TAKEN.map(|taken| taken.min(kept));
         let all = kept + taken.iter().sum::<u32>();
         let Some(burst) = self.small_burst(2 * all) else { return Ok(()) };
@@ -160,32 +167,45 @@ impl Rules<'_, '_> {
                 // Fewer frames than were asked for first.
                 self.replied(Rule::Ended, &Request::Burst(Burst { frames: all, ..burst }), Vec::new())?;
             }
-            self.told(&burst, from..from + kept, BurstState::UnderWay, &held)?;
+            self.told(Rule::Records, &burst, from..from + kept, BurstState::UnderWay, &held)?;
             self.never_told(from..from + kept)?;
             held.push(from + kept);
             from += taken;
         }
         self.look(&burst, from, kept, |fetched| fetched.state == BurstState::Ended)?;
-        self.told(&burst, from..all, BurstState::Ended, &held)?;
+        self.told(Rule::Records, &burst, from..all, BurstState::Ended, &held)?;
         // One that has ended goes on no more, and its records stay behind a RESET.
         self.replied(Rule::Ended, &Request::Burst(Burst { frames: 2 * all, ..burst }), Vec::new())?;
         self.drop_rows()?;
         for from in from..=all {
-            self.told(&burst, from..all, BurstState::Ended, &held)?;
+            self.told(Rule::Records, &burst, from..all, BurstState::Ended, &held)?;
         }
         self.never_told(all..all)
     }
 
     /// The records of `frames` and no others must be there, of which those in `held` waited for a free one; they free those before.
+    /// Pauses are what a board cannot help, and of the flags one is looked at.
     fn told(
         &mut self,
+        rule: Rule,
         burst: &Burst,
         frames: Range<u32>,
         state: BurstState,
         held: &[u32],
     ) -> Result<(), End> {
-        let records = self.records(burst, frames.clone(), state, held);
-        self.replied(Rule::Records, &Request::Records { from: frames.start }, records)
+        let mut right = self.records(burst, frames.clone(), state, held);
+        let said = self.run.board.ask(Kind::Records, &frames.start.to_le_bytes());
+        if let Ok(Said::Replied(found)) = &said {
+            for (byte, (right, found)) in right.iter_mut().zip(found).skip(HEAD).enumerate() {
+                let free = match byte % FrameRecord::BYTES {
+                    PAUSES_LOW | PAUSES_HIGH => u8::MAX,
+                    FLAGS => !HELD_BACK,
+                    _ => 0,
+                };
+                *right = *right & !free | *found & free;
+            }
+        }
+        self.judge(rule, Kind::Records, said, &Said::Replied(right))
     }
 
     /// What lies before or beyond the records of `frames` is refused.
@@ -238,8 +258,9 @@ impl Rules<'_, '_> {
         self.replied(Rule::Ended, &Request::Burst(Burst { frames: 0, ..burst }), Vec::new())?;
         let ended = self.look(&burst, 0, FEW, |fetched| fetched.state == BurstState::Ended)?;
         let came = ended.records.len() as u32;
-        self.told(&burst, 0..came, BurstState::Ended, &[])?;
-        self.never_told(0..came)
+        self.told(Rule::Records, &burst, 0..came, BurstState::Ended, &[])?;
+        // Of more than fit a packet it is not known where they end.
+        if (came as usize) < Records::MOST { self.never_told(0..came) } else { Ok(()) }
     }
 
     /// Bursts that are cut, each at another place, with rows and a burst behind each that must be right.
@@ -250,8 +271,7 @@ impl Rules<'_, '_> {
             self.run.board.cut(&burst, bytes).map_err(of_board)?;
             // Where the request was lost there is none.
             if let Some(came) = self.came_of(&burst)? {
-                let records = self.records(&burst, 0..came, BurstState::Ended, &[]);
-                self.replied(Rule::Cut, &Request::Records { from: 0 }, records)?;
+                self.told(Rule::Cut, &burst, 0..came, BurstState::Ended, &[])?;
             }
             self.right_frames(&[super::rows::FRAME])?;
             self.right_burst(Rule::Cut, BurstMode::Fresh)?;
@@ -281,8 +301,7 @@ impl Rules<'_, '_> {
         let Some(burst) = self.small_burst(FEW) else { return Ok(()) };
         let burst = self.start(Burst { mode, ..burst })?;
         self.look(&burst, 0, FEW, |fetched| fetched.state == BurstState::Ended)?;
-        let records = self.records(&burst, 0..FEW, BurstState::Ended, &[]);
-        self.replied(rule, &Request::Records { from: 0 }, records)
+        self.told(rule, &burst, 0..FEW, BurstState::Ended, &[])
     }
 
     fn repeating(&mut self) -> Result<(), End> {

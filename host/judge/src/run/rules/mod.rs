@@ -94,7 +94,19 @@ impl<'a, 'run> Rules<'a, 'run> {
 
     /// Asks, and ends with anything but the answer `right`; a reply may have more bytes than that.
     fn must(&mut self, rule: Rule, kind: Kind, payload: &[u8], right: &Said) -> Result<(), End> {
-        let found = match self.run.board.ask(kind, payload) {
+        let said = self.run.board.ask(kind, payload);
+        self.judge(rule, kind, said, right)
+    }
+
+    /// Ends with anything `said` but the answer `right`.
+    fn judge(
+        &mut self,
+        rule: Rule,
+        kind: Kind,
+        said: Result<Said, BoardError>,
+        right: &Said,
+    ) -> Result<(), End> {
+        let found = match said {
             Ok(said) if is_as(&said, right) => {
                 self.right += 1;
                 return Ok(());
