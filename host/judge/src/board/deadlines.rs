@@ -28,7 +28,7 @@ pub struct Deadline {
 
 /// The most that is waited for an answer that a link is known to hold back: a third try comes before a board takes a host that is
 /// silent for 10 s for gone.
-const LONGEST: Duration = Duration::from_secs(3);
+const LONGEST: Duration = Duration::from_millis(4800);
 
 impl Step {
     /// The table. A link that stands still for 10 s, after which the board may be another host's, is waited for.
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_link_that_holds_answers_back_is_given_half_as_long_again_but_not_for_ever() {
         let wait = |slowest| Step::Row.wait(0, 0, None, Duration::from_millis(slowest)).as_millis();
-        assert_eq!([wait(100), wait(1000), wait(2000), wait(60_000)], [250, 1500, 3000, 3000]);
+        assert_eq!([wait(100), wait(1000), wait(2000), wait(60_000)], [250, 1500, 3000, 4800]);
     }
 
     #[test]
