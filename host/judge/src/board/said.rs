@@ -36,6 +36,11 @@ fn came_again(packet: &Packet<'_>, place: &RowPlace, repeats: u16) -> Option<Cam
     (row.place == *place && row.repeats >= repeats).then_some(came)
 }
 
+/// Whether `packet` says that the board no longer knows the session.
+fn is_of_no_session(packet: &Packet<'_>) -> bool {
+    matches!(Reply::read(packet), Ok(Reply::Refusal(refusal)) if refusal.code == RefusalCode::Session)
+}
+
 impl Board {
     /// Sends a request of `kind` with any payload, and returns what the board says to it.
     ///
@@ -107,13 +112,16 @@ impl Board {
             while let Some(wait) =
                 deadline.checked_sub(self.conversation.waited).filter(|wait| !wait.is_zero())
             {
-                let mut came = None;
+                let (mut came, mut is_lost) = (None, false);
                 let doing = || format!("waiting for row {} once more", place.row);
                 self.conversation.exchange(wait, doing, |packet| {
                     came = came.take().or(came_again(packet, place, repeats));
+                    is_lost |= is_of_no_session(packet);
                 })?;
-                if let Some(came) = came {
-                    return Ok(came);
+                match came {
+                    Some(came) => return Ok(came),
+                    None if is_lost => return Err(BoardError::SessionLost),
+                    None => {}
                 }
             }
             self.conversation.count_retry()?;
