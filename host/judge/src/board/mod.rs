@@ -201,6 +201,12 @@ impl Board {
         self.conversation.tally.packets_out.saturating_sub(self.counted_from)
     }
 
+    /// Whether every packet that was sent since the board's counters were set back came to it whole, and once.
+    #[must_use]
+    pub(crate) fn had_each_packet_once(&self, status: &Status) -> bool {
+        u64::from(status.packets) == self.packets_since_clear()
+    }
+
     /// Sets the counters back, and drops tables that an earlier session left: a board takes a generation that is active
     /// already for a repeated packet, and would go on using the old tables under it. Says whether there were any.
     ///
@@ -249,11 +255,6 @@ impl Board {
         traffic: &mut dyn RowTraffic,
     ) -> Result<Option<Unreturned>, BoardError> {
         rows::stream_once(&mut self.conversation, traffic)
-    }
-
-    /// Sends a row once more, and waits for nothing.
-    pub(crate) fn send_again(&mut self, row: &Unreturned) {
-        self.conversation.queue_row(&row.place, &row.samples);
     }
 
     /// Drops the rows inside the board, so that another stream can begin.

@@ -4,6 +4,7 @@ use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Res
 use halfrow_protocol::{Kind, Packet, samples};
 
 use super::asked::Asking;
+use super::conversation::take_reply;
 use super::deadlines::Step;
 use super::{Board, BoardError, RowTraffic, rows};
 
@@ -53,10 +54,9 @@ impl Board {
         if packet.header.kind == kind.code() && kind != Kind::Refusal {
             return Ok(Said::Replied(packet.payload.to_vec()));
         }
-        match Reply::read(&packet).map_err(|source| BoardError::Malformed { kind, source })? {
-            Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
-            Reply::Refusal(refusal) => Ok(Said::Refused(refusal)),
-            _ => Err(BoardError::Unexpected { kind }),
+        match take_reply(kind, &answer, |_| None) {
+            Err(BoardError::Refused { refusal, .. }) => Ok(Said::Refused(refusal)),
+            said => said,
         }
     }
 

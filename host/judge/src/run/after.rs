@@ -102,7 +102,7 @@ impl Run<'_> {
         let tally = self.board.tally();
         let damaged = status.crc_errors.saturating_add(status.framing_errors);
         let is_calm = tally.retries + tally.strays + tally.damaged_in + u64::from(damaged) == 0
-            && u64::from(status.packets) == self.board.packets_since_clear();
+            && self.board.had_each_packet_once(status);
         let pairs = [
             (Counter::RowsIn, status.rows_in, expected, true),
             (Counter::RowsOut, status.rows_out, expected, true),

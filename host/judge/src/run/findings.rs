@@ -81,8 +81,6 @@ pub(super) struct Findings {
     pub(super) not_exercised: Vec<NotExercised>,
     /// What was left untouched at the full pixel clock.
     pub(super) untested_at_speed: Vec<NotExercised>,
-    /// Whether the wire's rules were left out.
-    pub(super) rules_untried: bool,
     /// Tables that frames in corners were made with, at the full pixel clock.
     pub(super) corners: Vec<Generation>,
     /// Generations of the plan that whole frames were made with, at the full pixel clock.
@@ -116,7 +114,6 @@ impl Findings {
             rows_counted: 0,
             not_exercised: Vec::new(),
             untested_at_speed: Vec::new(),
-            rules_untried: false,
             corners: Vec::new(),
             whole_at_speed: Vec::new(),
             bursts: 0,

@@ -9,6 +9,7 @@ use super::golden::{self, CannotJudge};
 use super::legal::impossible;
 use super::misfit::misfit;
 use super::options::RunOptions;
+use super::parts::Part;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
@@ -131,7 +132,8 @@ impl Run<'_> {
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
-        self.findings.not_exercised.extend(self.findings.rules_untried.then_some(NotExercised::Rules {}));
+        let untried = self.plan.soak.is_none() && self.plan.amount(Part::Rules) == 0;
+        self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
     }
 
     /// The rows of `generation` that frames were made with, if there were any.

@@ -30,6 +30,7 @@ pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames}
 use watched::{EndsEarly, Watched};
 
 pub(super) use corners::{BY_TURNS, CALM, drawn_factors, drawn_kernel, fit};
+pub(super) use predicted::signer;
 
 /// The content id that the model makes (AT-SPEED.md).
 pub(super) const CONTENT: u16 = 1;

@@ -44,6 +44,6 @@ pub(super) fn ahead<'scope, 'run: 'scope>(
 }
 
 /// A signer of frames that are made with `generation`.
-pub(super) fn signer(generation: &Generation) -> Signer {
+pub(in crate::run) fn signer(generation: &Generation) -> Signer {
     Signer::new(reference::corrector(&generation.kernel))
 }

@@ -6,16 +6,14 @@ use std::time::Duration;
 use halfrow_model::{Content, Signer};
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{
-    Bank, Burst, BurstMode, BurstState, Commit, Entries, Expect, FrameRecord, Records, RefusalCode, Request,
-    RowIn, RowPlace, Span, Table,
+    Burst, BurstMode, BurstState, Entries, Expect, FrameRecord, Records, RefusalCode, Request, RowPlace, Span,
 };
-use halfrow_protocol::samples::pack;
 
-use super::{Rules, of_board};
+use super::{FIRST_FACTOR, Rules, of_board};
 use crate::board::{BoardError, Fetched, Said};
-use crate::reference::corrector;
 use crate::result::{Answer, Rule};
-use crate::run::at_speed::clock_hz;
+use crate::run::Generation;
+use crate::run::at_speed::{clock_hz, signer};
 use crate::run::findings::End;
 
 /// How many records are taken each time that a burst waits for free ones.
@@ -86,31 +84,31 @@ impl Rules<'_, '_> {
         self.capabilities.bursts.is_some_and(|bursts| bursts.trap)
     }
 
-    /// The record of frame `n` of `burst`, made at the full pixel clock.
-    fn record(&self, signer: &mut Signer, burst: &Burst, n: u32) -> FrameRecord {
+    /// The record of frame `n` of `burst`, made at the full pixel clock with `made`, whose frames `signer` signs.
+    fn record(&self, (made, signer): (&Generation, &mut Signer), burst: &Burst, n: u32) -> FrameRecord {
         let own = burst.mode == BurstMode::Fresh || burst.mode == BurstMode::Alternating;
         let frame = burst.first_frame.wrapping_add(if own { n as u16 } else { 0 });
-        let tables = self.small.tables[0].of(self.small.rows());
         let content = Content { seed: burst.seed, frame };
-        let geometry = &self.small.geometry;
+        let geometry = made.tables.geometry();
         FrameRecord {
-            signature: signer.sign(&tables, content, &mut Vec::new()),
+            signature: signer.sign(&made.tables, content, &mut Vec::new()),
             samples: (geometry.width() * geometry.height()) as u32,
             rows: geometry.height() as u16,
             least_latency: self.small.latency(geometry),
             most_latency: self.small.latency(geometry),
             pauses: 0,
-            generation: super::rows::GENERATION,
+            generation: made.number,
             held_back: false,
         }
     }
 
     /// What must be said of `burst` to whoever asks for `frames`, of which those in `held` waited for a record.
     fn records(&self, burst: &Burst, frames: Range<u32>, state: BurstState, held: &[u32]) -> Vec<u8> {
-        let mut signer = Signer::new(corrector(&self.small.tables[0].kernel));
+        let made = self.small.made(0, self.small.rows(), super::rows::GENERATION);
+        let mut signer = signer(&made);
         let records = frames.clone().map(|n| {
             let held_back = held.contains(&n);
-            FrameRecord { held_back, ..self.record(&mut signer, burst, n) }.to_bytes()
+            FrameRecord { held_back, ..self.record((&made, &mut signer), burst, n) }.to_bytes()
         });
         let mut said = Vec::new();
         said.extend(burst.burst.to_le_bytes());
@@ -219,30 +217,18 @@ impl Rules<'_, '_> {
     }
 
     fn busy_with_burst(&mut self, burst: &Burst) -> Result<(), End> {
-        let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
-        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1 };
-        let width = self.small.geometry.width();
-        let mut packed = Vec::new();
-        pack(&vec![0; width], &mut packed);
-        let row_sequence = self.run.board.acknowledged();
-        let place = RowPlace { row_sequence, frame: 0, row: 0, width: width as u16, last: false };
-        let mut requests = vec![
-            Request::TableRead(span),
-            Request::TableCrc(span),
-            Request::Commit(commit),
-            Request::Configure(self.configuration()),
-            Request::RowIn(RowIn { place, packed: &packed }),
-        ];
-        requests.extend(
-            (0..u32::BITS)
-                .filter(|&bit| burst.burst != 1 << bit)
-                .map(|bit| Request::Burst(Burst { burst: burst.burst ^ 1 << bit, ..*burst })),
-        );
+        self.busy(Rule::UnderWay)?;
+        let place = RowPlace { frame: 0, last: false, ..self.place(0) };
+        self.row_refused(Rule::UnderWay, place, RefusalCode::Busy)?;
+        let others = (0..u32::BITS).filter(|&bit| burst.burst != 1 << bit);
+        let others = others.map(|bit| Burst { burst: burst.burst ^ 1 << bit, ..*burst });
+        let mut requests: Vec<_> = others.map(Request::Burst).collect();
         if self.has_trap() {
             requests.push(Request::Expect(Expect { first: 0, bytes: &[] }));
         }
         if self.capabilities.table_banks < 2 {
-            requests.push(Request::TableWrite(Entries { span: Span { count: 0, ..span }, bytes: &[] }));
+            let span = Span { count: 0, ..FIRST_FACTOR };
+            requests.push(Request::TableWrite(Entries { span, bytes: &[] }));
         }
         for request in requests {
             self.refused(Rule::UnderWay, &request, RefusalCode::Busy, 0)?;

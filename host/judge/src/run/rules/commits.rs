@@ -2,11 +2,12 @@
 
 use std::mem;
 
-use halfrow_protocol::message::{Bank, Commit, Entries, RefusalCode, Request, Span, Table};
+use halfrow_protocol::message::{Commit, Entries, RefusalCode, Request, Span, Table};
 
-use super::Rules;
 use super::compared::Compared;
+use super::{FIRST_FACTOR, Rules};
 use crate::result::Rule;
+use crate::run::Generation;
 use crate::run::findings::End;
 
 /// Generations that differ in every bit.
@@ -36,10 +37,10 @@ impl Rules<'_, '_> {
 
     /// The request that commits the small tables at `place`, of which a frame has one row.
     fn commit_of(&self, place: usize, generation: u8, first_frame: u16) -> Commit {
-        let tables = &self.small.tables[place];
+        let Generation { tables, kernel, .. } = self.small.made(place, 1, generation);
         Commit {
-            steps_crc: crc32fast::hash(&tables.of(1).to_bytes()),
-            kernel_crc: crc32fast::hash(&tables.kernel.to_bytes()),
+            steps_crc: crc32fast::hash(&tables.to_bytes()),
+            kernel_crc: crc32fast::hash(&kernel.to_bytes()),
             first_frame,
             generation,
         }
@@ -53,9 +54,7 @@ impl Rules<'_, '_> {
     /// Frames of one row each, which the small tables at `place` must make as `generation`.
     fn one_rows(&mut self, rule: Rule, frames: &[u16], (generation, place): (u8, usize)) -> Result<(), End> {
         let made = self.small.made(place, 1, generation);
-        let compared = frames
-            .iter()
-            .fold(Compared::default(), |compared, &number| compared.with(&self.small, number, &made));
+        let compared = Compared::default().with(&self.small, frames.iter().copied(), &made);
         self.frames(rule, compared)
     }
 
@@ -104,7 +103,7 @@ impl Rules<'_, '_> {
             let another = Commit { generation: generation ^ 1 << bit, ..self.commit_of(1, 0, FRAME) };
             self.refused(Rule::Pending, &Request::Commit(another), RefusalCode::Busy, 0)?;
         }
-        let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 0 };
+        let span = Span { count: 0, ..FIRST_FACTOR };
         let write = Request::TableWrite(Entries { span, bytes: &[] });
         self.refused(Rule::Pending, &write, RefusalCode::Busy, 0)?;
         self.small_burst(1)
@@ -117,7 +116,7 @@ impl Rules<'_, '_> {
         self.busy_with_commit(FIRST)?;
         self.drop_rows()?;
         self.one_rows(Rule::Forgotten, &[FRAME], (SECOND, 1))?;
-        self.sums(Rule::Forgotten, Bank::Shadow, 0)?;
+        self.sums(Rule::Forgotten, 0)?;
         self.commit(0, FIRST, FRAME)?;
         self.one_rows(Rule::CommitFrame, &[FRAME], (FIRST, 0))
     }
@@ -130,11 +129,8 @@ impl Rules<'_, '_> {
             self.commit(next.1, next.0, FRAME)?;
             let old = self.small.made(active.1, 1, active.0);
             let new = self.small.made(next.1, 1, next.0);
-            let compared = (0..=before)
-                .fold(Compared::default(), |compared, number| compared.with(&self.small, number, &old));
-            let compared = [FRAME, FRAME + 1]
-                .into_iter()
-                .fold(compared, |compared, number| compared.with(&self.small, number, &new));
+            let compared = Compared::default().with(&self.small, 0..=before, &old);
+            let compared = compared.with(&self.small, [FRAME, FRAME + 1], &new);
             self.frames(Rule::CommitFrame, compared)?;
             mem::swap(&mut active, &mut next);
         }

@@ -3,22 +3,13 @@
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-use halfrow_model::{Frame, Kernel, TableSet};
+use halfrow_model::Frame;
 
 use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
 use crate::reference::correct;
+use crate::run::Generation;
 use crate::run::pauses::pauses;
-
-/// What makes a frame.
-#[derive(Clone)]
-pub(super) struct Made {
-    pub(super) generation: u8,
-    pub(super) tables: TableSet,
-    pub(super) kernel: Kernel,
-    /// The seed of its gaps.
-    pub(super) gap_seed: u32,
-}
 
 /// What a frame must come back as.
 struct Right {
@@ -32,6 +23,8 @@ struct Right {
 /// Frames that must come back right.
 #[derive(Default)]
 pub(super) struct Compared {
+    /// The seed of their gaps.
+    gap_seed: u32,
     frames: VecDeque<NumberedFrame>,
     right: Vec<Right>,
     /// The first row that is not: its place in its frame, and the frame.
@@ -39,16 +32,28 @@ pub(super) struct Compared {
 }
 
 impl Compared {
-    /// With frame `number` behind the others.
-    pub(super) fn with(mut self, small: &Small, number: u16, made: &Made) -> Self {
-        let Made { generation, tables, kernel, gap_seed } = made;
-        let numbered = small.frame(number, tables);
-        if let Ok(frame) = correct(tables, kernel, &numbered.frame) {
-            let (latency, generation) = (small.latency(tables.geometry()), *generation);
-            let pauses = pauses(*gap_seed, frame.width(), frame.height());
-            self.right.push(Right { number, generation, frame, latency, pauses });
+    /// None yet, with gaps drawn by `gap_seed`.
+    pub(super) fn with_gaps(gap_seed: u32) -> Self {
+        Self { gap_seed, ..Self::default() }
+    }
+
+    /// With these frames behind the others, which `made` makes.
+    pub(super) fn with(
+        mut self,
+        small: &Small,
+        numbers: impl IntoIterator<Item = u16>,
+        made: &Generation,
+    ) -> Self {
+        let Generation { number: generation, tables, kernel } = made;
+        for number in numbers {
+            let numbered = small.frame(number, tables);
+            if let Ok(frame) = correct(tables, kernel, &numbered.frame) {
+                let (latency, generation) = (small.latency(tables.geometry()), *generation);
+                let pauses = pauses(self.gap_seed, frame.width(), frame.height());
+                self.right.push(Right { number, generation, frame, latency, pauses });
+            }
+            self.frames.push_back(numbered);
         }
-        self.frames.push_back(numbered);
         self
     }
 

@@ -17,10 +17,10 @@ mod wide;
 use std::mem;
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{Refusal, RefusalCode, Request};
+use halfrow_protocol::message::{Bank, Refusal, RefusalCode, Request, Span, Table};
 
 use super::findings::End;
-use super::parts::Part;
+use super::parts::{Part, of_height};
 use super::plan::Segment;
 use super::steps::Run;
 use crate::board::{BoardError, Capabilities, RowTiming, Said};
@@ -32,12 +32,13 @@ use small::Small;
 
 /// Bytes of a reply that a finding tells.
 const TOLD: usize = 32;
+/// The first row factor of the shadow bank.
+const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
 
 impl Run<'_> {
     /// Tries the rules, with the board back behind `last` if it goes away meanwhile.
     pub(super) fn rules(&mut self, last: Option<&Segment>) -> Result<(), End> {
         if self.plan.amount(Part::Rules) == 0 {
-            self.findings.rules_untried = true;
             self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
             return Ok(());
         }
@@ -92,13 +93,7 @@ impl<'a, 'run> Rules<'a, 'run> {
         Ok(self.right)
     }
 
-    /// Asks, and ends with anything but the answer `right`; a reply may have more bytes than that.
-    fn must(&mut self, rule: Rule, kind: Kind, payload: &[u8], right: &Said) -> Result<(), End> {
-        let said = self.run.board.ask(kind, payload);
-        self.judge(rule, kind, said, right)
-    }
-
-    /// Ends with anything `said` but the answer `right`.
+    /// Ends with anything `said` but the answer `right`; a reply may have more bytes than that.
     fn judge(
         &mut self,
         rule: Rule,
@@ -122,8 +117,8 @@ impl<'a, 'run> Rules<'a, 'run> {
     fn nothing(&mut self, silence: &BoardError) -> Result<Answer, End> {
         let damaged = self.run.board.tally().damaged_in;
         let status = self.run.board.status(false).map_err(|_| End::board(CheckName::Rules, silence))?;
-        let is_whole = u64::from(status.packets) == self.run.board.packets_since_clear()
-            && damaged == self.run.board.tally().damaged_in;
+        let is_whole =
+            self.run.board.had_each_packet_once(&status) && damaged == self.run.board.tally().damaged_in;
         if is_whole { Ok(Answer::Nothing {}) } else { Err(End::board(CheckName::Rules, silence)) }
     }
 
@@ -146,18 +141,21 @@ impl<'a, 'run> Rules<'a, 'run> {
         code: RefusalCode,
         detail: u16,
     ) -> Result<(), End> {
-        self.must(rule, kind, payload, &Said::Refused(Refusal { code, kind: kind.code(), detail }))
+        let said = self.run.board.ask(kind, payload);
+        let right = Said::Refused(Refusal { code, kind: kind.code(), detail });
+        self.judge(rule, kind, said, &right)
     }
 
     /// Asks what must be answered with `reply`.
     fn replied(&mut self, rule: Rule, request: &Request<'_>, reply: Vec<u8>) -> Result<(), End> {
-        self.must(rule, request.kind(), &payload(request), &Said::Replied(reply))
+        let said = self.run.board.ask(request.kind(), &payload(request));
+        self.judge(rule, request.kind(), said, &Said::Replied(reply))
     }
 
     /// Sets the board for small frames of so many rows.
     fn configure(&mut self, rows: usize) -> Result<(), End> {
         self.height = rows;
-        let geometry = self.small.of_height(rows);
+        let geometry = of_height(&self.small.geometry, rows);
         self.run.board.configure(&geometry, RowTiming::default()).map_err(of_board)
     }
 

@@ -1,10 +1,7 @@
 //! A board that has forgotten all: not ready for rows, and its tables as they are at power-up.
 
 use halfrow_model::{NODES, RowFactor};
-use halfrow_protocol::message::{
-    Bank, Commit, NODE_BYTES, RefusalCode, Request, RowIn, RowPlace, Span, Table,
-};
-use halfrow_protocol::samples::pack;
+use halfrow_protocol::message::{Bank, Commit, NODE_BYTES, RefusalCode, Request, RowPlace, Table};
 
 use super::{Rules, of_board};
 use crate::result::Rule;
@@ -22,7 +19,7 @@ impl Rules<'_, '_> {
         self.configure(self.small.rows())?;
         self.not_ready_for_rows()?;
         for bank in [Bank::Shadow, Bank::Active] {
-            self.as_at_power_up(bank)?;
+            self.sums_of(Rule::PowerUp, bank, &row_factors(self.capabilities.max_height), &nodes())?;
         }
         self.tallest()
     }
@@ -49,28 +46,9 @@ impl Rules<'_, '_> {
     }
 
     fn not_ready_for_rows(&mut self) -> Result<(), End> {
-        let (width, last) = (self.small.geometry.width(), self.small.rows() == 1);
-        let row_sequence = self.run.board.acknowledged();
-        let place = RowPlace { row_sequence, frame: 0, row: 0, width: width as u16, last };
-        let mut packed = Vec::new();
-        pack(&vec![0; width], &mut packed);
-        self.not_ready(&Request::RowIn(RowIn { place, packed: &packed }))?;
+        let place = RowPlace { frame: 0, ..self.place(0) };
+        self.row_refused(Rule::NotReady, place, RefusalCode::NotReady)?;
         self.small_burst(1).map_or(Ok(()), |burst| self.not_ready(&Request::Burst(burst)))
-    }
-
-    fn as_at_power_up(&mut self, bank: Bank) -> Result<(), End> {
-        for port in self.run.board.table_ports() {
-            let (count, bytes) = match port.table {
-                Table::RowFactors => {
-                    (self.capabilities.max_height, row_factors(self.capabilities.max_height))
-                }
-                Table::Kernel => (NODES as u16, nodes()),
-            };
-            let span = Span { table: port.table, bank, port: port.port, first: 0, count };
-            let crc = crc32fast::hash(&bytes).to_le_bytes().to_vec();
-            self.replied(Rule::PowerUp, &Request::TableCrc(span), crc)?;
-        }
-        Ok(())
     }
 }
 

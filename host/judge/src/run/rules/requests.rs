@@ -1,11 +1,9 @@
 //! Requests that no host makes: cut short, without meaning, out of range.
 
 use halfrow_protocol::Kind;
-use halfrow_protocol::message::{
-    Bank, Burst, BurstMode, Commit, Configuration, RefusalCode, Request, Span, Table,
-};
+use halfrow_protocol::message::{Burst, BurstMode, Commit, Configuration, RefusalCode, Request, Span};
 
-use super::{Rules, payload};
+use super::{FIRST_FACTOR, Rules, payload};
 use crate::result::Rule;
 use crate::run::findings::End;
 
@@ -29,7 +27,7 @@ impl Rules<'_, '_> {
 
     /// Every request by a byte too short, and with a field that has no meaning.
     fn without_meaning(&mut self) -> Result<(), End> {
-        let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 0 };
+        let span = Span { count: 0, ..FIRST_FACTOR };
         let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1 };
         let burst = self.run.board.capabilities.bursts.map(|bursts| Burst {
             burst: 0,

@@ -2,14 +2,15 @@
 
 use std::mem;
 
-use halfrow_protocol::message::{Bank, Commit, RefusalCode, Request, RowIn, RowPlace, Span, Table};
+use halfrow_protocol::message::{Commit, RefusalCode, Request, RowIn, RowPlace};
 use halfrow_protocol::samples::pack;
 
 use super::compared::Compared;
-use super::{Rules, of_board, other_row};
+use super::{FIRST_FACTOR, Rules, of_board, other_row};
 use crate::board::BoardError;
 use crate::reference::correct;
 use crate::result::{CheckName, Counter, Finding, Rule};
+use crate::run::Generation;
 use crate::run::at_speed::{BY_TURNS, fit};
 use crate::run::findings::End;
 
@@ -46,23 +47,20 @@ impl Rules<'_, '_> {
         let rows = self.small.rows();
         self.configure(rows)?;
         self.upload(0)?;
-        let tables = &self.small.tables[0];
-        let commit = self.run.board.commit(&tables.of(rows), &tables.kernel, FRAME, GENERATION);
-        commit.map_err(of_board)?;
+        let Generation { number, tables, kernel } = self.small.made(0, rows, GENERATION);
+        self.run.board.commit(&tables, &kernel, FRAME, number).map_err(of_board)?;
         self.right_frames(&[FRAME])
     }
 
     /// Frames of which every row must come back right.
     pub(super) fn right_frames(&mut self, frames: &[u16]) -> Result<(), End> {
         let made = self.small.made(0, self.height, GENERATION);
-        let compared = frames
-            .iter()
-            .fold(Compared::default(), |compared, &number| compared.with(&self.small, number, &made));
+        let compared = Compared::default().with(&self.small, frames.iter().copied(), &made);
         self.frames(Rule::Rows, compared)
     }
 
     /// Row `row` of the frame, under the number that it has if the frame is the next one.
-    fn place(&self, row: u16) -> RowPlace {
+    pub(super) fn place(&self, row: u16) -> RowPlace {
         RowPlace {
             row_sequence: self.run.board.acknowledged() + u32::from(row),
             frame: FRAME,
@@ -72,7 +70,8 @@ impl Rules<'_, '_> {
         }
     }
 
-    fn row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
+    /// Asks for a black row at `place`, which must be refused.
+    pub(super) fn row_refused(&mut self, rule: Rule, place: RowPlace, code: RefusalCode) -> Result<(), End> {
         let mut packed = Vec::new();
         pack(&vec![0; place.width.into()], &mut packed);
         self.refused(rule, &Request::RowIn(RowIn { place, packed: &packed }), code, 0)
@@ -107,8 +106,8 @@ impl Rules<'_, '_> {
     /// Gives row `row` of the frame, which is one of the first two: for those there is credit.
     fn give(&mut self, row: u16) {
         let place = self.place(row);
-        let tables = self.small.tables[0].of(self.height);
-        let frame = self.small.frame(FRAME, &tables);
+        let made = self.small.made(0, self.height, GENERATION);
+        let frame = self.small.frame(FRAME, &made.tables);
         self.run.board.give(&place, frame.frame.row(row.into()));
         self.given = self.given.max(u32::from(row) + 1);
     }
@@ -128,7 +127,7 @@ impl Rules<'_, '_> {
     /// With row 0 inside: other rows than row 1, and all that must wait until it has left.
     fn second_rows(&mut self) -> Result<(), End> {
         self.enter()?;
-        self.busy_with_row()?;
+        self.busy(Rule::Inside)?;
         let second = self.place(1);
         let bits = (0..u16::BITS).map(|bit| 1 << bit);
         let frames = bits.clone().map(|bit| RowPlace { frame: FRAME ^ bit, ..second });
@@ -145,17 +144,17 @@ impl Rules<'_, '_> {
         self.right_frames(&[FRAME])
     }
 
-    fn busy_with_row(&mut self) -> Result<(), End> {
-        let span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
+    /// What must wait until the core is empty.
+    pub(super) fn busy(&mut self, rule: Rule) -> Result<(), End> {
         let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: !GENERATION };
         let requests = [
-            Request::TableRead(span),
-            Request::TableCrc(span),
+            Request::TableRead(FIRST_FACTOR),
+            Request::TableCrc(FIRST_FACTOR),
             Request::Commit(commit),
             Request::Configure(self.configuration()),
         ];
         for request in requests {
-            self.refused(Rule::Inside, &request, RefusalCode::Busy, 0)?;
+            self.refused(rule, &request, RefusalCode::Busy, 0)?;
         }
         Ok(())
     }
@@ -180,10 +179,9 @@ impl Rules<'_, '_> {
     /// A row comes as often as it is asked for, until it is acknowledged.
     fn again(&mut self) -> Result<(), End> {
         self.configure(2)?;
-        let tables = &self.small.tables[0];
-        let row_factors = tables.of(2);
-        let frame = self.small.frame(FRAME, &row_factors).frame;
-        let right = correct(&row_factors, &tables.kernel, &frame).ok();
+        let Generation { tables, kernel, .. } = self.small.made(0, 2, GENERATION);
+        let frame = self.small.frame(FRAME, &tables).frame;
+        let right = correct(&tables, &kernel, &frame).ok();
         self.give(0);
         self.give(1);
         let (first, second) = (self.place(0), self.place(1));
@@ -205,7 +203,7 @@ impl Rules<'_, '_> {
     fn is_calm(&mut self, retries: u64) -> Result<bool, End> {
         let status = self.run.board.status(false).map_err(of_board)?;
         let board = &self.run.board;
-        Ok(board.tally().retries == retries && u64::from(status.packets) == board.packets_since_clear())
+        Ok(board.tally().retries == retries && board.had_each_packet_once(&status))
     }
 
     /// Rows that are dropped while they leave, each time at another place, with rows behind them that must be right.

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use halfrow_model::{Content, Geometry, Kernel, MIN_WIDTH, Phase, TableSet};
+use halfrow_model::{Content, Geometry, MIN_WIDTH, Phase, TableSet};
 use rand_pcg::Pcg64Mcg;
 
-use super::compared::Made;
 use crate::board::{Capabilities, NumberedFrame};
+use crate::run::Generation;
 use crate::run::at_speed::{CALM, drawn_factors, drawn_kernel};
 use crate::run::variations::Build;
 
@@ -15,35 +15,17 @@ const ROWS: usize = 4;
 /// Rows that the tables have, for frames in which a row must be found.
 const TALL: usize = 20;
 
-/// Tables with their kernel.
-pub(super) struct Tables {
-    rows: TableSet,
-    pub(super) kernel: Kernel,
-}
-
-impl Tables {
-    /// For frames of so many rows, at most those that the tables have.
-    pub(super) fn of(&self, rows: usize) -> TableSet {
-        let own = self.rows.geometry();
-        let factors = self.rows.row_factors().iter().take(rows).copied().collect();
-        let geometry = Geometry::new(own.width(), rows, own.depth(), own.centre2()).unwrap_or(*own);
-        TableSet::new(geometry, factors).unwrap_or_else(|_| self.rows.clone())
-    }
-}
-
 /// What the rules are tried with.
 pub(super) struct Small {
     /// Width, rows, depth and centre.
     pub(super) geometry: Geometry,
-    /// Rows that the tables have.
-    pub(super) tall: usize,
     /// What frames are drawn from.
     pub(super) seed: u32,
     pub(super) phase: Phase,
     /// L, in pixel clocks.
     latency: u16,
-    /// Two that are not alike.
-    pub(super) tables: [Tables; 2],
+    /// Two that are not alike, for tall frames.
+    pub(super) tables: [Generation; 2],
 }
 
 impl Small {
@@ -57,24 +39,11 @@ impl Small {
         let (geometry, tall) = (of_rows(ROWS)?, of_rows(TALL)?);
         let mut draws = Pcg64Mcg::new(u128::from(seed) | 1 << 65);
         let mut drawn = || {
-            let rows = drawn_factors(tall, build.ring, &mut draws)?;
-            Some(Tables { rows, kernel: drawn_kernel(build.taps, CALM, &mut draws)? })
+            let tables = drawn_factors(tall, build.ring, &mut draws)?;
+            Some(Generation { number: 0, tables, kernel: drawn_kernel(build.taps, CALM, &mut draws)? })
         };
         let tables = [drawn()?, drawn()?];
-        Some(Self {
-            geometry,
-            tall: tall.height(),
-            seed: seed as u32,
-            phase,
-            latency: capabilities.latency.into(),
-            tables,
-        })
-    }
-
-    /// Their geometry with another number of rows.
-    pub(super) fn of_height(&self, rows: usize) -> Geometry {
-        let own = &self.geometry;
-        Geometry::new(own.width(), rows, own.depth(), own.centre2()).unwrap_or(*own)
+        Some(Self { geometry, seed: seed as u32, phase, latency: capabilities.latency.into(), tables })
     }
 
     /// D of a frame, in pixel clocks.
@@ -82,10 +51,15 @@ impl Small {
         geometry.width() as u16 / 2 + self.latency
     }
 
-    /// What the tables at `place` make of a frame of so many rows, as `generation`.
-    pub(super) fn made(&self, place: usize, rows: usize, generation: u8) -> Made {
-        let tables = &self.tables[place];
-        Made { generation, tables: tables.of(rows), kernel: tables.kernel.clone(), gap_seed: 0 }
+    /// The tables at `place` for frames of so many rows, as generation `number`.
+    pub(super) fn made(&self, place: usize, rows: usize, number: u8) -> Generation {
+        let own = &self.tables[place];
+        Generation { number, ..own.upper(rows).unwrap_or_else(|| own.clone()) }
+    }
+
+    /// The rows of a tall frame.
+    pub(super) fn tall(&self) -> usize {
+        self.tables[0].tables.geometry().height()
     }
 
     /// The rows of a small frame.

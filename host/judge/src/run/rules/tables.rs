@@ -3,10 +3,10 @@
 use halfrow_model::RowFactor;
 use halfrow_protocol::message::{Bank, Entries, NODE_BYTES, NODES, RefusalCode, Request, Span, Table};
 
-use super::small::Tables;
-use super::{Rules, of_board};
+use super::{FIRST_FACTOR, Rules, of_board, payload};
 use crate::board::{Board, TablePort};
 use crate::result::Rule;
+use crate::run::Generation;
 use crate::run::findings::End;
 
 const NODE_COUNT: u16 = NODES as u16;
@@ -16,28 +16,36 @@ impl Rules<'_, '_> {
         self.upload(0)?;
         self.spans()?;
         self.entries()?;
-        self.sums(Rule::Entry, Bank::Shadow, 0)?;
+        self.sums(Rule::Entry, 0)?;
         self.addresses()
     }
 
     /// Writes the small tables at `place` into the shadow bank.
     pub(super) fn upload(&mut self, place: usize) -> Result<(), End> {
-        let Tables { kernel, .. } = &self.small.tables[place];
-        let tables = self.small.tables[place].of(self.small.tall);
-        self.run.board.upload(&tables, kernel).map_err(of_board)
+        let Generation { tables, kernel, .. } = &self.small.tables[place];
+        self.run.board.upload(tables, kernel).map_err(of_board)
     }
 
-    /// Every port must read the small tables at `place` in `bank`.
-    pub(super) fn sums(&mut self, rule: Rule, bank: Bank, place: usize) -> Result<(), End> {
+    /// Every port must read the small tables at `place` in the shadow bank.
+    pub(super) fn sums(&mut self, rule: Rule, place: usize) -> Result<(), End> {
+        let Generation { tables, kernel, .. } = &self.small.tables[place];
+        let (row_factors, nodes) = (tables.to_bytes(), kernel.to_bytes());
+        self.sums_of(rule, Bank::Shadow, &row_factors, &nodes)
+    }
+
+    /// Every port must read these entries, from the first one on, in `bank`.
+    pub(super) fn sums_of(
+        &mut self,
+        rule: Rule,
+        bank: Bank,
+        row_factors: &[u8],
+        nodes: &[u8],
+    ) -> Result<(), End> {
         for TablePort { table, port } in self.run.board.table_ports() {
-            let tables = &self.small.tables[place];
-            let bytes = match table {
-                Table::RowFactors => tables.of(self.small.tall).to_bytes(),
-                Table::Kernel => tables.kernel.to_bytes(),
-            };
+            let bytes = if table == Table::Kernel { nodes } else { row_factors };
             let count = (bytes.len() / table.entry_bytes()) as u16;
             let request = Request::TableCrc(Span { table, bank, port, first: 0, count });
-            self.replied(rule, &request, crc32fast::hash(&bytes).to_le_bytes().to_vec())?;
+            self.replied(rule, &request, crc32fast::hash(bytes).to_le_bytes().to_vec())?;
         }
         Ok(())
     }
@@ -90,8 +98,7 @@ impl Rules<'_, '_> {
         for wrong in [0, one + 1, one | 1 << 12].into_iter().chain(beyond.filter(|&value| value > one)) {
             let entries = [one].into_iter().take(before.into()).chain([wrong]);
             let bytes: Vec<u8> = entries.flat_map(u32::to_le_bytes).collect();
-            let (table, bank, count) = (Table::RowFactors, Bank::Shadow, before + 1);
-            let span = Span { table, bank, port: 0, first: 0, count };
+            let span = Span { count: before + 1, ..FIRST_FACTOR };
             let request = Request::TableWrite(Entries { span, bytes: &bytes });
             self.refused(Rule::Entry, &request, RefusalCode::Range, before)?;
         }
@@ -111,14 +118,14 @@ impl Rules<'_, '_> {
         let places = (0..u16::BITS).map(|bit| 1 << bit).filter(|&first| first < self.capabilities.max_height);
         let places: Vec<_> = places.chain([0, self.capabilities.max_height - 1]).collect();
         let entry = |first: u16| (u32::from(first) + 1).to_le_bytes();
-        let span = |first| Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first, count: 1 };
+        let span = |first| Span { first, ..FIRST_FACTOR };
         for &first in &places {
             let request = Request::TableWrite(Entries { span: span(first), bytes: &entry(first) });
             self.replied(Rule::Address, &request, Vec::new())?;
         }
         for &first in &places {
             let bytes = entry(first);
-            let reply = super::payload(&Request::TableWrite(Entries { span: span(first), bytes: &bytes }));
+            let reply = payload(&Request::TableWrite(Entries { span: span(first), bytes: &bytes }));
             self.replied(Rule::Address, &Request::TableRead(span(first)), reply)?;
         }
         Ok(())

@@ -1,12 +1,13 @@
 //! Rows whose signatures are expected otherwise than they are, so that the board keeps them.
 
-use halfrow_model::{Content, row_signature};
+use halfrow_model::{Content, Frame, row_signature};
 use halfrow_protocol::message::{Burst, BurstMode, BurstState, Expect, RefusalCode, Request};
 use halfrow_protocol::samples::pack;
 
 use super::{Rules, of_board};
 use crate::reference::correct;
 use crate::result::Rule;
+use crate::run::Generation;
 use crate::run::findings::End;
 
 /// What TRAP says when no row was kept.
@@ -18,11 +19,12 @@ impl Rules<'_, '_> {
         if !self.has_trap() {
             return Ok(());
         }
-        self.configure(self.small.tall)?;
+        self.configure(self.small.tall())?;
         let past = Expect { first: self.capabilities.max_height - 1, bytes: &[[0; Expect::BYTES]; 2] };
         self.refused(Rule::Trap, &Request::Expect(past), RefusalCode::Range, past.first)?;
-        let rows = self.trapped_rows()?;
-        let signatures: Vec<u32> = rows.iter().map(|row| row_signature(row)).collect();
+        let Some(frame) = self.trapped_frame() else { return Ok(()) };
+        let rows: Vec<_> = (0..frame.height()).map(|row| frame.row(row)).collect();
+        let signatures: Vec<_> = rows.iter().map(|row| row_signature(row)).collect();
         self.trapping(&signatures)?;
         self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())?;
         for bit in 0..u32::BITS {
@@ -34,7 +36,7 @@ impl Rules<'_, '_> {
                 *last = !*last;
             }
             self.trapping(&expected)?;
-            self.kept(row, &rows[row])?;
+            self.kept(row, rows[row])?;
         }
         self.drop_rows()?;
         self.replied(Rule::Trap, &Request::Trap, NOTHING_KEPT.to_vec())
@@ -44,14 +46,12 @@ impl Rules<'_, '_> {
         self.small_burst(2).map(|burst| Burst { mode: BurstMode::Trapped, ..burst })
     }
 
-    /// The rows of the frame that is repeated, as they must leave.
-    fn trapped_rows(&self) -> Result<Vec<Vec<u16>>, End> {
-        let tables = self.small.tables[0].of(self.height);
-        let content = self.trap_burst().map(|burst| Content { seed: burst.seed, frame: burst.first_frame });
-        let input = content.map(|content| content.frame(tables.geometry(), self.small.phase));
-        let frame = input.and_then(|input| correct(&tables, &self.small.tables[0].kernel, &input).ok());
-        Ok(frame
-            .map_or_else(Vec::new, |frame| (0..frame.height()).map(|row| frame.row(row).to_vec()).collect()))
+    /// The frame that is repeated, as it must leave.
+    fn trapped_frame(&self) -> Option<Frame> {
+        let burst = self.trap_burst()?;
+        let Generation { tables, kernel, .. } = self.small.made(0, self.height, super::rows::GENERATION);
+        let content = Content { seed: burst.seed, frame: burst.first_frame };
+        correct(&tables, &kernel, &content.frame(tables.geometry(), self.small.phase)).ok()
     }
 
     /// Has the board repeat a frame whose rows are expected to have these signatures.
