@@ -31,7 +31,7 @@ pub const SLOW_LINKS: &[Scenario] = &[
     passes("packets that overtake each other", ",fault=reorder,rate=0.02,seed=7", SMALL),
     passes("a tenth of a second of silence", ",fault=stall,seconds=0.1", SMALL),
     passes("a second of silence", ",fault=stall,packet=90,seconds=1,toward=host", SMALL),
-    passes("three seconds of silence again and again", ",fault=stall,every=12000,seconds=3", SMALL),
+    passes("three seconds of silence again and again", ",fault=stall,every=60000,seconds=3", SMALL),
 ];
 
 /// How a run over a link ends that spoils most of what it carries.
