@@ -64,7 +64,7 @@ module halfrow_burst #(
     input  wire        core_valid,    // a sample stands at the core's pins
     input  wire        core_start,    // and is its row's first
     input  wire [11:0] core_sample,
-    output wire [31:0] row_signature, // of the row that entered last, for 64 clocks
+    output wire [31:0] row_signature, // of the row that entered last, for 63 clocks
     input  wire        enable,        // the core's
     input  wire        pin_valid,     // an output stands at the pins
     input  wire        pin_last,      // and is its row's last
@@ -138,13 +138,18 @@ module halfrow_burst #(
     // What leaves. A pause while two frames are inside is in front of the newer one's first output, too.
     reg given, entering, signed_last, ended_leaves, closing, stopped, stopped_early, early;
     reg [11:0] signed_sample;
+    // What enters is signed a clock later: it comes late in the clock, out of a memory and through multiplexers.
+    reg entered_valid, entered_start, entered_last;
+    reg [11:0] entered_sample;
     wire row_left = given && signed_last;
 
     always @(posedge clk) begin
         given <= burst && enable && pin_valid;
-        entering <= !bursting && core_valid;
-        signed_last <= bursting ? pin_last : in_last;
-        signed_sample <= bursting ? pin_sample : core_sample;
+        {entered_valid, entered_start, entered_last} <= {core_valid, core_start, in_last};
+        entered_sample <= core_sample;
+        entering <= !bursting && entered_valid;
+        signed_last <= bursting ? pin_last : entered_last;
+        signed_sample <= bursting ? pin_sample : entered_sample;
         if (in_last)
             ended_leaves <= ends_frame;
         closing <= frames_inside != 2'd0 && !recorded && (closing || (row_left && ended_leaves));
@@ -156,7 +161,7 @@ module halfrow_burst #(
     wire [31:0] signature;
 
     halfrow_signer signer (
-        .clk(clk), .rst(rst || !burst), .anew(starts || (core_start && !bursting)), .valid(given || entering),
+        .clk(clk), .rst(rst || !burst), .anew(starts || (entered_start && !bursting)), .valid(given || entering),
         .last(signed_last), .sample(signed_sample), .next_frame(recorded), .signed_all(signed_all),
         .row_signature(row_signature), .signature(signature));
 

@@ -238,21 +238,22 @@ module halfrow_ledger #(
         all_paused <= paused_most && state == RECORD && place[4:1] == AT_PAUSES[4:1];
     end
 
-    // What a BURST says. The last of its bytes to be looked at is the mode.
+    // What a BURST says, a clock behind the receiver's buffer, whose bytes come late. The last of them that is looked
+    // at is the mode.
     reg [71:0] fields;
     reg unnamed, close, other_mode;
 
     always @(posedge clk)
         if (step) begin
             if (state == LOAD && place[4:3] != 2'd0)
-                fields <= {packet_byte, fields[71:8]};
+                fields <= {operand, fields[71:8]};
             if (state == LOOK && place[4:2] == 3'd0)
-                unnamed <= packet_byte == 8'd0 && (first || unnamed);
+                unnamed <= operand == 8'd0 && (first || unnamed);
             if (state == LOOK && place[3:0] == 4'd15)
-                close <= packet_byte == 8'd0; // below 256
+                close <= operand == 8'd0; // below 256
             if (state == LOOK) begin
-                no_mode <= packet_byte[7:2] != 6'd0;
-                other_mode <= packet_byte[0] && (packet_byte[1] ? TRAP == 0 : TABLE_BANKS == 1);
+                no_mode <= operand[7:2] != 6'd0;
+                other_mode <= operand[0] && (operand[1] ? TRAP == 0 : TABLE_BANKS == 1);
             end
         end
 

@@ -46,7 +46,7 @@ module halfrow_trap #(
     // What stands at places of the reply: `kept`, then the head, then over and over the bytes of two samples.
     localparam [3:0] AT_KEPT = 4'd15, AT_LOW = 4'd12, AT_HIGH = 4'd14;
     // An output is written so many clocks late: the row in front has been compared before it is overwritten.
-    localparam LATE = 7;
+    localparam LATE = 8;
 
     // What is expected. The walk over rows that brings zeros behind rst brings the signatures of an EXPECT, too.
     (* ram_style = "block" *) reg [7:0] expected [0:(4<<ADDRESS_BITS)-1];
@@ -87,8 +87,9 @@ module halfrow_trap #(
     reg in_frame; // the row is one
     reg [1:0] part;
     reg [3:0] place;
-    reg fetched, differs;
+    reg fetched, meets, differs;
     reg [7:0] expected_byte, signature_byte;
+    reg [3:0] unequal; // pairs of their bits; the memory brings them late in the clock
     reg [LATE-1:0] late_given, late_last;
     reg [12*LATE-1:0] late_sample;
     wire write = late_given[LATE-1] && !kept;
@@ -107,10 +108,13 @@ module halfrow_trap #(
         late_sample <= {late_sample[12*LATE-13:0], sample};
         part <= part + {1'b0, compared};
         fetched <= compared;
+        meets <= fetched;
+        unequal <= {signature_byte[7:6] != expected_byte[7:6], signature_byte[5:4] != expected_byte[5:4],
+                    signature_byte[3:2] != expected_byte[3:2], signature_byte[1:0] != expected_byte[1:0]};
         if (late_last[0] && !kept)
             signature <= row_signature;
         signature_byte <= signature[{kept ? place[1:0] : part, 3'd0} +: 8];
-        differs <= (fetched && signature_byte != expected_byte) || (differs && !late_last[0]);
+        differs <= (meets && unequal != 4'd0) || (differs && !late_last[0]);
         in_frame <= row != height;
         if (rst || empty)
             {late_given, late_last, part} <= {2 * LATE + 2{1'b0}};
