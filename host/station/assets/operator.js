@@ -64,7 +64,7 @@ async function today() {
   if (!todayIsStale) return;
   todayIsStale = false;
   const counted = await fetch("/today").catch(() => undefined);
-  if (counted?.ok) put("today", await counted.text());
+  if (counted?.ok) by("today").innerHTML = await counted.text();
 }
 
 const HEAR = {
@@ -115,4 +115,5 @@ if (by("hand")) {
   by("sound").setAttribute("aria-pressed", isOn());
   by("sound").addEventListener("click", () => { turn(!isOn()); by("sound").setAttribute("aria-pressed", isOn()); play("PASS"); });
 }
-setInterval(today, 5000);
+// What is at the plant changes without news.
+setInterval(() => { todayIsStale ||= "changes" in by("today").dataset; today(); }, 5000);

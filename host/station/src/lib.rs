@@ -30,6 +30,7 @@ mod ids;
 pub mod input_error;
 pub mod kept;
 pub mod lane;
+pub mod outbox;
 pub mod plan;
 mod presence;
 pub mod record;

@@ -199,4 +199,10 @@ pub enum Saying {
     StationEnded { tries: usize },
     #[error("the result could not be saved when the run was over, after {tries} tries of steps")]
     SavedTooLate { tries: usize },
+    #[error("it is saved here, and not at the plant yet; the lane waits for the plant")]
+    NotAtPlant,
+    #[error("{entries} results are not at the plant, and {most} may be; look at the network and the plant")]
+    TooMuchUnsent { entries: u32, most: u32 },
+    #[error("the disk is full to {percent} %; make room on it, or have the plant take what is unsent")]
+    DiskTooFull { percent: u64 },
 }

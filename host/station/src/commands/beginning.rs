@@ -12,6 +12,7 @@ use crate::console;
 use crate::disk;
 use crate::engine::Engine;
 use crate::exit::Exit;
+use crate::outbox::{Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
 use crate::settings::Settings;
 use crate::store::{Folder, Store};
@@ -106,6 +107,15 @@ impl<'a> Ready<'a> {
         recovered(&mut self.store)?;
         Engine::start(self.settings.clone(), self.store, program).map_err(Failure::error)
     }
+}
+
+/// The threads that send on what the station keeps.
+pub(super) fn outbox(settings: &Settings, engine: &Engine) -> Result<Outbox, Failure> {
+    let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
+    if let Some(plant) = &settings.plant {
+        sinks.push(Box::new(PlantSink::new(plant.address()?)));
+    }
+    Ok(Outbox::start(&engine.store(), sinks)?)
 }
 
 /// Closes what was under way when the station ended, says so, and returns it.

@@ -9,6 +9,8 @@ use halfrow_program::codes as program;
 use serde_json::{Value, json};
 
 use super::lanes::EngineEnded;
+use super::outbox::NotDead;
+use super::plant::NoPlant;
 use super::run::NoMock;
 use super::{Failure, document, print};
 use crate::check::Fault;
@@ -19,11 +21,14 @@ use crate::export::ExportError;
 use crate::floor::{Refusal, ScanError, UnknownBarcode};
 use crate::input_error::InputError;
 use crate::kept::CopyError;
+use crate::outbox::OutboxError;
 use crate::plan::serial::SerialError;
 use crate::record::{BlobError, RecordError};
 use crate::run::{NoRandomness, RunError};
 use crate::said::Saying;
-use crate::store::{AgainError, NoWaiver, RebindError, StoreError};
+use crate::settings::PlantSettingsError;
+use crate::store::{AgainError, NoWaiver, PlantAddressError, PlantError, RebindError, StoreError};
+use crate::web::SecretError;
 
 /// Print the page of all codes of the station's errors
 #[derive(Debug, Args)]
@@ -79,6 +84,7 @@ codes::codes! {
         InUse [folder] => "store-in-use",
         Folder [folder] => "store-folder-unusable",
         Database [path, doing] => "database-refuses",
+        Plant [plant, doing] => "plant-refuses",
         NoLog [path, mode] => "database-without-log",
         Newer [path, found, known] => "database-newer",
         Older [path, found, known] => "database-older",
@@ -88,6 +94,35 @@ codes::codes! {
         = Blob,
         = Record,
         = NoRandomness,
+    }
+    PlantError {
+        OtherContent [run, ours, theirs] => "plant-has-other-record",
+        NotYet [run] => "plant-without-run",
+        NotKept [subject] => "plant-kept-nothing",
+        Collation [plant, collation, encoding] => "plant-of-other-collation",
+        = Store,
+    }
+    PlantAddressError {
+        Malformed => "plant-address-malformed",
+        Without [what] => "plant-address-incomplete",
+        Password => "plant-address-with-password",
+        Certificates [path] => "plant-certificates-unreadable",
+        NoCertificates => "plant-without-certificates",
+        Tls => "plant-without-tls",
+    }
+    OutboxError {
+        Thread => "outbox-without-thread",
+        = Store,
+    }
+    PlantSettingsError {
+        = Address,
+        = Secret,
+    }
+    SecretError {
+        File [path] => "secret-file-unusable",
+        Open [path] => "secret-file-open",
+        Wrong [path, what] => "secret-file-wrong",
+        NoRandomness => "secret-without-randomness",
     }
     BlobError {
         Folder [path] => "evidence-folder-unusable",
@@ -205,6 +240,9 @@ codes::codes! {
         PlanChanged => "plan-changed",
         StationEnded [tries] => "station-ended",
         SavedTooLate [tries] => "result-saved-too-late",
+        NotAtPlant => "result-not-at-plant",
+        TooMuchUnsent [entries, most] => "outbox-too-full",
+        DiskTooFull [percent] => "disk-too-full",
     }
     ;
     UnknownBarcode [text] => "barcode-unknown"
@@ -214,6 +252,10 @@ codes::codes! {
     EngineEnded => "engine-ended"
     ;
     NoMock => "plan-without-mock"
+    ;
+    NoPlant => "settings-without-plant"
+    ;
+    NotDead [id] => "outbox-entry-not-dead"
 }
 
 /// The code of an error of the station's, of the library's or of the system's.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::Failure;
-use super::beginning::{Disk, Ready, settings};
+use super::beginning::{Disk, Ready, outbox, settings};
 use crate::console;
 use crate::engine::News;
 use crate::exit::Exit;
@@ -38,6 +38,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let ready = Ready::of(&settings, &arguments.disk)?;
     let signal = ready.signal.clone();
     let engine = ready.start()?;
+    let outbox = outbox(&settings, &engine)?;
     let news = engine.listen();
     let printer = thread::Builder::new().name("news".to_owned()).spawn(move || print(&news));
     let printer = printer.map_err(Failure::error)?;
@@ -54,6 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
     };
     engine.close(by);
+    outbox.close();
     let _ = printer.join();
     Ok(by.map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }

@@ -13,8 +13,10 @@ mod lanes;
 mod lang_check;
 mod looking;
 mod notify;
+mod outbox;
 mod pareto;
 mod plan;
+mod plant;
 mod rebind;
 mod run;
 mod schema;
@@ -59,6 +61,8 @@ enum Command {
     Restore(kept::Restore),
     Prune(kept::Prune),
     Plan(plan::Arguments),
+    Plant(plant::Arguments),
+    Outbox(outbox::Arguments),
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
     LangCheck(lang_check::Arguments),
@@ -129,6 +133,8 @@ impl Cli {
             Command::Restore(arguments) => kept::restore(arguments),
             Command::Prune(arguments) => kept::prune(arguments),
             Command::Plan(arguments) => plan::run(arguments),
+            Command::Plant(arguments) => plant::run(arguments),
+            Command::Outbox(arguments) => outbox::run(arguments),
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
             Command::LangCheck(arguments) => lang_check::run(arguments),

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 
 use super::Failure;
-use super::beginning::{Disk, Ready, settings};
+use super::beginning::{Disk, Ready, outbox, settings};
 use super::notify::Notify;
 use crate::console;
 use crate::engine::Engine;
@@ -68,6 +68,7 @@ pub(super) fn serve(
     let listener = Server::listen(access.listen()).map_err(Failure::call)?;
     let at = listener.local_addr().map_err(Failure::error)?;
     let engine = Arc::new(ready.start()?);
+    let outbox = outbox(settings, &engine)?;
     let app = App::new(settings.clone(), Arc::clone(&engine), access.at(at.port()), hints);
     let server = Server::start(&app.map_err(Failure::error)?, listener).map_err(Failure::error)?;
     begin(&engine).map_err(Failure::error)?;
@@ -86,6 +87,7 @@ pub(super) fn serve(
         thread::sleep(LOOK);
     };
     engine.close(Some(by));
+    outbox.close();
     server.close();
     Ok(halfrow::Cause::Stopped(by).into())
 }

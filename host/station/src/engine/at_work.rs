@@ -10,6 +10,7 @@ use halfrow::verdict::StoppedBy;
 
 use super::bay::{self, Shared, StopAsked};
 use super::news::{LaneState, News};
+use super::unsent;
 use super::{Board, Heard, Input};
 use crate::clock;
 use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
@@ -192,7 +193,7 @@ impl AtWork {
     /// Tells what became of a scan, and does what it asks for.
     fn answer(&mut self, number: u64, scanned: String, answer: Result<Answer, ScanError>) {
         let (is_taken, lane, effect, said) = match answer {
-            Ok(Answer { lane: Some(lane), effect, said }) => match self.unless_passed(lane, effect) {
+            Ok(Answer { lane: Some(lane), effect, said }) => match self.unless_refused(lane, effect) {
                 Ok(effect) => (true, Some(lane), effect, said),
                 Err(why) => (false, Some(lane), None, why),
             },
@@ -225,17 +226,22 @@ impl AtWork {
     fn happened(&mut self, lane: usize, event: Event) {
         let effect = self.floor.happened(lane, event, self.now());
         // A run that a plug has started says in its lane why it was not begun.
-        let effect = self.unless_passed(lane, effect).ok().flatten();
+        let effect = self.unless_refused(lane, effect).ok().flatten();
         self.publish(lane);
         self.effect(lane, effect);
     }
 
-    /// What is to be done, unless it is to test a unit again that passed already: then why not, which the lane says too.
-    fn unless_passed(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, Said> {
+    /// What is to be done, unless it is to test a unit again that passed already, or too much is not at the plant: then why not,
+    /// which the lane says too.
+    fn unless_refused(&mut self, lane: usize, effect: Option<Effect>) -> Result<Option<Effect>, Said> {
         let Some(Effect::Begin(of)) = &effect else { return Ok(effect) };
         let Some(PlanFile { plan, .. }) = self.shared.settings.plans.get(of.plan) else { return Ok(effect) };
         let asked = self.asked.get_mut(lane).and_then(Option::take);
         let folder = Folder::new(&self.shared.settings.data);
+        if let Some(why) = unsent::refuses(&self.shared.settings, &folder) {
+            self.floor.happened(lane, Event::NotBegun { why: why.clone() }, self.now());
+            return Err(why);
+        }
         let why = match folder.again(plan, &of.serial, "scan it once more") {
             Ok(None) => return Ok(effect),
             Ok(Some(error @ AgainError::Asked { .. })) => {

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::sync::mpsc::Sender;
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
@@ -15,13 +15,18 @@ use super::{Heard, Input};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
 use crate::lane::Message;
+use crate::outbox::PlantSink;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
-use crate::store::SharedStore;
+use crate::store::{Folder, SharedStore};
 
 /// How long after a result could not be saved it is tried again.
 const AGAIN: Duration = Duration::from_secs(2);
+
+/// How long a verdict waits for a plant that must have it, and how often it is looked.
+const PLANT: Duration = Duration::from_secs(10);
+const LOOK: Duration = Duration::from_millis(50);
 
 /// What all lanes have in common.
 #[derive(Debug)]
@@ -92,7 +97,7 @@ fn carried_out(
     match run::run(&shared.store, &order, &mut watched) {
         Ok(saved) => {
             let is_stuck = saved.is_stuck;
-            (Event::Ended(shown(saved)), is_stuck)
+            (at_plant(shared, saved, PLANT), is_stuck)
         }
         Err(error @ RunError::Unsaved { .. }) => (unsaved(&error), false),
         Err(error) => (Event::NotBegun { why: Said::of(&error) }, false),
@@ -105,7 +110,7 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
     thread::Builder::new().name(format!("recovery in lane {lane}")).spawn(move || {
         thread::sleep(AGAIN);
         let event = guarded(|| match shared.store.with(|store| run::recover_run(store, &run)) {
-            Ok(saved) => Event::Ended(shown(saved)),
+            Ok(saved) => at_plant(&shared, saved, Duration::ZERO),
             Err(error) => unsaved(&error),
         });
         shared.tell(lane, Heard::Happened(event.unwrap_or_else(|fault| unsaved(&fault))));
@@ -126,6 +131,24 @@ pub(super) fn hook(shared: &Arc<Shared>, lane: usize, shown: Shown) -> std::io::
             shared.tell(lane, Heard::Hook { run: shown.run.clone(), said });
         }
     })
+}
+
+/// The verdict of a run that is saved; where the plant must have it, too, only once it has it, or that it has not within
+/// `patience`.
+fn at_plant(shared: &Shared, saved: Saved, patience: Duration) -> Event {
+    let Settings { data, plant, .. } = &shared.settings;
+    if !plant.as_ref().is_some_and(|plant| plant.is_green_at_plant) {
+        return Event::Ended(shown(saved));
+    }
+    let (folder, until) = (Folder::new(data), Instant::now() + patience);
+    loop {
+        match folder.is_sent(PlantSink::NAME, &saved.record.run.id) {
+            Ok(true) => return Event::Ended(shown(saved)),
+            Ok(false) if Instant::now() < until => thread::sleep(LOOK),
+            Ok(false) => return Event::Unsaved { why: Saying::NotAtPlant.into() },
+            Err(error) => return unsaved(&error),
+        }
+    }
 }
 
 /// Nothing is known of a run but what is in the store, which the recovery looks at.

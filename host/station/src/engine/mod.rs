@@ -11,6 +11,7 @@ mod at_work;
 mod bay;
 mod hooks;
 mod news;
+mod unsent;
 
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};

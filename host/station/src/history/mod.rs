@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
-use crate::store::{Snapshot, StoreError, statements};
+use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements};
 
 /// From when until when runs began, in milliseconds since 1970, UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -70,6 +70,6 @@ fn plans_named(of: &Snapshot, name: &str) -> Result<Vec<String>, StoreError> {
 }
 
 /// A number of things, which is not negative.
-fn count(row: &rusqlite::Row<'_>, column: usize) -> rusqlite::Result<u64> {
-    row.get::<_, i64>(column).map(i64::unsigned_abs)
+fn count(row: &Found<'_>, column: usize) -> Result<u64, DatabaseError> {
+    row.get::<i64>(column).map(i64::unsigned_abs)
 }

@@ -2,13 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use rusqlite::ToSql;
 use serde::Serialize;
 
 use super::plans_named;
 use super::rate::Rate;
 use super::yields::Wanted;
-use crate::store::{Snapshot, StoreError, statements};
+use crate::store::{Snapshot, StoreError, Value, statements};
 
 /// What failures are counted by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,16 +51,16 @@ pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreErr
         Of::Part => "part",
         Of::Check => "check",
     };
-    let mut values: Vec<&dyn ToSql> = vec![&kind, &period.from_ms, &period.until_ms];
+    let mut values: Vec<Value<'_>> = vec![kind.into(), period.from_ms.into(), period.until_ms.into()];
     let mut filters = String::new();
     if let Some(lane) = &wanted.lane {
-        values.push(lane);
+        values.push(lane.into());
         filters.push_str(&format!("AND lane = ${}", values.len()));
     }
     if let Some(plans) = &plans {
         let named: Vec<_> =
             plans.iter().zip(values.len() + 1..).map(|(_, place)| format!("${place}")).collect();
-        values.extend(plans.iter().map(|plan| plan as &dyn ToSql));
+        values.extend(plans.iter().map(Value::from));
         // No plan of this name has no run.
         let named = if named.is_empty() { "NULL".to_owned() } else { named.join(", ") };
         filters.push_str(&format!(" AND plan_sha256 IN ({named})"));
@@ -69,7 +68,7 @@ pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreErr
     let mut counted = Counted::default();
     let text = statements::FAILURES.replace("{filters}", &filters);
     of.rows("to tell its failures", &text, &values, |row| {
-        counted.add(row.get_ref(0)?.as_str()?, row.get_ref(1)?.as_str()?, row.get_ref(2)?.as_str()?);
+        counted.add(row.text(0)?, row.text(1)?, row.text(2)?);
         Ok(())
     })?;
     Ok(counted.pareto())

@@ -4,11 +4,10 @@ use std::fmt;
 use std::str::FromStr;
 
 use halfrow::Verdict;
-use rusqlite::ToSql;
 use serde::{Serialize, Serializer};
 
 use super::{Period, plans_named};
-use crate::store::{Snapshot, StoreError, statements};
+use crate::store::{DatabaseError, Found, Snapshot, StoreError, Value, statements, values};
 
 /// The most runs of a page.
 pub const MOST: u32 = 1000;
@@ -106,7 +105,7 @@ pub struct RunLine {
 
 impl RunLine {
     /// From the first sixteen columns.
-    pub(super) fn of(row: &rusqlite::Row<'_>) -> rusqlite::Result<Self> {
+    pub(super) fn of(row: &Found<'_>) -> Result<Self, DatabaseError> {
         Ok(Self {
             id: row.get(0)?,
             started_ms: row.get(1)?,
@@ -180,7 +179,7 @@ fn each(
 }
 
 fn units(of: &Snapshot, serial: &str) -> Result<Vec<String>, StoreError> {
-    of.rows("to tell a unit", statements::UNITS_OF_SERIAL, &[&serial], |row| row.get(0))
+    of.rows("to tell a unit", statements::UNITS_OF_SERIAL, values![serial], |row| row.get(0))
 }
 
 /// The first runs for which these columns are as they should be.
@@ -193,13 +192,13 @@ fn one(
 ) -> Result<Vec<RunLine>, StoreError> {
     let columns: Vec<_> = equal.iter().filter(|(_, value)| value.is_some()).map(|(name, _)| *name).collect();
     let text = text(&columns, period, after.is_some(), limit);
-    let mut values: Vec<&dyn ToSql> = Vec::new();
-    values.extend(equal.iter().filter_map(|(_, value)| *value).map(|value| value as &dyn ToSql));
+    let mut values: Vec<Value<'_>> = Vec::new();
+    values.extend(equal.iter().filter_map(|(_, value)| *value).map(Value::from));
     if period != Period::default() {
-        values.extend([&period.from_ms as &dyn ToSql, &period.until_ms]);
+        values.extend([period.from_ms, period.until_ms].map(Value::from));
     }
     if let Some(Place { started_ms, id }) = after {
-        values.extend([started_ms as &dyn ToSql, id]);
+        values.extend([Value::from(*started_ms), id.into()]);
     }
     of.rows("to tell its runs", &text, &values, RunLine::of)
 }
@@ -237,7 +236,7 @@ mod tests {
 
     /// How SQLite carries a statement out.
     fn explained(of: &Snapshot, text: &str, parameters: usize) -> Vec<String> {
-        let values: Vec<&dyn ToSql> = vec![&1; parameters];
+        let values = vec![Value::Whole(1); parameters];
         of.rows("a plan", &format!("EXPLAIN QUERY PLAN {text}"), &values, |row| row.get(3)).unwrap()
     }
 

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use rusqlite::Row;
 use serde::Serialize;
 
 use super::runs::RunLine;
 use crate::record::Attachment;
-use crate::store::{Snapshot, StoreError, Waiver, statements};
+use crate::store::{DatabaseError, Found, Snapshot, StoreError, Waiver, statements, values};
 
 /// A unit with everything that happened to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -104,18 +103,18 @@ pub struct Suspect {
 /// # Errors
 /// [`StoreError`] when the database cannot be read.
 pub fn units(of: &Snapshot, serial: &str) -> Result<Vec<Unit>, StoreError> {
-    let mut units = of.rows("to tell a unit", statements::UNITS_OF_SERIAL, &[&serial], |row| {
+    let mut units = of.rows("to tell a unit", statements::UNITS_OF_SERIAL, values![serial], |row| {
         let (id, product, serial, first_seen_ms) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
         Ok(Unit { id, product, serial, first_seen_ms, runs: Vec::new(), bindings: Vec::new() })
     })?;
     for unit in &mut units {
         unit.runs = runs(of, OF_UNIT, &unit.id)?;
-        let binding = |row: &Row<'_>| {
+        let binding = |row: &Found<'_>| {
             let (device, from_ms, to_ms) = (row.get(0)?, row.get(1)?, row.get(2)?);
             Ok(Binding { device, from_ms, to_ms, operator: row.get(3)?, reason: row.get(4)? })
         };
         unit.bindings =
-            of.rows("to tell a unit's devices", statements::UNIT_BINDINGS, &[&unit.id], binding)?;
+            of.rows("to tell a unit's devices", statements::UNIT_BINDINGS, values![&unit.id], binding)?;
     }
     Ok(units)
 }
@@ -135,7 +134,7 @@ const OF_RUN: &str = "run.id";
 /// The runs whose `column` has this value, the newest first.
 fn runs(of: &Snapshot, column: &str, value: &str) -> Result<Vec<UnitRun>, StoreError> {
     let text = |text: &str| text.replace("{of}", column);
-    let mut runs = of.rows("to tell a unit's runs", &text(statements::UNIT_RUNS), &[&value], run)?;
+    let mut runs = of.rows("to tell a unit's runs", &text(statements::UNIT_RUNS), values![value], run)?;
     let mut steps = by_run(of, value, &text(statements::UNIT_STEPS), step)?;
     let mut suspects = by_run(of, value, &text(statements::UNIT_SUSPECTS), suspect)?;
     let mut attachments = by_run(of, value, &text(statements::UNIT_ATTACHMENTS), attachment)?;
@@ -155,9 +154,9 @@ fn by_run<T>(
     of: &Snapshot,
     value: &str,
     text: &str,
-    one: impl Fn(&Row<'_>) -> rusqlite::Result<T>,
+    one: impl Fn(&Found<'_>) -> Result<T, DatabaseError>,
 ) -> Result<BTreeMap<String, Vec<T>>, StoreError> {
-    let rows = of.rows("to tell a unit's runs", text, &[&value], |row| Ok((row.get(0)?, one(row)?)))?;
+    let rows = of.rows("to tell a unit's runs", text, values![value], |row| Ok((row.get(0)?, one(row)?)))?;
     let mut by_run = BTreeMap::<String, Vec<T>>::new();
     for (run, one) in rows {
         by_run.entry(run).or_default().push(one);
@@ -165,7 +164,7 @@ fn by_run<T>(
     Ok(by_run)
 }
 
-fn run(row: &Row<'_>) -> rusqlite::Result<UnitRun> {
+fn run(row: &Found<'_>) -> Result<UnitRun, DatabaseError> {
     Ok(UnitRun {
         line: RunLine::of(row)?,
         variant: row.get(16)?,
@@ -181,7 +180,7 @@ fn run(row: &Row<'_>) -> rusqlite::Result<UnitRun> {
     })
 }
 
-fn step(row: &Row<'_>) -> rusqlite::Result<StepTry> {
+fn step(row: &Found<'_>) -> Result<StepTry, DatabaseError> {
     Ok(StepTry {
         seq: row.get(1)?,
         attempt: row.get(2)?,
@@ -193,16 +192,16 @@ fn step(row: &Row<'_>) -> rusqlite::Result<StepTry> {
     })
 }
 
-fn suspect(row: &Row<'_>) -> rusqlite::Result<Suspect> {
+fn suspect(row: &Found<'_>) -> Result<Suspect, DatabaseError> {
     Ok(Suspect { part: row.get(1)?, place: row.get(2)?, explained: row.get(3)? })
 }
 
-fn attachment(row: &Row<'_>) -> rusqlite::Result<Attachment> {
+fn attachment(row: &Found<'_>) -> Result<Attachment, DatabaseError> {
     let bytes: i64 = row.get(3)?;
     let (name, sha256, media_type) = (row.get(1)?, row.get(2)?, row.get(4)?);
     Ok(Attachment { name, sha256, bytes: bytes.unsigned_abs(), media_type })
 }
 
-fn waiver(row: &Row<'_>) -> rusqlite::Result<Waiver> {
+fn waiver(row: &Found<'_>) -> Result<Waiver, DatabaseError> {
     Ok(Waiver { run: row.get(0)?, at_ms: row.get(1)?, operator: row.get(2)?, reason: row.get(3)? })
 }

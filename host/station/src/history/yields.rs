@@ -18,7 +18,7 @@ use serde::Serialize;
 
 use super::rate::Rate;
 use super::{Period, PlanName, count, plans};
-use crate::store::{Snapshot, StoreError, statements};
+use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements, values};
 
 /// Milliseconds of a day.
 const DAY_MS: i64 = 86_400_000;
@@ -198,7 +198,9 @@ fn cells(
     parts.extend(rest.map(|part| (statements::YIELD_HOURS, [part.from_ms, part.until_ms])));
     let mut cells = BTreeMap::<_, Counts>::new();
     for (text, [from, until]) in parts.into_iter().filter(|(_, [from, until])| from < until) {
-        for (plan, station, lane, day, counts) in of.rows("to be counted", text, &[&from, &until], counted)? {
+        for (plan, station, lane, day, counts) in
+            of.rows("to be counted", text, values![from, until], counted)?
+        {
             let Some(plan) = plans.get(&plan).cloned() else { continue };
             let cell = Cell { plan, station, lane, day };
             if wanted.is_wanted(&cell) {
@@ -223,7 +225,7 @@ fn in_days(Period { from_ms, until_ms }: Period) -> (Range<i64>, [Period; 2]) {
 }
 
 /// Plan, station, lane and day of a row, and what was counted there.
-fn counted(row: &rusqlite::Row<'_>) -> rusqlite::Result<(String, String, String, i64, Counts)> {
+fn counted(row: &Found<'_>) -> Result<(String, String, String, i64, Counts), DatabaseError> {
     let [runs, errors, crashes, units, first] = [4, 5, 6, 7, 8].map(|column| count(row, column));
     let (first, rest) = (first?, Counts::default());
     let (runs, errors, crashes, units) = (runs?, errors?, crashes?, units?);
@@ -267,7 +269,7 @@ fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>
     let is_pass = |verdict: &str| verdict == halfrow::Verdict::Pass.to_string();
     let rows = of.rows("to tell what was judged again", statements::RETESTS, &[], |row| {
         let (hash, first_ms): (String, i64) = (row.get(1)?, row.get(6)?);
-        let plan = plans.get(&hash).cloned().ok_or(rusqlite::Error::QueryReturnedNoRows)?;
+        let plan = plans.get(&hash).cloned().ok_or(DatabaseError::Dangling { what: "a plan" })?;
         let cell = Cell { plan, station: row.get(2)?, lane: row.get(3)?, day: first_ms / DAY_MS };
         Ok(Again {
             cell,
@@ -275,17 +277,17 @@ fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>
             judgements: count(row, 4)?,
             first: row.get(5)?,
             first_ms,
-            first_passed: is_pass(&row.get::<_, String>(7)?),
+            first_passed: is_pass(&row.get::<String>(7)?),
             last: row.get(8)?,
             last_ms: row.get(9)?,
-            last_passed: is_pass(&row.get::<_, String>(10)?),
+            last_passed: is_pass(&row.get::<String>(10)?),
         })
     })?;
     Ok(rows)
 }
 
 fn serial_of(of: &Snapshot, unit: &str) -> Result<String, StoreError> {
-    let serials = of.rows("to tell a unit", statements::SERIAL_OF, &[&unit], |row| row.get(0))?;
+    let serials = of.rows("to tell a unit", statements::SERIAL_OF, values![unit], |row| row.get(0))?;
     Ok(serials.into_iter().next().unwrap_or_default())
 }
 
@@ -296,7 +298,7 @@ fn waived(
 ) -> Result<BTreeMap<String, (Cell, i64, bool)>, StoreError> {
     let rows = of.rows("to tell its waivers", statements::WAIVED, &[], |row| {
         let (hash, started_ms): (String, i64) = (row.get(1)?, row.get(4)?);
-        let plan = plans.get(&hash).cloned().ok_or(rusqlite::Error::QueryReturnedNoRows)?;
+        let plan = plans.get(&hash).cloned().ok_or(DatabaseError::Dangling { what: "a plan" })?;
         let cell = Cell { plan, station: row.get(2)?, lane: row.get(3)?, day: started_ms / DAY_MS };
         Ok((row.get(0)?, (cell, started_ms, row.get(5)?)))
     })?;

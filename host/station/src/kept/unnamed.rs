@@ -110,7 +110,7 @@ pub(crate) struct Spool {
 }
 
 /// The spools of all runs that are not open.
-pub(crate) fn spools(store: &Store) -> Result<Vec<Spool>, StoreError> {
+pub(crate) fn spools(store: &mut Store) -> Result<Vec<Spool>, StoreError> {
     let open: BTreeSet<_> = store.open_runs()?.into_iter().map(|open| open.run.id).collect();
     let mut spools = Vec::new();
     let folder = store.folder().spools();

@@ -46,7 +46,7 @@ pub fn recover_run(store: &mut Store, run: &str) -> Result<Saved, RunError> {
 }
 
 /// Removes what runs left that ended between their result and their last act, and what is a day old and no row names.
-fn clear(store: &Store) {
+fn clear(store: &mut Store) {
     let spools = match spools(store) {
         Ok(spools) => spools,
         Err(error) => return tracing::warn!("what earlier runs left stays where it is: {error}"),

@@ -1,5 +1,6 @@
 //! The settings of a station: its name, its folder, its lanes, its scanner, its hooks.
 
+mod plant;
 mod read;
 mod stable;
 mod text;
@@ -10,6 +11,8 @@ use std::time::Duration;
 
 use halfrow::Verdict;
 use halfrow::target::Target;
+
+pub use plant::{PASSWORD, PlantSettings, PlantSettingsError};
 
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::input_error::InputError;
@@ -44,6 +47,8 @@ pub struct Settings {
     pub address: Address,
     /// Who may act on them; without it, everybody at the computer itself.
     pub access: Option<AccessSettings>,
+    /// Where results are sent on to.
+    pub plant: Option<PlantSettings>,
 }
 
 /// `[access]`

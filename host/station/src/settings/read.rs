@@ -8,7 +8,9 @@ use halfrow::target::Target;
 use toml::Spanned;
 
 use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText};
-use super::{AccessSettings, Hook, LaneSettings, PlanFile, SCHEMA, Scanner, Settings, WORDS, stable};
+use super::{
+    AccessSettings, Hook, LaneSettings, PlanFile, PlantSettings, SCHEMA, Scanner, Settings, WORDS, stable,
+};
 use crate::floor::Starts;
 use crate::input_error::Fault;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
@@ -54,6 +56,7 @@ pub(super) fn settings(path: &Path, text: &str) -> Result<Settings, Fault> {
         hooks: hooks(folder, &read)?,
         address: address(&read)?,
         access: read.access.as_ref().map(|access| people(folder, access)).transpose()?,
+        plant: read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?,
     })
 }
 

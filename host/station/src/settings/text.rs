@@ -14,6 +14,7 @@ pub(super) struct SettingsText {
     #[serde(default)]
     pub(super) web: WebText,
     pub(super) access: Option<AccessText>,
+    pub(super) plant: Option<PlantText>,
     #[serde(default)]
     pub(super) lane: Vec<LaneText>,
     #[serde(default, rename = "on-pass")]
@@ -72,6 +73,27 @@ pub(super) struct AccessText {
     pub(super) users: Spanned<String>,
     pub(super) tokens: Option<Spanned<String>>,
     pub(super) hours: Option<Spanned<f64>>,
+}
+
+/// `[plant]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct PlantText {
+    pub(super) url: Spanned<String>,
+    pub(super) password_file: Option<String>,
+    pub(super) ca: Option<String>,
+    #[serde(default)]
+    pub(super) green: GreenText,
+    pub(super) most_unsent: Option<Spanned<u32>>,
+}
+
+/// Who must have a result before its verdict is shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum GreenText {
+    #[default]
+    Station,
+    Plant,
 }
 
 /// A `[[lane]]`

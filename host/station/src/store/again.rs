@@ -2,8 +2,8 @@
 
 use halfrow::Verdict;
 use jiff::Timestamp;
-use rusqlite::{OptionalExtension as _, params};
 
+use super::database::values;
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::{Again, Plan};
 
@@ -45,16 +45,10 @@ impl Folder {
         if plan.again == Again::Allow || plan.is_reference(serial) {
             return Ok(None);
         }
-        let of = params![plan.product, serial, plan.sha256];
-        let last: Option<(String, i64)> = self
-            .reader()?
-            .query_row(sql::PASSED, of, |row| Ok((row.get(0)?, row.get(1)?)))
-            .optional()
-            .map_err(|source| StoreError::Database {
-                path: self.database(),
-                doing: "to tell whether a unit passed",
-                source,
-            })?;
+        let last: Option<(String, i64)> = self.read("to tell whether a unit passed", |from| {
+            let of = values![&plan.product, serial, &plan.sha256];
+            from.first(sql::PASSED, of, |row| Ok((row.get(0)?, row.get(1)?)))
+        })?;
         let Some((_, ms)) = last.filter(|(verdict, _)| *verdict == Verdict::Pass.to_string()) else {
             return Ok(None);
         };

@@ -1,9 +1,11 @@
 //! Which device has which serial number: the FPGA's own number against the label on the board.
 
-use rusqlite::{Connection, OptionalExtension as _, Transaction, params};
+use std::sync::Arc;
+
 use serde::{Deserialize, Serialize};
 
-use super::{Store, StoreError, statements as sql};
+use super::database::{Database, DatabaseError, Row, values};
+use super::{Kind, Store, StoreError, outbox, statements as sql};
 use crate::record::RunHead;
 use crate::said::{Said, Saying};
 use crate::{clock, ids};
@@ -48,9 +50,9 @@ pub struct Rebinding {
 
 /// What the audit keeps of a rebinding beside who, when and which unit.
 #[derive(Debug, Serialize, Deserialize)]
-struct Detail {
-    device: Option<String>,
-    reason: String,
+pub(super) struct Detail {
+    pub(super) device: Option<String>,
+    pub(super) reason: String,
 }
 
 impl Store {
@@ -64,15 +66,12 @@ impl Store {
             let why = Saying::DeviceElsewhere { device: device.to_owned() };
             return Ok(Admission::Refused { why: why.into(), remedy: "Wait until that run is over." });
         }
-        let known = || -> rusqlite::Result<Known> {
-            let unit = self.writer.query_row(sql::UNIT_OF_DEVICE, [device], |row| {
-                Ok(Unit { product: row.get(0)?, serial: row.get(1)? })
-            });
-            let device = self.writer.query_row(sql::DEVICE_OF_UNIT, [&run.unit_id], |row| row.get(0));
-            Ok(Known { unit: unit.optional()?, device: device.optional()? })
-        };
-        let known =
-            known().map_err(|error| self.refuses("to tell which device has which serial number", error))?;
+        let known = self.read("to tell which device has which serial number", |from| {
+            let unit = |row: &Row<'_>| Ok(Unit { product: row.get(0)?, serial: row.get(1)? });
+            let unit = from.first(sql::UNIT_OF_DEVICE, values![device], unit)?;
+            let device = from.first(sql::DEVICE_OF_UNIT, values![&run.unit_id], |row| row.get(0))?;
+            Ok(Known { unit, device })
+        })?;
         let admission =
             known.admits(&Unit { product: run.product.clone(), serial: run.serial.clone() }, device);
         if !matches!(admission, Admission::Refused { .. }) {
@@ -94,11 +93,9 @@ impl Store {
             return Err(RebindError::NoDevice { device: device.to_owned() });
         }
         let unit_id = self.unit(change)?;
-        let open: Option<String> = self
-            .writer
-            .query_row(sql::OPEN_RUN_OF_UNIT, [&unit_id], |row| row.get(0))
-            .optional()
-            .map_err(|error| self.refuses("to tell its open runs", error))?;
+        let open: Option<String> = self.read("to tell its open runs", |from| {
+            from.first(sql::OPEN_RUN_OF_UNIT, values![&unit_id], |row| row.get(0))
+        })?;
         if open.is_some() || change.device.is_some_and(|device| self.admitted.contains_key(device)) {
             return Err(RebindError::UnderTest { serial: change.serial.to_owned() });
         }
@@ -111,17 +108,20 @@ impl Store {
             device: change.device.map(str::to_owned),
             reason: change.reason.trim().to_owned(),
         };
-        self.change("another binding", |to| audit(to, &rebinding).and_then(|()| rebind(to, &rebinding)))?;
+        let sinks = Arc::clone(&self.sinks);
+        self.change("another binding", |to| {
+            audit(to, &rebinding)?;
+            outbox::enter(to, &sinks, Kind::Audit, &rebinding.id)?;
+            rebind(to, &rebinding)
+        })?;
         Ok(rebinding)
     }
 
     /// The unit that is meant.
-    fn unit(&self, change: &Change<'_>) -> Result<String, RebindError> {
-        let read = || -> rusqlite::Result<Vec<(String, String)>> {
-            let mut statement = self.writer.prepare(sql::UNITS_OF_SERIAL)?;
-            statement.query_map([change.serial], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
-        };
-        let units = read().map_err(|error| self.refuses("to tell its units", error))?;
+    fn unit(&mut self, change: &Change<'_>) -> Result<String, RebindError> {
+        let units: Vec<(String, String)> = self.read("to tell its units", |from| {
+            from.all(sql::UNITS_OF_SERIAL, values![change.serial], |row| Ok((row.get(0)?, row.get(1)?)))
+        })?;
         let is_meant = |product: &str| change.product.is_none_or(|meant| meant == product);
         let mut meant = units.into_iter().filter(|(_, product)| is_meant(product));
         let serial = || change.serial.to_owned();
@@ -240,40 +240,39 @@ impl Known {
 }
 
 /// What a run binds that judged a device which was not known.
-pub(super) fn bind(to: &Transaction<'_>, run: &RunHead, device: &str, at_ms: i64) -> rusqlite::Result<usize> {
-    to.execute(sql::ADD_BINDING, params![run.id, device, run.unit_id, at_ms, run.operator, BY_RUN])
+pub(super) fn bind(
+    to: &mut dyn Database,
+    run: &RunHead,
+    device: &str,
+    at_ms: i64,
+) -> Result<u64, DatabaseError> {
+    to.execute(sql::ADD_BINDING, values![&run.id, device, &run.unit_id, at_ms, &run.operator, BY_RUN])
 }
 
 /// What a person changed.
-pub(super) fn rebind(to: &Transaction<'_>, change: &Rebinding) -> rusqlite::Result<()> {
+pub(super) fn rebind(to: &mut dyn Database, change: &Rebinding) -> Result<(), DatabaseError> {
     let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
-    to.execute(sql::END_BINDINGS, params![at_ms, unit_id, device])?;
+    to.execute(sql::END_BINDINGS, values![*at_ms, unit_id, device.as_ref()])?;
     if let Some(device) = device {
-        to.execute(sql::ADD_BINDING, params![id, device, unit_id, at_ms, operator, reason])?;
+        to.execute(sql::ADD_BINDING, values![id, device, unit_id, *at_ms, operator, reason])?;
     }
     Ok(())
 }
 
-fn audit(to: &Transaction<'_>, change: &Rebinding) -> rusqlite::Result<()> {
+fn audit(to: &mut dyn Database, change: &Rebinding) -> Result<(), DatabaseError> {
     let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
     let detail = Detail { device: device.clone(), reason: reason.clone() };
-    let detail = serde_json::to_string(&detail)
-        .map_err(|error| rusqlite::Error::ToSqlConversionFailure(Box::new(error)))?;
-    to.execute(sql::ADD_AUDIT, params![id, at_ms, operator, REBIND, unit_id, detail]).map(drop)
+    let detail = serde_json::to_string(&detail)?;
+    to.execute(sql::ADD_AUDIT, values![id, *at_ms, operator, REBIND, unit_id, &detail]).map(drop)
 }
 
 /// Every change by a person, the earliest first.
-pub(super) fn rebindings(from: &Connection) -> rusqlite::Result<Vec<Rebinding>> {
-    let mut statement = from.prepare(sql::AUDIT_OF_ACT)?;
-    let one = |row: &rusqlite::Row<'_>| {
-        let text: String = row.get(4)?;
-        let Detail { device, reason } = serde_json::from_str(&text).map_err(|error| {
-            rusqlite::Error::FromSqlConversionFailure(4, rusqlite::types::Type::Text, Box::new(error))
-        })?;
+pub(super) fn rebindings(from: &mut dyn Database) -> Result<Vec<Rebinding>, DatabaseError> {
+    from.all(sql::AUDIT_OF_ACT, values![REBIND], |row| {
+        let Detail { device, reason } = serde_json::from_str(row.text(4)?)?;
         let (id, at_ms, operator, unit_id) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
         Ok(Rebinding { id, at_ms, operator, unit_id, device, reason })
-    };
-    statement.query_map([REBIND], one)?.collect()
+    })
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! Why the store cannot do what it was asked.
 
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use super::database::{DatabaseError, Engine};
 use crate::record::{BlobError, RecordError};
 use crate::run::NoRandomness;
 
@@ -31,7 +32,19 @@ pub enum StoreError {
         /// What was under way.
         doing: &'static str,
         /// Why.
-        source: rusqlite::Error,
+        source: DatabaseError,
+    },
+    /// The plant's database refuses.
+    #[error(
+        "the plant {plant} refuses {doing}; look whether it is there and whom it lets in, and ask whoever keeps it"
+    )]
+    Plant {
+        /// Its address, without the password.
+        plant: String,
+        /// What was under way.
+        doing: &'static str,
+        /// Why.
+        source: DatabaseError,
     },
     /// The file system cannot keep what SQLite needs.
     #[error(
@@ -100,4 +113,14 @@ pub enum StoreError {
     /// An id cannot be made.
     #[error(transparent)]
     NoRandomness(#[from] NoRandomness),
+}
+
+impl StoreError {
+    /// What an engine at `place`, a file or an address, does not do.
+    pub(super) fn refused(engine: Engine, place: &Path, doing: &'static str, source: DatabaseError) -> Self {
+        match engine {
+            Engine::Sqlite => Self::Database { path: place.to_owned(), doing, source },
+            Engine::Postgres => Self::Plant { plant: place.display().to_string(), doing, source },
+        }
+    }
 }

@@ -2,10 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use std::sync::Arc;
 
-use rusqlite::params;
-
-use super::{Folder, Snapshot, Store, StoreError, statements as sql};
+use super::database::values;
+use super::{Folder, Kind, Snapshot, Store, StoreError, outbox, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::run::NoRandomness;
@@ -19,7 +19,7 @@ impl Folder {
 
     /// Copies the database as it is at this moment to the new file `to`.
     pub(crate) fn copy_database(&self, to: &Path) -> Result<(), StoreError> {
-        let copied = self.reader()?.execute("VACUUM INTO $1", [to.to_string_lossy()]);
+        let copied = self.reader()?.execute("VACUUM INTO $1", values![&*to.to_string_lossy()]);
         let path = self.database();
         copied.map(drop).map_err(|source| StoreError::Database { path, doing: "to be copied", source })
     }
@@ -57,8 +57,12 @@ impl Removed {
 impl Store {
     /// The hashes of the attachments of which every run ended before `before_ms`.
     pub(crate) fn old_evidence(&self, before_ms: i64) -> Result<Vec<String>, StoreError> {
-        Snapshot::take(&self.folder)?
-            .rows("to tell old evidence", sql::OLD_EVIDENCE, &[&before_ms], |row| row.get(0))
+        Snapshot::take(&self.folder)?.rows(
+            "to tell old evidence",
+            sql::OLD_EVIDENCE,
+            values![before_ms],
+            |row| row.get(0),
+        )
     }
 
     /// The hashes of all evidence that a row names.
@@ -84,10 +88,11 @@ impl Store {
         let id = |_: &String| Ok(ids::new(at_ms)?.to_string());
         let named: Result<Vec<_>, NoRandomness> = subjects.iter().map(id).collect();
         let named = named?;
+        let sinks = Arc::clone(&self.sinks);
         self.change("an audit", |to| {
-            let mut add = to.prepare(sql::ADD_AUDIT)?;
             for (id, subject) in named.iter().zip(subjects) {
-                add.execute(params![id, at_ms, operator, act, subject, why])?;
+                to.execute(sql::ADD_AUDIT, values![id, at_ms, operator, act, subject, why])?;
+                outbox::enter(to, &sinks, Kind::Audit, id)?;
             }
             Ok(())
         })

@@ -13,9 +13,12 @@
 mod again;
 mod audit;
 mod bindings;
+mod database;
 mod error;
 mod keeping;
 mod migrations;
+mod outbox;
+mod plant;
 mod rows;
 mod shared;
 mod shift;
@@ -26,18 +29,24 @@ mod waivers;
 use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::time::Duration;
 
-use rusqlite::{Connection, OpenFlags, OptionalExtension as _, TransactionBehavior};
+use rusqlite::{Connection, OpenFlags};
 
 pub use again::AgainError;
 pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
+pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub use keeping::Removed;
+pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, Tried, Unsent};
+pub use plant::{Plant, PlantAddress, PlantAddressError, PlantError};
 pub use shared::SharedStore;
 pub use shift::{Checked, Owed};
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
 pub use waivers::{NoWaiver, Waiver};
+
+use database::Sqlite;
 
 use crate::clock;
 use crate::record::{Blobs, PlanRecord, Record, RunHead};
@@ -95,14 +104,18 @@ impl Folder {
     }
 
     /// A connection that cannot write.
-    fn reader(&self) -> Result<Connection, StoreError> {
+    fn reader(&self) -> Result<Box<dyn Database>, StoreError> {
         let path = self.database();
         let open = || {
             let reader = Connection::open_with_flags(&path, OpenFlags::SQLITE_OPEN_READ_ONLY)?;
             reader.busy_timeout(PATIENCE)?;
-            Ok(reader)
+            Ok(Box::new(Sqlite::new(reader)) as Box<dyn Database>)
         };
-        open().map_err(|source| StoreError::Database { path: path.clone(), doing: "to be read", source })
+        open().map_err(|source: DatabaseError| StoreError::Database {
+            path: path.clone(),
+            doing: "to be read",
+            source,
+        })
     }
 }
 
@@ -134,9 +147,11 @@ pub struct Stored {
 #[derive(Debug)]
 pub struct Store {
     folder: Folder,
-    writer: Connection,
+    writer: Box<dyn Database>,
     /// Devices that are being tested, each with its run.
     admitted: BTreeMap<String, String>,
+    /// To whom all is sent on.
+    sinks: Arc<[String]>,
     _lock: File,
 }
 
@@ -151,8 +166,14 @@ impl Store {
         }
         let lock = folder.lock()?;
         let path = folder.database();
-        let refused = |doing| move |source| StoreError::Database { path: folder.database(), doing, source };
-        let mut writer = Connection::open(&path).map_err(refused("to be opened"))?;
+        let refused = |doing| {
+            move |source: rusqlite::Error| StoreError::Database {
+                path: folder.database(),
+                doing,
+                source: source.into(),
+            }
+        };
+        let writer = Connection::open(&path).map_err(refused("to be opened"))?;
         writer.busy_timeout(PATIENCE).map_err(refused("to wait"))?;
         let mode: String = writer
             .query_row("PRAGMA journal_mode = WAL", [], |row| row.get(0))
@@ -164,9 +185,16 @@ impl Store {
         writer
             .execute_batch("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON")
             .map_err(refused("to be safe"))?;
-        migrations::apply(&mut writer, &path, clock::now_ms())?;
+        let mut writer: Box<dyn Database> = Box::new(Sqlite::new(writer));
+        migrations::apply(&mut *writer, &path, clock::now_ms())?;
         crate::record::synced(&folder.0)?;
-        Ok(Self { folder: folder.clone(), writer, admitted: BTreeMap::new(), _lock: lock })
+        Ok(Self {
+            folder: folder.clone(),
+            writer,
+            admitted: BTreeMap::new(),
+            sinks: Arc::default(),
+            _lock: lock,
+        })
     }
 
     /// The store in `folder`, which must be there.
@@ -202,7 +230,14 @@ impl Store {
         let bytes = record.bytes(steps)?;
         let hash = self.folder.blobs().put(&bytes)?;
         let run = || record.run.id.clone();
-        let changed = self.change("to end a run", |to| rows::finish(to, record, &hash))?;
+        let sinks = Arc::clone(&self.sinks);
+        let changed = self.change("to end a run", |to| {
+            let changed = rows::finish(to, record, &hash)?;
+            if changed == 1 {
+                outbox::enter(to, &sinks, Kind::Run, &record.run.id)?;
+            }
+            Ok(changed)
+        })?;
         if changed != 1 {
             return Err(StoreError::NotOpen { run: run() });
         }
@@ -227,34 +262,27 @@ impl Store {
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn open_runs(&self) -> Result<Vec<OpenRun>, StoreError> {
-        let read = || -> rusqlite::Result<Vec<OpenRun>> {
-            self.writer.prepare(statements::OPEN_RUNS)?.query_map([], open_run)?.collect()
-        };
-        read().map_err(|source| {
-            let path = self.folder.database();
-            StoreError::Database { path, doing: "to tell its open runs", source }
-        })
+    pub fn open_runs(&mut self) -> Result<Vec<OpenRun>, StoreError> {
+        self.read("to tell its open runs", |from| from.all(statements::OPEN_RUNS, &[], open_run))
     }
 
-    fn refuses(&self, doing: &'static str, source: rusqlite::Error) -> StoreError {
-        StoreError::Database { path: self.folder.database(), doing, source }
+    /// What `read` finds.
+    fn read<T>(
+        &mut self,
+        doing: &'static str,
+        read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
+    ) -> Result<T, StoreError> {
+        let path = self.folder.database();
+        read(&mut *self.writer).map_err(|source| StoreError::Database { path, doing, source })
     }
 
-    /// What `change` returns once all that it did is on the disk. A change of no row is taken back.
+    /// What `change` returns once all that it did is on the disk.
     fn change<T>(
         &mut self,
         doing: &'static str,
-        change: impl FnOnce(&rusqlite::Transaction<'_>) -> rusqlite::Result<T>,
+        change: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
-        let path = self.folder.database();
-        let run = || {
-            let transaction = self.writer.transaction_with_behavior(TransactionBehavior::Immediate)?;
-            let done = change(&transaction)?;
-            transaction.commit()?;
-            Ok(done)
-        };
-        run().map_err(|source| StoreError::Database { path, doing, source })
+        self.read(doing, |writer| writer.transaction(change))
     }
 }
 
@@ -264,21 +292,26 @@ impl Folder {
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub fn verdict_of(&self, run: &str) -> Result<Option<Stored>, StoreError> {
-        let reader = self.reader()?;
-        let stored = reader.query_row(statements::VERDICT_OF, [run], |row| {
-            Ok(Stored {
-                verdict: row.get(0)?,
-                exit_code: row.get(1)?,
-                record_sha256: row.get(2)?,
-                nth: row.get(3)?,
+        self.read("to tell a verdict", |from| {
+            from.first(statements::VERDICT_OF, values![run], |row| {
+                let (verdict, exit_code) = (row.get(0)?, row.get(1)?);
+                Ok(Stored { verdict, exit_code, record_sha256: row.get(2)?, nth: row.get(3)? })
             })
-        });
+        })
+    }
+
+    /// What `read` finds by a connection of its own.
+    fn read<T>(
+        &self,
+        doing: &'static str,
+        read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
+    ) -> Result<T, StoreError> {
         let path = self.database();
-        stored.optional().map_err(|source| StoreError::Database { path, doing: "to tell a verdict", source })
+        read(&mut *self.reader()?).map_err(|source| StoreError::Database { path, doing, source })
     }
 }
 
-fn open_run(row: &rusqlite::Row<'_>) -> rusqlite::Result<OpenRun> {
+fn open_run(row: &Found<'_>) -> Result<OpenRun, DatabaseError> {
     let run = RunHead {
         id: row.get(0)?,
         station: row.get(1)?,

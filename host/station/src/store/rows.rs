@@ -1,7 +1,6 @@
 //! What a run leaves in the tables. A database that is rebuilt from records gets its rows here, too.
 
-use rusqlite::{Connection, Transaction, params};
-
+use super::database::{Database, DatabaseError, values};
 use super::{bindings, statements as sql};
 use crate::plan::mock::is_mock;
 use crate::record::{PlanRecord, Record, RunHead};
@@ -9,45 +8,50 @@ use crate::record::{PlanRecord, Record, RunHead};
 /// Unit, plan and open run. Returns the unit's id and the fence; the unit that is named is made if there is none of
 /// this serial number.
 pub(super) fn open(
-    to: &Transaction<'_>,
+    to: &mut dyn Database,
     run: &RunHead,
     plan: &PlanRecord,
-) -> rusqlite::Result<(String, i64)> {
-    let PlanRecord { sha256, name, version, text, files: _ } = plan;
-    let RunHead { product, serial, started_ms, .. } = run;
-    to.execute(sql::ADD_PLAN, params![sha256, name, version, product, text, started_ms])?;
-    to.execute(sql::ADD_UNIT, params![run.unit_id, product, serial, started_ms])?;
-    let unit: String = to.query_row(sql::UNIT_OF, params![product, serial], |row| row.get(0))?;
-    let fence = to.query_row(
+) -> Result<(String, i64), DatabaseError> {
+    let unit = unit(to, run, plan)?;
+    let fence = to.one(
         sql::OPEN_RUN,
-        params![
-            run.id,
-            run.station,
-            run.lane,
-            unit,
-            sha256,
-            run.variant,
-            run.operator,
-            run.target,
-            started_ms
+        values![
+            &run.id,
+            &run.station,
+            &run.lane,
+            &unit,
+            &plan.sha256,
+            &run.variant,
+            &run.operator,
+            &run.target,
+            run.started_ms,
         ],
         |row| row.get(0),
     )?;
     Ok((unit, fence))
 }
 
+/// The plan and the unit of a run. Returns the unit's id.
+pub(super) fn unit(to: &mut dyn Database, run: &RunHead, plan: &PlanRecord) -> Result<String, DatabaseError> {
+    let PlanRecord { sha256, name, version, text, files: _ } = plan;
+    let RunHead { product, serial, started_ms, .. } = run;
+    to.execute(sql::ADD_PLAN, values![sha256, name, version, product, text, *started_ms])?;
+    to.execute(sql::ADD_UNIT, values![&run.unit_id, product, serial, *started_ms])?;
+    to.one(sql::UNIT_OF, values![product, serial], |row| row.get(0))
+}
+
 /// The end of a run with all that belongs to it. Returns the number of runs that it ended: none, and then nothing is
 /// changed, when the run is not open, or somebody else's.
-pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusqlite::Result<usize> {
+pub(super) fn finish(to: &mut dyn Database, record: &Record, hash: &str) -> Result<u64, DatabaseError> {
     let id = &record.run.id;
     let (ended, board) = (&record.conclusion, record.board.as_ref());
     let changed = to.execute(
         sql::FINISH_RUN,
-        params![
-            ended.verdict.to_string(),
+        values![
+            &ended.verdict.to_string(),
             ended.exit_code,
             ended.cause.name(),
-            ended.headline,
+            &ended.headline,
             record.ended_ms,
             hash,
             board.map(|board| &board.kind),
@@ -64,47 +68,50 @@ pub(super) fn finish(to: &Transaction<'_>, record: &Record, hash: &str) -> rusql
     if let Some(device) = record.binds() {
         bindings::bind(to, &record.run, device, record.ended_ms)?;
     }
+    parts(to, record)?;
+    for counted in [sql::ADD_DAY_COUNT, sql::ADD_RETEST, sql::ADD_FAILURES] {
+        to.execute(counted, values![id])?;
+    }
+    Ok(changed)
+}
+
+/// What hangs on a run: steps, measurements, suspects, attachments.
+pub(super) fn parts(to: &mut dyn Database, record: &Record) -> Result<(), DatabaseError> {
+    let id = &record.run.id;
     for step in &record.steps {
         let (seq, attempt) = (step.seq, step.attempt);
         let outcome = step.outcome.name();
         to.execute(
             sql::ADD_STEP,
-            params![id, seq, attempt, step.name, outcome, step.started_ms, step.ended_ms, step.detail],
+            values![id, seq, attempt, &step.name, outcome, step.started_ms, step.ended_ms, &step.detail],
         )?;
     }
     measurements(to, record)?;
-    rest(to, record)?;
-    Ok(changed)
-}
-
-/// What hangs on the run and its steps, and what is counted of it all.
-fn rest(to: &Connection, record: &Record) -> rusqlite::Result<()> {
-    let id = &record.run.id;
-    for (suspect, rank) in record.suspects.iter().zip(1..) {
-        to.execute(sql::ADD_SUSPECT, params![id, rank, suspect.part, suspect.place, suspect.explained])?;
+    for (suspect, rank) in record.suspects.iter().zip(1_i64..) {
+        to.execute(sql::ADD_SUSPECT, values![id, rank, &suspect.part, &suspect.place, suspect.explained])?;
     }
     for one in &record.attachments {
-        to.execute(sql::ADD_ATTACHMENT, params![id, one.name, one.sha256, one.bytes as i64, one.media_type])?;
-    }
-    for counted in [sql::ADD_DAY_COUNT, sql::ADD_RETEST, sql::ADD_FAILURES] {
-        to.execute(counted, [id])?;
+        to.execute(
+            sql::ADD_ATTACHMENT,
+            values![id, &one.name, &one.sha256, one.bytes as i64, &one.media_type],
+        )?;
     }
     Ok(())
 }
 
-fn measurements(to: &Connection, record: &Record) -> rusqlite::Result<()> {
+fn measurements(to: &mut dyn Database, record: &Record) -> Result<(), DatabaseError> {
     let of_steps = record.steps.iter().map(|step| (step.seq, step.attempt, &step.measurements));
     for (seq, attempt, measured) in of_steps.chain([(0, 1, &record.measurements)]) {
         for one in measured {
             to.execute(
                 sql::ADD_MEASUREMENT,
-                params![
-                    record.run.id,
+                values![
+                    &record.run.id,
                     seq,
                     attempt,
-                    one.name,
+                    &one.name,
                     one.value,
-                    one.unit,
+                    &one.unit,
                     one.low,
                     one.high,
                     one.blames.name(),

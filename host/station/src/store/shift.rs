@@ -1,8 +1,8 @@
 //! Whether a lane was checked in this shift, by a unit that is known to be good and by what is known to be bad.
 
 use halfrow::Verdict;
-use rusqlite::{OptionalExtension as _, params};
 
+use super::database::{Row, values};
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::mock::BARCODE;
 use crate::plan::{Bad, Plan, Shift};
@@ -43,15 +43,15 @@ impl Folder {
         let mut until_ms = i64::MAX;
         let Some(shift) = &plan.shift else { return Ok(Checked { owed: None, until_ms }) };
         let lasts = i64::try_from(shift.lasts.as_millis()).unwrap_or(i64::MAX);
-        let reader = self.reader()?;
+        let mut reader = self.reader()?;
         let units = [(shift.good.clone(), Verdict::Pass), (shift.bad.serial(lane), Verdict::Fail)];
         for (serial, expected) in units {
             let since = now_ms.saturating_sub(lasts);
-            let of = params![station, lane, plan.sha256, plan.product, serial, since];
-            let judged = |row: &rusqlite::Row<'_>| {
+            let of = values![station, lane, &plan.sha256, &plan.product, &serial, since];
+            let judged = |row: &Row<'_>| {
                 Ok(Judged { verdict: row.get(0)?, started_ms: row.get(1)?, target: row.get(2)? })
             };
-            let last = reader.query_row(sql::LAST_JUDGEMENT, of, judged).optional();
+            let last = reader.first(sql::LAST_JUDGEMENT, of, judged);
             let last = last.map_err(|source| StoreError::Database {
                 path: self.database(),
                 doing: "to tell who checked a shift",

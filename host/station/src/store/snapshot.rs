@@ -1,8 +1,10 @@
 //! The tables as they are at one moment, and as they are when they are made anew from the records.
 
-use rusqlite::types::Value;
-use rusqlite::{Connection, ToSql, TransactionBehavior};
+use std::cell::RefCell;
 
+use rusqlite::Connection;
+
+use super::database::{Database, DatabaseError, Row as Found, Sqlite, Value};
 use super::{Folder, OpenRun, Rebinding, StoreError, bindings, migrations, open_run, rows, statements};
 use crate::record::{PlanRecord, Record};
 
@@ -28,7 +30,7 @@ pub type Row = Vec<(String, String)>;
 #[derive(Debug)]
 pub struct Snapshot {
     folder: Folder,
-    reader: Connection,
+    reader: RefCell<Box<dyn Database>>,
 }
 
 impl Snapshot {
@@ -37,11 +39,11 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database is not there or cannot be read.
     pub fn take(folder: &Folder) -> Result<Self, StoreError> {
-        let snapshot = Self { folder: folder.clone(), reader: folder.reader()? };
+        let snapshot = Self { folder: folder.clone(), reader: RefCell::new(folder.reader()?) };
         let found = snapshot.read("to be read", |reader| {
-            reader.execute_batch("BEGIN")?;
+            reader.batch("BEGIN")?;
             // It begins with the first look.
-            reader.query_row("SELECT max(n) FROM schema_version", [], |row| row.get(0))
+            reader.one(migrations::NEWEST, &[], |row| row.get(0))
         })?;
         migrations::is_known(&folder.database(), found)?;
         Ok(snapshot)
@@ -52,9 +54,8 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when it cannot even look.
     pub fn damage(&self) -> Result<Vec<String>, StoreError> {
-        let said: Vec<String> = self.read("to be checked", |reader| {
-            reader.prepare("PRAGMA integrity_check")?.query_map([], |row| row.get(0))?.collect()
-        })?;
+        let said: Vec<String> =
+            self.read("to be checked", |reader| reader.all("PRAGMA integrity_check", &[], |row| row.get(0)))?;
         Ok(said.into_iter().filter(|line| line != "ok").collect())
     }
 
@@ -64,8 +65,7 @@ impl Snapshot {
     /// [`StoreError`] when the database cannot be read.
     pub fn final_runs(&self) -> Result<Vec<(String, String)>, StoreError> {
         self.read("to tell its runs", |reader| {
-            let mut statement = reader.prepare(statements::FINAL_RUNS)?;
-            statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
+            reader.all(statements::FINAL_RUNS, &[], |row| Ok((row.get(0)?, row.get(1)?)))
         })
     }
 
@@ -74,9 +74,7 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub fn open_runs(&self) -> Result<Vec<OpenRun>, StoreError> {
-        self.read("to tell its open runs", |reader| {
-            reader.prepare(statements::OPEN_RUNS)?.query_map([], open_run)?.collect()
-        })
+        self.read("to tell its open runs", |reader| reader.all(statements::OPEN_RUNS, &[], open_run))
     }
 
     /// Every binding that a person changed, the earliest first.
@@ -100,10 +98,10 @@ impl Snapshot {
         &self,
         doing: &'static str,
         text: &str,
-        values: &[&dyn ToSql],
-        row: impl FnMut(&rusqlite::Row<'_>) -> rusqlite::Result<T>,
+        values: &[Value<'_>],
+        row: impl FnMut(&Found<'_>) -> Result<T, DatabaseError>,
     ) -> Result<Vec<T>, StoreError> {
-        self.read(doing, |reader| reader.prepare(text)?.query_map(values, row)?.collect())
+        self.read(doing, |reader| reader.all(text, values, row))
     }
 
     /// The folder that they stand in.
@@ -115,9 +113,9 @@ impl Snapshot {
     fn read<T>(
         &self,
         doing: &'static str,
-        read: impl FnOnce(&Connection) -> rusqlite::Result<T>,
+        read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
-        read(&self.reader).map_err(|source| StoreError::Database {
+        read(&mut **self.reader.borrow_mut()).map_err(|source| StoreError::Database {
             path: self.folder.database(),
             doing,
             source,
@@ -125,30 +123,22 @@ impl Snapshot {
     }
 }
 
-fn table(reader: &Connection, name: &str, key: &str) -> rusqlite::Result<Vec<Row>> {
-    let mut statement = reader.prepare(&format!("SELECT * FROM {name} ORDER BY {key}"))?;
-    let columns: Vec<String> = statement.column_names().map(str::to_owned).collect();
-    let text = |value: Value| match value {
+fn table(reader: &mut dyn Database, name: &str, key: &str) -> Result<Vec<Row>, DatabaseError> {
+    let text = |value: Value<'_>| match value {
         Value::Null => "NULL".to_owned(),
-        Value::Integer(number) => number.to_string(),
+        Value::Whole(number) => number.to_string(),
         Value::Real(number) => format!("{number:?}"),
-        Value::Text(text) => text,
-        Value::Blob(bytes) => format!("{bytes:?}"),
+        Value::Text(text) => text.to_owned(),
     };
-    let row = |row: &rusqlite::Row<'_>| {
-        columns
-            .iter()
-            .enumerate()
-            .map(|(place, column)| Ok((column.clone(), text(row.get(place)?))))
-            .collect()
-    };
-    statement.query_map([], row)?.collect()
+    reader.all(&format!("SELECT * FROM {name} ORDER BY {key}"), &[], |row| {
+        Ok(row.columns()?.into_iter().map(|(column, value)| (column, text(value))).collect())
+    })
 }
 
 /// Tables that are made anew, in memory.
 #[derive(Debug)]
 pub struct Rebuilt {
-    database: Connection,
+    database: Box<dyn Database>,
 }
 
 impl Rebuilt {
@@ -157,8 +147,9 @@ impl Rebuilt {
     /// # Errors
     /// [`StoreError`] when there is no memory for it.
     pub fn new() -> Result<Self, StoreError> {
-        let mut database = Connection::open_in_memory().map_err(refused)?;
-        migrations::apply(&mut database, "a rebuilt index".as_ref(), 0)?;
+        let database = Connection::open_in_memory().map_err(|source| refused(source.into()))?;
+        let mut database: Box<dyn Database> = Box::new(Sqlite::new(database));
+        migrations::apply(&mut *database, "a rebuilt index".as_ref(), 0)?;
         Ok(Self { database })
     }
 
@@ -195,23 +186,18 @@ impl Rebuilt {
     ///
     /// # Errors
     /// [`StoreError`] when they cannot be read.
-    pub fn table(&self, name: &str, key: &str) -> Result<Vec<Row>, StoreError> {
-        table(&self.database, name, key).map_err(refused)
+    pub fn table(&mut self, name: &str, key: &str) -> Result<Vec<Row>, StoreError> {
+        table(&mut *self.database, name, key).map_err(refused)
     }
 
     fn change(
         &mut self,
-        change: impl FnOnce(&rusqlite::Transaction<'_>) -> rusqlite::Result<()>,
+        change: impl FnOnce(&mut dyn Database) -> Result<(), DatabaseError>,
     ) -> Result<(), StoreError> {
-        let run = || {
-            let transaction = self.database.transaction_with_behavior(TransactionBehavior::Immediate)?;
-            change(&transaction)?;
-            transaction.commit()
-        };
-        run().map_err(refused)
+        self.database.transaction(change).map_err(refused)
     }
 }
 
-fn refused(source: rusqlite::Error) -> StoreError {
+fn refused(source: DatabaseError) -> StoreError {
     StoreError::Database { path: "a rebuilt index".into(), doing: "a record", source }
 }

@@ -1,8 +1,11 @@
 //! The text of every statement. SQLite and PostgreSQL have the same, but for three words.
 
 /// The schemas, in order: numbered files that are never edited.
-pub(super) const SCHEMAS: [&str; 2] =
-    [include_str!("../../sql/schema-1.sql"), include_str!("../../sql/schema-2.sql")];
+pub(super) const SCHEMAS: [&str; 3] = [
+    include_str!("../../sql/schema-1.sql"),
+    include_str!("../../sql/schema-2.sql"),
+    include_str!("../../sql/schema-3.sql"),
+];
 
 pub(super) const SCHEMA_VERSION: &str = include_str!("../../sql/schema-version.sql");
 pub(super) const ADD_PLAN: &str = include_str!("../../sql/add-plan.sql");
@@ -50,17 +53,38 @@ pub(super) const AUDIT_OF_ACT: &str = include_str!("../../sql/audit-of-act.sql")
 pub(super) const LAST_JUDGEMENT: &str = include_str!("../../sql/last-judgement.sql");
 pub(super) const PASSED: &str = include_str!("../../sql/passed.sql");
 pub(super) const OPEN_RUN_OF_UNIT: &str = include_str!("../../sql/open-run-of-unit.sql");
-
-/// The text as SQLite takes it.
-pub(super) fn for_sqlite(text: &str) -> String {
-    text.replace("{int}", "INTEGER").replace("{real}", "REAL").replace("{strict}", " STRICT")
-}
+pub(super) const ADD_TO_OUTBOX: &str = include_str!("../../sql/add-to-outbox.sql");
+pub(super) const ALL_TO_OUTBOX: &str = include_str!("../../sql/all-to-outbox.sql");
+pub(super) const OUTBOX_DUE: &str = include_str!("../../sql/outbox-due.sql");
+pub(super) const OUTBOX_STATE: &str = include_str!("../../sql/outbox-state.sql");
+pub(super) const OUTBOX_DONE: &str = include_str!("../../sql/outbox-done.sql");
+pub(super) const OUTBOX_FAILED: &str = include_str!("../../sql/outbox-failed.sql");
+pub(super) const OUTBOX_DEAD: &str = include_str!("../../sql/outbox-dead.sql");
+pub(super) const OUTBOX_RELEASED: &str = include_str!("../../sql/outbox-released.sql");
+pub(super) const OUTBOX_ENTRY: &str = include_str!("../../sql/outbox-entry.sql");
+pub(super) const WAIVER_BY_ID: &str = include_str!("../../sql/waiver-by-id.sql");
+pub(super) const AUDIT_BY_ID: &str = include_str!("../../sql/audit-by-id.sql");
+pub(super) const LOCK_UNIT: &str = include_str!("../../sql/plant/lock-unit.sql");
+pub(super) const ADD_RECORD: &str = include_str!("../../sql/plant/add-record.sql");
+pub(super) const ADD_RUN: &str = include_str!("../../sql/plant/add-run.sql");
+pub(super) const HASH_OF: &str = include_str!("../../sql/plant/hash-of.sql");
+pub(super) const IS_LATE: &str = include_str!("../../sql/plant/is-late.sql");
+pub(super) const UNCOUNT_FIRST: &str = include_str!("../../sql/plant/uncount-first.sql");
+pub(super) const PLAN_EARLIER: &str = include_str!("../../sql/plant/plan-earlier.sql");
+pub(super) const UNIT_EARLIER: &str = include_str!("../../sql/plant/unit-earlier.sql");
+pub(super) const COUNT_ON: &str = include_str!("../../sql/plant/count-on.sql");
+pub(super) const FORGET_RETEST: &str = include_str!("../../sql/plant/forget-retest.sql");
+pub(super) const FIND_RETEST: &str = include_str!("../../sql/plant/find-retest.sql");
+pub(super) const ADD_BINDING_UNLESS: &str = include_str!("../../sql/plant/add-binding.sql");
+pub(super) const ADD_WAIVER_UNLESS: &str = include_str!("../../sql/plant/add-waiver.sql");
+pub(super) const ADD_AUDIT_UNLESS: &str = include_str!("../../sql/plant/add-audit.sql");
 
 #[cfg(test)]
 mod tests {
+    use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 45] = [
+    const ALL: [&str; 70] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -106,6 +130,31 @@ mod tests {
         OPEN_RUN_OF_UNIT,
         PASSED,
         LAST_JUDGEMENT,
+        ADD_TO_OUTBOX,
+        ALL_TO_OUTBOX,
+        OUTBOX_DUE,
+        OUTBOX_STATE,
+        OUTBOX_DONE,
+        OUTBOX_FAILED,
+        OUTBOX_DEAD,
+        OUTBOX_RELEASED,
+        OUTBOX_ENTRY,
+        WAIVER_BY_ID,
+        AUDIT_BY_ID,
+        LOCK_UNIT,
+        ADD_RECORD,
+        ADD_RUN,
+        HASH_OF,
+        IS_LATE,
+        UNCOUNT_FIRST,
+        PLAN_EARLIER,
+        UNIT_EARLIER,
+        COUNT_ON,
+        FORGET_RETEST,
+        FIND_RETEST,
+        ADD_BINDING_UNLESS,
+        ADD_WAIVER_UNLESS,
+        ADD_AUDIT_UNLESS,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.
@@ -125,10 +174,12 @@ mod tests {
     #[test]
     fn nothing_is_left_of_what_the_engines_call_differently() {
         for text in SCHEMAS.into_iter().chain(ALL).chain([SCHEMA_VERSION]) {
-            let text = ["{filters}", "{limit}", "{of}"]
-                .iter()
-                .fold(for_sqlite(text), |text, name| text.replace(name, "1"));
-            assert!(!text.contains(['{', '}']), "{text}");
+            for engine in [Engine::Sqlite, Engine::Postgres] {
+                let text = ["{filters}", "{limit}", "{of}"]
+                    .iter()
+                    .fold(engine.words(text), |text, name| text.replace(name, "1"));
+                assert!(!text.contains(['{', '}']), "{text}");
+            }
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Waivers: an engineer's word on a FAIL, beside it and never in its place.
 
-use rusqlite::{Connection, OptionalExtension as _, params};
+use std::sync::Arc;
+
 use serde::Serialize;
 
-use super::{Store, StoreError, statements as sql};
+use super::database::{Database, DatabaseError, values};
+use super::{Kind, Store, StoreError, outbox, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::run::NoRandomness;
@@ -74,11 +76,14 @@ impl Store {
         }
         let at_ms = clock::now_ms();
         let (id, audit) = (ids::new(at_ms)?.to_string(), ids::new(at_ms)?.to_string());
+        let sinks = Arc::clone(&self.sinks);
         let before = self.change("a waiver", |to| {
             let before = waiver_of(to, run)?;
             if before.is_none() {
-                to.execute(sql::ADD_WAIVER, params![id, run, at_ms, operator, reason])?;
-                to.execute(sql::ADD_AUDIT, params![audit, at_ms, operator, "waive", run, reason])?;
+                to.execute(sql::ADD_WAIVER, values![&id, run, at_ms, operator, reason])?;
+                outbox::enter(to, &sinks, Kind::Waiver, &id)?;
+                to.execute(sql::ADD_AUDIT, values![&audit, at_ms, operator, "waive", run, reason])?;
+                outbox::enter(to, &sinks, Kind::Audit, &audit)?;
             }
             Ok(before)
         })?;
@@ -90,9 +95,8 @@ impl Store {
     }
 }
 
-fn waiver_of(database: &Connection, run: &str) -> rusqlite::Result<Option<Waiver>> {
-    let waiver = |row: &rusqlite::Row<'_>| {
+fn waiver_of(database: &mut dyn Database, run: &str) -> Result<Option<Waiver>, DatabaseError> {
+    database.first(sql::WAIVER_OF, values![run], |row| {
         Ok(Waiver { run: row.get(1)?, at_ms: row.get(2)?, operator: row.get(3)?, reason: row.get(4)? })
-    };
-    database.query_row(sql::WAIVER_OF, [run], waiver).optional()
+    })
 }

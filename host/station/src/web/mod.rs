@@ -17,6 +17,7 @@ mod layout;
 mod live;
 mod login;
 mod operator;
+mod outbox;
 mod patient;
 mod routes;
 mod serve;
@@ -24,6 +25,7 @@ mod state;
 mod trouble;
 mod visit;
 
+pub(crate) use access::secret;
 pub use access::{
     Access, Address, AddressError, Role, Scope, SecretError, TokenError, Tokens, UserError, Users, add_token,
     add_user,

@@ -8,7 +8,7 @@ use axum::routing::{self, MethodRouter};
 
 use super::guard::{self, Guarded};
 use super::state::App;
-use super::{assets, history, login, operator};
+use super::{assets, history, login, operator, outbox};
 
 /// Who may use a route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,7 +56,7 @@ where
 /// The table.
 #[must_use]
 pub fn routes() -> Vec<Route> {
-    [assets::routes(), login::routes(), operator::routes(), history::routes()].concat()
+    [assets::routes(), login::routes(), operator::routes(), history::routes(), outbox::routes()].concat()
 }
 
 /// The table as a service. What is common to all routes stands around it, what depends on their lines around each.

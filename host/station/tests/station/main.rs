@@ -11,6 +11,7 @@ mod history;
 mod lanes;
 mod pages;
 mod plans;
+mod plant;
 mod runs;
 mod service;
 mod settings;

@@ -20,6 +20,11 @@ memory = 512
 [scanner]
 prefix = "]C1"
 suffix = "!"
+[plant]
+url = "postgres://halfrow@localhost/plant"
+password_file = "plant.password"
+green = "plant"
+most_unsent = 500
 [[lane]]
 name = "1"
 board = "usb:1-2.3"
@@ -62,6 +67,8 @@ fn every_key_means_what_it_says() {
     assert!(settings.data.ends_with("data") && settings.data.is_absolute() && settings.scan_then_plug);
     assert_eq!(settings.scanner.label("]C1CAT1!"), Some("CAT1"));
     assert_eq!(settings.scanner.label("]C1CAT1"), None);
+    let plant = settings.plant.as_ref().unwrap();
+    assert_eq!((plant.is_green_at_plant, plant.most_unsent), (true, 500));
     let names: Vec<_> = settings.plans.iter().map(|file| file.plan.product.as_str()).collect();
     assert_eq!(names, ["CAM-T", "CAM-B"]);
     let [first, second] = settings.lanes.as_slice() else { panic!("{settings:?}") };
@@ -83,27 +90,48 @@ const WRONG: &[(&str, &str, &str)] = &[
     ("silence = 30.0", "silence = 0.0", "station.toml:6: 0 s is no such time; give 0.1 to 86400 seconds"),
     ("silence = 30.0", "silense = 30.0", "station.toml:6: unknown field `silense`"),
     ("memory = 512", "memory = 1", "station.toml:7: 1 MiB are no memory for a lane; give 64 to 1048576 MiB"),
-    ("name = \"1\"", "name = \"1 2\"", "station.toml:12: `1 2` is no name for a lane; write 1 to 16 letters"),
-    ("name = \"1\"", "name = \"left\"", "station.toml:17: two lanes are called left; give each"),
-    ("usb:1-2.3", "usb", "station.toml:13: `usb` is whichever board is plugged in; write usb:"),
-    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:13: `serial:/dev/ttyUSB0` is another board when"),
-    ("usb:1-2.3", "usv:1-2.3", "station.toml:13: `usv` is no kind of board; write one as `halfrow boards`"),
-    ("usb:1-2.3", "", "station.toml:13: the board cannot be used: an empty target names no board"),
-    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:18: lane 1 has the board"),
-    ("[\"b.toml\"]", "[]", "station.toml:19: lane left has no plan; name the file of one"),
+    ("name = \"1\"", "name = \"1 2\"", "station.toml:17: `1 2` is no name for a lane; write 1 to 16 letters"),
+    ("name = \"1\"", "name = \"left\"", "station.toml:22: two lanes are called left; give each"),
+    (
+        "localhost/plant",
+        "localhost",
+        "station.toml:12: the plant cannot be used: the plant's address says no database",
+    ),
+    (
+        "halfrow@",
+        "halfrow:secret@",
+        "station.toml:12: the plant cannot be used: the plant's address has a password",
+    ),
+    (
+        "postgres://",
+        "mysql://",
+        "station.toml:12: the plant cannot be used: this is no address of a plant; write it as",
+    ),
+    ("green = \"plant\"", "green = \"blue\"", "station.toml:14: unknown variant `blue`"),
+    (
+        "most_unsent = 500",
+        "most_unsent = 0",
+        "station.toml:15: with none unsent no lane could judge; give 1 or more",
+    ),
+    ("usb:1-2.3", "usb", "station.toml:18: `usb` is whichever board is plugged in; write usb:"),
+    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:18: `serial:/dev/ttyUSB0` is another board when"),
+    ("usb:1-2.3", "usv:1-2.3", "station.toml:18: `usv` is no kind of board; write one as `halfrow boards`"),
+    ("usb:1-2.3", "", "station.toml:18: the board cannot be used: an empty target names no board"),
+    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:23: lane 1 has the board"),
+    ("[\"b.toml\"]", "[]", "station.toml:24: lane left has no plan; name the file of one"),
     (
         "[\"b.toml\"]",
         "[\"c.toml\"]",
-        "station.toml:19: the plan c.toml cannot be used: c.toml cannot be read",
+        "station.toml:24: the plan c.toml cannot be used: c.toml cannot be read",
     ),
     (
         "[\"scan\", \"button\"]",
         "[]",
-        "station.toml:15: nothing starts this lane; name scan, button or presence",
+        "station.toml:20: nothing starts this lane; name scan, button or presence",
     ),
-    ("{lane}", "{line}", "station.toml:22: nothing is known that is called {line}; write one of {lane}"),
+    ("{lane}", "{line}", "station.toml:27: nothing is known that is called {line}; write one of {lane}"),
     ("./print", "./brint", "there is no program"),
-    ("deadline = 2.5", "deadline = -1.0", "station.toml:25: -1 s is no such time"),
+    ("deadline = 2.5", "deadline = -1.0", "station.toml:30: -1 s is no such time"),
 ];
 
 #[test]

@@ -14,7 +14,7 @@ mod list;
 mod pareto;
 mod pictures;
 mod run;
-mod show;
+pub(super) mod show;
 mod unit;
 mod yields;
 

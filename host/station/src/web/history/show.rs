@@ -10,18 +10,18 @@ use crate::web::language::Told;
 use crate::web::visit::Visit;
 
 /// What a page of the history has in its head.
-pub(super) fn head() -> Markup {
+pub(in crate::web) fn head() -> Markup {
     html! { link rel="stylesheet" href="/assets/history.css"; }
 }
 
 /// A moment to the second, UTC.
-pub(super) fn moment(ms: i64) -> Markup {
+pub(in crate::web) fn moment(ms: i64) -> Markup {
     let Ok(moment) = Timestamp::from_millisecond(ms) else { return html! { (ms) } };
     html! { time datetime=(format!("{moment:.3}")) { (moment.strftime("%Y-%m-%d %H:%M:%S")) } }
 }
 
 /// What a scanner, a board or a person said, without the control characters that would turn the page's text around.
-pub(super) fn said(text: &str) -> Markup {
+pub(in crate::web) fn said(text: &str) -> Markup {
     html! { (plain(text)) }
 }
 
@@ -34,7 +34,7 @@ pub(super) fn told(told: &Told) -> Markup {
 }
 
 /// What was told in English.
-pub(super) fn english(visit: &Visit, text: &str) -> Markup {
+pub(in crate::web) fn english(visit: &Visit, text: &str) -> Markup {
     told(&visit.words.english(text.to_owned()))
 }
 
@@ -58,7 +58,7 @@ pub(super) fn outcome(visit: &Visit, run: &RunLine) -> Markup {
 }
 
 /// The address of a run's page.
-pub(super) fn run_address(id: &str) -> String {
+pub(in crate::web) fn run_address(id: &str) -> String {
     format!("/runs/{id}")
 }
 

@@ -10,6 +10,7 @@ use crate::clock;
 use crate::history::Period;
 use crate::history::rate::Rate;
 use crate::history::yields::{By, Wanted, Yields, yields};
+use crate::store::Snapshot;
 use crate::web::layout::{Here, Page};
 use crate::web::live::Now;
 use crate::web::routes::Who;
@@ -43,7 +44,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
             @if visit.may(Who::Operator) { (scan_box(&visit, &now, answer.as_ref())) } @else { (log_in(&visit)) }
             (hint(&app, &visit, &now))
             (floor(&visit, &now))
-            footer #today { (today) }
+            footer #today data-changes[app.settings().plant.is_some()] { (today) }
             div #said .heard role="log" aria-live="assertive" {}
         }
     };
@@ -134,8 +135,16 @@ pub(super) async fn today(State(app): State<App>, visit: Visit) -> Result<Respon
 async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
     let period = Period { from_ms: clock::midnight_ms(clock::now_ms()), ..Period::default() };
     let wanted = Wanted { period, ..Wanted::default() };
-    let counted = app.look(visit, move |snapshot| yields(snapshot, &wanted, By::Plan)).await?;
-    Ok(summed(visit, &counted))
+    let look =
+        move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.folder().unsent()?));
+    let (counted, unsent) = app.look(visit, look).await?;
+    let entries: u32 = unsent.iter().map(|unsent| unsent.entries).sum();
+    Ok(html! {
+        (summed(visit, &counted))
+        @if app.settings().plant.is_some() {
+            " · " a href="/outbox" { (visit.words.fill("today.unsent", &[("entries", &entries.to_string())])) }
+        }
+    })
 }
 
 fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {

@@ -20,10 +20,10 @@ const PARTS: [&str; 5] = ["memory", "row factor", "clock", "samples", "kernel"];
 const PLANS: [(&str, &str); 3] = [("final", "6"), ("final", "7"), ("intake", "1")];
 
 /// SplitMix64, by Sebastiano Vigna: the same history every time.
-struct Draw(u64);
+pub(crate) struct Draw(pub(crate) u64);
 
 impl Draw {
-    fn below(&mut self, most: u64) -> u64 {
+    pub(crate) fn below(&mut self, most: u64) -> u64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut mixed = self.0;
         mixed = (mixed ^ mixed >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);

@@ -36,6 +36,7 @@ pub(crate) enum End {
 pub(crate) struct Run {
     pub(crate) serial: String,
     pub(crate) plan: (&'static str, &'static str),
+    pub(crate) station: &'static str,
     pub(crate) lane: String,
     pub(crate) operator: String,
     pub(crate) started_ms: i64,
@@ -47,7 +48,17 @@ pub(crate) struct Run {
 impl Run {
     pub(crate) fn of(serial: &str, end: End) -> Self {
         let [serial, lane, operator] = [serial, "1", "weber"].map(str::to_owned);
-        Self { serial, plan: ("final", "1"), lane, operator, started_ms: BEGIN_MS, end, evidence: Vec::new() }
+        let station = "station 7";
+        Self {
+            serial,
+            plan: ("final", "1"),
+            station,
+            lane,
+            operator,
+            started_ms: BEGIN_MS,
+            end,
+            evidence: Vec::new(),
+        }
     }
 }
 
@@ -71,6 +82,17 @@ impl Made {
 
     pub(crate) fn folder(&self) -> Folder {
         Folder::new(self.folder.path())
+    }
+
+    /// The folder and the store.
+    pub(crate) fn parts(self) -> (TempDir, Store) {
+        (self.folder, self.store)
+    }
+
+    /// Enters the `number`-th run of several stores that are looked at together.
+    pub(crate) fn numbered(&mut self, number: u32, run: &Run) -> String {
+        self.entered = number - 1;
+        self.run(run)
     }
 
     /// The folder, which another program may write to from here on.
@@ -118,7 +140,7 @@ impl Made {
     fn head(&self, run: &Run) -> RunHead {
         RunHead {
             id: id(run.started_ms, self.entered),
-            station: "station 7".to_owned(),
+            station: run.station.to_owned(),
             lane: run.lane.clone(),
             unit_id: id(run.started_ms, 1_000_000 + self.entered),
             product: PRODUCT.to_owned(),

@@ -3,13 +3,13 @@
 mod commands;
 mod counted;
 mod exports;
-mod generated;
+pub(crate) mod generated;
 mod kept;
 mod looked_at;
-mod made;
+pub(crate) mod made;
 mod pages;
 mod pareto;
-mod released;
+pub(crate) mod released;
 mod served;
 mod units;
 mod unnamed;

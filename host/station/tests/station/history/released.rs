@@ -187,7 +187,7 @@ fn make_those_that_are_missing() {
 }
 
 /// One run of every kind, as the station enters them.
-fn history() -> Made {
+pub(crate) fn history() -> Made {
     let mut made = Made::new();
     let run = |serial, end, hour| Run { started_ms: BEGIN_MS + hour * HOUR_MS, ..Run::of(serial, end) };
     let evidence = vec!["what it told", "what it logged"];

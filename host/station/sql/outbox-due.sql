@@ -1,0 +1,5 @@
+-- What is to be sent now, in the order in which it came about.
+SELECT kind, subject, attempts FROM outbox
+WHERE sink = $1 AND done_ms IS NULL AND dead_ms IS NULL AND next_ms <= $2
+ORDER BY subject
+LIMIT 50;

@@ -1,0 +1,1 @@
+DELETE FROM retest WHERE unit_id = $1 AND plan = $2;

@@ -1,0 +1,1 @@
+UPDATE plan SET first_used_ms = $1 WHERE first_used_ms > $1 AND sha256 = $2;

@@ -1,0 +1,30 @@
+//! How long it is waited until something is tried again.
+
+use rand::{RngExt as _, rng};
+
+/// The first wait, in milliseconds.
+const FIRST_MS: i64 = 1_000;
+/// The longest.
+const LONGEST_MS: i64 = 300_000;
+
+/// How long it is waited behind so many tries in vain and one more, in milliseconds: twice as long each time, and for each
+/// station a little other, so that they do not all come at once when a plant is there again.
+pub(super) fn ms(vain: u32) -> i64 {
+    let wait = FIRST_MS.saturating_mul(1 << vain.min(20)).min(LONGEST_MS);
+    wait - rng().random_range(0..=wait / 4)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wait_doubles_up_to_five_minutes_and_is_never_longer() {
+        for (vain, most) in [(0, 1_000), (1, 2_000), (5, 32_000), (9, 300_000), (u32::MAX, 300_000)] {
+            for _ in 0..100 {
+                let wait = ms(vain);
+                assert!((3 * most / 4..=most).contains(&wait), "{wait} ms behind {vain} tries");
+            }
+        }
+    }
+}

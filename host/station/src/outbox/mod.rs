@@ -1,0 +1,185 @@
+//! Sends on what the station keeps, to every sink until it has it for certain. One thread a sink; nobody waits for it.
+//!
+//! ```text
+//!  run, waiver, audit ─► entry, in the same transaction ─► round: parcel ─► sink ─► read back there ─► done
+//!                                                            ▲    └ not now: again, later and later
+//!                                                            └ nobody there: all of it waits
+//! ```
+
+mod back_off;
+mod plant;
+
+use std::io;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+pub use plant::PlantSink;
+
+use crate::clock;
+use crate::guard::guarded;
+use crate::said::Said;
+use crate::store::{Entry, Parcel, SharedStore, StoreError, Tried};
+
+/// How often it is looked whether there is something to send.
+const LOOK: Duration = Duration::from_millis(200);
+/// How long a sink that has nothing to do stays connected.
+const IDLE: Duration = Duration::from_secs(10);
+/// How long it is waited at the end for what is under way.
+const LAST: Duration = Duration::from_secs(5);
+
+/// Whoever is sent what the station keeps.
+pub trait Sink: Send {
+    /// Its name, under which the outbox keeps what it has.
+    fn name(&self) -> &str;
+
+    /// Takes a parcel, again if it has been given it before. It has it for certain when this returns.
+    ///
+    /// # Errors
+    /// [`Undelivered`]
+    fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered>;
+
+    /// There is nothing to do for now.
+    fn rest(&mut self) {}
+}
+
+/// Why a sink has not taken something, as far as is known.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Undelivered {
+    /// It is not there: nothing else need be tried.
+    Away(Said),
+    /// It does not take this for now.
+    NotNow(Said),
+    /// It never will as it is: a person looks at it.
+    Refused(Said),
+}
+
+/// What a round came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Round {
+    /// Entries that the sink has for certain since.
+    pub sent: usize,
+    /// Entries that it has not.
+    pub failed: usize,
+    /// Whether the sink is away.
+    pub is_away: bool,
+}
+
+/// Gives `sink` what is due for it, and keeps what became of it.
+///
+/// # Errors
+/// [`StoreError`] when the store cannot be read or written. What was sent is sent again then, which changes nothing.
+pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
+    let folder = store.with(|store| store.folder().clone());
+    let mut round = Round::default();
+    let mut tried = Vec::new();
+    for entry in folder.due(sink.name(), clock::now_ms())? {
+        let taken = match folder.parcel(&entry) {
+            Ok(parcel) => sink.take(&parcel),
+            Err(error) => Err(Undelivered::NotNow(Said::of(&error))),
+        };
+        round.sent += usize::from(taken.is_ok());
+        round.failed += usize::from(taken.is_err());
+        round.is_away = matches!(taken, Err(Undelivered::Away(_)));
+        let became = became(&entry, taken);
+        tried.push((entry, became));
+        if round.is_away {
+            break;
+        }
+    }
+    if !tried.is_empty() {
+        store.with(|store| store.tried(sink.name(), &tried, clock::now_ms()))?;
+    }
+    Ok(round)
+}
+
+fn became(entry: &Entry, taken: Result<(), Undelivered>) -> Tried {
+    let Err(why) = taken else { return Tried::Done };
+    match why {
+        Undelivered::Away(said) | Undelivered::NotNow(said) => {
+            let next_ms = clock::now_ms().saturating_add(back_off::ms(entry.attempts));
+            Tried::Again { next_ms, said: said.to_string() }
+        }
+        Undelivered::Refused(said) => Tried::Dead { said: said.to_string() },
+    }
+}
+
+/// The threads that send.
+#[derive(Debug, Default)]
+pub struct Outbox {
+    /// Dropped, it ends them.
+    stops: Vec<Sender<()>>,
+    threads: Vec<JoinHandle<()>>,
+}
+
+impl Outbox {
+    /// Sends to these sinks, what was kept before included.
+    ///
+    /// # Errors
+    /// [`OutboxError`]
+    pub fn start(store: &SharedStore, sinks: Vec<Box<dyn Sink>>) -> Result<Self, OutboxError> {
+        let names = sinks.iter().map(|sink| sink.name().to_owned()).collect();
+        store.with(|store| store.sends_to(names))?;
+        let mut outbox = Self::default();
+        for sink in sinks {
+            let (stop, stopped) = mpsc::channel();
+            let (store, name) = (store.clone(), format!("outbox to {}", sink.name()));
+            let work = move || {
+                if let Err(fault) = guarded(|| send(&store, sink, &stopped)) {
+                    tracing::error!("nothing is sent on any more: {fault}; start the station again");
+                }
+            };
+            outbox.stops.push(stop);
+            outbox.threads.push(thread::Builder::new().name(name).spawn(work)?);
+        }
+        Ok(outbox)
+    }
+
+    /// Ends the threads. What is under way for too long is left, and sent again at the next start.
+    pub fn close(mut self) {
+        self.stops.clear();
+        let until = Instant::now() + LAST;
+        for thread in self.threads {
+            while !thread.is_finished() && Instant::now() < until {
+                thread::sleep(Duration::from_millis(10));
+            }
+        }
+    }
+}
+
+/// An outbox that does not start.
+#[derive(Debug, thiserror::Error)]
+pub enum OutboxError {
+    /// The system has no thread for it.
+    #[error("the system has no thread for what is to be sent; end other programs")]
+    Thread(#[from] io::Error),
+    /// The store does not take what is to be sent.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// Sends until the outbox is closed.
+fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
+    let (mut vain, mut worked) = (0, Instant::now());
+    loop {
+        let round = round(store, &mut *sink).unwrap_or_else(|error| {
+            tracing::error!("what is to be sent on stays here: {}", Said::of(&error));
+            Round { is_away: true, ..Round::default() }
+        });
+        if round.sent + round.failed > 0 {
+            worked = Instant::now();
+        } else if worked.elapsed() > IDLE {
+            sink.rest();
+        }
+        vain = if round.is_away { vain + 1 } else { 0 };
+        let wait = match round {
+            Round { is_away: true, .. } => Duration::from_millis(back_off::ms(vain - 1).unsigned_abs()),
+            // There may be more.
+            Round { sent: 1.., .. } => Duration::ZERO,
+            _ => LOOK,
+        };
+        if stopped.recv_timeout(wait) == Err(RecvTimeoutError::Disconnected) {
+            return;
+        }
+    }
+}

@@ -1,0 +1,80 @@
+//! `[plant]`: where results are sent on to, and who answers for the network between.
+
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+
+use super::text::{GreenText, PlantText};
+use crate::input_error::Fault;
+use crate::store::PlantAddress;
+use crate::web::{SecretError, secret};
+
+/// The variable that may have the password.
+pub const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
+/// How many entries may be unsent until lanes take nothing more.
+const MOST_UNSENT: u32 = 10_000;
+
+/// `[plant]`
+#[derive(Clone, Debug)]
+pub struct PlantSettings {
+    url: String,
+    password_file: Option<PathBuf>,
+    ca: Option<PathBuf>,
+    /// Whether a verdict is shown only when the plant has it.
+    pub is_green_at_plant: bool,
+    /// How many entries may be unsent until lanes take nothing more.
+    pub most_unsent: u32,
+}
+
+/// A plant that cannot be reached as the settings say.
+#[derive(Debug, thiserror::Error)]
+pub enum PlantSettingsError {
+    /// Its address.
+    #[error(transparent)]
+    Address(#[from] crate::store::PlantAddressError),
+    /// Its password.
+    #[error(transparent)]
+    Secret(#[from] SecretError),
+}
+
+impl PlantSettings {
+    /// What the settings say, in a file whose folder is `folder`.
+    pub(super) fn of(folder: &Path, text: &PlantText) -> Result<Self, Fault> {
+        let path = |name: &Option<String>| name.as_ref().map(|name| folder.join(name));
+        let settings = Self {
+            url: text.url.get_ref().clone(),
+            password_file: path(&text.password_file),
+            ca: path(&text.ca),
+            is_green_at_plant: text.green == GreenText::Plant,
+            most_unsent: most(text.most_unsent.as_ref())?,
+        };
+        // A password is read when it is needed; all else is looked at when the station starts.
+        PlantAddress::new(&settings.url, None, settings.ca.as_deref())
+            .map_err(|error| Fault::input(text.url.span().start, "the plant", error))?;
+        Ok(settings)
+    }
+
+    /// Where the plant is, with the password of its file or of the environment.
+    ///
+    /// # Errors
+    /// [`PlantSettingsError`]
+    pub fn address(&self) -> Result<PlantAddress, PlantSettingsError> {
+        let password = match &self.password_file {
+            Some(path) => Some(secret(path)?.trim_end_matches(['\r', '\n']).to_owned()),
+            None => std::env::var(PASSWORD).ok(),
+        };
+        Ok(PlantAddress::new(&self.url, password.as_deref(), self.ca.as_deref())?)
+    }
+}
+
+fn most(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
+    let Some(text) = text else { return Ok(MOST_UNSENT) };
+    match *text.get_ref() {
+        0 => Err(Fault::wrong(
+            text.span().start,
+            "with none unsent no lane could judge".to_owned(),
+            "give 1 or more".to_owned(),
+        )),
+        most => Ok(most),
+    }
+}

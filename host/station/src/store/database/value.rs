@@ -1,0 +1,138 @@
+//! What stands in a column, and what is asked for by it.
+
+/// What stands in a column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Value<'a> {
+    /// Nothing.
+    Null,
+    /// A whole number, or 0 and 1 for no and yes.
+    Whole(i64),
+    /// Another number.
+    Real(f64),
+    /// A text.
+    Text(&'a str),
+}
+
+impl Value<'_> {
+    pub(super) fn kind(self) -> &'static str {
+        match self {
+            Self::Null => "nothing",
+            Self::Whole(_) => "a whole number",
+            Self::Real(_) => "a number",
+            Self::Text(_) => "a text",
+        }
+    }
+}
+
+impl From<i64> for Value<'_> {
+    fn from(whole: i64) -> Self {
+        Self::Whole(whole)
+    }
+}
+
+impl From<u32> for Value<'_> {
+    fn from(whole: u32) -> Self {
+        Self::Whole(whole.into())
+    }
+}
+
+impl From<u8> for Value<'_> {
+    fn from(whole: u8) -> Self {
+        Self::Whole(whole.into())
+    }
+}
+
+impl From<f64> for Value<'_> {
+    fn from(real: f64) -> Self {
+        Self::Real(real)
+    }
+}
+
+impl<'a> From<&'a str> for Value<'a> {
+    fn from(text: &'a str) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl<'a> From<&'a String> for Value<'a> {
+    fn from(text: &'a String) -> Self {
+        Self::Text(text)
+    }
+}
+
+impl<'a, T: Into<Value<'a>>> From<Option<T>> for Value<'a> {
+    fn from(some: Option<T>) -> Self {
+        some.map_or(Self::Null, Into::into)
+    }
+}
+
+/// The values of a statement, from `$1` on.
+macro_rules! values {
+    ($($value:expr),* $(,)?) => { &[$($crate::store::Value::from($value)),*] };
+}
+pub(crate) use values;
+
+/// What a column can be read as.
+pub(crate) trait FromValue: Sized {
+    /// It, for people.
+    const EXPECTED: &'static str;
+
+    /// The value, if it is one.
+    fn from_value(value: Value<'_>) -> Option<Self>;
+}
+
+impl FromValue for i64 {
+    const EXPECTED: &'static str = "a whole number";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        if let Value::Whole(whole) = value { Some(whole) } else { None }
+    }
+}
+
+impl FromValue for u32 {
+    const EXPECTED: &'static str = "a whole number from 0 to 4294967295";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        i64::from_value(value)?.try_into().ok()
+    }
+}
+
+impl FromValue for u8 {
+    const EXPECTED: &'static str = "a whole number from 0 to 255";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        i64::from_value(value)?.try_into().ok()
+    }
+}
+
+impl FromValue for bool {
+    const EXPECTED: &'static str = "yes or no";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        if let Value::Whole(whole @ 0..=1) = value { Some(whole == 1) } else { None }
+    }
+}
+
+impl FromValue for f64 {
+    const EXPECTED: &'static str = "a number";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        if let Value::Real(real) = value { Some(real) } else { None }
+    }
+}
+
+impl FromValue for String {
+    const EXPECTED: &'static str = "a text";
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        if let Value::Text(text) = value { Some(text.to_owned()) } else { None }
+    }
+}
+
+impl<T: FromValue> FromValue for Option<T> {
+    const EXPECTED: &'static str = T::EXPECTED;
+
+    fn from_value(value: Value<'_>) -> Option<Self> {
+        if value == Value::Null { Some(None) } else { T::from_value(value).map(Some) }
+    }
+}

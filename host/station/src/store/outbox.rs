@@ -1,0 +1,301 @@
+//! What is to be sent on: each run, waiver and line of the audit has an entry for every sink, made in the transaction that
+//! keeps it, and kept until the sink has it for certain.
+
+use serde::Serialize;
+
+use super::database::{Database, DatabaseError, Row, values};
+use super::{Folder, Store, StoreError, Waiver, statements as sql};
+use crate::record::Record;
+
+/// What an entry is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A run that is over.
+    Run,
+    /// A waiver of its FAIL.
+    Waiver,
+    /// A line of the audit.
+    Audit,
+}
+
+impl Kind {
+    const ALL: [Self; 3] = [Self::Run, Self::Waiver, Self::Audit];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Run => "run",
+            Self::Waiver => "waiver",
+            Self::Audit => "audit",
+        }
+    }
+
+    fn named(row: &Row<'_>, place: usize) -> Result<Self, DatabaseError> {
+        let name = row.text(place)?;
+        let found = Self::ALL.into_iter().find(|kind| kind.name() == name);
+        found.ok_or(DatabaseError::Dangling { what: "a kind of entry" })
+    }
+}
+
+/// Something to be sent.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Entry {
+    /// What it is.
+    pub kind: Kind,
+    /// Its id, a UUID of version 7.
+    pub subject: String,
+    /// How often it was tried in vain.
+    pub attempts: u32,
+}
+
+/// How it stands with a sink.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Unsent {
+    /// The sink.
+    pub sink: String,
+    /// Entries that it does not have for certain.
+    pub entries: u32,
+    /// Those of them that wait for a person.
+    pub dead: u32,
+    /// When the first of them came about, in milliseconds since 1970, UTC.
+    pub since_ms: i64,
+    /// What was last said to one that is tried again.
+    pub said: Option<String>,
+}
+
+/// An entry that waits for a person.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Dead {
+    /// The sink.
+    pub sink: String,
+    /// The entry.
+    #[serde(flatten)]
+    pub entry: Entry,
+    /// Since when, in milliseconds since 1970, UTC.
+    pub dead_ms: i64,
+    /// What the sink said.
+    pub said: String,
+}
+
+/// All that belongs to an entry.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Parcel {
+    /// A run that is over.
+    Run {
+        /// Its record.
+        record: Box<Record>,
+        /// That record's very text.
+        text: String,
+        /// The hash of the text.
+        sha256: String,
+    },
+    /// A waiver.
+    Waiver {
+        /// Its id.
+        id: String,
+        /// It.
+        waiver: Waiver,
+    },
+    /// A line of the audit.
+    Audit(AuditLine),
+}
+
+/// A line of the audit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AuditLine {
+    /// Its id.
+    pub id: String,
+    /// When, in milliseconds since 1970, UTC.
+    pub at_ms: i64,
+    /// Who.
+    pub operator: String,
+    /// What was done.
+    pub act: String,
+    /// With what.
+    pub subject: String,
+    /// How.
+    pub detail: String,
+    /// Product and serial number, when the subject is a unit.
+    pub unit: Option<[String; 2]>,
+}
+
+/// What became of an entry that was tried.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Tried {
+    /// The sink has it for certain.
+    Done,
+    /// It is tried again at this moment, in milliseconds since 1970, UTC.
+    Again {
+        /// The moment.
+        next_ms: i64,
+        /// What was said.
+        said: String,
+    },
+    /// A person looks at it.
+    Dead {
+        /// What was said.
+        said: String,
+    },
+}
+
+/// Enters `subject` for every sink.
+pub(super) fn enter(
+    to: &mut dyn Database,
+    sinks: &[String],
+    kind: Kind,
+    subject: &str,
+) -> Result<(), DatabaseError> {
+    sinks
+        .iter()
+        .try_for_each(|sink| to.execute(sql::ADD_TO_OUTBOX, values![sink, kind.name(), subject]).map(drop))
+}
+
+impl Store {
+    /// Sends to these sinks from now on, what was kept before included.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database does not take it.
+    pub fn sends_to(&mut self, sinks: Vec<String>) -> Result<(), StoreError> {
+        self.change("what is to be sent", |to| {
+            sinks.iter().try_for_each(|sink| to.execute(sql::ALL_TO_OUTBOX, values![sink]).map(drop))
+        })?;
+        self.sinks = sinks.into();
+        Ok(())
+    }
+
+    /// Keeps what became of these entries at `now_ms`.
+    ///
+    /// # Errors
+    /// As [`Self::sends_to`].
+    pub fn tried(&mut self, sink: &str, tried: &[(Entry, Tried)], now_ms: i64) -> Result<(), StoreError> {
+        self.change("what was sent", |to| {
+            tried.iter().try_for_each(|(Entry { kind, subject, .. }, tried)| {
+                let (next_ms, dead_ms, said) = match tried {
+                    Tried::Done => {
+                        let of = values![now_ms, sink, kind.name(), subject];
+                        return to.execute(sql::OUTBOX_DONE, of).map(drop);
+                    }
+                    Tried::Again { next_ms, said } => (*next_ms, None, said),
+                    Tried::Dead { said } => (now_ms, Some(now_ms), said),
+                };
+                let of = values![next_ms, dead_ms, said, sink, kind.name(), subject];
+                to.execute(sql::OUTBOX_FAILED, of).map(drop)
+            })
+        })
+    }
+
+    /// Has every sink try again what waits for a person under this id. Returns how many did.
+    ///
+    /// # Errors
+    /// As [`Self::sends_to`].
+    pub fn release(&mut self, subject: &str) -> Result<u64, StoreError> {
+        self.change("what is to be sent again", |to| to.execute(sql::OUTBOX_RELEASED, values![subject]))
+    }
+}
+
+impl Folder {
+    /// The first entries that are due for `sink` at `now_ms`, in the order in which they came about.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn due(&self, sink: &str, now_ms: i64) -> Result<Vec<Entry>, StoreError> {
+        self.read("to tell what is to be sent", |from| {
+            from.all(sql::OUTBOX_DUE, values![sink, now_ms], |row| entry(row, 0))
+        })
+    }
+
+    /// How it stands with each sink that does not have all.
+    ///
+    /// # Errors
+    /// As [`Self::due`].
+    pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
+        self.read("to tell what is to be sent", |from| {
+            from.all(sql::OUTBOX_STATE, &[], |row| {
+                let since_ms = id_ms(row.text(3)?);
+                let (sink, entries, dead) = (row.get(0)?, row.get(1)?, row.get(2)?);
+                Ok(Unsent { sink, entries, dead, since_ms, said: row.get(4)? })
+            })
+        })
+    }
+
+    /// Every entry that waits for a person.
+    ///
+    /// # Errors
+    /// As [`Self::due`].
+    pub fn dead(&self) -> Result<Vec<Dead>, StoreError> {
+        self.read("to tell what waits for a person", |from| {
+            from.all(sql::OUTBOX_DEAD, &[], |row| {
+                let said = row.get::<Option<String>>(5)?.unwrap_or_default();
+                Ok(Dead { sink: row.get(0)?, entry: entry(row, 1)?, dead_ms: row.get(4)?, said })
+            })
+        })
+    }
+
+    /// Whether `sink` has this run for certain.
+    ///
+    /// # Errors
+    /// As [`Self::due`].
+    pub fn is_sent(&self, sink: &str, run: &str) -> Result<bool, StoreError> {
+        let done = self.read("to tell what was sent", |from| {
+            from.first(sql::OUTBOX_ENTRY, values![sink, Kind::Run.name(), run], |row| {
+                row.get::<Option<i64>>(0)
+            })
+        })?;
+        Ok(done.flatten().is_some())
+    }
+
+    /// All that belongs to an entry.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it cannot be read, or is not as it was written.
+    pub fn parcel(&self, Entry { kind, subject, .. }: &Entry) -> Result<Parcel, StoreError> {
+        let otherwise = || StoreError::ReadsOtherwise { run: subject.clone() };
+        match kind {
+            Kind::Run => {
+                let sha256 = self.verdict_of(subject)?.ok_or_else(otherwise)?.record_sha256;
+                let bytes = self.blobs().get(&sha256)?;
+                let record = Box::new(Record::parse(&bytes)?);
+                let text = String::from_utf8(bytes).map_err(|_| otherwise())?;
+                Ok(Parcel::Run { record, text, sha256 })
+            }
+            Kind::Waiver => {
+                let waiver = self.read("to tell a waiver", |from| {
+                    from.first(sql::WAIVER_BY_ID, values![subject], |row| {
+                        let (run, at_ms) = (row.get(0)?, row.get(1)?);
+                        Ok(Waiver { run, at_ms, operator: row.get(2)?, reason: row.get(3)? })
+                    })
+                })?;
+                Ok(Parcel::Waiver { id: subject.clone(), waiver: waiver.ok_or_else(otherwise)? })
+            }
+            Kind::Audit => {
+                let line = self.read("to tell the audit", |from| {
+                    from.first(sql::AUDIT_BY_ID, values![subject], |row| audit_line(subject, row))
+                })?;
+                Ok(Parcel::Audit(line.ok_or_else(otherwise)?))
+            }
+        }
+    }
+}
+
+fn entry(row: &Row<'_>, from: usize) -> Result<Entry, DatabaseError> {
+    Ok(Entry { kind: Kind::named(row, from)?, subject: row.get(from + 1)?, attempts: row.get(from + 2)? })
+}
+
+fn audit_line(id: &str, row: &Row<'_>) -> Result<AuditLine, DatabaseError> {
+    let (product, serial): (Option<String>, Option<String>) = (row.get(5)?, row.get(6)?);
+    Ok(AuditLine {
+        id: id.to_owned(),
+        at_ms: row.get(0)?,
+        operator: row.get(1)?,
+        act: row.get(2)?,
+        subject: row.get(3)?,
+        detail: row.get(4)?,
+        unit: product.zip(serial).map(|(product, serial)| [product, serial]),
+    })
+}
+
+/// When a UUID of version 7 was made, in milliseconds since 1970 (RFC 9562, section 5.7).
+fn id_ms(id: &str) -> i64 {
+    let digits: String = id.chars().filter(char::is_ascii_hexdigit).take(12).collect();
+    i64::from_str_radix(&digits, 16).unwrap_or_default()
+}

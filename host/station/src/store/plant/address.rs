@@ -1,0 +1,163 @@
+//! Where a plant is, who asks, and whether what is sent goes through TLS.
+
+use std::fmt;
+use std::net::IpAddr;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Duration;
+
+use postgres::config::{Host, SslMode};
+use postgres::{Client, Config, NoTls};
+use rustls::pki_types::CertificateDer;
+use rustls::pki_types::pem::{self, PemObject as _};
+use rustls::{ClientConfig, RootCertStore};
+use tokio_postgres_rustls::MakeRustlsConnect;
+
+/// How long a connection may take to come about.
+const REACHED: Duration = Duration::from_secs(10);
+/// How long a server may leave what was sent to it without an acknowledgement.
+const ACKNOWLEDGED: Duration = Duration::from_secs(20);
+/// How long a connection may say nothing until it is asked whether it is still there.
+const QUIET: Duration = Duration::from_secs(10);
+
+/// An address of a plant that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PlantAddressError {
+    /// It is none.
+    #[error("this is no address of a plant; write it as postgres://halfrow@db.example/plant")]
+    Malformed(#[source] postgres::Error),
+    /// It says no host, no user or no database.
+    #[error("the plant's address says no {what}; write it as postgres://halfrow@db.example/plant")]
+    Without {
+        /// What it does not say.
+        what: &'static str,
+    },
+    /// The password stands in it.
+    #[error(
+        "the plant's address has a password, which anybody may see who sees these settings; write it alone into a file, and its \
+         name as password_file"
+    )]
+    Password,
+    /// Certificates cannot be read.
+    #[error("the certificates in {} cannot be read; give a file of those that sign the plant's, in PEM", path.display())]
+    Certificates {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: pem::Error,
+    },
+    /// There is no certificate to know the plant by.
+    #[error(
+        "there is no certificate to know the plant by; give a file of those that sign the plant's as `ca`"
+    )]
+    NoCertificates,
+    /// TLS cannot be used.
+    #[error("TLS cannot be used; report this with the version")]
+    Tls(#[source] rustls::Error),
+}
+
+/// Where a plant is. Printed, it has no password.
+#[derive(Clone)]
+pub struct PlantAddress {
+    config: Config,
+    tls: Option<Arc<ClientConfig>>,
+    shown: String,
+}
+
+impl PlantAddress {
+    /// The address `url`, with `password` if the plant asks for one. Whatever leaves this computer goes through TLS, and the
+    /// plant's certificate is signed by one of the file `ca`, or of the system's own.
+    ///
+    /// # Errors
+    /// [`PlantAddressError`]
+    pub fn new(url: &str, password: Option<&str>, ca: Option<&Path>) -> Result<Self, PlantAddressError> {
+        let mut config: Config = url.parse().map_err(PlantAddressError::Malformed)?;
+        if config.get_password().is_some() {
+            return Err(PlantAddressError::Password);
+        }
+        let shown = shown(&config)?;
+        let is_near =
+            config.get_hosts().iter().all(is_near) && config.get_hostaddrs().iter().all(IpAddr::is_loopback);
+        let tls = if is_near && config.get_ssl_mode() != SslMode::Require {
+            config.ssl_mode(SslMode::Disable);
+            None
+        } else {
+            config.ssl_mode(SslMode::Require);
+            Some(Arc::new(trusting(ca)?))
+        };
+        if let Some(password) = password {
+            config.password(password);
+        }
+        config
+            .application_name("halfrow-station")
+            .connect_timeout(REACHED)
+            .tcp_user_timeout(ACKNOWLEDGED)
+            .keepalives_idle(QUIET)
+            .keepalives_interval(QUIET)
+            .keepalives_retries(2);
+        Ok(Self { config, tls, shown })
+    }
+
+    /// A new connection.
+    pub(super) fn connect(&self) -> Result<Client, postgres::Error> {
+        match &self.tls {
+            None => self.config.connect(NoTls),
+            Some(tls) => self.config.connect(MakeRustlsConnect::new(ClientConfig::clone(tls))),
+        }
+    }
+}
+
+impl fmt::Display for PlantAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.shown)
+    }
+}
+
+impl fmt::Debug for PlantAddress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("PlantAddress").field(&self.shown).finish()
+    }
+}
+
+/// The address without what is nobody's business.
+fn shown(config: &Config) -> Result<String, PlantAddressError> {
+    let without = |what| PlantAddressError::Without { what };
+    let host = match config.get_hosts().first().ok_or(without("host"))? {
+        Host::Tcp(name) => name.clone(),
+        Host::Unix(path) => path.display().to_string(),
+    };
+    let user = config.get_user().ok_or(without("user"))?;
+    let name = config.get_dbname().ok_or(without("database"))?;
+    let port = config.get_ports().first().map(|port| format!(":{port}")).unwrap_or_default();
+    Ok(format!("postgres://{user}@{host}{port}/{name}"))
+}
+
+/// Whether what is sent to this host stays in this computer.
+fn is_near(host: &Host) -> bool {
+    match host {
+        Host::Unix(_) => true,
+        Host::Tcp(name) => name == "localhost" || name.parse::<IpAddr>().is_ok_and(|ip| ip.is_loopback()),
+    }
+}
+
+fn trusting(ca: Option<&Path>) -> Result<ClientConfig, PlantAddressError> {
+    let mut roots = RootCertStore::empty();
+    match ca {
+        Some(path) => {
+            let refused = |source| PlantAddressError::Certificates { path: path.to_owned(), source };
+            let certificates = CertificateDer::pem_file_iter(path).map_err(refused)?;
+            for certificate in certificates {
+                roots.add(certificate.map_err(refused)?).map_err(PlantAddressError::Tls)?;
+            }
+        }
+        None => {
+            roots.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
+        }
+    }
+    if roots.is_empty() {
+        return Err(PlantAddressError::NoCertificates);
+    }
+    let provider = Arc::new(rustls::crypto::ring::default_provider());
+    let builder = ClientConfig::builder_with_provider(provider).with_safe_default_protocol_versions();
+    Ok(builder.map_err(PlantAddressError::Tls)?.with_root_certificates(roots).with_no_client_auth())
+}

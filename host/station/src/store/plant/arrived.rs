@@ -1,0 +1,103 @@
+//! What comes to a plant from its stations, in any order, and as often as they are not certain.
+
+use super::super::bindings::{BY_RUN, Detail, REBIND};
+use super::super::database::{Database, DatabaseError, values};
+use super::super::outbox::AuditLine;
+use super::super::{Rebinding, Waiver, bindings, rows, statements as sql};
+use crate::plan::mock::is_mock;
+use crate::record::Record;
+
+/// A run that is over, with all that follows from its record. One of this id that is there stays as it is.
+pub(super) fn run(
+    to: &mut dyn Database,
+    record: &Record,
+    text: &str,
+    hash: &str,
+) -> Result<(), DatabaseError> {
+    let unit = rows::unit(to, &record.run, &record.plan)?;
+    to.one(sql::LOCK_UNIT, values![&unit], |_| Ok(()))?;
+    if enter(to, record, hash, &unit)? == 0 {
+        return Ok(());
+    }
+    // What came first to the plant need not have come about first.
+    to.execute(sql::PLAN_EARLIER, values![record.run.started_ms, &record.plan.sha256])?;
+    to.execute(sql::UNIT_EARLIER, values![record.run.started_ms, &unit])?;
+    to.execute(sql::ADD_RECORD, values![hash, text])?;
+    rows::parts(to, record)?;
+    if let Some(device) = record.binds() {
+        let of = values![&record.run.id, device, &unit, record.ended_ms, &record.run.operator, BY_RUN];
+        to.execute(sql::ADD_BINDING_UNLESS, of)?;
+    }
+    count(to, record, &unit)
+}
+
+fn enter(to: &mut dyn Database, record: &Record, hash: &str, unit: &str) -> Result<u64, DatabaseError> {
+    let (run, ended, board) = (&record.run, &record.conclusion, record.board.as_ref());
+    to.execute(
+        sql::ADD_RUN,
+        values![
+            &run.id,
+            &run.station,
+            &run.lane,
+            unit,
+            &record.plan.sha256,
+            &run.variant,
+            &run.operator,
+            &run.target,
+            run.fence,
+            run.started_ms,
+            record.ended_ms,
+            &ended.verdict.to_string(),
+            ended.exit_code,
+            ended.cause.name(),
+            &ended.headline,
+            hash,
+            board.map(|board| &board.kind),
+            board.and_then(|board| board.device.as_ref()),
+            board.map(|board| &board.build),
+            i64::from(is_mock(&run.serial)),
+        ],
+    )
+}
+
+/// Counts the run as its station did; when later runs of its unit were counted already, those behind it anew.
+fn count(to: &mut dyn Database, record: &Record, unit: &str) -> Result<(), DatabaseError> {
+    let (id, plan, product) = (&record.run.id, &record.plan.name, &record.run.product);
+    let later: i64 = to.one(sql::IS_LATE, values![unit, id, plan, product], |row| row.get(0))?;
+    let is_judged = record.conclusion.verdict != halfrow::Verdict::Error;
+    let is_late = later > 0 && is_judged && !is_mock(&record.run.serial);
+    if is_late {
+        to.execute(sql::UNCOUNT_FIRST, values![unit, id, plan, product])?;
+        to.execute(sql::COUNT_ON, values![unit, id, plan, product])?;
+    }
+    to.execute(sql::ADD_DAY_COUNT, values![id])?;
+    to.execute(sql::ADD_FAILURES, values![id])?;
+    if is_late {
+        to.execute(sql::FORGET_RETEST, values![unit, plan])?;
+        to.execute(sql::FIND_RETEST, values![unit, plan, product])?;
+    } else {
+        to.execute(sql::ADD_RETEST, values![id])?;
+    }
+    Ok(())
+}
+
+/// A waiver.
+pub(super) fn waiver(to: &mut dyn Database, id: &str, waiver: &Waiver) -> Result<(), DatabaseError> {
+    let Waiver { run, at_ms, operator, reason } = waiver;
+    to.execute(sql::ADD_WAIVER_UNLESS, values![id, run, *at_ms, operator, reason]).map(drop)
+}
+
+/// A line of the audit. One about a unit is about the plant's unit of that serial number; what it bound is bound here, too.
+pub(super) fn audit(to: &mut dyn Database, line: &AuditLine) -> Result<(), DatabaseError> {
+    let AuditLine { id, at_ms, operator, act, subject, detail, unit } = line;
+    let unit: Option<String> = match unit {
+        Some([product, serial]) => to.first(sql::UNIT_OF, values![product, serial], |row| row.get(0))?,
+        None => None,
+    };
+    let subject = unit.as_ref().unwrap_or(subject);
+    let added = to.execute(sql::ADD_AUDIT_UNLESS, values![id, *at_ms, operator, act, subject, detail])?;
+    let Some(unit_id) = unit.filter(|_| added == 1 && act == REBIND) else { return Ok(()) };
+    let Detail { device, reason } = serde_json::from_str(detail)?;
+    let (id, operator) = (id.clone(), operator.clone());
+    bindings::rebind(to, &Rebinding { id, at_ms: *at_ms, operator, unit_id, device, reason })
+}

@@ -1,0 +1,196 @@
+//! The plant: the results of all stations in one PostgreSQL database, which their outboxes fill.
+//!
+//! The tables are those of a station. What a run leaves follows from its record alone, so that the plant has what the
+//! station has; only what is counted over the runs of a unit is counted over all stations.
+
+mod address;
+mod arrived;
+
+pub use address::{PlantAddress, PlantAddressError};
+
+use std::path::PathBuf;
+
+use super::database::{Database, DatabaseError, Postgres, values};
+use super::{Parcel, StoreError, migrations, statements as sql};
+use crate::clock;
+
+/// A delivery that did not come about.
+#[derive(Debug, thiserror::Error)]
+pub enum PlantError {
+    /// The plant has this run with another record: somebody has made two runs of one id, or changed one.
+    #[error(
+        "the plant has the run {run} with the record {theirs}, and this station with {ours}; nothing was changed: keep both, and \
+         find out which is right"
+    )]
+    OtherContent {
+        /// The run.
+        run: String,
+        /// The hash of this station's record.
+        ours: String,
+        /// The hash of the plant's.
+        theirs: String,
+    },
+    /// What it belongs to is not there yet.
+    #[error("the plant does not have the run {run} yet, which comes first; it is tried again")]
+    NotYet {
+        /// The run.
+        run: String,
+    },
+    /// What was sent is not there when it is looked for.
+    #[error("the plant has not kept {subject}, which was sent; it is tried again")]
+    NotKept {
+        /// What was sent.
+        subject: String,
+    },
+    /// Its database holds texts in another order or with other letters than a station's.
+    #[error(
+        "the database {plant} has the collation {collation} and the encoding {encoding}; make one by: createdb --template \
+         template0 --encoding UTF8 --locale C NAME"
+    )]
+    Collation {
+        /// Its address.
+        plant: String,
+        /// Its collation.
+        collation: String,
+        /// Its encoding.
+        encoding: String,
+    },
+    /// Its database.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+impl PlantError {
+    /// Whether the plant is not there, rather than that it does not take this one thing.
+    #[must_use]
+    pub fn is_away(&self) -> bool {
+        matches!(self, Self::Store(StoreError::Plant { source, .. }) if source.is_away())
+    }
+}
+
+/// A connection to a plant.
+#[derive(Debug)]
+pub struct Plant {
+    shown: PathBuf,
+    database: Box<dyn Database>,
+}
+
+impl Plant {
+    /// The plant at `address`, which must have the tables that this program knows.
+    ///
+    /// # Errors
+    /// [`PlantError::Store`] when it is not there, or its tables are older or newer.
+    pub fn connect(address: &PlantAddress) -> Result<Self, PlantError> {
+        let mut plant = Self::reach(address)?;
+        let found = plant.carry_out("to tell its version", |database| {
+            let there = "SELECT to_regclass('schema_version') IS NOT NULL";
+            if !database.one(there, &[], |row| row.get(0))? {
+                return Ok(0);
+            }
+            database.one(migrations::NEWEST, &[], |row| Ok(row.get::<Option<i64>>(0)?.unwrap_or(0)))
+        })?;
+        migrations::is_known(&plant.shown, found)?;
+        Ok(plant)
+    }
+
+    /// Makes the tables of the plant at `address`, or brings those that are there up to date, with a copy of all that is in
+    /// them. Whoever does so at the same time waits. Returns the version.
+    ///
+    /// # Errors
+    /// [`PlantError::Store`] when it is not there or its tables are newer, [`PlantError::Collation`].
+    pub fn prepare(address: &PlantAddress) -> Result<usize, PlantError> {
+        let mut plant = Self::reach(address)?;
+        plant.sorts_as_a_station()?;
+        plant.carry_out("to be prepared", |database| database.batch(LOCK))?;
+        migrations::apply(&mut *plant.database, &plant.shown, clock::now_ms())?;
+        Ok(sql::SCHEMAS.len())
+    }
+
+    /// Takes a parcel, whole or not at all. It is there for certain when this returns: it was read back after it was kept.
+    ///
+    /// # Errors
+    /// [`PlantError`] when it is not, or nobody knows.
+    pub fn take(&mut self, parcel: &Parcel) -> Result<(), PlantError> {
+        match parcel {
+            Parcel::Run { record, text, sha256 } => {
+                self.carry_out("a run", |database| {
+                    database.transaction(|to| arrived::run(to, record, text, sha256))
+                })?;
+                self.has_run(&record.run.id, sha256)
+            }
+            Parcel::Waiver { id, waiver } => {
+                if self.hash_of(&waiver.run)?.is_none() {
+                    return Err(PlantError::NotYet { run: waiver.run.clone() });
+                }
+                self.carry_out("a waiver", |database| arrived::waiver(database, id, waiver))?;
+                self.has(sql::WAIVER_BY_ID, id)
+            }
+            Parcel::Audit(line) => {
+                self.carry_out("a line of the audit", |database| {
+                    database.transaction(|to| arrived::audit(to, line))
+                })?;
+                self.has(sql::AUDIT_BY_ID, &line.id)
+            }
+        }
+    }
+
+    fn reach(address: &PlantAddress) -> Result<Self, PlantError> {
+        let shown = PathBuf::from(address.to_string());
+        let connected = address.connect();
+        let client = connected.map_err(|error| StoreError::Plant {
+            plant: address.to_string(),
+            doing: "a connection",
+            source: error.into(),
+        })?;
+        Ok(Self { shown, database: Box::new(Postgres::new(client)) })
+    }
+
+    fn sorts_as_a_station(&mut self) -> Result<(), PlantError> {
+        let (collation, encoding): (String, String) =
+            self.carry_out("to tell its collation", |database| {
+                let text = "SELECT datcollate::text, pg_encoding_to_char(encoding)::text FROM pg_database
+                WHERE datname = current_database()";
+                database.one(text, &[], |row| Ok((row.get(0)?, row.get(1)?)))
+            })?;
+        let is_by_bytes = ["C", "POSIX", "C.UTF-8", "C.utf8"].contains(&collation.as_str());
+        if is_by_bytes && encoding == "UTF8" {
+            return Ok(());
+        }
+        Err(PlantError::Collation { plant: self.shown.display().to_string(), collation, encoding })
+    }
+
+    /// The hash of a run and whether its record is there, if the run is.
+    fn hash_of(&mut self, run: &str) -> Result<Option<(String, bool)>, PlantError> {
+        Ok(self.carry_out("to be read back", |database| {
+            database.first(sql::HASH_OF, values![run], |row| Ok((row.get(0)?, row.get(1)?)))
+        })?)
+    }
+
+    fn has_run(&mut self, run: &str, ours: &str) -> Result<(), PlantError> {
+        match self.hash_of(run)? {
+            Some((theirs, true)) if theirs == ours => Ok(()),
+            Some((theirs, _)) if theirs != ours => {
+                Err(PlantError::OtherContent { run: run.to_owned(), ours: ours.to_owned(), theirs })
+            }
+            _ => Err(PlantError::NotKept { subject: run.to_owned() }),
+        }
+    }
+
+    fn has(&mut self, text: &str, subject: &str) -> Result<(), PlantError> {
+        let found =
+            self.carry_out("to be read back", |database| database.first(text, values![subject], |_| Ok(())))?;
+        found.ok_or_else(|| PlantError::NotKept { subject: subject.to_owned() })
+    }
+
+    fn carry_out<T>(
+        &mut self,
+        doing: &'static str,
+        act: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
+    ) -> Result<T, StoreError> {
+        let plant = || self.shown.display().to_string();
+        act(&mut *self.database).map_err(|source| StoreError::Plant { plant: plant(), doing, source })
+    }
+}
+
+/// One program at a time prepares a plant. It ends with the connection.
+const LOCK: &str = "SELECT pg_advisory_lock(7249613001)";

@@ -1,0 +1,97 @@
+//! What is still to be sent on, and what of it waits for a person. It needs no script.
+
+use axum::Form;
+use axum::extract::{Path, State};
+use axum::response::{IntoResponse as _, Redirect, Response};
+use maud::{Markup, html};
+use serde::Deserialize;
+
+use super::history::show;
+use super::layout::{Here, Page};
+use super::routes::{Route, Who, act, look};
+use super::state::App;
+use super::trouble::Trouble;
+use super::visit::Visit;
+use crate::store::{Dead, Entry, Folder, Kind, StoreError, Unsent};
+
+/// The longest reason, in characters.
+const MOST: &str = "500";
+
+pub(super) fn routes() -> Vec<Route> {
+    vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
+}
+
+async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    let folder = Folder::new(&app.settings().data);
+    let look = move || -> Result<_, StoreError> { Ok((folder.unsent()?, folder.dead()?)) };
+    let found = app.blocking(&visit, look).await?;
+    let (unsent, dead) = found.map_err(|error| Trouble::store(&visit, error))?;
+    let content = html! {
+        h1 { (visit.say("outbox.title")) }
+        @if unsent.is_empty() { p.nothing { (visit.say("outbox.none")) } } @else { (sinks(&visit, &unsent)) }
+        @if !dead.is_empty() {
+            h2 { (visit.say("outbox.dead")) }
+            p.soft { (visit.say("outbox.about")) }
+            @for one in &dead { (letter(&visit, one)) }
+        }
+    };
+    let title = visit.say("outbox.title");
+    Ok(Page { here: Here::Elsewhere, title, head: show::head(), content }.answer(&visit))
+}
+
+fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
+    html! {
+        table.runs {
+            thead { tr {
+                th { (visit.say("outbox.sink")) } th.number { (visit.say("outbox.entries")) }
+                th.number { (visit.say("outbox.waits")) } th { (visit.say("outbox.since")) }
+                th { (visit.say("outbox.said")) }
+            } }
+            tbody { @for Unsent { sink, entries, dead, since_ms, said } in unsent {
+                tr {
+                    td { (show::said(sink)) } td.number { (entries) } td.number { (dead) }
+                    td.when { (show::moment(*since_ms)) }
+                    td.headline { @if let Some(said) = said { (show::english(visit, said)) } }
+                }
+            } }
+        }
+    }
+}
+
+/// Something that waits for a person, with the form by which an engineer has it tried again.
+fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
+    let Entry { kind, subject, .. } = entry;
+    html! {
+        form.change method="post" action=(format!("/outbox/{subject}/release")) autocomplete="off" {
+            p {
+                b { (show::said(sink)) } " · "
+                @if *kind == Kind::Run { a href=(show::run_address(subject)) { (subject) } } @else { (subject) }
+                " · " (show::moment(*dead_ms))
+            }
+            p { (show::english(visit, said)) }
+            @if visit.may(Who::Engineer) {
+                input type="hidden" name="csrf" value=(visit.csrf);
+                label { span { (visit.say("history.reason")) } input name="reason" required maxlength=(MOST); }
+                button { (visit.say("outbox.release")) }
+            }
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct Release {
+    #[serde(default)]
+    reason: String,
+}
+
+async fn release(
+    State(app): State<App>,
+    visit: Visit,
+    Path(id): Path<String>,
+    Form(Release { reason }): Form<Release>,
+) -> Result<Response, Trouble> {
+    app.audit(&visit, "release", &id, &reason).await?;
+    let released = app.change(&visit, move |store| store.release(&id)).await?;
+    released.map_err(|error| Trouble::store(&visit, error))?;
+    Ok(Redirect::to("/outbox").into_response())
+}

@@ -1,0 +1,10 @@
+//! The plant, on a real PostgreSQL server, and what comes to it from stations.
+
+mod cut;
+mod late;
+mod link;
+mod refused;
+mod sent;
+mod server;
+mod tables;
+mod waiting;

@@ -1,0 +1,148 @@
+//! What a plant does not take, and what is not taken for a plant.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use halfrow_station::store::{Plant, PlantError, StoreError};
+
+use super::cut::due;
+use super::sent::send;
+use super::server::Server;
+use super::tables::is_as;
+use crate::common::{Did, PLAN, program, query};
+use crate::history::made::Made;
+use crate::history::released::history;
+
+/// What a command of the station in this folder does, with settings that name the plant.
+fn did(folder: &Path, server: &Server, arguments: &[&str]) -> Did {
+    fs::write(folder.join("plan.toml"), PLAN).unwrap();
+    let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
+    let plant = format!("[plant]\nurl = \"{}\"\n", server.url());
+    let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \".\"\n{plant}{lane}");
+    fs::write(folder.join("station.toml"), text).unwrap();
+    let mut command = Command::new(program());
+    command.args(arguments).arg("--settings").arg(folder.join("station.toml"));
+    command.output().unwrap().into()
+}
+
+#[test]
+fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_person() {
+    let server = Server::prepared();
+    let (made, _) = send(history(), server.address());
+    // Somebody has changed a record at the plant, and the station does not know that it sent it.
+    let changed = "UPDATE run SET record_sha256 = repeat('0', 64) WHERE id = (SELECT min(id) FROM run)";
+    server.client("plant").batch_execute(changed).unwrap();
+    let run = query(made.as_ref(), "SELECT min(id) FROM run").remove(0);
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    database.execute("UPDATE outbox SET done_ms = NULL", []).unwrap();
+    let (made, all) = send(made, server.address());
+    // All others are sent.
+    assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
+    let [dead] = &made.folder().dead().unwrap()[..] else { panic!("nothing waits") };
+    assert_eq!(dead.entry.subject, run);
+    assert!(dead.said.contains("nothing was changed: keep both"), "{dead:?}");
+    let at_plant = format!("SELECT record_sha256 FROM run WHERE id = '{run}'");
+    assert_eq!(server.rows(&at_plant), [["0".repeat(64)]]);
+    // It is not tried again by itself.
+    let (made, none) = send(made, server.address());
+    assert_eq!(none.sent + none.failed, 0);
+    // A person finds out, puts it right at the plant, and releases it.
+    let ours = query(made.as_ref(), &format!("SELECT record_sha256 FROM run WHERE id = '{run}'")).remove(0);
+    let right = format!("UPDATE run SET record_sha256 = '{ours}' WHERE id = '{run}'");
+    server.client("plant").batch_execute(&right).unwrap();
+    let release =
+        ["outbox", "release", run.as_str(), "--reason", "it was changed by hand", "--operator", "engel"];
+    let busy = did(made.as_ref(), &server, &release);
+    assert_eq!(busy.code, Some(4), "{busy:?}");
+    let (folder, store) = made.parts();
+    drop(store);
+    let released = did(folder.path(), &server, &release);
+    assert_eq!((released.code, released.complained.as_str()), (Some(0), ""), "{released:?}");
+    let again = did(folder.path(), &server, &release);
+    assert_eq!(again.code, Some(2), "{again:?}");
+    let sent = did(folder.path(), &server, &["outbox", "send", "--any-disk"]);
+    assert!(sent.said.starts_with("2 sent, 0 not"), "{sent:?}");
+    let made = Made::at(folder);
+    is_as(&server, &made);
+    let told = query(made.as_ref(), "SELECT operator_id || ': ' || detail FROM audit WHERE act = 'release'");
+    assert_eq!(told, ["engel: it was changed by hand"]);
+}
+
+#[test]
+fn a_waiver_waits_for_its_run() {
+    let server = Server::prepared();
+    // The run that is waived stays behind.
+    let mut made = history();
+    made.store.sends_to(vec!["plant".to_owned()]).unwrap();
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let later = "UPDATE outbox SET next_ms = 9000000000000 WHERE subject = (SELECT run_id FROM waiver)";
+    assert_eq!(database.execute(later, []).unwrap(), 1);
+    let (made, _) = send(made, server.address());
+    let [unsent] = &made.folder().unsent().unwrap()[..] else { panic!("all was sent") };
+    assert_eq!((unsent.entries, unsent.dead), (2, 0), "{unsent:?}");
+    assert!(unsent.said.as_ref().unwrap().contains("which comes first"), "{unsent:?}");
+    due(&made);
+    let (made, rest) = send(made, server.address());
+    assert_eq!((rest.sent, rest.failed), (2, 0));
+    is_as(&server, &made);
+}
+
+#[test]
+fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
+    let server = Server::start();
+    let refused = |server: &Server| Plant::connect(&server.address()).unwrap_err();
+    let none = refused(&server);
+    assert!(matches!(none, PlantError::Store(StoreError::Older { found: 0, .. })), "{none:?}");
+    let (folder, store) = history().parts();
+    drop(store);
+    let prepared = did(folder.path(), &server, &["plant", "prepare"]);
+    assert_eq!(prepared.said, format!("the plant {} has version 3\n", server.url()));
+    let (_, all) = send(Made::at(folder), server.address());
+    assert_eq!((all.sent, all.failed), (10, 0));
+    server.client("plant").batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
+    let newer = refused(&server);
+    assert!(matches!(newer, PlantError::Store(StoreError::Newer { found: 99, .. })), "{newer:?}");
+    let newer = Plant::prepare(&server.address()).unwrap_err();
+    assert!(matches!(newer, PlantError::Store(StoreError::Newer { found: 99, .. })), "{newer:?}");
+}
+
+/// A plant of an earlier program is copied before it is brought up to date, all in one.
+#[test]
+fn an_older_plant_is_copied_and_brought_up_to_date() {
+    let server = Server::start();
+    let words = |text: &str| {
+        text.replace("{int}", "BIGINT").replace("{real}", "DOUBLE PRECISION").replace("{strict}", "")
+    };
+    let mut client = server.client("plant");
+    let schemas = [include_str!("../../../sql/schema-1.sql"), include_str!("../../../sql/schema-2.sql")];
+    client.batch_execute(&words(include_str!("../../../sql/schema-version.sql"))).unwrap();
+    for (schema, number) in schemas.iter().zip(1..) {
+        client.batch_execute(&words(schema)).unwrap();
+        let hash = halfrow::result::sha256([schema]);
+        client.execute("INSERT INTO schema_version VALUES ($1, $2, 0)", &[&(number as i64), &hash]).unwrap();
+    }
+    client.batch_execute("INSERT INTO unit VALUES (repeat('u', 36), 'CAM-T', 'S1', 7)").unwrap();
+    let older = Plant::connect(&server.address()).unwrap_err();
+    assert!(matches!(older, PlantError::Store(StoreError::Older { found: 2, known: 3, .. })), "{older:?}");
+    assert_eq!(Plant::prepare(&server.address()).unwrap(), 3);
+    assert_eq!(server.rows("SELECT serial FROM before_3.unit"), [["S1"]]);
+    assert_eq!(server.rows("SELECT serial FROM unit"), [["S1"]]);
+    assert_eq!(server.rows("SELECT max(n) FROM schema_version"), [["3"]]);
+    Plant::connect(&server.address()).unwrap();
+}
+
+#[test]
+fn a_database_that_sorts_otherwise_than_a_station_is_refused() {
+    let server = Server::start();
+    let other = "CREATE DATABASE other TEMPLATE template0 ENCODING 'SQL_ASCII' LOCALE 'C'";
+    server.client("postgres").batch_execute(other).unwrap();
+    let url = server.url().replace("/plant", "/other");
+    let address = halfrow_station::store::PlantAddress::new(&url, None, None).unwrap();
+    let refused = Plant::prepare(&address).unwrap_err();
+    assert!(
+        matches!(&refused, PlantError::Collation { encoding, .. } if encoding == "SQL_ASCII"),
+        "{refused:?}"
+    );
+    assert!(refused.to_string().contains("createdb --template template0 --encoding UTF8"), "{refused}");
+}

@@ -1,0 +1,61 @@
+//! What comes to the plant is what the station has.
+
+use halfrow_station::outbox::{PlantSink, Round, Sink as _, round};
+use halfrow_station::store::{PlantAddress, SharedStore};
+
+use super::server::Server;
+use super::tables::is_as;
+use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
+use crate::history::released::history;
+
+/// Sends all that is due, until nothing is.
+pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
+    let mut sink = PlantSink::new(address);
+    let (folder, mut store) = made.parts();
+    store.sends_to(vec![sink.name().to_owned()]).unwrap();
+    let store = SharedStore::new(store);
+    let mut all = Round::default();
+    loop {
+        let Round { sent, failed, is_away } = round(&store, &mut sink).unwrap();
+        all = Round { sent: all.sent + sent, failed: all.failed + failed, is_away };
+        if is_away || sent == 0 {
+            break;
+        }
+    }
+    drop(store);
+    (Made::at(folder), all)
+}
+
+/// The station does not know any more what it has sent.
+fn forget(made: &Made) {
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    assert!(database.execute("DELETE FROM outbox", []).unwrap() > 0);
+}
+
+#[test]
+fn all_that_a_station_keeps_comes_to_the_plant_once() {
+    let server = Server::prepared();
+    // A role that may do what docs/plant.md says that a station's must.
+    let role = "CREATE ROLE station LOGIN; GRANT SELECT, INSERT, UPDATE, DELETE ON ALL TABLES IN SCHEMA public TO station";
+    server.client("plant").batch_execute(role).unwrap();
+    let url = server.url().replace("postgres@", "station@");
+    let address = PlantAddress::new(&url, None, None).unwrap();
+    let (made, all) = send(history(), address);
+    // Seven runs, a waiver with its line in the audit, and a rebinding.
+    assert_eq!(all, Round { sent: 10, failed: 0, is_away: false });
+    is_as(&server, &made);
+    // What comes later is sent alone.
+    let (mut made, all) = send(made, server.address());
+    assert_eq!(all, Round::default());
+    let later = BEGIN_MS + 30 * HOUR_MS;
+    made.run(&Run { lane: "3".to_owned(), started_ms: later, ..Run::of("S2", End::Pass) });
+    let (made, all) = send(made, server.address());
+    assert_eq!(all.sent, 1);
+    is_as(&server, &made);
+    // A station that has forgotten what it sent sends it again, which changes nothing.
+    forget(&made);
+    let (made, all) = send(made, server.address());
+    assert_eq!(all.sent, 11);
+    is_as(&server, &made);
+    assert!(made.folder().unsent().unwrap().is_empty());
+}

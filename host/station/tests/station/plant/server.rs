@@ -1,0 +1,209 @@
+//! A PostgreSQL server in a folder of its own, which ends with its test.
+
+use std::fs;
+use std::net::TcpListener;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use halfrow_station::store::{Plant, PlantAddress};
+use postgres::{Client, NoTls};
+use tempfile::TempDir;
+
+/// How long a server may take to be there.
+const STARTED: Duration = Duration::from_secs(60);
+
+/// A server.
+pub(crate) struct Server {
+    folder: TempDir,
+    port: u16,
+    /// The addresses that it listens on.
+    listen: &'static str,
+    process: Option<Child>,
+}
+
+impl Server {
+    /// At work, with a database `plant` that has no tables.
+    pub(crate) fn start() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        if is_root() {
+            let given = Command::new("chown").arg(USER).arg(folder.path()).status().unwrap();
+            assert!(given.success(), "there is no user {USER}");
+        }
+        let mut server = Self { folder, port, listen: "127.0.0.1", process: None };
+        let data = server.data();
+        let made = as_server("initdb")
+            .arg("--pgdata")
+            .arg(&data)
+            .args(["--auth=trust", "--username=postgres", "--encoding=UTF8", "--locale=C", "--no-sync"])
+            .output()
+            .unwrap();
+        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+        server.again();
+        server.client("postgres").batch_execute("CREATE DATABASE plant").unwrap();
+        server
+    }
+
+    /// With the plant's tables.
+    pub(crate) fn prepared() -> Self {
+        let server = Self::start();
+        Plant::prepare(&server.address()).unwrap();
+        server
+    }
+
+    pub(crate) fn data(&self) -> PathBuf {
+        self.folder.path().join("data")
+    }
+
+    pub(crate) fn port(&self) -> u16 {
+        self.port
+    }
+
+    /// Starts it again.
+    pub(crate) fn again(&mut self) {
+        let mut server = as_server("postgres");
+        server.arg("-D").arg(self.data()).args(["-p", &self.port.to_string(), "-k"]).arg(self.folder.path());
+        server.args([
+            "-c",
+            &format!("listen_addresses={}", self.listen),
+            "-c",
+            "fsync=off",
+            "-c",
+            "max_connections=200",
+        ]);
+        self.process = Some(server.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap());
+        let until = Instant::now() + STARTED;
+        while let Err(error) = self.connected("postgres") {
+            assert!(Instant::now() < until, "{error}");
+            thread::sleep(Duration::from_millis(20));
+        }
+    }
+
+    /// Has a certificate and its key, which lie in `folder`, from here on.
+    pub(crate) fn speaks_tls(&mut self, folder: &Path) {
+        for name in ["server.crt", "server.key"] {
+            fs::copy(folder.join(name), self.data().join(name)).unwrap();
+        }
+        self.owned("server.key", "0600");
+        self.configured("ssl = on\n");
+        self.kill();
+        self.again();
+    }
+
+    /// Can be reached from outside this computer, too, by everybody.
+    pub(crate) fn listens_everywhere(&mut self) {
+        self.listen = "*";
+        self.allowed("host all all all trust\n");
+        self.kill();
+        self.again();
+    }
+
+    /// Asks this user for a password.
+    pub(crate) fn asks_for_a_password(&self, user: &str) {
+        self.allowed(&format!("host all {user} all scram-sha-256\n"));
+        self.client("postgres").batch_execute("SELECT pg_reload_conf()").unwrap();
+    }
+
+    /// A rule in front of all others.
+    fn allowed(&self, rule: &str) {
+        let path = self.data().join("pg_hba.conf");
+        let rules = fs::read_to_string(&path).unwrap();
+        fs::write(&path, rule.to_owned() + &rules).unwrap();
+    }
+
+    fn configured(&self, line: &str) {
+        let path = self.data().join("postgresql.conf");
+        let lines = fs::read_to_string(&path).unwrap();
+        fs::write(&path, lines + line).unwrap();
+    }
+
+    fn owned(&self, name: &str, mode: &str) {
+        let path = self.data().join(name);
+        if is_root() {
+            assert!(Command::new("chown").arg(USER).arg(&path).status().unwrap().success());
+        }
+        assert!(Command::new("chmod").arg(mode).arg(&path).status().unwrap().success());
+    }
+
+    /// Kills it and every process that it has, with -9.
+    pub(crate) fn kill(&mut self) {
+        let Some(mut process) = self.process.take() else { return };
+        // Its children end when they miss it.
+        process.kill().unwrap();
+        process.wait().unwrap();
+        let socket = self.folder.path().join(format!(".s.PGSQL.{}.lock", self.port));
+        for left in [socket, self.data().join("postmaster.pid")] {
+            let _ = fs::remove_file(left);
+        }
+        // It does not start while one of them still holds its memory.
+        thread::sleep(Duration::from_millis(300));
+    }
+
+    pub(crate) fn url(&self) -> String {
+        format!("postgres://postgres@127.0.0.1:{}/plant", self.port)
+    }
+
+    pub(crate) fn address(&self) -> PlantAddress {
+        PlantAddress::new(&self.url(), None, None).unwrap()
+    }
+
+    pub(crate) fn client(&self, database: &str) -> Client {
+        self.connected(database).unwrap()
+    }
+
+    fn connected(&self, database: &str) -> Result<Client, postgres::Error> {
+        let text = format!("host=127.0.0.1 port={} user=postgres dbname={database}", self.port);
+        Client::connect(&text, NoTls)
+    }
+
+    /// Every row of what `text` selects, each value as text.
+    pub(crate) fn rows(&self, text: &str) -> Vec<Vec<String>> {
+        rows(&mut self.client("plant"), text)
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// Every row of what `text` selects, each value as text; read by the server's own casts.
+pub(crate) fn rows(client: &mut Client, text: &str) -> Vec<Vec<String>> {
+    let rows = client.simple_query(text).unwrap();
+    let row = |message| match message {
+        postgres::SimpleQueryMessage::Row(row) => {
+            Some((0..row.len()).map(|at| row.get(at).unwrap_or("NULL").to_owned()).collect())
+        }
+        _ => None,
+    };
+    rows.into_iter().filter_map(row).collect()
+}
+
+/// Whom Debian's package makes for the server, which refuses to run as root.
+const USER: &str = "postgres";
+
+fn is_root() -> bool {
+    Command::new("id").arg("-u").output().unwrap().stdout == b"0\n"
+}
+
+/// One of its programs, which ends with this thread.
+fn as_server(program: &str) -> Command {
+    let mut command = Command::new("setpriv");
+    command.args(["--pdeathsig", "KILL"]);
+    if is_root() {
+        command.args(["--reuid", USER, "--regid", USER, "--clear-groups"]);
+    }
+    command.arg(program_path(program));
+    command
+}
+
+/// Where Debian keeps the newest server's programs; elsewhere they are on the path.
+fn program_path(program: &str) -> PathBuf {
+    let versions = fs::read_dir("/usr/lib/postgresql").into_iter().flatten().flatten();
+    let number = |path: &Path| path.file_name()?.to_str()?.parse::<u32>().ok();
+    let found = versions.map(|entry| entry.path()).filter_map(|path| Some((number(&path)?, path))).max();
+    found.map_or_else(|| PathBuf::from(program), |(_, path)| path.join("bin").join(program))
+}

@@ -1,0 +1,75 @@
+//! Lanes of a station whose plant is away.
+
+use std::fs;
+use std::time::Duration;
+
+use super::server::Server;
+use crate::lanes::floor::{SERIALS, Station};
+
+/// A station whose settings have this under `[plant]`.
+fn station(server: &Server, more: &str) -> Station {
+    let station = Station::with(&["mock"], "");
+    let path = station.path("station.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    let plant = format!("[plant]\nurl = \"{}\"\n{more}\n[[lane]]", server.url());
+    fs::write(path, text.replacen("[[lane]]", &plant, 1)).unwrap();
+    station
+}
+
+#[test]
+fn a_plant_that_is_away_holds_up_only_lines_that_want_it_so() {
+    let mut server = Server::prepared();
+    server.kill();
+    let waits = station(&server, "green = \"plant\"");
+    let goes_on = station(&server, "");
+    // The control: the same without that line.
+    let mut running = goes_on.start();
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    let mut waiting = waits.start();
+    waiting.scan(SERIALS[0]);
+    let unsaved = waiting.state("1", "UNSAVED");
+    assert!(unsaved["shown"].is_null(), "{unsaved}");
+    assert!(unsaved["note"].as_str().unwrap().contains("not at the plant yet"), "{unsaved}");
+    // It is saved here, and nothing is lost when the station ends meanwhile.
+    assert_eq!(waits.query("SELECT verdict FROM run"), ["PASS"]);
+    server.again();
+    let shown = waiting.state("1", "PASS");
+    assert_eq!(shown["shown"]["serial"], SERIALS[0]);
+    assert_eq!(waiting.end().0, Some(0));
+    assert_eq!(running.end().0, Some(0));
+    for station in [&waits, &goes_on] {
+        station.assert_well();
+    }
+    let ours = waits.query("SELECT record_sha256 FROM run").remove(0);
+    let theirs = server.rows("SELECT record_sha256 FROM run");
+    assert!(theirs.contains(&vec![ours]), "{theirs:?}");
+}
+
+#[test]
+fn no_more_is_judged_than_may_be_unsent() {
+    let mut server = Server::prepared();
+    server.kill();
+    let station = station(&server, "most_unsent = 1");
+    let mut running = station.start();
+    for serial in &SERIALS[..2] {
+        running.scan(serial);
+        running.state("1", "PASS");
+    }
+    running.scan(SERIALS[2]);
+    let (is_taken, said) = running.answer(SERIALS[2]);
+    assert!(!is_taken && said.contains("2 results are not at the plant, and 1 may be"), "{said}");
+    assert_eq!(station.query("SELECT count(*) FROM run"), ["2"]);
+    // The plant is back, and takes what waits before another try would be refused.
+    server.again();
+    while server.rows("SELECT id FROM run").len() < 2 {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    // The station knows a moment later.
+    while station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL") != ["0"] {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    running.scan(SERIALS[2]);
+    running.state("1", "PASS");
+    assert_eq!(running.end().0, Some(0));
+}
