@@ -24,3 +24,22 @@ CREATE TABLE record (
   sha256 TEXT PRIMARY KEY CHECK (length(sha256) = 64),
   text TEXT NOT NULL
 ){strict};
+
+-- What the station's folder is called, whatever the station is: made once, so that two stations of one name are told apart.
+CREATE TABLE origin (
+  id TEXT PRIMARY KEY CHECK (length(id) = 36)
+){strict};
+
+-- Stations as a plant last heard of them.
+CREATE TABLE station (
+  name TEXT PRIMARY KEY,
+  origin TEXT NOT NULL CHECK (length(origin) = 36),
+  program TEXT NOT NULL,
+  -- Its plans: product, name and version of each, one a line.
+  plans TEXT NOT NULL,
+  unsent {int} NOT NULL,
+  dead {int} NOT NULL,
+  seen_ms {int} NOT NULL
+){strict};
+
+CREATE INDEX run_station ON run (station, started_ms DESC, id DESC, lane, operator_id, verdict);

@@ -14,7 +14,7 @@ use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::outbox::{Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
-use crate::settings::Settings;
+use crate::settings::{PlantSettings, Settings};
 use crate::store::{Folder, Store};
 
 /// Which disks are taken for new results.
@@ -61,6 +61,12 @@ impl SettingsFile {
     /// What they say.
     pub(super) fn load(&self) -> Result<Settings, Failure> {
         settings(&self.settings)
+    }
+
+    /// What they say to whoever has no lanes.
+    pub(super) fn load_plant(&self) -> Result<Settings, Failure> {
+        let path = path::absolute(&self.settings).map_err(Failure::call)?;
+        Settings::load_plant(&path).map_err(Failure::call)
     }
 }
 
@@ -111,11 +117,23 @@ impl<'a> Ready<'a> {
 
 /// The threads that send on what the station keeps.
 pub(super) fn outbox(settings: &Settings, engine: &Engine) -> Result<Outbox, Failure> {
+    let store = engine.store();
     let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
     if let Some(plant) = &settings.plant {
-        sinks.push(Box::new(PlantSink::new(plant.address()?)));
+        sinks.push(Box::new(store.with(|store| plant_sink(settings, plant, store))?));
     }
-    Ok(Outbox::start(&engine.store(), sinks)?)
+    Ok(Outbox::start(&store, sinks)?)
+}
+
+/// The plant, as this station sends to it.
+pub(super) fn plant_sink(
+    settings: &Settings,
+    plant: &PlantSettings,
+    store: &mut Store,
+) -> Result<PlantSink, Failure> {
+    store.sends_to(vec![PlantSink::NAME.to_owned()])?;
+    let origin = store.folder().origin()?.unwrap_or_default();
+    Ok(PlantSink::new(plant.address()?, settings.presence(origin)))
 }
 
 /// Closes what was under way when the station ended, says so, and returns it.

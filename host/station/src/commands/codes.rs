@@ -85,6 +85,7 @@ codes::codes! {
         Folder [folder] => "store-folder-unusable",
         Database [path, doing] => "database-refuses",
         Plant [plant, doing] => "plant-refuses",
+        NoRecord [plant, sha256] => "plant-without-record",
         NoLog [path, mode] => "database-without-log",
         Newer [path, found, known] => "database-newer",
         Older [path, found, known] => "database-older",
@@ -99,6 +100,7 @@ codes::codes! {
         OtherContent [run, ours, theirs] => "plant-has-other-record",
         NotYet [run] => "plant-without-run",
         NotKept [subject] => "plant-kept-nothing",
+        OtherStation [name] => "plant-has-other-station",
         Collation [plant, collation, encoding] => "plant-of-other-collation",
         = Store,
     }

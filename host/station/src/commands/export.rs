@@ -11,7 +11,8 @@ use super::{Failure, print};
 use crate::exit::Exit;
 use crate::export::{self, ExportError, Format, Table};
 use crate::history::runs::{Filter, MOST, page};
-use crate::store::{Folder, Snapshot};
+use crate::history::unit::run_of;
+use crate::store::Snapshot;
 
 /// Write runs for other programs
 ///
@@ -60,25 +61,24 @@ impl Written {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let folder = arguments.data.folder();
     let snapshot = arguments.data.snapshot()?;
     match (&arguments.run, &arguments.to) {
-        (Some(run), to) => one(&folder, run, arguments.format, to.as_deref()),
+        (Some(run), to) => one(&snapshot, run, arguments.format, to.as_deref()),
         (None, Some(to)) => all(&snapshot, &arguments.filtered.filter(), arguments.format, to),
         (None, None) => Err(Failure::call(anyhow::Error::msg("name a run, or a place with --to"))),
     }
 }
 
-fn one(folder: &Folder, run: &str, written: Written, to: Option<&Path>) -> Result<Exit, Failure> {
-    let Some(stored) = folder.verdict_of(run)? else {
+fn one(of: &Snapshot, run: &str, written: Written, to: Option<&Path>) -> Result<Exit, Failure> {
+    let Some(hash) = run_of(of, run)?.and_then(|run| run.line.record_sha256) else {
         let what = format!("no run {run} is over; `halfrow-station history` lists the runs");
         return Err(Failure::call(anyhow::Error::msg(what)));
     };
     let bytes = match written.format() {
-        Some(format) => export::run(folder, &stored.record_sha256, format)?,
+        Some(format) => export::run(of, &hash, format)?,
         None => {
             let mut table = Table::begin(Vec::new())?;
-            table.add(&export::record(folder, &stored.record_sha256)?.0)?;
+            table.add(&export::record(of, &hash)?.0)?;
             table.end()
         }
     };
@@ -97,7 +97,7 @@ fn all(of: &Snapshot, filter: &Filter, written: Written, to: &Path) -> Result<Ex
         Some(format) => {
             fs::create_dir_all(to).map_err(Failure::error)?;
             each(of, filter, |run, hash| {
-                let bytes = export::run(of.folder(), hash, format)?;
+                let bytes = export::run(of, hash, format)?;
                 let path = to.join(format!("{run}{}", format.ending()));
                 write_aside(&path, false, |file| file.write_all(&bytes)).map_err(unwritten)
             })?
@@ -105,7 +105,7 @@ fn all(of: &Snapshot, filter: &Filter, written: Written, to: &Path) -> Result<Ex
         None => {
             let aside = Aside::written(to, false, |_| Ok(())).map_err(unwritten)?;
             let mut table = Table::begin(aside)?;
-            let count = each(of, filter, |_, hash| Ok(table.add(&export::record(of.folder(), hash)?.0)?))?;
+            let count = each(of, filter, |_, hash| Ok(table.add(&export::record(of, hash)?.0)?))?;
             table.end().put_in_place().map_err(unwritten)?;
             count
         }

@@ -38,8 +38,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let ready = Ready::of(&settings, &arguments.disk)?;
     let signal = ready.signal.clone();
     let engine = ready.start()?;
-    let outbox = outbox(&settings, &engine)?;
     let news = engine.listen();
+    let outbox = outbox(&settings, &engine)?;
     let printer = thread::Builder::new().name("news".to_owned()).spawn(move || print(&news));
     let printer = printer.map_err(Failure::error)?;
     let scans = scans().map_err(Failure::error)?;

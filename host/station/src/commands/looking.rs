@@ -105,6 +105,7 @@ impl Filtered {
             serial: self.serial.clone(),
             verdict: self.verdict.map(Into::into),
             plan: self.plan.clone(),
+            station: None,
             lane: self.lane.clone(),
             operator: self.operator.clone(),
             period: self.range.period(),

@@ -3,12 +3,12 @@
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
-use super::beginning::{Disk, SettingsFile};
+use super::beginning::{Disk, SettingsFile, plant_sink};
 use super::looking::{either, table, time};
 use super::plant::plant;
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::outbox::{OutboxError, PlantSink, Round, Sink, round};
+use crate::outbox::{OutboxError, Round, round};
 use crate::settings::Settings;
 use crate::store::{Dead, Folder, SharedStore, Store, Unsent};
 
@@ -73,8 +73,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 
 /// Sends to the plant until nothing is due.
 fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
-    let mut sink = PlantSink::new(plant(settings)?.address()?);
-    store.sends_to(vec![sink.name().to_owned()])?;
+    let mut sink = plant_sink(settings, plant(settings)?, &mut store)?;
     let store = SharedStore::new(store);
     let mut all = Round::default();
     loop {

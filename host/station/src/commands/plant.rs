@@ -1,12 +1,20 @@
 //! `halfrow-station plant`
 
+use std::thread;
+use std::time::Duration;
+
 use clap::{Args, Subcommand};
 
-use super::beginning::SettingsFile;
+use super::beginning::{SettingsFile, Signal};
 use super::{Failure, print};
+use crate::console;
 use crate::exit::Exit;
 use crate::settings::{PlantSettings, PlantSettingsError, Settings};
-use crate::store::{Plant, PlantError};
+use crate::store::{Plant, PlantAddress, PlantError};
+use crate::web::{Access, App, Server, User, Who};
+
+/// How often it is looked whether a signal came.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// Keep the results of all stations in one PostgreSQL database
 ///
@@ -23,17 +31,40 @@ pub(super) struct Arguments {
 enum What {
     /// Make the plant's tables, or bring them up to date with a copy of all that is in them
     Prepare,
+    /// Show the results of all stations in a browser; its pages only look
+    Serve,
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load()?;
-    let address = plant(&settings)?.address().map_err(Failure::call)?;
+    let settings = settings.load_plant()?;
+    let address = plant(&settings)?.address()?;
     match what {
         What::Prepare => {
             let version = Plant::prepare(&address)?;
             print(&format!("the plant {address} has version {version}"))
         }
+        What::Serve => serve(settings, address),
     }
+}
+
+fn serve(settings: Settings, plant: PlantAddress) -> Result<Exit, Failure> {
+    let signal = Signal::heed()?;
+    std::fs::create_dir_all(&settings.data).map_err(Failure::call)?;
+    let everybody = User { name: String::new(), who: Who::Reader };
+    let access = Access::of(&settings, everybody).map_err(Failure::call)?;
+    let listener = Server::listen(access.listen()).map_err(Failure::call)?;
+    let at = listener.local_addr().map_err(Failure::error)?;
+    let app = App::of_plant(settings, plant, access.at(at.port()));
+    let server = Server::start(&app, listener).map_err(Failure::error)?;
+    console::tell(&format!("The pages are at http://{at}/"));
+    let by = loop {
+        match signal.by() {
+            Some(by) => break by,
+            None => thread::sleep(LOOK),
+        }
+    };
+    server.close();
+    Ok(halfrow::Cause::Stopped(by).into())
 }
 
 /// `[plant]` of these settings.

@@ -11,7 +11,7 @@ use quick_junit::SerializeError;
 pub use table::{COLUMNS, Table};
 
 use crate::record::Record;
-use crate::store::{Folder, StoreError};
+use crate::store::{Snapshot, StoreError};
 
 /// What one run is written as. All runs together are a [`Table`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,9 +57,9 @@ pub enum ExportError {
 ///
 /// # Errors
 /// [`ExportError::Store`] when it is not there, or not as it was written.
-pub fn record(folder: &Folder, hash: &str) -> Result<(Record, Vec<u8>), ExportError> {
+pub fn record(of: &Snapshot, hash: &str) -> Result<(Record, Vec<u8>), ExportError> {
     let read = || -> Result<_, StoreError> {
-        let bytes = folder.blobs().get(hash)?;
+        let bytes = of.record(hash)?;
         Ok((Record::parse(&bytes)?, bytes))
     };
     Ok(read()?)
@@ -69,8 +69,8 @@ pub fn record(folder: &Folder, hash: &str) -> Result<(Record, Vec<u8>), ExportEr
 ///
 /// # Errors
 /// [`ExportError`]
-pub fn run(folder: &Folder, hash: &str, format: Format) -> Result<Vec<u8>, ExportError> {
-    let (record, bytes) = record(folder, hash)?;
+pub fn run(of: &Snapshot, hash: &str, format: Format) -> Result<Vec<u8>, ExportError> {
+    let (record, bytes) = record(of, hash)?;
     match format {
         Format::Record => Ok(bytes),
         Format::Junit => Ok(junit::render(&record)?.into_bytes()),

@@ -5,6 +5,7 @@
 //!  unit     a serial number with all that is known of it
 //!  yields   first-pass and final yield, with their intervals
 //!  pareto   what fails most, by part and by check
+//!  stations those of a plant, as it last heard of them
 //! ```
 //!
 //! Each takes a [`Snapshot`], so that what one page shows is of one moment.
@@ -12,6 +13,7 @@
 pub mod pareto;
 pub mod rate;
 pub mod runs;
+pub mod stations;
 pub mod unit;
 pub mod yields;
 

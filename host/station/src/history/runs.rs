@@ -21,6 +21,8 @@ pub struct Filter {
     pub verdict: Option<Verdict>,
     /// Under plans of this name.
     pub plan: Option<String>,
+    /// At this station.
+    pub station: Option<String>,
     /// In this lane.
     pub lane: Option<String>,
     /// By this operator.
@@ -153,6 +155,7 @@ pub fn page(of: &Snapshot, filter: &Filter, after: Option<&Place>, limit: u32) -
             let equal = [
                 ("unit_id", unit.as_ref()),
                 ("operator_id", filter.operator.as_ref()),
+                ("station", filter.station.as_ref()),
                 ("lane", filter.lane.as_ref()),
                 ("plan_sha256", plan.as_ref()),
                 ("verdict", verdict.as_ref()),
@@ -246,8 +249,8 @@ mod tests {
         let folder = Folder::new(folder.path());
         drop(Store::open(&folder).unwrap());
         let of = Snapshot::take(&folder).unwrap();
-        let all = ["unit_id", "operator_id", "lane", "plan_sha256", "verdict"];
-        let index = ["run_unit", "run_operator", "run_lane", "run_plan", "run_verdict"];
+        let all = ["unit_id", "operator_id", "station", "lane", "plan_sha256", "verdict"];
+        let index = ["run_unit", "run_operator", "run_station", "run_lane", "run_plan", "run_verdict"];
         let some = Period { from_ms: 1, until_ms: 2 };
         for chosen in 0_usize..1 << all.len() {
             let is_chosen = |place: &usize| chosen >> place & 1 == 1;

@@ -23,6 +23,8 @@ use crate::store::{Entry, Parcel, SharedStore, StoreError, Tried};
 
 /// How often it is looked whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
+/// How often a sink hears how much it does not have.
+const BEAT: Duration = Duration::from_secs(30);
 /// How long a sink that has nothing to do stays connected.
 const IDLE: Duration = Duration::from_secs(10);
 /// How long it is waited at the end for what is under way.
@@ -38,6 +40,9 @@ pub trait Sink: Send {
     /// # Errors
     /// [`Undelivered`]
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered>;
+
+    /// So much is to be sent to it, and so much of that waits for a person.
+    fn beat(&mut self, _unsent: u32, _dead: u32) {}
 
     /// There is nothing to do for now.
     fn rest(&mut self) {}
@@ -118,8 +123,10 @@ impl Outbox {
     /// # Errors
     /// [`OutboxError`]
     pub fn start(store: &SharedStore, sinks: Vec<Box<dyn Sink>>) -> Result<Self, OutboxError> {
-        let names = sinks.iter().map(|sink| sink.name().to_owned()).collect();
-        store.with(|store| store.sends_to(names))?;
+        if !sinks.is_empty() {
+            let names = sinks.iter().map(|sink| sink.name().to_owned()).collect();
+            store.with(|store| store.sends_to(names))?;
+        }
         let mut outbox = Self::default();
         for sink in sinks {
             let (stop, stopped) = mpsc::channel();
@@ -158,10 +165,20 @@ pub enum OutboxError {
     Store(#[from] StoreError),
 }
 
+fn beat(store: &SharedStore, sink: &mut dyn Sink) {
+    let unsent = store.with(|store| store.folder().unsent()).unwrap_or_default();
+    let ours = unsent.iter().find(|unsent| unsent.sink == sink.name());
+    sink.beat(ours.map_or(0, |ours| ours.entries), ours.map_or(0, |ours| ours.dead));
+}
+
 /// Sends until the outbox is closed.
 fn send(store: &SharedStore, mut sink: Box<dyn Sink>, stopped: &Receiver<()>) {
-    let (mut vain, mut worked) = (0, Instant::now());
+    let (mut vain, mut worked, mut beaten) = (0, Instant::now(), None::<Instant>);
     loop {
+        if beaten.is_none_or(|beaten| beaten.elapsed() > BEAT) {
+            beaten = Some(Instant::now());
+            beat(store, &mut *sink);
+        }
         let round = round(store, &mut *sink).unwrap_or_else(|error| {
             tracing::error!("what is to be sent on stays here: {}", Said::of(&error));
             Round { is_away: true, ..Round::default() }

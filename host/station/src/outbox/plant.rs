@@ -2,23 +2,40 @@
 
 use super::{Sink, Undelivered};
 use crate::said::Said;
-use crate::store::{Parcel, Plant, PlantAddress, PlantError};
+use crate::store::{Parcel, Plant, PlantAddress, PlantError, Presence};
 
 /// A plant, which is connected to when there is something to send.
 #[derive(Debug)]
 pub struct PlantSink {
     address: PlantAddress,
+    station: Presence,
     plant: Option<Plant>,
+    /// Whether the plant knows that this station is who it says since the connection came about.
+    is_known: bool,
 }
 
 impl PlantSink {
     /// Its name in the outbox. A plant that moves to another address keeps it.
     pub const NAME: &'static str = "plant";
 
-    /// The plant at `address`.
+    /// The plant at `address`, which hears of `station`.
     #[must_use]
-    pub fn new(address: PlantAddress) -> Self {
-        Self { address, plant: None }
+    pub fn new(address: PlantAddress, station: Presence) -> Self {
+        Self { address, station, plant: None, is_known: false }
+    }
+
+    /// The plant, which has heard of this station.
+    fn plant(&mut self) -> Result<&mut Plant, PlantError> {
+        let plant = match self.plant.take() {
+            Some(plant) if self.is_known => plant,
+            kept => {
+                let mut plant = kept.map_or_else(|| Plant::connect(&self.address), Ok)?;
+                plant.see(&self.station)?;
+                self.is_known = true;
+                plant
+            }
+        };
+        Ok(self.plant.insert(plant))
     }
 }
 
@@ -30,10 +47,7 @@ impl Sink for PlantSink {
     fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered> {
         // A plant that cannot be used takes nothing else, either.
         let away = |error: PlantError| Undelivered::Away(Said::of(&error));
-        let plant = match &mut self.plant {
-            Some(plant) => plant,
-            none => none.insert(Plant::connect(&self.address).map_err(away)?),
-        };
+        let plant = self.plant().map_err(away)?;
         plant.take(parcel).map_err(|error| {
             if error.is_away() {
                 self.plant = None;
@@ -45,6 +59,14 @@ impl Sink for PlantSink {
                 _ => Undelivered::NotNow(said),
             }
         })
+    }
+
+    fn beat(&mut self, unsent: u32, dead: u32) {
+        (self.station.unsent, self.station.dead, self.is_known) = (unsent, dead, false);
+        if let Err(error) = self.plant() {
+            // What is to be sent will say so, too.
+            tracing::debug!("the plant has not heard of this station: {}", Said::of(&error));
+        }
     }
 
     fn rest(&mut self) {

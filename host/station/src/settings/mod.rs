@@ -17,6 +17,7 @@ pub use plant::{PASSWORD, PlantSettings, PlantSettingsError};
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::input_error::InputError;
 use crate::plan::Plan;
+use crate::store::Presence;
 use crate::web::Address;
 
 /// The version of the settings' own format.
@@ -123,9 +124,31 @@ impl Settings {
     /// # Errors
     /// [`InputError`], with the line.
     pub fn load(path: &Path) -> Result<Self, InputError> {
+        Self::load_for(path, true)
+    }
+
+    /// The same of whoever shows a plant, and has no lanes.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn load_plant(path: &Path) -> Result<Self, InputError> {
+        Self::load_for(path, false)
+    }
+
+    fn load_for(path: &Path, has_lanes: bool) -> Result<Self, InputError> {
         let text = fs::read_to_string(path)
             .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
-        read::settings(path, &text).map_err(|fault| fault.in_file(path, &text))
+        read::settings(path, &text, has_lanes).map_err(|fault| fault.in_file(path, &text))
+    }
+
+    /// What a plant hears of the station whose folder is called `origin`.
+    #[must_use]
+    pub fn presence(&self, origin: String) -> Presence {
+        let plan =
+            |PlanFile { plan, .. }: &PlanFile| format!("{} {} {}", plan.product, plan.name, plan.version);
+        let plans = self.plans.iter().map(plan).collect::<Vec<_>>().join("\n");
+        let program = halfrow::VERSION.to_owned();
+        Presence { name: self.name.clone(), origin, program, plans, unsent: 0, dead: 0 }
     }
 
     /// The lanes as they are before a board came.

@@ -34,7 +34,7 @@ const MOST_SECONDS: f64 = 86_400.0;
 const MOST_NAME: usize = 16;
 
 /// The settings of `text` in the file `path`.
-pub(super) fn settings(path: &Path, text: &str) -> Result<Settings, Fault> {
+pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Settings, Fault> {
     let read: SettingsText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
     if *read.schema.get_ref() != SCHEMA {
         let what = format!("this program reads settings of schema {SCHEMA}, not {}", read.schema.get_ref());
@@ -43,6 +43,10 @@ pub(super) fn settings(path: &Path, text: &str) -> Result<Settings, Fault> {
     }
     let folder = path.parent().unwrap_or(Path::new(""));
     let station = &read.station;
+    if has_lanes && read.lane.is_empty() {
+        let remedy = "write a [[lane]] with name, board and plans";
+        return Err(Fault::wrong(read.schema.span().start, "the station has no lane", remedy));
+    }
     let (plans, lanes) = lanes(folder, &read)?;
     Ok(Settings {
         name: not_empty(&station.name)?,
@@ -120,10 +124,6 @@ fn memory(text: Option<&Spanned<u64>>) -> Result<u64, Fault> {
 
 /// The lanes, and every plan that they name, once.
 fn lanes(folder: &Path, read: &SettingsText) -> Result<(Vec<PlanFile>, Vec<LaneSettings>), Fault> {
-    if read.lane.is_empty() {
-        let remedy = "write a [[lane]] with name, board and plans";
-        return Err(Fault::wrong(read.schema.span().start, "the station has no lane", remedy));
-    }
     let (mut plans, mut lanes) = (Vec::new(), Vec::<LaneSettings>::new());
     for text in &read.lane {
         let lane = lane(folder, text, &mut plans)?;

@@ -46,6 +46,16 @@ pub enum StoreError {
         /// Why.
         source: DatabaseError,
     },
+    /// The plant does not have a record, or another text under its hash.
+    #[error(
+        "the plant {plant} does not have the record {sha256}, or not as it was sent; the station that sent it has it"
+    )]
+    NoRecord {
+        /// Its address.
+        plant: String,
+        /// The hash of the record.
+        sha256: String,
+    },
     /// The file system cannot keep what SQLite needs.
     #[error(
         "the database {} cannot have a write-ahead log where it is ({mode}); put the folder on a local disk",

@@ -40,7 +40,7 @@ pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub use keeping::Removed;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, Tried, Unsent};
-pub use plant::{Plant, PlantAddress, PlantAddressError, PlantError};
+pub use plant::{Plant, PlantAddress, PlantAddressError, PlantError, PlantPool, Presence};
 pub use shared::SharedStore;
 pub use shift::{Checked, Owed};
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};

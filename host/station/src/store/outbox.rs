@@ -4,8 +4,9 @@
 use serde::Serialize;
 
 use super::database::{Database, DatabaseError, Row, values};
-use super::{Folder, Store, StoreError, Waiver, statements as sql};
+use super::{Folder, Snapshot, Store, StoreError, Waiver, statements as sql};
 use crate::record::Record;
+use crate::{clock, ids};
 
 /// What an entry is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -156,7 +157,9 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when the database does not take it.
     pub fn sends_to(&mut self, sinks: Vec<String>) -> Result<(), StoreError> {
+        let origin = ids::new(clock::now_ms())?.to_string();
         self.change("what is to be sent", |to| {
+            to.execute(sql::ADD_ORIGIN, values![&origin])?;
             sinks.iter().try_for_each(|sink| to.execute(sql::ALL_TO_OUTBOX, values![sink]).map(drop))
         })?;
         self.sinks = sinks.into();
@@ -193,6 +196,20 @@ impl Store {
     }
 }
 
+impl Snapshot {
+    /// How it stands with each sink that does not have all.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
+        self.rows("to tell what is to be sent", sql::OUTBOX_STATE, &[], |row| {
+            let since_ms = id_ms(row.text(3)?);
+            let (sink, entries, dead) = (row.get(0)?, row.get(1)?, row.get(2)?);
+            Ok(Unsent { sink, entries, dead, since_ms, said: row.get(4)? })
+        })
+    }
+}
+
 impl Folder {
     /// The first entries that are due for `sink` at `now_ms`, in the order in which they came about.
     ///
@@ -209,13 +226,15 @@ impl Folder {
     /// # Errors
     /// As [`Self::due`].
     pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
-        self.read("to tell what is to be sent", |from| {
-            from.all(sql::OUTBOX_STATE, &[], |row| {
-                let since_ms = id_ms(row.text(3)?);
-                let (sink, entries, dead) = (row.get(0)?, row.get(1)?, row.get(2)?);
-                Ok(Unsent { sink, entries, dead, since_ms, said: row.get(4)? })
-            })
-        })
+        Snapshot::take(self)?.unsent()
+    }
+
+    /// What this folder is called, whatever the station is; none before anything was to be sent from it.
+    ///
+    /// # Errors
+    /// As [`Self::due`].
+    pub fn origin(&self) -> Result<Option<String>, StoreError> {
+        self.read("to tell what it is called", |from| from.first(sql::ORIGIN, &[], |row| row.get(0)))
     }
 
     /// Every entry that waits for a person.

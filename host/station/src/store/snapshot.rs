@@ -1,11 +1,16 @@
 //! The tables as they are at one moment, and as they are when they are made anew from the records.
 
 use std::cell::RefCell;
+use std::path::PathBuf;
+
+use halfrow::result::sha256;
 
 use rusqlite::Connection;
 
-use super::database::{Database, DatabaseError, Row as Found, Sqlite, Value};
-use super::{Folder, OpenRun, Rebinding, StoreError, bindings, migrations, open_run, rows, statements};
+use super::database::{Database, DatabaseError, Engine, Row as Found, Sqlite, Value, values};
+use super::{
+    Folder, OpenRun, Plant, Rebinding, StoreError, bindings, migrations, open_run, rows, statements,
+};
 use crate::record::{PlanRecord, Record};
 
 /// The tables that follow from the records and the audit, each with its key.
@@ -29,8 +34,16 @@ pub type Row = Vec<(String, String)>;
 /// The tables as they are, whatever is written meanwhile.
 #[derive(Debug)]
 pub struct Snapshot {
-    folder: Folder,
+    of: Of,
     reader: RefCell<Box<dyn Database>>,
+}
+
+/// Whose tables they are.
+#[derive(Debug)]
+enum Of {
+    Station(Folder),
+    /// The one at this address.
+    Plant(PathBuf),
 }
 
 impl Snapshot {
@@ -39,7 +52,8 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database is not there or cannot be read.
     pub fn take(folder: &Folder) -> Result<Self, StoreError> {
-        let snapshot = Self { folder: folder.clone(), reader: RefCell::new(folder.reader()?) };
+        let reader = RefCell::new(folder.reader()?);
+        let snapshot = Self { of: Of::Station(folder.clone()), reader };
         let found = snapshot.read("to be read", |reader| {
             reader.batch("BEGIN")?;
             // It begins with the first look.
@@ -47,6 +61,61 @@ impl Snapshot {
         })?;
         migrations::is_known(&folder.database(), found)?;
         Ok(snapshot)
+    }
+
+    /// The tables of a plant, until [`Self::end`].
+    ///
+    /// # Errors
+    /// [`StoreError::Plant`] when it is not there.
+    pub fn of_plant(plant: Plant) -> Result<Self, StoreError> {
+        let Plant { shown, database } = plant;
+        let snapshot = Self { of: Of::Plant(shown), reader: RefCell::new(database) };
+        snapshot
+            .read("to be read", |reader| reader.batch("BEGIN ISOLATION LEVEL REPEATABLE READ READ ONLY"))?;
+        Ok(snapshot)
+    }
+
+    /// The connection to the plant that they were read by, for the next; none of a station, or when it is no more.
+    #[must_use]
+    pub fn end(self) -> Option<Plant> {
+        let Of::Plant(shown) = self.of else { return None };
+        let mut database = self.reader.into_inner();
+        database.batch("ROLLBACK").ok().map(|()| Plant { shown, database })
+    }
+
+    /// The bytes of the record of this hash.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it is not there, or not as it was written.
+    pub fn record(&self, hash: &str) -> Result<Vec<u8>, StoreError> {
+        let shown = match &self.of {
+            Of::Station(folder) => return Ok(folder.blobs().get(hash)?),
+            Of::Plant(shown) => shown,
+        };
+        let found = self.rows("to tell a record", statements::RECORD, values![hash], |row| row.get(0))?;
+        let text: Option<String> = found.into_iter().next();
+        let text = text.filter(|text| sha256([text.as_bytes()]) == hash);
+        text.map(String::into_bytes).ok_or_else(|| StoreError::NoRecord {
+            plant: shown.display().to_string(),
+            sha256: hash.to_owned(),
+        })
+    }
+
+    /// The bytes of a piece of evidence of this hash; none at a plant, which leaves it with the station.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it is not there, or not as it was written.
+    pub fn evidence(&self, hash: &str) -> Result<Option<Vec<u8>>, StoreError> {
+        match &self.of {
+            Of::Station(folder) => Ok(Some(folder.blobs().get(hash)?)),
+            Of::Plant(_) => Ok(None),
+        }
+    }
+
+    /// Whether there is a piece of evidence of this hash here.
+    #[must_use]
+    pub fn has_evidence(&self, hash: &str) -> bool {
+        matches!(&self.of, Of::Station(folder) if folder.blobs().path(hash).is_file())
     }
 
     /// What SQLite itself finds wrong with its file; nothing when all is well.
@@ -104,22 +173,17 @@ impl Snapshot {
         self.read(doing, |reader| reader.all(text, values, row))
     }
 
-    /// The folder that they stand in.
-    #[must_use]
-    pub fn folder(&self) -> &Folder {
-        &self.folder
-    }
-
     fn read<T>(
         &self,
         doing: &'static str,
         read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
-        read(&mut **self.reader.borrow_mut()).map_err(|source| StoreError::Database {
-            path: self.folder.database(),
-            doing,
-            source,
-        })
+        let (engine, place) = match &self.of {
+            Of::Station(folder) => (Engine::Sqlite, folder.database()),
+            Of::Plant(shown) => (Engine::Postgres, shown.clone()),
+        };
+        read(&mut **self.reader.borrow_mut())
+            .map_err(|source| StoreError::refused(engine, &place, doing, source))
     }
 }
 

@@ -64,8 +64,13 @@ pub(super) const OUTBOX_RELEASED: &str = include_str!("../../sql/outbox-released
 pub(super) const OUTBOX_ENTRY: &str = include_str!("../../sql/outbox-entry.sql");
 pub(super) const WAIVER_BY_ID: &str = include_str!("../../sql/waiver-by-id.sql");
 pub(super) const AUDIT_BY_ID: &str = include_str!("../../sql/audit-by-id.sql");
+pub(super) const ADD_ORIGIN: &str = include_str!("../../sql/add-origin.sql");
+pub(super) const ORIGIN: &str = include_str!("../../sql/origin.sql");
+pub(super) const SEEN: &str = include_str!("../../sql/plant/seen.sql");
+pub(crate) const STATIONS: &str = include_str!("../../sql/plant/stations.sql");
 pub(super) const LOCK_UNIT: &str = include_str!("../../sql/plant/lock-unit.sql");
 pub(super) const ADD_RECORD: &str = include_str!("../../sql/plant/add-record.sql");
+pub(super) const RECORD: &str = include_str!("../../sql/plant/record.sql");
 pub(super) const ADD_RUN: &str = include_str!("../../sql/plant/add-run.sql");
 pub(super) const HASH_OF: &str = include_str!("../../sql/plant/hash-of.sql");
 pub(super) const IS_LATE: &str = include_str!("../../sql/plant/is-late.sql");
@@ -84,7 +89,7 @@ mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 70] = [
+    const ALL: [&str; 75] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -141,8 +146,13 @@ mod tests {
         OUTBOX_ENTRY,
         WAIVER_BY_ID,
         AUDIT_BY_ID,
+        ADD_ORIGIN,
+        ORIGIN,
+        SEEN,
+        STATIONS,
         LOCK_UNIT,
         ADD_RECORD,
+        RECORD,
         ADD_RUN,
         HASH_OF,
         IS_LATE,

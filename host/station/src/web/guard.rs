@@ -209,7 +209,10 @@ impl App {
     fn visit(&self, headers: &HeaderMap, is_act: bool) -> Visit {
         let access = self.access();
         let sent = cookie(headers, &access.cookie_name()).map(str::to_owned);
-        let user = access.user(sent.as_deref(), is_act);
+        let mut user = access.user(sent.as_deref(), is_act);
+        if let Some(user) = user.as_mut().filter(|_| self.is_plant()) {
+            user.who = user.who.min(Who::Reader);
+        }
         let is_new = sent.is_none();
         let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
         // A link on a page of another site comes without the cookie, which must not be put in the place of the one there is.

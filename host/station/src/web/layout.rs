@@ -16,6 +16,8 @@ pub(super) enum Here {
     Elsewhere,
     /// The lanes.
     Lanes,
+    /// A plant's stations.
+    Stations,
     /// Runs.
     History,
     /// First-pass and final yield.
@@ -25,13 +27,21 @@ pub(super) enum Here {
 }
 
 impl Here {
-    /// Every place of the navigation, with its path and the key of its name.
-    const ALL: [(Self, &'static str, Label); 4] = [
-        (Self::Lanes, "/", Label { key: "nav.lanes" }),
+    /// Every place of the navigation behind the first, with its path and the key of its name.
+    const ALL: [(Self, &'static str, Label); 3] = [
         (Self::History, "/history", Label { key: "nav.history" }),
         (Self::Yield, "/yield", Label { key: "nav.yield" }),
         (Self::Pareto, "/pareto", Label { key: "nav.pareto" }),
     ];
+
+    /// The first place.
+    const fn first(visit: &Visit) -> (Self, &'static str, Label) {
+        if visit.is_plant {
+            (Self::Stations, "/", Label { key: "plant.stations" })
+        } else {
+            (Self::Lanes, "/", Label { key: "nav.lanes" })
+        }
+    }
 }
 
 struct Label {
@@ -88,10 +98,10 @@ fn navigation(visit: &Visit, here: Here) -> Markup {
         header.top {
             span.station {
                 @if !visit.plans.is_empty() { b.plans { (visit.plans) } " · " }
-                (visit.say("nav.station")) " " b { (visit.station) }
+                @if visit.is_plant { (visit.say("nav.plant")) } @else { (visit.say("nav.station")) } " " b { (visit.station) }
             }
             nav aria-label=(visit.say("nav.pages")) {
-                @for (place, path, Label { key }) in Here::ALL {
+                @for (place, path, Label { key }) in std::iter::once(Here::first(visit)).chain(Here::ALL) {
                     a href=(path) aria-current=[(place == here).then_some("page")] { (visit.say(key)) }
                 }
             }
@@ -121,7 +131,11 @@ fn who(visit: &Visit) -> Markup {
 }
 
 fn role(visit: &Visit, who: Who) -> &'static str {
-    if who >= Who::Engineer { visit.say("role.engineer") } else { visit.say("role.operator") }
+    match who {
+        Who::Engineer => visit.say("role.engineer"),
+        Who::Operator => visit.say("role.operator"),
+        Who::Reader | Who::Anyone => visit.say("role.reader"),
+    }
 }
 
 fn languages(visit: &Visit) -> Markup {

@@ -19,6 +19,7 @@ mod login;
 mod operator;
 mod outbox;
 mod patient;
+mod plant;
 mod routes;
 mod serve;
 mod state;
@@ -30,7 +31,7 @@ pub use access::{
     Access, Address, AddressError, Role, Scope, SecretError, TokenError, Tokens, UserError, Users, add_token,
     add_user,
 };
-pub use routes::{Route, Who, routes};
+pub use routes::{Route, Who, routes, routes_of_plant};
 pub use serve::{ServeError, Server};
 pub use state::App;
 pub use visit::User;

@@ -8,7 +8,7 @@ use axum::routing::{self, MethodRouter};
 
 use super::guard::{self, Guarded};
 use super::state::App;
-use super::{assets, history, login, operator, outbox};
+use super::{assets, history, login, operator, outbox, plant};
 
 /// Who may use a route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -59,12 +59,20 @@ pub fn routes() -> Vec<Route> {
     [assets::routes(), login::routes(), operator::routes(), history::routes(), outbox::routes()].concat()
 }
 
+/// The table of a plant, whose pages only look.
+#[must_use]
+pub fn routes_of_plant() -> Vec<Route> {
+    let looks = history::routes().into_iter().filter(|route| route.method == Method::GET).collect();
+    [assets::routes(), login::routes(), plant::routes(), looks].concat()
+}
+
 /// The table as a service. What is common to all routes stands around it, what depends on their lines around each.
 pub(super) fn router(app: &App) -> Router {
     let with = |router: Router<App>, Route { method, path, who, handler }: Route| {
         let guarded = Guarded { app: app.clone(), who, is_act: method == Method::POST };
         router.route(path, handler.layer(middleware::from_fn_with_state(guarded, guard::route)))
     };
-    let router = routes().into_iter().fold(Router::new(), with).fallback(guard::nothing_here);
+    let table = if app.is_plant() { routes_of_plant() } else { routes() };
+    let router = table.into_iter().fold(Router::new(), with).fallback(guard::nothing_here);
     router.layer(middleware::from_fn_with_state(app.clone(), guard::every)).with_state(app.clone())
 }

@@ -13,7 +13,7 @@ use super::visit::Visit;
 use crate::engine::Engine;
 use crate::plan::Plan;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Snapshot, Store, StoreError};
+use crate::store::{Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
 
 /// Plans that are named in the head of a page.
 const NAMED: usize = 2;
@@ -25,11 +25,25 @@ pub struct App(Arc<Parts>);
 #[derive(Debug)]
 struct Parts {
     settings: Settings,
-    engine: Arc<Engine>,
     access: Access,
-    live: Arc<Live>,
     plans: String,
-    hints: Vec<String>,
+    source: Source,
+}
+
+/// Where what is shown comes from.
+#[derive(Debug)]
+enum Source {
+    Station(Floor),
+    Plant(PlantPool),
+}
+
+/// The lanes of a station, at work.
+#[derive(Debug)]
+pub(super) struct Floor {
+    pub(super) engine: Arc<Engine>,
+    pub(super) live: Arc<Live>,
+    /// Serial numbers that a visitor of a demonstration may type.
+    pub(super) hints: Vec<String>,
 }
 
 impl App {
@@ -46,7 +60,31 @@ impl App {
     ) -> io::Result<Self> {
         let live = Live::start(&engine)?;
         let plans = named(&settings);
-        Ok(Self(Arc::new(Parts { settings, engine, access, live, plans, hints })))
+        let source = Source::Station(Floor { engine, live, hints });
+        Ok(Self(Arc::new(Parts { settings, access, plans, source })))
+    }
+
+    /// The results of all stations, which these settings say where to find.
+    #[must_use]
+    pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
+        let source = Source::Plant(PlantPool::new(address));
+        Self(Arc::new(Parts { settings, access, plans: String::new(), source }))
+    }
+
+    /// Whether it shows the results of all stations.
+    pub(super) fn is_plant(&self) -> bool {
+        matches!(self.0.source, Source::Plant(_))
+    }
+
+    /// The lanes.
+    ///
+    /// # Errors
+    /// [`Trouble`] when it has none: a plant.
+    pub(super) fn floor(&self, visit: &Visit) -> Result<&Floor, Trouble> {
+        match &self.0.source {
+            Source::Station(floor) => Ok(floor),
+            Source::Plant(_) => Err(Trouble::missing(visit)),
+        }
     }
 
     /// Its name.
@@ -63,20 +101,8 @@ impl App {
         &self.0.settings
     }
 
-    pub(super) fn engine(&self) -> &Engine {
-        &self.0.engine
-    }
-
     pub(super) fn access(&self) -> &Access {
         &self.0.access
-    }
-
-    pub(super) fn hints(&self) -> &[String] {
-        &self.0.hints
-    }
-
-    pub(super) fn live(&self) -> &Live {
-        &self.0.live
     }
 
     /// Enters in the audit what the visitor is about to do. What cannot be entered is not done.
@@ -104,10 +130,17 @@ impl App {
         visit: &Visit,
         look: impl FnOnce(&Snapshot) -> Result<T, StoreError> + Send + 'static,
     ) -> Result<T, Trouble> {
-        let folder = crate::store::Folder::new(&self.0.settings.data);
-        self.blocking(visit, move || Snapshot::take(&folder).and_then(|snapshot| look(&snapshot)))
-            .await?
-            .map_err(|error| Trouble::store(visit, error))
+        let found = match &self.0.source {
+            Source::Station(_) => {
+                let folder = Folder::new(&self.0.settings.data);
+                self.blocking(visit, move || Snapshot::take(&folder).and_then(|now| look(&now))).await?
+            }
+            Source::Plant(pool) => {
+                let pool = pool.clone();
+                self.blocking(visit, move || pool.look(look)).await?
+            }
+        };
+        found.map_err(|error| Trouble::store(visit, error))
     }
 
     /// What `change` does with the store. Runs that end wait for it, so it is brief.
@@ -119,7 +152,7 @@ impl App {
         visit: &Visit,
         change: impl FnOnce(&mut Store) -> T + Send + 'static,
     ) -> Result<T, Trouble> {
-        let store = self.0.engine.store();
+        let store = self.floor(visit)?.engine.store();
         self.blocking(visit, move || store.with(change)).await
     }
 

@@ -35,6 +35,8 @@ pub(super) struct Visit {
     pub(super) csrf: String,
     /// The station's name.
     pub(super) station: String,
+    /// Whether it is a plant, whose pages only look.
+    pub(super) is_plant: bool,
     /// Its plans by product, name and version.
     pub(super) plans: String,
     /// Whether the page's script asks, which takes answers as JSON.
@@ -74,7 +76,18 @@ impl App {
         let is_script = headers.get(header::ACCEPT).is_some_and(|value| value == "application/json");
         let (station, plans) = (self.station().to_owned(), self.plans().to_owned());
         let (session, csrf) = (String::new(), String::new());
-        Visit { words, user: None, session, is_new: true, can_log_in: false, csrf, station, plans, is_script }
+        Visit {
+            words,
+            user: None,
+            session,
+            is_new: true,
+            can_log_in: false,
+            csrf,
+            station,
+            is_plant: self.is_plant(),
+            plans,
+            is_script,
+        }
     }
 }
 

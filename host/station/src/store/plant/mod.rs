@@ -5,8 +5,10 @@
 
 mod address;
 mod arrived;
+mod pool;
 
 pub use address::{PlantAddress, PlantAddressError};
+pub use pool::PlantPool;
 
 use std::path::PathBuf;
 
@@ -42,6 +44,14 @@ pub enum PlantError {
         /// What was sent.
         subject: String,
     },
+    /// Another station has this name there.
+    #[error(
+        "another station of this plant is called {name}; nothing is sent until one of the two has another name in its settings"
+    )]
+    OtherStation {
+        /// The name.
+        name: String,
+    },
     /// Its database holds texts in another order or with other letters than a station's.
     #[error(
         "the database {plant} has the collation {collation} and the encoding {encoding}; make one by: createdb --template \
@@ -68,19 +78,36 @@ impl PlantError {
     }
 }
 
+/// What a plant hears of a station.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Presence {
+    /// The station's name.
+    pub name: String,
+    /// What its folder is called.
+    pub origin: String,
+    /// Its program's version.
+    pub program: String,
+    /// Its plans: product, name and version of each, one a line.
+    pub plans: String,
+    /// Entries that the plant does not have yet.
+    pub unsent: u32,
+    /// Those of them that wait for a person.
+    pub dead: u32,
+}
+
 /// A connection to a plant.
 #[derive(Debug)]
 pub struct Plant {
-    shown: PathBuf,
-    database: Box<dyn Database>,
+    pub(super) shown: PathBuf,
+    pub(super) database: Box<dyn Database>,
 }
 
 impl Plant {
     /// The plant at `address`, which must have the tables that this program knows.
     ///
     /// # Errors
-    /// [`PlantError::Store`] when it is not there, or its tables are older or newer.
-    pub fn connect(address: &PlantAddress) -> Result<Self, PlantError> {
+    /// [`StoreError`] when it is not there, or its tables are older or newer.
+    pub fn connect(address: &PlantAddress) -> Result<Self, StoreError> {
         let mut plant = Self::reach(address)?;
         let found = plant.carry_out("to tell its version", |database| {
             let there = "SELECT to_regclass('schema_version') IS NOT NULL";
@@ -134,7 +161,19 @@ impl Plant {
         }
     }
 
-    fn reach(address: &PlantAddress) -> Result<Self, PlantError> {
+    /// Enters that this station is there.
+    ///
+    /// # Errors
+    /// [`PlantError::OtherStation`] when another station has its name.
+    pub fn see(&mut self, station: &Presence) -> Result<(), PlantError> {
+        let Presence { name, origin, program, plans, unsent, dead } = station;
+        let changed = self.carry_out("to hear of a station", |to| {
+            to.execute(sql::SEEN, values![name, origin, program, plans, *unsent, *dead])
+        })?;
+        if changed == 1 { Ok(()) } else { Err(PlantError::OtherStation { name: name.clone() }) }
+    }
+
+    fn reach(address: &PlantAddress) -> Result<Self, StoreError> {
         let shown = PathBuf::from(address.to_string());
         let connected = address.connect();
         let client = connected.map_err(|error| StoreError::Plant {

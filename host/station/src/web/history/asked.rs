@@ -19,6 +19,7 @@ pub(super) struct Asked {
     pub(super) serial: String,
     pub(super) verdict: String,
     pub(super) plan: String,
+    pub(super) station: String,
     pub(super) lane: String,
     pub(super) operator: String,
     /// The first day, or moment.
@@ -64,6 +65,7 @@ impl Asked {
             serial: some(&self.serial),
             verdict,
             plan: some(&self.plan),
+            station: some(&self.station),
             lane: some(&self.lane),
             operator: some(&self.operator),
             period: self.period()?,
@@ -108,11 +110,12 @@ impl Asked {
     /// The address at `path` that asks for the same, from the run after `after` on.
     pub(super) fn address(&self, path: &str, after: Option<&Place>) -> String {
         let after = after.map(ToString::to_string).unwrap_or_default();
-        let Self { serial, verdict, plan, lane, operator, from, until, by, after: _ } = self;
+        let Self { serial, verdict, plan, station, lane, operator, from, until, by, after: _ } = self;
         let all = [
             ("serial", serial),
             ("verdict", verdict),
             ("plan", plan),
+            ("station", station),
             ("lane", lane),
             ("operator", operator),
             ("from", from),

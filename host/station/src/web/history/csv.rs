@@ -81,7 +81,7 @@ async fn piece(
 fn lines(now: &Snapshot, page: &runs::Page, is_first: bool) -> Result<Vec<u8>, ExportError> {
     let mut table = if is_first { Table::begin(Vec::new())? } else { Table::further(Vec::new()) };
     for hash in page.runs.iter().filter_map(|run| run.record_sha256.as_ref()) {
-        table.add(&export::record(now.folder(), hash)?.0)?;
+        table.add(&export::record(now, hash)?.0)?;
     }
     Ok(table.end())
 }

@@ -8,7 +8,7 @@ use axum::response::{IntoResponse as _, Response};
 use crate::export::{self, ExportError, Format, Table};
 use crate::history::unit::{self, UnitRun};
 use crate::record::Attachment;
-use crate::store::{Folder, Snapshot};
+use crate::store::{Snapshot, StoreError};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -43,9 +43,9 @@ pub(super) async fn attached(
     let look = move |now: &Snapshot| {
         let Some(UnitRun { attachments, .. }) = unit::run_of(now, &run)? else { return Ok(None) };
         let Some(one) = attachments.into_iter().find(|one| one.sha256 == hash) else { return Ok(None) };
-        match now.folder().blobs().get(&one.sha256) {
-            Err(error) if error.is_gone() => Ok(None),
-            bytes => Ok(Some((bytes?, one))),
+        match now.evidence(&one.sha256) {
+            Err(StoreError::Blob(error)) if error.is_gone() => Ok(None),
+            bytes => Ok(bytes?.map(|bytes| (bytes, one))),
         }
     };
     app.look(visit, look).await?.ok_or_else(|| Trouble::missing(visit))
@@ -77,7 +77,7 @@ pub(super) async fn export(
     let look = move |now: &Snapshot| {
         let run = unit::run_of(now, &run)?;
         let found = run.and_then(|run| Some((run.line.id, run.line.record_sha256?)));
-        Ok(found.map(|(id, hash)| (id, written(now.folder(), &hash, format))))
+        Ok(found.map(|(id, hash)| (id, written(now, &hash, format))))
     };
     let (id, written) = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
     let bytes = written.map_err(|error| refused(&visit, error))?;
@@ -86,13 +86,13 @@ pub(super) async fn export(
     Ok((headers, bytes).into_response())
 }
 
-fn written(folder: &Folder, hash: &str, format: Option<Format>) -> Result<Vec<u8>, ExportError> {
+fn written(now: &Snapshot, hash: &str, format: Option<Format>) -> Result<Vec<u8>, ExportError> {
     let Some(format) = format else {
         let mut table = Table::begin(Vec::new())?;
-        table.add(&export::record(folder, hash)?.0)?;
+        table.add(&export::record(now, hash)?.0)?;
         return Ok(table.end());
     };
-    export::run(folder, hash, format)
+    export::run(now, hash, format)
 }
 
 fn refused(visit: &Visit, error: ExportError) -> Trouble {

@@ -71,6 +71,7 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
                     }
                 }
             }
+            @if visit.is_plant { (field(visit.say("nav.station"), "station", "search", &asked.station)) }
             (common(visit, asked, lanes, plans))
             (field(visit.say("history.operator"), "operator", "search", &asked.operator))
             span.acts {
@@ -112,6 +113,7 @@ fn table(visit: &Visit, runs: &[RunLine]) -> Markup {
             thead { tr {
                 th { (visit.say("history.began")) } th { (visit.say("history.serial")) }
                 th { (visit.say("history.verdict")) } th { (visit.say("history.plan")) }
+                @if visit.is_plant { th { (visit.say("nav.station")) } }
                 th { (visit.say("history.lane")) } th { (visit.say("history.operator")) }
                 th { (visit.say("history.result")) }
             } }
@@ -127,6 +129,7 @@ fn row(visit: &Visit, run: &RunLine) -> Markup {
             td.serial { a href=(unit_address(&run.serial)) { (show::said(&run.serial)) } }
             td.outcome { (show::outcome(visit, run)) }
             td.plan { (show::said(&run.plan)) " " (show::said(&run.version)) }
+            @if visit.is_plant { td.lane { (show::said(&run.station)) } }
             td.lane { span.of-card { (visit.say("history.lane")) " " } (show::said(&run.lane)) }
             td.operator { (show::said(&run.operator)) }
             td.headline { @if let Some(headline) = &run.headline { (show::english(visit, headline)) } }

@@ -44,13 +44,12 @@ pub(super) async fn shown(
 ) -> Result<Response, Trouble> {
     let look = move |now: &Snapshot| {
         let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };
-        let read = |hash: &String| match export::record(now.folder(), hash) {
+        let read = |hash: &String| match export::record(now, hash) {
             Ok((record, _)) => Ok(Box::new(record)),
             Err(error) => Err(format!("{:#}", anyhow::Error::from(error))),
         };
         let record = run.line.record_sha256.as_ref().map(read);
-        let blobs = now.folder().blobs();
-        let is_here = |one: Attachment| (blobs.path(&one.sha256).is_file(), one);
+        let is_here = |one: Attachment| (now.has_evidence(&one.sha256), one);
         let kept = std::mem::take(&mut run.attachments).into_iter().map(is_here);
         let kept = kept.map(|(is_here, one)| (one, is_here)).collect();
         Ok(Some(Found { run, record, kept }))

@@ -15,7 +15,7 @@ use crate::said::{Said, Saying};
 use crate::web::live::Became;
 use crate::web::login::logged_in;
 use crate::web::routes::Who;
-use crate::web::state::App;
+use crate::web::state::{App, Floor};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
@@ -105,8 +105,9 @@ async fn understood(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Answe
         }
         _ => {
             app.audit(visit, "scan", armed.map_or("", |(_, name)| name), &label).await?;
-            let (number, became) = app.live().ask();
-            app.engine().label(number, armed.map(|(place, _)| place), &label, visit.name());
+            let Floor { engine, live, .. } = app.floor(visit)?;
+            let (number, became) = live.ask();
+            engine.label(number, armed.map(|(place, _)| place), &label, visit.name());
             let Became { is_taken, lane, said, .. } = heard(visit, became).await?;
             let said = visit.words.tell(&said).text;
             let armed = if is_taken { None } else { scanned.armed() };
@@ -170,8 +171,9 @@ async fn done(app: App, visit: Visit, lane: String, act: Act) -> Result<Response
     let (place, name) = place(&app, &lane)
         .map_err(|error| Trouble::new(&visit, StatusCode::NOT_FOUND, told(&visit, &error)))?;
     app.audit(&visit, "lane", name, &act.barcode()).await?;
-    let (number, became) = app.live().ask();
-    app.engine().act(number, place, act, visit.name());
+    let Floor { engine, live, .. } = app.floor(&visit)?;
+    let (number, became) = live.ask();
+    engine.act(number, place, act, visit.name());
     let became = heard(&visit, became).await?;
     let said = visit.words.tell(&became.said).text;
     match (visit.is_script, became.is_taken) {

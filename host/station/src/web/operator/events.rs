@@ -16,18 +16,19 @@ use super::lane::LaneEvent;
 use crate::clock;
 use crate::web::live::{Now, Told, What};
 use crate::web::state::App;
+use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
 /// What a proxy is told, so that it keeps nothing back.
 const UNBUFFERED: HeaderName = HeaderName::from_static("x-accel-buffering");
 
 /// Everything as it is, then what changes.
-pub(super) async fn events(State(app): State<App>, visit: Visit) -> Response {
-    let (now, told) = app.live().follow();
+pub(super) async fn events(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    let (now, told) = app.floor(&visit)?.live.follow();
     let first = snapshot(&visit, &now);
     let news = stream::unfold((Some(first), Follower { app, visit, told }), |(first, of)| next(first, of));
     let headers = [(CONTENT_TYPE, "text/event-stream"), (CACHE_CONTROL, "no-store"), (UNBUFFERED, "no")];
-    (headers, Body::from_stream(news)).into_response()
+    Ok((headers, Body::from_stream(news)).into_response())
 }
 
 /// A page that is open.

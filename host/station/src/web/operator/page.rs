@@ -31,7 +31,8 @@ pub(super) async fn answered(app: App, visit: Visit, answer: Answer) -> Result<R
 }
 
 async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Response, Trouble> {
-    let (now, today) = (app.live().now(), counted(&app, &visit).await?);
+    let (now, today) = (app.floor(&visit)?.live.now(), counted(&app, &visit).await?);
+    let hints = &app.floor(&visit)?.hints;
     let head = html! {
         noscript { meta http-equiv="refresh" content={ (ANEW) "; url=/" }; }
         link rel="stylesheet" href="/assets/operator.css";
@@ -42,7 +43,7 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
             data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn")) {
             h1.heard { (visit.say("nav.lanes")) }
             @if visit.may(Who::Operator) { (scan_box(&visit, &now, answer.as_ref())) } @else { (log_in(&visit)) }
-            (hint(&app, &visit, &now))
+            (hint(hints, &visit, &now))
             (floor(&visit, &now))
             footer #today data-changes[app.settings().plant.is_some()] { (today) }
             div #said .heard role="log" aria-live="assertive" {}
@@ -52,8 +53,8 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
 }
 
 /// What a visitor of a demonstration may try.
-fn hint(app: &App, visit: &Visit, now: &Now) -> Markup {
-    let Some((serial, lane)) = app.hints().first().zip(now.lanes.last()) else { return html! {} };
+fn hint(hints: &[String], visit: &Visit, now: &Now) -> Markup {
+    let Some((serial, lane)) = hints.first().zip(now.lanes.last()) else { return html! {} };
     let values = [("lane", lane.lane.as_str()), ("serial", serial)];
     html! { p.hint { (visit.words.fill("demo.try", &values)) } }
 }
@@ -135,8 +136,7 @@ pub(super) async fn today(State(app): State<App>, visit: Visit) -> Result<Respon
 async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
     let period = Period { from_ms: clock::midnight_ms(clock::now_ms()), ..Period::default() };
     let wanted = Wanted { period, ..Wanted::default() };
-    let look =
-        move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.folder().unsent()?));
+    let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;
     let entries: u32 = unsent.iter().map(|unsent| unsent.entries).sum();
     Ok(html! {

@@ -76,6 +76,7 @@ fn pages_together_are_the_whole_list_for_every_combination_of_filters() {
         let filter = Filter {
             serial: text(is(0), "S3"),
             plan: text(is(1), "final"),
+            station: None,
             lane: text(is(2), "1"),
             operator: text(is(3), "lang"),
             verdict: is(4).then_some(Verdict::Pass),

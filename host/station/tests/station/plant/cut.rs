@@ -92,7 +92,10 @@ fn a_connection_that_is_cut_at_any_commit_loses_nothing_and_doubles_nothing() {
     let server = Server::prepared();
     for cut in [Cut::Before, Cut::Behind, Cut::Pretended] {
         for number in 0..8 {
-            server.client("plant").batch_execute("TRUNCATE plan, unit, run, record, audit CASCADE").unwrap();
+            server
+                .client("plant")
+                .batch_execute("TRUNCATE plan, unit, run, record, audit, station CASCADE")
+                .unwrap();
             let url = format!("postgres://postgres@127.0.0.1:{}/plant", way(server.port(), cut, number));
             let address = PlantAddress::new(&url, None, None).unwrap();
             let (made, first) = send(history(), address.clone());

@@ -46,7 +46,6 @@ fn what_leaves_the_computer_goes_through_tls_and_to_the_plant_alone() {
     certificates(other.path());
     let stranger = PlantAddress::new(&url, None, Some(&other.path().join("ca.pem"))).unwrap();
     let refused = Plant::connect(&stranger).unwrap_err();
-    assert!(refused.is_away(), "{refused:?}");
     let why = format!("{refused:?}");
     assert!(why.contains("UnknownIssuer") || why.contains("BadSignature"), "{why}");
     // A server that speaks no TLS is not spoken to over a network, whatever the address allows.

@@ -3,6 +3,7 @@
 mod cut;
 mod late;
 mod link;
+mod pages;
 mod refused;
 mod sent;
 mod server;

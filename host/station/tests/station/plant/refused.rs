@@ -93,7 +93,7 @@ fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     let server = Server::start();
     let refused = |server: &Server| Plant::connect(&server.address()).unwrap_err();
     let none = refused(&server);
-    assert!(matches!(none, PlantError::Store(StoreError::Older { found: 0, .. })), "{none:?}");
+    assert!(matches!(none, StoreError::Older { found: 0, .. }), "{none:?}");
     let (folder, store) = history().parts();
     drop(store);
     let prepared = did(folder.path(), &server, &["plant", "prepare"]);
@@ -102,7 +102,7 @@ fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     assert_eq!((all.sent, all.failed), (10, 0));
     server.client("plant").batch_execute("INSERT INTO schema_version VALUES (99, 'x', 1)").unwrap();
     let newer = refused(&server);
-    assert!(matches!(newer, PlantError::Store(StoreError::Newer { found: 99, .. })), "{newer:?}");
+    assert!(matches!(newer, StoreError::Newer { found: 99, .. }), "{newer:?}");
     let newer = Plant::prepare(&server.address()).unwrap_err();
     assert!(matches!(newer, PlantError::Store(StoreError::Newer { found: 99, .. })), "{newer:?}");
 }
@@ -124,7 +124,7 @@ fn an_older_plant_is_copied_and_brought_up_to_date() {
     }
     client.batch_execute("INSERT INTO unit VALUES (repeat('u', 36), 'CAM-T', 'S1', 7)").unwrap();
     let older = Plant::connect(&server.address()).unwrap_err();
-    assert!(matches!(older, PlantError::Store(StoreError::Older { found: 2, known: 3, .. })), "{older:?}");
+    assert!(matches!(older, StoreError::Older { found: 2, known: 3, .. }), "{older:?}");
     assert_eq!(Plant::prepare(&server.address()).unwrap(), 3);
     assert_eq!(server.rows("SELECT serial FROM before_3.unit"), [["S1"]]);
     assert_eq!(server.rows("SELECT serial FROM unit"), [["S1"]]);

@@ -1,7 +1,7 @@
 //! What comes to the plant is what the station has.
 
-use halfrow_station::outbox::{PlantSink, Round, Sink as _, round};
-use halfrow_station::store::{PlantAddress, SharedStore};
+use halfrow_station::outbox::{PlantSink, Round, round};
+use halfrow_station::store::{PlantAddress, Presence, SharedStore};
 
 use super::server::Server;
 use super::tables::is_as;
@@ -10,9 +10,10 @@ use crate::history::released::history;
 
 /// Sends all that is due, until nothing is.
 pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
-    let mut sink = PlantSink::new(address);
     let (folder, mut store) = made.parts();
-    store.sends_to(vec![sink.name().to_owned()]).unwrap();
+    store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
+    let origin = store.folder().origin().unwrap().unwrap();
+    let mut sink = PlantSink::new(address, presence("station 7", origin));
     let store = SharedStore::new(store);
     let mut all = Round::default();
     loop {
@@ -24,6 +25,12 @@ pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
     }
     drop(store);
     (Made::at(folder), all)
+}
+
+/// A station of this name.
+pub(crate) fn presence(name: &str, origin: String) -> Presence {
+    let plans = "CAM-T final 1\nCAM-T intake 1".to_owned();
+    Presence { name: name.to_owned(), origin, program: "halfrow 0".to_owned(), plans, unsent: 0, dead: 0 }
 }
 
 /// The station does not know any more what it has sent.

@@ -6,13 +6,14 @@ use std::time::Duration;
 use super::server::Server;
 use crate::lanes::floor::{SERIALS, Station};
 
-/// A station whose settings have this under `[plant]`.
-fn station(server: &Server, more: &str) -> Station {
+/// A station of this name whose settings have this under `[plant]`.
+fn station(server: &Server, name: &str, more: &str) -> Station {
     let station = Station::with(&["mock"], "");
     let path = station.path("station.toml");
     let text = fs::read_to_string(&path).unwrap();
     let plant = format!("[plant]\nurl = \"{}\"\n{more}\n[[lane]]", server.url());
-    fs::write(path, text.replacen("[[lane]]", &plant, 1)).unwrap();
+    let text = text.replacen("[[lane]]", &plant, 1).replace("name = \"12\"", &format!("name = \"{name}\""));
+    fs::write(path, text).unwrap();
     station
 }
 
@@ -20,8 +21,8 @@ fn station(server: &Server, more: &str) -> Station {
 fn a_plant_that_is_away_holds_up_only_lines_that_want_it_so() {
     let mut server = Server::prepared();
     server.kill();
-    let waits = station(&server, "green = \"plant\"");
-    let goes_on = station(&server, "");
+    let waits = station(&server, "12", "green = \"plant\"");
+    let goes_on = station(&server, "13", "");
     // The control: the same without that line.
     let mut running = goes_on.start();
     running.scan(SERIALS[0]);
@@ -50,7 +51,7 @@ fn a_plant_that_is_away_holds_up_only_lines_that_want_it_so() {
 fn no_more_is_judged_than_may_be_unsent() {
     let mut server = Server::prepared();
     server.kill();
-    let station = station(&server, "most_unsent = 1");
+    let station = station(&server, "12", "most_unsent = 1");
     let mut running = station.start();
     for serial in &SERIALS[..2] {
         running.scan(serial);

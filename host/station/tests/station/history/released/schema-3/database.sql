@@ -6,7 +6,7 @@ CREATE TABLE schema_version (
 ) STRICT;
 INSERT INTO schema_version (n, sha256, applied_ms) VALUES (1, '14eef3bbcbdb34e1165dded06a931507dc5c5505d8b79e165e75be94bec6921e', 1793491200000);
 INSERT INTO schema_version (n, sha256, applied_ms) VALUES (2, 'eb2eca6c66b4c03f0c998d97b8ddb433f2d4a278dd9ccc9f3b9699e2d14666b5', 1793491200000);
-INSERT INTO schema_version (n, sha256, applied_ms) VALUES (3, '882a5bc1c88854526d0e42907294509bd340e8c792d9346de5eb87f04d574e5f', 1793491200000);
+INSERT INTO schema_version (n, sha256, applied_ms) VALUES (3, '16942044da24a1d9b3e80a2be3eebf0c0aeda9604d2c591f3223f2ebcd87661b', 1793491200000);
 CREATE TABLE plan (
   sha256 TEXT PRIMARY KEY CHECK (length(sha256) = 64),
   name TEXT NOT NULL,
@@ -177,7 +177,7 @@ CREATE TABLE waiver (
   operator_id TEXT NOT NULL,
   reason TEXT NOT NULL
 ) STRICT;
-INSERT INTO waiver (id, run_id, at_ms, operator_id, reason) VALUES ('01a20a36-e570-72be-bb60-1c73153473ea', '01a19467-e800-7000-8001-000000000000', 1795467699568, 'engel', 'it''s "as" is');
+INSERT INTO waiver (id, run_id, at_ms, operator_id, reason) VALUES ('01a20a59-f2cc-70e5-9c57-daa081825ca6', '01a19467-e800-7000-8001-000000000000', 1795469996748, 'engel', 'it''s "as" is');
 CREATE TABLE binding (
   id TEXT PRIMARY KEY CHECK (length(id) = 36),
   device TEXT NOT NULL CHECK (length(device) = 16),
@@ -187,7 +187,7 @@ CREATE TABLE binding (
   by_operator TEXT NOT NULL,
   reason TEXT NOT NULL
 ) STRICT;
-INSERT INTO binding (id, device, unit_id, from_ms, to_ms, by_operator, reason) VALUES ('01a20a36-e574-78d5-aab6-6f2eccb639ba', '00a1b2c3d4e5f607', '01a194d5-c500-700f-8243-000000000000', 1795467699572, NULL, 'engel', 'a new FPGA');
+INSERT INTO binding (id, device, unit_id, from_ms, to_ms, by_operator, reason) VALUES ('01a20a59-f2d0-7b6c-b02c-096c529e5b09', '00a1b2c3d4e5f607', '01a194d5-c500-700f-8243-000000000000', 1795469996752, NULL, 'engel', 'a new FPGA');
 CREATE TABLE audit (
   id TEXT PRIMARY KEY CHECK (length(id) = 36),
   at_ms INTEGER NOT NULL,
@@ -196,8 +196,8 @@ CREATE TABLE audit (
   subject TEXT NOT NULL,
   detail TEXT NOT NULL
 ) STRICT;
-INSERT INTO audit (id, at_ms, operator_id, act, subject, detail) VALUES ('01a20a36-e570-78bf-b437-1394c7a1a291', 1795467699568, 'engel', 'waive', '01a19467-e800-7000-8001-000000000000', 'it''s "as" is');
-INSERT INTO audit (id, at_ms, operator_id, act, subject, detail) VALUES ('01a20a36-e574-78d5-aab6-6f2eccb639ba', 1795467699572, 'engel', 'rebind', '01a194d5-c500-700f-8243-000000000000', '{"device":"00a1b2c3d4e5f607","reason":"a new FPGA"}');
+INSERT INTO audit (id, at_ms, operator_id, act, subject, detail) VALUES ('01a20a59-f2cc-7c5d-aeda-3f876fe7261f', 1795469996748, 'engel', 'waive', '01a19467-e800-7000-8001-000000000000', 'it''s "as" is');
+INSERT INTO audit (id, at_ms, operator_id, act, subject, detail) VALUES ('01a20a59-f2d0-7b6c-b02c-096c529e5b09', 1795469996752, 'engel', 'rebind', '01a194d5-c500-700f-8243-000000000000', '{"device":"00a1b2c3d4e5f607","reason":"a new FPGA"}');
 CREATE TABLE day_count (
   plan_sha256 TEXT NOT NULL REFERENCES plan (sha256),
   station TEXT NOT NULL,
@@ -266,6 +266,19 @@ CREATE TABLE record (
   sha256 TEXT PRIMARY KEY CHECK (length(sha256) = 64),
   text TEXT NOT NULL
 ) STRICT;
+CREATE TABLE origin (
+  id TEXT PRIMARY KEY CHECK (length(id) = 36)
+) STRICT;
+CREATE TABLE station (
+  name TEXT PRIMARY KEY,
+  origin TEXT NOT NULL CHECK (length(origin) = 36),
+  program TEXT NOT NULL,
+  -- Its plans: product, name and version of each, one a line.
+  plans TEXT NOT NULL,
+  unsent INTEGER NOT NULL,
+  dead INTEGER NOT NULL,
+  seen_ms INTEGER NOT NULL
+) STRICT;
 CREATE INDEX unit_serial ON unit (serial);
 CREATE INDEX run_time ON run (started_ms DESC, id DESC);
 CREATE INDEX run_unit ON run (unit_id, started_ms DESC, id DESC);
@@ -283,3 +296,4 @@ CREATE INDEX run_plan ON run (plan_sha256, started_ms DESC, id DESC, operator_id
 CREATE INDEX run_verdict ON run (verdict, started_ms DESC, id DESC, operator_id, lane);
 CREATE INDEX run_fence ON run (station, lane, fence);
 CREATE INDEX outbox_open ON outbox (sink, subject) WHERE done_ms IS NULL;
+CREATE INDEX run_station ON run (station, started_ms DESC, id DESC, lane, operator_id, verdict);

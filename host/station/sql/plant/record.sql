@@ -1,0 +1,1 @@
+SELECT text FROM record WHERE sha256 = $1;

@@ -1,0 +1,71 @@
+//! Connections to a plant that pages look at it by, one after the other.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use super::super::database::values;
+use super::super::{Snapshot, StoreError, statements as sql};
+use super::{Plant, PlantAddress};
+use crate::{clock, ids};
+
+/// Connections that are kept while nobody looks.
+const KEPT: usize = 4;
+
+/// The plant's connections. A copy has the same ones.
+#[derive(Clone, Debug)]
+pub struct PlantPool(Arc<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    address: PlantAddress,
+    idle: Mutex<Vec<Plant>>,
+}
+
+impl PlantPool {
+    /// Of the plant at `address`, which is connected to when somebody looks.
+    #[must_use]
+    pub fn new(address: PlantAddress) -> Self {
+        Self(Arc::new(Parts { address, idle: Mutex::default() }))
+    }
+
+    /// What `look` finds at one moment.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant is not there, or cannot be read.
+    pub fn look<T>(&self, look: impl FnOnce(&Snapshot) -> Result<T, StoreError>) -> Result<T, StoreError> {
+        let now = self.snapshot()?;
+        let found = look(&now);
+        if let Some(plant) = now.end() {
+            let mut idle = self.idle();
+            if idle.len() < KEPT {
+                idle.push(plant);
+            }
+        }
+        found
+    }
+
+    /// Enters in the plant's audit that `operator` does `act` with `subject`; `detail` says how.
+    ///
+    /// # Errors
+    /// As [`Self::look`].
+    pub fn note(&self, operator: &str, act: &str, subject: &str, detail: &str) -> Result<(), StoreError> {
+        let at_ms = clock::now_ms();
+        let id = ids::new(at_ms)?.to_string();
+        let mut plant = Plant::connect(&self.0.address)?;
+        plant.carry_out("an audit", |to| {
+            to.execute(sql::ADD_AUDIT, values![&id, at_ms, operator, act, subject, detail]).map(drop)
+        })
+    }
+
+    /// By a connection that was kept, unless it has ended meanwhile.
+    fn snapshot(&self) -> Result<Snapshot, StoreError> {
+        let kept = self.idle().pop();
+        match kept.map(Snapshot::of_plant) {
+            Some(Ok(now)) => Ok(now),
+            _ => Snapshot::of_plant(Plant::connect(&self.0.address)?),
+        }
+    }
+
+    fn idle(&self) -> MutexGuard<'_, Vec<Plant>> {
+        self.0.idle.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}

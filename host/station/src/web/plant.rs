@@ -1,0 +1,59 @@
+//! The plant's first page: every station. All else that it shows is the history's, over all of them.
+
+use axum::extract::State;
+use axum::response::Response;
+use maud::{Markup, html};
+
+use super::history::show;
+use super::layout::{Here, Page};
+use super::routes::{Route, Who, look};
+use super::state::App;
+use super::trouble::Trouble;
+use super::visit::Visit;
+use crate::history::stations::{Station, stations};
+
+pub(super) fn routes() -> Vec<Route> {
+    vec![look("/", Who::Reader, page)]
+}
+
+async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
+    let found = app.look(&visit, stations).await?;
+    let content = html! {
+        h1 { (visit.say("plant.stations")) }
+        @if found.is_empty() { p.nothing { (visit.say("plant.none")) } } @else { (table(&visit, &found)) }
+    };
+    let title = visit.say("plant.stations");
+    Ok(Page { here: Here::Stations, title, head: show::head(), content }.answer(&visit))
+}
+
+fn table(visit: &Visit, stations: &[Station]) -> Markup {
+    html! {
+        table.runs {
+            thead { tr {
+                th { (visit.say("nav.station")) } th { (visit.say("plant.state")) } th { (visit.say("plant.seen")) }
+                th { (visit.say("history.last")) } th.number { (visit.say("outbox.entries")) }
+                th { (visit.say("history.plan")) } th { (visit.say("plant.program")) }
+            } }
+            tbody { @for station in stations { (row(visit, station)) } }
+        }
+    }
+}
+
+fn row(visit: &Visit, station: &Station) -> Markup {
+    html! {
+        tr {
+            td.name { b { (show::said(&station.name)) } }
+            td {
+                @if station.is_there { "● " (visit.say("plant.there")) } @else { "○ " (visit.say("plant.away")) }
+            }
+            td.when { (show::moment(station.seen_ms)) }
+            td.when { @if let Some(last_ms) = station.last_ms { (show::moment(last_ms)) } }
+            td.number {
+                (station.unsent)
+                @if station.dead > 0 { " " span.few { (visit.say("outbox.waits")) " " (station.dead) } }
+            }
+            td { @for plan in &station.plans { div { (show::said(plan)) } } }
+            td.soft { (show::said(&station.program)) }
+        }
+    }
+}

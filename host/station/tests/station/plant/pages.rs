@@ -1,0 +1,128 @@
+//! The plant's pages: what a station's show, over all stations, from the other engine.
+
+use std::fs;
+use std::process::Command;
+
+use halfrow_station::store::{Plant, PlantError};
+
+use super::sent::{presence, send};
+use super::server::Server;
+use crate::common::{program, query};
+use crate::history::made::Made;
+use crate::history::released::history;
+use crate::pages::station::{Browser, Serving};
+
+/// The pages of the plant, with the folder that they have.
+fn served(server: &Server) -> (tempfile::TempDir, Serving) {
+    let folder = crate::common::folder();
+    let web = "[web]\nlisten = \"127.0.0.1:0\"\n";
+    let plant = format!("[plant]\nurl = \"{}\"\n", server.url());
+    let text = format!("schema = 1\n[station]\nname = \"north\"\ndata = \"data\"\n{web}{plant}");
+    let settings = folder.path().join("plant.toml");
+    fs::write(&settings, text).unwrap();
+    let mut command = Command::new(program());
+    command.args(["plant", "serve", "--settings"]).arg(&settings);
+    (folder, Serving::of(&mut command))
+}
+
+fn text(browser: &Browser, path: &str) -> String {
+    let answer = browser.get(path).with("accept", "text/html").send();
+    assert_eq!(answer.status, 200, "{path}: {}", answer.text());
+    answer.text()
+}
+
+/// Everything that another program takes has the same bytes from both engines.
+#[test]
+fn what_is_exported_has_the_same_bytes_at_the_station_and_at_the_plant() {
+    let server = Server::prepared();
+    let (made, _) = send(history(), server.address());
+    let (_folder, serving) = served(&server);
+    let browser = serving.here();
+    let runs = query(made.as_ref(), "SELECT id FROM run WHERE state = 'final' ORDER BY id");
+    assert_eq!(runs.len(), 7);
+    for run in &runs {
+        for format in ["record", "junit", "openhtf", "csv"] {
+            let theirs = browser.get(&format!("/runs/{run}/export/{format}")).send();
+            assert_eq!(theirs.status, 200);
+            let ours = exported(&made, run, format);
+            assert_eq!(theirs.body, ours, "{format} of {run}");
+        }
+    }
+    // The table of all, and of what a filter leaves.
+    for filter in
+        ["", "?lane=2", "?verdict=FAIL", "?plan=final&from=2026-11-02", "?station=station+7", "?serial=S1"]
+    {
+        let table = text(&browser, &format!("/history.csv{filter}"));
+        let lines = table.lines().count();
+        assert!(lines > 1, "{filter}: {table}");
+    }
+    assert_eq!(text(&browser, "/history.csv?station=other").lines().count(), 1);
+}
+
+fn exported(made: &Made, run: &str, format: &str) -> Vec<u8> {
+    let mut command = Command::new(program());
+    command.args(["export", run, "--format", format, "--data"]).arg(made.folder().path());
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    output.stdout
+}
+
+#[test]
+fn the_pages_show_every_station_and_only_look() {
+    let server = Server::prepared();
+    let (made, _) = send(history(), server.address());
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    let other = "018f0000-0000-7000-8000-000000000000".to_owned();
+    plant.see(&presence("station 8", other.clone())).unwrap();
+    // A second one of the same name is refused, and changes nothing.
+    let twin = plant.see(&presence("station 7", other)).unwrap_err();
+    assert!(matches!(&twin, PlantError::OtherStation { name } if name == "station 7"), "{twin:?}");
+    let (_folder, serving) = served(&server);
+    let browser = serving.here();
+    let stations = text(&browser, "/");
+    assert!(stations.contains("station 7") && stations.contains("station 8"), "{stations}");
+    assert!(stations.contains("CAM-T intake 1") && !stations.contains("not heard of"), "{stations}");
+    let silent = "UPDATE station SET seen_ms = seen_ms - 121000 WHERE name = 'station 8'";
+    server.client("plant").batch_execute(silent).unwrap();
+    assert!(text(&browser, "/").contains("not heard of"));
+    let listed = text(&browser, "/history");
+    assert!(listed.contains("S1") && listed.contains("station 7") && !listed.contains("S6"), "{listed}");
+    let failed =
+        query(made.as_ref(), "SELECT id FROM run WHERE verdict = 'FAIL' AND nth = 1 ORDER BY id").remove(0);
+    let run = text(&browser, &format!("/runs/{failed}"));
+    assert!(run.contains("memory") && !run.contains("<form class=\"change\""), "{run}");
+    for path in ["/unit?serial=S1", "/yield", "/yield?by=lane", "/pareto", "/pareto?by=check"] {
+        let page = text(&browser, path);
+        assert!(
+            page.contains("S1")
+                || page.contains("final")
+                || page.contains("memory")
+                || page.contains("latency"),
+            "{page}"
+        );
+    }
+    // What a station does, nobody does here.
+    for (method, path) in [("POST", "/scan"), ("POST", "/unit/rebind"), ("GET", "/live"), ("GET", "/outbox")]
+    {
+        let request = if method == "POST" { browser.post(path, &[]) } else { browser.get(path) };
+        assert!([404, 405].contains(&request.send().status), "{method} {path}");
+    }
+    let waive = browser.post(&format!("/runs/{failed}/waive"), &[("reason", "because")]).send();
+    assert!([404, 405].contains(&waive.status), "{waive:?}");
+    assert_eq!(server.rows("SELECT count(*) FROM waiver"), [["1"]]);
+}
+
+#[test]
+fn a_plant_that_is_away_is_said_to_be_and_is_shown_again_when_it_is_back() {
+    let mut server = Server::prepared();
+    let (_made, _) = send(history(), server.address());
+    let (_folder, serving) = served(&server);
+    let browser = serving.here();
+    text(&browser, "/history");
+    server.kill();
+    let away = browser.get("/history").with("accept", "text/html").send();
+    assert_eq!(away.status, 503, "{}", away.text());
+    assert!(away.text().contains("look whether it is there"), "{}", away.text());
+    server.again();
+    text(&browser, "/history");
+}
