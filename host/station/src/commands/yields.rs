@@ -32,8 +32,12 @@ enum Each {
     Plan,
     /// Day, UTC
     Day,
+    /// Week, UTC, from Monday on
+    Week,
     /// Lane
     Lane,
+    /// Station
+    Station,
 }
 
 impl From<Each> for By {
@@ -41,7 +45,9 @@ impl From<Each> for By {
         match each {
             Each::Plan => Self::Plan,
             Each::Day => Self::Day,
+            Each::Week => Self::Week,
             Each::Lane => Self::Lane,
+            Each::Station => Self::Station,
         }
     }
 }
@@ -65,9 +71,10 @@ fn text(Yields { lines, flips }: &Yields) -> String {
 
 fn row(line: &Yield) -> Vec<String> {
     let Yield { plan, first_pass, last, errors, .. } = line;
-    let place = line.station.iter().zip(&line.lane).map(|(station, lane)| format!("{station} lane {lane}"));
+    let lane = line.lane.iter().map(|lane| format!("lane {lane}"));
+    let place = line.station.iter().cloned().chain(lane);
     let names = [plan.product.clone(), plan.plan.clone()].into_iter();
-    let day = line.day.iter().map(ToString::to_string);
+    let day = line.day.iter().chain(&line.week).map(ToString::to_string);
     vec![
         names.chain(day).chain(place).collect::<Vec<_>>().join(" "),
         first_pass.of.to_string(),

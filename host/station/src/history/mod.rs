@@ -4,12 +4,16 @@
 //!  runs     pages of runs, by filters and by the last key of the page before
 //!  unit     a serial number with all that is known of it
 //!  yields   first-pass and final yield, with their intervals
+//!  control  whether a yield is as it always was
+//!  drift    whether a station judges otherwise than the others
 //!  pareto   what fails most, by part and by check
 //!  stations those of a plant, as it last heard of them
 //! ```
 //!
 //! Each takes a [`Snapshot`], so that what one page shows is of one moment.
 
+pub mod control;
+pub mod drift;
 pub mod pareto;
 pub mod rate;
 pub mod runs;

@@ -16,6 +16,7 @@ use jiff::civil::Date;
 use jiff::{SignedDuration, Timestamp, tz};
 use serde::Serialize;
 
+use super::control::{Limits, limits};
 use super::rate::Rate;
 use super::{Period, PlanName, count, plans};
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements, values};
@@ -30,8 +31,12 @@ pub enum By {
     Plan,
     /// The day, UTC.
     Day,
+    /// The week, UTC, from Monday on.
+    Week,
     /// Station and lane.
     Lane,
+    /// The station.
+    Station,
 }
 
 /// Which units are wanted; all of them by default.
@@ -61,7 +66,10 @@ pub struct Yield {
     /// The day, UTC, in a yield by day.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub day: Option<Date>,
-    /// The station, in a yield by lane.
+    /// The Monday of the week, UTC, in a yield by week.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub week: Option<Date>,
+    /// The station, in a yield by lane or by station.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub station: Option<String>,
     /// The lane, in a yield by lane.
@@ -69,6 +77,9 @@ pub struct Yield {
     pub lane: Option<String>,
     /// Units whose first judgement is PASS, of those that were judged.
     pub first_pass: Rate,
+    /// What the first pass of a day or a week may be if nothing has changed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limits: Option<Limits>,
     /// Units whose last judgement is PASS, of the same.
     pub last: Rate,
     /// Units whose last judgement is a FAIL with a waiver.
@@ -305,31 +316,54 @@ fn waived(
     Ok(rows.into_iter().collect())
 }
 
+/// What a line is for, beside the plan: the first day of its time, its station, and its lane there.
+type Place = (Option<i64>, Option<String>, Option<String>);
+
 /// The cells put together.
 fn lines(cells: &BTreeMap<Cell, Counts>, by: By) -> Vec<Yield> {
-    type Key = (PlanName, Option<i64>, Option<(String, String)>);
-    let mut groups = BTreeMap::<Key, Counts>::new();
+    let mut groups = BTreeMap::<(PlanName, Place), Counts>::new();
     for (cell, counts) in cells {
-        let day = (by == By::Day).then_some(cell.day);
-        let lane = (by == By::Lane).then(|| (cell.station.clone(), cell.lane.clone()));
-        groups.entry((cell.plan.clone(), day, lane)).or_default().add(counts);
+        groups.entry((cell.plan.clone(), place(cell, by))).or_default().add(counts);
     }
-    let line = |((plan, day, place), counts): (Key, Counts)| {
-        let (station, lane) = place.unzip();
-        Yield {
-            plan,
-            day: day.and_then(date),
-            station,
-            lane,
-            first_pass: Rate::new(counts.first, counts.units),
-            last: Rate::new(counts.last, counts.units),
-            waived: counts.waived,
-            flipped: counts.flipped,
-            errors: Rate::new(counts.errors, counts.runs),
-            crashes: counts.crashes,
+    let mut lines: Vec<_> = groups.into_iter().map(|(key, counts)| line(key, &counts, by)).collect();
+    if matches!(by, By::Day | By::Week) {
+        for of_plan in lines.chunk_by_mut(|one, other| one.plan == other.plan) {
+            let rates: Vec<_> = of_plan.iter().map(|line| line.first_pass).collect();
+            for (line, limits) in of_plan.iter_mut().zip(limits(&rates)) {
+                line.limits = limits;
+            }
         }
-    };
-    groups.into_iter().map(line).collect()
+    }
+    lines
+}
+
+fn place(cell: &Cell, by: By) -> Place {
+    match by {
+        By::Plan => (None, None, None),
+        By::Day => (Some(cell.day), None, None),
+        // 1 January 1970 was a Thursday.
+        By::Week => (Some(cell.day - (cell.day + 3).rem_euclid(7)), None, None),
+        By::Lane => (None, Some(cell.station.clone()), Some(cell.lane.clone())),
+        By::Station => (None, Some(cell.station.clone()), None),
+    }
+}
+
+fn line((plan, (day, station, lane)): (PlanName, Place), counts: &Counts, by: By) -> Yield {
+    let day = day.and_then(date);
+    Yield {
+        plan,
+        day: day.filter(|_| by == By::Day),
+        week: day.filter(|_| by == By::Week),
+        station,
+        lane,
+        first_pass: Rate::new(counts.first, counts.units),
+        limits: None,
+        last: Rate::new(counts.last, counts.units),
+        waived: counts.waived,
+        flipped: counts.flipped,
+        errors: Rate::new(counts.errors, counts.runs),
+        crashes: counts.crashes,
+    }
 }
 
 /// The date of a day that is so many after 1 January 1970.

@@ -30,7 +30,8 @@ use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
+use std::thread;
+use std::time::{Duration, Instant};
 
 use rusqlite::{Connection, OpenFlags};
 
@@ -53,6 +54,10 @@ use crate::record::{Blobs, PlanRecord, Record, RunHead};
 
 /// How long a reader waits for a writer.
 const PATIENCE: Duration = Duration::from_secs(10);
+
+/// How long a program may take to leave the folder that has just ended, and how often it is looked.
+const LEAVES: Duration = Duration::from_secs(1);
+const AGAIN: Duration = Duration::from_millis(20);
 
 /// The folder of a station.
 #[derive(Clone, Debug)]
@@ -96,10 +101,14 @@ impl Folder {
     fn lock(&self) -> Result<File, StoreError> {
         let file = File::options().create(true).truncate(false).write(true).open(self.0.join("station.lock"));
         let file = file.map_err(|source| self.refused(source))?;
-        match file.try_lock() {
-            Ok(()) => Ok(file),
-            Err(TryLockError::WouldBlock) => Err(StoreError::InUse { folder: self.0.clone() }),
-            Err(TryLockError::Error(source)) => Err(self.refused(source)),
+        let until = Instant::now() + LEAVES;
+        loop {
+            match file.try_lock() {
+                Ok(()) => return Ok(file),
+                Err(TryLockError::WouldBlock) if Instant::now() < until => thread::sleep(AGAIN),
+                Err(TryLockError::WouldBlock) => return Err(StoreError::InUse { folder: self.0.clone() }),
+                Err(TryLockError::Error(source)) => return Err(self.refused(source)),
+            }
         }
     }
 

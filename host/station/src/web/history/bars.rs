@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use crate::history::control::Limits;
 use crate::history::rate::Rate;
 
 /// A bar as long as the share, and the 95 % interval over it.
@@ -34,15 +35,34 @@ pub(super) fn length(count: u64, most: u64) -> Markup {
 const DAY: usize = 12;
 const BESIDE: usize = 52;
 const HEIGHT: usize = 130;
+/// Units of a day by which the chart's height is chosen.
+const MANY: u64 = 30;
 
-/// A column for each day of a yield: share and interval, the earliest first. Each day has its name and what stands there
-/// when it is pointed at; `of` says what they are for.
-pub(super) fn days(of: &str, days: &[(String, String, Rate)]) -> Markup {
-    let least = days.iter().filter_map(|(.., rate)| rate.interval).map(|[low, _]| low).fold(1.0, f64::min);
+/// A day of a yield, or a week.
+#[derive(Clone, Debug)]
+pub(super) struct Day {
+    pub(super) name: String,
+    /// What stands there when it is pointed at.
+    pub(super) said: String,
+    pub(super) rate: Rate,
+    /// What its share may be if nothing has changed.
+    pub(super) limits: Option<Limits>,
+}
+
+/// A column for each day of a yield: share and interval, the earliest first, in the band of what they may be; `of` says what
+/// they are for.
+pub(super) fn days(of: &str, days: &[Day]) -> Markup {
+    let low = |day: &Day| day.rate.interval.map(|[low, _]| low);
+    let limit = |day: &Day| day.limits.map(|Limits { limits: [low, _], .. }| low);
+    // The interval of a day of few units would leave no room for all others; it is cut off where the chart ends.
+    let is_many = |day: &&Day| day.rate.of >= MANY;
+    let many = days.iter().filter(is_many).flat_map(|day| [low(day), limit(day)]).flatten();
+    let least = many.fold(1.0, f64::min);
     // Where shares are high, what is below would be empty.
     let floor = [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least).unwrap_or(0.0);
     let width = days.len() * DAY + BESIDE;
-    let y = |share: f64| 8.0 + 100.0 * (1.0 - share) / (1.0 - floor);
+    let floor = if days.iter().any(|day| is_many(&day)) { floor } else { 0.0 };
+    let y = |share: f64| 8.0 + 100.0 * (1.0 - share.max(floor)) / (1.0 - floor);
     let last = days.len().saturating_sub(1);
     html! {
         svg.days viewBox=(format!("0 0 {width} {HEIGHT}")) height=(HEIGHT) width=(width) role="img" aria-label=(of) {
@@ -50,25 +70,35 @@ pub(super) fn days(of: &str, days: &[(String, String, Rate)]) -> Markup {
                 rect.grid x="0" y=(format!("{:.1}", y(share))) width=(days.len() * DAY) height="1" {}
                 text x=(days.len() * DAY + 4) y=(format!("{:.1}", y(share) + 4.0)) { (100.0 * share) " %" }
             }
-            @for (place, (name, said, rate)) in days.iter().enumerate() {
-                (day(place * DAY, said, rate, &y))
-                @if place == 0 { text x="0" y=(HEIGHT - 4) { (name) } }
+            @for (place, one) in days.iter().enumerate() {
+                (day(place * DAY, one, &y))
+                @if place == 0 { text x="0" y=(HEIGHT - 4) { (one.name) } }
                 @if place == last && last > 14 {
-                    text x=(days.len() * DAY) y=(HEIGHT - 4) text-anchor="end" { (name) }
+                    text x=(days.len() * DAY) y=(HEIGHT - 4) text-anchor="end" { (one.name) }
                 }
             }
         }
     }
 }
 
-fn day(x: usize, said: &str, rate: &Rate, y: &dyn Fn(f64) -> f64) -> Markup {
+fn day(x: usize, Day { said, rate, limits, .. }: &Day, y: &dyn Fn(f64) -> f64) -> Markup {
     let Some((share, [low, high])) = rate.share.zip(rate.interval) else { return html! {} };
+    let place = |share: f64| format!("{:.1}", y(share));
+    let height = |low: f64, high: f64| format!("{:.1}", (y(low) - y(high)).max(1.0));
+    let is_beyond = limits.is_some_and(|limits| limits.is_beyond);
     html! {
         g {
             title { (said) }
-            rect.interval x=(x + 5) y=(format!("{:.1}", y(high))) width="2"
-                height=(format!("{:.1}", (y(low) - y(high)).max(1.0))) {}
-            circle.point cx=(x + 6) cy=(format!("{:.1}", y(share))) r="3" {}
+            @if let Some(Limits { mean, limits: [least, most], .. }) = limits {
+                rect.band x=(x) y=(place(*most)) width=(DAY) height=(height(*least, *most)) {}
+                rect.mean x=(x) y=(place(*mean)) width=(DAY) height="1" {}
+            }
+            rect.interval x=(x + 5) y=(place(high)) width="2" height=(height(low, high)) {}
+            @if is_beyond {
+                path.beyond d=(format!("M{} {} l5 9 h-10 z", x + 6, place(share))) {}
+            } @else {
+                circle.point cx=(x + 6) cy=(place(share)) r="3" {}
+            }
         }
     }
 }

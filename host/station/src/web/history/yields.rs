@@ -7,7 +7,9 @@ use axum::response::Response;
 use maud::{Markup, html};
 
 use super::asked::{Asked, unit_address};
+use super::bars::Day;
 use super::{bars, list, show};
+use crate::history::drift::{Drift, drifts};
 use crate::history::rate::Rate;
 use crate::history::yields::{self, By, Flip, Yield, Yields};
 use crate::history::{self, PlanName};
@@ -31,14 +33,22 @@ pub(super) async fn page(
     visit: Visit,
     Query(asked): Query<Asked>,
 ) -> Result<Response, Trouble> {
-    let choices = [("plan", By::Plan), ("day", By::Day), ("lane", By::Lane)];
+    let choices = [
+        ("plan", By::Plan),
+        ("day", By::Day),
+        ("week", By::Week),
+        ("lane", By::Lane),
+        ("station", By::Station),
+    ];
     let asking = asked.wanted().and_then(|wanted| Ok((wanted, asked.by(&choices)?)));
     let (wanted, by) = asking.map_err(|wrong| wrong.told(&visit))?;
     let look = move |now: &Snapshot| Ok((yields::yields(now, &wanted, by)?, history::plan_names(now)?));
     let (Yields { mut lines, mut flips }, plans) = app.look(&visit, look).await?;
     // The newest day first; lane 10 behind lane 9.
-    let place = |line: &Yield| line.lane.as_ref().map(|lane| (lane.len(), lane.clone()));
-    lines.sort_by_cached_key(|line| (line.plan.clone(), std::cmp::Reverse(line.day), place(line)));
+    let lane = |line: &Yield| line.lane.as_ref().map(|lane| (lane.len(), lane.clone()));
+    lines.sort_by_cached_key(|line| {
+        (line.plan.clone(), std::cmp::Reverse(line.day.or(line.week)), line.station.clone(), lane(line))
+    });
     flips.sort_by_key(|flip| std::cmp::Reverse(flip.passed_ms));
     let content = html! {
         h1 { (visit.say("yield.title")) }
@@ -47,7 +57,8 @@ pub(super) async fn page(
         @if lines.is_empty() {
             p.nothing { (visit.say("history.none")) }
         } @else {
-            @if by == By::Day { (drawn(&visit, &lines)) }
+            @if matches!(by, By::Day | By::Week) { (drawn(&visit, &lines)) }
+            @if by == By::Station { (drifting(&visit, &drifts(&lines))) }
             (table(&visit, &lines))
         }
         (flipped(&visit, &flips))
@@ -60,7 +71,9 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
     let choices = [
         ("plan", visit.say("history.plan")),
         ("day", visit.say("yield.day")),
+        ("week", visit.say("yield.week")),
         ("lane", visit.say("history.lane")),
+        ("station", visit.say("nav.station")),
     ];
     html! {
         form.filters method="get" action="/yield" {
@@ -89,19 +102,54 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
             figure.days {
                 figcaption { (visit.say("yield.first")) ", " (show::said(&of_plan[0].plan.plan)) }
                 div.wide tabindex="0" { (bars::days(visit.say("yield.first"), &named_days(of_plan))) }
+                (beyond(visit, of_plan))
             }
         }
     }
 }
 
+/// What the band means, and the days or weeks that are beyond it.
+fn beyond(visit: &Visit, of_plan: &[Yield]) -> Markup {
+    let is_beyond = |line: &&Yield| line.limits.is_some_and(|limits| limits.is_beyond);
+    let days: Vec<_> = of_plan.iter().take(MOST_DAYS).filter(is_beyond).map(began).collect();
+    html! {
+        p.soft { (visit.say("yield.band")) }
+        @if !days.is_empty() { p.beyond { (visit.words.fill("yield.beyond", &[("days", &days.join(", "))])) } }
+    }
+}
+
+/// The day of a line, or the first one of its week.
+fn began(line: &Yield) -> String {
+    line.day.or(line.week).map(|day| day.to_string()).unwrap_or_default()
+}
+
 /// The newest days of a plan, whose lines begin with the newest, the earliest of them first.
-fn named_days(of_plan: &[Yield]) -> Vec<(String, String, Rate)> {
+fn named_days(of_plan: &[Yield]) -> Vec<Day> {
     let named = |line: &Yield| {
-        let day = line.day.map(|day| day.to_string()).unwrap_or_default();
-        let said = format!("{day}: {}", line.first_pass.text());
-        (day, said, line.first_pass)
+        let name = began(line);
+        let said = format!("{name}: {}", line.first_pass.text());
+        Day { name, said, rate: line.first_pass, limits: line.limits }
     };
     of_plan.iter().take(MOST_DAYS).rev().map(named).collect()
+}
+
+/// Stations that judge otherwise than all others do.
+fn drifting(visit: &Visit, drifts: &[Drift]) -> Markup {
+    let marked: Vec<_> = drifts.iter().filter(|drift| drift.is_marked).collect();
+    html! {
+        @if !drifts.is_empty() {
+            p.soft { (visit.say("yield.drift_about")) }
+            @if marked.is_empty() { p { (visit.say("yield.no_drift")) } }
+            @for Drift { plan, station, here, elsewhere, chance, .. } in marked {
+                p.beyond {
+                    b { (show::said(station)) } " · " (show::said(&plan.product)) " " (show::said(&plan.plan)) ": "
+                    (show::share(visit, here)) " " span.soft { (show::of(here)) } " · "
+                    (visit.say("yield.elsewhere")) " " (show::share(visit, elsewhere)) " " span.soft { (show::of(elsewhere)) }
+                    @if let Some(chance) = chance { " · p = " (format!("{chance:.1e}")) }
+                }
+            }
+        }
+    }
 }
 
 fn table(visit: &Visit, lines: &[Yield]) -> Markup {
@@ -125,7 +173,10 @@ fn row(visit: &Visit, line: &Yield) -> Markup {
     html! {
         tr {
             td.name {
-                @if let Some(day) = line.day { b { (day) } " " }
+                @if let Some(day) = line.day.or(line.week) { b { (day) } " " }
+                @if let Some(station) = line.station.as_ref().filter(|_| visit.is_plant || line.lane.is_none()) {
+                    b { (show::said(station)) } " "
+                }
                 @if let Some(lane) = &line.lane {
                     b { (visit.say("history.lane")) " " (show::said(lane)) } " "
                 }

@@ -8,7 +8,7 @@ use halfrow_station::record::{
     Attachment, BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead, SCHEMA,
     StepOutcome, StepRecord, SuspectRecord, judged,
 };
-use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
+use halfrow_station::store::{Folder, Snapshot, Store};
 use tempfile::TempDir;
 
 /// 1 November 2026, midnight UTC.
@@ -76,14 +76,8 @@ impl Made {
 
     /// With what is in this folder already.
     pub(crate) fn at(folder: TempDir) -> Self {
-        loop {
-            match Store::open(&Folder::new(folder.path())) {
-                Ok(store) => return Self { folder, store, entered: 0 },
-                // A store that this test has closed is held for a moment by what other tests are just starting.
-                Err(StoreError::InUse { .. }) => std::thread::sleep(std::time::Duration::from_millis(10)),
-                Err(error) => panic!("{error:?}"),
-            }
-        }
+        let store = Store::open(&Folder::new(folder.path())).unwrap();
+        Self { folder, store, entered: 0 }
     }
 
     pub(crate) fn folder(&self) -> Folder {

@@ -1,6 +1,7 @@
 //! What was judged, read back: pages, units, yields, what fails most; and what is kept.
 
 mod commands;
+mod control;
 mod counted;
 mod exports;
 pub(crate) mod generated;

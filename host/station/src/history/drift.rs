@@ -1,0 +1,70 @@
+//! Whether a station judges otherwise than all others do under the same plan.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::PlanName;
+use super::rate::Rate;
+use super::yields::Yield;
+
+/// The chance that any station of a plan is marked though all are alike.
+const BY_CHANCE: f64 = 0.01;
+/// The least number of cases that each of the four cells is expected to have, for the test to hold.
+const LEAST: f64 = 5.0;
+
+/// A station's first pass beside that of all others.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Drift {
+    /// Product and plan.
+    #[serde(flatten)]
+    pub plan: PlanName,
+    /// The station.
+    pub station: String,
+    /// Its first pass.
+    pub here: Rate,
+    /// That of all others.
+    pub elsewhere: Rate,
+    /// The chance of a difference so great if there is none; none where too few units were judged to tell.
+    pub chance: Option<f64>,
+    /// Whether it is too small to be taken for chance, as many stations as there are.
+    pub is_marked: bool,
+}
+
+/// Every station of every plan that more than one station has, by a yield by station.
+#[must_use]
+pub fn drifts(lines: &[Yield]) -> Vec<Drift> {
+    let mut plans = BTreeMap::<&PlanName, Vec<(&String, Rate)>>::new();
+    for line in lines {
+        if let Some(station) = &line.station {
+            plans.entry(&line.plan).or_default().push((station, line.first_pass));
+        }
+    }
+    let several = plans.into_iter().filter(|(_, stations)| stations.len() > 1);
+    several.flat_map(|(plan, stations)| of_plan(plan, &stations)).collect()
+}
+
+fn of_plan(plan: &PlanName, stations: &[(&String, Rate)]) -> Vec<Drift> {
+    let all = stations.iter().fold((0, 0), |(count, of), (_, rate)| (count + rate.count, of + rate.of));
+    let drift = |(station, here): &(&String, Rate)| {
+        let elsewhere = Rate::new(all.0 - here.count, all.1 - here.of);
+        let chance = chance(here, &elsewhere);
+        let is_marked = chance.is_some_and(|chance| chance < BY_CHANCE / stations.len() as f64);
+        Drift { plan: plan.clone(), station: (*station).clone(), here: *here, elsewhere, chance, is_marked }
+    };
+    stations.iter().map(drift).collect()
+}
+
+/// The chance of two shares that differ so much though what they are of does not: the two-sided test of two proportions with a
+/// pooled variance (NIST/SEMATECH e-Handbook of Statistical Methods, 7.3.3).
+fn chance(one: &Rate, other: &Rate) -> Option<f64> {
+    let (n, m) = (one.of as f64, other.of as f64);
+    let pooled = (one.count + other.count) as f64 / (n + m);
+    let expected = n.min(m) * pooled.min(1.0 - pooled);
+    if expected.is_nan() || expected < LEAST {
+        return None;
+    }
+    let deviation = (pooled * (1.0 - pooled) * (1.0 / n + 1.0 / m)).sqrt();
+    let z = (one.count as f64 / n - other.count as f64 / m) / deviation;
+    Some(libm::erfc(z.abs() / std::f64::consts::SQRT_2))
+}

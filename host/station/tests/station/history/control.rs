@@ -1,0 +1,91 @@
+//! Limits of a p-chart and the test of two proportions, against SciPy's and statsmodels' figures.
+
+use halfrow_station::history::control::{Limits, limits};
+use halfrow_station::history::drift::drifts;
+use halfrow_station::history::rate::Rate;
+use halfrow_station::history::yields::{By, Wanted, Yield, yields};
+
+use super::made::{BEGIN_MS, DAY_MS, End, Made, Run};
+
+/// Units, their mean in thousandths, and the least and the greatest number that is within the limits: `scipy.stats.binom.cdf` reaches
+/// 0.0013498980316301 there first, from either side.
+const LIMITS: [(u64, u64, u64, u64); 5] = [
+    (30, 970, 25, 30),
+    (200, 970, 186, 200),
+    (1000, 950, 928, 969),
+    (50, 500, 15, 35),
+    (10_000, 990, 9869, 9928),
+];
+
+#[test]
+fn the_limits_are_those_of_the_binomial_distribution() {
+    for (of, mean, least, most) in LIMITS {
+        let at = |count| Limits::of(&Rate::new(count, of), mean as f64 / 1000.0);
+        let [low, high] = at(least).limits.map(|share| (share * of as f64).round() as u64);
+        assert_eq!((low, high), (least, most), "{of} of mean {mean}");
+        assert!(!at(least).is_beyond && !at(most).is_beyond);
+        assert!(at(least - 1).is_beyond, "{of} of mean {mean}");
+        assert!(most == of || at(most + 1).is_beyond, "{of} of mean {mean}");
+    }
+}
+
+#[test]
+fn groups_of_nobody_have_no_limits_and_shares_at_the_end_none_but_their_own() {
+    assert_eq!(limits(&[]), []);
+    assert_eq!(limits(&[Rate::new(0, 0)]), [None]);
+    for (count, of, share) in [(0, 7, 0.0), (7, 7, 1.0)] {
+        let found = limits(&[Rate::new(count, of)])[0].unwrap();
+        assert_eq!((found.mean, found.limits, found.is_beyond), (share, [share, share], false));
+    }
+}
+
+/// Passed and judged here and elsewhere, and what `statsmodels.stats.proportion.proportions_ztest` says of them.
+const CHANCES: [(u64, u64, u64, u64, f64); 3] = [
+    (940, 1000, 9700, 10_000, 3.697_961_058_300_583_5e-7),
+    (485, 500, 4850, 5000, 1.0),
+    (480, 500, 4875, 5000, 0.045_924_752_314_011_07),
+];
+
+/// A line of a yield by station.
+fn line(station: &str, first_pass: Rate) -> Yield {
+    let mut made = Made::new();
+    made.run(&Run::of("S1", End::Pass));
+    let of_one = yields(&made.now(), &Wanted::default(), By::Station).unwrap().lines.remove(0);
+    Yield { station: Some(station.to_owned()), first_pass, ..of_one }
+}
+
+#[test]
+fn a_station_that_judges_otherwise_is_marked() {
+    for (passed, judged, others, of, chance) in CHANCES {
+        let found = drifts(&[line("1", Rate::new(passed, judged)), line("2", Rate::new(others, of))]);
+        let [first, second] = &found[..] else { panic!("{found:?}") };
+        let told = first.chance.unwrap();
+        assert!((told - chance).abs() <= 1e-12 * chance.max(1e-3), "{told} and not {chance}");
+        assert_eq!(first.chance, second.chance);
+        // Two stations: half of one in a hundred.
+        assert_eq!(first.is_marked, chance < 0.005);
+        assert_eq!((first.elsewhere.count, first.elsewhere.of), (others, of));
+    }
+}
+
+#[test]
+fn of_few_units_or_one_station_nothing_is_told() {
+    let few = drifts(&[line("1", Rate::new(20, 30)), line("2", Rate::new(900, 1000))]);
+    assert!(few.iter().all(|drift| drift.chance.is_none() && !drift.is_marked), "{few:?}");
+    assert_eq!(drifts(&[line("1", Rate::new(20, 30))]), []);
+}
+
+/// Weeks begin on Monday: 1 November 2026 is a Sunday.
+#[test]
+fn a_yield_by_week_has_whole_weeks_and_limits() {
+    let mut made = Made::new();
+    for (day, end) in [(0, End::Pass), (1, End::Pass), (7, End::Fail(&["clock"])), (8, End::Pass)] {
+        made.run(&Run { started_ms: BEGIN_MS + day * DAY_MS, ..Run::of(&format!("S{day}"), end) });
+    }
+    let lines = yields(&made.now(), &Wanted::default(), By::Week).unwrap().lines;
+    let weeks: Vec<_> = lines.iter().map(|line| line.week.unwrap().to_string()).collect();
+    assert_eq!(weeks, ["2026-10-26", "2026-11-02", "2026-11-09"]);
+    let passed: Vec<_> = lines.iter().map(|line| (line.first_pass.count, line.first_pass.of)).collect();
+    assert_eq!(passed, [(1, 1), (1, 2), (1, 1)]);
+    assert!(lines.iter().all(|line| line.limits.is_some_and(|limits| limits.mean == 0.75)), "{lines:?}");
+}
