@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 
 use super::lanes::EngineEnded;
 use super::outbox::NotDead;
-use super::plant::NoPlant;
+use super::plant::{NoPlant, NoStation};
 use super::run::NoMock;
 use super::{Failure, document, print};
 use crate::check::Fault;
@@ -258,6 +258,8 @@ codes::codes! {
     NoPlant => "settings-without-plant"
     ;
     NotDead [id] => "outbox-entry-not-dead"
+    ;
+    NoStation [station] => "plant-without-station"
 }
 
 /// The code of an error of the station's, of the library's or of the system's.

@@ -31,6 +31,17 @@ pub(super) struct Arguments {
 enum What {
     /// Make the plant's tables, or bring them up to date with a copy of all that is in them
     Prepare,
+    /// Let a station have another folder than before: its disk was lost, or its computer replaced without a copy
+    Forget {
+        /// The station's name
+        station: String,
+        /// Why
+        #[arg(long)]
+        reason: String,
+        /// Who says so
+        #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+        operator: String,
+    },
     /// Show the results of all stations in a browser; its pages only look
     Serve,
 }
@@ -42,6 +53,12 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
         What::Prepare => {
             let version = Plant::prepare(&address)?;
             print(&format!("the plant {address} has version {version}"))
+        }
+        What::Forget { station, reason, operator } => {
+            if Plant::connect(&address)?.forget(station, operator, reason)? {
+                return print(&format!("the next folder that says it is {station} is taken for it"));
+            }
+            Err(Failure::call(NoStation { station: station.clone() }))
         }
         What::Serve => serve(settings, address),
     }
@@ -76,6 +93,15 @@ pub(super) fn plant(settings: &Settings) -> Result<&PlantSettings, Failure> {
 #[derive(Debug, thiserror::Error)]
 #[error("the settings name no plant; write url = \"postgres://halfrow@db.example/plant\" into [plant]")]
 pub(super) struct NoPlant;
+
+/// A station that the plant never heard of.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "the plant has not heard of a station {station}; `halfrow-station plant serve` shows those that it has"
+)]
+pub(super) struct NoStation {
+    pub(super) station: String,
+}
 
 impl From<PlantError> for Failure {
     fn from(error: PlantError) -> Self {

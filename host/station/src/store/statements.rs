@@ -67,6 +67,7 @@ pub(super) const AUDIT_BY_ID: &str = include_str!("../../sql/audit-by-id.sql");
 pub(super) const ADD_ORIGIN: &str = include_str!("../../sql/add-origin.sql");
 pub(super) const ORIGIN: &str = include_str!("../../sql/origin.sql");
 pub(super) const SEEN: &str = include_str!("../../sql/plant/seen.sql");
+pub(super) const FORGET_STATION: &str = include_str!("../../sql/plant/forget-station.sql");
 pub(crate) const STATIONS: &str = include_str!("../../sql/plant/stations.sql");
 pub(super) const LOCK_UNIT: &str = include_str!("../../sql/plant/lock-unit.sql");
 pub(super) const ADD_RECORD: &str = include_str!("../../sql/plant/add-record.sql");
@@ -89,7 +90,7 @@ mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 75] = [
+    const ALL: [&str; 76] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -149,6 +150,7 @@ mod tests {
         ADD_ORIGIN,
         ORIGIN,
         SEEN,
+        FORGET_STATION,
         STATIONS,
         LOCK_UNIT,
         ADD_RECORD,

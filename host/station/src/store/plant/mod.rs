@@ -14,7 +14,7 @@ use std::path::PathBuf;
 
 use super::database::{Database, DatabaseError, Postgres, values};
 use super::{Parcel, StoreError, migrations, statements as sql};
-use crate::clock;
+use crate::{clock, ids};
 
 /// A delivery that did not come about.
 #[derive(Debug, thiserror::Error)]
@@ -46,7 +46,8 @@ pub enum PlantError {
     },
     /// Another station has this name there.
     #[error(
-        "another station of this plant is called {name}; nothing is sent until one of the two has another name in its settings"
+        "another station of this plant is called {name}; nothing is sent until one of the two has another name in its settings, or \
+         `halfrow-station plant forget {name}` says that this folder is the station's new one"
     )]
     OtherStation {
         /// The name.
@@ -171,6 +172,28 @@ impl Plant {
             to.execute(sql::SEEN, values![name, origin, program, plans, *unsent, *dead])
         })?;
         if changed == 1 { Ok(()) } else { Err(PlantError::OtherStation { name: name.clone() }) }
+    }
+
+    /// Forgets which folder the station of this name has, so that it may have another one; the audit keeps who said so, and
+    /// why. Its results stay. Returns whether there was one.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant does not take it.
+    pub fn forget(&mut self, station: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
+        let at_ms = clock::now_ms();
+        let id = ids::new(at_ms)?.to_string();
+        self.carry_out("to forget a station", |database| {
+            database.transaction(|to| {
+                let forgotten = to.execute(sql::FORGET_STATION, values![station])?;
+                if forgotten > 0 {
+                    to.execute(
+                        sql::ADD_AUDIT,
+                        values![&id, at_ms, operator, "forget station", station, reason],
+                    )?;
+                }
+                Ok(forgotten > 0)
+            })
+        })
     }
 
     fn reach(address: &PlantAddress) -> Result<Self, StoreError> {

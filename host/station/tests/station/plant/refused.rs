@@ -11,7 +11,7 @@ use super::sent::send;
 use super::server::Server;
 use super::tables::is_as;
 use crate::common::{Did, PLAN, program, query};
-use crate::history::made::Made;
+use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
 /// What a command of the station in this folder does, with settings that name the plant.
@@ -145,4 +145,33 @@ fn a_database_that_sorts_otherwise_than_a_station_is_refused() {
         "{refused:?}"
     );
     assert!(refused.to_string().contains("createdb --template template0 --encoding UTF8"), "{refused}");
+}
+
+/// A station whose folder was lost and made anew is somebody else, until a person says that it is not.
+#[test]
+fn a_station_with_another_folder_is_taken_for_itself_when_a_person_says_so() {
+    let server = Server::prepared();
+    let (_, all) = send(history(), server.address());
+    assert_eq!(all.sent, 10);
+    let (made, refused) = send(Made::new(), server.address());
+    assert_eq!((refused.sent, refused.failed), (0, 0), "there is nothing to send");
+    let mut made = made;
+    made.run(&Run { started_ms: BEGIN_MS + 40 * HOUR_MS, ..Run::of("S9", End::Pass) });
+    let (made, refused) = send(made, server.address());
+    assert_eq!((refused.sent, refused.is_away), (0, true));
+    let [unsent] = &made.folder().unsent().unwrap()[..] else { panic!("all was sent") };
+    assert!(
+        unsent.said.as_ref().unwrap().contains("another station of this plant is called station 7"),
+        "{unsent:?}"
+    );
+    let forget = ["plant", "forget", "station 7", "--reason", "its disk broke", "--operator", "engel"];
+    let folder = crate::common::folder();
+    let done = did(folder.path(), &server, &forget);
+    assert_eq!((done.code, done.complained.as_str()), (Some(0), ""), "{done:?}");
+    assert_eq!(did(folder.path(), &server, &forget).code, Some(2));
+    due(&made);
+    let (_, all) = send(made, server.address());
+    assert_eq!((all.sent, all.failed), (1, 0));
+    let told = server.rows("SELECT operator_id, subject, detail FROM audit WHERE act = 'forget station'");
+    assert_eq!(told, [["engel", "station 7", "its disk broke"]]);
 }
