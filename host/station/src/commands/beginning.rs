@@ -131,9 +131,7 @@ pub(super) fn plant_sink(
     plant: &PlantSettings,
     store: &mut Store,
 ) -> Result<PlantSink, Failure> {
-    store.sends_to(vec![PlantSink::NAME.to_owned()])?;
-    let origin = store.folder().origin()?.unwrap_or_default();
-    Ok(PlantSink::new(plant.address()?, settings.presence(origin)))
+    Ok(PlantSink::new(plant.address()?, settings.presence(store.origin()?)))
 }
 
 /// Closes what was under way when the station ended, says so, and returns it.

@@ -8,7 +8,7 @@ use super::looking::{either, table, time};
 use super::plant::plant;
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::outbox::{OutboxError, Round, round};
+use crate::outbox::{OutboxError, PlantSink, Round, round};
 use crate::settings::Settings;
 use crate::store::{Dead, Folder, SharedStore, Store, Unsent};
 
@@ -74,6 +74,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 /// Sends to the plant until nothing is due.
 fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
     let mut sink = plant_sink(settings, plant(settings)?, &mut store)?;
+    store.sends_to(vec![PlantSink::NAME.to_owned()])?;
     let store = SharedStore::new(store);
     let mut all = Round::default();
     loop {

@@ -12,7 +12,7 @@ use std::time::Duration;
 use halfrow::Verdict;
 use halfrow::target::Target;
 
-pub use plant::{PASSWORD, PlantSettings, PlantSettingsError};
+pub use plant::{PlantSettings, PlantSettingsError};
 
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::input_error::InputError;

@@ -10,7 +10,7 @@ use crate::store::PlantAddress;
 use crate::web::{SecretError, secret};
 
 /// The variable that may have the password.
-pub const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
+const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
 /// How many entries may be unsent until lanes take nothing more.
 const MOST_UNSENT: u32 = 10_000;
 

@@ -2,10 +2,30 @@
 
 use std::sync::Arc;
 
-use super::database::values;
+use super::database::{Database, DatabaseError, values};
 use super::{Kind, Store, StoreError, outbox, statements as sql};
 use crate::clock;
 use crate::ids;
+
+/// A line of the audit.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line<'a> {
+    pub(super) id: &'a str,
+    pub(super) at_ms: i64,
+    pub(super) operator: &'a str,
+    pub(super) act: &'a str,
+    pub(super) subject: &'a str,
+    pub(super) detail: &'a str,
+}
+
+impl Line<'_> {
+    /// Enters it, and for every sink that it is to be sent.
+    pub(super) fn enter(self, to: &mut dyn Database, sinks: &[String]) -> Result<(), DatabaseError> {
+        let Self { id, at_ms, operator, act, subject, detail } = self;
+        to.execute(sql::ADD_AUDIT, values![id, at_ms, operator, act, subject, detail])?;
+        outbox::enter(to, sinks, Kind::Audit, id)
+    }
+}
 
 impl Store {
     /// Enters in the audit that `operator` does `act` with `subject`; `detail` says how.
@@ -17,8 +37,7 @@ impl Store {
         let id = ids::new(at_ms)?.to_string();
         let sinks = Arc::clone(&self.sinks);
         self.change("an audit", |to| {
-            to.execute(sql::ADD_AUDIT, values![&id, at_ms, operator, act, subject, detail])?;
-            outbox::enter(to, &sinks, Kind::Audit, &id)
+            Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &sinks)
         })
     }
 }

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::audit::Line;
 use super::database::{Database, DatabaseError, Row, values};
-use super::{Kind, Store, StoreError, outbox, statements as sql};
+use super::{Store, StoreError, statements as sql};
 use crate::record::RunHead;
 use crate::said::{Said, Saying};
 use crate::{clock, ids};
@@ -110,8 +111,7 @@ impl Store {
         };
         let sinks = Arc::clone(&self.sinks);
         self.change("another binding", |to| {
-            audit(to, &rebinding)?;
-            outbox::enter(to, &sinks, Kind::Audit, &rebinding.id)?;
+            audit(to, &sinks, &rebinding)?;
             rebind(to, &rebinding)
         })?;
         Ok(rebinding)
@@ -259,11 +259,10 @@ pub(super) fn rebind(to: &mut dyn Database, change: &Rebinding) -> Result<(), Da
     Ok(())
 }
 
-fn audit(to: &mut dyn Database, change: &Rebinding) -> Result<(), DatabaseError> {
+fn audit(to: &mut dyn Database, sinks: &[String], change: &Rebinding) -> Result<(), DatabaseError> {
     let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
-    let detail = Detail { device: device.clone(), reason: reason.clone() };
-    let detail = serde_json::to_string(&detail)?;
-    to.execute(sql::ADD_AUDIT, values![id, *at_ms, operator, REBIND, unit_id, &detail]).map(drop)
+    let detail = serde_json::to_string(&Detail { device: device.clone(), reason: reason.clone() })?;
+    Line { id, at_ms: *at_ms, operator, act: REBIND, subject: unit_id, detail: &detail }.enter(to, sinks)
 }
 
 /// Every change by a person, the earliest first.

@@ -4,8 +4,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::sync::Arc;
 
+use super::audit::Line;
 use super::database::values;
-use super::{Folder, Kind, Snapshot, Store, StoreError, outbox, statements as sql};
+use super::{Folder, Snapshot, Store, StoreError, statements as sql};
 use crate::clock;
 use crate::ids;
 use crate::run::NoRandomness;
@@ -91,8 +92,7 @@ impl Store {
         let sinks = Arc::clone(&self.sinks);
         self.change("an audit", |to| {
             for (id, subject) in named.iter().zip(subjects) {
-                to.execute(sql::ADD_AUDIT, values![id, at_ms, operator, act, subject, why])?;
-                outbox::enter(to, &sinks, Kind::Audit, id)?;
+                Line { id, at_ms, operator, act, subject, detail: why }.enter(to, &sinks)?;
             }
             Ok(())
         })

@@ -37,6 +37,7 @@ use rusqlite::{Connection, OpenFlags};
 
 pub use again::AgainError;
 pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
+use database::Sqlite;
 pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub use keeping::Removed;
@@ -46,8 +47,6 @@ pub use shared::SharedStore;
 pub use shift::{Checked, Owed};
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
 pub use waivers::{NoWaiver, Waiver};
-
-use database::Sqlite;
 
 use crate::clock;
 use crate::record::{Blobs, PlanRecord, Record, RunHead};

@@ -157,13 +157,23 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when the database does not take it.
     pub fn sends_to(&mut self, sinks: Vec<String>) -> Result<(), StoreError> {
-        let origin = ids::new(clock::now_ms())?.to_string();
         self.change("what is to be sent", |to| {
-            to.execute(sql::ADD_ORIGIN, values![&origin])?;
             sinks.iter().try_for_each(|sink| to.execute(sql::ALL_TO_OUTBOX, values![sink]).map(drop))
         })?;
         self.sinks = sinks.into();
         Ok(())
+    }
+
+    /// What this folder is called, whatever the station is; drawn the first time.
+    ///
+    /// # Errors
+    /// As [`Self::sends_to`].
+    pub fn origin(&mut self) -> Result<String, StoreError> {
+        let drawn = ids::new(clock::now_ms())?.to_string();
+        self.change("what it is called", |to| {
+            to.execute(sql::ADD_ORIGIN, values![&drawn])?;
+            to.one(sql::ORIGIN, &[], |row| row.get(0))
+        })
     }
 
     /// Keeps what became of these entries at `now_ms`.
@@ -227,14 +237,6 @@ impl Folder {
     /// As [`Self::due`].
     pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
         Snapshot::take(self)?.unsent()
-    }
-
-    /// What this folder is called, whatever the station is; none before anything was to be sent from it.
-    ///
-    /// # Errors
-    /// As [`Self::due`].
-    pub fn origin(&self) -> Result<Option<String>, StoreError> {
-        self.read("to tell what it is called", |from| from.first(sql::ORIGIN, &[], |row| row.get(0)))
     }
 
     /// Every entry that waits for a person.

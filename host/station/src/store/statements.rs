@@ -80,7 +80,7 @@ pub(super) const PLAN_EARLIER: &str = include_str!("../../sql/plant/plan-earlier
 pub(super) const UNIT_EARLIER: &str = include_str!("../../sql/plant/unit-earlier.sql");
 pub(super) const COUNT_ON: &str = include_str!("../../sql/plant/count-on.sql");
 pub(super) const FORGET_RETEST: &str = include_str!("../../sql/plant/forget-retest.sql");
-pub(super) const FIND_RETEST: &str = include_str!("../../sql/plant/find-retest.sql");
+pub(super) const LAST_JUDGED: &str = include_str!("../../sql/plant/last-judged.sql");
 pub(super) const ADD_BINDING_UNLESS: &str = include_str!("../../sql/plant/add-binding.sql");
 pub(super) const ADD_WAIVER_UNLESS: &str = include_str!("../../sql/plant/add-waiver.sql");
 pub(super) const ADD_AUDIT_UNLESS: &str = include_str!("../../sql/plant/add-audit.sql");
@@ -163,7 +163,7 @@ mod tests {
         UNIT_EARLIER,
         COUNT_ON,
         FORGET_RETEST,
-        FIND_RETEST,
+        LAST_JUDGED,
         ADD_BINDING_UNLESS,
         ADD_WAIVER_UNLESS,
         ADD_AUDIT_UNLESS,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::Serialize;
 
+use super::audit::Line;
 use super::database::{Database, DatabaseError, values};
 use super::{Kind, Store, StoreError, outbox, statements as sql};
 use crate::clock;
@@ -82,8 +83,8 @@ impl Store {
             if before.is_none() {
                 to.execute(sql::ADD_WAIVER, values![&id, run, at_ms, operator, reason])?;
                 outbox::enter(to, &sinks, Kind::Waiver, &id)?;
-                to.execute(sql::ADD_AUDIT, values![&audit, at_ms, operator, "waive", run, reason])?;
-                outbox::enter(to, &sinks, Kind::Audit, &audit)?;
+                let line = Line { id: &audit, at_ms, operator, act: "waive", subject: run, detail: reason };
+                line.enter(to, &sinks)?;
             }
             Ok(before)
         })?;

@@ -6,16 +6,13 @@ use axum::response::{IntoResponse as _, Redirect, Response};
 use maud::{Markup, html};
 use serde::Deserialize;
 
-use super::history::show;
+use super::history::{acts::fields, show};
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, act, look};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::store::{Dead, Entry, Folder, Kind, StoreError, Unsent};
-
-/// The longest reason, in characters.
-const MOST: &str = "500";
 
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
@@ -70,8 +67,7 @@ fn letter(visit: &Visit, Dead { sink, entry, dead_ms, said }: &Dead) -> Markup {
             }
             p { (show::english(visit, said)) }
             @if visit.may(Who::Engineer) {
-                input type="hidden" name="csrf" value=(visit.csrf);
-                label { span { (visit.say("history.reason")) } input name="reason" required maxlength=(MOST); }
+                (fields(visit))
                 button { (visit.say("outbox.release")) }
             }
         }

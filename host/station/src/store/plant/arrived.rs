@@ -72,13 +72,12 @@ fn count(to: &mut dyn Database, record: &Record, unit: &str) -> Result<(), Datab
     }
     to.execute(sql::ADD_DAY_COUNT, values![id])?;
     to.execute(sql::ADD_FAILURES, values![id])?;
-    if is_late {
-        to.execute(sql::FORGET_RETEST, values![unit, plan])?;
-        to.execute(sql::FIND_RETEST, values![unit, plan, product])?;
-    } else {
-        to.execute(sql::ADD_RETEST, values![id])?;
+    if !is_late {
+        return to.execute(sql::ADD_RETEST, values![id]).map(drop);
     }
-    Ok(())
+    to.execute(sql::FORGET_RETEST, values![unit, plan])?;
+    let last: String = to.one(sql::LAST_JUDGED, values![unit, plan, product], |row| row.get(0))?;
+    to.execute(sql::ADD_RETEST, values![&last]).map(drop)
 }
 
 /// A waiver.

@@ -12,6 +12,7 @@ pub use pool::PlantPool;
 
 use std::path::PathBuf;
 
+use super::audit::Line;
 use super::database::{Database, DatabaseError, Postgres, values};
 use super::{Parcel, StoreError, migrations, statements as sql};
 use crate::{clock, ids};
@@ -186,10 +187,8 @@ impl Plant {
             database.transaction(|to| {
                 let forgotten = to.execute(sql::FORGET_STATION, values![station])?;
                 if forgotten > 0 {
-                    to.execute(
-                        sql::ADD_AUDIT,
-                        values![&id, at_ms, operator, "forget station", station, reason],
-                    )?;
+                    let (act, subject) = ("forget station", station);
+                    Line { id: &id, at_ms, operator, act, subject, detail: reason }.enter(to, &[])?;
                 }
                 Ok(forgotten > 0)
             })

@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::super::database::values;
-use super::super::{Snapshot, StoreError, statements as sql};
+use super::super::audit::Line;
+use super::super::{Snapshot, StoreError};
 use super::{Plant, PlantAddress};
 use crate::{clock, ids};
 
@@ -52,7 +52,7 @@ impl PlantPool {
         let id = ids::new(at_ms)?.to_string();
         let mut plant = Plant::connect(&self.0.address)?;
         plant.carry_out("an audit", |to| {
-            to.execute(sql::ADD_AUDIT, values![&id, at_ms, operator, act, subject, detail]).map(drop)
+            Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &[])
         })
     }
 

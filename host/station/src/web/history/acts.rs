@@ -142,7 +142,7 @@ pub(super) fn rebind_form(visit: &Visit, unit: &Unit) -> Markup {
 }
 
 /// The mark of the form, and the reason.
-fn fields(visit: &Visit) -> Markup {
+pub(in crate::web) fn fields(visit: &Visit) -> Markup {
     html! {
         input type="hidden" name="csrf" value=(visit.csrf);
         label { span { (visit.say("history.reason")) } input name="reason" required maxlength=(MOST); }

@@ -2,6 +2,7 @@
 
 use maud::{Markup, html};
 
+use super::yields::FEW;
 use crate::history::control::Limits;
 use crate::history::rate::Rate;
 
@@ -35,8 +36,6 @@ pub(super) fn length(count: u64, most: u64) -> Markup {
 const DAY: usize = 12;
 const BESIDE: usize = 52;
 const HEIGHT: usize = 130;
-/// Units of a day by which the chart's height is chosen.
-const MANY: u64 = 30;
 
 /// A day of a yield, or a week.
 #[derive(Clone, Debug)]
@@ -55,13 +54,11 @@ pub(super) fn days(of: &str, days: &[Day]) -> Markup {
     let low = |day: &Day| day.rate.interval.map(|[low, _]| low);
     let limit = |day: &Day| day.limits.map(|Limits { limits: [low, _], .. }| low);
     // The interval of a day of few units would leave no room for all others; it is cut off where the chart ends.
-    let is_many = |day: &&Day| day.rate.of >= MANY;
-    let many = days.iter().filter(is_many).flat_map(|day| [low(day), limit(day)]).flatten();
-    let least = many.fold(1.0, f64::min);
+    let many = days.iter().filter(|day| day.rate.of >= FEW).flat_map(|day| [low(day), limit(day)]).flatten();
     // Where shares are high, what is below would be empty.
-    let floor = [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least).unwrap_or(0.0);
+    let floors = |least: f64| [0.95, 0.9, 0.8, 0.5].into_iter().find(|floor| *floor <= least);
+    let floor = many.reduce(f64::min).and_then(floors).unwrap_or(0.0);
     let width = days.len() * DAY + BESIDE;
-    let floor = if days.iter().any(|day| is_many(&day)) { floor } else { 0.0 };
     let y = |share: f64| 8.0 + 100.0 * (1.0 - share.max(floor)) / (1.0 - floor);
     let last = days.len().saturating_sub(1);
     html! {

@@ -5,7 +5,7 @@
 //!      └─────► /unit?serial=…      /yield      /pareto
 //! ```
 
-mod acts;
+pub(super) mod acts;
 mod asked;
 mod bars;
 mod csv;

@@ -26,7 +26,7 @@ const MOST_DAYS: usize = 60;
 /// Lines that are listed.
 const MOST_LINES: usize = 120;
 /// With fewer units a share says little.
-const FEW: u64 = 30;
+pub(super) const FEW: u64 = 30;
 
 pub(super) async fn page(
     State(app): State<App>,

@@ -14,7 +14,7 @@ use crate::store::Snapshot;
 use crate::web::layout::{Here, Page};
 use crate::web::live::Now;
 use crate::web::routes::Who;
-use crate::web::state::App;
+use crate::web::state::{App, Floor};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
@@ -31,8 +31,8 @@ pub(super) async fn answered(app: App, visit: Visit, answer: Answer) -> Result<R
 }
 
 async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Response, Trouble> {
-    let (now, today) = (app.floor(&visit)?.live.now(), counted(&app, &visit).await?);
-    let hints = &app.floor(&visit)?.hints;
+    let Floor { live, hints, .. } = app.floor(&visit)?;
+    let (now, today) = (live.now(), counted(&app, &visit).await?);
     let head = html! {
         noscript { meta http-equiv="refresh" content={ (ANEW) "; url=/" }; }
         link rel="stylesheet" href="/assets/operator.css";

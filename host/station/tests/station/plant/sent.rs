@@ -12,7 +12,7 @@ use crate::history::released::history;
 pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
     let (folder, mut store) = made.parts();
     store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
-    let origin = store.folder().origin().unwrap().unwrap();
+    let origin = store.origin().unwrap();
     let mut sink = PlantSink::new(address, presence("station 7", origin));
     let store = SharedStore::new(store);
     let mut all = Round::default();
