@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use halfrow::frames::written_aside::{Aside, WriteAsideError, write_aside};
 
 use super::looking::{Data, Filtered};
@@ -27,37 +27,12 @@ pub(super) struct Arguments {
     data: Data,
     /// How they are written
     #[arg(long, value_enum, default_value = "record")]
-    format: Written,
+    format: Format,
     /// The file, or the folder, which is made if it is not there
     #[arg(long, value_name = "PATH", required_unless_present = "run")]
     to: Option<PathBuf>,
     #[command(flatten)]
     filtered: Filtered,
-}
-
-/// A format.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Written {
-    /// The record, those very bytes
-    Record,
-    /// JUnit XML
-    Junit,
-    /// A table with a line for each measurement
-    Csv,
-    /// The JSON of OpenHTF 1.6
-    Openhtf,
-}
-
-impl Written {
-    /// The format of one run; none for the table.
-    const fn format(self) -> Option<Format> {
-        match self {
-            Self::Record => Some(Format::Record),
-            Self::Junit => Some(Format::Junit),
-            Self::Openhtf => Some(Format::OpenHtf),
-            Self::Csv => None,
-        }
-    }
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -69,19 +44,12 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
 }
 
-fn one(of: &Snapshot, run: &str, written: Written, to: Option<&Path>) -> Result<Exit, Failure> {
+fn one(of: &Snapshot, run: &str, format: Format, to: Option<&Path>) -> Result<Exit, Failure> {
     let Some(hash) = run_of(of, run)?.and_then(|run| run.line.record_sha256) else {
         let what = format!("no run {run} is over; `halfrow-station history` lists the runs");
         return Err(Failure::call(anyhow::Error::msg(what)));
     };
-    let bytes = match written.format() {
-        Some(format) => export::run(of, &hash, format)?,
-        None => {
-            let mut table = Table::begin(Vec::new())?;
-            table.add(&export::record(of, &hash)?.0)?;
-            table.end()
-        }
-    };
+    let bytes = export::run(of, &hash, format)?;
     if let Some(to) = to {
         write_aside(to, false, |file| file.write_all(&bytes)).map_err(unwritten)?;
         return Ok(Exit::Pass);
@@ -92,23 +60,20 @@ fn one(of: &Snapshot, run: &str, written: Written, to: Option<&Path>) -> Result<
 }
 
 /// Writes all runs of the filter, and says how many they were.
-fn all(of: &Snapshot, filter: &Filter, written: Written, to: &Path) -> Result<Exit, Failure> {
-    let count = match written.format() {
-        Some(format) => {
-            fs::create_dir_all(to).map_err(Failure::error)?;
-            each(of, filter, |run, hash| {
-                let bytes = export::run(of, hash, format)?;
-                let path = to.join(format!("{run}{}", format.ending()));
-                write_aside(&path, false, |file| file.write_all(&bytes)).map_err(unwritten)
-            })?
-        }
-        None => {
-            let aside = Aside::written(to, false, |_| Ok(())).map_err(unwritten)?;
-            let mut table = Table::begin(aside)?;
-            let count = each(of, filter, |_, hash| Ok(table.add(&export::record(of, hash)?.0)?))?;
-            table.end().put_in_place().map_err(unwritten)?;
-            count
-        }
+fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit, Failure> {
+    let count = if format == Format::Csv {
+        let aside = Aside::written(to, false, |_| Ok(())).map_err(unwritten)?;
+        let mut table = Table::begin(aside)?;
+        let count = each(of, filter, |_, hash| Ok(table.add(&export::record(of, hash)?.0)?))?;
+        table.end().put_in_place().map_err(unwritten)?;
+        count
+    } else {
+        fs::create_dir_all(to).map_err(Failure::error)?;
+        each(of, filter, |run, hash| {
+            let bytes = export::run(of, hash, format)?;
+            let path = to.join(format!("{run}{}", format.ending()));
+            write_aside(&path, false, |file| file.write_all(&bytes)).map_err(unwritten)
+        })?
     };
     print(&format!("{count} runs are in {}", to.display()))
 }

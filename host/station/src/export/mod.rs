@@ -6,32 +6,56 @@ mod table;
 
 use std::io;
 
+use clap::ValueEnum;
 use quick_junit::SerializeError;
+use serde::Deserialize;
 
 pub use table::{COLUMNS, Table};
 
 use crate::record::Record;
 use crate::store::{Snapshot, StoreError};
 
-/// What one run is written as. All runs together are a [`Table`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What one run is written as.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+#[value(rename_all = "lower")]
 pub enum Format {
-    /// The record, those very bytes.
+    /// The record, those very bytes
+    #[default]
     Record,
-    /// JUnit XML, for CI systems.
+    /// JUnit XML
     Junit,
-    /// The JSON of OpenHTF 1.6.
+    /// A table with a line for each measurement
+    Csv,
+    /// The JSON of OpenHTF 1.6
     OpenHtf,
 }
 
 impl Format {
+    /// The format of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::from_str(name, false).ok()
+    }
+
     /// What the names of its files end with, after the run's id.
     #[must_use]
     pub const fn ending(self) -> &'static str {
         match self {
             Self::Record => ".json",
             Self::Junit => ".xml",
+            Self::Csv => ".csv",
             Self::OpenHtf => ".openhtf.json",
+        }
+    }
+
+    /// Its media type.
+    #[must_use]
+    pub const fn media(self) -> &'static str {
+        match self {
+            Self::Record | Self::OpenHtf => "application/json",
+            Self::Junit => "application/xml",
+            Self::Csv => "text/csv; charset=utf-8",
         }
     }
 }
@@ -71,11 +95,24 @@ pub fn record(of: &Snapshot, hash: &str) -> Result<(Record, Vec<u8>), ExportErro
 /// [`ExportError`]
 pub fn run(of: &Snapshot, hash: &str, format: Format) -> Result<Vec<u8>, ExportError> {
     let (record, bytes) = record(of, hash)?;
+    written(&record, bytes, format)
+}
+
+/// The run of this record in this format; `bytes` are the record's own.
+///
+/// # Errors
+/// [`ExportError`], but for the store.
+pub fn written(record: &Record, bytes: Vec<u8>, format: Format) -> Result<Vec<u8>, ExportError> {
     match format {
         Format::Record => Ok(bytes),
-        Format::Junit => Ok(junit::render(&record)?.into_bytes()),
+        Format::Junit => Ok(junit::render(record)?.into_bytes()),
+        Format::Csv => {
+            let mut table = Table::begin(Vec::new())?;
+            table.add(record)?;
+            Ok(table.end())
+        }
         Format::OpenHtf => {
-            let mut bytes = serde_json::to_vec_pretty(&openhtf::of(&record))?;
+            let mut bytes = serde_json::to_vec_pretty(&openhtf::of(record))?;
             bytes.push(b'\n');
             Ok(bytes)
         }

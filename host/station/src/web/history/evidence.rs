@@ -5,7 +5,7 @@ use axum::http::StatusCode;
 use axum::http::header::{CACHE_CONTROL, CONTENT_DISPOSITION, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
 
-use crate::export::{self, ExportError, Format, Table};
+use crate::export::{self, ExportError, Format};
 use crate::history::unit::{self, UnitRun};
 use crate::record::Attachment;
 use crate::store::{Snapshot, StoreError};
@@ -67,32 +67,18 @@ pub(super) async fn export(
     visit: Visit,
     Path((run, format)): Path<(String, String)>,
 ) -> Result<Response, Trouble> {
-    let (format, kind, ending) = match format.as_str() {
-        "record" => (Some(Format::Record), "application/json", Format::Record.ending()),
-        "junit" => (Some(Format::Junit), "application/xml", Format::Junit.ending()),
-        "openhtf" => (Some(Format::OpenHtf), "application/json", Format::OpenHtf.ending()),
-        "csv" => (None, "text/csv; charset=utf-8", ".csv"),
-        _ => return Err(Trouble::missing(&visit)),
-    };
+    let format = Format::named(&format).ok_or_else(|| Trouble::missing(&visit))?;
     let look = move |now: &Snapshot| {
         let run = unit::run_of(now, &run)?;
         let found = run.and_then(|run| Some((run.line.id, run.line.record_sha256?)));
-        Ok(found.map(|(id, hash)| (id, written(now, &hash, format))))
+        Ok(found.map(|(id, hash)| (id, export::run(now, &hash, format))))
     };
     let (id, written) = app.look(&visit, look).await?.ok_or_else(|| Trouble::missing(&visit))?;
     let bytes = written.map_err(|error| refused(&visit, error))?;
-    let how = format!("attachment; filename=\"{id}{ending}\"");
-    let headers = [(CONTENT_TYPE, kind), (CACHE_CONTROL, FOR_EVER), (CONTENT_DISPOSITION, how.as_str())];
+    let how = format!("attachment; filename=\"{id}{}\"", format.ending());
+    let headers =
+        [(CONTENT_TYPE, format.media()), (CACHE_CONTROL, FOR_EVER), (CONTENT_DISPOSITION, how.as_str())];
     Ok((headers, bytes).into_response())
-}
-
-fn written(now: &Snapshot, hash: &str, format: Option<Format>) -> Result<Vec<u8>, ExportError> {
-    let Some(format) = format else {
-        let mut table = Table::begin(Vec::new())?;
-        table.add(&export::record(now, hash)?.0)?;
-        return Ok(table.end());
-    };
-    export::run(now, hash, format)
 }
 
 fn refused(visit: &Visit, error: ExportError) -> Trouble {
