@@ -38,6 +38,7 @@ pub mod run;
 pub mod said;
 pub mod settings;
 pub mod store;
+pub mod trust;
 pub mod web;
 
 pub use halfrow_program::{console, exit, guard};

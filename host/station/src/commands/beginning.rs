@@ -12,9 +12,9 @@ use crate::console;
 use crate::disk;
 use crate::engine::Engine;
 use crate::exit::Exit;
-use crate::outbox::{Outbox, PlantSink, Sink};
+use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
-use crate::settings::{PlantSettings, Settings};
+use crate::settings::Settings;
 use crate::store::{Folder, Store};
 
 /// Which disks are taken for new results.
@@ -118,20 +118,20 @@ impl<'a> Ready<'a> {
 /// The threads that send on what the station keeps.
 pub(super) fn outbox(settings: &Settings, engine: &Engine) -> Result<Outbox, Failure> {
     let store = engine.store();
-    let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
-    if let Some(plant) = &settings.plant {
-        sinks.push(Box::new(store.with(|store| plant_sink(settings, plant, store))?));
-    }
+    let sinks = store.with(|store| sinks(settings, store))?;
     Ok(Outbox::start(&store, sinks)?)
 }
 
-/// The plant, as this station sends to it.
-pub(super) fn plant_sink(
-    settings: &Settings,
-    plant: &PlantSettings,
-    store: &mut Store,
-) -> Result<PlantSink, Failure> {
-    Ok(PlantSink::new(plant.address()?, settings.presence(store.origin()?)))
+/// Everybody who is sent what the station keeps.
+pub(super) fn sinks(settings: &Settings, store: &mut Store) -> Result<Vec<Box<dyn Sink>>, Failure> {
+    let mut sinks: Vec<Box<dyn Sink>> = Vec::new();
+    if let Some(plant) = &settings.plant {
+        sinks.push(Box::new(PlantSink::new(plant.address()?, settings.presence(store.origin()?))));
+    }
+    for sink in &settings.sinks {
+        sinks.push(outbox::open(sink, &settings.name).map_err(Failure::call)?);
+    }
+    Ok(sinks)
 }
 
 /// Closes what was under way when the station ended, says so, and returns it.

@@ -9,7 +9,7 @@ use halfrow_program::codes as program;
 use serde_json::{Value, json};
 
 use super::lanes::EngineEnded;
-use super::outbox::NotDead;
+use super::outbox::{NoSink, NotDead, SinkInUse};
 use super::plant::{NoPlant, NoStation};
 use super::run::NoMock;
 use super::{Failure, document, print};
@@ -21,13 +21,14 @@ use crate::export::ExportError;
 use crate::floor::{Refusal, ScanError, UnknownBarcode};
 use crate::input_error::InputError;
 use crate::kept::CopyError;
-use crate::outbox::OutboxError;
+use crate::outbox::{OutboxError, SinkError, SinkSettingsError};
 use crate::plan::serial::SerialError;
 use crate::record::{BlobError, RecordError};
 use crate::run::{NoRandomness, RunError};
 use crate::said::Saying;
 use crate::settings::PlantSettingsError;
 use crate::store::{AgainError, NoWaiver, PlantAddressError, PlantError, RebindError, StoreError};
+use crate::trust::TrustError;
 use crate::web::SecretError;
 
 /// Print the page of all codes of the station's errors
@@ -108,13 +109,32 @@ codes::codes! {
         Malformed => "plant-address-malformed",
         Without [what] => "plant-address-incomplete",
         Password => "plant-address-with-password",
-        Certificates [path] => "plant-certificates-unreadable",
-        NoCertificates => "plant-without-certificates",
-        Tls => "plant-without-tls",
+        = Trust,
+    }
+    TrustError {
+        Certificates [path] => "certificates-unreadable",
+        NoCertificates => "certificates-missing",
+        Tls => "tls-unusable",
     }
     OutboxError {
         Thread => "outbox-without-thread",
         = Store,
+    }
+    SinkSettingsError {
+        = Secret,
+        = Trust,
+    }
+    SinkError {
+        NoFolder [path] => "sink-without-folder",
+        OtherFile [path] => "sink-has-other-file",
+        Unread [path] => "sink-file-unreadable",
+        Unreached [host] => "sink-unreached",
+        Busy [host, status] => "sink-busy",
+        Closed [host, status] => "sink-closed",
+        Rejected [host, status, answer] => "sink-rejects",
+        Unconfirmed [host, seconds] => "sink-unconfirmed",
+        = Unwritten,
+        = Export,
     }
     PlantSettingsError {
         = Address,
@@ -257,7 +277,11 @@ codes::codes! {
     ;
     NoPlant => "settings-without-plant"
     ;
-    NotDead [id] => "outbox-entry-not-dead"
+    NotDead [what] => "outbox-entry-not-dead"
+    ;
+    NoSink => "settings-without-sink"
+    ;
+    SinkInUse [sink] => "sink-in-use"
     ;
     NoStation [station] => "plant-without-station"
 }

@@ -3,9 +3,8 @@
 use clap::{Args, Subcommand};
 use serde::Serialize;
 
-use super::beginning::{Disk, SettingsFile, plant_sink};
+use super::beginning::{Disk, SettingsFile, sinks};
 use super::looking::{either, table, time};
-use super::plant::plant;
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::outbox::{OutboxError, PlantSink, Round, round};
@@ -37,14 +36,32 @@ enum What {
     /// Have something tried again that waits for a person
     Release {
         /// The id of the run, the waiver or the line of the audit
-        id: String,
-        /// Why it may be tried again
-        #[arg(long)]
-        reason: String,
-        /// Who says so
-        #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
-        operator: String,
+        #[arg(required_unless_present = "sink")]
+        id: Option<String>,
+        /// All that waits for a person at this sink
+        #[arg(long, value_name = "NAME", conflicts_with = "id")]
+        sink: Option<String>,
+        #[command(flatten)]
+        why: Why,
     },
+    /// Forget what is to be sent to a sink that the settings do not name any more
+    Forget {
+        /// The sink
+        sink: String,
+        #[command(flatten)]
+        why: Why,
+    },
+}
+
+/// Who does it, and why, which the audit keeps.
+#[derive(Debug, Args)]
+struct Why {
+    /// Why
+    #[arg(long)]
+    reason: String,
+    /// Who says so
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
 }
 
 /// What is still to be sent.
@@ -60,28 +77,52 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     match what {
         What::List { json } => either(&Left { unsent: folder.unsent()?, dead: folder.dead()? }, *json, text),
         What::Send { disk } => send(&settings, disk.opens(&settings.data)?),
-        What::Release { id, reason, operator } => {
-            let mut store = Store::open_existing(&folder)?;
-            if store.release(id)? == 0 {
-                return Err(Failure::call(NotDead { id: id.clone() }));
-            }
-            store.note(operator, "release", id, reason)?;
-            print(&format!("{id} is tried again"))
-        }
+        What::Release { id, sink, why } => release(&folder, id.as_deref(), sink.as_deref(), why),
+        What::Forget { sink, why } => forget(&settings, &folder, sink, why),
     }
 }
 
-/// Sends to the plant until nothing is due.
+fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> Result<Exit, Failure> {
+    let mut store = Store::open_existing(folder)?;
+    let (released, what) = match (id, sink) {
+        (Some(id), _) => (store.release(id)?, id),
+        (None, Some(sink)) => (store.release_all(sink)?, sink),
+        (None, None) => (0, ""),
+    };
+    if released == 0 {
+        return Err(Failure::call(NotDead { what: what.to_owned() }));
+    }
+    store.note(&why.operator, "release", what, &why.reason)?;
+    print(&format!("{released} of {what} are tried again"))
+}
+
+fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
+    let plant = settings.plant.iter().map(|_| PlantSink::NAME);
+    if plant.chain(settings.sinks.iter().map(|sink| sink.name.as_str())).any(|name| name == sink) {
+        return Err(Failure::call(SinkInUse { sink: sink.to_owned() }));
+    }
+    let mut store = Store::open_existing(folder)?;
+    let forgotten = store.forget_sink(sink)?;
+    store.note(&why.operator, "forget-sink", sink, &why.reason)?;
+    print(&format!("{forgotten} of {sink} are forgotten"))
+}
+
+/// Sends to everybody until nothing is due.
 fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
-    let mut sink = plant_sink(settings, plant(settings)?, &mut store)?;
-    store.sends_to(vec![PlantSink::NAME.to_owned()])?;
+    let mut sinks = sinks(settings, &mut store)?;
+    if sinks.is_empty() {
+        return Err(Failure::call(NoSink));
+    }
+    store.sends_to(sinks.iter().map(|sink| sink.name().to_owned()).collect())?;
     let store = SharedStore::new(store);
     let mut all = Round::default();
-    loop {
-        let Round { sent, failed, is_away } = round(&store, &mut sink)?;
-        all = Round { sent: all.sent + sent, failed: all.failed + failed, is_away };
-        if is_away || sent + failed == 0 {
-            break;
+    for sink in &mut sinks {
+        loop {
+            let Round { sent, failed, is_away } = round(&store, &mut **sink)?;
+            all = Round { sent: all.sent + sent, failed: all.failed + failed, is_away };
+            if is_away || sent + failed == 0 {
+                break;
+            }
         }
     }
     let left = store.with(|store| store.folder().unsent())?;
@@ -108,11 +149,23 @@ fn table_of(unsent: &[Unsent]) -> String {
     table(&["sink", "unsent", "dead", "since", "said last"], &[1, 2], unsent.iter().map(row))
 }
 
-/// Nothing of this id waits for a person.
+/// Settings that name nobody to send to.
 #[derive(Debug, thiserror::Error)]
-#[error("nothing of the id {id} waits for a person; `halfrow-station outbox list` tells what does")]
+#[error("the settings name nobody to send to; write [plant] or a [[sink]]")]
+pub(super) struct NoSink;
+
+/// Nothing of this id or sink waits for a person.
+#[derive(Debug, thiserror::Error)]
+#[error("nothing of {what} waits for a person; `halfrow-station outbox list` tells what does")]
 pub(super) struct NotDead {
-    pub(super) id: String,
+    pub(super) what: String,
+}
+
+/// A sink that is still sent to.
+#[derive(Debug, thiserror::Error)]
+#[error("the settings name the sink {sink}, which would be sent all again; take it out of them first")]
+pub(super) struct SinkInUse {
+    pub(super) sink: String,
 }
 
 impl From<OutboxError> for Failure {

@@ -2,9 +2,10 @@
 
 use nix::sys::statvfs::statvfs;
 
+use crate::outbox::PlantSink;
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
-use crate::store::{Folder, Unsent};
+use crate::store::Folder;
 
 /// How full the disk may be, in per cent, while results wait for a plant.
 const MOST_PERCENT: u64 = 95;
@@ -13,7 +14,10 @@ const MOST_PERCENT: u64 = 95;
 pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     let most = settings.plant.as_ref()?.most_unsent;
     let entries = match folder.unsent() {
-        Ok(unsent) => unsent.iter().map(|Unsent { entries, .. }| *entries).max().unwrap_or(0),
+        // What others are sent is kept by the plant, too.
+        Ok(unsent) => {
+            unsent.iter().find(|unsent| unsent.sink == PlantSink::NAME).map_or(0, |plant| plant.entries)
+        }
         Err(error) => return Some(Said::of(&error)),
     };
     if entries > most {

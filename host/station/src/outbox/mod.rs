@@ -8,6 +8,7 @@
 
 mod back_off;
 mod plant;
+mod sinks;
 
 use std::io;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -15,6 +16,7 @@ use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 pub use plant::PlantSink;
+pub use sinks::{SinkError, SinkSettingsError, open};
 
 use crate::clock;
 use crate::guard::guarded;

@@ -2,6 +2,7 @@
 
 mod plant;
 mod read;
+mod sink;
 mod stable;
 mod text;
 
@@ -13,6 +14,7 @@ use halfrow::Verdict;
 use halfrow::target::Target;
 
 pub use plant::{PlantSettings, PlantSettingsError};
+pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::input_error::InputError;
@@ -50,6 +52,8 @@ pub struct Settings {
     pub access: Option<AccessSettings>,
     /// Where results are sent on to.
     pub plant: Option<PlantSettings>,
+    /// Who else is sent results.
+    pub sinks: Vec<SinkSettings>,
 }
 
 /// `[access]`

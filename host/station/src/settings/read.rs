@@ -9,7 +9,8 @@ use toml::Spanned;
 
 use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText};
 use super::{
-    AccessSettings, Hook, LaneSettings, PlanFile, PlantSettings, SCHEMA, Scanner, Settings, WORDS, stable,
+    AccessSettings, Hook, LaneSettings, PlanFile, PlantSettings, SCHEMA, Scanner, Settings, SinkSettings,
+    WORDS, stable,
 };
 use crate::floor::Starts;
 use crate::input_error::Fault;
@@ -61,7 +62,22 @@ pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Setti
         address: address(&read)?,
         access: read.access.as_ref().map(|access| people(folder, access)).transpose()?,
         plant: read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?,
+        sinks: sinks(folder, &read)?,
     })
+}
+
+/// Whoever else is sent results, each under a name of its own.
+fn sinks(folder: &Path, read: &SettingsText) -> Result<Vec<SinkSettings>, Fault> {
+    let mut sinks = Vec::<SinkSettings>::new();
+    for text in &read.sink {
+        let sink = SinkSettings::of(folder, text)?;
+        if sinks.iter().any(|other| other.name == sink.name) {
+            let what = format!("two sinks are called {}", sink.name);
+            return Err(Fault::wrong(text.name.span().start, what, "give each a name of its own"));
+        }
+        sinks.push(sink);
+    }
+    Ok(sinks)
 }
 
 /// Where the pages are. Whatever others can reach has people who log in.

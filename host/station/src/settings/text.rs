@@ -3,6 +3,8 @@
 use serde::Deserialize;
 use toml::Spanned;
 
+use crate::export::Format;
+
 /// The whole file.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -15,6 +17,8 @@ pub(super) struct SettingsText {
     pub(super) web: WebText,
     pub(super) access: Option<AccessText>,
     pub(super) plant: Option<PlantText>,
+    #[serde(default)]
+    pub(super) sink: Vec<SinkText>,
     #[serde(default)]
     pub(super) lane: Vec<LaneText>,
     #[serde(default, rename = "on-pass")]
@@ -94,6 +98,21 @@ pub(super) enum GreenText {
     #[default]
     Station,
     Plant,
+}
+
+/// A `[[sink]]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct SinkText {
+    pub(super) name: Spanned<String>,
+    pub(super) folder: Option<Spanned<String>>,
+    pub(super) post: Option<Spanned<String>>,
+    pub(super) mqtt: Option<Spanned<String>>,
+    pub(super) format: Option<Spanned<Format>>,
+    pub(super) token_file: Option<Spanned<String>>,
+    pub(super) user: Option<Spanned<String>>,
+    pub(super) password_file: Option<Spanned<String>>,
+    pub(super) ca: Option<Spanned<String>>,
 }
 
 /// A `[[lane]]`

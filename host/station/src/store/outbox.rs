@@ -204,6 +204,26 @@ impl Store {
     pub fn release(&mut self, subject: &str) -> Result<u64, StoreError> {
         self.change("what is to be sent again", |to| to.execute(sql::OUTBOX_RELEASED, values![subject]))
     }
+
+    /// Has this sink try again all that waits for a person. Returns how much did.
+    ///
+    /// # Errors
+    /// As [`Self::sends_to`].
+    pub fn release_all(&mut self, sink: &str) -> Result<u64, StoreError> {
+        self.change("what is to be sent again", |to| to.execute(sql::OUTBOX_ALL_RELEASED, values![sink]))
+    }
+
+    /// Sends nothing more to this sink, and forgets what it has. Returns how many entries it had that it was not sent.
+    ///
+    /// # Errors
+    /// As [`Self::sends_to`].
+    pub fn forget_sink(&mut self, sink: &str) -> Result<u64, StoreError> {
+        self.change("that a sink is no more", |to| {
+            let unsent = to.execute(sql::FORGET_UNSENT, values![sink])?;
+            to.execute(sql::FORGET_SINK, values![sink])?;
+            Ok(unsent)
+        })
+    }
 }
 
 impl Snapshot {

@@ -60,6 +60,9 @@ pub(super) const OUTBOX_STATE: &str = include_str!("../../sql/outbox-state.sql")
 pub(super) const OUTBOX_DONE: &str = include_str!("../../sql/outbox-done.sql");
 pub(super) const OUTBOX_FAILED: &str = include_str!("../../sql/outbox-failed.sql");
 pub(super) const OUTBOX_DEAD: &str = include_str!("../../sql/outbox-dead.sql");
+pub(super) const OUTBOX_ALL_RELEASED: &str = include_str!("../../sql/outbox-all-released.sql");
+pub(super) const FORGET_UNSENT: &str = include_str!("../../sql/forget-unsent.sql");
+pub(super) const FORGET_SINK: &str = include_str!("../../sql/forget-sink.sql");
 pub(super) const OUTBOX_RELEASED: &str = include_str!("../../sql/outbox-released.sql");
 pub(super) const OUTBOX_ENTRY: &str = include_str!("../../sql/outbox-entry.sql");
 pub(super) const WAIVER_BY_ID: &str = include_str!("../../sql/waiver-by-id.sql");
@@ -90,7 +93,7 @@ mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 76] = [
+    const ALL: [&str; 79] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -143,6 +146,9 @@ mod tests {
         OUTBOX_DONE,
         OUTBOX_FAILED,
         OUTBOX_DEAD,
+        OUTBOX_ALL_RELEASED,
+        FORGET_UNSENT,
+        FORGET_SINK,
         OUTBOX_RELEASED,
         OUTBOX_ENTRY,
         WAIVER_BY_ID,

@@ -15,3 +15,4 @@ mod plant;
 mod runs;
 mod service;
 mod settings;
+mod sinks;

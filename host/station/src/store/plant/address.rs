@@ -2,16 +2,16 @@
 
 use std::fmt;
 use std::net::IpAddr;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
 use postgres::config::{Host, SslMode};
 use postgres::{Client, Config, NoTls};
-use rustls::pki_types::CertificateDer;
-use rustls::pki_types::pem::{self, PemObject as _};
-use rustls::{ClientConfig, RootCertStore};
+use rustls::ClientConfig;
 use tokio_postgres_rustls::MakeRustlsConnect;
+
+use crate::trust::{self, TrustError};
 
 /// How long a connection may take to come about.
 const REACHED: Duration = Duration::from_secs(10);
@@ -38,22 +38,9 @@ pub enum PlantAddressError {
          name as password_file"
     )]
     Password,
-    /// Certificates cannot be read.
-    #[error("the certificates in {} cannot be read; give a file of those that sign the plant's, in PEM", path.display())]
-    Certificates {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: pem::Error,
-    },
-    /// There is no certificate to know the plant by.
-    #[error(
-        "there is no certificate to know the plant by; give a file of those that sign the plant's as `ca`"
-    )]
-    NoCertificates,
-    /// TLS cannot be used.
-    #[error("TLS cannot be used; report this with the version")]
-    Tls(#[source] rustls::Error),
+    /// Nobody can be trusted.
+    #[error(transparent)]
+    Trust(#[from] TrustError),
 }
 
 /// Where a plant is. Printed, it has no password.
@@ -83,7 +70,7 @@ impl PlantAddress {
             None
         } else {
             config.ssl_mode(SslMode::Require);
-            Some(Arc::new(trusting(ca)?))
+            Some(Arc::new(trust::client(ca)?))
         };
         if let Some(password) = password {
             config.password(password);
@@ -136,28 +123,6 @@ fn shown(config: &Config) -> Result<String, PlantAddressError> {
 fn is_near(host: &Host) -> bool {
     match host {
         Host::Unix(_) => true,
-        Host::Tcp(name) => name == "localhost" || name.parse::<IpAddr>().is_ok_and(|ip| ip.is_loopback()),
+        Host::Tcp(name) => trust::is_near(name),
     }
-}
-
-fn trusting(ca: Option<&Path>) -> Result<ClientConfig, PlantAddressError> {
-    let mut roots = RootCertStore::empty();
-    match ca {
-        Some(path) => {
-            let refused = |source| PlantAddressError::Certificates { path: path.to_owned(), source };
-            let certificates = CertificateDer::pem_file_iter(path).map_err(refused)?;
-            for certificate in certificates {
-                roots.add(certificate.map_err(refused)?).map_err(PlantAddressError::Tls)?;
-            }
-        }
-        None => {
-            roots.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
-        }
-    }
-    if roots.is_empty() {
-        return Err(PlantAddressError::NoCertificates);
-    }
-    let provider = Arc::new(rustls::crypto::ring::default_provider());
-    let builder = ClientConfig::builder_with_provider(provider).with_safe_default_protocol_versions();
-    Ok(builder.map_err(PlantAddressError::Tls)?.with_root_certificates(roots).with_no_client_auth())
 }

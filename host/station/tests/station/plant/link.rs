@@ -6,6 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use halfrow_station::store::{Plant, PlantAddress, PlantAddressError};
+use halfrow_station::trust::TrustError;
 use tempfile::TempDir;
 
 use super::server::Server;
@@ -17,7 +18,7 @@ const PASSWORD: &str = "correct-horse-battery-5e1f";
 const WRONG: &str = "wrong-horse-5e1f";
 
 /// Makes an authority and a certificate that it signs for `localhost` in `folder`: ca.pem, server.crt, server.key.
-fn certificates(folder: &Path) {
+pub(crate) fn certificates(folder: &Path) {
     let script = "set -e
         openssl req -x509 -newkey rsa:2048 -nodes -keyout ca.key -out ca.pem -days 2 -subj /CN=authority 2>/dev/null
         openssl req -newkey rsa:2048 -nodes -keyout server.key -out server.csr -subj /CN=localhost 2>/dev/null
@@ -57,7 +58,7 @@ fn what_leaves_the_computer_goes_through_tls_and_to_the_plant_alone() {
     assert!(format!("{refused:?}").contains("does not support TLS"), "{refused:?}");
     // Certificates that are none are told at once.
     let none = PlantAddress::new(&far, None, Some(&place.path().join("names"))).unwrap_err();
-    assert!(matches!(none, PlantAddressError::NoCertificates), "{none:?}");
+    assert!(matches!(none, PlantAddressError::Trust(TrustError::NoCertificates)), "{none:?}");
 }
 
 /// An address of this computer that others reach, too.

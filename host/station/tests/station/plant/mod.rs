@@ -2,7 +2,7 @@
 
 mod cut;
 mod late;
-mod link;
+pub(crate) mod link;
 mod pages;
 mod refused;
 mod sent;

@@ -1,0 +1,182 @@
+//! A broker of MQTT 3.1.1 as a sink: each run and each waiver is an event, for dashboards. It is no result: what is older than
+//! an hour is not told any more.
+
+use std::time::{Duration, Instant};
+
+use rumqttc::{
+    Client, Connection, Event, MqttOptions, Packet, PublishOptions, QoS, TlsConfiguration, Transport,
+};
+use serde::Serialize;
+
+use super::{SinkError, SinkSettingsError};
+use crate::clock;
+use crate::outbox::{Sink, Undelivered};
+use crate::plan::mock::is_mock;
+use crate::record::Record;
+use crate::settings::{Login, SinkAddress};
+use crate::store::{Parcel, Waiver};
+use crate::trust;
+use crate::web::secret;
+
+/// The version of an event's own document.
+const SCHEMA: u32 = 1;
+/// What is older is not told, in milliseconds.
+const OLDEST_MS: i64 = 3_600_000;
+/// How long an event may go without being confirmed.
+const CONFIRMED: Duration = Duration::from_secs(10);
+/// How often a broker is told that the station is there, in seconds.
+const ALIVE: u16 = 60;
+
+/// A broker, which is connected to when there is something to tell.
+pub(super) struct EventSink {
+    name: String,
+    station: String,
+    host: String,
+    /// What every topic begins with.
+    prefix: String,
+    options: MqttOptions,
+    connected: Option<(Client, Connection)>,
+}
+
+/// A run that is over.
+#[derive(Serialize)]
+struct RunEvent<'a> {
+    schema: u32,
+    run: &'a str,
+    station: &'a str,
+    lane: &'a str,
+    product: &'a str,
+    serial: &'a str,
+    plan: &'a str,
+    version: &'a str,
+    verdict: String,
+    cause: &'a str,
+    headline: &'a str,
+    started_ms: i64,
+    ended_ms: i64,
+    /// Whether it counts: the board is no mock.
+    production: bool,
+}
+
+impl<'a> RunEvent<'a> {
+    fn of(Record { run, plan, conclusion, ended_ms, .. }: &'a Record) -> Self {
+        Self {
+            schema: SCHEMA,
+            run: &run.id,
+            station: &run.station,
+            lane: &run.lane,
+            product: &run.product,
+            serial: &run.serial,
+            plan: &plan.name,
+            version: &plan.version,
+            verdict: conclusion.verdict.to_string(),
+            cause: conclusion.cause.name(),
+            headline: &conclusion.headline,
+            started_ms: run.started_ms,
+            ended_ms: *ended_ms,
+            production: !is_mock(&run.serial),
+        }
+    }
+}
+
+/// A waiver.
+#[derive(Serialize)]
+struct WaiverEvent<'a> {
+    schema: u32,
+    station: &'a str,
+    #[serde(flatten)]
+    waiver: &'a Waiver,
+}
+
+impl EventSink {
+    /// The broker at `address`, which lets `login` in; it hears of `station`.
+    pub(super) fn new(
+        name: String,
+        station: &str,
+        address: &SinkAddress,
+        login: Option<&Login>,
+    ) -> Result<Self, SinkSettingsError> {
+        let client = format!("halfrow-{station}-{name}");
+        let mut options = MqttOptions::new(client, (address.host.clone(), address.port));
+        options.set_keep_alive(ALIVE).set_clean_session(true);
+        if let Some(Login { user, password }) = login {
+            let password = secret(password)?.trim_end_matches(['\r', '\n']).to_owned();
+            options.set_credentials(user, password);
+        }
+        if address.is_protected {
+            let trusted = trust::client(address.ca.as_deref())?;
+            options.set_transport(Transport::tls_with_config(TlsConfiguration::Rustls(trusted.into())));
+        }
+        let (host, prefix) = (address.host.clone(), address.path.trim_matches('/').to_owned());
+        Ok(Self { name, station: station.to_owned(), host, prefix, options, connected: None })
+    }
+
+    /// What is told of a parcel, and under which topic; nothing when it is old.
+    fn event(&self, parcel: &Parcel) -> Result<Option<(String, Vec<u8>)>, serde_json::Error> {
+        let oldest_ms = clock::now_ms().saturating_sub(OLDEST_MS);
+        Ok(match parcel {
+            Parcel::Run { record, .. } if record.ended_ms >= oldest_ms => {
+                let topic = self.topic(&[&record.run.lane, "run"]);
+                Some((topic, serde_json::to_vec(&RunEvent::of(record))?))
+            }
+            Parcel::Waiver { waiver, .. } if waiver.at_ms >= oldest_ms => {
+                let event = WaiverEvent { schema: SCHEMA, station: &self.station, waiver };
+                Some((self.topic(&["waiver"]), serde_json::to_vec(&event)?))
+            }
+            Parcel::Run { .. } | Parcel::Waiver { .. } | Parcel::Audit(_) => None,
+        })
+    }
+
+    /// The prefix, the station and these words. What parts topics or stands for several is a hyphen in a name.
+    fn topic(&self, words: &[&str]) -> String {
+        let prefix = (!self.prefix.is_empty()).then(|| self.prefix.clone());
+        let names = [self.station.as_str()].into_iter().chain(words.iter().copied());
+        let names = names.map(|name| name.replace(['/', '+', '#', '\0'], "-"));
+        prefix.into_iter().chain(names).collect::<Vec<_>>().join("/")
+    }
+
+    /// Tells it, and waits until the broker has confirmed it.
+    fn tell(&mut self, topic: &str, event: Vec<u8>) -> Result<(), SinkError> {
+        let host = self.host.clone();
+        let unreached = |source| SinkError::Unreached { host: host.clone(), source };
+        let (client, mut connection) = self
+            .connected
+            .take()
+            .unwrap_or_else(|| Client::builder(self.options.clone()).capacity(4).build());
+        let how = PublishOptions::new(QoS::AtLeastOnce);
+        client.try_publish(topic, event, how).map_err(|error| unreached(error.into()))?;
+        let until = Instant::now() + CONFIRMED;
+        loop {
+            let left = until.saturating_duration_since(Instant::now());
+            let Ok(happened) = connection.recv_timeout(left) else {
+                return Err(SinkError::Unconfirmed { host, seconds: CONFIRMED.as_secs() });
+            };
+            // One is under way at a time.
+            if let Event::Incoming(Packet::PubAck(_)) = happened.map_err(|error| unreached(error.into()))? {
+                self.connected = Some((client, connection));
+                return Ok(());
+            }
+        }
+    }
+}
+
+impl Sink for EventSink {
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    fn take(&mut self, parcel: &Parcel) -> Result<(), Undelivered> {
+        let event = self.event(parcel).map_err(|error| SinkError::Export(error.into()));
+        let Some((topic, event)) = event.map_err(Undelivered::from)? else { return Ok(()) };
+        Ok(self.tell(&topic, event)?)
+    }
+
+    fn rest(&mut self) {
+        if let Some((client, mut connection)) = self.connected.take()
+            && client.try_disconnect_now().is_ok()
+        {
+            // It goes without saying more if the broker is gone.
+            let _ = connection.recv_timeout(Duration::from_millis(200));
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! Sinks that are no plant: a folder, a web server, a broker of events.
+
+mod events;
+mod folder;
+mod letter;
+mod post;
+
+use std::io;
+use std::path::PathBuf;
+
+use halfrow::frames::written_aside::WriteAsideError;
+
+use super::{Sink, Undelivered};
+use crate::export::ExportError;
+use crate::said::Said;
+use crate::settings::{Destination, SinkSettings};
+use crate::trust::TrustError;
+use crate::web::SecretError;
+
+/// A sink that cannot be used as the settings say.
+#[derive(Debug, thiserror::Error)]
+pub enum SinkSettingsError {
+    /// Its password or token.
+    #[error(transparent)]
+    Secret(#[from] SecretError),
+    /// Nobody can be trusted.
+    #[error(transparent)]
+    Trust(#[from] TrustError),
+}
+
+/// Why a sink has not taken something.
+#[derive(Debug, thiserror::Error)]
+pub enum SinkError {
+    /// Its folder is not there.
+    #[error("the folder {} is not there; make it, or mount what it lies on", path.display())]
+    NoFolder {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// It has a file of this name with other bytes.
+    #[error(
+        "{} is there already with other bytes, and nothing was changed: keep both, and find out which is right",
+        path.display()
+    )]
+    OtherFile {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file is not written.
+    #[error(transparent)]
+    Unwritten(#[from] WriteAsideError),
+    /// The file that is there is not read.
+    #[error("{} cannot be read; check who may", path.display())]
+    Unread {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The run cannot be made into what the sink wants.
+    #[error(transparent)]
+    Export(#[from] ExportError),
+    /// Nobody answers.
+    #[error("{host} is not reached; look at the network and the other side")]
+    Unreached {
+        /// The other side.
+        host: String,
+        /// Why.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// It answers that it cannot, for now.
+    #[error("{host} answers {status}; it is asked again later")]
+    Busy {
+        /// The other side.
+        host: String,
+        /// Its answer's number.
+        status: u16,
+    },
+    /// It lets nobody in, or is elsewhere.
+    #[error("{host} answers {status} to everything; check the address and the token in the settings")]
+    Closed {
+        /// The other side.
+        host: String,
+        /// Its answer's number.
+        status: u16,
+    },
+    /// It takes others, and not this.
+    #[error("{host} answers {status} to this ({answer}); put right there what it says, and release it")]
+    Rejected {
+        /// The other side.
+        host: String,
+        /// Its answer's number.
+        status: u16,
+        /// What it says.
+        answer: String,
+    },
+    /// It has not confirmed an event in time.
+    #[error("{host} has not confirmed an event within {seconds} s; look at the broker")]
+    Unconfirmed {
+        /// The other side.
+        host: String,
+        /// How long it was waited.
+        seconds: u64,
+    },
+}
+
+impl From<SinkError> for Undelivered {
+    fn from(error: SinkError) -> Self {
+        let said = Said::of(&error);
+        match error {
+            SinkError::NoFolder { .. }
+            | SinkError::Unreached { .. }
+            | SinkError::Closed { .. }
+            | SinkError::Unconfirmed { .. } => Self::Away(said),
+            SinkError::Busy { status: 500, .. }
+            | SinkError::Unwritten(_)
+            | SinkError::Unread { .. }
+            | SinkError::Export(_) => Self::NotNow(said),
+            SinkError::Busy { .. } => Self::Away(said),
+            SinkError::OtherFile { .. } | SinkError::Rejected { .. } => Self::Refused(said),
+        }
+    }
+}
+
+/// The sink of these settings, which hears of the station `station`.
+///
+/// # Errors
+/// [`SinkSettingsError`]
+pub fn open(settings: &SinkSettings, station: &str) -> Result<Box<dyn Sink>, SinkSettingsError> {
+    let name = settings.name.clone();
+    Ok(match &settings.to {
+        Destination::Folder { path, format } => {
+            Box::new(folder::FolderSink { name, folder: path.clone(), format: *format })
+        }
+        Destination::Post { address, format, token } => {
+            Box::new(post::PostSink::new(name, address, *format, token.as_deref())?)
+        }
+        Destination::Events { address, login } => {
+            Box::new(events::EventSink::new(name, station, address, login.as_ref())?)
+        }
+    })
+}

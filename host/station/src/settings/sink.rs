@@ -1,0 +1,197 @@
+//! `[[sink]]`: who else is sent what the station keeps.
+
+use std::path::{Path, PathBuf};
+
+use axum::http::Uri;
+use toml::Spanned;
+
+use super::text::SinkText;
+use crate::export::Format;
+use crate::input_error::Fault;
+use crate::outbox::PlantSink;
+use crate::trust;
+
+/// The most characters of a sink's name.
+const MOST_NAME: usize = 32;
+
+/// A `[[sink]]`
+#[derive(Clone, Debug)]
+pub struct SinkSettings {
+    /// Its name, under which the outbox keeps what it has.
+    pub name: String,
+    /// Where it is.
+    pub to: Destination,
+}
+
+/// Where results are sent to.
+#[derive(Clone, Debug)]
+pub enum Destination {
+    /// A file for each into a folder.
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// What runs are written as.
+        format: Format,
+    },
+    /// A request for each to a web server.
+    Post {
+        /// Where it is.
+        address: SinkAddress,
+        /// What runs are written as.
+        format: Format,
+        /// The file with the token that lets the station in.
+        token: Option<PathBuf>,
+    },
+    /// An event for each to a broker of MQTT.
+    Events {
+        /// Where it is; what topics begin with is its path.
+        address: SinkAddress,
+        /// Who lets the station in.
+        login: Option<Login>,
+    },
+}
+
+/// Who the station is to a broker.
+#[derive(Clone, Debug)]
+pub struct Login {
+    /// The name.
+    pub user: String,
+    /// The file of the password.
+    pub password: PathBuf,
+}
+
+/// The address of a sink.
+#[derive(Clone, Debug)]
+pub struct SinkAddress {
+    /// All of it.
+    pub url: String,
+    /// The host.
+    pub host: String,
+    /// The port.
+    pub port: u16,
+    /// What stands behind them.
+    pub path: String,
+    /// Whether it goes through TLS.
+    pub is_protected: bool,
+    /// The certificates that sign its own; those of the system if none is named.
+    pub ca: Option<PathBuf>,
+}
+
+/// The schemes of a way to send: open, protected, and the port of each.
+type Schemes = [(&'static str, u16); 2];
+
+const HTTP: Schemes = [("http", 80), ("https", 443)];
+const MQTT: Schemes = [("mqtt", 1883), ("mqtts", 8883)];
+
+impl SinkSettings {
+    /// What the settings say, in a file whose folder is `folder`.
+    pub(super) fn of(folder: &Path, text: &SinkText) -> Result<Self, Fault> {
+        let name = name(&text.name)?;
+        let path = |name: &Option<Spanned<String>>| name.as_ref().map(|name| folder.join(name.get_ref()));
+        let format = text.format.as_ref().map(|format| *format.get_ref());
+        let ca = path(&text.ca);
+        let (to, used) = match (&text.folder, &text.post, &text.mqtt) {
+            (Some(to), None, None) => {
+                let path = folder.join(to.get_ref());
+                (Destination::Folder { path, format: format.unwrap_or_default() }, ["format"].as_slice())
+            }
+            (None, Some(url), None) => {
+                let (address, token) = (address(url, HTTP, ca)?, path(&text.token_file));
+                let format = format.unwrap_or_default();
+                (Destination::Post { address, format, token }, ["format", "token_file", "ca"].as_slice())
+            }
+            (None, None, Some(url)) => {
+                let events =
+                    Destination::Events { address: address(url, MQTT, ca)?, login: login(folder, text)? };
+                (events, ["user", "password_file", "ca"].as_slice())
+            }
+            _ => {
+                let what = format!("the sink {name} has not one place to send to");
+                let remedy = "write one of folder, post and mqtt";
+                return Err(Fault::wrong(text.name.span().start, what, remedy));
+            }
+        };
+        match text.unused(used) {
+            Some((key, at)) => {
+                Err(Fault::wrong(at, format!("{key} says nothing to this sink"), "leave it out"))
+            }
+            None => Ok(Self { name, to }),
+        }
+    }
+}
+
+impl SinkText {
+    /// The first key that is given and is not one of `used`, with its place.
+    fn unused(&self, used: &[&str]) -> Option<(&'static str, usize)> {
+        let at = |text: &Option<Spanned<String>>| text.as_ref().map(|text| text.span().start);
+        let given = [
+            ("format", self.format.as_ref().map(|format| format.span().start)),
+            ("token_file", at(&self.token_file)),
+            ("user", at(&self.user)),
+            ("password_file", at(&self.password_file)),
+            ("ca", at(&self.ca)),
+        ];
+        given.into_iter().find_map(|(key, at)| Some((key, at?)).filter(|(key, _)| !used.contains(key)))
+    }
+}
+
+fn name(text: &Spanned<String>) -> Result<String, Fault> {
+    let name = text.get_ref();
+    let is_name = (1..=MOST_NAME).contains(&name.len())
+        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
+    if is_name && name != PlantSink::NAME {
+        return Ok(name.clone());
+    }
+    let what = format!("`{name}` is no name for a sink");
+    let remedy =
+        format!("write 1 to {MOST_NAME} letters, digits and hyphens; {} is the plant's", PlantSink::NAME);
+    Err(Fault::wrong(text.span().start, what, remedy))
+}
+
+fn login(folder: &Path, text: &SinkText) -> Result<Option<Login>, Fault> {
+    match (&text.user, &text.password_file) {
+        (None, None) => Ok(None),
+        (Some(user), Some(password)) => {
+            Ok(Some(Login { user: user.get_ref().clone(), password: folder.join(password.get_ref()) }))
+        }
+        (one, other) => {
+            let at = one.as_ref().or(other.as_ref()).map_or(0, |text| text.span().start);
+            Err(Fault::wrong(at, "a user and a password belong together", "write user and password_file"))
+        }
+    }
+}
+
+/// What leaves this computer goes through TLS, and no address has a password.
+fn address(
+    text: &Spanned<String>,
+    [open, protected]: Schemes,
+    ca: Option<PathBuf>,
+) -> Result<SinkAddress, Fault> {
+    let (at, url) = (text.span().start, text.get_ref());
+    let wrong = |what: String, remedy: String| Fault::wrong(at, what, remedy);
+    let example = format!("write it as {}://host/path", protected.0);
+    let uri: Uri = url.parse().map_err(|_| wrong("this is no address".to_owned(), example.clone()))?;
+    let (Some(scheme), Some(authority)) = (uri.scheme_str(), uri.authority()) else {
+        return Err(wrong("this is no whole address".to_owned(), example));
+    };
+    let Some((scheme, port)) = [open, protected].into_iter().find(|(name, _)| *name == scheme) else {
+        return Err(wrong(format!("nothing is sent by {scheme}"), example));
+    };
+    if authority.as_str().contains('@') {
+        let what = "anybody may see who and with what password who sees these settings";
+        return Err(wrong(what.to_owned(), "write it into a file of its own, and its name here".to_owned()));
+    }
+    let is_protected = scheme == protected.0;
+    if !is_protected && !trust::is_near(authority.host()) {
+        let what = format!("{scheme} would send results openly to {}", authority.host());
+        return Err(wrong(what, format!("write {}://", protected.0)));
+    }
+    Ok(SinkAddress {
+        url: url.clone(),
+        host: authority.host().to_owned(),
+        port: authority.port_u16().unwrap_or(port),
+        path: uri.path().to_owned(),
+        is_protected,
+        ca,
+    })
+}

@@ -1,0 +1,164 @@
+//! Events for dashboards, through a broker of Debian's.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader};
+use std::net::{TcpListener, TcpStream};
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::{due, send};
+use crate::history::made::{End, Made, Run};
+use crate::plant::link::certificates;
+
+/// A broker that lets one user in, and a listener to all that it is told.
+struct Broker {
+    folder: TempDir,
+    port: u16,
+    broker: Child,
+    listener: Child,
+}
+
+const PASSWORD: &str = "rosebud-5e1f";
+/// How long is listened, in seconds.
+const LONGEST: &str = "30";
+
+impl Broker {
+    /// At work, with the certificate in `certified` if there is one.
+    fn start(certified: Option<&Path>) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let path = |name: &str| folder.path().join(name).display().to_string();
+        let made =
+            Command::new("mosquitto_passwd").args(["-b", "-c", &path("users"), "station", PASSWORD]).output();
+        assert!(made.unwrap().status.success());
+        let user = "user root\n";
+        let mut text = format!(
+            "listener {port} 127.0.0.1\nallow_anonymous false\npassword_file {}\n{user}",
+            path("users")
+        );
+        let mut trusted = Vec::new();
+        if let Some(place) = certified {
+            let at = |name: &str| place.join(name).display().to_string();
+            text += &format!("certfile {}\nkeyfile {}\n", at("server.crt"), at("server.key"));
+            trusted = vec!["--cafile".to_owned(), at("ca.pem")];
+        }
+        fs::write(path("broker.conf"), text).unwrap();
+        let mut broker = Command::new("mosquitto");
+        let broker = broker.args(["-c", &path("broker.conf")]).stderr(Stdio::null()).spawn().unwrap();
+        while TcpStream::connect(("127.0.0.1", port)).is_err() {
+            thread::sleep(Duration::from_millis(20));
+        }
+        let mut listener = Command::new("stdbuf");
+        listener.args(["-oL", "mosquitto_sub", "-W", LONGEST]);
+        listener.args([
+            "-h",
+            "localhost",
+            "-p",
+            &port.to_string(),
+            "-u",
+            "station",
+            "-P",
+            PASSWORD,
+            "-q",
+            "1",
+        ]);
+        let listener = listener.args(["-t", "#", "-F", "%t %p", "-d"]).args(trusted).stdout(Stdio::piped());
+        Self { folder, port, broker, listener: listener.spawn().unwrap() }
+    }
+
+    /// The next events: topic and document of each.
+    fn heard(&mut self, count: usize, begin: impl FnOnce()) -> Vec<(String, Value)> {
+        let mut lines = BufReader::new(self.listener.stdout.take().unwrap()).lines().map(Result::unwrap);
+        // What is told before the listener is heard of is told to nobody.
+        assert!(lines.any(|line| line.contains("received SUBACK")), "the listener is refused");
+        begin();
+        let events = lines.filter_map(|line| {
+            let (topic, text) = line.split_once(" {")?;
+            Some((topic.to_owned(), serde_json::from_str(&format!("{{{text}")).ok()?))
+        });
+        events.take(count).collect()
+    }
+
+    /// The settings of a sink with this password, in a file of the station's folder.
+    fn sink(&self, station: &Path, scheme: &str, password: &str, more: &str) -> String {
+        let path = station.join("broker.password");
+        fs::write(&path, format!("{password}\n")).unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+        let url = format!("{scheme}://localhost:{}/factory/halfrow", self.port);
+        let login = "user = \"station\"\npassword_file = \"broker.password\"";
+        format!("[[sink]]\nname = \"wall\"\nmqtt = \"{url}\"\n{login}\n{more}\n")
+    }
+}
+
+impl Drop for Broker {
+    fn drop(&mut self) {
+        for process in [&mut self.listener, &mut self.broker] {
+            let _ = process.kill();
+            let _ = process.wait();
+        }
+        let _ = self.folder.path();
+    }
+}
+
+fn now_ms() -> i64 {
+    i64::try_from(SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_millis()).unwrap()
+}
+
+/// A run and a waiver of now, and a run of two hours ago.
+fn station() -> TempDir {
+    let mut made = Made::new();
+    let minute_ago = now_ms() - 60_000;
+    made.run(&Run { started_ms: minute_ago - 7_200_000, ..Run::of("OLD", End::Pass) });
+    let failed = made.run(&Run { started_ms: minute_ago, ..Run::of("NEW", End::Fail(&["clock"])) });
+    made.store.waive(&failed, "engel", "seen").unwrap();
+    made.closed()
+}
+
+#[test]
+fn what_has_just_happened_is_told_and_what_is_old_is_not() {
+    let certified = tempfile::tempdir().unwrap();
+    certificates(certified.path());
+    for is_protected in [false, true] {
+        let place = is_protected.then(|| certified.path());
+        let mut broker = Broker::start(place);
+        let folder = station();
+        let scheme = if is_protected { "mqtts" } else { "mqtt" };
+        let ca =
+            place.map(|place| format!("ca = \"{}\"", place.join("ca.pem").display())).unwrap_or_default();
+        let sink = broker.sink(folder.path(), scheme, PASSWORD, &ca);
+        let events = broker.heard(2, || {
+            let sent = send(folder.path(), &sink);
+            // The waiver's line in the audit is told to nobody, either.
+            assert!(sent.said.starts_with("4 sent, 0 not"), "{sent:?}");
+        });
+        let [(run, told), (waiver, waived)] = &events[..] else { panic!("{events:?}") };
+        assert_eq!(run, "factory/halfrow/12/1/run");
+        let expected = [("serial", "NEW"), ("verdict", "FAIL"), ("station", "station 7"), ("plan", "final")];
+        assert!(expected.iter().all(|(key, value)| told[key] == *value), "{told}");
+        assert_eq!(waiver, "factory/halfrow/12/waiver");
+        assert_eq!((&waived["run"], &waived["reason"]), (&told["run"], &"seen".into()));
+    }
+}
+
+#[test]
+fn a_broker_that_is_away_or_does_not_let_in_is_tried_again() {
+    let mut broker = Broker::start(None);
+    let folder = station();
+    let refused = send(folder.path(), &broker.sink(folder.path(), "mqtt", "wrong", ""));
+    // What is old needs no broker.
+    assert!(
+        refused.said.starts_with("1 sent, 1 not") && refused.said.contains("is not reached"),
+        "{refused:?}"
+    );
+    due(folder.path());
+    broker.broker.kill().unwrap();
+    broker.broker.wait().unwrap();
+    let away = send(folder.path(), &broker.sink(folder.path(), "mqtt", PASSWORD, ""));
+    assert!(away.said.starts_with("0 sent, 1 not") && away.said.contains("refused"), "{away:?}");
+}

@@ -1,0 +1,106 @@
+//! A folder that results are written to.
+
+use std::fs;
+use std::path::Path;
+
+use super::{did, due, send};
+use crate::common::query;
+use crate::history::made::Made;
+use crate::history::released::history;
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// The history's folder, and a sink of this format that lies in it.
+fn station(format: &str) -> (tempfile::TempDir, String) {
+    let folder = history().closed();
+    let sink = format!("[[sink]]\nname = \"share\"\nfolder = \"share\"\nformat = \"{format}\"\n");
+    (folder, sink)
+}
+
+#[test]
+fn each_run_is_a_file_with_the_bytes_that_are_exported_and_a_waiver_is_one_too() {
+    for (format, ending) in
+        [("record", ".json"), ("junit", ".xml"), ("csv", ".csv"), ("openhtf", ".openhtf.json")]
+    {
+        let (folder, sink) = station(format);
+        let share = folder.path().join("share");
+        fs::create_dir(&share).unwrap();
+        let sent = send(folder.path(), &sink);
+        assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
+        let runs = query(folder.path(), "SELECT id FROM run WHERE state = 'final' ORDER BY id");
+        let [waiver] = &query(folder.path(), "SELECT id FROM waiver")[..] else {
+            panic!("there is one waiver")
+        };
+        let mut expected: Vec<_> = runs.iter().map(|run| format!("{run}{ending}")).collect();
+        expected.push(format!("{waiver}.waiver.json"));
+        expected.sort();
+        assert_eq!(names(&share), expected);
+        for run in &runs {
+            let data = folder.path().to_str().unwrap();
+            let exported = std::process::Command::new(crate::common::program())
+                .args(["export", run, "--format", format, "--data", data])
+                .output()
+                .unwrap();
+            assert_eq!(fs::read(share.join(format!("{run}{ending}"))).unwrap(), exported.stdout, "{format}");
+        }
+        let waived: serde_json::Value =
+            serde_json::from_slice(&fs::read(share.join(format!("{waiver}.waiver.json"))).unwrap()).unwrap();
+        assert_eq!((&waived["operator"], &waived["reason"]), (&"engel".into(), &"it's \"as\" is".into()));
+    }
+}
+
+#[test]
+fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() {
+    let (folder, sink) = station("record");
+    let share = folder.path().join("share");
+    let away = send(folder.path(), &sink);
+    assert!(away.said.starts_with("0 sent, 1 not") && away.said.contains("make it, or mount"), "{away:?}");
+    assert!(!share.exists());
+    fs::create_dir(&share).unwrap();
+    let run = query(folder.path(), "SELECT min(id) FROM run").remove(0);
+    let other = share.join(format!("{run}.json"));
+    fs::write(&other, "somebody's own").unwrap();
+    due(folder.path());
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("9 sent, 1 not"), "{sent:?}");
+    assert_eq!(fs::read_to_string(&other).unwrap(), "somebody's own");
+    let listed = did(folder.path(), &sink, &["outbox", "list"]);
+    assert!(listed.said.contains("nothing was changed: keep both"), "{listed:?}");
+    // A person puts it right, and releases all that waits at this sink.
+    fs::remove_file(&other).unwrap();
+    let release = ["outbox", "release", "--sink", "share", "--reason", "it was a trial"];
+    assert_eq!(did(folder.path(), &sink, &release).code, Some(0));
+    assert_eq!(did(folder.path(), &sink, &release).code, Some(2));
+    assert!(send(folder.path(), &sink).said.contains(" sent, 0 not"));
+    // What is there already is not written again.
+    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
+    database.execute("DELETE FROM outbox", []).unwrap();
+    drop(database);
+    let modified = fs::metadata(&other).unwrap().modified().unwrap();
+    let again = send(folder.path(), &sink);
+    assert!(again.said.contains(" sent, 0 not"), "{again:?}");
+    assert_eq!(fs::metadata(&other).unwrap().modified().unwrap(), modified);
+}
+
+#[test]
+fn a_sink_that_is_no_more_is_forgotten_when_the_settings_do_not_name_it() {
+    let (folder, sink) = station("record");
+    assert_eq!(send(folder.path(), &sink).code, Some(3));
+    let forget = ["outbox", "forget", "share", "--reason", "the share is gone", "--operator", "engel"];
+    let refused = did(folder.path(), &sink, &forget);
+    assert!(
+        refused.code == Some(2) && refused.complained.contains("take it out of them first"),
+        "{refused:?}"
+    );
+    let forgotten = did(folder.path(), "", &forget);
+    assert_eq!((forgotten.code, forgotten.said.as_str()), (Some(0), "10 of share are forgotten\n"));
+    assert_eq!(did(folder.path(), "", &["outbox", "list"]).said, "nothing is left to be sent\n");
+    let told = "SELECT operator_id || ' ' || act || ' ' || subject || ': ' || detail FROM audit WHERE act = 'forget-sink'";
+    assert_eq!(query(folder.path(), told), ["engel forget-sink share: the share is gone"]);
+    drop(Made::at(folder));
+}

@@ -1,0 +1,78 @@
+//! Whoever is sent results besides the plant: a folder, a web server, a broker of events. Each is another program.
+
+mod events;
+mod folder;
+mod post;
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use halfrow_station::settings::Settings;
+
+use crate::common::{Did, PLAN, program};
+
+/// What a command of the station in this folder does, whose settings have this `[[sink]]`.
+fn did(folder: &Path, sink: &str, arguments: &[&str]) -> Did {
+    settings(folder, sink);
+    let mut command = Command::new(program());
+    command.args(arguments).arg("--settings").arg(folder.join("station.toml")).output().unwrap().into()
+}
+
+/// Writes these settings.
+fn settings(folder: &Path, sink: &str) {
+    fs::write(folder.join("plan.toml"), PLAN).unwrap();
+    let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
+    let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \".\"\n{sink}\n{lane}");
+    fs::write(folder.join("station.toml"), text).unwrap();
+}
+
+/// Sends all that is due.
+fn send(folder: &Path, sink: &str) -> Did {
+    did(folder, sink, &["outbox", "send", "--any-disk"])
+}
+
+/// What is to be sent is due now, whatever went wrong before.
+fn due(folder: &Path) {
+    let database = rusqlite::Connection::open(folder.join("station.db")).unwrap();
+    database.execute("UPDATE outbox SET next_ms = 0", []).unwrap();
+}
+
+#[test]
+fn a_sink_that_is_not_one_is_refused_with_its_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases = [
+        ("name = \"mes\"", "has not one place to send to"),
+        ("name = \"mes\"\nfolder = \"a\"\nmqtt = \"mqtt://localhost\"", "has not one place to send to"),
+        ("name = \"plant\"\nfolder = \"a\"", "`plant` is no name for a sink"),
+        ("name = \"m/s\"\nfolder = \"a\"", "is no name for a sink"),
+        (
+            "name = \"mes\"\nfolder = \"a\"\n[[sink]]\nname = \"mes\"\nfolder = \"b\"",
+            "two sinks are called mes",
+        ),
+        ("name = \"mes\"\nfolder = \"a\"\nformat = \"xls\"", "unknown variant `xls`"),
+        ("name = \"mes\"\nfolder = \"a\"\nuser = \"me\"", "user says nothing to this sink"),
+        ("name = \"mes\"\nmqtt = \"mqtt://localhost\"\nformat = \"csv\"", "format says nothing to this sink"),
+        (
+            "name = \"mes\"\nmqtt = \"mqtt://localhost\"\nuser = \"me\"",
+            "a user and a password belong together",
+        ),
+        ("name = \"mes\"\npost = \"ftp://localhost/a\"", "nothing is sent by ftp"),
+        ("name = \"mes\"\npost = \"/runs\"", "this is no whole address"),
+        ("name = \"mes\"\npost = \"https://a b\"", "this is no address"),
+        ("name = \"mes\"\npost = \"https://me:secret@mes.example/\"", "anybody may see who"),
+        ("name = \"mes\"\npost = \"http://mes.example/runs\"", "would send results openly to mes.example"),
+        ("name = \"mes\"\nmqtt = \"mqtt://10.0.0.1\"", "would send results openly to 10.0.0.1"),
+    ];
+    for (sink, expected) in cases {
+        settings(folder.path(), &format!("[[sink]]\n{sink}"));
+        let error = Settings::load(&folder.path().join("station.toml")).unwrap_err().to_string();
+        assert!(error.contains(expected) && error.contains("station.toml:"), "{sink}: {error}");
+    }
+    for right in
+        ["post = \"http://[::1]:80/a\"", "post = \"https://mes.example\"", "mqtt = \"mqtts://b.example/a\""]
+    {
+        settings(folder.path(), &format!("[[sink]]\nname = \"mes\"\n{right}"));
+        Settings::load(&folder.path().join("station.toml")).unwrap();
+    }
+}

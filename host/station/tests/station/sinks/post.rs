@@ -1,0 +1,167 @@
+//! A web server that results are posted to, which is Python's own.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::{BufRead as _, BufReader};
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use base64::Engine as _;
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::{did, due, send};
+use crate::common::query;
+use crate::history::released::history;
+use crate::plant::link::certificates;
+
+struct Server {
+    folder: TempDir,
+    port: u16,
+    process: Child,
+}
+
+impl Server {
+    /// At work, with the certificate in `certified` if there is one.
+    fn start(certified: Option<&Path>) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/station/sinks/server.py");
+        let mut command = Command::new("python3");
+        command.arg(script).arg(folder.path()).stdout(Stdio::piped());
+        if let Some(place) = certified {
+            command.arg(place.join("server.crt")).arg(place.join("server.key"));
+        }
+        let mut process = command.spawn().unwrap();
+        let mut port = String::new();
+        BufReader::new(process.stdout.take().unwrap()).read_line(&mut port).unwrap();
+        let server = Self { folder, port: port.trim().parse().unwrap(), process };
+        server.answers("200 taken");
+        server
+    }
+
+    /// Answers this from here on.
+    fn answers(&self, answer: &str) {
+        fs::write(self.folder.path().join("answer"), answer).unwrap();
+    }
+
+    /// What was posted since the last look.
+    fn requests(&self) -> Vec<Value> {
+        let path = self.folder.path().join("requests.jsonl");
+        let text = fs::read_to_string(&path).unwrap_or_default();
+        let _ = fs::remove_file(path);
+        text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+    }
+}
+
+impl Drop for Server {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The file of a token in this folder, which nobody else may read.
+fn token(folder: &Path) -> PathBuf {
+    let path = folder.join("mes.token");
+    fs::write(&path, "rosebud-5e1f\n").unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+    path
+}
+
+fn sink(url: &str, more: &str) -> String {
+    format!("[[sink]]\nname = \"mes\"\npost = \"{url}\"\n{more}\n")
+}
+
+#[test]
+fn each_run_is_posted_once_with_its_key_and_again_only_when_nobody_knows() {
+    let server = Server::start(None);
+    let folder = history().closed();
+    token(folder.path());
+    let url = format!("http://127.0.0.1:{}/api/runs?line=3", server.port);
+    let sink = sink(&url, "token_file = \"mes.token\"");
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
+    let posted: BTreeMap<_, _> = server
+        .requests()
+        .into_iter()
+        .map(|request| {
+            let headers = &request["headers"];
+            assert_eq!(request["path"], "/api/runs?line=3");
+            assert_eq!(headers["authorization"], "Bearer rosebud-5e1f");
+            assert_eq!(headers["content-type"], "application/json");
+            let key = headers["idempotency-key"].as_str().unwrap().trim_matches('"').to_owned();
+            let body = base64::prelude::BASE64_STANDARD.decode(request["body"].as_str().unwrap()).unwrap();
+            (key, body)
+        })
+        .collect();
+    let runs = query(folder.path(), "SELECT id || ' ' || record_sha256 FROM run WHERE state = 'final'");
+    assert_eq!(posted.len(), runs.len() + 1, "and a waiver");
+    for run in &runs {
+        let (id, hash) = run.split_once(' ').unwrap();
+        assert_eq!(halfrow::result::sha256([posted[id].as_slice()]), hash);
+    }
+    assert!(send(folder.path(), &sink).said.starts_with("0 sent, 0 not"));
+    assert!(server.requests().is_empty());
+}
+
+#[test]
+fn what_a_server_answers_says_who_waits_for_whom() {
+    let server = Server::start(None);
+    let folder = history().closed();
+    let sink = sink(&format!("http://127.0.0.1:{}/", server.port), "");
+    // It takes nothing at all: the first that is refused is enough.
+    for (answer, said) in [
+        ("503 later", "answers 503; it is asked again later"),
+        ("429 slowly", "answers 429; it is asked again later"),
+        ("401 who", "check the address and the token"),
+        ("302 elsewhere", "answers 302 to everything"),
+    ] {
+        server.answers(answer);
+        due(folder.path());
+        let sent = send(folder.path(), &sink);
+        assert!(sent.said.starts_with("0 sent, 1 not") && sent.said.contains(said), "{answer}: {sent:?}");
+        assert_eq!(server.requests().len(), 1, "{answer}");
+    }
+    // It has trouble with each, and may not have it later.
+    server.answers("500 oops");
+    due(folder.path());
+    assert!(
+        send(folder.path(), &sink).said.starts_with("2 sent, 8 not"),
+        "lines of the audit are not posted"
+    );
+    assert_eq!(server.requests().len(), 8);
+    // It never takes them as they are: they wait for a person.
+    server.answers("422 the serial number is\n unknown here");
+    due(folder.path());
+    assert!(send(folder.path(), &sink).said.starts_with("0 sent, 8 not"));
+    due(folder.path());
+    assert!(send(folder.path(), &sink).said.starts_with("0 sent, 0 not"));
+    let listed = did(folder.path(), &sink, &["outbox", "list"]);
+    assert!(listed.said.contains("(the serial number is unknown here)"), "{listed:?}");
+    server.answers("204 ");
+    let release = ["outbox", "release", "--sink", "mes", "--reason", "known now"];
+    assert_eq!(did(folder.path(), &sink, &release).said, "8 of mes are tried again\n");
+    // The release has its line in the audit.
+    assert!(send(folder.path(), &sink).said.starts_with("9 sent, 0 not"));
+}
+
+#[test]
+fn what_leaves_the_computer_goes_to_the_server_of_that_name_alone() {
+    let (ours, theirs) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    for place in [&ours, &theirs] {
+        certificates(place.path());
+    }
+    let server = Server::start(Some(ours.path()));
+    let folder = history().closed();
+    let url = format!("https://localhost:{}/", server.port);
+    let trusting =
+        |place: &TempDir| sink(&url, &format!("ca = \"{}\"", place.path().join("ca.pem").display()));
+    let refused = send(folder.path(), &trusting(&theirs));
+    assert!(refused.said.starts_with("0 sent, 1 not") && refused.said.contains("certificate"), "{refused:?}");
+    assert!(server.requests().is_empty());
+    due(folder.path());
+    let sent = send(folder.path(), &trusting(&ours));
+    assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
+    assert_eq!(server.requests().len(), 8);
+}
