@@ -25,6 +25,13 @@ pub(crate) fn seed(id: Uuid) -> u64 {
     (id.as_u128() & 0xffff_ffff_ffff) as u64
 }
 
+/// When a UUID of version 7 was made, in milliseconds since 1970 (RFC 9562, section 5.7); 0 of a text that is none.
+#[must_use]
+pub(crate) fn made_ms(id: &str) -> i64 {
+    let digits: String = id.chars().filter(char::is_ascii_hexdigit).take(12).collect();
+    i64::from_str_radix(&digits, 16).unwrap_or_default()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -40,5 +40,6 @@ pub mod settings;
 pub mod store;
 pub mod trust;
 pub mod web;
+pub mod work;
 
 pub use halfrow_program::{console, exit, guard};

@@ -7,7 +7,7 @@ VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $
     JOIN plan AS theirs ON theirs.sha256 = earlier.plan_sha256
     JOIN plan AS ours ON ours.sha256 = $5
     WHERE earlier.unit_id = $4 AND theirs.name = ours.name AND theirs.product = ours.product
-      AND earlier.id < $1 AND earlier.verdict IN ('PASS', 'FAIL')
+      AND earlier.id < $1 AND earlier.nth > 0 AND earlier.verdict IN ('PASS', 'FAIL')
   ) END
 )
 ON CONFLICT (id) DO NOTHING;

@@ -8,10 +8,13 @@ use halfrow::result::codes::{self, CodeList, Coded};
 use halfrow_program::codes as program;
 use serde_json::{Value, json};
 
+use super::board::{NoBoard, NoBoardKind, NoKind};
+use super::job::{NoJob, NoWord};
 use super::lanes::EngineEnded;
 use super::outbox::{NoSink, NotDead, SinkInUse};
 use super::plant::{NoPlant, NoStation};
 use super::run::NoMock;
+use super::work::NoWork;
 use super::{Failure, document, print};
 use crate::check::Fault;
 use crate::disk::DiskError;
@@ -30,6 +33,7 @@ use crate::settings::PlantSettingsError;
 use crate::store::{AgainError, NoWaiver, PlantAddressError, PlantError, RebindError, StoreError};
 use crate::trust::TrustError;
 use crate::web::SecretError;
+use crate::work::{Lost, WorkError};
 
 /// Print the page of all codes of the station's errors
 #[derive(Debug, Args)]
@@ -135,6 +139,16 @@ codes::codes! {
         Unconfirmed [host, seconds] => "sink-unconfirmed",
         = Unwritten,
         = Export,
+    }
+    WorkError {
+        NoPlan [job, sha256] => "job-without-plan",
+        Target [board, target] => "shared-board-without-place",
+        = Store,
+        = Run,
+    }
+    Lost {
+        Taken [board] => "shared-board-taken",
+        Unreached [board, seconds, said] => "shared-board-unreached",
     }
     PlantSettingsError {
         = Address,
@@ -280,6 +294,18 @@ codes::codes! {
     NotDead [what] => "outbox-entry-not-dead"
     ;
     NoSink => "settings-without-sink"
+    ;
+    NoWork => "settings-without-work"
+    ;
+    NoJob [id] => "job-not-changed"
+    ;
+    NoWord [word] => "job-needs-no-word"
+    ;
+    NoBoardKind [kind] => "shared-board-of-unknown-kind"
+    ;
+    NoBoard [name] => "shared-board-not-changed"
+    ;
+    NoKind [kind] => "shared-board-of-no-kind"
     ;
     SinkInUse [sink] => "sink-in-use"
     ;

@@ -1,12 +1,14 @@
 //! The command line: one file a command.
 
 mod beginning;
+mod board;
 mod check;
 pub(crate) mod codes;
 mod demo;
 mod document;
 mod export;
 mod history;
+mod job;
 mod kept;
 mod lane;
 mod lanes;
@@ -26,6 +28,7 @@ mod token;
 mod unit;
 mod user;
 mod waive;
+mod work;
 mod yields;
 
 use clap::{ArgAction, Parser, Subcommand};
@@ -63,6 +66,9 @@ enum Command {
     Plan(plan::Arguments),
     Plant(plant::Arguments),
     Outbox(outbox::Arguments),
+    Work(work::Arguments),
+    Job(job::Arguments),
+    Board(board::Arguments),
     Rebind(rebind::Arguments),
     Lanes(lanes::Arguments),
     LangCheck(lang_check::Arguments),
@@ -135,6 +141,9 @@ impl Cli {
             Command::Plan(arguments) => plan::run(arguments),
             Command::Plant(arguments) => plant::run(arguments),
             Command::Outbox(arguments) => outbox::run(arguments),
+            Command::Work(arguments) => work::run(arguments),
+            Command::Job(arguments) => job::run(arguments),
+            Command::Board(arguments) => board::run(arguments),
             Command::Rebind(arguments) => rebind::run(arguments),
             Command::Lanes(arguments) => lanes::run(arguments),
             Command::LangCheck(arguments) => lang_check::run(arguments),

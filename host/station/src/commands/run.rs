@@ -103,6 +103,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         operator: &arguments.operator,
         program: &program,
         counts: plan.counts(&serial) && owed.is_none(),
+        job: None,
         silence: arguments.silence,
         memory_mib: arguments.memory,
     };

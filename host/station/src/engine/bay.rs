@@ -90,6 +90,7 @@ fn carried_out(
         program: &shared.program,
         // A lane that owes its shift a check takes no other board.
         counts: file.plan.counts(&accepted.serial),
+        job: None,
         silence: *silence,
         memory_mib: *memory_mib,
     };

@@ -85,6 +85,19 @@ pub struct RunHead {
     pub fence: i64,
     /// When it began, in milliseconds since 1970, UTC.
     pub started_ms: i64,
+    /// The job that it is of.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub job: Option<JobClaim>,
+}
+
+/// A job of a plant's, as a station had it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JobClaim {
+    /// The job, a UUID of version 7.
+    pub id: String,
+    /// The how-manieth claim of it this is. A run counts while it is the last one.
+    pub fence: i64,
 }
 
 /// The plan of a run.
@@ -205,6 +218,7 @@ mod tests {
             target: "mock".to_owned(),
             fence: 1,
             started_ms: 1,
+            job: None,
         };
         let [sha256, name, version, text] = ["0", "n", "1", "t"].map(str::to_owned);
         Record {

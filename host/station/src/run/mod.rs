@@ -24,8 +24,8 @@ use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
 use crate::plan::{Act, Plan, Selected, Step, mock};
 use crate::record::{
-    Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead,
-    SCHEMA, StepRecord, judged,
+    Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause,
+    RunHead, SCHEMA, StepRecord, judged,
 };
 use crate::said::{Said, Saying};
 use crate::store::{Admission, SharedStore, Store, StoreError, Stored};
@@ -56,6 +56,8 @@ pub struct Order<'a> {
     pub program: &'a Path,
     /// Whether the run counts as production: the board is a product, and the lane was checked in this shift.
     pub counts: bool,
+    /// The job that the run is of.
+    pub job: Option<&'a JobClaim>,
     /// How long the lane may be silent, beside the link tests of the plan.
     pub silence: Duration,
     /// How much memory the lane may have, in MiB of addresses.
@@ -139,6 +141,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         target,
         fence: 0,
         started_ms,
+        job: order.job.cloned(),
     };
     let planned = plan_record(plan);
     let begun = store.with(|store| store.begin(head, &planned));

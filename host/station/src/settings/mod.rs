@@ -14,6 +14,7 @@ use halfrow::Verdict;
 use halfrow::target::Target;
 
 pub use plant::{PlantSettings, PlantSettingsError};
+pub(crate) use read::is_word;
 pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 
 use crate::floor::{Floor, Place, Rule, Starts};
@@ -54,6 +55,8 @@ pub struct Settings {
     pub plant: Option<PlantSettings>,
     /// Who else is sent results.
     pub sinks: Vec<SinkSettings>,
+    /// Which jobs of the plant it takes.
+    pub work: Option<WorkSettings>,
 }
 
 /// `[access]`
@@ -65,6 +68,15 @@ pub struct AccessSettings {
     pub tokens: Option<PathBuf>,
     /// How long somebody may be idle and stay logged in.
     pub idle: Duration,
+}
+
+/// `[work]`
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WorkSettings {
+    /// Its plans, by their places in [`Settings::plans`].
+    pub plans: Vec<usize>,
+    /// What it has that jobs may need.
+    pub has: Vec<String>,
 }
 
 /// A plan with its file.

@@ -7,10 +7,10 @@ use halfrow::Verdict;
 use halfrow::target::Target;
 use toml::Spanned;
 
-use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText};
+use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText, WorkText};
 use super::{
     AccessSettings, Hook, LaneSettings, PlanFile, PlantSettings, SCHEMA, Scanner, Settings, SinkSettings,
-    WORDS, stable,
+    WORDS, WorkSettings, stable,
 };
 use crate::floor::Starts;
 use crate::input_error::Fault;
@@ -48,7 +48,8 @@ pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Setti
         let remedy = "write a [[lane]] with name, board and plans";
         return Err(Fault::wrong(read.schema.span().start, "the station has no lane", remedy));
     }
-    let (plans, lanes) = lanes(folder, &read)?;
+    let (mut plans, lanes) = lanes(folder, &read)?;
+    let work = read.work.as_ref().map(|text| work(folder, text, &mut plans)).transpose()?;
     Ok(Settings {
         name: not_empty(&station.name)?,
         data: folder.join(not_empty(&station.data)?),
@@ -63,7 +64,31 @@ pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Setti
         access: read.access.as_ref().map(|access| people(folder, access)).transpose()?,
         plant: read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?,
         sinks: sinks(folder, &read)?,
+        work,
     })
+}
+
+/// Which jobs are taken.
+fn work(folder: &Path, text: &WorkText, plans: &mut Vec<PlanFile>) -> Result<WorkSettings, Fault> {
+    if text.plans.get_ref().is_empty() {
+        return Err(Fault::wrong(
+            text.plans.span().start,
+            "no job can be taken without a plan",
+            "name the file of one",
+        ));
+    }
+    let files = text.plans.get_ref().iter().map(|file| plan(folder, file, plans));
+    let files = files.collect::<Result<_, _>>()?;
+    if let Some(word) = text.has.iter().find(|word| !is_word(word.get_ref())) {
+        let what = format!("`{}` is no word that a job could name", word.get_ref());
+        return Err(Fault::wrong(word.span().start, what, "write one without blanks"));
+    }
+    Ok(WorkSettings { plans: files, has: text.has.iter().map(|word| word.get_ref().clone()).collect() })
+}
+
+/// Whether a job can name this among what it needs.
+pub(crate) fn is_word(word: &str) -> bool {
+    !word.is_empty() && !word.contains(|letter: char| letter.is_whitespace() || letter.is_control())
 }
 
 /// Whoever else is sent results, each under a name of its own.

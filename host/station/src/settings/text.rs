@@ -17,6 +17,7 @@ pub(super) struct SettingsText {
     pub(super) web: WebText,
     pub(super) access: Option<AccessText>,
     pub(super) plant: Option<PlantText>,
+    pub(super) work: Option<WorkText>,
     #[serde(default)]
     pub(super) sink: Vec<SinkText>,
     #[serde(default)]
@@ -98,6 +99,15 @@ pub(super) enum GreenText {
     #[default]
     Station,
     Plant,
+}
+
+/// `[work]`
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WorkText {
+    pub(super) plans: Spanned<Vec<Spanned<String>>>,
+    #[serde(default)]
+    pub(super) has: Vec<Spanned<String>>,
 }
 
 /// A `[[sink]]`

@@ -42,7 +42,10 @@ pub(crate) use database::{Database, DatabaseError, Row as Found, Value, values};
 pub use error::StoreError;
 pub use keeping::Removed;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, Tried, Unsent};
-pub use plant::{Plant, PlantAddress, PlantAddressError, PlantError, PlantPool, Presence};
+pub use plant::{
+    Claim, Job, LEASE_MS, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError, PlantPool,
+    Presence, STATES, SharedBoard, Turn, Waiter, Wanted, Worker, boards, jobs, waiters,
+};
 pub use shared::SharedStore;
 pub use shift::{Checked, Owed};
 pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
@@ -332,6 +335,7 @@ fn open_run(row: &Found<'_>) -> Result<OpenRun, DatabaseError> {
         target: row.get(9)?,
         fence: row.get(10)?,
         started_ms: row.get(11)?,
+        job: None,
     };
     Ok(OpenRun { run, plan_sha256: row.get(6)?, plan: [row.get(12)?, row.get(13)?, row.get(14)?] })
 }

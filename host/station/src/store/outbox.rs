@@ -233,7 +233,7 @@ impl Snapshot {
     /// [`StoreError`] when the database cannot be read.
     pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
         self.rows("to tell what is to be sent", sql::OUTBOX_STATE, &[], |row| {
-            let since_ms = id_ms(row.text(3)?);
+            let since_ms = ids::made_ms(row.text(3)?);
             let (sink, entries, dead) = (row.get(0)?, row.get(1)?, row.get(2)?);
             Ok(Unsent { sink, entries, dead, since_ms, said: row.get(4)? })
         })
@@ -333,10 +333,4 @@ fn audit_line(id: &str, row: &Row<'_>) -> Result<AuditLine, DatabaseError> {
         detail: row.get(4)?,
         unit: product.zip(serial).map(|(product, serial)| [product, serial]),
     })
-}
-
-/// When a UUID of version 7 was made, in milliseconds since 1970 (RFC 9562, section 5.7).
-fn id_ms(id: &str) -> i64 {
-    let digits: String = id.chars().filter(char::is_ascii_hexdigit).take(12).collect();
-    i64::from_str_radix(&digits, 16).unwrap_or_default()
 }

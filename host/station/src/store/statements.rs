@@ -1,10 +1,11 @@
 //! The text of every statement. SQLite and PostgreSQL have the same, but for three words.
 
 /// The schemas, in order: numbered files that are never edited.
-pub(super) const SCHEMAS: [&str; 3] = [
+pub(super) const SCHEMAS: [&str; 4] = [
     include_str!("../../sql/schema-1.sql"),
     include_str!("../../sql/schema-2.sql"),
     include_str!("../../sql/schema-3.sql"),
+    include_str!("../../sql/schema-4.sql"),
 ];
 
 pub(super) const SCHEMA_VERSION: &str = include_str!("../../sql/schema-version.sql");
@@ -87,13 +88,39 @@ pub(super) const LAST_JUDGED: &str = include_str!("../../sql/plant/last-judged.s
 pub(super) const ADD_BINDING_UNLESS: &str = include_str!("../../sql/plant/add-binding.sql");
 pub(super) const ADD_WAIVER_UNLESS: &str = include_str!("../../sql/plant/add-waiver.sql");
 pub(super) const ADD_AUDIT_UNLESS: &str = include_str!("../../sql/plant/add-audit.sql");
+pub(super) const ADD_BOARD: &str = include_str!("../../sql/plant/add-board.sql");
+pub(super) const BOARD_OUT: &str = include_str!("../../sql/plant/board-out.sql");
+pub(super) const FORGET_BOARD: &str = include_str!("../../sql/plant/forget-board.sql");
+pub(super) const BOARDS: &str = include_str!("../../sql/plant/boards.sql");
+pub(super) const WAITERS: &str = include_str!("../../sql/plant/waiters.sql");
+pub(super) const WAIT: &str = include_str!("../../sql/plant/wait.sql");
+pub(super) const PLACE: &str = include_str!("../../sql/plant/place.sql");
+pub(super) const REACHABLE: &str = include_str!("../../sql/plant/reachable.sql");
+pub(super) const FORGET_WAITERS: &str = include_str!("../../sql/plant/forget-waiters.sql");
+pub(super) const FREE_BOARD: &str = include_str!("../../sql/plant/free-board.sql");
+pub(super) const HOLD_BOARD: &str = include_str!("../../sql/plant/hold-board.sql");
+pub(super) const RENEW_BOARD: &str = include_str!("../../sql/plant/renew-board.sql");
+pub(super) const RETURN_BOARD: &str = include_str!("../../sql/plant/return-board.sql");
+pub(super) const ADD_JOB: &str = include_str!("../../sql/plant/add-job.sql");
+pub(super) const CLAIMABLE_JOB: &str = include_str!("../../sql/plant/claimable-job.sql");
+pub(super) const BOARD_OF_JOB: &str = include_str!("../../sql/plant/board-of-job.sql");
+pub(super) const CLAIM_JOB: &str = include_str!("../../sql/plant/claim-job.sql");
+pub(super) const RENEW_JOB: &str = include_str!("../../sql/plant/renew-job.sql");
+pub(super) const RETURN_JOB: &str = include_str!("../../sql/plant/return-job.sql");
+pub(super) const EXHAUSTED_JOBS: &str = include_str!("../../sql/plant/exhausted-jobs.sql");
+pub(super) const JOB_DONE: &str = include_str!("../../sql/plant/job-done.sql");
+pub(super) const JOB_BACK: &str = include_str!("../../sql/plant/job-back.sql");
+pub(super) const RUN_OF_JOB: &str = include_str!("../../sql/plant/run-of-job.sql");
+pub(super) const CANCEL_JOB: &str = include_str!("../../sql/plant/cancel-job.sql");
+pub(super) const RETRY_JOB: &str = include_str!("../../sql/plant/retry-job.sql");
+pub(super) const JOBS: &str = include_str!("../../sql/plant/jobs.sql");
 
 #[cfg(test)]
 mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 79] = [
+    const ALL: [&str; 105] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -173,6 +200,32 @@ mod tests {
         ADD_BINDING_UNLESS,
         ADD_WAIVER_UNLESS,
         ADD_AUDIT_UNLESS,
+        ADD_BOARD,
+        BOARD_OUT,
+        FORGET_BOARD,
+        BOARDS,
+        WAITERS,
+        WAIT,
+        PLACE,
+        REACHABLE,
+        FORGET_WAITERS,
+        FREE_BOARD,
+        HOLD_BOARD,
+        RENEW_BOARD,
+        RETURN_BOARD,
+        ADD_JOB,
+        CLAIMABLE_JOB,
+        BOARD_OF_JOB,
+        CLAIM_JOB,
+        RENEW_JOB,
+        RETURN_JOB,
+        EXHAUSTED_JOBS,
+        JOB_DONE,
+        JOB_BACK,
+        RUN_OF_JOB,
+        CANCEL_JOB,
+        RETRY_JOB,
+        JOBS,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.

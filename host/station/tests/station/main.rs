@@ -8,6 +8,7 @@ mod compiled_once;
 mod documents;
 mod floor;
 mod history;
+mod jobs;
 mod lanes;
 mod pages;
 mod plans;

@@ -1,11 +1,14 @@
 //! What comes to a plant from its stations, in any order, and as often as they are not certain.
 
+use halfrow::Verdict;
+
 use super::super::bindings::{BY_RUN, Detail, REBIND};
 use super::super::database::{Database, DatabaseError, values};
 use super::super::outbox::AuditLine;
 use super::super::{Rebinding, Waiver, bindings, rows, statements as sql};
+use crate::plan::Plan;
 use crate::plan::mock::is_mock;
-use crate::record::Record;
+use crate::record::{JobClaim, Record};
 
 /// A run that is over, with all that follows from its record. One of this id that is there stays as it is.
 pub(super) fn run(
@@ -16,7 +19,8 @@ pub(super) fn run(
 ) -> Result<(), DatabaseError> {
     let unit = rows::unit(to, &record.run, &record.plan)?;
     to.one(sql::LOCK_UNIT, values![&unit], |_| Ok(()))?;
-    if enter(to, record, hash, &unit)? == 0 {
+    let counts = settles_job(to, record)? && !is_mock(&record.run.serial);
+    if enter(to, record, hash, &unit, counts)? == 0 {
         return Ok(());
     }
     // What came first to the plant need not have come about first.
@@ -28,10 +32,35 @@ pub(super) fn run(
         let of = values![&record.run.id, device, &unit, record.ended_ms, &record.run.operator, BY_RUN];
         to.execute(sql::ADD_BINDING_UNLESS, of)?;
     }
-    count(to, record, &unit)
+    count(to, record, &unit, counts)
 }
 
-fn enter(to: &mut dyn Database, record: &Record, hash: &str, unit: &str) -> Result<u64, DatabaseError> {
+/// Ends the job that the run was of, if it was of one, or gives it back when nothing was judged. Returns whether the run counts: not
+/// if the job is somebody else's by now.
+fn settles_job(to: &mut dyn Database, record: &Record) -> Result<bool, DatabaseError> {
+    let Some(JobClaim { id, fence }) = &record.run.job else { return Ok(true) };
+    let ended = &record.conclusion;
+    let changed = match ended.verdict {
+        Verdict::Error => to.execute(sql::JOB_BACK, values![&ended.headline, id, *fence])?,
+        Verdict::Pass | Verdict::Fail => to.execute(sql::JOB_DONE, values![&record.run.id, id, *fence])?,
+    };
+    // A job of another plant, or of one that was lost, supersedes nothing.
+    Ok(changed == 1 || to.first(sql::RUN_OF_JOB, values![id], |_| Ok(()))?.is_none())
+}
+
+/// The plan of a job, of which there need be no run yet.
+pub(super) fn plan(to: &mut dyn Database, plan: &Plan, at_ms: i64) -> Result<(), DatabaseError> {
+    let Plan { sha256, name, version, product, text, .. } = plan;
+    to.execute(sql::ADD_PLAN, values![sha256, name, version, product, text, at_ms]).map(drop)
+}
+
+fn enter(
+    to: &mut dyn Database,
+    record: &Record,
+    hash: &str,
+    unit: &str,
+    counts: bool,
+) -> Result<u64, DatabaseError> {
     let (run, ended, board) = (&record.run, &record.conclusion, record.board.as_ref());
     to.execute(
         sql::ADD_RUN,
@@ -55,17 +84,17 @@ fn enter(to: &mut dyn Database, record: &Record, hash: &str, unit: &str) -> Resu
             board.map(|board| &board.kind),
             board.and_then(|board| board.device.as_ref()),
             board.map(|board| &board.build),
-            i64::from(is_mock(&run.serial)),
+            i64::from(!counts),
         ],
     )
 }
 
 /// Counts the run as its station did; when later runs of its unit were counted already, those behind it anew.
-fn count(to: &mut dyn Database, record: &Record, unit: &str) -> Result<(), DatabaseError> {
+fn count(to: &mut dyn Database, record: &Record, unit: &str, counts: bool) -> Result<(), DatabaseError> {
     let (id, plan, product) = (&record.run.id, &record.plan.name, &record.run.product);
     let later: i64 = to.one(sql::IS_LATE, values![unit, id, plan, product], |row| row.get(0))?;
-    let is_judged = record.conclusion.verdict != halfrow::Verdict::Error;
-    let is_late = later > 0 && is_judged && !is_mock(&record.run.serial);
+    let is_judged = record.conclusion.verdict != Verdict::Error;
+    let is_late = later > 0 && is_judged && counts;
     if is_late {
         to.execute(sql::UNCOUNT_FIRST, values![unit, id, plan, product])?;
         to.execute(sql::COUNT_ON, values![unit, id, plan, product])?;

@@ -5,17 +5,20 @@
 
 mod address;
 mod arrived;
+mod boards;
+mod jobs;
 mod pool;
 
 pub use address::{PlantAddress, PlantAddressError};
+pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, boards, waiters};
+pub use jobs::{Claim, Job, NewJob, STATES, Wanted, Worker, jobs};
 pub use pool::PlantPool;
 
 use std::path::PathBuf;
 
-use super::audit::Line;
 use super::database::{Database, DatabaseError, Postgres, values};
 use super::{Parcel, StoreError, migrations, statements as sql};
-use crate::{clock, ids};
+use crate::clock;
 
 /// A delivery that did not come about.
 #[derive(Debug, thiserror::Error)]
@@ -181,17 +184,8 @@ impl Plant {
     /// # Errors
     /// [`StoreError`] when the plant does not take it.
     pub fn forget(&mut self, station: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
-        let at_ms = clock::now_ms();
-        let id = ids::new(at_ms)?.to_string();
-        self.carry_out("to forget a station", |database| {
-            database.transaction(|to| {
-                let forgotten = to.execute(sql::FORGET_STATION, values![station])?;
-                if forgotten > 0 {
-                    let (act, subject) = ("forget station", station);
-                    Line { id: &id, at_ms, operator, act, subject, detail: reason }.enter(to, &[])?;
-                }
-                Ok(forgotten > 0)
-            })
+        self.audited(operator, "forget station", station, reason, |to| {
+            to.execute(sql::FORGET_STATION, values![station])
         })
     }
 

@@ -150,6 +150,7 @@ impl Made {
             target: "usb:1-2.3".to_owned(),
             fence: 0,
             started_ms: run.started_ms,
+            job: None,
         }
     }
 }

@@ -6,6 +6,6 @@ pub(crate) mod link;
 mod pages;
 mod refused;
 mod sent;
-mod server;
+pub(crate) mod server;
 mod tables;
 mod waiting;

@@ -44,6 +44,7 @@ fn run_in(store: &SharedStore, station: &Station, lane: &str, serial: &str, prog
         operator: "weber",
         program,
         counts: false,
+        job: None,
         silence: Duration::from_secs(120),
         memory_mib: MEMORY_MIB,
     };

@@ -1,0 +1,1 @@
+UPDATE board SET out = $1 WHERE name = $2;

@@ -1,0 +1,1 @@
+SELECT run_id FROM job WHERE id = $1;

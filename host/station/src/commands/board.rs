@@ -1,0 +1,261 @@
+//! `halfrow-station board`
+
+use std::io::{self, Read as _};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use clap::{Args, Subcommand};
+use halfrow::link::kinds;
+use halfrow::target::Target;
+use rand::{RngExt as _, rng};
+use serde_json::json;
+
+use super::beginning::{SettingsFile, Signal};
+use super::looking::{either, table, time};
+use super::plant::plant;
+use super::{Failure, print};
+use crate::console;
+use crate::exit::Exit;
+use crate::store::{Plant, PlantAddress, PlantPool, SharedBoard, StoreError, Turn, Waiter, boards};
+use crate::work::{Held, Holding, Lost};
+
+/// How often somebody who waits asks again.
+const ASKED: Duration = Duration::from_secs(1);
+/// How often it is looked whether anything happened.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Share boards among several computers: each is used by one at a time
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    settings: SettingsFile,
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Share a board, or change where it is while nobody has it
+    Share(Share),
+    /// Print the boards, and who has them
+    List {
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Give a board to nobody any more; whoever has it loses it
+    Out(Change),
+    /// Give it out again
+    In(Change),
+    /// Share it no more
+    Unshare(Change),
+    /// Wait for a board of a kind, and hold it until the end of stdin
+    ///
+    /// Prints a JSON object a line: "waits" with how many are in front and for how many seconds it was waited, "held" with the board, and "lost" with the
+    /// reason, behind which it ends.
+    Hold {
+        /// The kind
+        kind: String,
+    },
+}
+
+#[derive(Debug, Args)]
+struct Share {
+    /// Its name
+    name: String,
+    /// Whoever needs any board needs one of a kind
+    #[arg(long)]
+    kind: String,
+    /// Where it is, as `halfrow boards` names it
+    #[arg(long, value_name = "TARGET")]
+    board: Target,
+    /// The product that it is a unit of, for jobs
+    #[arg(long, requires = "serial")]
+    product: Option<String>,
+    /// Its serial number, for jobs
+    #[arg(long, requires = "product")]
+    serial: Option<String>,
+    /// The one station that reaches it [default: every one does]
+    #[arg(long, value_name = "NAME")]
+    station: Option<String>,
+    /// Who says so
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+#[derive(Debug, Args)]
+struct Change {
+    /// The board
+    name: String,
+    /// Why
+    #[arg(long)]
+    reason: String,
+    /// Who says so
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+/// A board that the plant does not have, or that somebody has.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "there is no board {name} that could be {done}; `halfrow-station board list` tells which there are, and who has them"
+)]
+pub(super) struct NoBoard {
+    pub(super) name: String,
+    done: &'static str,
+}
+
+/// A place of a board that is none.
+#[derive(Debug, thiserror::Error)]
+#[error("`{kind}` is no kind of board; write one as `halfrow boards` lists them")]
+pub(super) struct NoBoardKind {
+    pub(super) kind: String,
+}
+
+/// A kind that no board is of.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no board of the kind {kind} is shared with this station; `halfrow-station board list` tells which are"
+)]
+pub(super) struct NoKind {
+    pub(super) kind: String,
+}
+
+pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
+    let settings = settings.load_plant()?;
+    let address = plant(&settings)?.address()?;
+    match what {
+        What::Share(share) => {
+            if kinds::of(&share.board).is_none() {
+                return Err(Failure::call(NoBoardKind { kind: share.board.kind.clone() }));
+            }
+            let board = share.board();
+            let shared = Plant::connect(&address)?.share(&board, &share.operator)?;
+            changed(shared, &board.name, "shared")
+        }
+        What::List { json } => {
+            let found = PlantPool::new(address).look(boards)?;
+            either(&found, *json, |found| text(found))
+        }
+        What::Out(Change { name, reason, operator }) => {
+            let out = Plant::connect(&address)?.take_out(name, Some(reason), operator)?;
+            changed(out, name, "out")
+        }
+        What::In(Change { name, operator, .. }) => {
+            changed(Plant::connect(&address)?.take_out(name, None, operator)?, name, "in")
+        }
+        What::Unshare(Change { name, reason, operator }) => {
+            changed(Plant::connect(&address)?.unshare(name, operator, reason)?, name, "unshared")
+        }
+        What::Hold { kind } => hold(&address, kind, &settings.name),
+    }
+}
+
+impl Share {
+    fn board(&self) -> SharedBoard {
+        let text = |given: &Option<String>| given.clone().unwrap_or_default();
+        SharedBoard {
+            name: self.name.clone(),
+            kind: self.kind.clone(),
+            target: self.board.to_string(),
+            product: text(&self.product),
+            serial: text(&self.serial),
+            station: text(&self.station),
+            out: None,
+            fence: 0,
+            holder: None,
+            until_ms: None,
+        }
+    }
+}
+
+fn changed(is_changed: bool, name: &str, done: &'static str) -> Result<Exit, Failure> {
+    if is_changed {
+        return print(&format!("{name} is {done}"));
+    }
+    Err(Failure::call(NoBoard { name: name.to_owned(), done }))
+}
+
+fn text(boards: &[SharedBoard]) -> String {
+    if boards.is_empty() {
+        return "no board is shared; `halfrow-station board share` shares one".to_owned();
+    }
+    let row = |board: &SharedBoard| {
+        let state = match (&board.out, &board.holder) {
+            (Some(why), _) => format!("out: {why}"),
+            (None, Some(holder)) => format!("{holder}, until {}", time(board.until_ms.unwrap_or_default())),
+            (None, None) => "free".to_owned(),
+        };
+        let SharedBoard { name, kind, target, serial, station, .. } = board.clone();
+        vec![name, kind, target, serial, station, state]
+    };
+    table(&["board", "kind", "where", "serial", "station", "state"], &[], boards.iter().map(row))
+}
+
+/// Waits for a board of the kind, and holds it until stdin ends, a signal comes, or it is lost.
+fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failure> {
+    let signal = Signal::heed()?;
+    let over = end_of_stdin()?;
+    let is_over = || over.load(Ordering::Relaxed) || signal.by().is_some();
+    let holder = format!("{station} {:016x}", rng().random::<u64>());
+    let waiter = Waiter::new(kind, &holder, station).map_err(Failure::error)?;
+    let Some(held) = wait(address, &waiter, &is_over)? else { return Ok(Exit::Pass) };
+    let holding = Holding::begin(address.clone(), Held::Board(held.clone()));
+    print(&json!({ "held": held }).to_string())?;
+    while !is_over() {
+        if let Some(lost) = holding.lost() {
+            let said = lost.to_string();
+            print(&json!({ "lost": { "board": held.board, "said": said } }).to_string())?;
+            return Err(Failure::error(Lost::clone(&lost)));
+        }
+        thread::sleep(LOOK);
+    }
+    holding.end();
+    Ok(Exit::Pass)
+}
+
+/// Waits for its turn, and says how many are in front.
+fn wait(
+    address: &PlantAddress,
+    waiter: &Waiter,
+    is_over: &dyn Fn() -> bool,
+) -> Result<Option<crate::store::Lease>, Failure> {
+    let (begun, mut plant) = (Instant::now(), Plant::connect(address)?);
+    loop {
+        let before = match plant.wait(waiter)? {
+            Turn::Held(lease) => return Ok(Some(lease)),
+            Turn::Never => return Err(Failure::call(NoKind { kind: waiter.kind.clone() })),
+            Turn::Waits { before } => before,
+        };
+        print(&json!({ "waits": { "before": before, "seconds": begun.elapsed().as_secs() } }).to_string())?;
+        let until = Instant::now() + ASKED;
+        while Instant::now() < until {
+            if is_over() {
+                left(&mut plant, waiter);
+                return Ok(None);
+            }
+            thread::sleep(LOOK);
+        }
+    }
+}
+
+/// Leaves the queue; who says nothing any more is forgotten anyway.
+fn left(plant: &mut Plant, waiter: &Waiter) {
+    if let Err(StoreError::Plant { source, .. }) = plant.leave(waiter) {
+        console::error(&format_args!("the place in the queue is forgotten in some seconds: {source}"));
+    }
+}
+
+/// Becomes true when stdin ends.
+fn end_of_stdin() -> Result<Arc<AtomicBool>, Failure> {
+    let over = Arc::new(AtomicBool::new(false));
+    let noted = Arc::clone(&over);
+    let read = move || {
+        let _ = io::stdin().read_to_end(&mut Vec::new());
+        noted.store(true, Ordering::Relaxed);
+    };
+    thread::Builder::new().name("stdin".to_owned()).spawn(read).map_err(Failure::error)?;
+    Ok(over)
+}

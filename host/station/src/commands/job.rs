@@ -1,0 +1,196 @@
+//! `halfrow-station job`
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+
+use super::beginning::SettingsFile;
+use super::looking::{either, table, time};
+use super::plant::plant;
+use super::{Failure, print};
+use crate::exit::Exit;
+use crate::plan::Plan;
+use crate::settings::is_word;
+use crate::store::{Job, NewJob, Plant, PlantPool, STATES, Wanted, jobs};
+
+/// How many jobs are listed.
+const LISTED: u32 = 100;
+
+/// Add jobs to the plant, see them, cancel them
+///
+/// A job is judged by whichever station is free and has its plan: `halfrow-station work`.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    settings: SettingsFile,
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Add a job
+    Add(Add),
+    /// Print the jobs, the newest first
+    List {
+        /// Those of one state [default: waiting, claimed and dead]
+        #[arg(long, value_enum)]
+        state: Option<State>,
+        /// How many at most
+        #[arg(long, default_value_t = LISTED)]
+        most: u32,
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Judge a job no more; a run of it that is under way is ended, and does not count
+    Cancel(Change),
+    /// Judge a job after all that came to nothing
+    Retry(Change),
+}
+
+#[derive(Debug, Args)]
+struct Add {
+    /// The plan; a station takes the job that has just this one
+    #[arg(long, value_name = "FILE")]
+    plan: PathBuf,
+    /// The board that is this unit
+    #[arg(long, required_unless_present = "kind", conflicts_with = "kind")]
+    serial: Option<String>,
+    /// Any board of this kind
+    #[arg(long)]
+    kind: Option<String>,
+    /// What a station must have, as its settings name it; may be given several times
+    #[arg(long, value_name = "WORD")]
+    needs: Vec<String>,
+    /// Jobs of a higher one come first
+    #[arg(long, default_value_t = 0, allow_hyphen_values = true)]
+    priority: i64,
+    /// How many
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    count: u32,
+    /// Who wants it
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+#[derive(Debug, Args)]
+struct Change {
+    /// The job
+    id: String,
+    /// Why
+    #[arg(long)]
+    reason: String,
+    /// Who says so
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+/// How it stands with a job.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum State {
+    /// No station has it
+    Waiting,
+    /// A station has it
+    Claimed,
+    /// It was judged
+    Done,
+    /// It came to nothing, and waits for a person
+    Dead,
+}
+
+impl State {
+    const fn name(self) -> &'static str {
+        STATES[self as usize]
+    }
+}
+
+/// A job that is not as the command wants it.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "there is no job {id} that could be {done}; `halfrow-station job list` tells how it stands with each"
+)]
+pub(super) struct NoJob {
+    pub(super) id: String,
+    done: &'static str,
+}
+
+/// Something that no station can have.
+#[derive(Debug, thiserror::Error)]
+#[error("`{word}` is no word that a station could have; write one without blanks")]
+pub(super) struct NoWord {
+    pub(super) word: String,
+}
+
+pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
+    let settings = settings.load_plant()?;
+    let address = plant(&settings)?.address()?;
+    match what {
+        What::Add(add) => add_jobs(&mut Plant::connect(&address)?, add),
+        What::List { state, most, json } => {
+            let states = match state {
+                Some(state) => vec![state.name()],
+                None => STATES.into_iter().filter(|state| *state != State::Done.name()).collect(),
+            };
+            let found = PlantPool::new(address).look(|now| jobs(now, &states, "", *most))?;
+            either(&found, *json, |found| text(found))
+        }
+        What::Cancel(Change { id, reason, operator }) => {
+            let done = Plant::connect(&address)?.cancel_job(id, operator, reason)?;
+            changed(done, id, "cancelled")
+        }
+        What::Retry(Change { id, reason, operator }) => {
+            let done = Plant::connect(&address)?.retry_job(id, operator, reason)?;
+            changed(done, id, "retried")
+        }
+    }
+}
+
+fn add_jobs(plant: &mut Plant, add: &Add) -> Result<Exit, Failure> {
+    let plan = Plan::load(&add.plan).map_err(Failure::call)?;
+    let wanted = match (&add.serial, &add.kind) {
+        (Some(serial), _) => {
+            plan.select(serial).map_err(Failure::call)?;
+            Wanted::Serial(serial.clone())
+        }
+        (None, kind) => Wanted::Kind(kind.clone().unwrap_or_default()),
+    };
+    if let Some(word) = add.needs.iter().find(|word| !is_word(word)) {
+        return Err(Failure::call(NoWord { word: word.clone() }));
+    }
+    let job = NewJob {
+        plan: &plan,
+        wanted: &wanted,
+        needs: &add.needs,
+        priority: add.priority,
+        operator: &add.operator,
+    };
+    print(&plant.add_jobs(&job, add.count)?.join("\n"))
+}
+
+fn changed(is_changed: bool, id: &str, done: &'static str) -> Result<Exit, Failure> {
+    if is_changed {
+        return print(&format!("{id} is {done}"));
+    }
+    Err(Failure::call(NoJob { id: id.to_owned(), done }))
+}
+
+fn text(jobs: &[Job]) -> String {
+    if jobs.is_empty() {
+        return "there is no such job".to_owned();
+    }
+    let row = |job: &Job| {
+        let about = if job.serial.is_empty() { format!("any {}", job.kind) } else { job.serial.clone() };
+        let state = match (&job.verdict, &job.holder) {
+            (Some(verdict), _) => verdict.clone(),
+            (None, Some(holder)) if job.state == State::Claimed.name() => format!("claimed by {holder}"),
+            _ => job.state.clone(),
+        };
+        let plan = format!("{} {}", job.plan, job.version);
+        let (tries, priority) = (job.attempts.to_string(), job.priority.to_string());
+        let said = job.said.clone().unwrap_or_default();
+        vec![job.id.clone(), time(job.created_ms), plan, about, priority, state, tries, said]
+    };
+    let names = ["job", "added", "plan", "board", "priority", "state", "claims", "said last"];
+    table(&names, &[4, 6], jobs.iter().map(row))
+}

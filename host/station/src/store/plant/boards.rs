@@ -1,0 +1,259 @@
+//! Boards that several computers share: each is held by one until a moment of the plant's clock, and by whoever waits longest.
+
+use serde::Serialize;
+
+use super::super::audit::Line;
+use super::super::database::{Database, DatabaseError, Row, values};
+use super::super::{Snapshot, StoreError, statements as sql};
+use super::Plant;
+use crate::{clock, ids};
+
+/// How long a board or a job is held without being renewed, in milliseconds.
+pub const LEASE_MS: i64 = 30_000;
+/// How long somebody is known to wait who does not ask again, in milliseconds.
+const WAITING_MS: i64 = 10_000;
+
+/// A board that several computers share.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct SharedBoard {
+    /// Its name.
+    pub name: String,
+    /// Whoever needs any board needs one of a kind.
+    pub kind: String,
+    /// Where it is, as boards are named everywhere.
+    pub target: String,
+    /// The product that it is a unit of; empty if no plan judges it.
+    pub product: String,
+    /// Its serial number; empty if no plan judges it.
+    pub serial: String,
+    /// The one station that reaches it; empty if every one does.
+    pub station: String,
+    /// Why nobody may have it.
+    pub out: Option<String>,
+    /// How often somebody got it.
+    pub fence: i64,
+    /// Who has it.
+    pub holder: Option<String>,
+    /// Until when, in milliseconds since 1970, UTC, by the plant's clock, unless it is renewed.
+    pub until_ms: Option<i64>,
+}
+
+/// A board that is held.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Lease {
+    /// The board.
+    pub board: String,
+    /// Where it is.
+    pub target: String,
+    /// Who has it.
+    pub holder: String,
+    /// How often somebody got it, this time included.
+    pub fence: i64,
+    /// The product that it is a unit of; empty if no plan judges it.
+    #[serde(skip)]
+    pub(crate) product: String,
+    /// Its serial number; empty if no plan judges it.
+    #[serde(skip)]
+    pub(crate) serial: String,
+}
+
+/// Somebody who waits for any board of a kind.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Waiter {
+    /// Who they are to the queue, a UUID of version 7: who came first has the smaller one.
+    pub id: String,
+    /// The kind.
+    pub kind: String,
+    /// Who they are.
+    pub holder: String,
+    /// The station that they are at.
+    pub station: String,
+}
+
+/// What somebody who waits is told.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// The board is theirs.
+    Held(Lease),
+    /// So many are in front of them.
+    Waits {
+        /// How many.
+        before: u32,
+    },
+    /// There is no board of the kind, in use or not, that they could get.
+    Never,
+}
+
+impl Waiter {
+    /// Somebody who waits from now on.
+    ///
+    /// # Errors
+    /// [`ids::NoRandomness`]
+    pub fn new(kind: &str, holder: &str, station: &str) -> Result<Self, ids::NoRandomness> {
+        let id = ids::new(clock::now_ms())?.to_string();
+        let [kind, holder, station] = [kind, holder, station].map(str::to_owned);
+        Ok(Self { id, kind, holder, station })
+    }
+}
+
+impl Plant {
+    /// Enters a board that is shared, or changes it while nobody has it; `operator` says so. Returns whether it is entered.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant does not take it.
+    pub fn share(&mut self, board: &SharedBoard, operator: &str) -> Result<bool, StoreError> {
+        let SharedBoard { name, kind, target, product, serial, station, .. } = board;
+        self.audited(operator, "share board", name, target, |to| {
+            to.execute(sql::ADD_BOARD, values![name, kind, target, product, serial, station])
+        })
+    }
+
+    /// Nobody gets the board of this name any more, for this reason; whoever has it loses it. Without one it is given out again.
+    /// Returns whether there is one.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn take_out(&mut self, name: &str, why: Option<&str>, operator: &str) -> Result<bool, StoreError> {
+        let act = if why.is_some() { "board out" } else { "board in" };
+        self.audited(operator, act, name, why.unwrap_or_default(), |to| {
+            to.execute(sql::BOARD_OUT, values![why, name])
+        })
+    }
+
+    /// The board of this name is not shared any more. Returns whether there was one.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn unshare(&mut self, name: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
+        self.audited(operator, "unshare board", name, reason, |to| {
+            to.execute(sql::FORGET_BOARD, values![name])
+        })
+    }
+
+    /// Gives `waiter` a board of the kind if it is their turn, and keeps their place otherwise, for as long as they ask again.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn wait(&mut self, waiter: &Waiter) -> Result<Turn, StoreError> {
+        let Waiter { id, kind, holder, station } = waiter;
+        self.carry_out("to give a board", |database| {
+            database.transaction(|to| {
+                to.execute(sql::WAIT, values![id, kind, holder, WAITING_MS])?;
+                let before: i64 = to.one(sql::PLACE, values![kind, id], |row| row.get(0))?;
+                let free: Option<String> =
+                    to.first(sql::FREE_BOARD, values![kind, station, before], |row| row.get(0))?;
+                let Some(name) = free else {
+                    let reachable: i64 = to.one(sql::REACHABLE, values![kind, station], |row| row.get(0))?;
+                    if reachable == 0 {
+                        to.execute(sql::FORGET_WAITERS, values![id])?;
+                        return Ok(Turn::Never);
+                    }
+                    return Ok(Turn::Waits { before: u32::try_from(before).unwrap_or(u32::MAX) });
+                };
+                to.execute(sql::FORGET_WAITERS, values![id])?;
+                Ok(Turn::Held(hold(to, &name, holder)?))
+            })
+        })
+    }
+
+    /// `waiter` waits no more.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn leave(&mut self, waiter: &Waiter) -> Result<(), StoreError> {
+        self.carry_out("to forget who waits", |to| to.execute(sql::FORGET_WAITERS, values![&waiter.id]))
+            .map(drop)
+    }
+
+    /// Holds the board for longer. Returns whether it is held still.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn renew(&mut self, lease: &Lease) -> Result<bool, StoreError> {
+        let Lease { board, holder, fence, .. } = lease;
+        let renewed = self.carry_out("to let a board be held", |to| {
+            to.execute(sql::RENEW_BOARD, values![LEASE_MS, board, holder, *fence])
+        })?;
+        Ok(renewed == 1)
+    }
+
+    /// Gives the board back, if it is held still.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn give_back(&mut self, lease: &Lease) -> Result<(), StoreError> {
+        let Lease { board, holder, fence, .. } = lease;
+        let back =
+            |to: &mut dyn Database| to.execute(sql::RETURN_BOARD, values![board, holder, *fence]).map(drop);
+        self.carry_out("to take a board back", back)
+    }
+
+    /// Carries out what changes a row or none, and enters it in the audit if it did. Returns whether it did.
+    pub(super) fn audited(
+        &mut self,
+        operator: &str,
+        act: &str,
+        subject: &str,
+        detail: &str,
+        change: impl FnOnce(&mut dyn Database) -> Result<u64, DatabaseError>,
+    ) -> Result<bool, StoreError> {
+        let at_ms = clock::now_ms();
+        let id = ids::new(at_ms)?.to_string();
+        self.carry_out("a change", |database| {
+            database.transaction(|to| {
+                let is_changed = change(to)? > 0;
+                if is_changed {
+                    Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &[])?;
+                }
+                Ok(is_changed)
+            })
+        })
+    }
+}
+
+/// Gives the board of this name to `holder`; its row is locked.
+pub(super) fn hold(to: &mut dyn Database, name: &str, holder: &str) -> Result<Lease, DatabaseError> {
+    to.one(sql::HOLD_BOARD, values![holder, LEASE_MS, name], |row| {
+        Ok(Lease {
+            board: row.get(0)?,
+            target: row.get(1)?,
+            holder: holder.to_owned(),
+            fence: row.get(2)?,
+            product: row.get(3)?,
+            serial: row.get(4)?,
+        })
+    })
+}
+
+/// Every board that is shared, by kind and name.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub fn boards(of: &Snapshot) -> Result<Vec<SharedBoard>, StoreError> {
+    of.rows("to tell its boards", sql::BOARDS, &[], board)
+}
+
+fn board(row: &Row<'_>) -> Result<SharedBoard, DatabaseError> {
+    Ok(SharedBoard {
+        name: row.get(0)?,
+        kind: row.get(1)?,
+        target: row.get(2)?,
+        product: row.get(3)?,
+        serial: row.get(4)?,
+        station: row.get(5)?,
+        out: row.get(6)?,
+        fence: row.get(7)?,
+        holder: row.get(8)?,
+        until_ms: row.get(9)?,
+    })
+}
+
+/// Who waits, in the order of the queue of each kind: kind, who, and since when in milliseconds since 1970, UTC.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub fn waiters(of: &Snapshot) -> Result<Vec<(String, String, i64)>, StoreError> {
+    of.rows("to tell who waits", sql::WAITERS, &[], |row| {
+        Ok((row.get(0)?, row.get(1)?, ids::made_ms(row.text(2)?)))
+    })
+}

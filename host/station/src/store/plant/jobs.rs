@@ -1,0 +1,264 @@
+//! Jobs: what whichever station is free is to judge. A job and its board are claimed together or not at all, held until a
+//! moment of the plant's clock, and done when a run of it has come to the plant while the claim was the last one.
+
+use serde::Serialize;
+
+use super::super::database::{Database, DatabaseError, Row, values};
+use super::super::{Snapshot, StoreError, statements as sql};
+use super::boards::{LEASE_MS, Lease, hold};
+use super::{Plant, arrived};
+use crate::plan::Plan;
+use crate::{clock, ids};
+
+/// The states of jobs: waiting for a station, claimed by one, judged, come to nothing.
+pub const STATES: [&str; 4] = ["waiting", "claimed", "done", "dead"];
+
+/// What a job is about.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Wanted {
+    /// The board that is this unit.
+    Serial(String),
+    /// Any board of this kind.
+    Kind(String),
+}
+
+/// A job that is to be added.
+#[derive(Clone, Debug)]
+pub struct NewJob<'a> {
+    /// The plan.
+    pub plan: &'a Plan,
+    /// What it is to judge.
+    pub wanted: &'a Wanted,
+    /// What a station must have.
+    pub needs: &'a [String],
+    /// Those of a higher one come first.
+    pub priority: i64,
+    /// Who wants it.
+    pub operator: &'a str,
+}
+
+/// A job as it is.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Job {
+    /// Its id, a UUID of version 7.
+    pub id: String,
+    /// The name of its plan.
+    pub plan: String,
+    /// The version of its plan.
+    pub version: String,
+    /// The product.
+    pub product: String,
+    /// The unit; empty if any board of the kind will do.
+    pub serial: String,
+    /// The kind of board; empty if it is one unit.
+    pub kind: String,
+    /// What a station must have, with blanks between.
+    pub needs: String,
+    /// Those of a higher one come first.
+    pub priority: i64,
+    /// One of [`STATES`].
+    pub state: String,
+    /// Who has it, or had it last.
+    pub holder: Option<String>,
+    /// How often it was claimed since a person last looked at it.
+    pub attempts: u32,
+    /// The run that counts.
+    pub run: Option<String>,
+    /// That run's verdict.
+    pub verdict: Option<String>,
+    /// When it was added, in milliseconds since 1970, UTC.
+    pub created_ms: i64,
+    /// Who wants it.
+    pub operator: String,
+    /// Why it came to nothing, or to nothing yet.
+    pub said: Option<String>,
+}
+
+/// A station that takes jobs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Worker {
+    /// Who it is: the station's name and an id that no other process has.
+    pub holder: String,
+    /// The station.
+    pub station: String,
+    /// The hashes of its plans.
+    pub plans: Vec<String>,
+    /// What it has.
+    pub has: Vec<String>,
+}
+
+/// A job that a worker has, with its board.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Claim {
+    /// The job.
+    pub job: String,
+    /// How often it was claimed, this time included.
+    pub fence: i64,
+    /// The hash of the plan.
+    pub plan_sha256: String,
+    /// The board.
+    pub lease: Lease,
+}
+
+impl Claim {
+    /// The serial number of the board.
+    #[must_use]
+    pub fn serial(&self) -> &str {
+        &self.lease.serial
+    }
+}
+
+impl Plant {
+    /// Adds `count` jobs. Returns their ids, in the order in which they are taken.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant does not take them.
+    pub fn add_jobs(&mut self, job: &NewJob<'_>, count: u32) -> Result<Vec<String>, StoreError> {
+        let NewJob { plan, wanted, needs, priority, operator } = job;
+        let at_ms = clock::now_ms();
+        let mut added = Vec::new();
+        for _ in 0..count {
+            added.push(ids::new(at_ms)?.to_string());
+        }
+        added.sort();
+        let (serial, kind) = match wanted {
+            Wanted::Serial(serial) => (serial.as_str(), ""),
+            Wanted::Kind(kind) => ("", kind.as_str()),
+        };
+        let needs = needs.join(" ");
+        let subject = added.first().cloned().unwrap_or_default();
+        let detail = format!("{count} of {} {} for {} {serial}{kind}", plan.name, plan.version, plan.product);
+        self.audited(operator, "add job", &subject, &detail, |to| {
+            arrived::plan(to, plan, at_ms)?;
+            added.iter().try_fold(0, |done, id| {
+                let of = values![id, &plan.sha256, &plan.product, serial, kind, &needs, *priority, *operator];
+                Ok(done + to.execute(sql::ADD_JOB, of)?)
+            })
+        })?;
+        Ok(added)
+    }
+
+    /// The job is judged no more, for this reason; whoever has it loses it. Returns whether it was waiting or claimed.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn cancel_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
+        self.audited(operator, "cancel job", id, reason, |to| {
+            to.execute(sql::CANCEL_JOB, values![reason, id])
+        })
+    }
+
+    /// The job that came to nothing is judged after all. Returns whether it had.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn retry_job(&mut self, id: &str, operator: &str, reason: &str) -> Result<bool, StoreError> {
+        self.audited(operator, "retry job", id, reason, |to| to.execute(sql::RETRY_JOB, values![id]))
+    }
+
+    /// Gives `worker` the first job that it can judge, with a board; none if there is none for now.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn claim(&mut self, worker: &Worker) -> Result<Option<Claim>, StoreError> {
+        self.carry_out("to give a job", |database| database.transaction(|to| claimed(to, worker)))
+    }
+
+    /// Holds a job and its board for longer. Returns whether both are held still.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn renew_claim(&mut self, claim: &Claim) -> Result<bool, StoreError> {
+        let Claim { job, fence, lease, .. } = claim;
+        let renewed = self.carry_out("to let a job be held", |to| {
+            to.execute(sql::RENEW_JOB, values![LEASE_MS, job, &lease.holder, *fence])
+        })?;
+        Ok(renewed == 1 && self.renew(lease)?)
+    }
+
+    /// Gives a job back that was not begun, and its board.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn decline(&mut self, claim: &Claim) -> Result<(), StoreError> {
+        let Claim { job, fence, lease, .. } = claim;
+        self.carry_out("to take a job back", |to| {
+            to.execute(sql::RETURN_JOB, values![job, &lease.holder, *fence])
+        })?;
+        self.give_back(lease)
+    }
+
+    /// Gives a job back of which no run came about, for this reason; one that was claimed five times is dead.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn fail(&mut self, claim: &Claim, said: &str) -> Result<(), StoreError> {
+        let Claim { job, fence, .. } = claim;
+        self.carry_out("to take a job back", |to| to.execute(sql::JOB_BACK, values![said, job, *fence]))
+            .map(drop)
+    }
+
+    /// The run that counts of a job; none if there is none yet.
+    ///
+    /// # Errors
+    /// As [`Self::add_jobs`].
+    pub fn run_of_job(&mut self, id: &str) -> Result<Option<String>, StoreError> {
+        let run = self.carry_out("to tell a job's run", |database| {
+            database.first(sql::RUN_OF_JOB, values![id], |row| row.get::<Option<String>>(0))
+        })?;
+        Ok(run.flatten())
+    }
+}
+
+/// A job and its board, or neither: what is locked goes with the transaction.
+fn claimed(to: &mut dyn Database, worker: &Worker) -> Result<Option<Claim>, DatabaseError> {
+    let Worker { holder, station, plans, has } = worker;
+    to.execute(sql::EXHAUSTED_JOBS, &[])?;
+    let (plans, has) = (plans.join(" "), has.join(" "));
+    let of = values![station, &plans, &has];
+    let found: Option<[String; 4]> =
+        to.first(sql::CLAIMABLE_JOB, of, |row| Ok([row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?]))?;
+    let Some([id, product, serial, kind]) = found else { return Ok(None) };
+    let board: Option<String> =
+        to.first(sql::BOARD_OF_JOB, values![&product, station, &serial, &kind], |row| row.get(0))?;
+    // Somebody else was quicker.
+    let Some(board) = board else { return Ok(None) };
+    let lease = hold(to, &board, holder)?;
+    to.one(sql::CLAIM_JOB, values![holder, LEASE_MS, &id], |row| {
+        Ok(Some(Claim {
+            job: row.get(0)?,
+            fence: row.get(1)?,
+            plan_sha256: row.get(2)?,
+            lease: lease.clone(),
+        }))
+    })
+}
+
+/// The jobs of these of [`STATES`], the newest first: at most `most`, behind the one with the id `behind`, if any.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read.
+pub fn jobs(of: &Snapshot, states: &[&str], behind: &str, most: u32) -> Result<Vec<Job>, StoreError> {
+    of.rows("to tell its jobs", sql::JOBS, values![&states.join(" "), behind, most], job)
+}
+
+fn job(row: &Row<'_>) -> Result<Job, DatabaseError> {
+    Ok(Job {
+        id: row.get(0)?,
+        plan: row.get(1)?,
+        version: row.get(2)?,
+        product: row.get(3)?,
+        serial: row.get(4)?,
+        kind: row.get(5)?,
+        needs: row.get(6)?,
+        priority: row.get(7)?,
+        state: row.get(8)?,
+        holder: row.get(9)?,
+        attempts: row.get(10)?,
+        run: row.get(11)?,
+        verdict: row.get(12)?,
+        created_ms: row.get(13)?,
+        operator: row.get(14)?,
+        said: row.get(15)?,
+    })
+}

@@ -1,0 +1,223 @@
+//! A station that takes jobs of its plant: one after the other, each on a board that several computers share.
+//!
+//! ```text
+//!  claim: job and board, together ─► run, as every run ─► kept here ─► outbox ─► plant: the job is done, by just this run
+//!      └ held: renewed every ten seconds ────────────────────────────────────────┘
+//!        └ lost: the run is ended; what comes of it is kept and does not count
+//! ```
+
+mod held;
+
+use std::path::PathBuf;
+use std::thread;
+use std::time::Duration;
+
+use halfrow::target::{Target, TargetError};
+use halfrow::verdict::StoppedBy;
+use rand::{RngExt as _, rng};
+
+pub use held::{Held, Holding, Lost};
+
+use crate::outbox::PlantSink;
+use crate::record::JobClaim;
+use crate::run::{self, Order, RunError, Saved, Stage, Watch};
+use crate::said::Said;
+use crate::settings::{PlanFile, Settings};
+use crate::store::{Claim, Plant, PlantAddress, SharedStore, StoreError, Worker};
+
+/// How often it is asked for a job while there is none, in milliseconds.
+const IDLE_MS: u64 = 1_000;
+/// How often it is looked whether the plant has a run.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// A job that came to no run.
+#[derive(Debug, thiserror::Error)]
+pub enum WorkError {
+    /// The plant or the station's own store.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The run has no verdict.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The station has not the plan that it said it has.
+    #[error("this station does not have the plan {sha256} of the job {job}; report this with the version")]
+    NoPlan {
+        /// The job.
+        job: String,
+        /// The plan's hash.
+        sha256: String,
+    },
+    /// The board's place is none.
+    #[error("the plant says that the board {board} is at {target}, which is no board; share it anew")]
+    Target {
+        /// The board.
+        board: String,
+        /// Where it is said to be.
+        target: String,
+        /// Why that is none.
+        source: TargetError,
+    },
+}
+
+/// What became of a job.
+#[derive(Debug)]
+pub struct Judged {
+    /// The job.
+    pub claim: Claim,
+    /// Its run.
+    pub saved: Saved,
+    /// Whether the plant had it when it was last looked.
+    pub is_sent: bool,
+    /// Whether it counts, as far as is known: no other run of the job does.
+    pub counts: bool,
+}
+
+/// Somebody who takes jobs.
+#[derive(Debug)]
+pub struct Work<'a> {
+    /// The station's settings.
+    pub settings: &'a Settings,
+    /// Where the plant is.
+    pub address: PlantAddress,
+    /// The station's store, whose outbox is at work.
+    pub store: SharedStore,
+    /// The program whose `lane` is started.
+    pub program: PathBuf,
+    /// Who it is to the plant.
+    pub worker: Worker,
+}
+
+impl Work<'_> {
+    /// The first job that this station can judge now, if there is one.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant is not there.
+    pub fn claim(&self) -> Result<Option<Claim>, StoreError> {
+        Plant::connect(&self.address)?.claim(&self.worker)
+    }
+
+    /// The next job that this station can judge; none when `stop` says so before there is one.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant is not there.
+    pub fn next(&self, stop: &dyn Fn() -> Option<StoppedBy>) -> Result<Option<Claim>, StoreError> {
+        let mut plant = Plant::connect(&self.address)?;
+        while stop().is_none() {
+            if let Some(claim) = plant.claim(&self.worker)? {
+                return Ok(Some(claim));
+            }
+            // Stations that were started together do not ask together.
+            let wait = rng().random_range(IDLE_MS / 2..IDLE_MS * 3 / 2);
+            sleep_unless(Duration::from_millis(wait), stop);
+        }
+        Ok(None)
+    }
+
+    /// Judges the board of a claim, keeps the result, and waits until the plant has it or the claim is lost.
+    ///
+    /// # Errors
+    /// [`WorkError`] when there is no run; the job is another's then once the claim has run out.
+    pub fn judge(
+        &self,
+        claim: Claim,
+        stop: &dyn Fn() -> Option<StoppedBy>,
+        heard: &mut dyn FnMut(Stage<'_>),
+    ) -> Result<Judged, WorkError> {
+        let holding = Holding::begin(self.address.clone(), Held::Job(claim.clone()));
+        let saved = match self.run(&claim, &holding, stop, heard) {
+            Ok(saved) => saved,
+            Err(error) => {
+                let said = Said::of(&error).to_string();
+                if let Err(error) =
+                    Plant::connect(&self.address).and_then(|mut plant| plant.fail(&claim, &said))
+                {
+                    tracing::warn!(
+                        "the job {} is free when its lease has run out: {}",
+                        claim.job,
+                        Said::of(&error)
+                    );
+                }
+                return Err(error);
+            }
+        };
+        let run = &saved.record.run.id;
+        let mut is_sent = self.is_sent(run)?;
+        while !is_sent && !holding.is_lost() && stop().is_none() {
+            thread::sleep(LOOK);
+            is_sent = self.is_sent(run)?;
+        }
+        let counts = self.counts(&claim, run);
+        holding.end();
+        Ok(Judged { claim, is_sent, counts, saved })
+    }
+
+    fn run(
+        &self,
+        claim: &Claim,
+        holding: &Holding,
+        stop: &dyn Fn() -> Option<StoppedBy>,
+        heard: &mut dyn FnMut(Stage<'_>),
+    ) -> Result<Saved, WorkError> {
+        let target: Target = claim.lease.target.parse().map_err(|source| WorkError::Target {
+            board: claim.lease.board.clone(),
+            target: claim.lease.target.clone(),
+            source,
+        })?;
+        let Settings { plans, silence, memory_mib, .. } = self.settings;
+        let file = plans.iter().find(|file| file.plan.sha256 == claim.plan_sha256);
+        let Some(PlanFile { path, plan }) = file else {
+            return Err(WorkError::NoPlan { job: claim.job.clone(), sha256: claim.plan_sha256.clone() });
+        };
+        let job = JobClaim { id: claim.job.clone(), fence: claim.fence };
+        let order = Order {
+            plan,
+            plan_file: path,
+            serial: claim.serial(),
+            target: &target,
+            station: &self.worker.station,
+            lane: &claim.lease.board,
+            operator: "job",
+            program: &self.program,
+            counts: plan.counts(claim.serial()),
+            job: Some(&job),
+            silence: *silence,
+            memory_mib: *memory_mib,
+        };
+        Ok(run::run(&self.store, &order, &mut Watched { holding, stop, heard })?)
+    }
+
+    fn is_sent(&self, run: &str) -> Result<bool, StoreError> {
+        self.store.with(|store| store.folder().is_sent(PlantSink::NAME, run))
+    }
+
+    /// Whether no other run of the job counts.
+    fn counts(&self, claim: &Claim, run: &str) -> bool {
+        let counted = Plant::connect(&self.address).and_then(|mut plant| plant.run_of_job(&claim.job));
+        counted.is_ok_and(|counted| counted.is_none_or(|counted| counted == run))
+    }
+}
+
+/// A run that ends when what it is about is lost.
+struct Watched<'a> {
+    holding: &'a Holding,
+    stop: &'a dyn Fn() -> Option<StoppedBy>,
+    heard: &'a mut dyn FnMut(Stage<'_>),
+}
+
+impl Watch for Watched<'_> {
+    fn stop(&self) -> Option<StoppedBy> {
+        (self.stop)().or_else(|| self.holding.is_lost().then_some(StoppedBy::Caller))
+    }
+
+    fn hear(&mut self, stage: Stage<'_>) {
+        (self.heard)(stage);
+    }
+}
+
+/// Waits so long, or until `stop` says so.
+fn sleep_unless(wait: Duration, stop: &dyn Fn() -> Option<StoppedBy>) {
+    let until = std::time::Instant::now() + wait;
+    while stop().is_none() && std::time::Instant::now() < until {
+        thread::sleep(LOOK);
+    }
+}

@@ -1,0 +1,116 @@
+//! Boards that are waited for, held and lost.
+
+use std::io::{BufRead as _, BufReader, Lines};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::thread;
+
+use halfrow_station::store::{Plant, Turn, Waiter};
+use serde_json::Value;
+
+use super::{any, job, plan, run_out, settings, shared, worker};
+use crate::common::program;
+use crate::plant::server::Server;
+
+fn waiter(name: &str) -> Waiter {
+    Waiter::new("mock", name, "12").unwrap()
+}
+
+#[test]
+fn who_waits_longest_is_the_next_and_a_job_comes_behind_people() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let [first, second, third] = ["first", "second", "third"].map(|name| {
+        thread::sleep(std::time::Duration::from_millis(2));
+        waiter(name)
+    });
+    let Turn::Held(held) = plant.wait(&first).unwrap() else { panic!("it is free") };
+    assert_eq!(plant.wait(&second).unwrap(), Turn::Waits { before: 0 });
+    assert_eq!(plant.wait(&third).unwrap(), Turn::Waits { before: 1 });
+    assert!(plant.renew(&held).unwrap());
+    plant.give_back(&held).unwrap();
+    assert_eq!(plant.wait(&third).unwrap(), Turn::Waits { before: 1 }, "another waits longer");
+    assert_eq!(plant.claim(&worker("12")).unwrap(), None);
+    // Who does not ask again is forgotten.
+    server.client("plant").batch_execute("UPDATE waiter SET until_ms = 0 WHERE holder = 'second'").unwrap();
+    let Turn::Held(held) = plant.wait(&third).unwrap() else { panic!("it is the third's turn") };
+    assert_eq!((held.holder.as_str(), held.fence), ("third", 2));
+    plant.give_back(&held).unwrap();
+    assert!(plant.claim(&worker("12")).unwrap().is_some());
+    assert_eq!(plant.wait(&Waiter::new("none", "first", "12").unwrap()).unwrap(), Turn::Never);
+}
+
+#[test]
+fn a_board_that_was_taken_over_or_out_is_held_no_more() {
+    let (server, mut plant) = shared(1);
+    let Turn::Held(first) = plant.wait(&waiter("first")).unwrap() else { panic!("it is free") };
+    run_out(&server);
+    let Turn::Held(second) = plant.wait(&waiter("second")).unwrap() else { panic!("it is free again") };
+    assert!(!plant.renew(&first).unwrap() && plant.renew(&second).unwrap());
+    assert!(plant.take_out("shelf-0", Some("it smells"), "engel").unwrap());
+    assert!(!plant.renew(&second).unwrap());
+    plant.give_back(&second).unwrap();
+    assert_eq!(plant.wait(&waiter("third")).unwrap(), Turn::Never);
+    assert!(plant.take_out("shelf-0", None, "engel").unwrap());
+    assert!(matches!(plant.wait(&waiter("third")).unwrap(), Turn::Held(_)));
+    assert!(!plant.take_out("shelf-9", None, "engel").unwrap());
+}
+
+/// `halfrow-station board hold mock`
+struct Hold {
+    process: Child,
+    stdin: Option<ChildStdin>,
+    told: Lines<BufReader<ChildStdout>>,
+    _folder: tempfile::TempDir,
+}
+
+impl Hold {
+    fn start(server: &Server, name: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let path = settings(server, folder.path(), name);
+        let mut command = Command::new(program());
+        command.args(["board", "hold", "mock", "--settings"]).arg(path);
+        let mut process =
+            command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let told = BufReader::new(process.stdout.take().unwrap()).lines();
+        Self { stdin: process.stdin.take(), told, process, _folder: folder }
+    }
+
+    /// The next thing that it tells which has this key.
+    fn tells(&mut self, key: &str) -> Value {
+        let lines = self.told.by_ref().map(|line| serde_json::from_str::<Value>(&line.unwrap()).unwrap());
+        lines.map(|mut told| told[key].take()).find(|told| !told.is_null()).unwrap()
+    }
+}
+
+impl Drop for Hold {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+#[test]
+fn a_board_is_held_until_stdin_ends_and_the_next_one_gets_it() {
+    let (server, mut plant) = shared(1);
+    let mut first = Hold::start(&server, "12");
+    let held = first.tells("held");
+    assert_eq!((held["board"].as_str(), held["target"].as_str()), (Some("shelf-0"), Some("mock")));
+    let mut second = Hold::start(&server, "13");
+    assert_eq!(second.tells("waits")["before"], 0);
+    let mut third = Hold::start(&server, "14");
+    assert_eq!(third.tells("waits")["before"], 1);
+    drop(first.stdin.take());
+    assert!(first.process.wait().unwrap().success());
+    assert_eq!(second.tells("held")["fence"], 2);
+    // Whoever started it was killed, which ends its stdin; it was killed itself, which the lease ends.
+    second.process.kill().unwrap();
+    let mut client = server.client("plant");
+    assert_eq!(client.execute("UPDATE board SET until_ms = 0", &[]).unwrap(), 1);
+    assert_eq!(third.tells("held")["fence"], 3);
+    assert!(plant.take_out("shelf-0", Some("it smells"), "engel").unwrap());
+    // It is looked every ten seconds.
+    assert!(third.tells("lost")["said"].as_str().unwrap().contains("not ours any more"));
+    assert_eq!(third.process.wait().unwrap().code(), Some(3));
+    drop(Plant::connect(&server.address()).unwrap());
+}

@@ -1,0 +1,201 @@
+//! Who has a job: one at a time, the last one for certain, and its run counts alone.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+use std::thread;
+
+use halfrow::Verdict;
+use halfrow_station::record::{JobClaim, Record, RunCause};
+use halfrow_station::store::{Claim, Entry, Kind, Parcel, Plant, Wanted, Worker};
+
+use super::{any, board, job, plan, run_out, shared, worker};
+use crate::history::made::{BEGIN_MS, End, Made, Run};
+use crate::plant::server::Server;
+
+/// The run of a claim, as its station sends it.
+fn run_of(claim: &Claim, number: u32, end: End) -> Parcel {
+    let mut made = Made::new();
+    let run = Run { started_ms: BEGIN_MS + i64::from(number), ..Run::of(claim.serial(), end) };
+    let subject = made.numbered(number, &run);
+    let parcel = made.folder().parcel(&Entry { kind: Kind::Run, subject, attempts: 0 }).unwrap();
+    let Parcel::Run { mut record, .. } = parcel else { panic!("it is a run") };
+    record.run.job = Some(JobClaim { id: claim.job.clone(), fence: claim.fence });
+    let text = serde_json::to_string(&record).unwrap();
+    assert_eq!(Record::parse(text.as_bytes()).unwrap(), *record);
+    let sha256 = halfrow::result::sha256([text.as_bytes()]);
+    Parcel::Run { record, text, sha256 }
+}
+
+/// The state of each job, with its attempts.
+fn states(server: &Server) -> Vec<Vec<String>> {
+    server.rows("SELECT state, attempts FROM job ORDER BY id")
+}
+
+#[test]
+fn a_job_is_had_by_one_at_a_time_and_so_is_a_board() {
+    let (server, mut plant) = shared(4);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 40).unwrap();
+    let held = Mutex::new((Vec::<String>::new(), Vec::new()));
+    thread::scope(|scope| {
+        for number in 0..8 {
+            let (held, server) = (&held, &server);
+            scope.spawn(move || {
+                let mut plant = Plant::connect(&server.address()).unwrap();
+                let worker = worker(&format!("station {number}"));
+                let mut runs = number * 1000;
+                while !server.rows("SELECT 1 FROM job WHERE state <> 'done' LIMIT 1").is_empty() {
+                    let Some(claim) = plant.claim(&worker).unwrap() else { continue };
+                    {
+                        let mut held = held.lock().unwrap();
+                        assert!(!held.0.contains(&claim.lease.board), "{claim:?} is had by {:?}", held.0);
+                        held.0.push(claim.lease.board.clone());
+                        held.1.push(claim.job.clone());
+                    }
+                    assert!(plant.renew_claim(&claim).unwrap());
+                    runs += 1;
+                    plant.take(&run_of(&claim, runs, End::Pass)).unwrap();
+                    held.lock().unwrap().0.retain(|board| *board != claim.lease.board);
+                    plant.give_back(&claim.lease).unwrap();
+                }
+            });
+        }
+    });
+    let mut claimed = held.into_inner().unwrap().1;
+    claimed.sort();
+    claimed.dedup();
+    assert_eq!(claimed.len(), 40, "each was claimed");
+    assert_eq!(server.rows("SELECT count(*), count(DISTINCT id), sum(fence) FROM job"), [["40", "40", "40"]]);
+    let once = "SELECT count(*) FROM run JOIN job ON job.run_id = run.id WHERE verdict = 'PASS'";
+    assert_eq!(server.rows(once), [["40"]]);
+}
+
+/// What a worker that had stood still for too long does, and what the next one does: how many runs count as judgements.
+fn late(is_fenced: bool) -> (Server, Vec<Vec<String>>) {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let first = plant.claim(&worker("first")).unwrap().unwrap();
+    run_out(&server);
+    let second = plant.claim(&worker("second")).unwrap().unwrap();
+    assert_eq!((first.fence, second.fence, second.lease.fence), (1, 2, 2));
+    assert!(!plant.renew_claim(&first).unwrap() && plant.renew_claim(&second).unwrap());
+    plant.give_back(&first.lease).unwrap();
+    assert!(plant.renew_claim(&second).unwrap(), "a board is not given back by who does not have it");
+    for (claim, number) in [(&first, 1), (&second, 2), (&first, 1)] {
+        let Parcel::Run { mut record, mut text, mut sha256 } = run_of(claim, number, End::Pass) else {
+            panic!("it is a run")
+        };
+        if !is_fenced {
+            record.run.job = None;
+            text = serde_json::to_string(&record).unwrap();
+            sha256 = halfrow::result::sha256([text.as_bytes()]);
+        }
+        plant.take(&Parcel::Run { record, text, sha256 }).unwrap();
+    }
+    let judged = server.rows("SELECT nth FROM run ORDER BY id");
+    (server, judged)
+}
+
+#[test]
+fn a_run_of_a_claim_that_was_lost_is_kept_and_does_not_count() {
+    let (server, judged) = late(true);
+    assert_eq!(judged, [["0"], ["1"]]);
+    assert_eq!(server.rows("SELECT runs, units, passed FROM day_count"), [["1", "1", "1"]]);
+    let done = server.rows("SELECT job.state, run.nth FROM job JOIN run ON run.id = job.run_id");
+    assert_eq!(done, [["done", "1"]]);
+    // The control: without the fence both count.
+    let (server, judged) = late(false);
+    assert_eq!(judged, [["1"], ["2"]]);
+    assert_eq!(server.rows("SELECT sum(runs) FROM day_count"), [["2"]]);
+}
+
+#[test]
+fn what_judged_nothing_is_given_back_five_times_and_then_waits_for_a_person() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    for number in 1..=5 {
+        let claim = plant.claim(&worker("12")).unwrap().unwrap();
+        match number {
+            // A run that is an ERROR, a board that is no board, and a worker that vanished.
+            1 | 2 => plant.take(&run_of(&claim, number, End::Error(RunCause::Link))).unwrap(),
+            3 => plant.fail(&claim, "it is no board").unwrap(),
+            _ => run_out(&server),
+        }
+        plant.give_back(&claim.lease).unwrap();
+    }
+    assert_eq!(plant.claim(&worker("12")).unwrap(), None);
+    assert_eq!(states(&server), [["dead", "5"]]);
+    assert!(plant.retry_job(&id, "engel", "the cable is new").unwrap());
+    assert!(!plant.retry_job(&id, "engel", "twice").unwrap());
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    // What was not begun costs no attempt.
+    plant.decline(&claim).unwrap();
+    assert_eq!(states(&server), [["waiting", "0"]]);
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    plant.take(&run_of(&claim, 9, End::Fail(&["clock"]))).unwrap();
+    assert_eq!(
+        plant.run_of_job(&id).unwrap().as_deref(),
+        server.rows("SELECT max(id) FROM run")[0].first().map(String::as_str)
+    );
+    let verdicts = server.rows("SELECT verdict FROM run ORDER BY id");
+    assert_eq!(verdicts, [["ERROR"], ["ERROR"], [Verdict::Fail.to_string().as_str()]]);
+}
+
+#[test]
+fn a_job_that_is_cancelled_is_lost_to_whoever_has_it() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    let id = plant.add_jobs(&job(&plan, &any), 1).unwrap().remove(0);
+    let claim = plant.claim(&worker("12")).unwrap().unwrap();
+    assert!(plant.cancel_job(&id, "engel", "a mistake").unwrap());
+    assert!(!plant.renew_claim(&claim).unwrap());
+    plant.take(&run_of(&claim, 1, End::Pass)).unwrap();
+    assert_eq!(server.rows("SELECT nth FROM run"), [["0"]]);
+    assert_eq!(server.rows("SELECT state, said FROM job"), [["dead", "a mistake"]]);
+    let told = server.rows(
+        "SELECT act, subject = (SELECT id FROM job), detail FROM audit WHERE act LIKE '%job%' ORDER BY id",
+    );
+    assert_eq!(told, [["add job", "t", "1 of quick 1 for CAM-T mock"], ["cancel job", "t", "a mistake"]]);
+}
+
+#[test]
+fn the_first_job_is_taken_that_a_station_can_judge() {
+    let (_server, mut plant) = shared(2);
+    plant.share(&board(7, "ulx3s"), "engel").unwrap();
+    let own = halfrow_station::store::SharedBoard { station: "north".to_owned(), ..board(8, "rare") };
+    plant.share(&own, "engel").unwrap();
+    let (plan, needs) = (plan(), ["camera".to_owned()]);
+    let [first, unit, ulx3s, rare] = [
+        any(),
+        Wanted::Serial("CAT00001".to_owned()),
+        Wanted::Kind("ulx3s".to_owned()),
+        Wanted::Kind("rare".to_owned()),
+    ];
+    let mut added = BTreeMap::new();
+    let mut add = |name: &'static str, wanted, priority, needs| {
+        let new = halfrow_station::store::NewJob { priority, needs, ..job(&plan, wanted) };
+        let id = plant.add_jobs(&new, 1).unwrap().remove(0);
+        added.insert(id, name);
+    };
+    add("any", &first, 0, &[]);
+    add("unit", &unit, 5, &[]);
+    add("camera", &ulx3s, 9, &needs);
+    add("rare", &rare, 9, &[]);
+    let mut take = |worker: &Worker| {
+        let claim = plant.claim(worker).unwrap()?;
+        Some((added[&claim.job], claim.lease.board))
+    };
+    let south = worker("south");
+    let of = |name, board: &str| Some((name, board.to_owned()));
+    assert_eq!(take(&Worker { plans: vec!["another".to_owned()], ..south.clone() }), None);
+    assert_eq!(take(&south), of("unit", "shelf-1"));
+    assert_eq!(take(&south), of("any", "shelf-0"));
+    assert_eq!(take(&south), None);
+    assert_eq!(
+        take(&Worker { has: vec!["light".to_owned(), "camera".to_owned()], ..south }),
+        of("camera", "shelf-7")
+    );
+    assert_eq!(take(&worker("north")), of("rare", "shelf-8"));
+}

@@ -1,0 +1,78 @@
+//! Jobs of a plant, and boards that several computers share, on a real PostgreSQL server.
+
+mod boards;
+mod claims;
+mod work;
+
+use std::path::Path;
+
+use halfrow_station::plan::Plan;
+use halfrow_station::store::{NewJob, Plant, SharedBoard, Wanted, Worker};
+
+use crate::common::PLAN;
+use crate::plant::server::Server;
+
+/// The plan of every job.
+fn plan() -> Plan {
+    Plan::parse("plan.toml".as_ref(), PLAN.to_owned()).unwrap()
+}
+
+/// A board of this kind with this number, that every station reaches.
+fn board(number: usize, kind: &str) -> SharedBoard {
+    SharedBoard {
+        name: format!("shelf-{number}"),
+        kind: kind.to_owned(),
+        target: "mock".to_owned(),
+        product: "CAM-T".to_owned(),
+        serial: format!("CAT{number:05}"),
+        station: String::new(),
+        out: None,
+        fence: 0,
+        holder: None,
+        until_ms: None,
+    }
+}
+
+/// A plant with so many boards of the kind `mock`.
+fn shared(count: usize) -> (Server, Plant) {
+    let server = Server::prepared();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    for number in 0..count {
+        assert!(plant.share(&board(number, "mock"), "engel").unwrap());
+    }
+    (server, plant)
+}
+
+fn any() -> Wanted {
+    Wanted::Kind("mock".to_owned())
+}
+
+fn job<'a>(plan: &'a Plan, wanted: &'a Wanted) -> NewJob<'a> {
+    NewJob { plan, wanted, needs: &[], priority: 0, operator: "engel" }
+}
+
+/// A worker of this station, which has nothing but the plan.
+fn worker(station: &str) -> Worker {
+    let [holder, station] = [format!("{station} 1"), station.to_owned()];
+    Worker { holder, station, plans: vec![plan().sha256], has: Vec::new() }
+}
+
+/// All leases have run out, as if their holders had said nothing for long.
+fn run_out(server: &Server) {
+    server
+        .client("plant")
+        .batch_execute("UPDATE job SET until_ms = 0; UPDATE board SET until_ms = 0")
+        .unwrap();
+}
+
+/// The settings of a worker of this name in `folder`.
+fn settings(server: &Server, folder: &Path, name: &str) -> std::path::PathBuf {
+    std::fs::write(folder.join("plan.toml"), PLAN).unwrap();
+    let plant = format!("[plant]\nurl = \"{}\"\n", server.url());
+    let text = format!(
+        "schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n{plant}[work]\nplans = [\"plan.toml\"]\n"
+    );
+    let path = folder.join("station.toml");
+    std::fs::write(&path, text).unwrap();
+    path
+}

@@ -1,0 +1,176 @@
+//! Stations that take jobs: real processes, real runs on mock boards.
+
+use std::fs;
+use std::process::{Command, Stdio};
+
+use serde_json::Value;
+
+use super::{any, job, plan, run_out, settings, shared};
+use crate::common::{Did, program};
+use crate::plant::server::Server;
+
+fn work(server: &Server, name: &str) -> (tempfile::TempDir, Command) {
+    let folder = crate::common::folder();
+    let path = settings(server, folder.path(), name);
+    let mut command = Command::new(program());
+    command.args(["work", "--once", "--json", "--settings"]).arg(path);
+    command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    (folder, command)
+}
+
+#[test]
+fn jobs_are_judged_by_whoever_is_free_and_each_once() {
+    let (server, mut plant) = shared(2);
+    let broken = halfrow_station::store::SharedBoard {
+        target: "mock,fault=stuck-data".to_owned(),
+        ..super::board(5, "mock")
+    };
+    plant.share(&broken, "engel").unwrap();
+    let (plan, any) = (plan(), any());
+    let wanted = halfrow_station::store::Wanted::Serial("CAT00005".to_owned());
+    plant.add_jobs(&job(&plan, &any), 4).unwrap();
+    let unit = plant.add_jobs(&job(&plan, &wanted), 1).unwrap();
+    let mut stations = ["12", "13"].map(|name| work(&server, name));
+    let running: Vec<_> = stations.iter_mut().map(|(_, command)| command.spawn().unwrap()).collect();
+    let mut judged = Vec::<Value>::new();
+    for process in running {
+        let did = Did::from(process.wait_with_output().unwrap());
+        assert_eq!(did.code, Some(0), "{did:?}");
+        judged.extend(did.said.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()));
+    }
+    assert_eq!(judged.len(), 5, "{judged:?}");
+    for one in &judged {
+        assert_eq!((&one["counts"], &one["at_plant"]), (&true.into(), &true.into()), "{one}");
+        let is_broken = one["board"] == "shelf-5";
+        assert_eq!(one["verdict"], if is_broken { "FAIL" } else { "PASS" }, "{one}");
+        assert!(is_broken || one["job"] != unit[0].as_str());
+    }
+    assert_eq!(
+        server.rows("SELECT count(*), count(DISTINCT run_id) FROM job WHERE state = 'done'"),
+        [["5", "5"]]
+    );
+    assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
+    let lanes = server.rows("SELECT DISTINCT lane FROM run JOIN job ON job.run_id = run.id ORDER BY lane");
+    assert!(lanes.iter().all(|lane| lane[0].starts_with("shelf-")), "{lanes:?}");
+}
+
+#[test]
+fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
+    let (server, mut plant) = shared(1);
+    let slow = halfrow_station::store::SharedBoard {
+        target: "mock,pace=real,speed=20000".to_owned(),
+        ..super::board(0, "mock")
+    };
+    plant.share(&slow, "engel").unwrap();
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let (folder, mut command) = work(&server, "12");
+    let mut first = command.spawn().unwrap();
+    while server.rows("SELECT 1 FROM job WHERE state = 'claimed'").is_empty() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    first.kill().unwrap();
+    first.wait().unwrap();
+    let (_other, mut command) = work(&server, "13");
+    // Its lease is still good.
+    let none = Did::from(command.output().unwrap());
+    assert_eq!((none.code, none.said.as_str()), (Some(0), ""), "{none:?}");
+    run_out(&server);
+    plant.share(&super::board(0, "mock"), "engel").unwrap();
+    server.client("plant").batch_execute("UPDATE board SET target = 'mock', holder = NULL").unwrap();
+    let did = Did::from(command.output().unwrap());
+    assert!(did.said.contains("\"verdict\":\"PASS\""), "{did:?}");
+    assert_eq!(server.rows("SELECT state, fence FROM job"), [["done", "2"]]);
+    // What the first one had begun is closed when it starts again, and counts for nothing of the job.
+    let again = Command::new(program())
+        .args(["work", "--once", "--settings"])
+        .arg(folder.path().join("station.toml"))
+        .output()
+        .unwrap();
+    assert!(again.status.success(), "{again:?}");
+    assert!(fs::exists(folder.path().join("data/station.db")).unwrap());
+    assert_eq!(server.rows("SELECT count(*) FROM run WHERE verdict = 'PASS'"), [["1"]]);
+}
+
+/// The commands of an engineer at a plant.
+struct Engineer {
+    server: Server,
+    folder: tempfile::TempDir,
+}
+
+impl Engineer {
+    fn new() -> Self {
+        let (server, _) = shared(0);
+        let folder = crate::common::folder();
+        settings(&server, folder.path(), "plant");
+        Self { server, folder }
+    }
+
+    fn did(&self, arguments: &[&str]) -> Did {
+        let mut command = Command::new(program());
+        command.args(arguments).arg("--settings").arg(self.folder.path().join("station.toml"));
+        command.env("USER", "engel").output().unwrap().into()
+    }
+
+    /// What the audit has.
+    fn acts(&self) -> Vec<String> {
+        self.server.rows("SELECT act FROM audit WHERE operator_id = 'engel' ORDER BY id").concat()
+    }
+}
+
+#[test]
+fn jobs_are_added_changed_and_listed_by_commands_that_the_audit_keeps() {
+    let engineer = Engineer::new();
+    let plan = engineer.folder.path().join("plan.toml").display().to_string();
+    let add = |more: &[&str]| engineer.did(&[&["job", "add", "--plan", plan.as_str()], more].concat());
+    let added = add(&["--kind", "mock", "--count", "2", "--needs", "camera"]);
+    let ids: Vec<_> = added.said.lines().map(str::to_owned).collect();
+    assert_eq!(ids.len(), 2, "{added:?}");
+    let wrong: [&[&str]; 4] = [
+        &["--serial", "XXX"],
+        &["--kind", "mock", "--needs", "two words"],
+        &["--kind", "mock", "--count", "0"],
+        &[],
+    ];
+    for wrong in wrong {
+        assert_eq!(add(wrong).code, Some(2), "{wrong:?}");
+    }
+    let cancel = ["job", "cancel", &ids[0], "--reason", "a mistake"];
+    assert_eq!(engineer.did(&cancel).code, Some(0));
+    assert_eq!(engineer.did(&cancel).code, Some(2));
+    let listed: Value = serde_json::from_str(&engineer.did(&["job", "list", "--json"]).said).unwrap();
+    let states: Vec<_> =
+        listed.as_array().unwrap().iter().map(|job| job["state"].as_str().unwrap()).collect();
+    assert_eq!(states, ["waiting", "dead"], "the newest first");
+    assert_eq!(engineer.did(&["job", "retry", &ids[0], "--reason", "no mistake"]).code, Some(0));
+    assert!(engineer.did(&["job", "list", "--state", "waiting"]).said.contains("any mock"));
+    assert_eq!(engineer.acts(), ["add job", "cancel job", "retry job"]);
+}
+
+#[test]
+fn boards_are_shared_changed_and_listed_by_commands_that_the_audit_keeps() {
+    let engineer = Engineer::new();
+    let share =
+        |board: &str| engineer.did(&["board", "share", "shelf-1", "--kind", "mock", "--board", board]);
+    assert_eq!(share("mock").said, "shelf-1 is shared\n");
+    assert_eq!(share("nonsense:1").code, Some(2));
+    assert!(engineer.did(&["board", "list"]).said.contains("free"));
+    let changes =
+        [("out", "shelf-1 is out\n"), ("in", "shelf-1 is in\n"), ("unshare", "shelf-1 is unshared\n")];
+    for (change, said) in changes {
+        assert_eq!(engineer.did(&["board", change, "shelf-1", "--reason", "why not"]).said, said);
+    }
+    assert_eq!(engineer.did(&["board", "out", "shelf-1", "--reason", "why not"]).code, Some(2));
+    assert!(engineer.did(&["board", "list"]).said.contains("no board is shared"));
+    assert_eq!(engineer.acts(), ["share board", "board out", "board in", "unshare board"]);
+}
+
+#[test]
+fn a_station_whose_settings_say_nothing_of_jobs_takes_none() {
+    let engineer = Engineer::new();
+    let path = engineer.folder.path().join("station.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.split("[work]").next().unwrap()).unwrap();
+    let refused = engineer.did(&["work", "--once", "--any-disk"]);
+    assert!(refused.code == Some(2) && refused.complained.contains("into [work]"), "{refused:?}");
+}
