@@ -1,7 +1,9 @@
 //! The program `halfrow`: its commands, its settings, and what it prints.
 
+mod beside;
 pub mod commands;
 pub mod flags;
+pub mod pool;
 mod progress;
 pub mod serve;
 pub mod settings;

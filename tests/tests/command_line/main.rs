@@ -18,6 +18,7 @@ mod load;
 mod made_files;
 mod outputs;
 mod paper;
+mod pool;
 mod previewed;
 mod replay;
 mod report_folder;

@@ -11,6 +11,7 @@ use halfrow_mock::Streamed;
 
 use super::{CallError, Failure};
 use crate::exit::Exit;
+use crate::pool::{self, PoolError};
 use crate::settings::Settings;
 use crate::signals;
 use halfrow::board::deadlines::RetryLimit;
@@ -18,6 +19,7 @@ use halfrow::board::{OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::{Build, Draws, JUDGED, Plan};
 use halfrow::target::{Target, TargetError};
+use halfrow::verdict::StoppedBy;
 
 /// Which board, and how patiently.
 #[derive(Clone, Debug, Args)]
@@ -37,7 +39,8 @@ pub(super) struct BoardArguments {
 }
 
 fn board_help() -> String {
-    format!("The board: {}; see `halfrow boards` [default: mock]", kinds::forms().join(", "))
+    let forms = kinds::forms().join(", ");
+    format!("The board: {forms}, or pool:KIND, which a plant shares; see `halfrow boards` [default: mock]")
 }
 
 /// Reads a target, and names its option when it is no text.
@@ -65,12 +68,17 @@ impl BoardArguments {
         Ok(target.address.filter(|_| target.kind == "replay").map(PathBuf::from))
     }
 
+    /// The board that is named, or that was got of the pool that is.
     pub(super) fn target(&self, settings: &Settings) -> Result<Target, Failure> {
-        match (&self.board, &settings.board) {
-            (Some(target), _) => Ok(target.clone()),
-            (None, Some(text)) => text.parse().map_err(Failure::call),
-            (None, None) => Ok(Target::mock()),
-        }
+        let named = match (&self.board, &settings.board) {
+            (Some(target), _) => target.clone(),
+            (None, Some(text)) => text.parse().map_err(Failure::call)?,
+            (None, None) => Target::mock(),
+        };
+        pool::resolved(named).map_err(|error| match error {
+            PoolError::NoKind => Failure::call(error),
+            error => Failure::error(error),
+        })
     }
 
     /// Refuses a fault of the mock board that a run of `plan` never comes upon.
@@ -130,10 +138,11 @@ impl BoardArguments {
         })
     }
 
-    /// What ends the run early: a signal, or the call's limit on this computer's clock.
+    /// What ends the run early: a signal, the loss of a board of a pool, or the call's limit on this computer's clock.
     pub(super) fn stop(&self, settings: &Settings) -> Result<Stop, Failure> {
         let signal = signals::stop();
-        let stop = Stop::when(move || Exit::stopped_by(signal.load(Ordering::Relaxed)));
+        let lost = || pool::is_lost().then_some(StoppedBy::Caller);
+        let stop = Stop::when(move || Exit::stopped_by(signal.load(Ordering::Relaxed)).or_else(lost));
         Ok(stop.within(self.timeout(settings)?))
     }
 

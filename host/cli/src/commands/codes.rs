@@ -13,6 +13,7 @@ use super::document::print_result;
 use super::load::LoadError;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
+use crate::pool::PoolError;
 use crate::serve::ServeError;
 use crate::settings::SettingsError;
 use halfrow::result::codes::{self, CodeList, Coded};
@@ -110,6 +111,13 @@ codes::codes! {
         Table => "training-tables-refused",
         Frame => "training-frame-not-made",
         Correct => "training-frame-not-corrected",
+    }
+    PoolError {
+        NoKind => "pool-without-kind",
+        NoStation => "pool-without-station",
+        None [kind] => "pool-without-board",
+        Message [line] => "pool-message-wrong",
+        Target [board, target] => "pool-board-without-place",
     }
     ConnectError {
         = Target,

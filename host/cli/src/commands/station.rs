@@ -9,9 +9,7 @@ use std::process::Command;
 use clap::Args;
 
 use super::{CallError, Failure};
-
-/// The program that lies beside this one.
-const PROGRAM: &str = "halfrow-station";
+use crate::beside;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -23,9 +21,8 @@ pub(super) struct Arguments {
 /// Becomes the station, if it is there.
 pub(super) fn run(arguments: &Arguments) -> Result<Infallible, Failure> {
     let not_started = |path: &Path, source| CallError::StationNotStarted { path: path.to_owned(), source };
-    let here =
-        std::env::current_exe().map_err(|source| Failure::error(not_started(Path::new(PROGRAM), source)))?;
-    let path = here.parent().unwrap_or(Path::new(".")).join(PROGRAM);
+    let path = beside::station()
+        .map_err(|source| Failure::error(not_started(Path::new(beside::STATION), source)))?;
     if !path.exists() {
         return Err(Failure::call(CallError::StationMissing { path }));
     }

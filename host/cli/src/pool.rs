@@ -1,0 +1,180 @@
+//! Boards that several computers share: `pool:KIND` is whichever of that kind is free, for as long as this program runs.
+//!
+//! `halfrow-station board hold` waits for one at the plant and holds it until its stdin ends, which it does when this program
+//! ends, however that comes about. This program links no database.
+
+use std::ffi::OsStr;
+use std::io::{self, BufRead as _, BufReader};
+use std::os::unix::process::CommandExt as _;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use halfrow::target::{Target, TargetError};
+use serde::Deserialize;
+
+use crate::beside::{self, STATION};
+use crate::console;
+
+/// The kind of a target that is any board of a kind.
+const POOL: &str = "pool";
+/// How often somebody who waits is told so, in seconds, when nothing has changed.
+const TOLD: u64 = 10;
+
+/// The board that was got, until the program ends.
+static LENT: Mutex<Option<Lent>> = Mutex::new(None);
+/// Whether it was lost.
+static LOST: AtomicBool = AtomicBool::new(false);
+
+/// No board was got.
+#[derive(Debug, thiserror::Error)]
+pub enum PoolError {
+    /// The target says no kind.
+    #[error("`pool` is a board of a kind; write pool:KIND, as `halfrow-station board list` names the kinds")]
+    NoKind,
+    /// What leases boards is not there.
+    #[error(
+        "boards of a pool are leased by the program {STATION}, which cannot be started; it belongs beside this one: \
+         cargo build --release --package {STATION}"
+    )]
+    NoStation(#[source] io::Error),
+    /// It ended without a board, and has said why.
+    #[error("no board of the kind {kind} was got; see what {STATION} says above")]
+    None {
+        /// The kind.
+        kind: String,
+    },
+    /// It says what is no message.
+    #[error("{STATION} says `{line}`, which is no message; take the one that belongs to this version")]
+    Message {
+        /// What it says.
+        line: String,
+        /// Why that is none.
+        source: serde_json::Error,
+    },
+    /// The place of the board is none.
+    #[error("the board {board} is shared at `{target}`, which is no board; share it anew")]
+    Target {
+        /// The board.
+        board: String,
+        /// Its place.
+        target: String,
+        /// Why that is none.
+        source: TargetError,
+    },
+}
+
+/// A board that is held.
+#[derive(Debug)]
+struct Lent {
+    kind: String,
+    target: Target,
+    /// The board goes back when it is closed, as the system does when the program ends.
+    _until_closed: Option<ChildStdin>,
+}
+
+/// What the program says that leases.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Message {
+    Waits { before: u32, seconds: u64 },
+    Held { board: String, target: String },
+    Lost { said: String },
+}
+
+/// The board that `target` stands for: itself, or whichever is got of its kind, for which it is waited the first time.
+///
+/// # Errors
+/// [`PoolError`]
+pub fn resolved(target: Target) -> Result<Target, PoolError> {
+    if target.kind != POOL {
+        return Ok(target);
+    }
+    let kind = target.address.filter(|kind| !kind.is_empty()).ok_or(PoolError::NoKind)?;
+    let mut lent = LENT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(lent) = lent.as_ref().filter(|lent| lent.kind == kind) {
+        return Ok(lent.target.clone());
+    }
+    Ok(lent.insert(lease(kind)?).target.clone())
+}
+
+/// Whether the board that was got is somebody else's by now, which ends what is done with it.
+#[must_use]
+pub fn is_lost() -> bool {
+    LOST.load(Ordering::Relaxed)
+}
+
+/// Waits for a board of this kind.
+fn lease(kind: String) -> Result<Lent, PoolError> {
+    let mut child = hold(&kind).map_err(PoolError::NoStation)?;
+    let until_closed = child.stdin.take();
+    let mut told = child.stdout.take().map(BufReader::new);
+    let mut last = None;
+    while let Some(message) = next(told.as_mut())? {
+        match message {
+            Message::Waits { before, seconds } => {
+                let is_news = last.is_none_or(|(was, at)| was != before || seconds >= at + TOLD);
+                if is_news {
+                    last = Some((before, seconds));
+                    tell_wait(&kind, before, seconds);
+                }
+            }
+            Message::Held { board, target } => {
+                console::diagnose(&format_args!("the board {board} is ours, at {target}"));
+                let target = target.parse().map_err(|source| PoolError::Target {
+                    board: board.clone(),
+                    target: target.clone(),
+                    source,
+                })?;
+                watch(told, child);
+                return Ok(Lent { kind, target, _until_closed: until_closed });
+            }
+            Message::Lost { .. } => break,
+        }
+    }
+    let _ = child.wait();
+    Err(PoolError::None { kind })
+}
+
+fn hold(kind: &str) -> io::Result<Child> {
+    let arguments = ["board", "hold", "--", kind].map(OsStr::new);
+    // In a group of its own: a signal that ends this program from the keyboard leaves the board to it until it has ended.
+    let mut command = Command::new(beside::station()?);
+    command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).process_group(0).spawn()
+}
+
+fn next(told: Option<&mut BufReader<ChildStdout>>) -> Result<Option<Message>, PoolError> {
+    let mut line = String::new();
+    // A reader that fails has come to its end.
+    let read = told.map_or(0, |told| told.read_line(&mut line).unwrap_or(0));
+    if read == 0 {
+        return Ok(None);
+    }
+    let message = serde_json::from_str(&line);
+    message.map(Some).map_err(|source| PoolError::Message { line: line.trim().to_owned(), source })
+}
+
+fn tell_wait(kind: &str, before: u32, seconds: u64) {
+    let place = match before {
+        0 => "the next one is ours".to_owned(),
+        before => format!("{before} in front"),
+    };
+    console::diagnose(&format_args!("waiting for a board of the kind {kind}: {place}, {seconds} s"));
+}
+
+/// Hears when the board is lost: it is said so, or nobody holds it any more.
+fn watch(mut told: Option<BufReader<ChildStdout>>, mut child: Child) {
+    let watched = thread::Builder::new().name("pool".to_owned()).spawn(move || {
+        let said = match next(told.as_mut()) {
+            Ok(Some(Message::Lost { said })) => said,
+            _ => format!("{STATION}, which held the board, has ended"),
+        };
+        LOST.store(true, Ordering::Relaxed);
+        console::error(&said);
+        let _ = child.wait();
+    });
+    if watched.is_err() {
+        LOST.store(true, Ordering::Relaxed);
+    }
+}
