@@ -18,6 +18,8 @@ pub(super) enum Here {
     Lanes,
     /// A plant's stations.
     Stations,
+    /// A plant's jobs and shared boards.
+    Jobs,
     /// Runs.
     History,
     /// First-pass and final yield.
@@ -27,7 +29,7 @@ pub(super) enum Here {
 }
 
 impl Here {
-    /// Every place of the navigation behind the first, with its path and the key of its name.
+    /// Every place of the navigation that all have, with its path and the key of its name.
     const ALL: [(Self, &'static str, Label); 3] = [
         (Self::History, "/history", Label { key: "nav.history" }),
         (Self::Yield, "/yield", Label { key: "nav.yield" }),
@@ -41,6 +43,11 @@ impl Here {
         } else {
             (Self::Lanes, "/", Label { key: "nav.lanes" })
         }
+    }
+    /// Every place, in order.
+    fn places(visit: &Visit) -> impl Iterator<Item = (Self, &'static str, Label)> {
+        let jobs = visit.is_plant.then_some((Self::Jobs, "/jobs", Label { key: "jobs.title" }));
+        std::iter::once(Self::first(visit)).chain(jobs).chain(Self::ALL)
     }
 }
 
@@ -101,7 +108,7 @@ fn navigation(visit: &Visit, here: Here) -> Markup {
                 @if visit.is_plant { (visit.say("nav.plant")) } @else { (visit.say("nav.station")) } " " b { (visit.station) }
             }
             nav aria-label=(visit.say("nav.pages")) {
-                @for (place, path, Label { key }) in std::iter::once(Here::first(visit)).chain(Here::ALL) {
+                @for (place, path, Label { key }) in Here::places(visit) {
                     a href=(path) aria-current=[(place == here).then_some("page")] { (visit.say(key)) }
                 }
             }

@@ -12,6 +12,7 @@ mod access;
 mod assets;
 mod guard;
 mod history;
+mod jobs;
 pub(crate) mod language;
 mod layout;
 mod live;

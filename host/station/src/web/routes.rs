@@ -8,7 +8,7 @@ use axum::routing::{self, MethodRouter};
 
 use super::guard::{self, Guarded};
 use super::state::App;
-use super::{assets, history, login, operator, outbox, plant};
+use super::{assets, history, jobs, login, operator, outbox, plant};
 
 /// Who may use a route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,7 +63,7 @@ pub fn routes() -> Vec<Route> {
 #[must_use]
 pub fn routes_of_plant() -> Vec<Route> {
     let looks = history::routes().into_iter().filter(|route| route.method == Method::GET).collect();
-    [assets::routes(), login::routes(), plant::routes(), looks].concat()
+    [assets::routes(), login::routes(), plant::routes(), jobs::routes(), looks].concat()
 }
 
 /// The table as a service. What is common to all routes stands around it, what depends on their lines around each.

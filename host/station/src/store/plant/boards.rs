@@ -248,12 +248,23 @@ fn board(row: &Row<'_>) -> Result<SharedBoard, DatabaseError> {
     })
 }
 
-/// Who waits, in the order of the queue of each kind: kind, who, and since when in milliseconds since 1970, UTC.
+/// Somebody in the queue of a kind.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Waiting {
+    /// The kind.
+    pub kind: String,
+    /// Who.
+    pub holder: String,
+    /// Since when, in milliseconds since 1970, UTC, by their own clock.
+    pub since_ms: i64,
+}
+
+/// Who waits, by kind, and in the order of its queue.
 ///
 /// # Errors
 /// [`StoreError`] when the plant cannot be read.
-pub fn waiters(of: &Snapshot) -> Result<Vec<(String, String, i64)>, StoreError> {
+pub fn waiters(of: &Snapshot) -> Result<Vec<Waiting>, StoreError> {
     of.rows("to tell who waits", sql::WAITERS, &[], |row| {
-        Ok((row.get(0)?, row.get(1)?, ids::made_ms(row.text(2)?)))
+        Ok(Waiting { kind: row.get(0)?, holder: row.get(1)?, since_ms: ids::made_ms(row.text(2)?) })
     })
 }

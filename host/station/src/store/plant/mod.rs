@@ -10,7 +10,7 @@ mod jobs;
 mod pool;
 
 pub use address::{PlantAddress, PlantAddressError};
-pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, boards, waiters};
+pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, Waiting, boards, waiters};
 pub use jobs::{Claim, Job, NewJob, STATES, Wanted, Worker, jobs};
 pub use pool::PlantPool;
 

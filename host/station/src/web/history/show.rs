@@ -39,7 +39,7 @@ pub(in crate::web) fn english(visit: &Visit, text: &str) -> Markup {
 }
 
 /// A verdict as word, shape and colour; that a run is open.
-pub(super) fn verdict(visit: &Visit, verdict: Option<&str>) -> Markup {
+pub(in crate::web) fn verdict(visit: &Visit, verdict: Option<&str>) -> Markup {
     let (class, shape) = match verdict {
         Some("PASS") => ("verdict pass", "✔"),
         Some("FAIL") => ("verdict fail", "✖"),

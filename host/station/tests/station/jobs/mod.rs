@@ -13,12 +13,12 @@ use crate::common::PLAN;
 use crate::plant::server::Server;
 
 /// The plan of every job.
-fn plan() -> Plan {
+pub(crate) fn plan() -> Plan {
     Plan::parse("plan.toml".as_ref(), PLAN.to_owned()).unwrap()
 }
 
 /// A board of this kind with this number, that every station reaches.
-fn board(number: usize, kind: &str) -> SharedBoard {
+pub(crate) fn board(number: usize, kind: &str) -> SharedBoard {
     SharedBoard {
         name: format!("shelf-{number}"),
         kind: kind.to_owned(),
@@ -47,12 +47,12 @@ fn any() -> Wanted {
     Wanted::Kind("mock".to_owned())
 }
 
-fn job<'a>(plan: &'a Plan, wanted: &'a Wanted) -> NewJob<'a> {
+pub(crate) fn job<'a>(plan: &'a Plan, wanted: &'a Wanted) -> NewJob<'a> {
     NewJob { plan, wanted, needs: &[], priority: 0, operator: "engel" }
 }
 
 /// A worker of this station, which has nothing but the plan.
-fn worker(station: &str) -> Worker {
+pub(crate) fn worker(station: &str) -> Worker {
     let [holder, station] = [format!("{station} 1"), station.to_owned()];
     Worker { holder, station, plans: vec![plan().sha256], has: Vec::new() }
 }

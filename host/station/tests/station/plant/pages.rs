@@ -4,12 +4,14 @@ use std::fs;
 use std::process::Command;
 
 use halfrow_station::store::{Plant, PlantError};
+use halfrow_station::store::{Waiter, Wanted};
 
 use super::sent::{presence, send};
 use super::server::Server;
 use crate::common::{program, query};
 use crate::history::made::Made;
 use crate::history::released::history;
+use crate::jobs::{board, job, plan, worker};
 use crate::pages::station::{Browser, Serving};
 
 /// The pages of the plant, with the folder that they have.
@@ -110,6 +112,35 @@ fn the_pages_show_every_station_and_only_look() {
     let waive = browser.post(&format!("/runs/{failed}/waive"), &[("reason", "because")]).send();
     assert!([404, 405].contains(&waive.status), "{waive:?}");
     assert_eq!(server.rows("SELECT count(*) FROM waiver"), [["1"]]);
+}
+
+#[test]
+fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
+    let server = Server::prepared();
+    let mut plant = Plant::connect(&server.address()).unwrap();
+    let (_folder, serving) = served(&server);
+    let browser = serving.here();
+    assert!(text(&browser, "/jobs").contains("No board is shared"));
+    plant.share(&board(1, "ulx3s"), "engel").unwrap();
+    plant.share(&board(2, "<rare>"), "engel").unwrap();
+    let (plan, wanted) = (plan(), Wanted::Kind("ulx3s".to_owned()));
+    plant.add_jobs(&job(&plan, &wanted), 101).unwrap();
+    plant.add_jobs(&job(&plan, &Wanted::Serial("CAT00007".to_owned())), 1).unwrap();
+    plant.claim(&worker("north")).unwrap().unwrap();
+    plant.take_out("shelf-2", Some("it smells"), "engel").unwrap();
+    plant.wait(&Waiter::new("ulx3s", "weber at 13", "13").unwrap()).unwrap();
+    let page = text(&browser, "/jobs");
+    for expected in
+        ["CAT00007", "quick 1", "any ulx3s", "shelf-1", "north 1", "it smells", "&lt;rare&gt;", "weber at 13"]
+    {
+        assert!(page.contains(expected), "{expected}: {page}");
+    }
+    assert_eq!(page.matches("any ulx3s").count(), 99, "a hundred are on a page");
+    let behind = page.split("&amp;behind=").nth(1).unwrap().split('"').next().unwrap();
+    let older = text(&browser, &format!("/jobs?state=&behind={behind}"));
+    assert_eq!(older.matches("any ulx3s").count(), 2);
+    assert_eq!(text(&browser, "/jobs?state=claimed").matches("any ulx3s").count(), 1);
+    assert!(text(&browser, "/jobs?state=done").contains("There is no such job"));
 }
 
 #[test]

@@ -1,0 +1,160 @@
+//! The plant's jobs, and the boards that are shared: who has them, and who waits.
+
+use axum::extract::{Query, State};
+use axum::response::Response;
+use maud::{Markup, html};
+use serde::Deserialize;
+
+use super::history::show;
+use super::layout::{Here, Page};
+use super::routes::{Route, Who, look};
+use super::state::App;
+use super::trouble::Trouble;
+use super::visit::Visit;
+use crate::store::{Job, STATES, SharedBoard, Waiting, boards, jobs, waiters};
+
+/// How many jobs a page has.
+const MOST: u32 = 100;
+
+pub(super) fn routes() -> Vec<Route> {
+    vec![look("/jobs", Who::Reader, page)]
+}
+
+/// Which jobs are asked for.
+#[derive(Deserialize)]
+struct Asked {
+    /// Those of one state; of all where it is none.
+    #[serde(default)]
+    state: String,
+    /// Those that were added before this one.
+    #[serde(default)]
+    behind: String,
+}
+
+async fn page(State(app): State<App>, visit: Visit, Query(asked): Query<Asked>) -> Result<Response, Trouble> {
+    let states: Vec<_> = match STATES.into_iter().find(|state| *state == asked.state) {
+        Some(state) => vec![state],
+        None => STATES.to_vec(),
+    };
+    let behind = asked.behind.clone();
+    let found = app
+        .look(&visit, move |now| Ok((jobs(now, &states, &behind, MOST)?, boards(now)?, waiters(now)?)))
+        .await?;
+    let (jobs, boards, waiting) = found;
+    let content = html! {
+        h1 { (visit.say("jobs.title")) }
+        (states_to_choose(&visit, &asked.state))
+        @if jobs.is_empty() { p.nothing { (visit.say("jobs.none")) } } @else { (table(&visit, &jobs)) }
+        @if let Some(last) = jobs.last().filter(|_| jobs.len() == MOST as usize) {
+            p { a href=(format!("/jobs?state={}&behind={}", asked.state, last.id)) { (visit.say("jobs.more")) } }
+        }
+        h2 { (visit.say("jobs.boards")) }
+        @if boards.is_empty() { p.nothing { (visit.say("jobs.no_boards")) } } @else { (shelf(&visit, &boards)) }
+        @if !waiting.is_empty() { (queue(&visit, &waiting)) }
+    };
+    let title = visit.say("jobs.title");
+    Ok(Page { here: Here::Jobs, title, head: show::head(), content }.answer(&visit))
+}
+
+/// A link for each state and one for all.
+fn states_to_choose(visit: &Visit, chosen: &str) -> Markup {
+    html! {
+        p {
+            a href="/jobs" aria-current=[chosen.is_empty().then_some("true")] { (visit.say("jobs.all")) }
+            @for state in STATES {
+                " · "
+                a href=(format!("/jobs?state={state}")) aria-current=[(state == chosen).then_some("true")] {
+                    (state_word(visit, state))
+                }
+            }
+        }
+    }
+}
+
+fn state_word(visit: &Visit, state: &str) -> &'static str {
+    match state {
+        "waiting" => visit.say("jobs.waiting"),
+        "claimed" => visit.say("jobs.claimed"),
+        "done" => visit.say("jobs.done"),
+        _ => visit.say("jobs.dead"),
+    }
+}
+
+fn table(visit: &Visit, jobs: &[Job]) -> Markup {
+    html! {
+        table.runs {
+            thead { tr {
+                th { (visit.say("jobs.added")) } th { (visit.say("jobs.board")) } th { (visit.say("history.plan")) }
+                th.number { (visit.say("jobs.priority")) } th { (visit.say("plant.state")) }
+                th.number { (visit.say("jobs.claims")) } th { (visit.say("outbox.said")) }
+            } }
+            tbody { @for job in jobs { (row(visit, job)) } }
+        }
+    }
+}
+
+fn row(visit: &Visit, job: &Job) -> Markup {
+    html! {
+        tr {
+            td.when title=(job.id) { (show::moment(job.created_ms)) }
+            td {
+                @if job.serial.is_empty() { (visit.say("jobs.any")) " " (show::said(&job.kind)) }
+                @else { (show::said(&job.serial)) }
+                @if !job.needs.is_empty() { div.soft { (show::said(&job.needs)) } }
+            }
+            td { (show::said(&job.plan)) " " (show::said(&job.version)) }
+            td.number { (job.priority) }
+            td {
+                @match (&job.run, &job.verdict) {
+                    (Some(run), verdict) => { a href=(show::run_address(run)) { (show::verdict(visit, verdict.as_deref())) } }
+                    (None, _) => { (state_word(visit, &job.state)) }
+                }
+                @if let Some(holder) = &job.holder { div.soft { (show::said(holder)) } }
+            }
+            td.number { (job.attempts) }
+            td.headline { @if let Some(said) = &job.said { (show::english(visit, said)) } }
+        }
+    }
+}
+
+fn shelf(visit: &Visit, boards: &[SharedBoard]) -> Markup {
+    html! {
+        table.runs {
+            thead { tr {
+                th { (visit.say("jobs.board")) } th { (visit.say("jobs.kind")) } th { (visit.say("jobs.place")) }
+                th { (visit.say("history.serial")) } th { (visit.say("nav.station")) } th { (visit.say("plant.state")) }
+            } }
+            tbody { @for board in boards {
+                tr {
+                    td.name { b { (show::said(&board.name)) } }
+                    td { (show::said(&board.kind)) } td { (show::said(&board.target)) }
+                    td { (show::said(&board.serial)) } td { (show::said(&board.station)) }
+                    td { (state(visit, board)) }
+                }
+            } }
+        }
+    }
+}
+
+fn state(visit: &Visit, board: &SharedBoard) -> Markup {
+    html! {
+        @match (&board.out, &board.holder) {
+            (Some(why), _) => { "– " (visit.say("jobs.out")) ": " (show::english(visit, why)) }
+            (None, Some(holder)) => {
+                "● " (show::said(holder))
+                @if let Some(until_ms) = board.until_ms { div.soft { (visit.say("jobs.until")) " " (show::moment(until_ms)) } }
+            }
+            (None, None) => { "○ " (visit.say("jobs.free")) }
+        }
+    }
+}
+
+/// Who waits, in the order of the queue.
+fn queue(visit: &Visit, waiting: &[Waiting]) -> Markup {
+    html! {
+        h2 { (visit.say("jobs.queue")) }
+        ol { @for Waiting { kind, holder, since_ms } in waiting {
+            li { (show::said(kind)) ": " (show::said(holder)) ", " (visit.say("jobs.since")) " " (show::moment(*since_ms)) }
+        } }
+    }
+}
