@@ -63,7 +63,7 @@ impl SettingsFile {
         settings(&self.settings)
     }
 
-    /// What they say to whoever has no lanes.
+    /// What they say to whoever needs no lanes: a plant has none.
     pub(super) fn load_plant(&self) -> Result<Settings, Failure> {
         let path = path::absolute(&self.settings).map_err(Failure::call)?;
         Settings::load_plant(&path).map_err(Failure::call)

@@ -177,7 +177,7 @@ impl Watch for Watched {
         match stage {
             Stage::Begun(run) => tracing::info!("run {}", run.id),
             Stage::Told(message) => log(message),
-            Stage::Saving => tracing::info!("the result is being saved"),
+            Stage::Saving { .. } => tracing::info!("the result is being saved"),
         }
     }
 }

@@ -10,12 +10,16 @@ use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
+use super::figures::Counter;
 use super::hooks;
 use super::{Heard, Input};
 use crate::floor::{Accepted, Event, Shown};
 use crate::guard::guarded;
+use crate::history::PlanName;
 use crate::lane::Message;
 use crate::outbox::PlantSink;
+use crate::plan::{Plan, mock::is_mock};
+use crate::record::Record;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
@@ -36,6 +40,7 @@ pub(super) struct Shared {
     /// The program whose `lane` is started.
     pub(super) program: PathBuf,
     pub(super) inbox: Sender<Input>,
+    pub(super) figures: Arc<Counter>,
 }
 
 impl Shared {
@@ -94,9 +99,10 @@ fn carried_out(
         silence: *silence,
         memory_mib: *memory_mib,
     };
-    let mut watched = Watched { shared, lane, run: String::new(), stop };
+    let mut watched = Watched { shared, lane, run: String::new(), stop, ended: None };
     match run::run(&shared.store, &order, &mut watched) {
         Ok(saved) => {
+            watched.saved(&saved, &file.plan);
             let is_stuck = saved.is_stuck;
             (at_plant(shared, saved, PLANT), is_stuck)
         }
@@ -177,6 +183,27 @@ struct Watched<'a> {
     lane: usize,
     run: String,
     stop: StopAsked,
+    /// When its lane ended.
+    ended: Option<Instant>,
+}
+
+impl Watched<'_> {
+    /// Counts a run of `plan` that is saved.
+    fn saved(&self, saved: &Saved, plan: &Plan) {
+        let figures = &self.shared.figures;
+        if let Some(ended) = self.ended {
+            figures.saved(ended.elapsed());
+        }
+        let Record { seconds, run, .. } = &saved.record;
+        // As in yields.
+        if let Some(seconds) = seconds.filter(|_| !is_mock(&run.serial)) {
+            figures.ran(PlanName::from(plan), &run.lane, seconds);
+        }
+    }
+
+    fn name(&self) -> &str {
+        self.shared.settings.lanes.get(self.lane).map_or("", |lane| lane.name.as_str())
+    }
 }
 
 impl Watch for Watched<'_> {
@@ -190,7 +217,13 @@ impl Watch for Watched<'_> {
                 self.run.clone_from(&run.id);
                 Heard::Happened(Event::Begun { run: run.id.clone() })
             }
-            Stage::Saving => Heard::Happened(Event::Saving),
+            Stage::Saving { was_killed } => {
+                self.ended = Some(Instant::now());
+                if was_killed {
+                    self.shared.figures.killed(self.name());
+                }
+                Heard::Happened(Event::Saving)
+            }
             Stage::Told(message) => match doing(message) {
                 Some((what, rows)) => Heard::Doing { run: self.run.clone(), what, rows },
                 None => return,

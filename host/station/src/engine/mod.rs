@@ -9,6 +9,7 @@
 
 mod at_work;
 mod bay;
+mod figures;
 mod hooks;
 mod news;
 mod unsent;
@@ -21,6 +22,7 @@ use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
+pub use figures::{Figures, Histogram};
 pub use hooks::HookError;
 pub use news::{LaneState, News};
 
@@ -31,6 +33,7 @@ use crate::settings::Settings;
 use crate::store::{SharedStore, Store};
 use at_work::AtWork;
 use bay::Shared;
+use figures::Counter;
 use news::Listeners;
 
 /// How long its thread may say nothing of itself. It works twice a second, and may wait for a slow disk.
@@ -59,6 +62,7 @@ enum Heard {
 pub struct Engine {
     inbox: Sender<Input>,
     board: Arc<Mutex<Board>>,
+    figures: Arc<Counter>,
     store: SharedStore,
     thread: Mutex<Option<JoinHandle<()>>>,
 }
@@ -84,11 +88,18 @@ impl Engine {
         let lanes = floor.lanes().iter().map(LaneState::from).collect();
         let board = Arc::new(Mutex::new(Board { lanes, listeners: Listeners::default(), worked: None }));
         let store = SharedStore::new(store);
-        let shared = Arc::new(Shared { settings, store: store.clone(), program, inbox: inbox.clone() });
-        let at_work = AtWork::new(floor, shared, Arc::clone(&board));
+        let figures = Arc::new(Counter::of(&settings));
+        let shared = Shared {
+            settings,
+            store: store.clone(),
+            program,
+            inbox: inbox.clone(),
+            figures: Arc::clone(&figures),
+        };
+        let at_work = AtWork::new(floor, Arc::new(shared), Arc::clone(&board));
         let thread =
             thread::Builder::new().name("engine".to_owned()).spawn(move || work(at_work, &received))?;
-        Ok(Self { inbox, board, store, thread: Mutex::new(Some(thread)) })
+        Ok(Self { inbox, board, figures, store, thread: Mutex::new(Some(thread)) })
     }
 
     /// Takes what `operator` scanned. What becomes of it is news with the same `number`.
@@ -120,6 +131,12 @@ impl Engine {
     #[must_use]
     pub fn lanes(&self) -> Vec<LaneState> {
         self.board.lock().unwrap_or_else(PoisonError::into_inner).lanes.clone()
+    }
+
+    /// What was counted since it began.
+    #[must_use]
+    pub fn figures(&self) -> Figures {
+        self.figures.now()
     }
 
     /// Whether its thread works: it was seen to within the last seconds.

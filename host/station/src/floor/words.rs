@@ -74,6 +74,39 @@ pub enum Word {
     Out,
 }
 
+impl Word {
+    /// Every one.
+    pub const ALL: [Self; 10] = [
+        Self::Empty,
+        Self::Ready,
+        Self::Waiting,
+        Self::Running,
+        Self::Saving,
+        Self::Pass,
+        Self::Fail,
+        Self::Error,
+        Self::Unsaved,
+        Self::Out,
+    ];
+
+    /// Its name for other programs, and in the style sheet.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Empty => "empty",
+            Self::Ready => "ready",
+            Self::Waiting => "waiting",
+            Self::Running => "running",
+            Self::Saving => "saving",
+            Self::Pass => "pass",
+            Self::Fail => "fail",
+            Self::Error => "error",
+            Self::Unsaved => "unsaved",
+            Self::Out => "out",
+        }
+    }
+}
+
 /// What happens to a lane.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Event {

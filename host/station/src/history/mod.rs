@@ -8,11 +8,13 @@
 //!  drift    whether a station judges otherwise than the others
 //!  pareto   what fails most, by part and by check
 //!  stations those of a plant, as it last heard of them
+//!  counts   runs by verdict, for whoever asks every few seconds
 //! ```
 //!
 //! Each takes a [`Snapshot`], so that what one page shows is of one moment.
 
 pub mod control;
+pub mod counts;
 pub mod drift;
 pub mod pareto;
 pub mod rate;
@@ -25,6 +27,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
+use crate::plan::Plan;
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements};
 
 /// From when until when runs began, in milliseconds since 1970, UTC.
@@ -55,6 +58,12 @@ pub struct PlanName {
     pub product: String,
     /// The plan's name.
     pub plan: String,
+}
+
+impl From<&Plan> for PlanName {
+    fn from(plan: &Plan) -> Self {
+        Self { product: plan.product.clone(), plan: plan.name.clone() }
+    }
 }
 
 /// The plans of the station, by their hashes.

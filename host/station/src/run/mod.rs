@@ -93,7 +93,10 @@ pub enum Stage<'a> {
     /// Its lane told something.
     Told(&'a Message),
     /// Its lane has ended, and its result is being saved.
-    Saving,
+    Saving {
+        /// Whether the lane's process had to be killed, since it was silent or took too long.
+        was_killed: bool,
+    },
 }
 
 /// A run without a verdict.
@@ -152,8 +155,9 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
     let heard = supervise(order.program, &job, &spool, patience(order, &selected), &mut attending);
-    attending.watch.hear(Stage::Saving);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
+    let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
+    attending.watch.hear(Stage::Saving { was_killed });
     let record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
     let saved = store.with(|store| save(store, record, &spool, selected.steps.len() as u32))?;
     Ok(Saved { is_stuck, ..saved })

@@ -19,6 +19,7 @@ pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::input_error::InputError;
+use crate::outbox::PlantSink;
 use crate::plan::Plan;
 use crate::store::Presence;
 use crate::web::Address;
@@ -155,6 +156,16 @@ impl Settings {
         let text = fs::read_to_string(path)
             .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
         read::settings(path, &text, has_lanes).map_err(|fault| fault.in_file(path, &text))
+    }
+
+    /// The plans of a lane.
+    pub(crate) fn plans_of(&self, lane: &LaneSettings) -> impl Iterator<Item = &PlanFile> {
+        lane.plans.iter().filter_map(|&plan| self.plans.get(plan))
+    }
+
+    /// To whom results are sent on.
+    pub(crate) fn sinks(&self) -> impl Iterator<Item = &'static str> {
+        self.plant.iter().map(|_| PlantSink::NAME)
     }
 
     /// What a plant hears of the station whose folder is called `origin`.

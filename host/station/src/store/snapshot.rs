@@ -83,6 +83,14 @@ impl Snapshot {
         database.batch("ROLLBACK").ok().map(|()| Plant { shown, database })
     }
 
+    /// The version of the tables.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn version(&self) -> Result<i64, StoreError> {
+        self.read("to tell its version", |reader| reader.one(migrations::NEWEST, &[], |row| row.get(0)))
+    }
+
     /// The bytes of the record of this hash.
     ///
     /// # Errors

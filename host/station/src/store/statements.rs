@@ -42,6 +42,9 @@ pub(crate) const UNIT_BINDINGS: &str = include_str!("../../sql/unit-bindings.sql
 pub(crate) const UNIT_WAIVERS: &str = include_str!("../../sql/unit-waivers.sql");
 pub(crate) const YIELD_DAYS: &str = include_str!("../../sql/yield-days.sql");
 pub(crate) const YIELD_HOURS: &str = include_str!("../../sql/yield-hours.sql");
+pub(crate) const DAY_RUNS: &str = include_str!("../../sql/day-runs.sql");
+pub(crate) const COUNTS: &str = include_str!("../../sql/counts.sql");
+pub(crate) const FAILED_RUNS: &str = include_str!("../../sql/failed-runs.sql");
 pub(crate) const RETESTS: &str = include_str!("../../sql/retests.sql");
 pub(crate) const SERIAL_OF: &str = include_str!("../../sql/serial-of.sql");
 pub(crate) const WAIVED: &str = include_str!("../../sql/waived.sql");
@@ -120,7 +123,7 @@ mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 105] = [
+    const ALL: [&str; 108] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -154,6 +157,9 @@ mod tests {
         UNIT_WAIVERS,
         YIELD_DAYS,
         YIELD_HOURS,
+        DAY_RUNS,
+        COUNTS,
+        FAILED_RUNS,
         RETESTS,
         SERIAL_OF,
         WAIVED,

@@ -17,6 +17,7 @@ pub(crate) mod language;
 mod layout;
 mod live;
 mod login;
+mod metrics;
 mod operator;
 mod outbox;
 mod patient;

@@ -8,7 +8,7 @@ use axum::routing::{self, MethodRouter};
 
 use super::guard::{self, Guarded};
 use super::state::App;
-use super::{assets, history, jobs, login, operator, outbox, plant};
+use super::{assets, history, jobs, login, metrics, operator, outbox, plant};
 
 /// Who may use a route.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -56,14 +56,15 @@ where
 /// The table.
 #[must_use]
 pub fn routes() -> Vec<Route> {
-    [assets::routes(), login::routes(), operator::routes(), history::routes(), outbox::routes()].concat()
+    let pages = [assets::routes(), login::routes(), operator::routes(), history::routes(), outbox::routes()];
+    [pages.concat(), metrics::routes()].concat()
 }
 
 /// The table of a plant, whose pages only look.
 #[must_use]
 pub fn routes_of_plant() -> Vec<Route> {
     let looks = history::routes().into_iter().filter(|route| route.method == Method::GET).collect();
-    [assets::routes(), login::routes(), plant::routes(), jobs::routes(), looks].concat()
+    [assets::routes(), login::routes(), plant::routes(), jobs::routes(), metrics::routes(), looks].concat()
 }
 
 /// The table as a service. What is common to all routes stands around it, what depends on their lines around each.

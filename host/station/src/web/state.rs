@@ -11,6 +11,7 @@ use super::live::Live;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::engine::Engine;
+use crate::history::counts::Tally;
 use crate::plan::Plan;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError};
@@ -27,6 +28,8 @@ struct Parts {
     settings: Settings,
     access: Access,
     plans: String,
+    /// What was counted for those who watch it.
+    tally: Tally,
     source: Source,
 }
 
@@ -61,14 +64,15 @@ impl App {
         let live = Live::start(&engine)?;
         let plans = named(&settings);
         let source = Source::Station(Floor { engine, live, hints });
-        Ok(Self(Arc::new(Parts { settings, access, plans, source })))
+        Ok(Self(Arc::new(Parts { settings, access, plans, tally: Tally::new(true), source })))
     }
 
     /// The results of all stations, which these settings say where to find.
     #[must_use]
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
         let source = Source::Plant(PlantPool::new(address));
-        Self(Arc::new(Parts { settings, access, plans: String::new(), source }))
+        let (plans, tally) = (String::new(), Tally::new(false));
+        Self(Arc::new(Parts { settings, access, plans, tally, source }))
     }
 
     /// Whether it shows the results of all stations.
@@ -105,6 +109,11 @@ impl App {
         &self.0.access
     }
 
+    /// What was counted for those who watch it.
+    pub(super) fn tally(&self) -> &Tally {
+        &self.0.tally
+    }
+
     /// Enters in the audit what the visitor is about to do. What cannot be entered is not done.
     ///
     /// # Errors
@@ -117,7 +126,15 @@ impl App {
         detail: &str,
     ) -> Result<(), Trouble> {
         let [name, subject, detail] = [visit.name(), subject, detail].map(str::to_owned);
-        let entered = self.change(visit, move |store| store.note(&name, act, &subject, &detail)).await?;
+        let entered = match &self.0.source {
+            Source::Station(_) => {
+                self.change(visit, move |store| store.note(&name, act, &subject, &detail)).await?
+            }
+            Source::Plant(pool) => {
+                let pool = pool.clone();
+                self.blocking(visit, move || pool.note(&name, act, &subject, &detail)).await?
+            }
+        };
         entered.map_err(|error| Trouble::store(visit, error))
     }
 
@@ -130,17 +147,28 @@ impl App {
         visit: &Visit,
         look: impl FnOnce(&Snapshot) -> Result<T, StoreError> + Send + 'static,
     ) -> Result<T, Trouble> {
-        let found = match &self.0.source {
+        self.try_to_look(visit, look).await?.map_err(|error| Trouble::store(visit, error))
+    }
+
+    /// The same, for whoever can do without.
+    ///
+    /// # Errors
+    /// [`Trouble`] when it did not come to its end.
+    pub(super) async fn try_to_look<T: Send + 'static>(
+        &self,
+        visit: &Visit,
+        look: impl FnOnce(&Snapshot) -> Result<T, StoreError> + Send + 'static,
+    ) -> Result<Result<T, StoreError>, Trouble> {
+        match &self.0.source {
             Source::Station(_) => {
                 let folder = Folder::new(&self.0.settings.data);
-                self.blocking(visit, move || Snapshot::take(&folder).and_then(|now| look(&now))).await?
+                self.blocking(visit, move || Snapshot::take(&folder).and_then(|now| look(&now))).await
             }
             Source::Plant(pool) => {
                 let pool = pool.clone();
-                self.blocking(visit, move || pool.look(look)).await?
+                self.blocking(visit, move || pool.look(look)).await
             }
-        };
-        found.map_err(|error| Trouble::store(visit, error))
+        }
     }
 
     /// What `change` does with the store. Runs that end wait for it, so it is brief.

@@ -5,7 +5,7 @@ use halfrow::report::wording::plain;
 use maud::{Markup, html};
 use serde::Serialize;
 
-use super::shapes::{class, does, said, shape};
+use super::shapes::{does, said, shape};
 use crate::clock;
 use crate::engine::LaneState;
 use crate::floor::{Shown, Word};
@@ -56,7 +56,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
     let word = said(visit, state.state);
     html! {
-        article.lane.(class(state.state)).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane)
+        article.lane.(state.state.name()).(length(word)) id={ "lane-" (state.lane) } data-lane=(state.lane)
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
                 h2 {

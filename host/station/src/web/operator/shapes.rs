@@ -5,22 +5,6 @@ use maud::{Markup, html};
 use crate::floor::Word;
 use crate::web::visit::Visit;
 
-/// The state's class in the style sheet.
-pub(super) fn class(word: Word) -> &'static str {
-    match word {
-        Word::Empty => "empty",
-        Word::Ready => "ready",
-        Word::Waiting => "waiting",
-        Word::Running => "running",
-        Word::Saving => "saving",
-        Word::Pass => "pass",
-        Word::Fail => "fail",
-        Word::Error => "error",
-        Word::Unsaved => "unsaved",
-        Word::Out => "out",
-    }
-}
-
 /// The state in a word.
 pub(super) fn said(visit: &Visit, word: Word) -> &'static str {
     match word {

@@ -11,14 +11,14 @@ use serde_json::Value;
 use super::floor::{Running, SERIALS, Station};
 
 /// A board that takes the connection and says nothing.
-pub(super) fn silent_board() -> (TcpListener, String) {
+pub(crate) fn silent_board() -> (TcpListener, String) {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let target = format!("tcp:{}", listener.local_addr().unwrap());
     (listener, target)
 }
 
 /// Waits until the lane has connected, and keeps the connection.
-pub(super) fn connected(listener: &TcpListener) {
+pub(crate) fn connected(listener: &TcpListener) {
     let (mut connection, _) = listener.accept().unwrap();
     assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
     thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});

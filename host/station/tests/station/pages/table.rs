@@ -10,7 +10,7 @@ use crate::pages::station::{Browser, PUBLIC, Station};
 /// A route as this table has it: method, path, who may, a path that there is, and the fields of a form that is right.
 type Row = (&'static str, &'static str, Who, &'static str, &'static [(&'static str, &'static str)]);
 
-const ROWS: [Row; 28] = [
+const ROWS: [Row; 29] = [
     ("GET", "/assets/{name}", Who::Anyone, "/assets/style.css", &[]),
     ("GET", "/login", Who::Anyone, "/login", &[]),
     ("POST", "/login", Who::Anyone, "/login", &[("badge", "A-0017")]),
@@ -30,6 +30,7 @@ const ROWS: [Row; 28] = [
     ("GET", "/yield", Who::Reader, "/yield", &[]),
     ("GET", "/pareto", Who::Reader, "/pareto", &[]),
     ("GET", "/outbox", Who::Reader, "/outbox", &[]),
+    ("GET", "/metrics", Who::Reader, "/metrics", &[]),
     ("POST", "/outbox/{id}/release", Who::Engineer, "/outbox/1/release", &[("reason", "looked at")]),
     ("POST", "/scan", Who::Operator, "/scan", &[("text", "nothing")]),
     ("POST", "/lanes/{lane}/start", Who::Operator, "/lanes/1/start", &[]),

@@ -3,9 +3,9 @@
 mod cut;
 mod late;
 pub(crate) mod link;
-mod pages;
+pub(crate) mod pages;
 mod refused;
-mod sent;
+pub(crate) mod sent;
 pub(crate) mod server;
 mod tables;
 mod waiting;

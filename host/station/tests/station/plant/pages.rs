@@ -1,6 +1,7 @@
 //! The plant's pages: what a station's show, over all stations, from the other engine.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use halfrow_station::store::{Plant, PlantError};
@@ -15,16 +16,27 @@ use crate::jobs::{board, job, plan, worker};
 use crate::pages::station::{Browser, Serving};
 
 /// The pages of the plant, with the folder that they have.
-fn served(server: &Server) -> (tempfile::TempDir, Serving) {
+pub(crate) fn served(server: &Server) -> (tempfile::TempDir, Serving) {
     let folder = crate::common::folder();
-    let web = "[web]\nlisten = \"127.0.0.1:0\"\n";
+    let serving = Serving::of(&mut command(&settings(server, folder.path(), "")));
+    (folder, serving)
+}
+
+/// Settings of the plant's pages in this folder, with `more` of `[web]` and behind it.
+pub(crate) fn settings(server: &Server, folder: &Path, more: &str) -> PathBuf {
+    let web = format!("[web]\nlisten = \"127.0.0.1:0\"\n{more}\n");
     let plant = format!("[plant]\nurl = \"{}\"\n", server.url());
     let text = format!("schema = 1\n[station]\nname = \"north\"\ndata = \"data\"\n{web}{plant}");
-    let settings = folder.path().join("plant.toml");
+    let settings = folder.join("plant.toml");
     fs::write(&settings, text).unwrap();
+    settings
+}
+
+/// The program that serves them.
+pub(crate) fn command(settings: &Path) -> Command {
     let mut command = Command::new(program());
-    command.args(["plant", "serve", "--settings"]).arg(&settings);
-    (folder, Serving::of(&mut command))
+    command.args(["plant", "serve", "--settings"]).arg(settings);
+    command
 }
 
 fn text(browser: &Browser, path: &str) -> String {

@@ -1,0 +1,134 @@
+//! What is counted since the engine began, for whoever watches stations from afar.
+
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
+use std::time::Duration;
+
+use crate::history::PlanName;
+use crate::settings::{LaneSettings, Settings};
+
+/// Up to how many seconds runs take that are counted together: a frame by a fast link, a soak by a slow one.
+const RUNS: [f64; 11] = [1.0, 2.0, 5.0, 10.0, 20.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0];
+/// The same of what saving takes: a disk that is well needs some milliseconds.
+const COMMITS: [f64; 11] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0];
+
+/// How many took how long.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Histogram {
+    bounds: [f64; 11],
+    /// Of each bound those that are not beyond it, and beyond the one before; those beyond all of them last.
+    counts: [u64; 12],
+    sum: f64,
+}
+
+impl Histogram {
+    const fn new(bounds: [f64; 11]) -> Self {
+        Self { bounds, counts: [0; 12], sum: 0.0 }
+    }
+
+    fn add(&mut self, seconds: f64) {
+        let place = self.bounds.iter().take_while(|bound| seconds > **bound).count();
+        if let Some(count) = self.counts.get_mut(place) {
+            *count += 1;
+        }
+        self.sum += seconds;
+    }
+
+    /// Each bound, in seconds, with how many took no longer.
+    pub fn up_to(&self) -> impl Iterator<Item = (f64, u64)> {
+        let so_far = self.counts.iter().scan(0, |sum, count| {
+            *sum += count;
+            Some(*sum)
+        });
+        self.bounds.iter().copied().zip(so_far)
+    }
+
+    /// How many there were.
+    #[must_use]
+    pub fn count(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+
+    /// How long they took together, in seconds.
+    #[must_use]
+    pub const fn sum(&self) -> f64 {
+        self.sum
+    }
+}
+
+/// What was counted since the engine began.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figures {
+    /// How long the runs of each plan took, by lane; without those of the mock that checks a shift.
+    pub runs: BTreeMap<(PlanName, String), Histogram>,
+    /// How long it took to save a result, from the end of its lane until it was read back.
+    pub commits: Histogram,
+    /// How often the process of each lane had to be killed.
+    pub kills: BTreeMap<String, u64>,
+}
+
+impl Figures {
+    /// Nothing yet, of all that these settings have.
+    fn of(settings: &Settings) -> Self {
+        let plans = |lane: &LaneSettings| {
+            let name = lane.name.clone();
+            let plans = settings.plans_of(lane).map(|plan| PlanName::from(&plan.plan));
+            plans.map(move |plan| ((plan, name.clone()), Histogram::new(RUNS))).collect::<Vec<_>>()
+        };
+        Self {
+            runs: settings.lanes.iter().flat_map(plans).collect(),
+            commits: Histogram::new(COMMITS),
+            kills: settings.lanes.iter().map(|lane| (lane.name.clone(), 0)).collect(),
+        }
+    }
+}
+
+/// Figures that several lanes count in.
+#[derive(Debug)]
+pub(super) struct Counter(Mutex<Figures>);
+
+impl Counter {
+    pub(super) fn of(settings: &Settings) -> Self {
+        Self(Mutex::new(Figures::of(settings)))
+    }
+
+    pub(super) fn now(&self) -> Figures {
+        self.with(|figures| figures.clone())
+    }
+
+    /// The process of `lane` had to be killed.
+    pub(super) fn killed(&self, lane: &str) {
+        self.with(|figures| *figures.kills.entry(lane.to_owned()).or_default() += 1);
+    }
+
+    /// A result was saved within `took`.
+    pub(super) fn saved(&self, took: Duration) {
+        self.with(|figures| figures.commits.add(took.as_secs_f64()));
+    }
+
+    /// A run of `plan` in `lane` took so long.
+    pub(super) fn ran(&self, plan: PlanName, lane: &str, seconds: f64) {
+        let of = (plan, lane.to_owned());
+        self.with(|figures| figures.runs.entry(of).or_insert(Histogram::new(RUNS)).add(seconds));
+    }
+
+    fn with<T>(&self, act: impl FnOnce(&mut Figures) -> T) -> T {
+        act(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_takes_just_a_bound_is_not_beyond_it() {
+        let mut runs = Histogram::new(RUNS);
+        for seconds in [0.0, 1.0, 1.001, 1800.0, 1801.0] {
+            runs.add(seconds);
+        }
+        let up_to: Vec<_> = runs.up_to().collect();
+        assert_eq!(up_to[..2], [(1.0, 2), (2.0, 3)]);
+        assert_eq!((up_to[10], runs.count(), runs.sum()), ((1800.0, 4), 5, 3603.001));
+    }
+}

@@ -1,0 +1,106 @@
+//! A plant's figures, over all stations.
+
+use std::collections::BTreeMap;
+
+use super::counted;
+use super::text::{Kind, Label, Metric, Text};
+use crate::history::counts::{Cell, Count};
+use crate::history::stations::{Station, stations};
+use crate::said::Said;
+use crate::store::StoreError;
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+const PLANT: Metric = Metric { name: "halfrow_plant", kind: Kind::Info, help: "The plant's name." };
+const UP: Metric = Metric {
+    name: "halfrow_plant_up",
+    kind: Kind::Gauge,
+    help: "1 when the plant's database was there and is of this program's version, 0 when all else is missing here.",
+};
+const VERSION: Metric = Metric {
+    name: "halfrow_plant_schema_version",
+    kind: Kind::Gauge,
+    help: "The version of the plant's tables.",
+};
+const RUNS: Metric = Metric {
+    name: "halfrow_plant_runs",
+    kind: Kind::Counter,
+    help: "Runs that are over, all that the plant holds.",
+};
+const UNITS: Metric = Metric {
+    name: "halfrow_plant_units_judged",
+    kind: Kind::Gauge,
+    help: "Units that were judged first at the station, all that the plant holds.",
+};
+const FIRST: Metric = Metric {
+    name: "halfrow_plant_units_first_passed",
+    kind: Kind::Gauge,
+    help: "Those of them whose first judgement is PASS.",
+};
+const SEEN: Metric = Metric {
+    name: "halfrow_plant_station_seen_timestamp_seconds",
+    kind: Kind::Gauge,
+    help: "When the station was last heard of, by the plant's clock; it says something each half minute.",
+};
+const UNSENT: Metric = Metric {
+    name: "halfrow_plant_station_unsent_entries",
+    kind: Kind::Gauge,
+    help: "What the plant does not have of the station yet, as the station said last.",
+};
+const DEAD: Metric = Metric {
+    name: "halfrow_plant_station_dead_letters",
+    kind: Kind::Gauge,
+    help: "What of it waits for a person.",
+};
+
+/// What the plant holds.
+#[derive(Default)]
+struct Held {
+    version: Option<u64>,
+    counts: BTreeMap<Cell, Count>,
+    stations: Vec<Station>,
+}
+
+/// Writes all of them. A plant that is away is said to be.
+pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
+    let of = app.clone();
+    let held: Result<Held, StoreError> = app
+        .try_to_look(visit, move |now| {
+            let version = Some(now.version()?.unsigned_abs());
+            Ok(Held { version, counts: of.tally().counts(now)?, stations: stations(now)? })
+        })
+        .await?;
+    text.of(&PLANT).put(&[("plant", app.station())], 1_u64);
+    text.of(&UP).put(&[], held.is_ok());
+    let Held { version, counts, stations } = held.unwrap_or_else(|error| {
+        tracing::warn!("what is counted cannot be told: {}", Said::of(&error));
+        Held::default()
+    });
+    let mut of = text.of(&VERSION);
+    if let Some(version) = version {
+        of.put(&[], version);
+    }
+    counted(text, [&RUNS, &UNITS, &FIRST], &counts, labels);
+    heard(text, &stations);
+    Ok(())
+}
+
+fn labels(Cell { plan, station, .. }: &Cell) -> [Label<'_>; 3] {
+    [("station", station), ("product", &plan.product), ("plan", &plan.plan)]
+}
+
+fn heard(text: &mut Text, stations: &[Station]) {
+    let mut of = text.of(&SEEN);
+    for station in stations {
+        of.put(&[("station", &station.name)], station.seen_ms as f64 / 1000.0);
+    }
+    let mut of = text.of(&UNSENT);
+    for station in stations {
+        of.put(&[("station", &station.name)], u64::from(station.unsent));
+    }
+    let mut of = text.of(&DEAD);
+    for station in stations {
+        of.put(&[("station", &station.name)], u64::from(station.dead));
+    }
+}

@@ -1,0 +1,172 @@
+//! A station's figures.
+
+use std::collections::BTreeMap;
+
+use super::counted;
+use super::text::{Kind, Label, Metric, Text};
+use crate::clock;
+use crate::engine::{Figures, LaneState};
+use crate::floor::Word;
+use crate::history::PlanName;
+use crate::history::counts::{Cell, Count};
+use crate::said::Said;
+use crate::settings::Settings;
+use crate::store::{StoreError, Unsent};
+use crate::web::state::App;
+use crate::web::trouble::Trouble;
+use crate::web::visit::Visit;
+
+const STATION: Metric = Metric { name: "halfrow_station", kind: Kind::Info, help: "The station's name." };
+const WELL: Metric = Metric {
+    name: "halfrow_engine_well",
+    kind: Kind::Gauge,
+    help: "1 while the engine works, 0 when its thread was not seen to for five seconds.",
+};
+const READABLE: Metric = Metric {
+    name: "halfrow_store_readable",
+    kind: Kind::Gauge,
+    help: "1 when the station's store could be read, 0 when what is counted there is missing here.",
+};
+const STATE: Metric = Metric {
+    name: "halfrow_lane_state",
+    kind: Kind::Gauge,
+    help: "1 for the state that the lane has, 0 for all others.",
+};
+const UNSAVED: Metric = Metric {
+    name: "halfrow_unsaved_results",
+    kind: Kind::Gauge,
+    help: "Results that could not be saved yet; their lanes take no board.",
+};
+const KILLS: Metric = Metric {
+    name: "halfrow_lane_kills",
+    kind: Kind::Counter,
+    help: "Runs whose process had to be killed, since it was silent or took too long; since the start.",
+};
+const RUNS: Metric = Metric {
+    name: "halfrow_runs",
+    kind: Kind::Counter,
+    help: "Runs that are over, all that the store holds.",
+};
+const UNITS: Metric = Metric {
+    name: "halfrow_units_judged",
+    kind: Kind::Gauge,
+    help: "Units that were judged, all that the store holds.",
+};
+const FIRST: Metric = Metric {
+    name: "halfrow_units_first_passed",
+    kind: Kind::Gauge,
+    help: "Those of them whose first judgement is PASS.",
+};
+const SECONDS: Metric = Metric {
+    name: "halfrow_run_seconds",
+    kind: Kind::Histogram,
+    help: "How long runs took; since the start.",
+};
+const COMMIT: Metric = Metric {
+    name: "halfrow_commit_seconds",
+    kind: Kind::Histogram,
+    help: "How long it took from the end of a run until its result was saved and read back; since the start.",
+};
+const ENTRIES: Metric =
+    Metric { name: "halfrow_outbox_entries", kind: Kind::Gauge, help: "What the sink does not have yet." };
+const DEAD: Metric =
+    Metric { name: "halfrow_outbox_dead_letters", kind: Kind::Gauge, help: "What of it waits for a person." };
+const OLDEST: Metric = Metric {
+    name: "halfrow_outbox_oldest_seconds",
+    kind: Kind::Gauge,
+    help: "How long ago the oldest of it came about; 0 when there is nothing.",
+};
+
+/// What the store holds.
+type Kept = (BTreeMap<Cell, Count>, Vec<Unsent>);
+
+/// Writes all of them. A store that cannot be read is said to be so, and what lanes do is told all the same.
+pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
+    let engine = &app.floor(visit)?.engine;
+    let of = app.clone();
+    let kept: Result<Kept, StoreError> =
+        app.try_to_look(visit, move |now| Ok((of.tally().counts(now)?, now.unsent()?))).await?;
+    text.of(&STATION).put(&[("station", app.station())], 1_u64);
+    text.of(&WELL).put(&[], engine.is_well());
+    text.of(&READABLE).put(&[], kept.is_ok());
+    lanes(text, &engine.lanes());
+    since_the_start(text, &engine.figures());
+    let (counts, unsent) = kept.map_or_else(
+        |error| {
+            tracing::warn!("what is counted cannot be told: {}", Said::of(&error));
+            (BTreeMap::new(), None)
+        },
+        |(counts, unsent)| (with_all(app.settings(), counts), Some(unsent)),
+    );
+    counted(text, [&RUNS, &UNITS, &FIRST], &counts, labels);
+    outbox(text, app.settings(), unsent.as_deref());
+    Ok(())
+}
+
+fn lanes(text: &mut Text, lanes: &[LaneState]) {
+    let mut of = text.of(&STATE);
+    for lane in lanes {
+        for word in Word::ALL {
+            of.put(&[("lane", &lane.lane), ("state", word.name())], lane.state == word);
+        }
+    }
+    let unsaved = lanes.iter().filter(|lane| lane.state == Word::Unsaved).count();
+    text.of(&UNSAVED).put(&[], unsaved as u64);
+}
+
+fn since_the_start(text: &mut Text, figures: &Figures) {
+    let mut of = text.of(&KILLS);
+    for (lane, kills) in &figures.kills {
+        of.put(&[("lane", lane)], *kills);
+    }
+    let mut of = text.of(&SECONDS);
+    for ((PlanName { product, plan }, lane), seconds) in &figures.runs {
+        of.spread(&[("product", product), ("plan", plan), ("lane", lane)], seconds);
+    }
+    text.of(&COMMIT).spread(&[], &figures.commits);
+}
+
+/// With what the settings have and nobody ran yet: a counter that begins at 0 shows its first run.
+fn with_all(settings: &Settings, kept: BTreeMap<Cell, Count>) -> BTreeMap<Cell, Count> {
+    let mut counts = BTreeMap::<Cell, Count>::new();
+    for lane in &settings.lanes {
+        for file in settings.plans_of(lane) {
+            let (plan, station) = (PlanName::from(&file.plan), String::new());
+            counts.insert(Cell { plan, station, lane: lane.name.clone() }, Count::default());
+        }
+    }
+    for (cell, count) in kept {
+        // A station that had another name before is one station.
+        counts.entry(Cell { station: String::new(), ..cell }).or_default().add(&count);
+    }
+    counts
+}
+
+fn labels(Cell { plan, lane, .. }: &Cell) -> [Label<'_>; 3] {
+    [("product", &plan.product), ("plan", &plan.plan), ("lane", lane)]
+}
+
+/// How it stands with every sink, those that have all included.
+fn outbox(text: &mut Text, settings: &Settings, unsent: Option<&[Unsent]>) {
+    let now_ms = clock::now_ms();
+    let mut sinks: BTreeMap<&str, (u64, u64, f64)> = BTreeMap::new();
+    if let Some(unsent) = unsent {
+        sinks.extend(settings.sinks().map(|sink| (sink, (0, 0, 0.0))));
+        for Unsent { sink, entries, dead, since_ms, .. } in unsent {
+            let age = now_ms.saturating_sub(*since_ms).max(0) as f64 / 1000.0;
+            sinks.insert(sink, (u64::from(*entries), u64::from(*dead), age));
+        }
+    }
+    let mut of = text.of(&ENTRIES);
+    for (sink, (entries, ..)) in &sinks {
+        of.put(&[("sink", sink)], *entries);
+    }
+    let mut of = text.of(&DEAD);
+    for (sink, (_, dead, _)) in &sinks {
+        of.put(&[("sink", sink)], *dead);
+    }
+    let mut of = text.of(&OLDEST);
+    for (sink, (.., age)) in &sinks {
+        of.put(&[("sink", sink)], *age);
+    }
+}

@@ -1,0 +1,80 @@
+//! Runs by verdict, as they are told to whoever asks every few seconds.
+
+use halfrow_station::history::counts::Tally;
+use halfrow_station::record::RunCause;
+
+use crate::common::query;
+use crate::history::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run};
+
+fn run(serial: &str, lane: &str, end: End, started_ms: i64) -> Run {
+    Run { lane: lane.to_owned(), started_ms, ..Run::of(serial, end) }
+}
+
+/// What is counted, a line for each plan, lane and verdict that has runs.
+fn counted(tally: &Tally, made: &Made) -> Vec<String> {
+    let counts = tally.counts(&made.now()).unwrap();
+    let lines = counts.iter().flat_map(|(cell, count)| {
+        let by_verdict = [("ERROR", count.errors), ("FAIL", count.failed), ("PASS", count.passed)];
+        let has_runs = by_verdict.into_iter().filter(|(_, runs)| *runs > 0);
+        has_runs.map(|(verdict, runs)| format!("{} {} {verdict} {runs}", cell.plan.plan, cell.lane))
+    });
+    lines.collect()
+}
+
+/// The same, from the runs themselves.
+fn from_the_runs(made: &Made) -> Vec<String> {
+    let text = "SELECT plan.name || ' ' || lane || ' ' || verdict || ' ' || count(*) FROM run
+        JOIN plan ON plan.sha256 = plan_sha256 WHERE state = 'final' GROUP BY plan.name, lane, verdict ORDER BY 1";
+    query(made.as_ref(), text)
+}
+
+#[test]
+fn runs_are_counted_by_verdict_whatever_day_they_come_from() {
+    let (mut made, tally) = (Made::new(), Tally::new(true));
+    assert_eq!(counted(&tally, &made), from_the_runs(&made));
+    let runs = [
+        run("S1", "1", End::Fail(&["memory", "clock"]), BEGIN_MS),
+        run("S1", "2", End::TooLateAndWrong, BEGIN_MS + HOUR_MS),
+        run("S1", "1", End::Pass, BEGIN_MS + 3 * DAY_MS),
+        run("S2", "1", End::Error(RunCause::Link), BEGIN_MS + 3 * DAY_MS + 1),
+        Run { plan: ("final", "2"), ..run("S3", "1", End::TooLate, BEGIN_MS + 3 * DAY_MS + 2) },
+        Run { plan: ("intake", "1"), ..run("S3", "1", End::Pass, BEGIN_MS + 40 * DAY_MS) },
+        run("S4", "3", End::Open, BEGIN_MS + 40 * DAY_MS),
+        // It comes late, into a day that was counted.
+        run("S5", "2", End::Fail(&[]), BEGIN_MS + 2 * HOUR_MS),
+    ];
+    for of in &runs {
+        made.run(of);
+        assert_eq!(counted(&tally, &made), from_the_runs(&made), "{of:?}");
+    }
+    assert_eq!(
+        counted(&Tally::new(true), &made),
+        ["final 1 ERROR 1", "final 1 FAIL 2", "final 1 PASS 1", "final 2 FAIL 2", "intake 1 PASS 1"]
+    );
+    let all = Tally::new(false).counts(&made.now()).unwrap();
+    let (cell, count) = all.first_key_value().unwrap();
+    assert_eq!((cell.plan.plan.as_str(), cell.lane.as_str()), ("final", ""));
+    assert_eq!((count.errors, count.failed, count.passed), (1, 4, 1));
+    // S1, S3 and S5 were judged under `final`, and none of them passed at first.
+    assert_eq!((count.units, count.first_passed), (3, 0));
+}
+
+/// A million runs are looked at once, and then those of the days on which something ended.
+#[test]
+fn a_day_without_another_run_is_not_looked_at_again() {
+    let (mut made, tally) = (Made::new(), Tally::new(true));
+    made.run(&run("S1", "1", End::Fail(&[]), BEGIN_MS));
+    made.run(&run("S2", "1", End::Fail(&[]), BEGIN_MS + DAY_MS));
+    assert_eq!(counted(&tally, &made), ["final 1 FAIL 2"]);
+    // Nothing that the program does: whoever looks at this day finds no FAIL.
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    database.execute_batch("UPDATE run SET nth = 0").unwrap();
+    assert_eq!(counted(&Tally::new(true), &made), ["final 1 PASS 2"]);
+    assert_eq!(counted(&tally, &made), ["final 1 FAIL 2"]);
+    made.run(&run("S3", "1", End::Fail(&[]), BEGIN_MS + DAY_MS + HOUR_MS));
+    assert_eq!(
+        counted(&tally, &made),
+        ["final 1 FAIL 2", "final 1 PASS 1"],
+        "the second day alone is counted anew"
+    );
+}

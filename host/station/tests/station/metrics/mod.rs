@@ -1,0 +1,8 @@
+//! What Prometheus is told, read by Prometheus' own programs.
+
+mod counts;
+mod figures;
+mod of_plant;
+mod prometheus;
+mod rules;
+mod text;

@@ -1,0 +1,97 @@
+//! A plant's figures, over all stations.
+
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use super::text::{Figures, assert_sound, told};
+use crate::common::{Did, folder, program};
+use crate::history::released::history;
+use crate::pages::http::Request;
+use crate::pages::station::Serving;
+use crate::plant::pages::{command, served, settings};
+use crate::plant::sent::send;
+use crate::plant::server::Server;
+
+#[test]
+fn a_plant_tells_of_all_stations_and_says_when_it_is_away() {
+    let mut server = Server::prepared();
+    let (_made, _) = send(history(), server.address());
+    let (_folder, serving) = served(&server);
+    let figures = Figures::of(&serving);
+    assert_sound(&figures);
+    assert_eq!(figures.shapes(), told("A plant"), "docs/metrics.md lists what is served");
+    let labels =
+        |row: &[String]| format!("station=\"{}\",product=\"{}\",plan=\"{}\"", row[0], row[1], row[2]);
+    let runs =
+        "SELECT station, product, name, verdict, count(*) FROM run JOIN plan ON plan.sha256 = plan_sha256
+        GROUP BY station, product, name, verdict";
+    let rows = server.rows(runs);
+    assert_eq!(rows.len(), 3, "{rows:?}");
+    for row in rows {
+        let counted =
+            figures.at(&format!("halfrow_plant_runs_total{{{},verdict=\"{}\"}}", labels(&row), row[3]));
+        assert_eq!(counted.to_string(), row[4], "{row:?}");
+    }
+    let units = "SELECT station, product, name, count(*), sum(CASE WHEN verdict = 'PASS' THEN 1 ELSE 0 END) FROM run
+        JOIN plan ON plan.sha256 = plan_sha256 WHERE nth = 1 AND verdict <> 'ERROR' GROUP BY station, product, name";
+    for row in server.rows(units) {
+        let counted = ["judged", "first_passed"]
+            .map(|what| figures.at(&format!("halfrow_plant_units_{what}{{{}}}", labels(&row))).to_string());
+        assert_eq!(counted, row[3..], "{row:?}");
+    }
+    let seen = server.rows("SELECT seen_ms FROM station").remove(0).remove(0);
+    let told = figures.at("halfrow_plant_station_seen_timestamp_seconds{station=\"station 7\"}");
+    assert_eq!(told * 1000.0, seen.parse::<f64>().unwrap());
+    let version = server.rows("SELECT max(n) FROM schema_version").remove(0).remove(0);
+    assert_eq!(figures.at("halfrow_plant_schema_version").to_string(), version);
+    assert_eq!(figures.at("halfrow_plant_up"), 1.0);
+    server.kill();
+    let away = Figures::of(&serving);
+    assert_eq!(away.at("halfrow_plant_up"), 0.0);
+    assert!(!away.text.contains("halfrow_plant_runs_total{"), "{}", away.text);
+    assert_sound(&away);
+    server.again();
+    assert_eq!(Figures::of(&serving).samples, figures.samples);
+}
+
+/// What the program did with these settings, when it was told this.
+fn did(arguments: &[&str], settings: &Path, said: &str) -> Did {
+    let mut child = Command::new(program())
+        .args(arguments)
+        .arg("--settings")
+        .arg(settings)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Not every command reads it.
+    let _ = child.stdin.take().unwrap().write_all(said.as_bytes());
+    child.wait_with_output().unwrap().into()
+}
+
+/// A plant that others can reach has people and machines of its own, and no lanes in its settings.
+#[test]
+fn a_machine_with_a_token_reads_the_plants_figures() {
+    let server = Server::prepared();
+    let folder = folder();
+    let public =
+        "public = \"https://plant.example\"\n[access]\nusers = \"users.toml\"\ntokens = \"tokens.toml\"";
+    let settings = settings(&server, folder.path(), public);
+    let did = |arguments: &[&str], said: &str| {
+        let did = did(arguments, &settings, said);
+        assert_eq!(did.code, Some(0), "{did:?}");
+        did.said
+    };
+    did(&["user", "add", "Braun", "--role", "engineer"], "B-0022\ncorrect horse\n");
+    let token = did(&["token", "add", "prometheus", "--scope", "read"], "");
+    let serving = Serving::of(&mut command(&settings));
+    let stranger = Request::bare(serving.port, "GET", "/metrics").with("host", "plant.example");
+    assert_eq!(stranger.send().status, 401);
+    let known = stranger.with("authorization", &format!("Bearer {}", token.trim())).send();
+    assert_eq!(known.status, 200, "{}", known.text());
+    assert!(known.text().contains("halfrow_plant_up 1\n"), "{}", known.text());
+    let noted = server.rows("SELECT operator_id, act, subject FROM audit");
+    assert_eq!(noted, [["prometheus", "token", "127.0.0.1"]]);
+}

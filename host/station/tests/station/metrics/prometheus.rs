@@ -1,0 +1,184 @@
+//! The examples in `monitoring`, on a real Prometheus server that reads a station and its plant.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::net::TcpListener;
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+use super::figures::{in_state, once, scan};
+use super::rules::example;
+use crate::pages::http::{Request, escaped};
+use crate::pages::station::{SERIALS, Serving, Station};
+use crate::plant::pages::served;
+use crate::plant::server::Server;
+
+/// How long something is waited for that must come: it ends hangs alone.
+const HANG: Duration = Duration::from_secs(120);
+
+/// Prometheus with the example's configuration, which ends with its test.
+struct Prometheus {
+    _folder: TempDir,
+    port: u16,
+    process: Child,
+}
+
+impl Prometheus {
+    /// One that looks at these ports every fifth of a second.
+    fn of(station: u16, plant: u16) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let mut text = fs::read_to_string(example("prometheus.yml")).unwrap();
+        for (was, is) in [
+            ("scrape_interval: 15s", "scrape_interval: 200ms"),
+            ("station12.example:8612", &format!("127.0.0.1:{station}")),
+            ("plant.example:8613", &format!("127.0.0.1:{plant}")),
+            // Both are open to their own computer.
+            ("    authorization: {credentials_file: station.token}\n", ""),
+            ("    authorization: {credentials_file: plant.token}\n", ""),
+        ] {
+            assert!(text.contains(was), "{was} of\n{text}");
+            text = text.replace(was, is);
+        }
+        fs::write(folder.path().join("prometheus.yml"), text).unwrap();
+        fs::copy(example("alerts.yml"), folder.path().join("alerts.yml")).unwrap();
+        let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+        let process = Command::new("setpriv")
+            .args([
+                "--pdeathsig",
+                "KILL",
+                "prometheus",
+                "--config.file=prometheus.yml",
+                "--storage.tsdb.path=data",
+            ])
+            .args([format!("--web.listen-address=127.0.0.1:{port}"), "--log.level=error".to_owned()])
+            .current_dir(folder.path())
+            .stdout(Stdio::null())
+            .spawn()
+            .unwrap_or_else(|error| panic!("prometheus: {error}; apt-get install prometheus"));
+        let prometheus = Self { _folder: folder, port, process };
+        prometheus.wait("it listens", || std::net::TcpStream::connect(("127.0.0.1", port)).is_ok());
+        prometheus.wait("it is ready", || prometheus.get("/-/ready").0 == 200);
+        prometheus
+    }
+
+    fn wait(&self, what: &str, is_so: impl Fn() -> bool) {
+        let begun = Instant::now();
+        while !is_so() {
+            assert!(begun.elapsed() < HANG, "not so: {what}");
+            thread::sleep(Duration::from_millis(50));
+        }
+    }
+
+    fn get(&self, path: &str) -> (u16, String) {
+        let answer = Request::bare(self.port, "GET", path).with("host", "127.0.0.1").send();
+        (answer.status, answer.text())
+    }
+
+    /// How many series answer this query.
+    fn series(&self, query: &str) -> usize {
+        let (status, text) = self.get(&format!("/api/v1/query?query={}", escaped(query)));
+        let answer: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!((status, &answer["status"]), (200, &"success".into()), "{query}: {text}");
+        answer["data"]["result"].as_array().unwrap().len()
+    }
+
+    /// Those of the queries that nothing answers.
+    fn unanswered<'a>(&self, queries: &'a BTreeSet<String>) -> Vec<&'a str> {
+        queries.iter().filter(|query| self.series(query) == 0).map(String::as_str).collect()
+    }
+}
+
+impl Drop for Prometheus {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// Every query of a dashboard, for all that its variables stand for.
+fn queries(name: &str) -> BTreeSet<String> {
+    let text = fs::read_to_string(example(name)).unwrap();
+    let board: Value = serde_json::from_str(&text).unwrap();
+    let panels = board["panels"].as_array().unwrap();
+    let places: BTreeSet<_> = panels.iter().map(|panel| panel["id"].as_u64().unwrap()).collect();
+    assert_eq!(places.len(), panels.len(), "two panels have one id");
+    let targets = panels.iter().flat_map(|panel| panel["targets"].as_array().unwrap());
+    let exprs: Vec<_> = targets.map(|target| target["expr"].as_str().unwrap().to_owned()).collect();
+    assert!(exprs.len() > panels.len(), "{exprs:?}");
+    let variables = board["templating"]["list"].as_array().unwrap();
+    let queried: Vec<_> = variables.iter().filter(|variable| variable["type"] == "query").collect();
+    let values = queried.iter().map(|variable| {
+        let of = variable["query"].as_str().unwrap().strip_prefix("label_values(").unwrap();
+        let (metric, label) = of.trim_end_matches(')').split_once(", ").unwrap();
+        format!("{metric}{{{label}!=\"\"}}")
+    });
+    let filled = exprs.into_iter().map(|expr| {
+        queried.iter().fold(expr, |expr, variable| {
+            expr.replace(&format!("${}", variable["name"].as_str().unwrap()), ".*")
+        })
+    });
+    let all: BTreeSet<_> = filled.chain(values).collect();
+    assert!(all.iter().all(|query| !query.contains('$')), "{all:?}");
+    all
+}
+
+/// Every metric that the alert rules name.
+fn named_by_alerts() -> BTreeSet<String> {
+    let text = fs::read_to_string(example("alerts.yml")).unwrap();
+    let words = text.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '_');
+    words.filter(|word| word.starts_with("halfrow_")).map(str::to_owned).collect()
+}
+
+/// A station that has judged some boards, and its plant, which has them all.
+fn line() -> (Server, (TempDir, Serving), (Station, Serving)) {
+    let server = Server::prepared();
+    let pages = served(&server);
+    let web = format!("[web]\nlisten = \"127.0.0.1:0\"\n[plant]\nurl = \"{}\"", server.url());
+    let station = Station::with(2, &web).where_instead(
+        "station.toml",
+        "mock,serial=2",
+        "mock,serial=2,fault=stuck-data",
+    );
+    let serving = station.serve();
+    for ((lane, state), serial) in [("1", "pass"), ("2", "fail")].into_iter().zip(SERIALS) {
+        scan(&serving, lane, serial);
+        in_state(&serving, lane, state);
+    }
+    once(&serving, "halfrow_outbox_entries{sink=\"plant\"}", 0.0);
+    (server, pages, (station, serving))
+}
+
+#[test]
+fn every_query_of_the_dashboards_and_of_the_alerts_is_answered() {
+    let (_server, (_folder, plant), (_station, station)) = line();
+    let prometheus = Prometheus::of(station.port, plant.port);
+    // A change over time needs two moments.
+    for job in ["halfrow-station", "halfrow-plant"] {
+        let twice = format!("count_over_time(up{{job=\"{job}\"}}[1m]) >= 3 and up{{job=\"{job}\"}} == 1");
+        prometheus.wait(&twice, || prometheus.series(&twice) == 1);
+    }
+    for name in ["grafana-station.json", "grafana-plant.json"] {
+        assert_eq!(prometheus.unanswered(&queries(name)), Vec::<&str>::new(), "{name}");
+    }
+    let named = named_by_alerts();
+    assert!(named.len() >= 8, "{named:?}");
+    assert_eq!(prometheus.unanswered(&named), Vec::<&str>::new());
+    // The control: a name that nothing has.
+    let wrong: BTreeSet<_> = queries("grafana-station.json")
+        .iter()
+        .map(|query| query.replace("commit_seconds", "comit_seconds"))
+        .collect();
+    let unanswered = prometheus.unanswered(&wrong);
+    assert!(
+        !unanswered.is_empty() && unanswered.iter().all(|query| query.contains("comit")),
+        "{unanswered:?}"
+    );
+    let (_, rules) = prometheus.get("/api/v1/rules");
+    let rules: Value = serde_json::from_str(&rules).unwrap();
+    let groups = rules["data"]["groups"].as_array().unwrap();
+    assert_eq!(groups.iter().flat_map(|group| group["rules"].as_array().unwrap()).count(), 10);
+}

@@ -1,0 +1,101 @@
+//! Figures as they are served, taken apart.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Stdio};
+
+use crate::common::Did;
+use crate::pages::station::Serving;
+
+/// What a metric is: its kind, and its labels but for that of a histogram's bound.
+type Shape = (String, BTreeSet<String>);
+
+/// The figures of one answer.
+#[derive(Debug)]
+pub(super) struct Figures {
+    pub(super) text: String,
+    /// Every sample by its name with its labels.
+    pub(super) samples: BTreeMap<String, f64>,
+    kinds: BTreeMap<String, String>,
+}
+
+impl Figures {
+    /// Those that are served now, in the format of Prometheus.
+    pub(super) fn of(serving: &Serving) -> Self {
+        let answer = serving.here().get("/metrics").send();
+        assert_eq!(answer.status, 200, "{}", answer.text());
+        assert_eq!(answer.header("content-type"), Some("text/plain; version=0.0.4; charset=utf-8"));
+        Self::read(answer.text())
+    }
+
+    fn read(text: String) -> Self {
+        let (mut samples, mut kinds) = (BTreeMap::new(), BTreeMap::new());
+        for line in text.lines() {
+            if let Some(of) = line.strip_prefix("# TYPE ") {
+                let (name, kind) = of.split_once(' ').unwrap();
+                kinds.insert(name.to_owned(), kind.to_owned());
+            } else if !line.starts_with('#') {
+                let (name, value) = line.rsplit_once(' ').unwrap();
+                let before = samples.insert(name.to_owned(), value.parse().unwrap());
+                assert_eq!(before, None, "{name} stands twice");
+            }
+        }
+        Self { text, samples, kinds }
+    }
+
+    /// The value of this name with these labels.
+    pub(super) fn at(&self, name: &str) -> f64 {
+        *self.samples.get(name).unwrap_or_else(|| panic!("there is no {name} in\n{}", self.text))
+    }
+
+    /// Every metric with what it is. What has no sample has no labels here.
+    pub(super) fn shapes(&self) -> BTreeMap<String, Shape> {
+        let mut shapes: BTreeMap<_, _> =
+            self.kinds.iter().map(|(name, kind)| (name.clone(), (kind.clone(), BTreeSet::new()))).collect();
+        for sample in self.samples.keys() {
+            let (name, labels) = sample.split_once('{').unwrap_or((sample, ""));
+            let of = ["_bucket", "_sum", "_count"].iter().find_map(|end| name.strip_suffix(end));
+            let name = of.filter(|name| shapes.contains_key(*name)).unwrap_or(name);
+            let labels =
+                labels.split("\",").filter_map(|label| label.split_once("=\"")).map(|(name, _)| name);
+            shapes.get_mut(name).unwrap().1.extend(labels.filter(|name| *name != "le").map(str::to_owned));
+        }
+        shapes
+    }
+}
+
+/// What the page says of metrics below this headline.
+pub(super) fn told(headline: &str) -> BTreeMap<String, Shape> {
+    let page = include_str!("../../../../../docs/metrics.md");
+    let section = page.split("\n## ").find(|section| section.starts_with(headline)).unwrap();
+    let rows = section.lines().filter(|line| line.starts_with("| `"));
+    let shape = |row: &str| {
+        let cells: Vec<_> = row.split('|').map(str::trim).collect();
+        // Prometheus' own format has no kind for what tells by its labels.
+        let kind = if cells[2] == "info" { "gauge" } else { cells[2] };
+        let labels = cells[3].split(", ").filter(|label| !label.is_empty()).map(str::to_owned);
+        (cells[1].trim_matches('`').to_owned(), (kind.to_owned(), labels.collect()))
+    };
+    rows.map(shape).collect()
+}
+
+/// What `promtool` says when it is given this text.
+pub(super) fn promtool(arguments: &[&str], folder: &Path, said: &str) -> Did {
+    let mut child = Command::new("promtool")
+        .args(arguments)
+        .current_dir(folder)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap_or_else(|error| panic!("promtool: {error}; apt-get install prometheus"));
+    child.stdin.take().unwrap().write_all(said.as_bytes()).unwrap();
+    child.wait_with_output().unwrap().into()
+}
+
+/// Has `promtool` look at a text of figures.
+pub(super) fn assert_sound(figures: &Figures) {
+    let did = promtool(&["check", "metrics"], Path::new("/"), &figures.text);
+    assert_eq!((did.code, did.complained.as_str()), (Some(0), ""), "{}", figures.text);
+}
