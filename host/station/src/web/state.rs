@@ -8,6 +8,7 @@ use tokio::task;
 
 use super::access::Access;
 use super::live::Live;
+use super::metrics::Turns;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::engine::Engine;
@@ -28,8 +29,8 @@ struct Parts {
     settings: Settings,
     access: Access,
     plans: String,
-    /// What was counted for those who watch it.
-    tally: Tally,
+    /// For those who ask every few seconds.
+    turns: Turns,
     source: Source,
 }
 
@@ -64,15 +65,15 @@ impl App {
         let live = Live::start(&engine)?;
         let plans = named(&settings);
         let source = Source::Station(Floor { engine, live, hints });
-        Ok(Self(Arc::new(Parts { settings, access, plans, tally: Tally::new(true), source })))
+        Ok(Self(Arc::new(Parts { settings, access, plans, turns: Turns::new(Tally::new(true)), source })))
     }
 
     /// The results of all stations, which these settings say where to find.
     #[must_use]
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
         let source = Source::Plant(PlantPool::new(address));
-        let (plans, tally) = (String::new(), Tally::new(false));
-        Self(Arc::new(Parts { settings, access, plans, tally, source }))
+        let (plans, turns) = (String::new(), Turns::new(Tally::new(false)));
+        Self(Arc::new(Parts { settings, access, plans, turns, source }))
     }
 
     /// Whether it shows the results of all stations.
@@ -109,9 +110,8 @@ impl App {
         &self.0.access
     }
 
-    /// What was counted for those who watch it.
-    pub(super) fn tally(&self) -> &Tally {
-        &self.0.tally
+    pub(super) fn turns(&self) -> &Turns {
+        &self.0.turns
     }
 
     /// Enters in the audit what the visitor is about to do. What cannot be entered is not done.

@@ -5,6 +5,7 @@
 mod of_plant;
 mod of_station;
 mod text;
+mod turns;
 
 use std::collections::BTreeMap;
 
@@ -20,6 +21,8 @@ use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::history::counts::{Cell, Count};
 
+pub(super) use self::turns::Turns;
+
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/metrics", Who::Reader, metrics)]
 }
@@ -29,7 +32,7 @@ async fn metrics(State(app): State<App>, visit: Visit, headers: HeaderMap) -> Re
     let mut text = Text::new(format);
     text.of(&BUILD).put(&[("version", halfrow::VERSION)], 1_u64);
     if app.is_plant() {
-        of_plant::write(&mut text, &app, &visit).await?;
+        of_plant::write(&mut text, &app, &visit).await;
     } else {
         of_station::write(&mut text, &app, &visit).await?;
     }

@@ -2,14 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use super::counted;
 use super::text::{Kind, Label, Metric, Text};
+use super::{counted, turns};
 use crate::history::counts::{Cell, Count};
 use crate::history::stations::{Station, stations};
-use crate::said::Said;
-use crate::store::StoreError;
 use crate::web::state::App;
-use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
 const PLANT: Metric = Metric { name: "halfrow_plant", kind: Kind::Info, help: "The plant's name." };
@@ -63,27 +60,21 @@ struct Held {
 }
 
 /// Writes all of them. A plant that is away is said to be.
-pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
-    let of = app.clone();
-    let held: Result<Held, StoreError> = app
-        .try_to_look(visit, move |now| {
-            let version = Some(now.version()?.unsigned_abs());
-            Ok(Held { version, counts: of.tally().counts(now)?, stations: stations(now)? })
-        })
-        .await?;
-    text.of(&PLANT).put(&[("plant", app.station())], 1_u64);
-    text.of(&UP).put(&[], held.is_ok());
-    let Held { version, counts, stations } = held.unwrap_or_else(|error| {
-        tracing::warn!("what is counted cannot be told: {}", Said::of(&error));
-        Held::default()
+pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
+    let held = turns::counted(app, visit, |now, tally| {
+        let version = Some(now.version()?.unsigned_abs());
+        Ok(Held { version, counts: tally.counts(now)?, stations: stations(now)? })
     });
+    let held = held.await;
+    text.of(&PLANT).put(&[("plant", app.station())], 1_u64);
+    text.of(&UP).put(&[], held.is_some());
+    let Held { version, counts, stations } = held.unwrap_or_default();
     let mut of = text.of(&VERSION);
     if let Some(version) = version {
         of.put(&[], version);
     }
     counted(text, [&RUNS, &UNITS, &FIRST], &counts, labels);
     heard(text, &stations);
-    Ok(())
 }
 
 fn labels(Cell { plan, station, .. }: &Cell) -> [Label<'_>; 3] {

@@ -2,16 +2,15 @@
 
 use std::collections::BTreeMap;
 
-use super::counted;
 use super::text::{Kind, Label, Metric, Text};
+use super::{counted, turns};
 use crate::clock;
 use crate::engine::{Figures, LaneState};
 use crate::floor::Word;
 use crate::history::PlanName;
 use crate::history::counts::{Cell, Count};
-use crate::said::Said;
 use crate::settings::Settings;
-use crate::store::{StoreError, Unsent};
+use crate::store::Unsent;
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
@@ -83,21 +82,15 @@ type Kept = (BTreeMap<Cell, Count>, Vec<Unsent>);
 /// Writes all of them. A store that cannot be read is said to be so, and what lanes do is told all the same.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) -> Result<(), Trouble> {
     let engine = &app.floor(visit)?.engine;
-    let of = app.clone();
-    let kept: Result<Kept, StoreError> =
-        app.try_to_look(visit, move |now| Ok((of.tally().counts(now)?, now.unsent()?))).await?;
+    let kept: Option<Kept> =
+        turns::counted(app, visit, |now, tally| Ok((tally.counts(now)?, now.unsent()?))).await;
     text.of(&STATION).put(&[("station", app.station())], 1_u64);
     text.of(&WELL).put(&[], engine.is_well());
-    text.of(&READABLE).put(&[], kept.is_ok());
+    text.of(&READABLE).put(&[], kept.is_some());
     lanes(text, &engine.lanes());
     since_the_start(text, &engine.figures());
-    let (counts, unsent) = kept.map_or_else(
-        |error| {
-            tracing::warn!("what is counted cannot be told: {}", Said::of(&error));
-            (BTreeMap::new(), None)
-        },
-        |(counts, unsent)| (with_all(app.settings(), counts), Some(unsent)),
-    );
+    let (counts, unsent) = kept.unzip();
+    let counts = counts.map(|counts| with_all(app.settings(), counts)).unwrap_or_default();
     counted(text, [&RUNS, &UNITS, &FIRST], &counts, labels);
     outbox(text, app.settings(), unsent.as_deref());
     Ok(())

@@ -24,7 +24,8 @@ fn counted(tally: &Tally, made: &Made) -> Vec<String> {
 /// The same, from the runs themselves.
 fn from_the_runs(made: &Made) -> Vec<String> {
     let text = "SELECT plan.name || ' ' || lane || ' ' || verdict || ' ' || count(*) FROM run
-        JOIN plan ON plan.sha256 = plan_sha256 WHERE state = 'final' GROUP BY plan.name, lane, verdict ORDER BY 1";
+        JOIN plan ON plan.sha256 = plan_sha256 JOIN unit ON unit.id = unit_id
+        WHERE state = 'final' AND serial NOT LIKE 'HR:MOCK:%' GROUP BY plan.name, lane, verdict ORDER BY 1";
     query(made.as_ref(), text)
 }
 
@@ -40,6 +41,8 @@ fn runs_are_counted_by_verdict_whatever_day_they_come_from() {
         Run { plan: ("final", "2"), ..run("S3", "1", End::TooLate, BEGIN_MS + 3 * DAY_MS + 2) },
         Run { plan: ("intake", "1"), ..run("S3", "1", End::Pass, BEGIN_MS + 40 * DAY_MS) },
         run("S4", "3", End::Open, BEGIN_MS + 40 * DAY_MS),
+        // The mock that checks a shift is no unit.
+        run("HR:MOCK:1", "1", End::Fail(&[]), BEGIN_MS + 40 * DAY_MS + 1),
         // It comes late, into a day that was counted.
         run("S5", "2", End::Fail(&[]), BEGIN_MS + 2 * HOUR_MS),
     ];

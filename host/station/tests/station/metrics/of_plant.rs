@@ -4,6 +4,7 @@ use std::io::Write as _;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
+use super::figures::once;
 use super::text::{Figures, assert_sound, told};
 use crate::common::{Did, folder, program};
 use crate::history::released::history;
@@ -94,4 +95,24 @@ fn a_machine_with_a_token_reads_the_plants_figures() {
     assert!(known.text().contains("halfrow_plant_up 1\n"), "{}", known.text());
     let noted = server.rows("SELECT operator_id, act, subject FROM audit");
     assert_eq!(noted, [["prometheus", "token", "127.0.0.1"]]);
+}
+
+/// Somebody holds a table of the plant: who watches is told soon, however often, and pages that need nothing of it go on.
+#[test]
+fn a_plant_that_hangs_is_away_and_holds_up_nothing_else() {
+    let server = Server::prepared();
+    let (_made, _) = send(history(), server.address());
+    let (_folder, serving) = served(&server);
+    assert_eq!(Figures::of(&serving).at("halfrow_plant_up"), 1.0);
+    let mut holder = server.client("plant");
+    holder.batch_execute("BEGIN; LOCK TABLE day_count IN ACCESS EXCLUSIVE MODE").unwrap();
+    // More than the pages have threads for what waits.
+    std::thread::scope(|scope| {
+        let asked: Vec<_> =
+            (0..12).map(|_| scope.spawn(|| Figures::of(&serving).at("halfrow_plant_up"))).collect();
+        assert!(asked.into_iter().all(|up| up.join().unwrap() == 0.0));
+    });
+    assert_eq!(serving.here().get("/").send().status, 200);
+    holder.batch_execute("ROLLBACK").unwrap();
+    once(&serving, "halfrow_plant_up", 1.0);
 }

@@ -1,0 +1,57 @@
+//! Whoever asks every few seconds takes turns with others of that kind, and is answered soon: a plant that hangs holds up one
+//! thread, and neither the pages nor the answer that says so.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::Mutex;
+use tokio::time;
+
+use crate::history::counts::Tally;
+use crate::said::Said;
+use crate::store::{Snapshot, StoreError};
+use crate::web::state::App;
+use crate::web::visit::Visit;
+
+/// How long it may take. Prometheus waits for ten seconds.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// What was counted before, and whose turn it is.
+#[derive(Debug)]
+pub(in crate::web) struct Turns {
+    tally: Tally,
+    turn: Arc<Mutex<()>>,
+}
+
+impl Turns {
+    /// With nothing counted yet.
+    pub(in crate::web) fn new(tally: Tally) -> Self {
+        Self { tally, turn: Arc::default() }
+    }
+}
+
+/// What `count` finds in the store as it is at one moment; nothing when it cannot be read, or not soon.
+pub(super) async fn counted<T: Send + 'static>(
+    app: &App,
+    visit: &Visit,
+    count: impl FnOnce(&Snapshot, &Tally) -> Result<T, StoreError> + Send + 'static,
+) -> Option<T> {
+    let of = app.clone();
+    let found = time::timeout(PATIENCE, async {
+        let turn = Arc::clone(&app.turns().turn).lock_owned().await;
+        let look = move |now: &Snapshot| {
+            // It ends with the look, however long that takes.
+            let _turn = turn;
+            count(now, &of.turns().tally)
+        };
+        app.try_to_look(visit, look).await
+    });
+    match found.await {
+        Ok(Ok(Ok(found))) => return Some(found),
+        Ok(Ok(Err(error))) => tracing::warn!("what is counted cannot be told: {}", Said::of(&error)),
+        // It is in the log.
+        Ok(Err(_)) => {}
+        Err(_) => tracing::warn!("what is counted was not read within {} s", PATIENCE.as_secs()),
+    }
+    None
+}
