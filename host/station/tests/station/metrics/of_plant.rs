@@ -9,7 +9,7 @@ use super::text::{Figures, assert_sound, told};
 use crate::common::{Did, folder, program};
 use crate::history::released::history;
 use crate::pages::http::Request;
-use crate::pages::station::Serving;
+use crate::pages::station::{PUBLIC, Serving};
 use crate::plant::pages::{command, served, settings};
 use crate::plant::sent::send;
 use crate::plant::server::Server;
@@ -74,11 +74,11 @@ fn did(arguments: &[&str], settings: &Path, said: &str) -> Did {
 
 /// A plant that others can reach has people and machines of its own, and no lanes in its settings.
 #[test]
-fn a_machine_with_a_token_reads_the_plants_figures() {
+fn people_and_machines_look_at_a_plant_that_others_can_reach() {
     let server = Server::prepared();
     let folder = folder();
     let public =
-        "public = \"https://plant.example\"\n[access]\nusers = \"users.toml\"\ntokens = \"tokens.toml\"";
+        "public = \"https://station12.example\"\n[access]\nusers = \"users.toml\"\ntokens = \"tokens.toml\"";
     let settings = settings(&server, folder.path(), public);
     let did = |arguments: &[&str], said: &str| {
         let did = did(arguments, &settings, said);
@@ -88,13 +88,14 @@ fn a_machine_with_a_token_reads_the_plants_figures() {
     did(&["user", "add", "Braun", "--role", "engineer"], "B-0022\ncorrect horse\n");
     let token = did(&["token", "add", "prometheus", "--scope", "read"], "");
     let serving = Serving::of(&mut command(&settings));
-    let stranger = Request::bare(serving.port, "GET", "/metrics").with("host", "plant.example");
+    let stranger = Request::bare(serving.port, "GET", "/metrics").with("host", PUBLIC);
     assert_eq!(stranger.send().status, 401);
     let known = stranger.with("authorization", &format!("Bearer {}", token.trim())).send();
     assert_eq!(known.status, 200, "{}", known.text());
     assert!(known.text().contains("halfrow_plant_up 1\n"), "{}", known.text());
-    let noted = server.rows("SELECT operator_id, act, subject FROM audit");
-    assert_eq!(noted, [["prometheus", "token", "127.0.0.1"]]);
+    assert_eq!(serving.engineer().get("/").send().status, 200);
+    let noted = server.rows("SELECT operator_id, act FROM audit ORDER BY id");
+    assert_eq!(noted, [["prometheus", "token"], ["Braun", "login"]]);
 }
 
 /// Somebody holds a table of the plant: who watches is told soon, however often, and pages that need nothing of it go on.
