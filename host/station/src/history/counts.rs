@@ -1,16 +1,21 @@
 //! Runs by verdict, for whoever asks every few seconds.
 //!
 //! Runs and errors are counted when they end; FAIL is counted here, day by day, and a day anew only when it has other runs
-//! than when it was counted last. A verdict never changes, so that is when a day's FAIL may.
+//! than when it was counted last. A verdict never changes, so that is when a day's FAIL may. Where even the rest takes long, it
+//! is counted less often.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use super::{PlanName, count, plans};
 use crate::store::{DatabaseError, Snapshot, StoreError, statements, values};
 
 /// Milliseconds of a day.
 const DAY_MS: i64 = 86_400_000;
+
+/// The longest rest between two counts.
+const LONGEST: Duration = Duration::from_secs(60);
 
 /// What is counted together.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,7 +58,15 @@ impl Count {
 #[derive(Debug)]
 pub struct Tally {
     by_lane: bool,
-    days: Mutex<BTreeMap<i64, Day>>,
+    rests: u32,
+    before: Mutex<Before>,
+}
+
+#[derive(Debug, Default)]
+struct Before {
+    days: BTreeMap<i64, Day>,
+    /// What was counted last, and until when it is taken for all that there is.
+    last: Option<(Instant, BTreeMap<Cell, Count>)>,
 }
 
 /// A day as it was counted last.
@@ -64,10 +77,11 @@ struct Day {
 }
 
 impl Tally {
-    /// Nothing yet; the lanes of a station are told apart if it is `by_lane`.
+    /// Nothing yet; the lanes of a station are told apart if it is `by_lane`. After each count it rests so many times as long as
+    /// that took, a minute at most, and tells the same meanwhile.
     #[must_use]
-    pub fn new(by_lane: bool) -> Self {
-        Self { by_lane, days: Mutex::default() }
+    pub fn new(by_lane: bool, rests: u32) -> Self {
+        Self { by_lane, rests, before: Mutex::default() }
     }
 
     /// Every run that is over, without those of the mock that checks a shift.
@@ -75,6 +89,20 @@ impl Tally {
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
     pub fn counts(&self, of: &Snapshot) -> Result<BTreeMap<Cell, Count>, StoreError> {
+        let mut before = self.before.lock().unwrap_or_else(PoisonError::into_inner);
+        let begun = Instant::now();
+        if let Some((_, counts)) = before.last.as_ref().filter(|(until, _)| begun < *until) {
+            return Ok(counts.clone());
+        }
+        let counts = self.now(&mut before.days, of)?;
+        if self.rests > 0 {
+            let rest = begun.elapsed().saturating_mul(self.rests).min(LONGEST);
+            before.last = Some((Instant::now() + rest, counts.clone()));
+        }
+        Ok(counts)
+    }
+
+    fn now(&self, days: &mut BTreeMap<i64, Day>, of: &Snapshot) -> Result<BTreeMap<Cell, Count>, StoreError> {
         let plans = plans(of)?;
         let mut counts = BTreeMap::<Cell, Count>::new();
         for (cell, [runs, errors, units, first_passed]) in self.all(of, &plans)? {
@@ -82,8 +110,7 @@ impl Tally {
             let passed = runs.saturating_sub(errors);
             counts.entry(cell).or_default().add(&Count { passed, failed: 0, errors, units, first_passed });
         }
-        let mut days = self.days.lock().unwrap_or_else(PoisonError::into_inner);
-        self.count_anew(&mut days, of, &plans)?;
+        self.count_anew(days, of, &plans)?;
         for (cell, failed) in days.values().flat_map(|day| &day.failed) {
             if let Some(count) = counts.get_mut(cell) {
                 count.failed += failed;

@@ -20,6 +20,9 @@ use crate::store::{Folder, PlantAddress, PlantPool, Snapshot, Store, StoreError}
 /// Plans that are named in the head of a page.
 const NAMED: usize = 2;
 
+/// How many times as long as it counted a plant, which may have a year of hundreds of stations, is left alone by those who watch.
+const RESTS: u32 = 20;
+
 /// The station as its pages know it. A copy is the same one.
 #[derive(Clone, Debug)]
 pub struct App(Arc<Parts>);
@@ -65,14 +68,14 @@ impl App {
         let live = Live::start(&engine)?;
         let plans = named(&settings);
         let source = Source::Station(Floor { engine, live, hints });
-        Ok(Self(Arc::new(Parts { settings, access, plans, turns: Turns::new(Tally::new(true)), source })))
+        Ok(Self(Arc::new(Parts { settings, access, plans, turns: Turns::new(Tally::new(true, 0)), source })))
     }
 
     /// The results of all stations, which these settings say where to find.
     #[must_use]
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
         let source = Source::Plant(PlantPool::new(address));
-        let (plans, turns) = (String::new(), Turns::new(Tally::new(false)));
+        let (plans, turns) = (String::new(), Turns::new(Tally::new(false, RESTS)));
         Self(Arc::new(Parts { settings, access, plans, turns, source }))
     }
 

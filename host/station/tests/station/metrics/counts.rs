@@ -31,7 +31,7 @@ fn from_the_runs(made: &Made) -> Vec<String> {
 
 #[test]
 fn runs_are_counted_by_verdict_whatever_day_they_come_from() {
-    let (mut made, tally) = (Made::new(), Tally::new(true));
+    let (mut made, tally) = (Made::new(), Tally::new(true, 0));
     assert_eq!(counted(&tally, &made), from_the_runs(&made));
     let runs = [
         run("S1", "1", End::Fail(&["memory", "clock"]), BEGIN_MS),
@@ -51,10 +51,10 @@ fn runs_are_counted_by_verdict_whatever_day_they_come_from() {
         assert_eq!(counted(&tally, &made), from_the_runs(&made), "{of:?}");
     }
     assert_eq!(
-        counted(&Tally::new(true), &made),
+        counted(&Tally::new(true, 0), &made),
         ["final 1 ERROR 1", "final 1 FAIL 2", "final 1 PASS 1", "final 2 FAIL 2", "intake 1 PASS 1"]
     );
-    let all = Tally::new(false).counts(&made.now()).unwrap();
+    let all = Tally::new(false, 0).counts(&made.now()).unwrap();
     let (cell, count) = all.first_key_value().unwrap();
     assert_eq!((cell.plan.plan.as_str(), cell.lane.as_str()), ("final", ""));
     assert_eq!((count.errors, count.failed, count.passed), (1, 4, 1));
@@ -65,14 +65,14 @@ fn runs_are_counted_by_verdict_whatever_day_they_come_from() {
 /// A million runs are looked at once, and then those of the days on which something ended.
 #[test]
 fn a_day_without_another_run_is_not_looked_at_again() {
-    let (mut made, tally) = (Made::new(), Tally::new(true));
+    let (mut made, tally) = (Made::new(), Tally::new(true, 0));
     made.run(&run("S1", "1", End::Fail(&[]), BEGIN_MS));
     made.run(&run("S2", "1", End::Fail(&[]), BEGIN_MS + DAY_MS));
     assert_eq!(counted(&tally, &made), ["final 1 FAIL 2"]);
     // Nothing that the program does: whoever looks at this day finds no FAIL.
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
     database.execute_batch("UPDATE run SET nth = 0").unwrap();
-    assert_eq!(counted(&Tally::new(true), &made), ["final 1 PASS 2"]);
+    assert_eq!(counted(&Tally::new(true, 0), &made), ["final 1 PASS 2"]);
     assert_eq!(counted(&tally, &made), ["final 1 FAIL 2"]);
     made.run(&run("S3", "1", End::Fail(&[]), BEGIN_MS + DAY_MS + HOUR_MS));
     assert_eq!(
@@ -80,4 +80,16 @@ fn a_day_without_another_run_is_not_looked_at_again() {
         ["final 1 FAIL 2", "final 1 PASS 1"],
         "the second day alone is counted anew"
     );
+}
+
+/// A plant that takes long to count is not counted all the time.
+#[test]
+fn what_was_counted_is_told_again_for_as_long_as_is_wanted() {
+    let mut made = Made::new();
+    let tallies = [0, u32::MAX].map(|rests| Tally::new(true, rests));
+    made.run(&run("S1", "1", End::Pass, BEGIN_MS));
+    assert_eq!(tallies.each_ref().map(|tally| counted(tally, &made)), [["final 1 PASS 1"]; 2]);
+    made.run(&run("S2", "1", End::Pass, BEGIN_MS + HOUR_MS));
+    let after = tallies.each_ref().map(|tally| counted(tally, &made));
+    assert_eq!(after, [["final 1 PASS 2"], ["final 1 PASS 1"]]);
 }
