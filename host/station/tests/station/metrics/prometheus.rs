@@ -28,12 +28,12 @@ struct Prometheus {
 }
 
 impl Prometheus {
-    /// One that looks at these ports every fifth of a second.
+    /// One that looks at these ports twice a second.
     fn of(station: u16, plant: u16) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let mut text = fs::read_to_string(example("prometheus.yml")).unwrap();
         for (was, is) in [
-            ("scrape_interval: 15s", "scrape_interval: 200ms"),
+            ("scrape_interval: 15s", "scrape_interval: 500ms"),
             ("station12.example:8612", &format!("127.0.0.1:{station}")),
             ("plant.example:8613", &format!("127.0.0.1:{plant}")),
             // Both are open to their own computer.
