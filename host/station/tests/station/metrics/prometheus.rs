@@ -145,29 +145,29 @@ fn named_by_alerts() -> BTreeSet<String> {
     words.filter(|word| word.starts_with("halfrow_")).map(str::to_owned).collect()
 }
 
-/// A station that has judged some boards, and its plant, which has them all.
-fn line() -> (Server, (TempDir, Serving), (Station, Serving)) {
+/// Boards are judged, and the plant has them all.
+fn judged(serving: &Serving) {
+    for ((lane, state), serial) in [("1", "pass"), ("2", "fail")].into_iter().zip(SERIALS) {
+        scan(serving, lane, serial);
+        in_state(serving, lane, state);
+    }
+    once(serving, "halfrow_outbox_entries{sink=\"plant\"}", 0.0);
+}
+
+#[test]
+fn every_query_of_the_dashboards_and_of_the_alerts_is_answered() {
     let server = Server::prepared();
-    let pages = served(&server);
+    let (_folder, plant) = served(&server);
     let web = format!("[web]\nlisten = \"127.0.0.1:0\"\n[plant]\nurl = \"{}\"", server.url());
     let station = Station::with(2, &web).where_instead(
         "station.toml",
         "mock,serial=2",
         "mock,serial=2,fault=stuck-data",
     );
-    let serving = station.serve();
-    for ((lane, state), serial) in [("1", "pass"), ("2", "fail")].into_iter().zip(SERIALS) {
-        scan(&serving, lane, serial);
-        in_state(&serving, lane, state);
-    }
-    once(&serving, "halfrow_outbox_entries{sink=\"plant\"}", 0.0);
-    (server, pages, (station, serving))
-}
-
-#[test]
-fn every_query_of_the_dashboards_and_of_the_alerts_is_answered() {
-    let (_server, (_folder, plant), (_station, station)) = line();
-    let prometheus = Prometheus::of(station.port, plant.port);
+    let station_pages = station.serve();
+    // It looks for what it is to read five seconds after its start.
+    let prometheus = Prometheus::of(station_pages.port, plant.port);
+    judged(&station_pages);
     for name in ["grafana-station.json", "grafana-plant.json"] {
         assert_eq!(prometheus.unanswered_in_the_end(&queries(name)), Vec::<&str>::new(), "{name}");
     }
