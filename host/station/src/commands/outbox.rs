@@ -7,7 +7,7 @@ use super::beginning::{Disk, SettingsFile, sinks};
 use super::looking::{either, table, time};
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::outbox::{OutboxError, PlantSink, Round, round};
+use crate::outbox::{OutboxError, Round, round};
 use crate::settings::Settings;
 use crate::store::{Dead, Folder, SharedStore, Store, Unsent};
 
@@ -97,8 +97,7 @@ fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> 
 }
 
 fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result<Exit, Failure> {
-    let plant = settings.plant.iter().map(|_| PlantSink::NAME);
-    if plant.chain(settings.sinks.iter().map(|sink| sink.name.as_str())).any(|name| name == sink) {
+    if settings.sink_names().any(|name| name == sink) {
         return Err(Failure::call(SinkInUse { sink: sink.to_owned() }));
     }
     let mut store = Store::open_existing(folder)?;

@@ -163,9 +163,9 @@ impl Settings {
         lane.plans.iter().filter_map(|&plan| self.plans.get(plan))
     }
 
-    /// To whom results are sent on.
-    pub(crate) fn sinks(&self) -> impl Iterator<Item = &'static str> {
-        self.plant.iter().map(|_| PlantSink::NAME)
+    /// The names of all to whom results are sent on.
+    pub(crate) fn sink_names(&self) -> impl Iterator<Item = &str> {
+        self.plant.iter().map(|_| PlantSink::NAME).chain(self.sinks.iter().map(|sink| sink.name.as_str()))
     }
 
     /// What a plant hears of the station whose folder is called `origin`.

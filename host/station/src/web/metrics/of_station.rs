@@ -144,7 +144,7 @@ fn outbox(text: &mut Text, settings: &Settings, unsent: Option<&[Unsent]>) {
     let now_ms = clock::now_ms();
     let mut sinks: BTreeMap<&str, (u64, u64, f64)> = BTreeMap::new();
     if let Some(unsent) = unsent {
-        sinks.extend(settings.sinks().map(|sink| (sink, (0, 0, 0.0))));
+        sinks.extend(settings.sink_names().map(|sink| (sink, (0, 0, 0.0))));
         for Unsent { sink, entries, dead, since_ms, .. } in unsent {
             let age = now_ms.saturating_sub(*since_ms).max(0) as f64 / 1000.0;
             sinks.insert(sink, (u64::from(*entries), u64::from(*dead), age));
