@@ -2,6 +2,7 @@
 
 mod boards;
 mod claims;
+mod rate;
 mod work;
 
 use std::path::Path;
