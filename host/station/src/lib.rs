@@ -29,6 +29,7 @@ pub mod history;
 mod ids;
 pub mod input_error;
 pub mod kept;
+pub mod labgrid;
 pub mod lane;
 pub mod outbox;
 pub mod plan;

@@ -24,6 +24,7 @@ use crate::export::ExportError;
 use crate::floor::{Refusal, ScanError, UnknownBarcode};
 use crate::input_error::InputError;
 use crate::kept::CopyError;
+use crate::labgrid::LabgridError;
 use crate::outbox::{OutboxError, SinkError, SinkSettingsError};
 use crate::plan::serial::SerialError;
 use crate::record::{BlobError, RecordError};
@@ -149,6 +150,20 @@ codes::codes! {
     Lost {
         Taken [board] => "shared-board-taken",
         Unreached [board, seconds, said] => "shared-board-unreached",
+    }
+    LabgridError {
+        NotStarted [program] => "labgrid-program-not-started",
+        Failed [program, said] => "labgrid-program-failed",
+        Late [place, seconds] => "labgrid-late",
+        CoordinatorAway [coordinator] => "labgrid-coordinator-away",
+        Unknown [place, known] => "labgrid-place-unknown",
+        Held [place, holder] => "labgrid-place-held",
+        NotAcquired [place, said] => "labgrid-place-not-given",
+        NotReleased [place] => "labgrid-place-not-taken-back",
+        NoPort [place] => "labgrid-place-without-port",
+        SeveralPorts [place, ports] => "labgrid-place-with-several-ports",
+        PortAway [place] => "labgrid-port-away",
+        Protocol [place, protocol] => "labgrid-port-not-raw",
     }
     PlantSettingsError {
         = Address,

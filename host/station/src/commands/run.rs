@@ -15,6 +15,7 @@ use super::{Failure, document};
 use crate::clock;
 use crate::console;
 use crate::exit::Exit;
+use crate::labgrid::LaneBoard;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
 use crate::plan::{Bad, Plan, mock};
 use crate::record::Record;
@@ -85,7 +86,8 @@ fn memory(text: &str) -> Result<u64, String> {
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plan_file = path::absolute(&arguments.plan).map_err(Failure::call)?;
     let plan = Plan::load(&plan_file).map_err(Failure::call)?;
-    let (serial, target) = arguments.subject(&plan)?;
+    let (serial, board) = arguments.subject(&plan)?;
+    let board = LaneBoard::Own(board);
     let program = std::env::current_exe().map_err(Failure::error)?;
     let signal = Signal::heed()?;
     let mut store = arguments.disk.opens(&arguments.data)?;
@@ -97,7 +99,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         plan: &plan,
         plan_file: &plan_file,
         serial: &serial,
-        target: &target,
+        board: &board,
         station: &station,
         lane: &arguments.lane,
         operator: &arguments.operator,

@@ -14,7 +14,7 @@ use super::unsent;
 use super::{Board, Heard, Input};
 use crate::clock;
 use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
-use crate::presence::{Presence, USB, is_there};
+use crate::presence::{Presence, USB};
 use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
 use crate::store::{AgainError, Folder, Owed};
@@ -113,7 +113,7 @@ impl AtWork {
         let now = self.now();
         for lane in 0..self.presence.len() {
             let Some(settings) = self.shared.settings.lanes.get(lane) else { continue };
-            let is_seen = is_there(&settings.board, Path::new(USB));
+            let is_seen = settings.board.is_there(Path::new(USB));
             let changed = self.presence.get_mut(lane).and_then(|presence| presence.look(is_seen, now));
             if let Some(is_present) = changed {
                 self.happened(lane, Event::Present(is_present));

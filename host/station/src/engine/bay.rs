@@ -88,7 +88,7 @@ fn carried_out(
         plan: &file.plan,
         plan_file: &file.path,
         serial: &accepted.serial,
-        target: &of.board,
+        board: &of.board,
         station: name,
         lane: &of.name,
         operator,

@@ -28,6 +28,7 @@ pub use news::{LaneState, News};
 
 use crate::floor::{Act, Event};
 use crate::guard::guarded;
+use crate::labgrid;
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{SharedStore, Store};
@@ -83,6 +84,7 @@ impl Engine {
     /// # Errors
     /// When the system has no thread for it.
     pub fn start(settings: Settings, store: Store, program: PathBuf) -> std::io::Result<Self> {
+        labgrid::give_back(settings.lanes.iter().map(|lane| &lane.board));
         let (inbox, received) = mpsc::channel();
         let floor = settings.floor();
         let lanes = floor.lanes().iter().map(LaneState::from).collect();

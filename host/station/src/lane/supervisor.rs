@@ -58,6 +58,8 @@ pub enum End {
     Done,
     /// It could not do the job at all.
     Refused(Said),
+    /// Somebody wanted the run to end before its process was started.
+    Stopped(StoppedBy),
     /// Its process did not start, or ended before it was done.
     Died(Said),
     /// It was killed, since it was silent or took too long.

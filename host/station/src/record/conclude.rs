@@ -1,6 +1,7 @@
 //! From the steps to the verdict.
 
 use halfrow::Verdict;
+use halfrow::verdict::{Cause, StoppedBy};
 use serde::{Deserialize, Serialize};
 
 use super::IDENTITY_NOT_CHECKED;
@@ -74,6 +75,14 @@ impl Conclusion {
         let remedy = Some("Test the board again.".to_owned());
         let (verdict, exit_code, headline) = (Verdict::Error, exit.code(), why.to_string());
         Self { verdict, cause, exit_code, headline, remedy, finding: Some(why) }
+    }
+
+    /// An ERROR since somebody wanted the run to end before the board was touched.
+    #[must_use]
+    pub fn stopped(by: StoppedBy) -> Self {
+        let (why, cause) = (Said::from(Saying::StoppedBefore), Cause::Stopped(by));
+        let exit_code = Exit::from(cause).code();
+        Self { exit_code, ..Self::error(RunCause::of(cause, &why.code), why) }
     }
 
     fn by_step(step: &StepRecord) -> Option<Self> {

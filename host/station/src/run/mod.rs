@@ -5,6 +5,7 @@
 //!     └ recovered: a run that is found open is ERROR, cause crash, and never PASS
 //! ```
 
+mod lent;
 mod recovered;
 
 use std::borrow::Cow;
@@ -12,13 +13,13 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 
 pub use crate::ids::NoRandomness;
 pub use recovered::{recover, recover_run};
 
-use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG, Patience, supervise};
+use crate::labgrid::LaneBoard;
+use crate::lane::supervisor::{Attendant, EVENTS, End, Heard, LOG, Patience};
 use crate::lane::{Job, Message, Ruling, kept_frame};
 use crate::plan::limits::Maker;
 use crate::plan::serial::{Serial, SerialError};
@@ -45,7 +46,7 @@ pub struct Order<'a> {
     /// board.
     pub serial: &'a str,
     /// The board.
-    pub target: &'a Target,
+    pub board: &'a LaneBoard,
     /// The station.
     pub station: &'a str,
     /// The lane.
@@ -154,7 +155,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let spool = store.with(|store| store.folder().spool(&head.id));
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
-    let heard = supervise(order.program, &job, &spool, patience(order, &selected), &mut attending);
+    let heard = lent::supervised(order, job, &spool, patience(order, &selected), &mut attending);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
     attending.watch.hear(Stage::Saving { was_killed });
@@ -177,7 +178,7 @@ impl<'a> Subject<'a> {
         if !mock::is_mock(order.serial) {
             let (serial, selected) = order.plan.select(order.serial)?;
             let selected = Cow::Borrowed(selected);
-            return Ok(Self { serial, selected, target: order.target.to_string() });
+            return Ok(Self { serial, selected, target: order.board.to_string() });
         }
         let selected = order.plan.variant("");
         let target = mock::target(seed, selected);
@@ -287,6 +288,7 @@ fn record(
     let lane = match end {
         End::Done => None,
         End::Refused(why) => Some(Conclusion::error(RunCause::Station, why)),
+        End::Stopped(by) => Some(Conclusion::stopped(by)),
         End::Died(why) | End::Killed(why) | End::Stuck(why) => Some(Conclusion::error(RunCause::Crash, why)),
     };
     let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, lane).knowing(device);
@@ -329,7 +331,10 @@ fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Resu
     };
     let stored = saved().map_err(|source| RunError::Unsaved { run, source: Box::new(source) })?;
     let saved_ms = clock::now_ms();
-    if let Err(error) = fs::remove_dir_all(spool) {
+    // A lane that was not started wrote nothing down.
+    if let Err(error) = fs::remove_dir_all(spool)
+        && error.kind() != std::io::ErrorKind::NotFound
+    {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
     Ok(Saved { record, stored, saved_ms, is_stuck: false })

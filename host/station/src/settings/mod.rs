@@ -1,5 +1,6 @@
 //! The settings of a station: its name, its folder, its lanes, its scanner, its hooks.
 
+mod lender;
 mod plant;
 mod read;
 mod sink;
@@ -11,7 +12,6 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use halfrow::Verdict;
-use halfrow::target::Target;
 
 pub use plant::{PlantSettings, PlantSettingsError};
 pub(crate) use read::is_word;
@@ -19,6 +19,7 @@ pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 
 use crate::floor::{Floor, Place, Rule, Starts};
 use crate::input_error::InputError;
+use crate::labgrid::LaneBoard;
 use crate::outbox::PlantSink;
 use crate::plan::Plan;
 use crate::store::Presence;
@@ -95,7 +96,7 @@ pub struct LaneSettings {
     /// Its name.
     pub name: String,
     /// Its board, by a name that stays.
-    pub board: Target,
+    pub board: LaneBoard,
     /// Its plans, by their places in [`Settings::plans`].
     pub plans: Vec<usize>,
     /// How its runs are started.

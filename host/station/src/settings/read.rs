@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use halfrow::Verdict;
-use halfrow::target::Target;
 use toml::Spanned;
 
+use super::lender::Lender;
 use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText, WorkText};
 use super::{
     AccessSettings, Hook, LaneSettings, PlanFile, PlantSettings, SCHEMA, Scanner, Settings, SinkSettings,
-    WORDS, WorkSettings, stable,
+    WORDS, WorkSettings,
 };
 use crate::floor::Starts;
 use crate::input_error::Fault;
@@ -136,14 +136,14 @@ fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {
     Ok(AccessSettings { users: folder.join(not_empty(&text.users)?), tokens, idle })
 }
 
-fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
+pub(super) fn not_empty(word: &Spanned<String>) -> Result<String, Fault> {
     match word.get_ref().trim() {
         "" => Err(Fault::wrong(word.span().start, "there is nothing here", "write a name")),
         word => Ok(word.to_owned()),
     }
 }
 
-fn seconds(text: Option<&Spanned<f64>>, default: f64) -> Result<Duration, Fault> {
+pub(super) fn seconds(text: Option<&Spanned<f64>>, default: f64) -> Result<Duration, Fault> {
     let value = text.map_or(default, |text| *text.get_ref());
     let at = text.map_or(0, |text| text.span().start);
     if (0.1..=MOST_SECONDS).contains(&value) {
@@ -166,15 +166,14 @@ fn memory(text: Option<&Spanned<u64>>) -> Result<u64, Fault> {
 /// The lanes, and every plan that they name, once.
 fn lanes(folder: &Path, read: &SettingsText) -> Result<(Vec<PlanFile>, Vec<LaneSettings>), Fault> {
     let (mut plans, mut lanes) = (Vec::new(), Vec::<LaneSettings>::new());
+    let lender = Lender::of(folder, read)?;
     for text in &read.lane {
-        let lane = lane(folder, text, &mut plans)?;
+        let lane = lane(folder, text, &lender, &mut plans)?;
         if lanes.iter().any(|other| other.name == lane.name) {
             let what = format!("two lanes are called {}", lane.name);
             return Err(Fault::wrong(text.name.span().start, what, "give each a name of its own"));
         }
-        let is_same =
-            |other: &&LaneSettings| other.board.address.is_some() && is_same(&other.board, &lane.board);
-        if let Some(other) = lanes.iter().find(is_same) {
+        if let Some(other) = lanes.iter().find(|other| other.board.is_same(&lane.board)) {
             let what = format!("lane {} has the board `{}` already", other.name, text.board.get_ref());
             return Err(Fault::wrong(text.board.span().start, what, "give each lane a board of its own"));
         }
@@ -183,11 +182,12 @@ fn lanes(folder: &Path, read: &SettingsText) -> Result<(Vec<PlanFile>, Vec<LaneS
     Ok((plans, lanes))
 }
 
-fn is_same(one: &Target, other: &Target) -> bool {
-    (&one.kind, &one.address) == (&other.kind, &other.address)
-}
-
-fn lane(folder: &Path, text: &LaneText, plans: &mut Vec<PlanFile>) -> Result<LaneSettings, Fault> {
+fn lane(
+    folder: &Path,
+    text: &LaneText,
+    lender: &Lender,
+    plans: &mut Vec<PlanFile>,
+) -> Result<LaneSettings, Fault> {
     let name = text.name.get_ref();
     let is_name = (1..=MOST_NAME).contains(&name.len())
         && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
@@ -197,15 +197,7 @@ fn lane(folder: &Path, text: &LaneText, plans: &mut Vec<PlanFile>) -> Result<Lan
             format!("write 1 to {MOST_NAME} letters, digits and hyphens, which a barcode has room for");
         return Err(Fault::wrong(text.name.span().start, what, remedy));
     }
-    let at = text.board.span().start;
-    let board: Target = text.board.get_ref().parse().map_err(|error| Fault::input(at, "the board", error))?;
-    if halfrow::link::kinds::of(&board).is_none() {
-        let what = format!("`{}` is no kind of board", board.kind);
-        return Err(Fault::wrong(at, what, "write one as `halfrow boards` lists them"));
-    }
-    if let Some((what, remedy)) = stable::refused(&board) {
-        return Err(Fault::wrong(at, what, remedy));
-    }
+    let board = lender.board(text)?;
     if text.plans.get_ref().is_empty() {
         let what = format!("lane {name} has no plan");
         return Err(Fault::wrong(text.plans.span().start, what, "name the file of one"));

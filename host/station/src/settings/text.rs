@@ -21,6 +21,8 @@ pub(super) struct SettingsText {
     #[serde(default)]
     pub(super) sink: Vec<SinkText>,
     #[serde(default)]
+    pub(super) labgrid: LabgridText,
+    #[serde(default)]
     pub(super) lane: Vec<LaneText>,
     #[serde(default, rename = "on-pass")]
     pub(super) on_pass: Vec<HookText>,
@@ -90,6 +92,15 @@ pub(super) struct PlantText {
     #[serde(default)]
     pub(super) green: GreenText,
     pub(super) most_unsent: Option<Spanned<u32>>,
+}
+
+/// `[labgrid]`
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct LabgridText {
+    pub(super) coordinator: Option<Spanned<String>>,
+    pub(super) program: Option<Spanned<String>>,
+    pub(super) deadline: Option<Spanned<f64>>,
 }
 
 /// Who must have a result before its verdict is shown.

@@ -18,6 +18,7 @@ use rand::{RngExt as _, rng};
 
 pub use held::{Held, Holding, Lost};
 
+use crate::labgrid::LaneBoard;
 use crate::outbox::PlantSink;
 use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
@@ -163,6 +164,7 @@ impl Work<'_> {
             target: claim.lease.target.clone(),
             source,
         })?;
+        let board = LaneBoard::Own(target);
         let Settings { plans, silence, memory_mib, .. } = self.settings;
         let file = plans.iter().find(|file| file.plan.sha256 == claim.plan_sha256);
         let Some(PlanFile { path, plan }) = file else {
@@ -173,7 +175,7 @@ impl Work<'_> {
             plan,
             plan_file: path,
             serial: claim.serial(),
-            target: &target,
+            board: &board,
             station: &self.worker.station,
             lane: &claim.lease.board,
             operator: "job",

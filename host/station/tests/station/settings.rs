@@ -113,6 +113,15 @@ const WRONG: &[(&str, &str, &str)] = &[
         "most_unsent = 0",
         "station.toml:15: with none unsent no lane could judge; give 1 or more",
     ),
+    ("usb:1-2.3", "labgrid", "station.toml:18: `labgrid` names no place of labgrid's; write labgrid:PLACE"),
+    (
+        "usb:1-2.3",
+        "labgrid:a,baud=9600",
+        "station.toml:18: `labgrid:a,baud=9600` names no place of labgrid's",
+    ),
+    ("[[on-error]]", "[labgrid]\ndeadline = 0.0\n[[on-error]]", "station.toml:29: 0 s is no such time"),
+    ("[[on-error]]", "[labgrid]\nprogram = \"\"\n[[on-error]]", "station.toml:29: there is nothing here"),
+    ("[[on-error]]", "[labgrid]\nplace = \"a\"\n[[on-error]]", "station.toml:29: unknown field `place`"),
     ("usb:1-2.3", "usb", "station.toml:18: `usb` is whichever board is plugged in; write usb:"),
     ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:18: `serial:/dev/ttyUSB0` is another board when"),
     ("usb:1-2.3", "usv:1-2.3", "station.toml:18: `usv` is no kind of board; write one as `halfrow boards`"),
@@ -143,4 +152,15 @@ fn what_is_wrong_is_told_with_its_line_and_a_remedy() {
     }
     let error = load("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n").unwrap_err();
     assert_eq!(error, "station.toml:1: the station has no lane; write a [[lane]] with name, board and plans");
+}
+
+#[test]
+fn a_board_that_labgrid_lends_is_named_by_its_place() {
+    let lent = WHOLE.replace("usb:1-2.3", "labgrid:cam-1");
+    assert_eq!(load(&lent).unwrap().lanes[0].board.to_string(), "labgrid:cam-1");
+    let error = load(&lent.replace("mock,serial=1", "labgrid:cam-1")).unwrap_err();
+    assert_eq!(
+        error,
+        "station.toml:23: lane 1 has the board `labgrid:cam-1` already; give each lane a board of its own"
+    );
 }

@@ -16,7 +16,7 @@ const SAID: &str = "said";
 const REMEDY: &str = "remedy";
 
 /// The types of the station's errors that operators, or engineers at a page, come to see.
-const OF_STATION: [&str; 14] = [
+const OF_STATION: [&str; 15] = [
     "SerialError",
     "ScanError",
     "Refusal",
@@ -25,6 +25,7 @@ const OF_STATION: [&str; 14] = [
     "BlobError",
     "AgainError",
     "DiskError",
+    "LabgridError",
     "RecordError",
     "RebindError",
     "NoWaiver",

@@ -5,5 +5,6 @@ pub(crate) mod ends;
 mod flat;
 pub(crate) mod floor;
 mod hooks;
+mod labgrid;
 mod refused;
 mod shift;

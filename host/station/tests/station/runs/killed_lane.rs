@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
+use halfrow_station::labgrid::LaneBoard;
 use halfrow_station::lane::MEMORY_MIB;
 use halfrow_station::plan::Plan;
 use halfrow_station::record::RunCause;
@@ -33,12 +34,12 @@ impl Watch for Unwatched {
 fn run_in(store: &SharedStore, station: &Station, lane: &str, serial: &str, program: &Path) -> Saved {
     let plan_file = station.path("plan.toml");
     let plan = Plan::load(&plan_file).unwrap();
-    let target = "mock".parse().unwrap();
+    let board = LaneBoard::Own("mock".parse().unwrap());
     let order = Order {
         plan: &plan,
         plan_file: &plan_file,
         serial,
-        target: &target,
+        board: &board,
         station: "12",
         lane,
         operator: "weber",

@@ -1,0 +1,215 @@
+//! A place that is held, by a process that gives it back when its stdin ends.
+
+use std::io::{BufRead as _, BufReader, Read};
+use std::os::unix::process::CommandExt as _;
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::PoisonError;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use halfrow::target::Target;
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
+
+use super::error::{Answer, Port};
+use super::{LabgridError, Place};
+
+/// How often it is looked whether anybody wants the run to end, or the process has ended.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// A place that is ours.
+#[derive(Debug)]
+pub struct Held {
+    /// Its board, as this computer reaches it.
+    pub target: Target,
+    holder: Holder,
+    place: Place,
+}
+
+impl Place {
+    /// Acquires the place; nothing if `is_stopped` comes first.
+    ///
+    /// # Errors
+    /// [`LabgridError`]
+    pub fn hold(&self, is_stopped: &dyn Fn() -> bool) -> Result<Option<Held>, LabgridError> {
+        self.wait_until_left();
+        let mut holder = Holder::start(self.call("hold")).map_err(|source| self.not_started(source))?;
+        let answer = self.answered(&mut holder, is_stopped);
+        if let Ok(Some(Answer::Held(port))) = &answer {
+            return Ok(Some(Held { target: reached(port), holder, place: self.clone() }));
+        }
+        self.leave(holder);
+        match answer? {
+            Some(Answer::Refused(why)) => Err(why.of(self.name.clone())),
+            Some(Answer::Held(_) | Answer::Freed) | None => Ok(None),
+        }
+    }
+
+    /// Gives the place back if this lane has it from a time that ended without.
+    ///
+    /// # Errors
+    /// [`LabgridError`]
+    pub fn free(&self) -> Result<(), LabgridError> {
+        let mut holder = Holder::start(self.call("free")).map_err(|source| self.not_started(source))?;
+        let answer = self.answered(&mut holder, &|| false);
+        drop(holder.stdin.take());
+        holder.left(&self.name, self.labgrid.deadline);
+        match answer? {
+            Some(Answer::Refused(why)) => Err(why.of(self.name.clone())),
+            Some(Answer::Held(_) | Answer::Freed) | None => Ok(()),
+        }
+    }
+
+    /// The process's answer; nothing if `is_stopped` comes first.
+    fn answered(
+        &self,
+        holder: &mut Holder,
+        is_stopped: &dyn Fn() -> bool,
+    ) -> Result<Option<Answer>, LabgridError> {
+        let begun = Instant::now();
+        let mut complaint = String::new();
+        loop {
+            match holder.lines.recv_timeout(LOOK) {
+                Ok(Line::Said(line)) => match serde_json::from_str(&line) {
+                    Ok(answer) => return Ok(Some(answer)),
+                    Err(_) => return Err(self.failed(line)),
+                },
+                Ok(Line::Complained(line)) if line.trim().is_empty() => {}
+                Ok(Line::Complained(line)) => complaint = line,
+                Err(RecvTimeoutError::Disconnected) => return Err(self.failed(complaint)),
+                Err(RecvTimeoutError::Timeout) => {}
+            }
+            if is_stopped() {
+                return Ok(None);
+            }
+            if begun.elapsed() > self.labgrid.deadline {
+                let seconds = self.labgrid.deadline.as_secs_f64();
+                return Err(LabgridError::Late { place: self.name.clone(), seconds });
+            }
+        }
+    }
+
+    fn program(&self) -> String {
+        self.labgrid.program.display().to_string()
+    }
+
+    fn not_started(&self, source: std::io::Error) -> LabgridError {
+        LabgridError::NotStarted { program: self.program(), source }
+    }
+
+    fn failed(&self, said: String) -> LabgridError {
+        let said = if said.trim().is_empty() { "it said nothing".to_owned() } else { said };
+        LabgridError::Failed { program: self.program(), said }
+    }
+
+    /// Has the place given back, without waiting for it; the next one to hold it does.
+    fn leave(&self, mut holder: Holder) {
+        drop(holder.stdin.take());
+        let (name, deadline) = (self.name.clone(), self.labgrid.deadline);
+        let left =
+            thread::Builder::new().name("labgrid".to_owned()).spawn(move || holder.left(&name, deadline));
+        match left {
+            Ok(left) => *self.leaving.lock().unwrap_or_else(PoisonError::into_inner) = Some(left),
+            Err(error) => tracing::warn!("nobody waits for {} to be given back: {error}", self.name),
+        }
+    }
+
+    /// Waits until an earlier run has given the place back, or cannot.
+    fn wait_until_left(&self) {
+        let leaving = self.leaving.lock().unwrap_or_else(PoisonError::into_inner).take();
+        if leaving.is_some_and(|leaving| leaving.join().is_err()) {
+            tracing::error!("a thread of {} ended early; look at what it said before", self.name);
+        }
+    }
+}
+
+impl Held {
+    /// Gives the place back. The place's next hold waits for the end of it, and nothing else does.
+    pub fn give_back(self) {
+        self.place.leave(self.holder);
+    }
+}
+
+/// A raw port. What speed its exporter says that the line behind it has is what deadlines are counted from; it sets nothing.
+fn reached(port: &Port) -> Target {
+    let Port { host, port, speed } = port;
+    let host = if host.contains(':') && !host.starts_with('[') { format!("[{host}]") } else { host.clone() };
+    let options = speed.iter().map(|speed| ("baud".to_owned(), speed.to_string())).collect();
+    Target { kind: "tcp".to_owned(), address: Some(format!("{host}:{port}")), options }
+}
+
+/// A line of the process's.
+#[derive(Debug)]
+enum Line {
+    Said(String),
+    Complained(String),
+}
+
+/// The process that has the place.
+#[derive(Debug)]
+struct Holder {
+    child: Child,
+    stdin: Option<ChildStdin>,
+    lines: Receiver<Line>,
+}
+
+impl Holder {
+    fn start(mut call: Command) -> std::io::Result<Self> {
+        // In a group of its own, so that Ctrl-C ends the run first.
+        call.process_group(0).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = call.spawn()?;
+        let (sender, lines) = mpsc::channel();
+        let heard = [
+            child.stdout.take().map(|stdout| read(stdout, Line::Said, sender.clone())),
+            child.stderr.take().map(|stderr| read(stderr, Line::Complained, sender)),
+        ];
+        let mut holder = Self { stdin: child.stdin.take(), child, lines };
+        for thread in heard.into_iter().flatten() {
+            thread.inspect_err(|_| holder.kill())?;
+        }
+        Ok(holder)
+    }
+
+    /// Waits for the end of the process, which has no stdin any more.
+    fn left(mut self, place: &str, deadline: Duration) {
+        let begun = Instant::now();
+        while begun.elapsed() <= deadline {
+            match self.child.try_wait() {
+                Ok(None) => thread::sleep(LOOK),
+                Ok(Some(status)) => {
+                    if !status.success() {
+                        tracing::debug!("what held {place} ended with {status}");
+                    }
+                    return;
+                }
+                Err(_) => break,
+            }
+        }
+        tracing::warn!(
+            "labgrid did not take {place} back in time; the lane's next run does it, or `labgrid-client -p {place} release`"
+        );
+        self.kill();
+    }
+
+    fn kill(&mut self) {
+        if let Ok(group) = i32::try_from(self.child.id()) {
+            // Nothing is left to be killed when all have ended.
+            let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
+        }
+        let _ = self.child.wait();
+    }
+}
+
+/// Hands on what the process writes, to its end, so that it never waits for a reader.
+fn read(
+    from: impl Read + Send + 'static,
+    line: fn(String) -> Line,
+    to: Sender<Line>,
+) -> std::io::Result<thread::JoinHandle<()>> {
+    thread::Builder::new().name("labgrid's words".to_owned()).spawn(move || {
+        let lines = BufReader::new(from).lines().map_while(Result::ok);
+        // Nobody listens any more once there is an answer.
+        lines.for_each(|text| drop(to.send(line(text))));
+    })
+}

@@ -1,0 +1,134 @@
+//! Boards of a laboratory that labgrid shares out: a lane has one for the time of a run.
+//!
+//! ```text
+//!  run ── stdin, open while it lasts ──► halfrow-labgrid ── acquire, release ──► labgrid's coordinator
+//!      ◄── the port, or why there is none ──┘ (python/halfrow-labgrid)
+//! ```
+//!
+//! A place is given back however the station ends, for its pipe ends with it. labgrid's lock is politeness towards people; what keeps two
+//! hosts off one board is the board's own session.
+
+mod error;
+mod held;
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Arc, Mutex};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use halfrow::target::Target;
+
+pub use error::LabgridError;
+pub use held::Held;
+
+use crate::presence;
+use crate::said::Said;
+
+/// The kind of such a board in the settings.
+pub const KIND: &str = "labgrid";
+/// The program that reaches labgrid.
+pub const PROGRAM: &str = "halfrow-labgrid";
+
+/// `[labgrid]`
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Labgrid {
+    /// The program that reaches labgrid.
+    pub program: PathBuf,
+    /// Host and port of the coordinator; without them those that labgrid itself goes to.
+    pub coordinator: Option<String>,
+    /// How long a place may take to be acquired or given back.
+    pub deadline: Duration,
+}
+
+/// The board of a lane.
+#[derive(Clone, Debug)]
+pub enum LaneBoard {
+    /// One that this computer reaches by itself.
+    Own(Target),
+    /// One that labgrid lends.
+    Lent(Place),
+}
+
+impl LaneBoard {
+    /// Whether both are the same board, as far as their names tell.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Own(one), Self::Own(other)) => {
+                one.address.is_some() && (&one.kind, &one.address) == (&other.kind, &other.address)
+            }
+            (Self::Lent(one), Self::Lent(other)) => one.name == other.name,
+            _ => false,
+        }
+    }
+
+    /// Whether something is plugged in where the board is; one that is lent is always there.
+    pub(crate) fn is_there(&self, devices: &Path) -> bool {
+        match self {
+            Self::Own(target) => presence::is_there(target, devices),
+            Self::Lent(_) => true,
+        }
+    }
+}
+
+impl fmt::Display for LaneBoard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Own(target) => target.fmt(f),
+            Self::Lent(place) => write!(f, "{KIND}:{}", place.name),
+        }
+    }
+}
+
+/// A place of labgrid's, of which one run at a time has the board.
+#[derive(Clone, Debug)]
+pub struct Place {
+    /// Its name.
+    pub name: String,
+    /// Who has it, as labgrid shows it behind this computer's name.
+    user: String,
+    labgrid: Labgrid,
+    /// Who still waits for it to be given back.
+    leaving: Arc<Mutex<Option<JoinHandle<()>>>>,
+}
+
+impl Place {
+    /// The place `name` for this lane of the station, through `labgrid`.
+    #[must_use]
+    pub fn new(name: String, station: &str, lane: &str, labgrid: Labgrid) -> Self {
+        let user = format!("halfrow-{station}-{lane}");
+        // labgrid takes users' names apart at slashes.
+        let user = user.chars().map(|one| if one.is_ascii_alphanumeric() { one } else { '-' }).collect();
+        Self { name, user, labgrid, leaving: Arc::default() }
+    }
+
+    /// The call of the program that reaches labgrid.
+    fn call(&self, act: &str) -> Command {
+        let mut call = Command::new(&self.labgrid.program);
+        call.args([act, "--place", &self.name, "--user", &self.user]);
+        if let Some(coordinator) = &self.labgrid.coordinator {
+            call.args(["--coordinator", coordinator]);
+        }
+        call
+    }
+}
+
+/// Gives back what an earlier station of these lanes left acquired, of all places at once. One that cannot be asked for is told in the
+/// log: its next run says so, too.
+pub fn give_back<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
+    let places = boards.filter_map(|board| match board {
+        LaneBoard::Lent(place) => Some(place),
+        LaneBoard::Own(_) => None,
+    });
+    thread::scope(|scope| {
+        places.for_each(|place| {
+            scope.spawn(|| {
+                if let Err(error) = place.free() {
+                    tracing::warn!("{}: {}", place.name, Said::of(&error));
+                }
+            });
+        });
+    });
+}

@@ -1,0 +1,155 @@
+//! Lanes whose boards labgrid lends, by a program that stands for the one that reaches it; `scripts/labgrid` has the real ones.
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+use super::ends::{connected, silent_board};
+use super::floor::{SERIALS, Station};
+
+/// Says what stands in `answer`, and keeps a diary: what it was called with, and that its stdin ended.
+const LENDER: &str = r#"#!/bin/sh
+cd "$(dirname "$0")"
+echo "$@" >> diary
+if [ "$1" = free ]; then echo '"freed"'; exit; fi
+[ ! -s answer ] || { cat answer; echo; }
+cat > /dev/null
+echo given back >> diary
+"#;
+
+/// A station whose lane 1 is the place cam-1, and what is said of it.
+fn station(answer: &str, more: &str) -> Station {
+    let lender = format!("[labgrid]\nprogram = \"./lender\"\ncoordinator = \"bench:20408\"\n{more}");
+    let station = Station::with(&["labgrid:cam-1"], &lender);
+    fs::write(station.path("lender"), LENDER).unwrap();
+    fs::set_permissions(station.path("lender"), fs::Permissions::from_mode(0o755)).unwrap();
+    fs::write(station.path("answer"), answer).unwrap();
+    station
+}
+
+fn diary(station: &Station) -> Vec<String> {
+    let diary = fs::read_to_string(station.path("diary")).unwrap_or_default();
+    diary.lines().map(str::to_owned).collect()
+}
+
+/// Waits until the diary has so many lines.
+fn written(station: &Station, lines: usize) -> Vec<String> {
+    let begun = Instant::now();
+    while diary(station).len() < lines {
+        assert!(begun.elapsed() < Duration::from_secs(120), "{:?}", diary(station));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    diary(station)
+}
+
+const FREE: &str = "free --place cam-1 --user halfrow-12-1 --coordinator bench:20408";
+const HOLD: &str = "hold --place cam-1 --user halfrow-12-1 --coordinator bench:20408";
+
+#[test]
+fn the_board_of_a_place_is_judged_where_labgrid_says_and_the_place_given_back() {
+    let station = station(r#"{"held": {"host": "127.0.0.1", "port": 1, "speed": 9600}}"#, "");
+    let mut running = station.start();
+    running.state("1", "READY");
+    for serial in &SERIALS[..2] {
+        running.test("1", serial);
+        let ended = running.state("1", "ERROR");
+        assert_eq!(ended["shown"]["finding"]["code"], "tcp-refused", "{ended}");
+    }
+    assert_eq!(running.end().0, Some(0));
+    assert_eq!(written(&station, 5), [FREE, HOLD, "given back", HOLD, "given back"]);
+    assert_eq!(station.query("SELECT DISTINCT target FROM run"), ["labgrid:cam-1"]);
+    station.assert_well();
+}
+
+#[test]
+fn a_place_that_is_not_had_is_an_error_that_says_what_to_do() {
+    let refusals = [
+        (
+            r#"{"refused": {"why": "held", "holder": "bench/alice"}}"#,
+            "held",
+            "bench/alice has labgrid's place cam-1; wait",
+        ),
+        (
+            r#"{"refused": {"why": "unknown", "known": "cam-2"}}"#,
+            "unknown",
+            "labgrid knows no place cam-1; write one of: cam-2",
+        ),
+        (
+            r#"{"refused": {"why": "no-port"}}"#,
+            "without-port",
+            "labgrid's place cam-1 has no NetworkSerialPort; give it",
+        ),
+        (
+            r#"{"refused": {"why": "not-acquired", "said": "reserved"}}"#,
+            "not-given",
+            "labgrid does not give the place cam-1: reserved; see",
+        ),
+    ];
+    for (answer, code, sentence) in refusals {
+        let station = station(answer, "");
+        let mut running = station.start();
+        running.test("1", SERIALS[0]);
+        let ended = running.state("1", "ERROR");
+        let shown = &ended["shown"];
+        assert_eq!(shown["finding"]["code"], format!("labgrid-place-{code}"), "{ended}");
+        assert!(shown["headline"].as_str().unwrap().starts_with(sentence), "{ended}");
+        let run = shown["run"].as_str().unwrap();
+        assert_eq!(station.query(&format!("SELECT cause FROM run WHERE id = '{run}'")), ["station"]);
+    }
+}
+
+#[test]
+fn what_is_wrong_with_the_program_is_told_by_its_code() {
+    let codes = [
+        ("#!/bin/sh\necho no labgrid here >&2\nexit 1\n", "", "labgrid-program-failed", "no labgrid here"),
+        ("#!/bin/sh\necho nonsense\n", "", "labgrid-program-failed", "nonsense"),
+        ("#!/bin/sh\nexec sleep 1000\n", "deadline = 0.3", "labgrid-late", "within 0.3 s"),
+        ("", "", "labgrid-program-not-started", "./lender"),
+    ];
+    for (lender, more, code, said) in codes {
+        let station = station("", more);
+        fs::remove_file(station.path("lender")).unwrap();
+        if !lender.is_empty() {
+            fs::write(station.path("lender"), lender).unwrap();
+            fs::set_permissions(station.path("lender"), fs::Permissions::from_mode(0o755)).unwrap();
+        }
+        let mut running = station.start();
+        running.test("1", SERIALS[0]);
+        let ended = running.state("1", "ERROR");
+        assert_eq!(ended["shown"]["finding"]["code"], code, "{ended}");
+        assert!(ended["shown"]["headline"].as_str().unwrap().contains(said), "{ended}");
+    }
+}
+
+#[test]
+fn a_station_that_is_killed_gives_the_place_back() {
+    let (listener, target) = silent_board();
+    let port = target.rsplit(':').next().unwrap();
+    let answer = format!(r#"{{"held": {{"host": "127.0.0.1", "port": {port}, "speed": null}}}}"#);
+    let station = station(&answer, "");
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    connected(&listener);
+    assert_eq!(diary(&station), [FREE, HOLD]);
+    kill(Pid::from_raw(running.id() as i32), Signal::SIGKILL).unwrap();
+    assert_eq!(written(&station, 3), [FREE, HOLD, "given back"]);
+    drop(running);
+    let _again = station.start();
+    assert_eq!(written(&station, 4)[3], FREE);
+    assert_eq!(station.query("SELECT cause FROM run"), ["crash"]);
+}
+
+#[test]
+fn a_run_that_waits_for_its_place_can_be_ended() {
+    let station = station("", "deadline = 600.0");
+    let mut running = station.start();
+    running.test("1", SERIALS[0]);
+    running.wait("the wait", |news| news["what"] == "waiting for the place cam-1");
+    running.test("1", "HR:ABORT");
+    let ended = running.state("1", "ERROR");
+    assert_eq!(ended["shown"]["finding"]["code"], "run-stopped-before", "{ended}");
+    assert_eq!(station.query("SELECT cause || exit_code FROM run"), ["operator130"]);
+}

@@ -1,0 +1,77 @@
+"""`halfrow-labgrid`: holds a place of labgrid's for halfrow's production station.
+
+    halfrow-labgrid hold --place NAME --coordinator HOST:PORT --user USER
+
+acquires the place, prints one line of JSON and waits until its stdin ends or SIGTERM comes; then it releases the place. So a place is released
+when whoever started this is gone, however it went. `free` releases what the same USER left acquired.
+"""
+from __future__ import annotations
+
+import argparse
+import asyncio
+import json
+import logging
+import os
+import signal
+import sys
+import threading
+
+import attr
+
+from .place import Coordinator, Refused, held
+
+
+def arguments() -> argparse.Namespace:
+    head, _, rest = (__doc__ or "").partition("\n\n")
+    parser = argparse.ArgumentParser(
+        "halfrow-labgrid", description=head, epilog=rest, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("act", choices=["hold", "free"])
+    parser.add_argument("--place", required=True, help="the place's whole name")
+    parser.add_argument("--coordinator", default=os.environ.get("LG_COORDINATOR", "127.0.0.1:20408"), metavar="HOST:PORT")
+    parser.add_argument("--user", required=True, help="who has the place, as labgrid shows it")
+    return parser.parse_args()
+
+
+def tell(**said: object) -> None:
+    print(json.dumps(said), flush=True)
+
+
+def wait(loop: asyncio.AbstractEventLoop) -> None:
+    """Until stdin ends or somebody ends this process. labgrid's session lives on meanwhile."""
+    over = asyncio.Event()
+
+    def read() -> None:
+        # Not by Python's own stdin, whose lock nobody else gets while it waits.
+        while os.read(0, 4096):
+            pass
+        loop.call_soon_threadsafe(over.set)
+
+    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+        loop.add_signal_handler(number, over.set)
+    threading.Thread(target=read, daemon=True).start()
+    loop.run_until_complete(over.wait())
+
+
+def act(of: argparse.Namespace) -> None:
+    coordinator = Coordinator(of.coordinator, of.user)
+    try:
+        if of.act == "free":
+            coordinator.free(of.place)
+            print('"freed"', flush=True)
+            return
+        with held(coordinator, of.place) as port:
+            tell(held=attr.asdict(port))
+            wait(coordinator.loop)
+    finally:
+        coordinator.close()
+
+
+def main() -> None:
+    # What labgrid logs beside its errors is of no use to a program.
+    logging.basicConfig(level=logging.CRITICAL)
+    try:
+        act(arguments())
+    except Refused as refused:
+        tell(refused={"why": refused.why, **refused.details})
+        sys.exit(1)

@@ -1,0 +1,117 @@
+"""A driver that has halfrow judge the board at a serial port."""
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import time
+from typing import Any, Dict, Iterator, List, Mapping
+
+import attr
+from labgrid import target_factory
+from labgrid.driver import Driver
+from labgrid.resource import SerialPort
+from labgrid.step import step
+from labgrid.util.proxy import proxymanager
+
+from .report import Report, error, read
+
+# What halfrow itself needs beyond the time of a run, in seconds.
+GRACE = 30.0
+LOOK = 0.5
+OPTION = re.compile(r"[a-z][a-z-]*")
+# What the driver says itself.
+OWN = {"board", "json", "timeout"}
+
+
+@target_factory.reg_driver
+@attr.s(eq=False)
+class HalfrowDriver(Driver):
+    """Judges the board at a serial port, by the program `halfrow`: `tools: {halfrow: PATH}`, or where the shell finds it.
+
+    Args:
+        options (dict): options of `halfrow verify` for every call, without their hyphens, as `{radius: 10.0, frame: [a.pgm, b.pgm]}`
+        timeout (float): the longest that a run may take, in seconds
+    """
+
+    bindings = {"port": {"SerialPort", "NetworkSerialPort"}}
+
+    options: Dict[str, Any] = attr.ib(factory=dict, validator=attr.validators.instance_of(dict))
+    timeout: float = attr.ib(default=600.0, converter=float)
+
+    def __attrs_post_init__(self) -> None:
+        super().__attrs_post_init__()
+        env = self.target.env
+        self.tool: str = env.config.get_tool("halfrow") if env else "halfrow"
+
+    @property
+    def board(self) -> str:
+        """The board as halfrow names it."""
+        if isinstance(self.port, SerialPort):
+            return f"serial:{self.port.port},baud={self.port.speed}"
+        if self.port.protocol != "raw":
+            raise error(
+                f"the port is exported by {self.port.protocol}, of which halfrow speaks nothing",
+                "Export a NetworkSerialPort with protocol: raw.",
+            )
+        host, port = proxymanager.get_host_and_port(self.port)
+        host = f"[{host}]" if ":" in host else host
+        return f"tcp:{host}:{port},baud={self.port.speed}"
+
+    @Driver.check_active
+    @step(args=["options"], result=True)
+    def verify(self, **options: Any) -> Report:
+        """Judges the board; `options` are as the driver's own, which they replace.
+
+        Returns the report of a PASS. Raises BoardFailed for FAIL, NotJudged for ERROR and WrongCall for what halfrow does not
+        take, each with its report.
+        """
+        asked = list(words({**self.options, **replaced(options)}))
+        timeout = ["--timeout", str(self.timeout)]
+        code, said = self._run(["verify", *timeout, *asked], self.timeout + GRACE)
+        return read(code, said)
+
+    @Driver.check_active
+    @step()
+    def wait(self, patience: float = 30.0) -> Dict[str, Any]:
+        """Waits until the board answers, for so many seconds; returns what `halfrow info` tells of it.
+
+        Raises NotJudged if it does not.
+        """
+        begun = time.monotonic()
+        while True:
+            code, said = self._run(["info"], GRACE)
+            if code == 0:
+                return json.loads(said)
+            if time.monotonic() - begun > patience:
+                read(code, said)
+            time.sleep(LOOK)
+
+    def _run(self, asked: List[str], patience: float) -> "tuple[int, str]":
+        command = [self.tool, *asked, "--json", "--quiet", "--board", self.board]
+        self.logger.debug("%s", command)
+        try:
+            done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=patience, check=False)
+        except OSError as missing:
+            raise error(f"{self.tool} cannot be started ({missing.strerror})", "Name halfrow under `tools`.") from missing
+        except subprocess.TimeoutExpired as late:
+            raise error(f"halfrow was ended after {patience} s", "Look at the board and its link.") from late
+        return done.returncode, done.stdout
+
+
+def replaced(options: Mapping[str, Any]) -> Dict[str, Any]:
+    """Names of Python's as those of options."""
+    return {name.replace("_", "-"): value for name, value in options.items()}
+
+
+def words(options: Mapping[str, Any]) -> Iterator[str]:
+    """The words of a command line: a list says an option several times, true says it without a value, and false or nothing not at all."""
+    for name, value in options.items():
+        if not OPTION.fullmatch(name) or name in OWN:
+            raise error(f"`{name}` is no option for the driver", "See `halfrow help verify`; board and timeout are the driver's.")
+        for one in value if isinstance(value, (list, tuple)) else [value]:
+            if one is True:
+                yield f"--{name}"
+            elif one is not False and one is not None:
+                # In one word, so that a value that begins with a hyphen is one.
+                yield f"--{name}={one}"

@@ -1,0 +1,148 @@
+"""A place of labgrid's that is acquired for as long as its holder wants it, and the serial port that is in it."""
+from __future__ import annotations
+
+import asyncio
+import os
+from contextlib import contextmanager
+from typing import Any, Dict, Iterator, Mapping, Optional, Tuple
+
+import attr
+import grpc
+from labgrid import Target, target_factory
+from labgrid.remote.client import ClientSession, Error, ensure_event_loop
+from labgrid.remote.common import Place, ResourceEntry
+from labgrid.remote.generated import labgrid_coordinator_pb2 as messages
+from labgrid.util.proxy import proxymanager
+
+# How long the coordinator may take to say all that it knows, in seconds.
+PATIENCE = 10.0
+# How long an exporter may take to open the port of a place that was acquired, in seconds.
+PORT_PATIENCE = 10.0
+LOOK = 0.05
+
+PORT = "NetworkSerialPort"
+# Of several ports in a place, the one that is meant.
+NAMED = "halfrow"
+
+
+@attr.s(auto_attribs=True, frozen=True, auto_exc=True)
+class Refused(Exception):
+    """What a place cannot be held for: `why` is a word for programs, `details` are its figures and names."""
+
+    why: str
+    details: Mapping[str, str] = {}
+
+
+@attr.s(auto_attribs=True, frozen=True)
+class Port:
+    """Where the port of a place is; `speed` in baud where its exporter says one."""
+
+    host: str
+    port: int
+    speed: Optional[int]
+
+
+class Coordinator:
+    """A session at labgrid's coordinator under the name of `user` on this computer."""
+
+    def __init__(self, address: str, user: str) -> None:
+        # labgrid's session takes its name from there.
+        os.environ["LG_USERNAME"] = user
+        self.loop = ensure_event_loop()
+        self._session = ClientSession(proxymanager.get_grpc_address(address, default_port=20408), self.loop)
+        self.name = f"{self._session.gethostname()}/{self._session.getuser()}"
+        try:
+            self._wait(self._session.start())
+        except (Error, asyncio.TimeoutError) as error:
+            # What was asked is under way still, and would complain when the program ends.
+            self.close()
+            raise Refused("coordinator-away", {"coordinator": address}) from error
+
+    def _wait(self, asked: Any) -> Any:
+        return self.loop.run_until_complete(asyncio.wait_for(asked, PATIENCE))
+
+    def close(self) -> None:
+        """Ends the session. Places stay acquired."""
+        self._session.stopping.set()
+        self._wait(self._session.stop())
+        self._wait(self._session.close())
+
+    def _place(self, name: str) -> Place:
+        # labgrid's own look-up takes a part of a name for the name.
+        try:
+            return self._session.places[name]
+        except KeyError:
+            raise Refused("unknown", {"known": ", ".join(sorted(self._session.places))}) from None
+
+    def acquire(self, name: str) -> None:
+        """Acquires the place, anew if this very user has it from a time that ended without a release."""
+        place = self._place(name)
+        if place.acquired == self.name:
+            self.release(name)
+        if place.acquired:
+            raise Refused("held", {"holder": place.acquired})
+        try:
+            self._wait(self._session.stub.AcquirePlace(messages.AcquirePlaceRequest(placename=name)))
+        except grpc.aio.AioRpcError as error:
+            raise Refused("not-acquired", {"said": error.details() or error.code().name}) from error
+        self._wait(self._session.sync_with_coordinator())
+
+    def release(self, name: str) -> None:
+        """Releases the place if this very user has it."""
+        request = messages.ReleasePlaceRequest(placename=name, fromuser=self.name)
+        try:
+            self._wait(self._session.stub.ReleasePlace(request))
+        except (grpc.aio.AioRpcError, asyncio.TimeoutError) as error:
+            raise Refused("not-released") from error
+        self._wait(self._session.sync_with_coordinator())
+
+    def free(self, name: str) -> None:
+        """As release, of a place that must be there."""
+        self._place(name)
+        self.release(name)
+
+    def port(self, name: str) -> Port:
+        """The raw port of the acquired place, once its exporter has opened it."""
+        return self.loop.run_until_complete(self._port(self._place(name)))
+
+    async def _port(self, place: Place) -> Port:
+        for _ in range(round(PORT_PATIENCE / LOOK)):
+            entry = self._entry(place)
+            if entry.avail and entry.args.get("host") and entry.args.get("port"):
+                return reached(entry)
+            await asyncio.sleep(LOOK)
+        raise Refused("port-away")
+
+    def _entry(self, place: Place) -> ResourceEntry:
+        try:
+            resources: Dict[Tuple[str, str], ResourceEntry] = self._session.get_target_resources(place)
+        except Error as error:
+            raise Refused("port-away") from error
+        ports = {resource: entry for (resource, cls), entry in resources.items() if cls == PORT}
+        if NAMED in ports:
+            return ports[NAMED]
+        if len(ports) > 1:
+            raise Refused("several-ports", {"ports": ", ".join(sorted(ports))})
+        for entry in ports.values():
+            return entry
+        raise Refused("no-port")
+
+
+def reached(entry: ResourceEntry) -> Port:
+    """Where a raw port is reached from here, through labgrid's own tunnel if it asks for one."""
+    resource = target_factory.make_resource(Target("halfrow"), entry.cls, None, entry.args)
+    resource.extra = entry.extra
+    if resource.protocol != "raw":
+        raise Refused("protocol", {"protocol": resource.protocol})
+    host, port = proxymanager.get_host_and_port(resource)
+    return Port(host, port, entry.args.get("speed"))
+
+
+@contextmanager
+def held(coordinator: Coordinator, name: str) -> Iterator[Port]:
+    """The port of the place, which is acquired within and released behind, whatever happens."""
+    coordinator.acquire(name)
+    try:
+        yield coordinator.port(name)
+    finally:
+        coordinator.release(name)

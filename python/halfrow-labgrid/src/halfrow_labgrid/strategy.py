@@ -1,0 +1,79 @@
+"""The states of a board that is judged: off, on, judged."""
+from __future__ import annotations
+
+import enum
+from typing import Optional, Union
+
+import attr
+from labgrid import target_factory
+from labgrid.step import step
+from labgrid.strategy import Strategy, StrategyError
+
+from .report import Report
+
+
+class Status(enum.Enum):
+    """How far a board has come."""
+
+    unknown = 0
+    off = 1
+    on = 2
+    judged = 3
+
+
+@target_factory.reg_driver
+@attr.s(eq=False)
+class HalfrowStrategy(Strategy):
+    """Takes a board from one state to another; with a driver of labgrid's PowerProtocol it switches it, too.
+
+    `off` cuts the power; `on` gives it and waits until the board answers; `judged` has it judged, once for each time that it was
+    switched on, and keeps the report. What is no PASS is raised, and leaves the board on.
+
+    Args:
+        patience (float): how long a board may take to answer once it is on, in seconds
+    """
+
+    bindings = {"halfrow": "HalfrowDriver", "power": {"PowerProtocol", None}}
+
+    patience: float = attr.ib(default=30.0, converter=float)
+    status: Status = attr.ib(default=Status.unknown, converter=lambda status: Status[status] if isinstance(status, str) else status)
+    report: Optional[Report] = attr.ib(default=None, init=False)
+    """What the board came to, where it is judged."""
+
+    @step(args=["status"])
+    def transition(self, status: Union[Status, str], *, step: object = None) -> None:
+        """Takes the board to `status`, by all that lies between."""
+        wanted = Status[status] if isinstance(status, str) else status
+        if wanted is Status.unknown:
+            raise StrategyError("nothing leads to `unknown`; ask for off, on or judged")
+        if wanted is self.status:
+            return
+        if wanted is Status.off:
+            self._off()
+        if wanted in (Status.on, Status.judged) and self.status in (Status.unknown, Status.off):
+            self._on()
+        if wanted is Status.judged:
+            self.report = self.halfrow.verify()
+        self.status = wanted
+
+    def force(self, status: Union[Status, str]) -> None:
+        """Takes `status` for the board's, without touching it."""
+        forced = Status[status] if isinstance(status, str) else status
+        if forced in (Status.on, Status.judged):
+            self.target.activate(self.halfrow)
+        self.status = forced
+
+    def _off(self) -> None:
+        self.report = None
+        self.target.deactivate(self.halfrow)
+        if self.power:
+            self.target.activate(self.power)
+            self.power.off()
+
+    def _on(self) -> None:
+        if self.power:
+            self.target.activate(self.power)
+            self.power.on()
+        self.target.activate(self.halfrow)
+        self.halfrow.wait(self.patience)
+        self.status = Status.on
