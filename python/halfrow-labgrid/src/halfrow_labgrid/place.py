@@ -4,7 +4,7 @@ from __future__ import annotations
 import asyncio
 import os
 from contextlib import contextmanager
-from typing import Any, Dict, Iterator, Mapping, Optional, Tuple
+from typing import Any, Iterator, Mapping, Optional, Tuple
 
 import attr
 import grpc
@@ -114,18 +114,26 @@ class Coordinator:
         raise Refused("port-away")
 
     def _entry(self, place: Place) -> ResourceEntry:
-        try:
-            resources: Dict[Tuple[str, str], ResourceEntry] = self._session.get_target_resources(place)
-        except Error as error:
-            raise Refused("port-away") from error
-        ports = {resource: entry for (resource, cls), entry in resources.items() if cls == PORT}
-        if NAMED in ports:
-            return ports[NAMED]
-        if len(ports) > 1:
-            raise Refused("several-ports", {"ports": ", ".join(sorted(ports))})
-        for entry in ports.values():
+        # Not by labgrid's own table, in which a port hides another of the same name.
+        ports = list(self._ports(place))
+        named = [entry for name, entry in ports if name == NAMED]
+        if len(named or ports) > 1:
+            raise Refused("several-ports", {"ports": ", ".join(name for name, _ in ports)})
+        for entry in named or [entry for _, entry in ports]:
             return entry
         raise Refused("no-port")
+
+    def _ports(self, place: Place) -> Iterator[Tuple[str, ResourceEntry]]:
+        """The ports of the acquired place, each by the name that it has there."""
+        for path in place.acquired_resources:
+            exporter, group, cls, name = path
+            if cls != PORT:
+                continue
+            try:
+                entry = self._session.resources[exporter][group][name]
+            except KeyError:
+                raise Refused("port-away") from None
+            yield place.getmatch(path).rename or f"{group}/{name}", entry
 
 
 def reached(entry: ResourceEntry) -> Port:

@@ -1,0 +1,107 @@
+"""The driver and the strategy, in environments as labgrid's users write them."""
+import pytest
+from conftest import PROGRAMS
+from halfrow_labgrid import BoardFailed, NotJudged, Status, WrongCall
+from labgrid import Environment
+
+ENVIRONMENT = """
+targets:
+  main:
+    resources:
+      RemotePlace: {{name: {place}}}
+    drivers:
+      HalfrowDriver:
+        options: {{radius: 10.0, width: 64, height: 16, frame: ["builtin:noise"]}}
+      ExternalPowerDriver:
+        cmd_on: sh -c "echo on >> {power}"
+        cmd_off: sh -c "echo off >> {power}"
+      HalfrowStrategy: {{patience: 5}}
+options:
+  coordinator_address: {coordinator}
+tools:
+  halfrow: {halfrow}
+imports:
+- halfrow_labgrid
+"""
+
+
+@pytest.fixture(scope="module")
+def alice(lab):
+    """Who has every place: labgrid's session of this process knows of those that she had when it began."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("LG_HOSTNAME", "bench")
+        patch.setenv("LG_USERNAME", "alice")
+        places = ["cam-good", "cam-bad", "cam-nobody", "cam-telnet"]
+        lab.clients(["-p", place, "acquire"] for place in places)
+        yield
+        lab.clients(["-p", place, "release"] for place in places)
+
+
+@pytest.fixture
+def environment(lab, alice, tmp_path):
+    def of(place, halfrow=PROGRAMS / "halfrow"):
+        path = tmp_path / f"{place}.yaml"
+        path.write_text(ENVIRONMENT.format(place=place, power=tmp_path / "power", coordinator=lab.coordinator, halfrow=halfrow))
+        return Environment(str(path)).get_target()
+
+    return of
+
+
+def test_a_good_board_passes_and_its_report_has_what_halfrow_says(environment):
+    driver = environment("cam-good").get_driver("HalfrowDriver")
+    report = driver.verify()
+    assert (report.verdict, report.exit_code, report.suspects) == ("PASS", 0, ())
+    assert "equal to the reference" in report.headline
+    assert [frame["name"] for frame in report.document["frames"]][0] == "builtin:noise"
+    assert report.document["tables"]["height"] == 16
+    assert driver.verify(height=32, fail_fast=True).document["tables"]["height"] == 32
+
+
+def test_a_bad_board_fails_with_its_suspect(environment):
+    driver = environment("cam-bad").get_driver("HalfrowDriver")
+    assert driver.board.endswith(",baud=12000000")
+    with pytest.raises(BoardFailed, match="data bit 5, stuck at 1") as raised:
+        driver.verify()
+    report = raised.value.report
+    assert (report.verdict, report.exit_code, report.code) == ("FAIL", 1, "samples-differ")
+    assert report.suspects[0] == "line memory, data bit 5, stuck at 1"
+
+
+def test_what_cannot_be_judged_is_told_apart_from_what_is_called_wrongly(environment, tmp_path):
+    nobody = environment("cam-nobody").get_driver("HalfrowDriver")
+    with pytest.raises(NotJudged, match="start ser2net") as raised:
+        nobody.verify()
+    assert (raised.value.report.exit_code, raised.value.report.code) == (3, "tcp-refused")
+    with pytest.raises(NotJudged, match="refuses connections"):
+        nobody.wait(patience=0.0)
+    with pytest.raises(WrongCall, match="unexpected argument") as raised:
+        nobody.verify(bogus=True)
+    assert raised.value.report.exit_code == 2
+    for own in ({"board": "mock"}, {"timeout": 1}, {"Width": 1}):
+        with pytest.raises(NotJudged, match="is no option for the driver"):
+            nobody.verify(**own)
+    with pytest.raises(NotJudged, match="exported by rfc2217"):
+        environment("cam-telnet").get_driver("HalfrowDriver").verify()
+    missing = environment("cam-good", halfrow=tmp_path / "nothing").get_driver("HalfrowDriver")
+    with pytest.raises(NotJudged, match="cannot be started"):
+        missing.verify()
+
+
+def test_a_strategy_takes_a_board_from_off_to_judged(environment, tmp_path):
+    strategy = environment("cam-good").get_driver("HalfrowStrategy")
+    strategy.transition("judged")
+    assert (strategy.status, strategy.report.verdict) == (Status.judged, "PASS")
+    judged = strategy.report
+    strategy.transition(Status.judged)
+    assert strategy.report is judged, "once for each time that it is switched on"
+    strategy.transition("off")
+    assert (strategy.status, strategy.report) == (Status.off, None)
+    strategy.transition("on")
+    assert (tmp_path / "power").read_text().split() == ["on", "off", "on"]
+
+
+def test_a_strategy_whose_board_fails_leaves_it_on(environment):
+    strategy = environment("cam-bad").get_driver("HalfrowStrategy")
+    with pytest.raises(BoardFailed):
+        strategy.transition("judged")
+    assert (strategy.status, strategy.report) == (Status.on, None)
