@@ -78,7 +78,7 @@ def test_what_cannot_be_judged_is_told_apart_from_what_is_called_wrongly(environ
         nobody.verify(bogus=True)
     assert raised.value.report.exit_code == 2
     for own in ({"board": "mock"}, {"timeout": 1}, {"Width": 1}):
-        with pytest.raises(NotJudged, match="is no option for the driver"):
+        with pytest.raises(WrongCall, match="is no option for the driver"):
             nobody.verify(**own)
     with pytest.raises(NotJudged, match="exported by rfc2217"):
         environment("cam-telnet").get_driver("HalfrowDriver").verify()
@@ -89,15 +89,16 @@ def test_what_cannot_be_judged_is_told_apart_from_what_is_called_wrongly(environ
 
 def test_a_strategy_takes_a_board_from_off_to_judged(environment, tmp_path):
     strategy = environment("cam-good").get_driver("HalfrowStrategy")
+    strategy.transition("off")
     strategy.transition("judged")
     assert (strategy.status, strategy.report.verdict) == (Status.judged, "PASS")
     judged = strategy.report
     strategy.transition(Status.judged)
-    assert strategy.report is judged, "once for each time that it is switched on"
+    assert strategy.report is judged, "not judged again"
     strategy.transition("off")
     assert (strategy.status, strategy.report) == (Status.off, None)
     strategy.transition("on")
-    assert (tmp_path / "power").read_text().split() == ["on", "off", "on"]
+    assert (tmp_path / "power").read_text().split() == ["off", "on", "off", "on"]
 
 
 def test_a_strategy_whose_board_fails_leaves_it_on(environment):

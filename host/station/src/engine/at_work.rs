@@ -14,6 +14,7 @@ use super::unsent;
 use super::{Board, Heard, Input};
 use crate::clock;
 use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
+use crate::labgrid;
 use crate::presence::{Presence, USB};
 use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
@@ -84,13 +85,14 @@ impl AtWork {
         self.end(inbox);
     }
 
-    /// Waits for hooks and recoveries, and hears what is left.
+    /// Waits for hooks, recoveries and what labgrid lent, and hears what is left.
     fn end(mut self, inbox: &Receiver<Input>) {
         for thread in std::mem::take(&mut self.threads) {
             if thread.join().is_err() {
                 tracing::error!("a thread of a lane ended early; look at what it said before");
             }
         }
+        labgrid::wait_until_left(self.shared.settings.lanes.iter().map(|lane| &lane.board));
         while let Ok(input) = inbox.try_recv() {
             if let Input::Heard { lane, heard: heard @ Heard::Hook { .. } } = input {
                 self.heard(lane, heard);

@@ -116,7 +116,7 @@ impl Place {
     }
 
     /// Waits until an earlier run has given the place back, or cannot.
-    fn wait_until_left(&self) {
+    pub(super) fn wait_until_left(&self) {
         let leaving = self.leaving.lock().unwrap_or_else(PoisonError::into_inner).take();
         if leaving.is_some_and(|leaving| leaving.join().is_err()) {
             tracing::error!("a thread of {} ended early; look at what it said before", self.name);

@@ -115,15 +115,23 @@ impl Place {
     }
 }
 
+fn places<'a>(boards: impl Iterator<Item = &'a LaneBoard>) -> impl Iterator<Item = &'a Place> {
+    boards.filter_map(|board| match board {
+        LaneBoard::Lent(place) => Some(place),
+        LaneBoard::Own(_) => None,
+    })
+}
+
+/// Waits until what the last runs of these lanes had is given back: whoever starts the station may kill all that it leaves behind.
+pub fn wait_until_left<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
+    places(boards).for_each(Place::wait_until_left);
+}
+
 /// Gives back what an earlier station of these lanes left acquired, of all places at once. One that cannot be asked for is told in the
 /// log: its next run says so, too.
 pub fn give_back<'a>(boards: impl Iterator<Item = &'a LaneBoard>) {
-    let places = boards.filter_map(|board| match board {
-        LaneBoard::Lent(place) => Some(place),
-        LaneBoard::Own(_) => None,
-    });
     thread::scope(|scope| {
-        places.for_each(|place| {
+        places(boards).for_each(|place| {
             scope.spawn(|| {
                 if let Err(error) = place.free() {
                     tracing::warn!("{}: {}", place.name, Said::of(&error));

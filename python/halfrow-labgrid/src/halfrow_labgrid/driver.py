@@ -14,7 +14,7 @@ from labgrid.resource import SerialPort
 from labgrid.step import step
 from labgrid.util.proxy import proxymanager
 
-from .report import Report, error, read
+from .report import Report, error, read, wrong_call
 
 # What halfrow itself needs beyond the time of a run, in seconds.
 GRACE = 30.0
@@ -82,7 +82,8 @@ class HalfrowDriver(Driver):
         while True:
             code, said = self._run(["info"], GRACE)
             if code == 0:
-                return json.loads(said)
+                told: Dict[str, Any] = json.loads(said)
+                return told
             if time.monotonic() - begun > patience:
                 read(code, said)
             time.sleep(LOOK)
@@ -108,7 +109,7 @@ def words(options: Mapping[str, Any]) -> Iterator[str]:
     """The words of a command line: a list says an option several times, true says it without a value, and false or nothing not at all."""
     for name, value in options.items():
         if not OPTION.fullmatch(name) or name in OWN:
-            raise error(f"`{name}` is no option for the driver", "See `halfrow help verify`; board and timeout are the driver's.")
+            raise wrong_call(f"`{name}` is no option for the driver", "See `halfrow help verify`; board and timeout are the driver's.")
         for one in value if isinstance(value, (list, tuple)) else [value]:
             if one is True:
                 yield f"--{name}"

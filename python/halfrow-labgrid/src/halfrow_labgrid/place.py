@@ -103,7 +103,8 @@ class Coordinator:
 
     def port(self, name: str) -> Port:
         """The raw port of the acquired place, once its exporter has opened it."""
-        return self.loop.run_until_complete(self._port(self._place(name)))
+        port: Port = self.loop.run_until_complete(self._port(self._place(name)))
+        return port
 
     async def _port(self, place: Place) -> Port:
         for _ in range(round(PORT_PATIENCE / LOOK)):

@@ -27,7 +27,7 @@ class Report:
     """All of it, as `halfrow schema` describes it."""
 
     def __str__(self) -> str:
-        return f"{self.verdict}: {self.headline}" + (f" {self.remedy}" if self.remedy else "")
+        return f"{self.verdict}: {self.headline}" + (f". {self.remedy}" if self.remedy else "")
 
 
 class HalfrowError(Exception):
@@ -56,6 +56,11 @@ RAISED: Dict[int, Type[HalfrowError]] = {1: BoardFailed, 2: WrongCall}
 def error(headline: str, remedy: str) -> NotJudged:
     """An ERROR of which halfrow itself could not tell."""
     return NotJudged(Report("ERROR", 3, "", headline, remedy, (), {}))
+
+
+def wrong_call(headline: str, remedy: str) -> WrongCall:
+    """A call that halfrow did not even get."""
+    return WrongCall(Report("ERROR", 2, "", headline, remedy, (), {}))
 
 
 def read(exit_code: int, said: str) -> Report:

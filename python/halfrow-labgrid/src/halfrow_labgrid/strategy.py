@@ -21,13 +21,18 @@ class Status(enum.Enum):
     judged = 3
 
 
+def named(status: Union[Status, str]) -> Status:
+    """The status that may be called by its name."""
+    return Status[status] if isinstance(status, str) else status
+
+
 @target_factory.reg_driver
 @attr.s(eq=False)
 class HalfrowStrategy(Strategy):
     """Takes a board from one state to another; with a driver of labgrid's PowerProtocol it switches it, too.
 
-    `off` cuts the power; `on` gives it and waits until the board answers; `judged` has it judged, once for each time that it was
-    switched on, and keeps the report. What is no PASS is raised, and leaves the board on.
+    `off` cuts the power; `on` gives it and waits until the board answers; `judged` has it judged and keeps the report. A board that
+    is judged is not judged again until it was on or off between. What is no PASS is raised, and leaves the board on.
 
     Args:
         patience (float): how long a board may take to answer once it is on, in seconds
@@ -36,14 +41,14 @@ class HalfrowStrategy(Strategy):
     bindings = {"halfrow": "HalfrowDriver", "power": {"PowerProtocol", None}}
 
     patience: float = attr.ib(default=30.0, converter=float)
-    status: Status = attr.ib(default=Status.unknown, converter=lambda status: Status[status] if isinstance(status, str) else status)
+    status: Status = attr.ib(default=Status.unknown, converter=named)
     report: Optional[Report] = attr.ib(default=None, init=False)
     """What the board came to, where it is judged."""
 
     @step(args=["status"])
     def transition(self, status: Union[Status, str], *, step: object = None) -> None:
         """Takes the board to `status`, by all that lies between."""
-        wanted = Status[status] if isinstance(status, str) else status
+        wanted = named(status)
         if wanted is Status.unknown:
             raise StrategyError("nothing leads to `unknown`; ask for off, on or judged")
         if wanted is self.status:
@@ -58,7 +63,7 @@ class HalfrowStrategy(Strategy):
 
     def force(self, status: Union[Status, str]) -> None:
         """Takes `status` for the board's, without touching it."""
-        forced = Status[status] if isinstance(status, str) else status
+        forced = named(status)
         if forced in (Status.on, Status.judged):
             self.target.activate(self.halfrow)
         self.status = forced
