@@ -63,14 +63,26 @@ pub(crate) fn rows_are_counted_from_0_again_in_a_new_session(on: &dyn Boards) {
     assert_eq!(numbers, [0, 1, 2, 3]);
 }
 
-pub(crate) fn session_numbers_are_never_0_and_never_the_last_one(on: &dyn Boards) {
+/// The number behind this one.
+fn next(session: u8) -> u8 {
+    if session == 255 { 1 } else { session + 1 }
+}
+
+pub(crate) fn sessions_are_counted_and_1_comes_behind_255(on: &dyn Boards) {
     let mut bench = new_board(on);
-    let mut last = 0;
+    let mut last = bench.greet(&HELLO).session;
     for nonce in 0..600 {
         let session = bench.greet(&Hello { nonce, ..HELLO }).session;
-        assert!(session != 0 && session != last, "{session} after {last}");
+        assert_eq!(session, next(last));
         last = session;
     }
+}
+
+pub(crate) fn a_session_that_was_closed_is_counted(on: &dyn Boards) {
+    let mut bench = Bench::greeted(on);
+    let closed = bench.session;
+    bench.done(&Request::Reset(Reset { level: ResetLevel::Session, next_row: 0 }));
+    assert_eq!(bench.greet(&Hello { nonce: 1, ..HELLO }).session, next(closed));
 }
 
 pub(crate) fn without_a_common_version_the_refusal_names_the_boards(on: &dyn Boards) {
