@@ -6,7 +6,6 @@ import concurrent.futures
 import contextlib
 import os
 import pathlib
-import re
 import socket
 import subprocess
 import sys
@@ -77,10 +76,10 @@ def running(*command, **more):
 
 
 @contextlib.contextmanager
-def served(board):
-    """The port of a mock board behind TCP."""
-    with running(PROGRAMS / "halfrow", "serve", "--board", board, "--tcp", "0", stdout=subprocess.PIPE, text=True) as process:
-        yield int(re.search(r"tcp:127\.0\.0\.1:(\d+)", process.stdout.readline())[1])
+def served(board, *where):
+    """The target that leads to a mock board: behind a pseudo-terminal, or `where`."""
+    with running(PROGRAMS / "halfrow", "serve", "--board", board, *where, stdout=subprocess.PIPE, text=True) as process:
+        yield process.stdout.readline().split()[-1]
 
 
 class Lab:
@@ -119,7 +118,8 @@ def lab(tmp_path_factory):
     folder = tmp_path_factory.mktemp("lab")
     address = f"127.0.0.1:{free_port()}"
     with contextlib.ExitStack() as stack:
-        ports = {name: stack.enter_context(served(board)) for name, board in BOARDS.items()}
+        targets = {name: stack.enter_context(served(board, "--tcp", "0")) for name, board in BOARDS.items()}
+        ports = {name: target.rsplit(":")[-1] for name, target in targets.items()}
         (folder / "exported.yaml").write_text(EXPORTED.format(nobody=free_port(), **ports))
         quiet = {"cwd": folder, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
         stack.enter_context(running(LABGRID / "labgrid-coordinator", "-l", address, **quiet))

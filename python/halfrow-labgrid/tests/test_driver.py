@@ -1,6 +1,6 @@
 """The driver and the strategy, in environments as labgrid's users write them."""
 import pytest
-from conftest import PROGRAMS
+from conftest import PROGRAMS, served
 from halfrow_labgrid import BoardFailed, NotJudged, Status, WrongCall
 from labgrid import Environment
 
@@ -18,6 +18,20 @@ targets:
       HalfrowStrategy: {{patience: 5}}
 options:
   coordinator_address: {coordinator}
+tools:
+  halfrow: {halfrow}
+imports:
+- halfrow_labgrid
+"""
+
+LOCAL = """
+targets:
+  main:
+    resources:
+      RawSerialPort: {{port: {port}, speed: 115200}}
+    drivers:
+      HalfrowDriver:
+        options: {{radius: 10.0, width: 64, height: 16, frame: ["builtin:noise"]}}
 tools:
   halfrow: {halfrow}
 imports:
@@ -65,6 +79,16 @@ def test_a_bad_board_fails_with_its_suspect(environment):
     report = raised.value.report
     assert (report.verdict, report.exit_code, report.code) == ("FAIL", 1, "samples-differ")
     assert report.suspects[0] == "line memory, data bit 5, stuck at 1"
+
+
+def test_a_port_of_this_computer_is_opened_as_it_is(tmp_path):
+    with served("mock") as target:
+        path = tmp_path / "local.yaml"
+        port = target.removeprefix("serial:").split(",")[0]
+        path.write_text(LOCAL.format(port=port, halfrow=PROGRAMS / "halfrow"))
+        driver = Environment(str(path)).get_target().get_driver("HalfrowDriver")
+        assert driver.board == f"serial:{port},baud=115200"
+        assert driver.verify().verdict == "PASS"
 
 
 def test_what_cannot_be_judged_is_told_apart_from_what_is_called_wrongly(environment, tmp_path):
