@@ -80,9 +80,20 @@ fn shuffled(parcels: &[Parcel], draw: &mut Draw) -> Vec<usize> {
 
 #[test]
 fn in_whatever_order_runs_come_they_are_counted_as_if_one_station_had_them() {
+    orders(5);
+}
+
+#[test]
+#[ignore = "for scripts/soak"]
+fn in_hundreds_of_orders_runs_are_counted_as_if_one_station_had_them() {
+    orders(300);
+}
+
+/// So many drawn histories, each in a drawn order.
+fn orders(count: u32) {
     let server = Server::prepared();
     let mut draw = Draw(7);
-    for case in 0..12 {
+    for case in 0..count {
         let runs = drawn(&mut draw);
         let (expected, parcels) = (at_one(&runs), parcels(&runs));
         let order = if case == 0 { (0..runs.len()).rev().collect() } else { shuffled(&parcels, &mut draw) };
