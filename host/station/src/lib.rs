@@ -34,6 +34,7 @@ pub mod lane;
 pub mod outbox;
 pub mod plan;
 mod presence;
+pub mod published;
 pub mod record;
 pub mod run;
 pub mod said;

@@ -56,7 +56,7 @@ fn a_run_that_is_killed_gives_its_board_back_and_one_whose_board_is_lost_ends() 
     let mut running = Running::start(&mut verify(&folder, "pool:ulx3s"));
     running.wait_for("shelf-1 is ours");
     running.send("KILL");
-    running.end();
+    let _ = running.end();
     wait_until("the board to be given back", || folder.names(".").contains(&"back".to_owned()));
     let lost = LEASES.replace("BOARD", crate::running::SLOW).replace(
         "cat > /dev/null",

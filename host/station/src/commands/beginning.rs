@@ -63,9 +63,14 @@ impl SettingsFile {
         settings(&self.settings)
     }
 
+    /// Where they are.
+    pub(super) fn path(&self) -> Result<PathBuf, Failure> {
+        path::absolute(&self.settings).map_err(Failure::call)
+    }
+
     /// What they say to whoever needs no lanes: a plant has none.
     pub(super) fn load_plant(&self) -> Result<Settings, Failure> {
-        let path = path::absolute(&self.settings).map_err(Failure::call)?;
+        let path = self.path()?;
         Settings::load_plant(&path).map_err(Failure::call)
     }
 }

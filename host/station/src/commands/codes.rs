@@ -8,14 +8,7 @@ use halfrow::result::codes::{self, CodeList, Coded};
 use halfrow_program::codes as program;
 use serde_json::{Value, json};
 
-use super::board::{NoBoard, NoBoardKind, NoKind};
-use super::job::{NoJob, NoWord};
-use super::lanes::EngineEnded;
-use super::outbox::{NoSink, NotDead, SinkInUse};
-use super::plant::{NoPlant, NoStation};
-use super::run::NoMock;
-use super::work::NoWork;
-use super::{Failure, document, print};
+use super::{Failure, document, print, refusals};
 use crate::check::Fault;
 use crate::disk::DiskError;
 use crate::engine::HookError;
@@ -27,6 +20,7 @@ use crate::kept::CopyError;
 use crate::labgrid::LabgridError;
 use crate::outbox::{OutboxError, SinkError, SinkSettingsError};
 use crate::plan::serial::SerialError;
+use crate::published::{BundleError, FetchError, SigningError};
 use crate::record::{BlobError, RecordError};
 use crate::run::{NoRandomness, RunError};
 use crate::said::Saying;
@@ -138,7 +132,7 @@ codes::codes! {
         Closed [host, status] => "sink-closed",
         Rejected [host, status, answer] => "sink-rejects",
         Unconfirmed [host, seconds] => "sink-unconfirmed",
-        = Unwritten,
+        Unwritten => "sink-file-not-written",
         = Export,
     }
     WorkError {
@@ -164,6 +158,31 @@ codes::codes! {
         SeveralPorts [place, ports] => "labgrid-place-with-several-ports",
         PortAway [place] => "labgrid-port-away",
         Protocol [place, protocol] => "labgrid-port-not-raw",
+    }
+    SigningError {
+        File [path] => "plan-key-not-made",
+        NoKey [path] => "plan-key-malformed",
+        NoRandomness => "plan-key-without-randomness",
+        NoPublicKey [text] => "plan-public-key-malformed",
+        = Secret,
+    }
+    BundleError {
+        Outside [name] => "plan-file-outside",
+        Plan => "plan-file-named-as-plan",
+        TooLarge [bytes] => "plan-files-too-large",
+        Changed [path] => "plan-file-changed",
+        Malformed [sha256] => "published-plan-malformed",
+        Damaged [sha256, found] => "published-plan-damaged",
+        Folder [path] => "plan-folder-unusable",
+        Unwritten => "plan-not-kept",
+    }
+    FetchError {
+        None [plan] => "plan-not-published",
+        Untrusted [plan] => "published-plan-untrusted",
+        Older [plan, number, kept] => "published-plan-older",
+        Plan [plan] => "published-plan-unusable",
+        = Store,
+        = Bundle,
     }
     PlantSettingsError {
         = Address,
@@ -299,37 +318,11 @@ codes::codes! {
     UnknownBarcode [text] => "barcode-unknown"
     ;
     NoRandomness => "no-randomness"
-    ;
-    EngineEnded => "engine-ended"
-    ;
-    NoMock => "plan-without-mock"
-    ;
-    NoPlant => "settings-without-plant"
-    ;
-    NotDead [what] => "outbox-entry-not-dead"
-    ;
-    NoSink => "settings-without-sink"
-    ;
-    NoWork => "settings-without-work"
-    ;
-    NoJob [id] => "job-not-changed"
-    ;
-    NoWord [word] => "job-needs-no-word"
-    ;
-    NoBoardKind [kind] => "shared-board-of-unknown-kind"
-    ;
-    NoBoard [name] => "shared-board-not-changed"
-    ;
-    NoKind [kind] => "shared-board-of-no-kind"
-    ;
-    SinkInUse [sink] => "sink-in-use"
-    ;
-    NoStation [station] => "plant-without-station"
 }
 
 /// The code of an error of the station's, of the library's or of the system's.
 pub(crate) fn known(error: &(dyn Error + 'static)) -> Option<Coded> {
-    lookup(error).or_else(|| program::known(error))
+    lookup(error).or_else(|| refusals::lookup(error)).or_else(|| program::known(error))
 }
 
 /// Why a command came to no result.
@@ -343,7 +336,7 @@ pub(super) fn of_fault(fault: &Fault) -> Problem {
 }
 
 fn lists() -> impl Iterator<Item = &'static CodeList> {
-    LISTS.iter().filter(|list| !list.codes.is_empty())
+    LISTS.iter().chain(refusals::LISTS).filter(|list| !list.codes.is_empty())
 }
 
 /// Every code that a document of the station may have.

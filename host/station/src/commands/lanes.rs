@@ -10,6 +10,7 @@ use clap::Args;
 
 use super::Failure;
 use super::beginning::{Disk, Ready, outbox, settings};
+use super::publish::fetch_at_start;
 use crate::console;
 use crate::engine::News;
 use crate::exit::Exit;
@@ -34,6 +35,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    fetch_at_start(&arguments.settings)?;
     let settings = settings(&arguments.settings)?;
     let ready = Ready::of(&settings, &arguments.disk)?;
     let signal = ready.signal.clone();

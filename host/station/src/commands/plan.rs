@@ -4,12 +4,13 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
 
-use super::{Failure, print};
+use super::beginning::SettingsFile;
+use super::{Failure, print, publish};
 use crate::exit::Exit;
 use crate::plan::limits::Limit;
 use crate::plan::{Act, Again, Bad, JSON_SCHEMA, Plan, Seed, Selected, Shift, Step};
 
-/// Look at plans
+/// Look at plans, and have the plant publish them
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -28,6 +29,16 @@ enum Command {
     },
     /// Print the JSON Schema of plans
     Schema,
+    /// Make an engineer's key in a new file, and print what stations know it by
+    Key {
+        /// The file
+        file: PathBuf,
+    },
+    Publish(publish::Publish),
+    Back(publish::Back),
+    Published(publish::List),
+    /// Fetch the plans of these settings that the plant publishes, as a station does when it starts
+    Fetch(SettingsFile),
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
@@ -46,6 +57,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
             })
         }
         Command::Schema => print(JSON_SCHEMA.trim_end()),
+        Command::Key { file } => publish::key(file),
+        Command::Publish(arguments) => publish::publish(arguments),
+        Command::Back(arguments) => publish::back(arguments),
+        Command::Published(arguments) => publish::list(arguments),
+        Command::Fetch(settings) => publish::fetch_all(settings),
     }
 }
 

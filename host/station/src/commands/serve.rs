@@ -11,6 +11,7 @@ use clap::Args;
 use super::Failure;
 use super::beginning::{Disk, Ready, outbox, settings};
 use super::notify::Notify;
+use super::publish::fetch_at_start;
 use crate::console;
 use crate::engine::Engine;
 use crate::exit::Exit;
@@ -39,6 +40,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    fetch_at_start(&arguments.settings)?;
     let settings = settings(&arguments.settings)?;
     let everybody = User { name: arguments.operator.clone(), who: Who::Operator };
     let served = Served { settings: &settings, disk: &arguments.disk, everybody, hints: Vec::new() };

@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::beginning::{Disk, SettingsFile, Signal, recovered, sinks};
 use super::plant::plant;
+use super::publish::fetch_at_start;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -39,6 +40,7 @@ pub(super) struct Arguments {
 pub(super) struct NoWork;
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    fetch_at_start(&arguments.settings.path()?)?;
     let settings = arguments.settings.load_plant()?;
     let address = plant(&settings)?.address()?;
     let worker = worker(&settings)?;

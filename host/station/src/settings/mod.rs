@@ -1,6 +1,7 @@
 //! The settings of a station: its name, its folder, its lanes, its scanner, its hooks.
 
 mod lender;
+mod plans;
 mod plant;
 mod read;
 mod sink;
@@ -22,6 +23,7 @@ use crate::input_error::InputError;
 use crate::labgrid::LaneBoard;
 use crate::outbox::PlantSink;
 use crate::plan::Plan;
+use crate::published::{PlanName, PublicKey};
 use crate::store::Presence;
 use crate::web::Address;
 
@@ -70,6 +72,25 @@ pub struct AccessSettings {
     pub tokens: Option<PathBuf>,
     /// How long somebody may be idle and stay logged in.
     pub idle: Duration,
+}
+
+/// What settings have of the plant, whether it was fetched or not.
+#[derive(Clone, Debug)]
+pub struct Published {
+    /// The station's folder.
+    pub data: PathBuf,
+    /// Where the plant is.
+    pub plant: Option<PlantSettings>,
+    /// The plans that it publishes and lanes or jobs are judged by, each once.
+    pub plans: Vec<PlanName>,
+}
+
+impl Published {
+    /// The keys of those whose plans are taken.
+    #[must_use]
+    pub fn trusts(&self) -> &[PublicKey] {
+        self.plant.as_ref().map_or(&[], |plant| &plant.trusts)
+    }
 }
 
 /// `[work]`
@@ -151,6 +172,16 @@ impl Settings {
     /// As [`Self::load`].
     pub fn load_plant(path: &Path) -> Result<Self, InputError> {
         Self::load_for(path, false)
+    }
+
+    /// What the settings in the file `path` have of the plant; no plan is looked at.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn published(path: &Path) -> Result<Published, InputError> {
+        let text = fs::read_to_string(path)
+            .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
+        read::published(path, &text).map_err(|fault| fault.in_file(path, &text))
     }
 
     fn load_for(path: &Path, has_lanes: bool) -> Result<Self, InputError> {

@@ -6,6 +6,7 @@ use toml::Spanned;
 
 use super::text::{GreenText, PlantText};
 use crate::input_error::Fault;
+use crate::published::PublicKey;
 use crate::store::PlantAddress;
 use crate::web::{SecretError, secret};
 
@@ -24,6 +25,8 @@ pub struct PlantSettings {
     pub is_green_at_plant: bool,
     /// How many entries may be unsent until lanes take nothing more.
     pub most_unsent: u32,
+    /// The keys of those whose plans are taken.
+    pub trusts: Vec<PublicKey>,
 }
 
 /// A plant that cannot be reached as the settings say.
@@ -47,6 +50,7 @@ impl PlantSettings {
             ca: path(&text.ca),
             is_green_at_plant: text.green == GreenText::Plant,
             most_unsent: most(text.most_unsent.as_ref())?,
+            trusts: text.trusts.iter().map(trusted).collect::<Result<_, _>>()?,
         };
         // A password is read when it is needed; all else is looked at when the station starts.
         PlantAddress::new(&settings.url, None, settings.ca.as_deref())
@@ -65,6 +69,10 @@ impl PlantSettings {
         };
         Ok(PlantAddress::new(&self.url, password.as_deref(), self.ca.as_deref())?)
     }
+}
+
+fn trusted(text: &Spanned<String>) -> Result<PublicKey, Fault> {
+    PublicKey::parse(text.get_ref()).map_err(|error| Fault::input(text.span().start, "a key", error))
 }
 
 fn most(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {

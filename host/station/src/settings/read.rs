@@ -7,15 +7,16 @@ use halfrow::Verdict;
 use toml::Spanned;
 
 use super::lender::Lender;
+use super::plans::Plans;
 use super::text::{AccessText, HookText, LaneText, OrderText, SettingsText, StartText, WebText, WorkText};
 use super::{
-    AccessSettings, Hook, LaneSettings, PlanFile, PlantSettings, SCHEMA, Scanner, Settings, SinkSettings,
+    AccessSettings, Hook, LaneSettings, PlantSettings, Published, SCHEMA, Scanner, Settings, SinkSettings,
     WORDS, WorkSettings,
 };
 use crate::floor::Starts;
 use crate::input_error::Fault;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
-use crate::plan::Plan;
+use crate::published::PlanName;
 use crate::web::Address;
 
 /// Where all keys are listed.
@@ -48,28 +49,31 @@ pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Setti
         let remedy = "write a [[lane]] with name, board and plans";
         return Err(Fault::wrong(read.schema.span().start, "the station has no lane", remedy));
     }
-    let (mut plans, lanes) = lanes(folder, &read)?;
-    let work = read.work.as_ref().map(|text| work(folder, text, &mut plans)).transpose()?;
+    let data = folder.join(not_empty(&station.data)?);
+    let plant = read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?;
+    let mut plans = Plans::beside(folder, &data, plant.as_ref());
+    let lanes = lanes(folder, &read, &mut plans)?;
+    let work = read.work.as_ref().map(|text| work(text, &mut plans)).transpose()?;
     Ok(Settings {
         name: not_empty(&station.name)?,
-        data: folder.join(not_empty(&station.data)?),
+        data,
         silence: seconds(station.silence.as_ref(), SILENCE)?,
         memory_mib: memory(station.memory.as_ref())?,
         scan_then_plug: station.order == OrderText::ScanThenPlug,
         scanner: Scanner { prefix: read.scanner.prefix.clone(), suffix: read.scanner.suffix.clone() },
-        plans,
+        plans: plans.all(),
         lanes,
         hooks: hooks(folder, &read)?,
         address: address(&read)?,
         access: read.access.as_ref().map(|access| people(folder, access)).transpose()?,
-        plant: read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?,
+        plant,
         sinks: sinks(folder, &read)?,
         work,
     })
 }
 
 /// Which jobs are taken.
-fn work(folder: &Path, text: &WorkText, plans: &mut Vec<PlanFile>) -> Result<WorkSettings, Fault> {
+fn work(text: &WorkText, plans: &mut Plans<'_>) -> Result<WorkSettings, Fault> {
     if text.plans.get_ref().is_empty() {
         return Err(Fault::wrong(
             text.plans.span().start,
@@ -77,13 +81,26 @@ fn work(folder: &Path, text: &WorkText, plans: &mut Vec<PlanFile>) -> Result<Wor
             "name the file of one",
         ));
     }
-    let files = text.plans.get_ref().iter().map(|file| plan(folder, file, plans));
+    let files = text.plans.get_ref().iter().map(|file| plans.take(file));
     let files = files.collect::<Result<_, _>>()?;
     if let Some(word) = text.has.iter().find(|word| !is_word(word.get_ref())) {
         let what = format!("`{}` is no word that a job could name", word.get_ref());
         return Err(Fault::wrong(word.span().start, what, "write one without blanks"));
     }
     Ok(WorkSettings { plans: files, has: text.has.iter().map(|word| word.get_ref().clone()).collect() })
+}
+
+/// The plans that the settings of `text` would have of the plant, where the station's folder is, and the plant.
+pub(super) fn published(path: &Path, text: &str) -> Result<Published, Fault> {
+    let read: SettingsText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let of_lanes = read.lane.iter().map(|lane| &lane.plans);
+    let named = of_lanes.chain(read.work.iter().map(|work| &work.plans)).flat_map(Spanned::get_ref);
+    let mut plans: Vec<_> = named.filter_map(|place| PlanName::of_place(place.get_ref())).collect();
+    plans.sort();
+    plans.dedup();
+    let plant = read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?;
+    Ok(Published { data: folder.join(not_empty(&read.station.data)?), plant, plans })
 }
 
 /// Whether a job can name this among what it needs.
@@ -163,12 +180,12 @@ fn memory(text: Option<&Spanned<u64>>) -> Result<u64, Fault> {
     }
 }
 
-/// The lanes, and every plan that they name, once.
-fn lanes(folder: &Path, read: &SettingsText) -> Result<(Vec<PlanFile>, Vec<LaneSettings>), Fault> {
-    let (mut plans, mut lanes) = (Vec::new(), Vec::<LaneSettings>::new());
+/// The lanes.
+fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Vec<LaneSettings>, Fault> {
+    let mut lanes = Vec::<LaneSettings>::new();
     let lender = Lender::of(folder, read)?;
     for text in &read.lane {
-        let lane = lane(folder, text, &lender, &mut plans)?;
+        let lane = lane(text, &lender, plans)?;
         if lanes.iter().any(|other| other.name == lane.name) {
             let what = format!("two lanes are called {}", lane.name);
             return Err(Fault::wrong(text.name.span().start, what, "give each a name of its own"));
@@ -179,15 +196,10 @@ fn lanes(folder: &Path, read: &SettingsText) -> Result<(Vec<PlanFile>, Vec<LaneS
         }
         lanes.push(lane);
     }
-    Ok((plans, lanes))
+    Ok(lanes)
 }
 
-fn lane(
-    folder: &Path,
-    text: &LaneText,
-    lender: &Lender,
-    plans: &mut Vec<PlanFile>,
-) -> Result<LaneSettings, Fault> {
+fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneSettings, Fault> {
     let name = text.name.get_ref();
     let is_name = (1..=MOST_NAME).contains(&name.len())
         && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
@@ -204,22 +216,9 @@ fn lane(
     }
     let mut of_lane = Vec::new();
     for file in text.plans.get_ref() {
-        of_lane.push(plan(folder, file, plans)?);
+        of_lane.push(plans.take(file)?);
     }
     Ok(LaneSettings { name: name.clone(), board, plans: of_lane, starts: starts(text)? })
-}
-
-/// The place of this plan among the station's.
-fn plan(folder: &Path, file: &Spanned<String>, plans: &mut Vec<PlanFile>) -> Result<usize, Fault> {
-    let path = folder.join(file.get_ref());
-    let path = std::path::absolute(&path).unwrap_or(path);
-    if let Some(known) = plans.iter().position(|known| known.path == path) {
-        return Ok(known);
-    }
-    let plan = Plan::load(&path)
-        .map_err(|error| Fault::input(file.span().start, format!("the plan {}", file.get_ref()), error))?;
-    plans.push(PlanFile { path, plan });
-    Ok(plans.len() - 1)
 }
 
 fn starts(text: &LaneText) -> Result<Starts, Fault> {

@@ -92,6 +92,8 @@ pub(super) struct PlantText {
     #[serde(default)]
     pub(super) green: GreenText,
     pub(super) most_unsent: Option<Spanned<u32>>,
+    #[serde(default)]
+    pub(super) trusts: Vec<Spanned<String>>,
 }
 
 /// `[labgrid]`

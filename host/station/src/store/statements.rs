@@ -1,11 +1,12 @@
 //! The text of every statement. SQLite and PostgreSQL have the same, but for three words.
 
 /// The schemas, in order: numbered files that are never edited.
-pub(super) const SCHEMAS: [&str; 4] = [
+pub(super) const SCHEMAS: [&str; 5] = [
     include_str!("../../sql/schema-1.sql"),
     include_str!("../../sql/schema-2.sql"),
     include_str!("../../sql/schema-3.sql"),
     include_str!("../../sql/schema-4.sql"),
+    include_str!("../../sql/schema-5.sql"),
 ];
 
 pub(super) const SCHEMA_VERSION: &str = include_str!("../../sql/schema-version.sql");
@@ -117,13 +118,19 @@ pub(super) const RUN_OF_JOB: &str = include_str!("../../sql/plant/run-of-job.sql
 pub(super) const CANCEL_JOB: &str = include_str!("../../sql/plant/cancel-job.sql");
 pub(super) const RETRY_JOB: &str = include_str!("../../sql/plant/retry-job.sql");
 pub(super) const JOBS: &str = include_str!("../../sql/plant/jobs.sql");
+pub(super) const ADD_BUNDLE: &str = include_str!("../../sql/plant/add-bundle.sql");
+pub(super) const BUNDLE: &str = include_str!("../../sql/plant/bundle.sql");
+pub(super) const PUBLISH: &str = include_str!("../../sql/plant/publish.sql");
+pub(super) const PUBLICATION: &str = include_str!("../../sql/plant/publication.sql");
+pub(super) const HASH_OF_VERSION: &str = include_str!("../../sql/plant/hash-of-version.sql");
+pub(super) const PUBLICATIONS: &str = include_str!("../../sql/plant/publications.sql");
 
 #[cfg(test)]
 mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 108] = [
+    const ALL: [&str; 114] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -232,6 +239,12 @@ mod tests {
         CANCEL_JOB,
         RETRY_JOB,
         JOBS,
+        ADD_BUNDLE,
+        BUNDLE,
+        PUBLISH,
+        PUBLICATION,
+        HASH_OF_VERSION,
+        PUBLICATIONS,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.

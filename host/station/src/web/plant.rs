@@ -11,16 +11,22 @@ use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
 use crate::history::stations::{Station, stations};
+use crate::published::Statement;
+use crate::store::publications;
 
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/", Who::Reader, page)]
 }
 
 async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let found = app.look(&visit, stations).await?;
+    let (found, plans) = app.look(&visit, |now| Ok((stations(now)?, publications(now)?))).await?;
     let content = html! {
         h1 { (visit.say("plant.stations")) }
         @if found.is_empty() { p.nothing { (visit.say("plant.none")) } } @else { (table(&visit, &found)) }
+        @if !plans.is_empty() {
+            h2 { (visit.say("plant.published")) }
+            (published(&visit, &plans))
+        }
     };
     let title = visit.say("plant.stations");
     Ok(Page { here: Here::Stations, title, head: show::head(), content }.answer(&visit))
@@ -35,6 +41,27 @@ fn table(visit: &Visit, stations: &[Station]) -> Markup {
                 th { (visit.say("history.plan")) } th { (visit.say("plant.program")) }
             } }
             tbody { @for station in stations { (row(visit, station)) } }
+        }
+    }
+}
+
+/// The plans that hold.
+fn published(visit: &Visit, plans: &[(Statement, i64)]) -> Markup {
+    html! {
+        table.runs {
+            thead { tr {
+                th { (visit.say("history.plan")) } th { (visit.say("plant.version")) }
+                th.number { (visit.say("plant.number")) } th { (visit.say("outbox.since")) }
+                th { (visit.say("plant.by")) } th { (visit.say("plant.why")) }
+            } }
+            tbody { @for (statement, at_ms) in plans {
+                tr {
+                    td.name { (show::said(&statement.product)) " " (show::said(&statement.name)) }
+                    td { b { (show::said(&statement.version)) } } td.number { (statement.number) }
+                    td.when { (show::moment(*at_ms)) } td { (show::said(&statement.operator)) }
+                    td.headline { (show::said(&statement.reason)) }
+                }
+            } }
         }
     }
 }

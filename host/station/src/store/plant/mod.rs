@@ -7,11 +7,13 @@ mod address;
 mod arrived;
 mod boards;
 mod jobs;
+mod plans;
 mod pool;
 
 pub use address::{PlantAddress, PlantAddressError};
 pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, Waiting, boards, waiters};
 pub use jobs::{Claim, Job, NewJob, STATES, Wanted, Worker, jobs};
+pub use plans::publications;
 pub use pool::PlantPool;
 
 use std::path::PathBuf;

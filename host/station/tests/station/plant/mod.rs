@@ -5,6 +5,7 @@ mod figures;
 mod late;
 pub(crate) mod link;
 pub(crate) mod pages;
+mod plans;
 mod refused;
 pub(crate) mod sent;
 pub(crate) mod server;

@@ -39,7 +39,7 @@ pub(crate) fn command(settings: &Path) -> Command {
     command
 }
 
-fn text(browser: &Browser, path: &str) -> String {
+pub(crate) fn text(browser: &Browser, path: &str) -> String {
     let answer = browser.get(path).with("accept", "text/html").send();
     assert_eq!(answer.status, 200, "{path}: {}", answer.text());
     answer.text()

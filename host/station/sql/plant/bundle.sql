@@ -1,0 +1,1 @@
+SELECT text FROM bundle WHERE sha256 = $1;

@@ -1,0 +1,248 @@
+//! What `halfrow-station plan` does with plans that the plant publishes.
+
+use std::path::{self, Path, PathBuf};
+
+use clap::Args;
+use serde::Serialize;
+
+use super::beginning::SettingsFile;
+use super::looking::{either, table, time};
+use super::plant::NoPlant;
+use super::{Failure, print};
+use crate::console;
+use crate::exit::Exit;
+use crate::plan::Plan;
+use crate::published::{
+    Bundle, BundleError, FetchError, Fetched, Kept, PlanName, SigningError, SigningKey, Statement, fetch,
+};
+use crate::said::Said;
+use crate::settings::{Published, Settings};
+use crate::store::{Plant, PlantAddress, PlantPool, publications};
+
+/// Publish a plan with its files at the plant: every station that names it takes it when it starts next
+#[derive(Debug, Args)]
+pub(super) struct Publish {
+    #[command(flatten)]
+    settings: SettingsFile,
+    /// The plan
+    file: PathBuf,
+    #[command(flatten)]
+    signed: Signed,
+}
+
+/// Have an earlier version of a plan hold again
+#[derive(Debug, Args)]
+pub(super) struct Back {
+    #[command(flatten)]
+    settings: SettingsFile,
+    /// The product and the plan's name, with a slash between
+    plan: String,
+    /// The version
+    #[arg(value_name = "VERSION")]
+    earlier: String,
+    #[command(flatten)]
+    signed: Signed,
+}
+
+/// Who publishes.
+#[derive(Debug, Args)]
+struct Signed {
+    /// The engineer's key, as `plan key` makes it
+    #[arg(long, value_name = "FILE")]
+    key: PathBuf,
+    /// Why
+    #[arg(long)]
+    reason: String,
+    /// Who says so
+    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
+    operator: String,
+}
+
+/// Print the plans that hold at the plant
+#[derive(Debug, Args)]
+pub(super) struct List {
+    #[command(flatten)]
+    settings: SettingsFile,
+    /// Print JSON
+    #[arg(long)]
+    json: bool,
+}
+
+/// A plan that is not published.
+#[derive(Debug, thiserror::Error)]
+pub(super) enum PublishError {
+    /// Another plan has this version.
+    #[error(
+        "the plant has another plan {plan} {version}, which runs were judged by; give this one a version of its own"
+    )]
+    OtherContent { plan: String, version: String },
+    /// Somebody else published at the same time.
+    #[error(
+        "somebody else published the plan {plan} just now; look at `halfrow-station plan published`, and publish yours again"
+    )]
+    TooLate { plan: String },
+    /// It was never published.
+    #[error(
+        "the plant never had a plan {plan} {version}; `halfrow-station plan published` lists those that hold"
+    )]
+    NoVersion { plan: String, version: String },
+}
+
+/// Makes an engineer's key in a new file, and prints what stations know it by.
+pub(super) fn key(file: &Path) -> Result<Exit, Failure> {
+    let key = SigningKey::draw(file).map_err(Failure::call)?;
+    print(&key.public().to_string())
+}
+
+pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Exit, Failure> {
+    let plan = Plan::load(file).map_err(Failure::call)?;
+    let bundle = Bundle::of(file, &plan)?;
+    let name = PlanName { product: plan.product.clone(), name: plan.name.clone() };
+    let mut at = connected(settings)?;
+    let before = at.published_version(&name, &plan.version)?;
+    if before.is_some_and(|before| before != plan.sha256) {
+        let version = plan.version.clone();
+        return Err(Failure::call(PublishError::OtherContent { plan: name.to_string(), version }));
+    }
+    signed.state(&mut at, &name, &plan.version, &plan.sha256, Some(&bundle))
+}
+
+pub(super) fn back(Back { settings, plan, earlier: version, signed }: &Back) -> Result<Exit, Failure> {
+    let none = || PublishError::NoVersion { plan: plan.clone(), version: version.clone() };
+    let (product, name) = plan.split_once('/').ok_or_else(|| Failure::call(none()))?;
+    let name = PlanName { product: product.to_owned(), name: name.to_owned() };
+    let mut at = connected(settings)?;
+    let sha256 = at.published_version(&name, version)?.ok_or_else(|| Failure::call(none()))?;
+    signed.state(&mut at, &name, version, &sha256, None)
+}
+
+impl Signed {
+    /// Signs that this plan holds from now on.
+    fn state(
+        &self,
+        at: &mut Plant,
+        name: &PlanName,
+        version: &str,
+        sha256: &str,
+        bundle: Option<&Bundle>,
+    ) -> Result<Exit, Failure> {
+        let key = SigningKey::load(&self.key)?;
+        let last: Option<Statement> =
+            at.publication(name)?.and_then(|(statement, _)| serde_json::from_str(&statement).ok());
+        let statement = Statement {
+            schema: Statement::SCHEMA,
+            product: name.product.clone(),
+            name: name.name.clone(),
+            version: version.to_owned(),
+            sha256: sha256.to_owned(),
+            number: last.map_or(0, |last| last.number) + 1,
+            operator: self.operator.clone(),
+            reason: self.reason.clone(),
+            key: key.public(),
+        };
+        let signature = key.sign(&statement.text());
+        if !at.publish(&statement, &signature, bundle)? {
+            return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
+        }
+        print(&format!("{name} {version} holds, as number {}", statement.number))
+    }
+}
+
+pub(super) fn list(List { settings, json }: &List) -> Result<Exit, Failure> {
+    let address = address(&published(settings)?)?;
+    let found = PlantPool::new(address).look(publications)?;
+    let found: Vec<_> = found.into_iter().map(|(statement, at_ms)| Holds { statement, at_ms }).collect();
+    either(&found, *json, |found| text(found))
+}
+
+/// A plan that holds.
+#[derive(Debug, Serialize)]
+struct Holds {
+    #[serde(flatten)]
+    statement: Statement,
+    at_ms: i64,
+}
+
+fn text(found: &[Holds]) -> String {
+    if found.is_empty() {
+        return "no plan is published; `halfrow-station plan publish` publishes one".to_owned();
+    }
+    let row = |Holds { statement, at_ms }: &Holds| {
+        let Statement { product, name, version, number, operator, reason, .. } = statement.clone();
+        vec![format!("{product}/{name}"), version, number.to_string(), time(*at_ms), operator, reason]
+    };
+    table(&["plan", "version", "number", "since", "by", "why"], &[2], found.iter().map(row))
+}
+
+/// Fetches every plan that the settings have of the plant, and says which were new.
+pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
+    let published = published(settings)?;
+    let mut said = Vec::new();
+    for fetched in fetched(&published)? {
+        let Fetched { statement: Statement { version, number, .. }, is_new } = &fetched?;
+        said.push(format!("{version}, number {number}{}", if *is_new { ", is new" } else { "" }));
+    }
+    let named = published.plans.iter().zip(said).map(|(plan, said)| format!("{plan} {said}"));
+    print(&named.collect::<Vec<_>>().join("\n"))
+}
+
+/// Fetches them at the beginning of a station's work, which goes on with what it has where that fails.
+pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
+    let path = path::absolute(path).map_err(Failure::call)?;
+    let Ok(published) = Settings::published(&path) else { return Ok(()) };
+    if published.plans.is_empty() {
+        return Ok(());
+    }
+    let kept = Kept::of(&published.data);
+    let has_all = published.plans.iter().all(|plan| kept.statement(plan, published.trusts()).is_some());
+    let failed = match fetched(&published) {
+        Ok(all) => all.into_iter().find_map(Result::err).map(Failure::from),
+        Err(failure) => Some(failure),
+    };
+    match failed {
+        Some(failure) if has_all => {
+            console::error(&format_args!("the plans stay as they are: {}", Said::of(&*failure.error)));
+            Ok(())
+        }
+        Some(failure) => Err(failure),
+        None => Ok(()),
+    }
+}
+
+/// What became of each plan.
+fn fetched(published: &Published) -> Result<Vec<Result<Fetched, FetchError>>, Failure> {
+    let mut at = Plant::connect(&address(published)?)?;
+    let (kept, trusted) = (Kept::of(&published.data), published.trusts());
+    Ok(published.plans.iter().map(|plan| fetch(&mut at, &kept, plan, trusted)).collect())
+}
+
+fn connected(settings: &SettingsFile) -> Result<Plant, Failure> {
+    Ok(Plant::connect(&address(&published(settings)?)?)?)
+}
+
+/// What the settings have of the plant.
+fn published(settings: &SettingsFile) -> Result<Published, Failure> {
+    Settings::published(&settings.path()?).map_err(Failure::call)
+}
+
+fn address(Published { plant, .. }: &Published) -> Result<PlantAddress, Failure> {
+    Ok(plant.as_ref().ok_or_else(|| Failure::call(NoPlant))?.address()?)
+}
+
+impl From<FetchError> for Failure {
+    fn from(error: FetchError) -> Self {
+        Self::error(error)
+    }
+}
+
+impl From<BundleError> for Failure {
+    fn from(error: BundleError) -> Self {
+        Self::call(error)
+    }
+}
+
+impl From<SigningError> for Failure {
+    fn from(error: SigningError) -> Self {
+        Self::call(error)
+    }
+}

@@ -1,0 +1,46 @@
+//! The codes of what commands refuse, whatever is behind them.
+
+use halfrow::result::codes;
+
+use super::board::{NoBoard, NoBoardKind, NoKind};
+use super::job::{NoJob, NoWord};
+use super::lanes::EngineEnded;
+use super::outbox::{NoSink, NotDead, SinkInUse};
+use super::plant::{NoPlant, NoStation};
+use super::publish::PublishError;
+use super::run::NoMock;
+use super::work::NoWork;
+
+codes::codes! {
+    PublishError {
+        OtherContent [plan, version] => "plan-version-taken",
+        TooLate [plan] => "plan-published-meanwhile",
+        NoVersion [plan, version] => "plan-version-unknown",
+    }
+    ;
+    EngineEnded => "engine-ended"
+    ;
+    NoMock => "plan-without-mock"
+    ;
+    NoPlant => "settings-without-plant"
+    ;
+    NotDead [what] => "outbox-entry-not-dead"
+    ;
+    NoSink => "settings-without-sink"
+    ;
+    NoWork => "settings-without-work"
+    ;
+    NoJob [id] => "job-not-changed"
+    ;
+    NoWord [word] => "job-needs-no-word"
+    ;
+    NoBoardKind [kind] => "shared-board-of-unknown-kind"
+    ;
+    NoBoard [name] => "shared-board-not-changed"
+    ;
+    NoKind [kind] => "shared-board-of-no-kind"
+    ;
+    SinkInUse [sink] => "sink-in-use"
+    ;
+    NoStation [station] => "plant-without-station"
+}

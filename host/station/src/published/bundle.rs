@@ -1,0 +1,174 @@
+//! A plan with every file that it names, as one text.
+
+use std::fs;
+use std::io;
+use std::path::{Component, Path, PathBuf};
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use halfrow::frames::written_aside::{WriteAsideError, write_aside};
+use halfrow::result::{FileHash, sha256};
+use serde::{Deserialize, Serialize};
+
+use crate::plan::{Plan, plan_hash};
+
+/// The version of the bundle's own format.
+const SCHEMA: u32 = 1;
+/// The most bytes of all files.
+const MOST: u64 = 64 << 20;
+/// What a plan that was unpacked is called.
+pub(super) const PLAN: &str = "plan.toml";
+
+/// A plan that cannot be published or unpacked.
+#[derive(Debug, thiserror::Error)]
+pub enum BundleError {
+    /// A file lies outside of the plan's folder.
+    #[error("the plan names {name}, which lies outside of its folder; put it beside the plan")]
+    Outside {
+        /// The name.
+        name: String,
+    },
+    /// A file would stand where the plan does.
+    #[error(
+        "the plan names a file {PLAN}, which it is called itself where it is unpacked; give that file another name"
+    )]
+    Plan,
+    /// The files are too large.
+    #[error("the plan's files have {bytes} bytes, and {MOST} may be; give fewer or smaller frames")]
+    TooLarge {
+        /// All of them.
+        bytes: u64,
+    },
+    /// A file changed since the plan was read, or cannot be read any more.
+    #[error("the file {} is not as it was when the plan was read; publish it again", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason, if it has one.
+        source: Option<io::Error>,
+    },
+    /// A text is no bundle.
+    #[error("what the plant has as the plan {sha256} is none; ask whoever keeps the plant")]
+    Malformed {
+        /// The hash.
+        sha256: String,
+    },
+    /// A bundle is not what its hash says.
+    #[error("what the plant has as the plan {sha256} has the hash {found}; ask whoever keeps the plant")]
+    Damaged {
+        /// The hash that it should have.
+        sha256: String,
+        /// The one that it has.
+        found: String,
+    },
+    /// It cannot be written down.
+    #[error("the plan cannot be kept in {}; check that the folder is writable and has space", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// One of its files cannot.
+    #[error(transparent)]
+    Unwritten(#[from] WriteAsideError),
+}
+
+/// A plan with its files.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bundle {
+    schema: u32,
+    text: String,
+    files: Vec<BundledFile>,
+}
+
+/// A file that the plan names.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BundledFile {
+    path: String,
+    base64: String,
+}
+
+impl Bundle {
+    /// The plan that was read from the file `path`, with all that it names.
+    ///
+    /// # Errors
+    /// [`BundleError`]
+    pub fn of(path: &Path, plan: &Plan) -> Result<Self, BundleError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let (mut files, mut bytes) = (Vec::new(), 0);
+        for FileHash { path: name, sha256: hash } in &plan.files {
+            check_name(name)?;
+            let path = folder.join(name);
+            let changed = |source| BundleError::Changed { path: path.clone(), source };
+            let content = fs::read(&path).map_err(|source| changed(Some(source)))?;
+            if sha256([&content]) != *hash {
+                return Err(changed(None));
+            }
+            bytes += content.len() as u64;
+            if bytes > MOST {
+                return Err(BundleError::TooLarge { bytes });
+            }
+            files.push(BundledFile { path: name.clone(), base64: BASE64_STANDARD.encode(content) });
+        }
+        Ok(Self { schema: SCHEMA, text: plan.text.clone(), files })
+    }
+
+    /// It as a text.
+    #[must_use]
+    pub fn text(&self) -> String {
+        // It has nothing that JSON could not have.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// Unpacks the bundle `text`, whose plan has the hash `expected`, into a folder of that name in `folder`. Returns the plan's file. What is
+    /// there already stays.
+    ///
+    /// # Errors
+    /// [`BundleError`] when it is not what its hash says, or cannot be kept.
+    pub fn unpack(text: &str, expected: &str, folder: &Path) -> Result<PathBuf, BundleError> {
+        let malformed = || BundleError::Malformed { sha256: expected.to_owned() };
+        let bundle: Self = serde_json::from_str(text).map_err(|_| malformed())?;
+        let mut files = Vec::new();
+        for file in &bundle.files {
+            check_name(&file.path)?;
+            files.push((&file.path, BASE64_STANDARD.decode(&file.base64).map_err(|_| malformed())?));
+        }
+        let hashes: Vec<_> = files
+            .iter()
+            .map(|(path, content)| FileHash { path: (*path).clone(), sha256: sha256([content]) })
+            .collect();
+        let found = plan_hash(&bundle.text, &hashes);
+        if found != expected {
+            return Err(BundleError::Damaged { sha256: expected.to_owned(), found });
+        }
+        let folder = folder.join(expected);
+        for (name, content) in files {
+            keep(&folder.join(name), &content)?;
+        }
+        let plan = folder.join(PLAN);
+        keep(&plan, bundle.text.as_bytes())?;
+        Ok(plan)
+    }
+}
+
+/// A file of a bundle lies where the plan does, or below.
+fn check_name(name: &str) -> Result<(), BundleError> {
+    if name == PLAN {
+        return Err(BundleError::Plan);
+    }
+    let is_below = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+    if is_below && !name.is_empty() { Ok(()) } else { Err(BundleError::Outside { name: name.to_owned() }) }
+}
+
+/// Writes the file unless it is there with just this.
+fn keep(path: &Path, content: &[u8]) -> Result<(), BundleError> {
+    if fs::read(path).is_ok_and(|there| there == content) {
+        return Ok(());
+    }
+    let folder = path.parent().unwrap_or(Path::new(""));
+    fs::create_dir_all(folder).map_err(|source| BundleError::Folder { path: folder.to_owned(), source })?;
+    Ok(write_aside(path, true, |file| file.write_all(content))?)
+}

@@ -1,0 +1,100 @@
+//! Fetches what a plant publishes.
+
+use super::kept::Signed;
+use super::{Bundle, BundleError, Kept, PlanName, PublicKey, Statement};
+use crate::input_error::InputError;
+use crate::plan::Plan;
+use crate::store::{Plant, StoreError};
+
+/// A plan that was not fetched. The one that is kept stays.
+#[derive(Debug, thiserror::Error)]
+pub enum FetchError {
+    /// The plant.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// Nobody has published it.
+    #[error("the plant has no plan {plan}; `halfrow-station plan published` lists those that it has")]
+    None {
+        /// Its product and name.
+        plan: String,
+    },
+    /// Nobody who is trusted has signed it.
+    #[error(
+        "the plan {plan} of the plant is not signed by a key of `trusts` in [plant], or says something else than it was asked; nothing was \
+         changed: ask whoever publishes plans"
+    )]
+    Untrusted {
+        /// Its product and name.
+        plan: String,
+    },
+    /// It is older than the one that is kept.
+    #[error(
+        "the plant has the plan {plan} as its number {number}, and here is number {kept} already; nothing was changed: ask whoever keeps \
+         the plant, and publish the older one again if it is to hold"
+    )]
+    Older {
+        /// Its product and name.
+        plan: String,
+        /// The number at the plant.
+        number: i64,
+        /// The number here.
+        kept: i64,
+    },
+    /// What is published is not there whole, or cannot be kept.
+    #[error(transparent)]
+    Bundle(#[from] BundleError),
+    /// It is no plan of this program's.
+    #[error("the plan {plan} of the plant cannot be carried out by this program; nothing was changed")]
+    Plan {
+        /// Its product and name.
+        plan: String,
+        /// Why.
+        source: InputError,
+    },
+}
+
+/// A plan that is kept and up to date.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fetched {
+    /// What holds.
+    pub statement: Statement,
+    /// Whether it is another one than before.
+    pub is_new: bool,
+}
+
+/// Fetches what holds for `plan`, if it is newer than what is kept and signed by somebody of `trusted`.
+///
+/// # Errors
+/// [`FetchError`]; what is kept stays as it was.
+pub fn fetch(
+    plant: &mut Plant,
+    kept: &Kept,
+    plan: &PlanName,
+    trusted: &[PublicKey],
+) -> Result<Fetched, FetchError> {
+    let name = || plan.to_string();
+    let Some((statement, signature)) = plant.publication(plan)? else {
+        return Err(FetchError::None { plan: name() });
+    };
+    let signed = Signed { statement, signature };
+    let statement = signed.by(trusted).filter(|statement| statement.plan() == *plan);
+    let statement = statement.ok_or_else(|| FetchError::Untrusted { plan: name() })?;
+    // One that nobody trusts any more holds nothing back.
+    if let Some(ours) = kept.statement(plan, trusted) {
+        if ours == statement && kept.file(&ours).is_file() {
+            return Ok(Fetched { statement, is_new: false });
+        }
+        if statement.number < ours.number || (statement.number == ours.number && statement != ours) {
+            return Err(FetchError::Older { plan: name(), number: statement.number, kept: ours.number });
+        }
+    }
+    let text = plant.bundle(&statement.sha256)?;
+    let file = Bundle::unpack(&text, &statement.sha256, kept.folder())?;
+    let read = Plan::load(&file).map_err(|source| FetchError::Plan { plan: name(), source })?;
+    let says = (read.product.as_str(), read.name.as_str(), read.version.as_str());
+    if says != (statement.product.as_str(), statement.name.as_str(), statement.version.as_str()) {
+        return Err(FetchError::Untrusted { plan: name() });
+    }
+    kept.keep(plan, &signed)?;
+    Ok(Fetched { statement, is_new: true })
+}

@@ -1,0 +1,74 @@
+//! The plans that a station has fetched.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use halfrow::frames::written_aside::write_aside;
+use halfrow::result::sha256;
+use serde::{Deserialize, Serialize};
+
+use super::bundle::PLAN;
+use super::{BundleError, PlanName, PublicKey, Statement};
+
+/// A folder of plans: each by its hash, and for each name what holds.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    folder: PathBuf,
+}
+
+/// What an engineer has signed, as it is kept.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(super) struct Signed {
+    pub(super) statement: String,
+    pub(super) signature: String,
+}
+
+impl Signed {
+    /// What it says, if somebody of `trusted` has signed it.
+    pub(super) fn by(&self, trusted: &[PublicKey]) -> Option<Statement> {
+        let statement: Statement = serde_json::from_str(&self.statement).ok()?;
+        let is_trusted = trusted.contains(&statement.key)
+            && statement.schema == Statement::SCHEMA
+            && statement.key.has_signed(&self.statement, &self.signature);
+        is_trusted.then_some(statement)
+    }
+}
+
+impl Kept {
+    /// Of the station whose folder is `data`.
+    #[must_use]
+    pub fn of(data: &Path) -> Self {
+        Self { folder: data.join("plans") }
+    }
+
+    /// What holds for this plan, if it was fetched and somebody of `trusted` has signed it.
+    #[must_use]
+    pub fn statement(&self, plan: &PlanName, trusted: &[PublicKey]) -> Option<Statement> {
+        self.signed(plan)?.by(trusted).filter(|statement| statement.plan() == *plan)
+    }
+
+    /// The file of a plan that was fetched.
+    #[must_use]
+    pub fn file(&self, statement: &Statement) -> PathBuf {
+        self.folder.join(&statement.sha256).join(PLAN)
+    }
+
+    pub(super) fn signed(&self, plan: &PlanName) -> Option<Signed> {
+        serde_json::from_slice(&fs::read(self.holds(plan)).ok()?).ok()
+    }
+
+    pub(super) fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// From now on this holds.
+    pub(super) fn keep(&self, plan: &PlanName, signed: &Signed) -> Result<(), BundleError> {
+        let text = serde_json::to_string(signed).unwrap_or_default();
+        Ok(write_aside(&self.holds(plan), true, |file| file.write_all(text.as_bytes()))?)
+    }
+
+    /// Where it is kept what holds; a product may be called what no file can be.
+    fn holds(&self, PlanName { product, name }: &PlanName) -> PathBuf {
+        self.folder.join(sha256([format!("{product}\0{name}")]) + ".json")
+    }
+}

@@ -1,0 +1,175 @@
+//! Keys of engineers (Ed25519, RFC 8032), and what they sign.
+
+use std::fmt;
+use std::fs::File;
+use std::io::{self, Write as _};
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
+use ring::rand::SystemRandom;
+use ring::signature::{ED25519, Ed25519KeyPair, KeyPair as _, UnparsedPublicKey};
+use serde::{Deserialize, Serialize};
+
+use super::PlanName;
+use crate::web::{SecretError, secret};
+
+/// What public keys begin with.
+const KIND: &str = "ed25519:";
+/// What is in front of everything that is signed, so that no signature of something else is one of a plan.
+const PURPOSE: &str = "halfrow plan 1\n";
+/// Bytes of a public key.
+const BYTES: usize = 32;
+
+/// A key that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum SigningError {
+    /// The file cannot be made.
+    #[error("the key {} cannot be made; name a file that is not there yet", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The file cannot be read.
+    #[error(transparent)]
+    Secret(#[from] SecretError),
+    /// It is no key.
+    #[error("{} is no key; make one by: halfrow-station plan key FILE", path.display())]
+    NoKey {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The system has no randomness.
+    #[error("the system has no randomness for a key; restart it")]
+    NoRandomness,
+    /// A text is no public key.
+    #[error("`{text}` is no public key; copy what `halfrow-station plan key` printed")]
+    NoPublicKey {
+        /// The text.
+        text: String,
+    },
+}
+
+/// An engineer's key.
+#[derive(Debug)]
+pub struct SigningKey(Ed25519KeyPair);
+
+impl SigningKey {
+    /// A new key, in a new file that nobody else may read.
+    ///
+    /// # Errors
+    /// [`SigningError`]
+    pub fn draw(path: &Path) -> Result<Self, SigningError> {
+        let document =
+            Ed25519KeyPair::generate_pkcs8(&SystemRandom::new()).map_err(|_| SigningError::NoRandomness)?;
+        let write = || {
+            let mut file = File::options().write(true).create_new(true).mode(0o600).open(path)?;
+            writeln!(file, "{}", BASE64_STANDARD.encode(document.as_ref()))?;
+            file.sync_all()
+        };
+        write().map_err(|source| SigningError::File { path: path.to_owned(), source })?;
+        Self::load(path)
+    }
+
+    /// The key in the file `path`.
+    ///
+    /// # Errors
+    /// [`SigningError`]
+    pub fn load(path: &Path) -> Result<Self, SigningError> {
+        let no_key = || SigningError::NoKey { path: path.to_owned() };
+        let document = BASE64_STANDARD.decode(secret(path)?.trim()).map_err(|_| no_key())?;
+        Ed25519KeyPair::from_pkcs8(&document).map(Self).map_err(|_| no_key())
+    }
+
+    /// What stations know it by.
+    #[must_use]
+    pub fn public(&self) -> PublicKey {
+        PublicKey(BASE64_STANDARD.encode(self.0.public_key().as_ref()))
+    }
+
+    /// The signature of a statement's text, in base64.
+    #[must_use]
+    pub fn sign(&self, text: &str) -> String {
+        BASE64_STANDARD.encode(self.0.sign((PURPOSE.to_owned() + text).as_bytes()).as_ref())
+    }
+}
+
+/// What a station knows an engineer by: `ed25519:` and the key in base64.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct PublicKey(String);
+
+impl PublicKey {
+    /// The key of this text.
+    ///
+    /// # Errors
+    /// [`SigningError::NoPublicKey`]
+    pub fn parse(text: &str) -> Result<Self, SigningError> {
+        let key = text.trim().strip_prefix(KIND).unwrap_or_default();
+        match BASE64_STANDARD.decode(key) {
+            Ok(bytes) if bytes.len() == BYTES => Ok(Self(key.to_owned())),
+            _ => Err(SigningError::NoPublicKey { text: text.to_owned() }),
+        }
+    }
+
+    /// Whether it signed `text` by `signature`.
+    #[must_use]
+    pub fn has_signed(&self, text: &str, signature: &str) -> bool {
+        let decoded = BASE64_STANDARD.decode(&self.0).ok().zip(BASE64_STANDARD.decode(signature).ok());
+        decoded.is_some_and(|(key, signature)| {
+            let signed = PURPOSE.to_owned() + text;
+            UnparsedPublicKey::new(&ED25519, key).verify(signed.as_bytes(), &signature).is_ok()
+        })
+    }
+}
+
+impl fmt::Display for PublicKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{KIND}{}", self.0)
+    }
+}
+
+/// What an engineer signs: from now on this plan holds.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Statement {
+    /// The version of the statement's own format.
+    pub schema: u32,
+    /// The product.
+    pub product: String,
+    /// The plan's name.
+    pub name: String,
+    /// The plan's version.
+    pub version: String,
+    /// The plan's hash.
+    pub sha256: String,
+    /// The how-manieth statement about plans of this name it is.
+    pub number: i64,
+    /// Who says so.
+    pub operator: String,
+    /// Why.
+    pub reason: String,
+    /// The key by which it is signed.
+    pub key: PublicKey,
+}
+
+impl Statement {
+    /// The version of the format.
+    pub const SCHEMA: u32 = 1;
+
+    /// What is signed of it.
+    #[must_use]
+    pub fn text(&self) -> String {
+        // It has nothing that JSON could not have.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// The plan's product and name.
+    #[must_use]
+    pub fn plan(&self) -> PlanName {
+        PlanName { product: self.product.clone(), name: self.name.clone() }
+    }
+}

@@ -1,0 +1,228 @@
+//! Plans that the plant publishes: only what an engineer signed is taken, and never less than a station had.
+
+use std::fs;
+use std::path::PathBuf;
+use std::process::Command;
+
+use halfrow_station::settings::Settings;
+use tempfile::TempDir;
+
+use super::server::Server;
+use crate::common::{Did, PLAN, program};
+
+/// A picture of eight rows that a plan names.
+fn picture(level: u8) -> Vec<u8> {
+    let mut bytes = b"P5\n64 8\n4095\n".to_vec();
+    bytes.extend((0..64 * 8).flat_map(|at: u16| [level, (at % 251) as u8]));
+    bytes
+}
+
+/// An engineer with a plan, and a station that would have it of the plant.
+struct Published {
+    server: Server,
+    folder: TempDir,
+    trusted: String,
+}
+
+impl Published {
+    fn new() -> Self {
+        let (server, folder) = (Server::prepared(), crate::common::folder());
+        fs::create_dir(folder.path().join("frames")).unwrap();
+        let made = Self { server, folder, trusted: String::new() };
+        let trusted = made.did(&["plan", "key", &made.path("engel.key")]).said.trim().to_owned();
+        assert!(trusted.starts_with("ed25519:"), "{trusted}");
+        let made = Self { trusted, ..made };
+        made.plan("1", 1);
+        let plant = format!("[plant]\nurl = \"{}\"\ntrusts = [\"{}\"]\n", made.server.url(), made.trusted);
+        let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plant:CAM-T/quick\"]\n";
+        let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{plant}{lane}");
+        fs::write(made.path("station.toml"), text).unwrap();
+        made
+    }
+
+    fn path(&self, name: &str) -> String {
+        self.folder.path().join(name).display().to_string()
+    }
+
+    /// Writes the plan down in this version, with a picture of this level.
+    fn plan(&self, version: &str, level: u8) {
+        let text = PLAN
+            .replace("version = \"1\"", &format!("version = \"{version}\""))
+            .replace("builtin:noise", "frames/a.pgm");
+        fs::write(self.path("plan.toml"), text).unwrap();
+        fs::write(self.path("frames/a.pgm"), picture(level)).unwrap();
+    }
+
+    fn did(&self, arguments: &[&str]) -> Did {
+        let mut command = Command::new(program());
+        command.args(arguments).env("HALFROW_STATION_SETTINGS", self.path("station.toml"));
+        command.output().unwrap().into()
+    }
+
+    fn publish(&self, key: &str) -> Did {
+        let (plan, key) = (self.path("plan.toml"), self.path(key));
+        self.did(&[
+            "plan",
+            "publish",
+            &plan,
+            "--key",
+            &key,
+            "--reason",
+            "better frames",
+            "--operator",
+            "engel",
+        ])
+    }
+
+    fn back(&self, version: &str) -> Did {
+        let key = self.path("engel.key");
+        self.did(&["plan", "back", "CAM-T/quick", version, "--key", &key, "--reason", "it was better"])
+    }
+
+    fn fetch(&self) -> Did {
+        self.did(&["plan", "fetch"])
+    }
+
+    /// The version of the plan that the station's settings have, and the level of its picture.
+    fn held(&self) -> (String, u8) {
+        let settings = Settings::load(self.path("station.toml").as_ref()).unwrap();
+        let plan = &settings.plans[0];
+        let picture = fs::read(plan.path.parent().unwrap().join("frames/a.pgm")).unwrap();
+        (plan.plan.version.clone(), picture[13])
+    }
+}
+
+#[test]
+fn a_plan_comes_to_the_station_with_its_files_and_an_older_one_can_hold_again() {
+    let made = Published::new();
+    let early = Settings::load(made.path("station.toml").as_ref()).unwrap_err().to_string();
+    assert!(early.contains("station.toml:") && early.contains("plan fetch"), "{early}");
+    assert!(made.fetch().complained.contains("the plant has no plan CAM-T/quick"));
+    assert_eq!(made.publish("engel.key").said, "CAM-T/quick 1 holds, as number 1\n");
+    assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1, is new\n");
+    assert_eq!(made.held(), ("1".to_owned(), 1));
+    assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1\n");
+    // What runs were judged by under a version stays what it is.
+    made.plan("1", 2);
+    let taken = made.publish("engel.key");
+    assert!(taken.code == Some(2) && taken.complained.contains("a version of its own"), "{taken:?}");
+    made.plan("2", 2);
+    assert_eq!(made.publish("engel.key").said, "CAM-T/quick 2 holds, as number 2\n");
+    assert_eq!(made.held(), ("1".to_owned(), 1), "until it is fetched");
+    made.fetch();
+    assert_eq!(made.held(), ("2".to_owned(), 2));
+    let unknown = made.back("9");
+    assert!(unknown.code == Some(2) && unknown.complained.contains("never had a plan"), "{unknown:?}");
+    assert_eq!(made.back("1").said, "CAM-T/quick 1 holds, as number 3\n");
+    made.fetch();
+    assert_eq!(made.held(), ("1".to_owned(), 1));
+    let listed = made.did(&["plan", "published"]);
+    assert!(listed.said.contains("CAM-T/quick") && listed.said.contains("it was better"), "{listed:?}");
+    let (_folder, serving) = super::pages::served(&made.server);
+    let page = super::pages::text(&serving.here(), "/");
+    assert!(page.contains("Published plans") && page.contains("it was better"), "{page}");
+    let acts = made.server.rows("SELECT act, subject, detail FROM audit ORDER BY id");
+    assert_eq!(acts[0], ["publish plan", "CAM-T/quick 1", "better frames"]);
+    assert_eq!(acts.len(), 3);
+}
+
+#[test]
+fn what_nobody_signed_who_is_trusted_is_not_taken() {
+    let made = Published::new();
+    made.publish("engel.key");
+    made.fetch();
+    // Somebody has another key, or changes what stands in the plant's database.
+    made.did(&["plan", "key", &made.path("other.key")]);
+    made.plan("2", 2);
+    assert_eq!(made.publish("other.key").code, Some(0));
+    let refused = |expected: &str| {
+        let fetched = made.fetch();
+        assert!(fetched.code == Some(3) && fetched.complained.contains(expected), "{expected}: {fetched:?}");
+        assert_eq!(made.held(), ("1".to_owned(), 1));
+    };
+    refused("is not signed by a key of `trusts`");
+    let change = |text: &str| made.server.client("plant").batch_execute(text).unwrap();
+    change(
+        "UPDATE publication SET signature = (SELECT signature FROM publication WHERE number = 1) WHERE number = 2",
+    );
+    refused("is not signed by a key of `trusts`");
+    change(
+        "UPDATE publication SET statement = (SELECT replace(statement, '\"number\":1', '\"number\":2') FROM publication WHERE number = 1)
+         WHERE number = 2",
+    );
+    refused("is not signed by a key of `trusts`");
+    change("DELETE FROM publication WHERE number = 2");
+    assert_eq!(made.publish("engel.key").said, "CAM-T/quick 2 holds, as number 2\n");
+    change("UPDATE bundle SET text = replace(text, 'timeout = 60', 'timeout = 61')");
+    refused("has the hash");
+    change("UPDATE bundle SET text = 'nothing'");
+    refused("is none");
+    // A statement that was right once is not taken behind a later one.
+    made.plan("3", 3);
+    made.publish("engel.key");
+    assert_eq!(made.fetch().said, "CAM-T/quick 3, number 3, is new\n");
+    change("DELETE FROM publication WHERE number > 1");
+    let older = made.fetch();
+    assert!(older.complained.contains("as its number 1, and here is number 3 already"), "{older:?}");
+    assert_eq!(made.held(), ("3".to_owned(), 3));
+}
+
+#[test]
+fn what_was_kept_is_looked_at_again_whenever_it_is_used() {
+    let made = Published::new();
+    made.publish("engel.key");
+    made.fetch();
+    let settings = PathBuf::from(made.path("station.toml"));
+    let file = Settings::load(&settings).unwrap().plans[0].path.clone();
+    let text = fs::read_to_string(&file).unwrap();
+    fs::write(&file, text.replace("timeout = 60", "timeout = 61")).unwrap();
+    let changed = Settings::load(&settings).unwrap_err().to_string();
+    assert!(changed.contains("is not as it was published"), "{changed}");
+    fs::write(&file, text).unwrap();
+    // A key that is not trusted any more.
+    let mut other = fs::read_to_string(&settings).unwrap();
+    let key = made.did(&["plan", "key", &made.path("other.key")]).said.trim().to_owned();
+    other = other.replace(&made.trusted, &key);
+    fs::write(&settings, other).unwrap();
+    let untrusted = Settings::load(&settings).unwrap_err().to_string();
+    assert!(untrusted.contains("does not trust any more"), "{untrusted}");
+}
+
+#[test]
+fn a_station_starts_with_what_it_has_when_the_plant_is_away() {
+    let mut made = Published::new();
+    made.publish("engel.key");
+    let lanes = |made: &Published| made.did(&["lanes", "--any-disk"]);
+    made.server.kill();
+    let without = lanes(&made);
+    assert!(without.code == Some(3) && without.complained.contains("refuses a connection"), "{without:?}");
+    made.server.again();
+    assert_eq!(lanes(&made).code, Some(0), "it fetches when it starts");
+    made.server.kill();
+    let with = lanes(&made);
+    assert!(with.code == Some(0) && with.complained.contains("the plans stay as they are"), "{with:?}");
+}
+
+#[test]
+fn what_is_no_plan_of_its_own_folder_or_no_key_is_refused() {
+    let made = Published::new();
+    fs::write(made.folder.path().parent().unwrap().join("outside.pgm"), picture(9)).unwrap();
+    let text = fs::read_to_string(made.path("plan.toml")).unwrap();
+    fs::write(made.path("plan.toml"), text.replace("frames/a.pgm", "../outside.pgm")).unwrap();
+    let outside = made.publish("engel.key");
+    assert!(
+        outside.code == Some(2) && outside.complained.contains("lies outside of its folder"),
+        "{outside:?}"
+    );
+    made.plan("1", 1);
+    let no_key = made.publish("plan.toml");
+    assert!(no_key.code == Some(2) && no_key.complained.contains("chmod 600"), "{no_key:?}");
+    let again = made.did(&["plan", "key", &made.path("engel.key")]);
+    assert!(again.code == Some(2) && again.complained.contains("not there yet"), "{again:?}");
+    let settings = fs::read_to_string(made.path("station.toml")).unwrap();
+    fs::write(made.path("station.toml"), settings.replace("ed25519:", "rsa:")).unwrap();
+    assert!(made.fetch().complained.contains("is no public key"));
+    fs::write(made.path("station.toml"), settings.replace("plant:CAM-T/quick", "plant:quick")).unwrap();
+    let no_name = Settings::load(made.path("station.toml").as_ref()).unwrap_err().to_string();
+    assert!(no_name.contains("write plant:PRODUCT/NAME"), "{no_name}");
+}
