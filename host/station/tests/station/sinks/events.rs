@@ -25,6 +25,8 @@ struct Broker {
 }
 
 const PASSWORD: &str = "rosebud-5e1f";
+/// Debian keeps it where users do not look.
+const MOSQUITTO: &str = "PATH=\"$PATH:/usr/sbin:/usr/local/sbin\" exec mosquitto -c \"$0\"";
 /// How long is listened, in seconds.
 const LONGEST: &str = "30";
 
@@ -49,8 +51,9 @@ impl Broker {
             trusted = vec!["--cafile".to_owned(), at("ca.pem")];
         }
         fs::write(path("broker.conf"), text).unwrap();
-        let mut broker = Command::new("mosquitto");
-        let broker = broker.args(["-c", &path("broker.conf")]).stderr(Stdio::null()).spawn().unwrap();
+        let mut broker = Command::new("sh");
+        let broker =
+            broker.args(["-c", MOSQUITTO, &path("broker.conf")]).stderr(Stdio::null()).spawn().unwrap();
         while TcpStream::connect(("127.0.0.1", port)).is_err() {
             thread::sleep(Duration::from_millis(20));
         }
