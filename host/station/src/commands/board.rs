@@ -15,11 +15,12 @@ use serde_json::json;
 use super::beginning::{SettingsFile, Signal};
 use super::looking::{either, table, time};
 use super::plant::plant;
+use super::why::Why;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use crate::store::{Plant, PlantAddress, PlantPool, SharedBoard, StoreError, Turn, Waiter, boards};
-use crate::work::{Held, Holding, Lost};
+use crate::work::{Held, Holding, sleep_unless};
 
 /// How often somebody who waits asks again.
 const ASKED: Duration = Duration::from_secs(1);
@@ -89,12 +90,8 @@ struct Share {
 struct Change {
     /// The board
     name: String,
-    /// Why
-    #[arg(long)]
-    reason: String,
-    /// Who says so
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
-    operator: String,
+    #[command(flatten)]
+    why: Why,
 }
 
 /// A board that the plant does not have, or that somebody has.
@@ -139,14 +136,14 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let found = PlantPool::new(address).look(boards)?;
             either(&found, *json, |found| text(found))
         }
-        What::Out(Change { name, reason, operator }) => {
+        What::Out(Change { name, why: Why { reason, operator } }) => {
             let out = Plant::connect(&address)?.take_out(name, Some(reason), operator)?;
             changed(out, name, "out")
         }
-        What::In(Change { name, operator, .. }) => {
+        What::In(Change { name, why: Why { operator, .. } }) => {
             changed(Plant::connect(&address)?.take_out(name, None, operator)?, name, "in")
         }
-        What::Unshare(Change { name, reason, operator }) => {
+        What::Unshare(Change { name, why: Why { reason, operator } }) => {
             changed(Plant::connect(&address)?.unshare(name, operator, reason)?, name, "unshared")
         }
         What::Hold { kind } => hold(&address, kind, &settings.name),
@@ -206,9 +203,8 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
     print(&json!({ "held": held }).to_string())?;
     while !is_over() {
         if let Some(lost) = holding.lost() {
-            let said = lost.to_string();
-            print(&json!({ "lost": { "board": held.board, "said": said } }).to_string())?;
-            return Err(Failure::error(Lost::clone(&lost)));
+            print(&json!({ "lost": { "board": held.board, "said": lost.to_string() } }).to_string())?;
+            return Err(Failure::error(lost));
         }
         thread::sleep(LOOK);
     }
@@ -230,13 +226,10 @@ fn wait(
             Turn::Waits { before } => before,
         };
         print(&json!({ "waits": { "before": before, "seconds": begun.elapsed().as_secs() } }).to_string())?;
-        let until = Instant::now() + ASKED;
-        while Instant::now() < until {
-            if is_over() {
-                left(&mut plant, waiter);
-                return Ok(None);
-            }
-            thread::sleep(LOOK);
+        sleep_unless(ASKED, is_over);
+        if is_over() {
+            left(&mut plant, waiter);
+            return Ok(None);
         }
     }
 }

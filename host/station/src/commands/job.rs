@@ -7,6 +7,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
 use super::plant::plant;
+use super::why::Why;
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::plan::Plan;
@@ -78,12 +79,8 @@ struct Add {
 struct Change {
     /// The job
     id: String,
-    /// Why
-    #[arg(long)]
-    reason: String,
-    /// Who says so
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
-    operator: String,
+    #[command(flatten)]
+    why: Why,
 }
 
 /// How it stands with a job.
@@ -135,11 +132,11 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let found = PlantPool::new(address).look(|now| jobs(now, &states, "", *most))?;
             either(&found, *json, |found| text(found))
         }
-        What::Cancel(Change { id, reason, operator }) => {
+        What::Cancel(Change { id, why: Why { reason, operator } }) => {
             let done = Plant::connect(&address)?.cancel_job(id, operator, reason)?;
             changed(done, id, "cancelled")
         }
-        What::Retry(Change { id, reason, operator }) => {
+        What::Retry(Change { id, why: Why { reason, operator } }) => {
             let done = Plant::connect(&address)?.retry_job(id, operator, reason)?;
             changed(done, id, "retried")
         }

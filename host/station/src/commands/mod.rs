@@ -30,6 +30,7 @@ mod token;
 mod unit;
 mod user;
 mod waive;
+mod why;
 mod work;
 mod yields;
 

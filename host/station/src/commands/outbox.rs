@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::beginning::{Disk, SettingsFile, sinks};
 use super::looking::{either, table, time};
+use super::why::Why;
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::outbox::{OutboxError, Round, round};
@@ -51,17 +52,6 @@ enum What {
         #[command(flatten)]
         why: Why,
     },
-}
-
-/// Who does it, and why, which the audit keeps.
-#[derive(Debug, Args)]
-struct Why {
-    /// Why
-    #[arg(long)]
-    reason: String,
-    /// Who says so
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
-    operator: String,
 }
 
 /// What is still to be sent.

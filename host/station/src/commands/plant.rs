@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::{Args, Subcommand};
 
 use super::beginning::{SettingsFile, Signal};
+use super::why::Why;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
@@ -35,12 +36,8 @@ enum What {
     Forget {
         /// The station's name
         station: String,
-        /// Why
-        #[arg(long)]
-        reason: String,
-        /// Who says so
-        #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
-        operator: String,
+        #[command(flatten)]
+        why: Why,
     },
     /// Show the results of all stations in a browser; its pages only look
     Serve,
@@ -54,7 +51,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             let version = Plant::prepare(&address)?;
             print(&format!("the plant {address} has version {version}"))
         }
-        What::Forget { station, reason, operator } => {
+        What::Forget { station, why: Why { reason, operator } } => {
             if Plant::connect(&address)?.forget(station, operator, reason)? {
                 return print(&format!("the next folder that says it is {station} is taken for it"));
             }

@@ -8,12 +8,14 @@ use serde::Serialize;
 use super::beginning::SettingsFile;
 use super::looking::{either, table, time};
 use super::plant::NoPlant;
+use super::why::Why;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
+use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::published::{
-    Bundle, BundleError, FetchError, Fetched, Kept, PlanName, SigningError, SigningKey, Statement, fetch,
+    Bundle, BundleError, FetchError, Fetched, Kept, SigningError, SigningKey, Statement, fetch,
 };
 use crate::said::Said;
 use crate::settings::{Published, Settings};
@@ -50,12 +52,8 @@ struct Signed {
     /// The engineer's key, as `plan key` makes it
     #[arg(long, value_name = "FILE")]
     key: PathBuf,
-    /// Why
-    #[arg(long)]
-    reason: String,
-    /// Who says so
-    #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
-    operator: String,
+    #[command(flatten)]
+    why: Why,
 }
 
 /// Print the plans that hold at the plant
@@ -97,7 +95,7 @@ pub(super) fn key(file: &Path) -> Result<Exit, Failure> {
 pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Exit, Failure> {
     let plan = Plan::load(file).map_err(Failure::call)?;
     let bundle = Bundle::of(file, &plan)?;
-    let name = PlanName { product: plan.product.clone(), name: plan.name.clone() };
+    let name = PlanName::from(&plan);
     let mut at = connected(settings)?;
     let before = at.published_version(&name, &plan.version)?;
     if before.is_some_and(|before| before != plan.sha256) {
@@ -110,7 +108,7 @@ pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Ex
 pub(super) fn back(Back { settings, plan, earlier: version, signed }: &Back) -> Result<Exit, Failure> {
     let none = || PublishError::NoVersion { plan: plan.clone(), version: version.clone() };
     let (product, name) = plan.split_once('/').ok_or_else(|| Failure::call(none()))?;
-    let name = PlanName { product: product.to_owned(), name: name.to_owned() };
+    let name = PlanName { product: product.to_owned(), plan: name.to_owned() };
     let mut at = connected(settings)?;
     let sha256 = at.published_version(&name, version)?.ok_or_else(|| Failure::call(none()))?;
     signed.state(&mut at, &name, version, &sha256, None)
@@ -132,12 +130,12 @@ impl Signed {
         let statement = Statement {
             schema: Statement::SCHEMA,
             product: name.product.clone(),
-            name: name.name.clone(),
+            name: name.plan.clone(),
             version: version.to_owned(),
             sha256: sha256.to_owned(),
             number: last.map_or(0, |last| last.number) + 1,
-            operator: self.operator.clone(),
-            reason: self.reason.clone(),
+            operator: self.why.operator.clone(),
+            reason: self.why.reason.clone(),
             key: key.public(),
         };
         let signature = key.sign(&statement.text());

@@ -71,15 +71,16 @@ fn take_jobs(
         let job = claim.job.clone();
         tracing::info!("the job {job} is on the board {}", claim.lease.board);
         match work.judge(claim, stop, &mut |_| ()) {
-            Ok(judged) => print(&if arguments.json { document(&judged) } else { text(&judged) })?,
+            Ok(judged) => {
+                print(&if arguments.json { document(&judged) } else { text(&judged) })?;
+            }
+            Err(error @ WorkError::Store(_)) => return Err(Failure::error(error)),
             // The next one may come to something.
-            Err(error @ (WorkError::Run(_) | WorkError::Target { .. } | WorkError::NoPlan { .. })) => {
+            Err(error) => {
                 let error = anyhow::Error::from(error).context(format!("the job {job} came to no run"));
                 console::error(&format_args!("{error:#}"));
-                Exit::Error
             }
-            Err(error) => return Err(Failure::error(error)),
-        };
+        }
     }
 }
 

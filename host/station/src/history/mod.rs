@@ -24,6 +24,7 @@ pub mod unit;
 pub mod yields;
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 use serde::Serialize;
 
@@ -58,6 +59,12 @@ pub struct PlanName {
     pub product: String,
     /// The plan's name.
     pub plan: String,
+}
+
+impl fmt::Display for PlanName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.product, self.plan)
+    }
 }
 
 impl From<&Plan> for PlanName {

@@ -1,7 +1,8 @@
 //! Fetches what a plant publishes.
 
 use super::kept::Signed;
-use super::{Bundle, BundleError, Kept, PlanName, PublicKey, Statement};
+use super::{Bundle, BundleError, Kept, PublicKey, Statement};
+use crate::history::PlanName;
 use crate::input_error::InputError;
 use crate::plan::Plan;
 use crate::store::{Plant, StoreError};

@@ -8,7 +8,8 @@ use halfrow::result::sha256;
 use serde::{Deserialize, Serialize};
 
 use super::bundle::PLAN;
-use super::{BundleError, PlanName, PublicKey, Statement};
+use super::{BundleError, PublicKey, Statement};
+use crate::history::PlanName;
 
 /// A folder of plans: each by its hash, and for each name what holds.
 #[derive(Clone, Debug)]
@@ -53,7 +54,7 @@ impl Kept {
         self.folder.join(&statement.sha256).join(PLAN)
     }
 
-    pub(super) fn signed(&self, plan: &PlanName) -> Option<Signed> {
+    fn signed(&self, plan: &PlanName) -> Option<Signed> {
         serde_json::from_slice(&fs::read(self.holds(plan)).ok()?).ok()
     }
 
@@ -68,7 +69,7 @@ impl Kept {
     }
 
     /// Where it is kept what holds; a product may be called what no file can be.
-    fn holds(&self, PlanName { product, name }: &PlanName) -> PathBuf {
-        self.folder.join(sha256([format!("{product}\0{name}")]) + ".json")
+    fn holds(&self, PlanName { product, plan }: &PlanName) -> PathBuf {
+        self.folder.join(sha256([format!("{product}\0{plan}")]) + ".json")
     }
 }

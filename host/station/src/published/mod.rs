@@ -18,30 +18,14 @@ pub use fetched::{FetchError, Fetched, fetch};
 pub use kept::Kept;
 pub use signed::{PublicKey, SigningError, SigningKey, Statement};
 
+use crate::history::PlanName;
+
 /// What a plan's place begins with in settings when the plant publishes it.
 pub(crate) const PLACE: &str = "plant:";
 
-/// A plan by its product and name.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct PlanName {
-    /// The product.
-    pub product: String,
-    /// The plan's name.
-    pub name: String,
-}
-
-impl PlanName {
-    /// The plan that a place in settings names, if the plant publishes it: `plant:PRODUCT/NAME`.
-    #[must_use]
-    pub fn of_place(place: &str) -> Option<Self> {
-        let (product, name) = place.strip_prefix(PLACE)?.split_once('/')?;
-        let is_whole = !product.is_empty() && !name.is_empty();
-        is_whole.then(|| Self { product: product.to_owned(), name: name.to_owned() })
-    }
-}
-
-impl std::fmt::Display for PlanName {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}/{}", self.product, self.name)
-    }
+/// The plan that a place in settings names, if the plant publishes it: `plant:PRODUCT/NAME`.
+pub(crate) fn named_by(place: &str) -> Option<PlanName> {
+    let (product, plan) = place.strip_prefix(PLACE)?.split_once('/')?;
+    let is_whole = !product.is_empty() && !plan.is_empty();
+    is_whole.then(|| PlanName { product: product.to_owned(), plan: plan.to_owned() })
 }

@@ -1,9 +1,7 @@
 //! Keys of engineers (Ed25519, RFC 8032), and what they sign.
 
 use std::fmt;
-use std::fs::File;
-use std::io::{self, Write as _};
-use std::os::unix::fs::OpenOptionsExt as _;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use base64::Engine as _;
@@ -12,8 +10,8 @@ use ring::rand::SystemRandom;
 use ring::signature::{ED25519, Ed25519KeyPair, KeyPair as _, UnparsedPublicKey};
 use serde::{Deserialize, Serialize};
 
-use super::PlanName;
-use crate::web::{SecretError, secret};
+use crate::history::PlanName;
+use crate::web::{SecretError, create, secret};
 
 /// What public keys begin with.
 const KIND: &str = "ed25519:";
@@ -65,12 +63,8 @@ impl SigningKey {
     pub fn draw(path: &Path) -> Result<Self, SigningError> {
         let document =
             Ed25519KeyPair::generate_pkcs8(&SystemRandom::new()).map_err(|_| SigningError::NoRandomness)?;
-        let write = || {
-            let mut file = File::options().write(true).create_new(true).mode(0o600).open(path)?;
-            writeln!(file, "{}", BASE64_STANDARD.encode(document.as_ref()))?;
-            file.sync_all()
-        };
-        write().map_err(|source| SigningError::File { path: path.to_owned(), source })?;
+        create(path, &BASE64_STANDARD.encode(document.as_ref()))
+            .map_err(|source| SigningError::File { path: path.to_owned(), source })?;
         Self::load(path)
     }
 
@@ -170,6 +164,6 @@ impl Statement {
     /// The plan's product and name.
     #[must_use]
     pub fn plan(&self) -> PlanName {
-        PlanName { product: self.product.clone(), name: self.name.clone() }
+        PlanName { product: self.product.clone(), plan: self.name.clone() }
     }
 }

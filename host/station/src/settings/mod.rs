@@ -19,11 +19,12 @@ pub(crate) use read::is_word;
 pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 
 use crate::floor::{Floor, Place, Rule, Starts};
-use crate::input_error::InputError;
+use crate::history::PlanName;
+use crate::input_error::{Fault, InputError};
 use crate::labgrid::LaneBoard;
 use crate::outbox::PlantSink;
 use crate::plan::Plan;
-use crate::published::{PlanName, PublicKey};
+use crate::published::PublicKey;
 use crate::store::Presence;
 use crate::web::Address;
 
@@ -179,15 +180,11 @@ impl Settings {
     /// # Errors
     /// As [`Self::load`].
     pub fn published(path: &Path) -> Result<Published, InputError> {
-        let text = fs::read_to_string(path)
-            .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
-        read::published(path, &text).map_err(|fault| fault.in_file(path, &text))
+        understood(path, |text| read::published(path, text))
     }
 
     fn load_for(path: &Path, has_lanes: bool) -> Result<Self, InputError> {
-        let text = fs::read_to_string(path)
-            .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
-        read::settings(path, &text, has_lanes).map_err(|fault| fault.in_file(path, &text))
+        understood(path, |text| read::settings(path, text, has_lanes))
     }
 
     /// The plans of a lane.
@@ -225,4 +222,11 @@ impl Settings {
         let places = self.lanes.iter().map(place).collect();
         Floor::new(places, self.plans.iter().map(rule).collect(), self.scan_then_plug)
     }
+}
+
+/// What `read` makes of the text of the file `path`.
+fn understood<T>(path: &Path, read: impl FnOnce(&str) -> Result<T, Fault>) -> Result<T, InputError> {
+    let text = fs::read_to_string(path)
+        .map_err(|source| InputError::Unreadable { path: path.to_owned(), source })?;
+    read(&text).map_err(|fault| fault.in_file(path, &text))
 }

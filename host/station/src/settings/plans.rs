@@ -7,7 +7,7 @@ use toml::Spanned;
 use super::{PlanFile, PlantSettings};
 use crate::input_error::Fault;
 use crate::plan::Plan;
-use crate::published::{Kept, PLACE, PlanName, PublicKey};
+use crate::published::{Kept, PLACE, PublicKey, named_by};
 
 /// Every plan that was named so far, once.
 #[derive(Debug)]
@@ -54,7 +54,7 @@ impl<'a> Plans<'a> {
             let path = self.folder.join(place);
             return Ok((std::path::absolute(&path).unwrap_or(path), None));
         }
-        let Some(plan) = PlanName::of_place(place) else {
+        let Some(plan) = named_by(place) else {
             let what = format!("`{place}` is no plan of a plant");
             return Err(Fault::wrong(at, what, format!("write {PLACE}PRODUCT/NAME")));
         };

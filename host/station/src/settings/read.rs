@@ -16,7 +16,7 @@ use super::{
 use crate::floor::Starts;
 use crate::input_error::Fault;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB};
-use crate::published::PlanName;
+use crate::published::named_by;
 use crate::web::Address;
 
 /// Where all keys are listed.
@@ -96,7 +96,7 @@ pub(super) fn published(path: &Path, text: &str) -> Result<Published, Fault> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let of_lanes = read.lane.iter().map(|lane| &lane.plans);
     let named = of_lanes.chain(read.work.iter().map(|work| &work.plans)).flat_map(Spanned::get_ref);
-    let mut plans: Vec<_> = named.filter_map(|place| PlanName::of_place(place.get_ref())).collect();
+    let mut plans: Vec<_> = named.filter_map(|place| named_by(place.get_ref())).collect();
     plans.sort();
     plans.dedup();
     let plant = read.plant.as_ref().map(|plant| PlantSettings::of(folder, plant)).transpose()?;

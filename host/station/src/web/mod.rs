@@ -28,11 +28,11 @@ mod state;
 mod trouble;
 mod visit;
 
-pub(crate) use access::secret;
 pub use access::{
     Access, Address, AddressError, Role, Scope, SecretError, TokenError, Tokens, UserError, Users, add_token,
     add_user,
 };
+pub(crate) use access::{create, secret};
 pub use routes::{Route, Who, routes, routes_of_plant};
 pub use serve::{ServeError, Server};
 pub use state::App;

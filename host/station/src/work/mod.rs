@@ -10,7 +10,7 @@ mod held;
 
 use std::path::PathBuf;
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use halfrow::target::{Target, TargetError};
 use halfrow::verdict::StoppedBy;
@@ -109,7 +109,7 @@ impl Work<'_> {
             }
             // Stations that were started together do not ask together.
             let wait = rng().random_range(IDLE_MS / 2..IDLE_MS * 3 / 2);
-            sleep_unless(Duration::from_millis(wait), stop);
+            sleep_unless(Duration::from_millis(wait), &|| stop().is_some());
         }
         Ok(None)
     }
@@ -216,10 +216,10 @@ impl Watch for Watched<'_> {
     }
 }
 
-/// Waits so long, or until `stop` says so.
-fn sleep_unless(wait: Duration, stop: &dyn Fn() -> Option<StoppedBy>) {
-    let until = std::time::Instant::now() + wait;
-    while stop().is_none() && std::time::Instant::now() < until {
+/// Waits so long, or until it `is_over`.
+pub(crate) fn sleep_unless(wait: Duration, is_over: &dyn Fn() -> bool) {
+    let until = Instant::now() + wait;
+    while !is_over() && Instant::now() < until {
         thread::sleep(LOOK);
     }
 }

@@ -4,7 +4,8 @@ use super::super::database::values;
 use super::super::{Snapshot, StoreError, statements as sql};
 use super::Plant;
 use crate::clock;
-use crate::published::{Bundle, PlanName, Statement};
+use crate::history::PlanName;
+use crate::published::{Bundle, Statement};
 
 impl Plant {
     /// What holds for this plan: the statement's text, and its signature. Whether it is to be trusted is for whoever asks.
@@ -12,9 +13,9 @@ impl Plant {
     /// # Errors
     /// [`StoreError`] when the plant cannot be read.
     pub fn publication(&mut self, plan: &PlanName) -> Result<Option<(String, String)>, StoreError> {
-        let PlanName { product, name } = plan;
+        let PlanName { product, plan } = plan;
         self.carry_out("to tell a plan", |from| {
-            from.first(sql::PUBLICATION, values![product, name], |row| Ok((row.get(0)?, row.get(1)?)))
+            from.first(sql::PUBLICATION, values![product, plan], |row| Ok((row.get(0)?, row.get(1)?)))
         })
     }
 
@@ -27,9 +28,9 @@ impl Plant {
         plan: &PlanName,
         version: &str,
     ) -> Result<Option<String>, StoreError> {
-        let PlanName { product, name } = plan;
+        let PlanName { product, plan } = plan;
         self.carry_out("to tell a plan's versions", |from| {
-            from.first(sql::HASH_OF_VERSION, values![product, name, version], |row| row.get(0))
+            from.first(sql::HASH_OF_VERSION, values![product, plan, version], |row| row.get(0))
         })
     }
 

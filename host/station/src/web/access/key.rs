@@ -71,12 +71,7 @@ impl Key {
 
     fn draw(path: &Path) -> Result<Self, SecretError> {
         let key = Self(drawn().map_err(SecretError::NoRandomness)?);
-        let write = || {
-            let mut file = File::options().write(true).create_new(true).mode(0o600).open(path)?;
-            writeln!(file, "{}", hex(&key.0))?;
-            file.sync_all()
-        };
-        write().map_err(|source| SecretError::File { path: path.to_owned(), source })?;
+        create(path, &hex(&key.0)).map_err(|source| SecretError::File { path: path.to_owned(), source })?;
         Ok(key)
     }
 
@@ -99,6 +94,13 @@ impl Key {
         hmac.update(text.as_bytes());
         hmac
     }
+}
+
+/// Makes a file that was not there, of one line, which nobody else may read.
+pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
+    let mut file = File::options().write(true).create_new(true).mode(0o600).open(path)?;
+    writeln!(file, "{line}")?;
+    file.sync_all()
 }
 
 /// The text of a file that nobody else may read.

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 
 pub use address::{Address, AddressError};
 pub use key::SecretError;
-pub(crate) use key::secret;
+pub(crate) use key::{create, secret};
 pub use tokens::{Scope, TokenError, Tokens};
 pub use users::{Role, UserError, Users};
 

@@ -18,7 +18,7 @@ use crate::plant::link::certificates;
 
 /// A broker that lets one user in, and a listener to all that it is told.
 struct Broker {
-    folder: TempDir,
+    _folder: TempDir,
     port: u16,
     broker: Child,
     listener: Child,
@@ -72,7 +72,7 @@ impl Broker {
             "1",
         ]);
         let listener = listener.args(["-t", "#", "-F", "%t %p", "-d"]).args(trusted).stdout(Stdio::piped());
-        Self { folder, port, broker, listener: listener.spawn().unwrap() }
+        Self { _folder: folder, port, broker, listener: listener.spawn().unwrap() }
     }
 
     /// The next events: topic and document of each.
@@ -105,7 +105,6 @@ impl Drop for Broker {
             let _ = process.kill();
             let _ = process.wait();
         }
-        let _ = self.folder.path();
     }
 }
 
