@@ -60,7 +60,9 @@ fn lanes_judge_at_once_and_every_verdict_has_its_record() {
         words.dedup();
         words
     };
-    assert_eq!(words("1"), ["EMPTY", "READY", "RUNNING", "SAVING", "PASS"]);
+    // Whether the board was seen before anybody listened is chance.
+    let from_the_board: Vec<_> = words("1").into_iter().skip_while(|word| word == "EMPTY").collect();
+    assert_eq!(from_the_board, ["READY", "RUNNING", "SAVING", "PASS"]);
     station.assert_well();
 }
 
