@@ -19,7 +19,9 @@ use super::why::Why;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
-use crate::store::{Plant, PlantAddress, PlantPool, SharedBoard, StoreError, Turn, Waiter, boards};
+use crate::store::{
+    Plant, PlantAddress, PlantLink, PlantPool, SharedBoard, StoreError, Turn, Waiter, boards,
+};
 use crate::work::{Held, Holding, sleep_unless};
 
 /// How often somebody who waits asks again.
@@ -199,7 +201,7 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
     let holder = format!("{station} {:016x}", rng().random::<u64>());
     let waiter = Waiter::new(kind, &holder, station).map_err(Failure::error)?;
     let Some(held) = wait(address, &waiter, &is_over)? else { return Ok(Exit::Pass) };
-    let holding = Holding::begin(address.clone(), Held::Board(held.clone()));
+    let holding = Holding::begin(PlantLink::new(address.clone()), Held::Board(held.clone()));
     print(&json!({ "held": held }).to_string())?;
     while !is_over() {
         if let Some(lost) = holding.lost() {

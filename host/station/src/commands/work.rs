@@ -13,7 +13,7 @@ use crate::console;
 use crate::exit::Exit;
 use crate::outbox::Outbox;
 use crate::settings::Settings;
-use crate::store::{Claim, SharedStore, Worker};
+use crate::store::{Claim, PlantLink, SharedStore, Worker};
 use crate::work::{Judged, Work, WorkError};
 
 /// Take jobs of the plant, one after the other, and judge the boards that they are about
@@ -51,7 +51,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let store = SharedStore::new(store);
     let outbox = Outbox::start(&store, sinks)?;
     let program = std::env::current_exe().map_err(Failure::error)?;
-    let work = Work { settings: &settings, address, store, program, worker };
+    let plant = PlantLink::new(address);
+    let work = Work { settings: &settings, plant, store, program, worker };
     let stop = || signal.by();
     let ended = take_jobs(&work, arguments, &stop);
     outbox.close();
@@ -68,6 +69,10 @@ fn take_jobs(
     loop {
         let claim = if arguments.once { work.claim()? } else { work.next(stop)? };
         let Some(claim) = claim else { return Ok(()) };
+        if stop().is_some() {
+            work.decline(&claim);
+            return Ok(());
+        }
         let job = claim.job.clone();
         tracing::info!("the job {job} is on the board {}", claim.lease.board);
         match work.judge(claim, stop, &mut |_| ()) {
@@ -107,10 +112,10 @@ fn document(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts }: 
 fn text(Judged { claim: Claim { job, lease, .. }, saved, is_sent, counts }: &Judged) -> String {
     let (run, ended) = (&saved.record.run, &saved.record.conclusion);
     let note = match (is_sent, counts) {
-        (_, false) => "; another run of the job counts",
-        (false, true) => "; the plant does not have it yet",
-        (true, true) if ended.verdict == Verdict::Error => "; the job is given back",
-        (true, true) => "",
+        (_, Some(false)) => "; another run of the job counts",
+        (false, _) => "; the plant does not have it yet",
+        (true, _) if ended.verdict == Verdict::Error => "; the job is given back",
+        (true, _) => "",
     };
     format!("{} {}: {} (job {job}, board {}{note})", ended.verdict, run.serial, ended.headline, lease.board)
 }

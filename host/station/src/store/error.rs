@@ -133,4 +133,10 @@ impl StoreError {
             Engine::Postgres => Self::Plant { plant: place.display().to_string(), doing, source },
         }
     }
+
+    /// Whether the plant is not there for now, rather than that it does not do this one thing.
+    #[must_use]
+    pub fn is_away(&self) -> bool {
+        matches!(self, Self::Plant { source, .. } if source.is_away())
+    }
 }

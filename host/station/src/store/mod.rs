@@ -43,9 +43,9 @@ pub use error::StoreError;
 pub use keeping::Removed;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, Tried, Unsent};
 pub use plant::{
-    Claim, Job, LEASE_MS, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError, PlantPool,
-    Presence, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs, publications,
-    waiters,
+    Claim, Job, LEASE_MS, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError, PlantLink,
+    PlantPool, Presence, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
+    publications, waiters,
 };
 pub use shared::SharedStore;
 pub use shift::{Checked, Owed};

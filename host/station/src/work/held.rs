@@ -1,13 +1,14 @@
 //! What is held at a plant: a thread renews it, and says when it is lost.
 
-use std::sync::mpsc::{self, RecvTimeoutError, Sender};
-use std::sync::{Arc, OnceLock};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crate::guard::guarded;
 use crate::said::Said;
-use crate::store::{Claim, LEASE_MS, Lease, Plant, PlantAddress, StoreError};
+use crate::store::{Claim, LEASE_MS, Lease, Plant, PlantLink, StoreError};
 
 /// How long it is held from the last time that it was renewed.
 const HELD: Duration = Duration::from_millis(LEASE_MS.unsigned_abs());
@@ -71,69 +72,41 @@ pub enum Lost {
 /// Something that is held until this is dropped or ended, or it is lost.
 #[derive(Debug)]
 pub struct Holding {
-    lost: Arc<OnceLock<Lost>>,
+    known: Arc<Known>,
     /// Dropped, it ends the thread.
     stop: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Holding {
-    /// Renews what is held from now on, which it is since a moment ago.
+    /// Renews what is held from now on.
     #[must_use]
-    pub fn begin(address: PlantAddress, held: Held) -> Self {
+    pub fn begin(plant: PlantLink, held: Held) -> Self {
         let (stop, stopped) = mpsc::channel::<()>();
-        let lost = Arc::new(OnceLock::new());
-        let noted = Arc::clone(&lost);
-        let renew = move || {
-            let mut plant = None;
-            let (mut since, mut wait) = (Instant::now(), RENEWED);
-            while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
-                let asked = Instant::now();
-                match renewed(&address, &held, &mut plant) {
-                    Ok(true) => (since, wait) = (asked, RENEWED),
-                    Ok(false) => {
-                        let _ = noted.set(Lost::Taken { board: held.lease().board.clone() });
-                        return;
-                    }
-                    Err(error) => {
-                        (plant, wait) = (None, AGAIN);
-                        if since.elapsed() + ENDS >= HELD {
-                            let (board, said) = (held.lease().board.clone(), Said::of(&error).to_string());
-                            let seconds = since.elapsed().as_secs();
-                            let _ = noted.set(Lost::Unreached { board, seconds, said });
-                            return;
-                        }
-                    }
-                }
-            }
-            give_back(&address, &held, plant);
-        };
+        let known = Arc::new(Known::of(held.lease()));
+        let noted = Arc::clone(&known);
+        let renew = move || renew(&plant, &held, &noted, &stopped);
         let thread = thread::Builder::new().name("lease".to_owned()).spawn(move || {
             if let Err(fault) = guarded(renew) {
                 tracing::error!("{fault}");
             }
         });
         if thread.is_err() {
-            // Nothing renews it.
-            let _ = lost.set(Lost::Unreached {
-                board: String::new(),
-                seconds: 0,
-                said: "the system has no thread for it; end other programs".to_owned(),
-            });
+            known.note("the system has no thread that renews it; end other programs".to_owned());
         }
-        Self { lost, stop: Some(stop), thread: thread.ok() }
+        Self { known, stop: Some(stop), thread: thread.ok() }
     }
 
     /// Whether it is lost.
     #[must_use]
     pub fn is_lost(&self) -> bool {
-        self.lost.get().is_some()
+        self.lost().is_some()
     }
 
     /// Why it is lost, if it is.
     #[must_use]
     pub fn lost(&self) -> Option<Lost> {
-        self.lost.get().cloned()
+        self.known.lost()
     }
 
     /// Gives it back.
@@ -149,20 +122,80 @@ impl Drop for Holding {
     }
 }
 
-fn renewed(address: &PlantAddress, held: &Held, plant: &mut Option<Plant>) -> Result<bool, StoreError> {
-    let connected = match plant.take() {
-        Some(plant) => plant,
-        None => Plant::connect(address)?,
-    };
-    held.renew(plant.insert(connected))
+/// What is known of something that is held. Time alone loses it: whoever renews it may be stuck in a question.
+#[derive(Debug)]
+struct Known {
+    board: String,
+    is_taken: AtomicBool,
+    renewed: Mutex<Renewed>,
 }
 
-fn give_back(address: &PlantAddress, held: &Held, plant: Option<Plant>) {
-    let back = match plant {
-        Some(mut plant) => plant.give_back(held.lease()),
-        None => Plant::connect(address).and_then(|mut plant| plant.give_back(held.lease())),
-    };
-    if let Err(error) = back {
+#[derive(Debug)]
+struct Renewed {
+    since: Instant,
+    /// Why it was not since.
+    said: String,
+}
+
+impl Known {
+    fn of(Lease { board, since, .. }: &Lease) -> Self {
+        let renewed = Mutex::new(Renewed { since: *since, said: "it does not answer".to_owned() });
+        Self { board: board.clone(), is_taken: AtomicBool::new(false), renewed }
+    }
+
+    fn lost(&self) -> Option<Lost> {
+        let board = self.board.clone();
+        if self.is_taken.load(Ordering::Relaxed) {
+            return Some(Lost::Taken { board });
+        }
+        let Renewed { since, said } = &*self.renewed();
+        let passed = since.elapsed();
+        (passed + ENDS >= HELD).then(|| Lost::Unreached {
+            board,
+            seconds: passed.as_secs(),
+            said: said.clone(),
+        })
+    }
+
+    /// It was held still behind `since`.
+    fn renew(&self, since: Instant) {
+        self.renewed().since = since;
+    }
+
+    fn note(&self, said: String) {
+        self.renewed().said = said;
+    }
+
+    fn renewed(&self) -> MutexGuard<'_, Renewed> {
+        self.renewed.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Renews what is held until it is stopped, and gives it back then; ends when it is lost.
+fn renew(plant: &PlantLink, held: &Held, known: &Known, stopped: &Receiver<()>) {
+    let mut wait = RENEWED;
+    while stopped.recv_timeout(wait) == Err(RecvTimeoutError::Timeout) {
+        let asked = Instant::now();
+        match plant.ask(|plant| held.renew(plant)) {
+            Ok(true) => {
+                known.renew(asked);
+                wait = RENEWED;
+            }
+            Ok(false) => return known.is_taken.store(true, Ordering::Relaxed),
+            Err(error) => {
+                known.note(Said::of(&error).to_string());
+                wait = AGAIN;
+            }
+        }
+        if known.lost().is_some() {
+            return;
+        }
+    }
+    give_back(plant, held);
+}
+
+fn give_back(plant: &PlantLink, held: &Held) {
+    if let Err(error) = plant.ask(|plant| plant.give_back(held.lease())) {
         tracing::warn!(
             "the board {} is free when its lease has run out: {}",
             held.lease().board,

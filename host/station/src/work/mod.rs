@@ -24,10 +24,12 @@ use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Claim, Plant, PlantAddress, SharedStore, StoreError, Worker};
+use crate::store::{Claim, PlantLink, SharedStore, StoreError, Worker};
 
 /// How often it is asked for a job while there is none, in milliseconds.
 const IDLE_MS: u64 = 1_000;
+/// And while the plant is away.
+const AWAY_MS: u64 = 5_000;
 /// How often it is looked whether the plant has a run.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -69,8 +71,8 @@ pub struct Judged {
     pub saved: Saved,
     /// Whether the plant had it when it was last looked.
     pub is_sent: bool,
-    /// Whether it counts, as far as is known: no other run of the job does.
-    pub counts: bool,
+    /// Whether it counts: no other run of the job does. None if the plant was not there to tell.
+    pub counts: Option<bool>,
 }
 
 /// Somebody who takes jobs.
@@ -78,8 +80,8 @@ pub struct Judged {
 pub struct Work<'a> {
     /// The station's settings.
     pub settings: &'a Settings,
-    /// Where the plant is.
-    pub address: PlantAddress,
+    /// The plant.
+    pub plant: PlantLink,
     /// The station's store, whose outbox is at work.
     pub store: SharedStore,
     /// The program whose `lane` is started.
@@ -94,24 +96,34 @@ impl Work<'_> {
     /// # Errors
     /// [`StoreError`] when the plant is not there.
     pub fn claim(&self) -> Result<Option<Claim>, StoreError> {
-        Plant::connect(&self.address)?.claim(&self.worker)
+        self.plant.ask(|plant| plant.claim(&self.worker))
     }
 
-    /// The next job that this station can judge; none when `stop` says so before there is one.
+    /// The next job that this station can judge; none when `stop` says so before there is one. A plant that is away is waited for.
     ///
     /// # Errors
-    /// [`StoreError`] when the plant is not there.
+    /// [`StoreError`] when the plant is there and refuses.
     pub fn next(&self, stop: &dyn Fn() -> Option<StoppedBy>) -> Result<Option<Claim>, StoreError> {
-        let mut plant = Plant::connect(&self.address)?;
         while stop().is_none() {
-            if let Some(claim) = plant.claim(&self.worker)? {
-                return Ok(Some(claim));
-            }
+            let about_ms = match self.claim() {
+                Ok(None) => IDLE_MS,
+                Err(error) if error.is_away() => {
+                    tracing::warn!("there is no job for now: {}", Said::of(&error));
+                    AWAY_MS
+                }
+                found => return found,
+            };
             // Stations that were started together do not ask together.
-            let wait = rng().random_range(IDLE_MS / 2..IDLE_MS * 3 / 2);
+            let wait = rng().random_range(about_ms / 2..about_ms * 3 / 2);
             sleep_unless(Duration::from_millis(wait), &|| stop().is_some());
         }
         Ok(None)
+    }
+
+    /// Gives a job back that was not begun, which costs it no attempt.
+    pub fn decline(&self, claim: &Claim) {
+        let back = self.plant.ask(|plant| plant.decline(claim));
+        free_later(&claim.job, back);
     }
 
     /// Judges the board of a claim, keeps the result, and waits until the plant has it or the claim is lost.
@@ -124,20 +136,13 @@ impl Work<'_> {
         stop: &dyn Fn() -> Option<StoppedBy>,
         heard: &mut dyn FnMut(Stage<'_>),
     ) -> Result<Judged, WorkError> {
-        let holding = Holding::begin(self.address.clone(), Held::Job(claim.clone()));
+        let holding = Holding::begin(self.plant.clone(), Held::Job(claim.clone()));
         let saved = match self.run(&claim, &holding, stop, heard) {
             Ok(saved) => saved,
             Err(error) => {
                 let said = Said::of(&error).to_string();
-                if let Err(error) =
-                    Plant::connect(&self.address).and_then(|mut plant| plant.fail(&claim, &said))
-                {
-                    tracing::warn!(
-                        "the job {} is free when its lease has run out: {}",
-                        claim.job,
-                        Said::of(&error)
-                    );
-                }
+                let back = self.plant.ask(|plant| plant.fail(&claim, &said));
+                free_later(&claim.job, back);
                 return Err(error);
             }
         };
@@ -193,9 +198,16 @@ impl Work<'_> {
     }
 
     /// Whether no other run of the job counts.
-    fn counts(&self, claim: &Claim, run: &str) -> bool {
-        let counted = Plant::connect(&self.address).and_then(|mut plant| plant.run_of_job(&claim.job));
-        counted.is_ok_and(|counted| counted.is_none_or(|counted| counted == run))
+    fn counts(&self, claim: &Claim, run: &str) -> Option<bool> {
+        let counted = self.plant.ask(|plant| plant.run_of_job(&claim.job)).ok()?;
+        Some(counted.is_none_or(|counted| counted == run))
+    }
+}
+
+/// Says that a job which could not be given `back` is free later.
+fn free_later(job: &str, back: Result<(), StoreError>) {
+    if let Err(error) = back {
+        tracing::warn!("the job {job} is free when its lease has run out: {}", Said::of(&error));
     }
 }
 

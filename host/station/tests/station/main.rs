@@ -18,3 +18,4 @@ mod runs;
 mod service;
 mod settings;
 mod sinks;
+mod trial;

@@ -1,5 +1,7 @@
 //! Boards that several computers share: each is held by one until a moment of the plant's clock, and by whoever waits longest.
 
+use std::time::Instant;
+
 use serde::Serialize;
 
 use super::super::audit::Line;
@@ -49,6 +51,9 @@ pub struct Lease {
     pub holder: String,
     /// How often somebody got it, this time included.
     pub fence: i64,
+    /// Not later than when it was given, by this computer's clock.
+    #[serde(skip)]
+    pub(crate) since: Instant,
     /// The product that it is a unit of; empty if no plan judges it.
     #[serde(skip)]
     pub(crate) product: String,
@@ -213,12 +218,14 @@ impl Plant {
 
 /// Gives the board of this name to `holder`; its row is locked.
 pub(super) fn hold(to: &mut dyn Database, name: &str, holder: &str) -> Result<Lease, DatabaseError> {
+    let since = Instant::now();
     to.one(sql::HOLD_BOARD, values![holder, LEASE_MS, name], |row| {
         Ok(Lease {
             board: row.get(0)?,
             target: row.get(1)?,
             holder: holder.to_owned(),
             fence: row.get(2)?,
+            since,
             product: row.get(3)?,
             serial: row.get(4)?,
         })

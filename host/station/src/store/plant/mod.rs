@@ -7,12 +7,14 @@ mod address;
 mod arrived;
 mod boards;
 mod jobs;
+mod link;
 mod plans;
 mod pool;
 
 pub use address::{PlantAddress, PlantAddressError};
 pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, Waiting, boards, waiters};
 pub use jobs::{Claim, Job, NewJob, STATES, Wanted, Worker, jobs};
+pub use link::PlantLink;
 pub use plans::publications;
 pub use pool::PlantPool;
 
@@ -81,7 +83,7 @@ impl PlantError {
     /// Whether the plant is not there, rather than that it does not take this one thing.
     #[must_use]
     pub fn is_away(&self) -> bool {
-        matches!(self, Self::Store(StoreError::Plant { source, .. }) if source.is_away())
+        matches!(self, Self::Store(error) if error.is_away())
     }
 }
 

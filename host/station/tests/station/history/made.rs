@@ -5,7 +5,7 @@ use std::path::Path;
 use halfrow::Verdict;
 use halfrow_station::plan::limits::{Blame, Limit, Maker, Measurement, SAMPLES_DIFFERING};
 use halfrow_station::record::{
-    Attachment, BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead, SCHEMA,
+    Attachment, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause, RunHead, SCHEMA,
     StepOutcome, StepRecord, SuspectRecord, judged,
 };
 use halfrow_station::store::{Folder, Snapshot, Store};
@@ -43,6 +43,8 @@ pub(crate) struct Run {
     pub(crate) end: End,
     /// What is attached.
     pub(crate) evidence: Vec<&'static str>,
+    /// The job that it is of.
+    pub(crate) job: Option<JobClaim>,
 }
 
 impl Run {
@@ -58,6 +60,7 @@ impl Run {
             started_ms: BEGIN_MS,
             end,
             evidence: Vec::new(),
+            job: None,
         }
     }
 }
@@ -91,8 +94,13 @@ impl Made {
 
     /// Enters the `number`-th run of several stores that are looked at together.
     pub(crate) fn numbered(&mut self, number: u32, run: &Run) -> String {
-        self.entered = number - 1;
+        self.count_from(number);
         self.run(run)
+    }
+
+    /// The next run is the `number`-th.
+    pub(crate) fn count_from(&mut self, number: u32) {
+        self.entered = number - 1;
     }
 
     /// The folder, which another program may write to from here on.
@@ -150,7 +158,7 @@ impl Made {
             target: "usb:1-2.3".to_owned(),
             fence: 0,
             started_ms: run.started_ms,
-            job: None,
+            job: run.job.clone(),
         }
     }
 }

@@ -44,7 +44,7 @@ fn shared(count: usize) -> (Server, Plant) {
     (server, plant)
 }
 
-fn any() -> Wanted {
+pub(crate) fn any() -> Wanted {
     Wanted::Kind("mock".to_owned())
 }
 

@@ -19,12 +19,25 @@ const WRONG: &str = "wrong-horse-5e1f";
 
 /// Makes an authority and a certificate that it signs for `localhost` in `folder`: ca.pem, server.crt, server.key.
 pub(crate) fn certificates(folder: &Path) {
+    certificates_for(folder, "IP:127.0.0.1");
+}
+
+/// As [`certificates`], for these names besides.
+pub(crate) fn certificates_for(folder: &Path, names: &str) {
     let script = "set -e
         openssl req -x509 -newkey rsa:2048 -nodes -keyout ca.key -out ca.pem -days 2 -subj /CN=authority 2>/dev/null
         openssl req -newkey rsa:2048 -nodes -keyout server.key -out server.csr -subj /CN=localhost 2>/dev/null
-        printf 'subjectAltName=DNS:localhost,IP:127.0.0.1' >names
+        printf 'subjectAltName=DNS:localhost,%s' \"$NAMES\" >names
         openssl x509 -req -in server.csr -CA ca.pem -CAkey ca.key -CAcreateserial -days 2 -extfile names -out server.crt 2>/dev/null";
-    assert!(Command::new("sh").args(["-c", script]).current_dir(folder).status().unwrap().success());
+    assert!(
+        Command::new("sh")
+            .args(["-c", script])
+            .env("NAMES", names)
+            .current_dir(folder)
+            .status()
+            .unwrap()
+            .success()
+    );
 }
 
 #[test]

@@ -11,3 +11,4 @@ pub(crate) mod sent;
 pub(crate) mod server;
 mod tables;
 mod waiting;
+pub(crate) mod way;

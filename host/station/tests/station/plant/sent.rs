@@ -10,10 +10,15 @@ use crate::history::released::history;
 
 /// Sends all that is due, until nothing is.
 pub(crate) fn send(made: Made, address: PlantAddress) -> (Made, Round) {
+    send_as("station 7", made, address)
+}
+
+/// As [`send`], from a station of this name.
+pub(crate) fn send_as(name: &str, made: Made, address: PlantAddress) -> (Made, Round) {
     let (folder, mut store) = made.parts();
     store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
     let origin = store.origin().unwrap();
-    let mut sink = PlantSink::new(address, presence("station 7", origin));
+    let mut sink = PlantSink::new(address, presence(name, origin));
     let store = SharedStore::new(store);
     let mut all = Round::default();
     loop {

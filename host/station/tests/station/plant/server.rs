@@ -71,7 +71,7 @@ impl Server {
             "-c",
             "fsync=off",
             "-c",
-            "max_connections=200",
+            "max_connections=400",
         ]);
         self.process = Some(server.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap());
         let until = Instant::now() + STARTED;

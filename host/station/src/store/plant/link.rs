@@ -1,0 +1,43 @@
+//! A connection to a plant for as long as it is good.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::super::StoreError;
+use super::{Plant, PlantAddress};
+
+/// A plant that is connected to when it is asked something, and anew behind an error. A copy has the same connection.
+#[derive(Clone, Debug)]
+pub struct PlantLink(Arc<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    address: PlantAddress,
+    plant: Mutex<Option<Plant>>,
+}
+
+impl PlantLink {
+    /// To the plant at `address`.
+    #[must_use]
+    pub fn new(address: PlantAddress) -> Self {
+        Self(Arc::new(Parts { address, plant: Mutex::default() }))
+    }
+
+    /// What the plant answers. Whoever has another question waits meanwhile.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it is not there, or refuses. The next question goes over a new connection.
+    pub fn ask<T>(
+        &self,
+        question: impl FnOnce(&mut Plant) -> Result<T, StoreError>,
+    ) -> Result<T, StoreError> {
+        // Whoever panicked has taken the connection with them.
+        let mut kept = self.0.plant.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut plant = match kept.take() {
+            Some(plant) => plant,
+            None => Plant::connect(&self.0.address)?,
+        };
+        let answer = question(&mut plant)?;
+        *kept = Some(plant);
+        Ok(answer)
+    }
+}

@@ -1,0 +1,81 @@
+//! A way to the server that is cut where COMMITs pass.
+
+use std::io::{Read as _, Write as _};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::thread;
+use std::time::Duration;
+
+/// Where a connection is cut.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cut {
+    /// The server never sees the COMMIT.
+    Before,
+    /// It carries it out, and nobody hears of it.
+    Behind,
+    /// The server never sees it, and the station hears that it was carried out.
+    Pretended,
+}
+
+/// What a server answers to a COMMIT: CommandComplete, and ReadyForQuery outside of a transaction (PostgreSQL, 55.7).
+const COMMITTED: &[u8] = b"C\0\0\0\x0bCOMMIT\0Z\0\0\0\x05I";
+
+/// A way to the server on the port `to` that is cut at those COMMITs at which `cuts` says so. Returns its port.
+pub(crate) fn way(to: u16, cuts: impl Fn() -> Option<Cut> + Send + Sync + 'static) -> u16 {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    let cuts = Arc::new(cuts);
+    thread::spawn(move || {
+        for client in listener.incoming() {
+            let (client, cuts) = (client.unwrap(), Arc::clone(&cuts));
+            // A server that is not there hangs up.
+            let Ok(server) = TcpStream::connect(("127.0.0.1", to)) else { continue };
+            let (from, back) = (server.try_clone().unwrap(), client.try_clone().unwrap());
+            thread::spawn(move || carried(from, &back, |_| true));
+            thread::spawn(move || {
+                let asked = client.try_clone().unwrap();
+                carried(asked, &server, |bytes| {
+                    let is_commit = bytes.windows(6).any(|word| word == b"COMMIT");
+                    let cut = if is_commit { cuts() } else { None };
+                    cut.is_none_or(|cut| carry_out(cut, bytes, &client, &server))
+                });
+                let _ = client.shutdown(Shutdown::Both);
+            });
+        }
+    });
+    port
+}
+
+/// Cuts a connection at this COMMIT. Returns whether it is carried on: never.
+fn carry_out(cut: Cut, commit: &[u8], mut client: &TcpStream, mut server: &TcpStream) -> bool {
+    match cut {
+        Cut::Before => {}
+        Cut::Behind => {
+            let _ = client.shutdown(Shutdown::Both);
+            if server.write_all(commit).is_ok() {
+                // It has done it when it answers that it waits for more.
+                thread::sleep(Duration::from_millis(50));
+            }
+        }
+        Cut::Pretended => drop(client.write_all(COMMITTED)),
+    }
+    let _ = server.shutdown(Shutdown::Both);
+    false
+}
+
+fn some(from: &mut TcpStream) -> Option<Vec<u8>> {
+    let mut bytes = vec![0; 65_536];
+    let read = from.read(&mut bytes).ok().filter(|read| *read > 0)?;
+    bytes.truncate(read);
+    Some(bytes)
+}
+
+/// Carries bytes on for as long as `watch` lets them.
+fn carried(mut from: TcpStream, mut to: &TcpStream, watch: impl Fn(&[u8]) -> bool) {
+    while let Some(bytes) = some(&mut from) {
+        if !watch(&bytes) || to.write_all(&bytes).is_err() {
+            break;
+        }
+    }
+    let _ = to.shutdown(Shutdown::Both);
+}

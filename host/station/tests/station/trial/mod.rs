@@ -1,0 +1,283 @@
+//! A trial of a whole plant: stations, some of them real programs, that judge thousands of boards while they are killed, while
+//! they stand still for longer than they may, while their connections are cut around COMMITs, and while the plant's server is
+//! killed. Every job is judged once in the end, and every record is at the plant as its station has it.
+//!
+//! ```text
+//!  clients (threads: the library, a store of their own each) ─┐                           ┌─ killed, started again
+//!  stations (processes: `work`, killed and stopped) ──────────┼─ way, cut at COMMITs ─► server
+//!  stations in a network of their own, which is unplugged ────┴─ TLS ────────────────────┘
+//! ```
+
+mod client;
+mod found;
+mod network;
+mod process;
+mod shelf;
+
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Mutex, MutexGuard};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use halfrow_station::store::{Plant, PlantAddress, PlantLink};
+use tempfile::TempDir;
+
+use crate::history::generated::Draw;
+use crate::jobs::{any, board, job, plan};
+use crate::plant::server::Server;
+use crate::plant::way::{Cut, way};
+use found::Found;
+use network::Network;
+use shelf::Shelf;
+
+/// How often it is looked how far the trial is.
+const LOOK: Duration = Duration::from_millis(200);
+/// How long a trial that waits for no lease may stand still until all of them have run out.
+const HURRY: Duration = Duration::from_secs(2);
+/// How long a trial may stand still.
+const STUCK: Duration = Duration::from_secs(300);
+
+/// How large a trial is, and what happens in it.
+#[derive(Clone, Debug)]
+struct Shape {
+    boards: u32,
+    clients: u32,
+    processes: u32,
+    /// Stations in a network of their own, which needs root.
+    networks: u32,
+    /// How often the server is killed.
+    restarts: u32,
+    /// How long somebody stands still; none if the plant's clock is set on instead.
+    stall: Option<Duration>,
+    /// Of a thousand COMMITs, how many are cut.
+    cuts: u64,
+    /// Whether a run says which claim it is of, and a board knows who has it: without, the trial is a control, which must fail.
+    is_fenced: bool,
+}
+
+/// What happened so far.
+#[derive(Debug, Default)]
+struct Happened {
+    kills: AtomicU32,
+    cuts: AtomicU32,
+    stalls: AtomicU32,
+    unplugged: AtomicU32,
+}
+
+/// A trial that is under way.
+struct Trial {
+    shape: Shape,
+    server: Mutex<Server>,
+    /// The port of the way to the server that is cut now and then.
+    port: u16,
+    shelf: Shelf,
+    happened: &'static Happened,
+    is_over: AtomicBool,
+    /// Jobs of a control, and the runs that were believed to be theirs.
+    believed: Mutex<Vec<[String; 2]>>,
+}
+
+impl Trial {
+    fn begin(shape: Shape) -> Self {
+        let mut server = Server::prepared();
+        let mut plant = Plant::connect(&server.address()).unwrap();
+        let stations = shape.clients + shape.processes + shape.networks;
+        for number in 0..stations + stations / 10 + 1 {
+            plant.share(&board(number as usize, "mock"), "engel").unwrap();
+        }
+        plant.add_jobs(&job(&plan(), &any()), shape.boards).unwrap();
+        drop(plant);
+        if shape.networks > 0 {
+            network::opened(&mut server);
+        }
+        let happened: &'static Happened = Box::leak(Box::default());
+        let (draw, most) = (Mutex::new(Draw(5)), shape.cuts);
+        let cut = move || {
+            let drawn = lock(&draw).below(1000);
+            (drawn < most).then(|| {
+                happened.cuts.fetch_add(1, Ordering::Relaxed);
+                if drawn % 2 == 0 { Cut::Before } else { Cut::Behind }
+            })
+        };
+        let port = way(server.port(), cut);
+        let (server, shelf, is_over) =
+            (Mutex::new(server), Shelf::new(shape.is_fenced), AtomicBool::new(false));
+        Self { shape, server, port, shelf, happened, is_over, believed: Mutex::default() }
+    }
+
+    /// The plant by the way that is cut.
+    fn address(&self) -> PlantAddress {
+        PlantAddress::new(&self.url(), None, None).unwrap()
+    }
+
+    fn url(&self) -> String {
+        format!("postgres://postgres@127.0.0.1:{}/plant", self.port)
+    }
+
+    fn is_over(&self) -> bool {
+        self.is_over.load(Ordering::Relaxed)
+    }
+
+    /// Lets everything happen until all jobs are done, and returns the folders of all stations, with nothing left to be sent.
+    fn run(&self) -> Vec<TempDir> {
+        thread::scope(|scope| {
+            let clients =
+                (0..self.shape.clients).map(|number| scope.spawn(move || client::work(self, number)));
+            let clients: Vec<_> = clients.collect();
+            let processes = (0..self.shape.processes)
+                .map(|number| scope.spawn(move || process::work(self, number, None)));
+            let processes: Vec<_> = processes.collect();
+            let networks = (0..self.shape.networks).map(|number| {
+                scope.spawn(move || {
+                    process::work(self, self.shape.processes + number, Some(Network::new(number)))
+                })
+            });
+            let networks: Vec<_> = networks.collect();
+            self.watch();
+            self.is_over.store(true, Ordering::Relaxed);
+            let all = clients.into_iter().chain(processes).chain(networks);
+            all.map(|station| station.join().unwrap()).collect()
+        })
+    }
+
+    /// Kills the server now and then, and looks after jobs that came to nothing, until all are done.
+    fn watch(&self) {
+        let mut restarts = 0;
+        let (mut last, mut moved, begun) = (0, Instant::now(), Instant::now());
+        loop {
+            thread::sleep(LOOK);
+            let done = self.done();
+            if done == self.shape.boards {
+                return;
+            }
+            if done != last {
+                (last, moved) = (done, Instant::now());
+            }
+            if self.shape.stall.is_none() && moved.elapsed() > HURRY {
+                self.all_run_out();
+            }
+            assert!(
+                moved.elapsed() < STUCK,
+                "{done} jobs are done, and no other for long: {:?}",
+                self.happened
+            );
+            if begun.elapsed().as_secs() % 60 == 0 {
+                say(&format!("{done} of {} jobs are done, {:?}", self.shape.boards, self.happened));
+                thread::sleep(Duration::from_secs(1));
+            }
+            if restarts < self.shape.restarts
+                && done >= (restarts + 1) * self.shape.boards / (self.shape.restarts + 1)
+            {
+                let mut server = lock(&self.server);
+                server.kill();
+                thread::sleep(Duration::from_secs(1));
+                server.again();
+                restarts += 1;
+            }
+        }
+    }
+
+    fn all_run_out(&self) {
+        let text = "UPDATE job SET until_ms = 0 WHERE state = 'claimed'; UPDATE board SET until_ms = 0 WHERE holder IS NOT NULL";
+        lock(&self.server).client("plant").batch_execute(text).unwrap();
+    }
+
+    /// How many jobs are done. What was claimed five times in vain is tried again, as a person would have it.
+    fn done(&self) -> u32 {
+        let server = lock(&self.server);
+        for dead in server.rows("SELECT id FROM job WHERE state = 'dead'") {
+            let plant = PlantLink::new(server.address());
+            plant
+                .ask(|plant| plant.retry_job(&dead[0], "engel", "five stations in a row were killed"))
+                .unwrap();
+        }
+        server.rows("SELECT count(*) FROM job WHERE state = 'done'")[0][0].parse().unwrap()
+    }
+
+    /// The job is done by this run, whoever has it.
+    fn believed(&self, job: &str, run: &str) {
+        lock(&self.believed).push([job, run].map(str::to_owned));
+        let text =
+            format!("UPDATE job SET state = 'done', run_id = '{run}', holder = NULL WHERE id = '{job}'");
+        lock(&self.server).client("plant").batch_execute(&text).unwrap();
+    }
+
+    /// The lease of this job and this board has run out, as if the plant's clock had been set on.
+    fn run_out(&self, job: &str, board: &str) {
+        let text = format!(
+            "UPDATE job SET until_ms = 0 WHERE id = '{job}' AND state = 'claimed';
+             UPDATE board SET until_ms = 0 WHERE name = '{board}' AND holder IS NOT NULL"
+        );
+        lock(&self.server).client("plant").batch_execute(&text).unwrap();
+    }
+}
+
+fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
+    of.lock().unwrap()
+}
+
+/// Tells whoever watches.
+#[expect(clippy::print_stderr, reason = "a long trial is watched")]
+fn say(text: &str) {
+    eprintln!("{text}");
+}
+
+/// What a trial of this shape comes to.
+fn tried(shape: Shape) -> (Found, &'static Happened) {
+    let trial = Trial::begin(shape);
+    let begun = Instant::now();
+    let folders = trial.run();
+    let found = Found::of(&trial, &folders);
+    let seconds = begun.elapsed().as_secs_f64();
+    say(&format!(
+        "{} jobs, {} stations, {seconds:.0} s: {found:?}, {:?}",
+        trial.shape.boards,
+        folders.len(),
+        trial.happened
+    ));
+    (found, trial.happened)
+}
+
+/// Some stations and some hundred boards, where nobody waits for a lease to run out.
+const SHORT: Shape = Shape {
+    boards: 150,
+    clients: 8,
+    processes: 2,
+    networks: 0,
+    restarts: 1,
+    stall: None,
+    cuts: 60,
+    is_fenced: true,
+};
+
+#[test]
+fn whatever_happens_to_stations_every_job_is_judged_once() {
+    let (found, happened) = tried(SHORT);
+    assert_eq!(found.wrong(), Vec::<String>::new());
+    for count in [&happened.kills, &happened.cuts, &happened.stalls] {
+        assert!(count.load(Ordering::Relaxed) > 0, "{happened:?}");
+    }
+}
+
+/// The control: what would be seen if stations that come too late were believed.
+#[test]
+fn without_fences_boards_are_judged_twice_at_once_and_jobs_twice() {
+    let (found, _) = tried(Shape { boards: 60, processes: 0, restarts: 0, is_fenced: false, ..SHORT });
+    assert!(found.doubles > 0 && found.at_once > 0, "{found:?}");
+    assert_eq!((found.undone, found.unlike), (0, 0), "{found:?}");
+}
+
+#[test]
+#[ignore = "for scripts/soak: half an hour, and root"]
+fn a_hundred_stations_judge_ten_thousand_boards_once_each_whatever_happens() {
+    let boards = std::env::var("HALFROW_TRIAL_BOARDS").map_or(10_000, |count| count.parse().unwrap());
+    let stall = Some(Duration::from_secs(33));
+    let (clients, processes, networks, restarts) = (80, 16, 4, 5);
+    let (found, happened) = tried(Shape { boards, clients, processes, networks, restarts, stall, ..SHORT });
+    assert_eq!(found.wrong(), Vec::<String>::new());
+    let least = [(&happened.kills, 10), (&happened.cuts, 10), (&happened.stalls, 5)];
+    for (count, percent) in least {
+        assert!(count.load(Ordering::Relaxed) * 100 >= boards * percent, "{happened:?}");
+    }
+    assert!(happened.unplugged.load(Ordering::Relaxed) >= networks, "{happened:?}");
+}

@@ -1,0 +1,90 @@
+//! A network of its own for a station, by a cable to this computer that can be unplugged: a namespace of Linux, which needs root.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+use tempfile::TempDir;
+
+use super::{Trial, lock};
+use crate::plant::link::certificates_for;
+use crate::plant::server::Server;
+
+/// What the server's certificate is signed by.
+static AUTHORITY: OnceLock<TempDir> = OnceLock::new();
+
+/// Has the server speak TLS to all networks.
+pub(super) fn opened(server: &mut Server) {
+    let folder = AUTHORITY.get_or_init(|| tempfile::tempdir().unwrap());
+    let names: Vec<_> = (0..16).map(|number| format!("IP:{}", near(number))).collect();
+    certificates_for(folder.path(), &names.join(","));
+    server.speaks_tls(folder.path());
+    server.listens_everywhere();
+}
+
+/// This computer's end of the cable.
+fn near(number: u32) -> String {
+    format!("10.213.{number}.1")
+}
+
+/// A network of its own.
+pub(super) struct Network {
+    number: u32,
+    name: String,
+}
+
+impl Network {
+    pub(super) fn new(number: u32) -> Self {
+        let name = format!("hr{}-{number}", std::process::id() % 10_000);
+        let far = format!("10.213.{number}.2/24");
+        ip(&format!("netns add {name}"));
+        ip(&format!("link add {name} type veth peer name {name}p netns {name}"));
+        ip(&format!("addr add {}/24 dev {name}", near(number)));
+        ip(&format!("link set {name} up"));
+        ip(&format!("-n {name} addr add {far} dev {name}p"));
+        ip(&format!("-n {name} link set {name}p up"));
+        ip(&format!("-n {name} link set lo up"));
+        Self { number, name }
+    }
+
+    /// What the settings say of the plant.
+    pub(super) fn settings(&self, trial: &Trial, folder: &Path) -> String {
+        let port = lock(&trial.server).port();
+        let ca: PathBuf = folder.join("ca.pem");
+        std::fs::copy(AUTHORITY.get().unwrap().path().join("ca.pem"), &ca).unwrap();
+        format!(
+            "url = \"postgres://postgres@{}:{port}/plant\"\nca = \"{}\"\n",
+            near(self.number),
+            ca.display()
+        )
+    }
+
+    /// This program in this network.
+    pub(super) fn command(&self, program: &Path) -> Command {
+        let mut command = Command::new("ip");
+        command.args(["netns", "exec", &self.name]).arg(program);
+        command
+    }
+
+    /// Plugs the cable in, or unplugs it.
+    pub(super) fn plug(&self, is_plugged: bool) {
+        ip(&format!("link set {} {}", self.name, if is_plugged { "up" } else { "down" }));
+    }
+}
+
+impl Drop for Network {
+    fn drop(&mut self) {
+        let _ = Command::new("ip").args(["link", "del", &self.name]).status();
+        let _ = Command::new("ip").args(["netns", "del", &self.name]).status();
+    }
+}
+
+fn ip(arguments: &str) {
+    let did = Command::new("ip").args(arguments.split(' ')).output();
+    let did = did.unwrap_or_else(|error| panic!("ip is missing ({error}); apt-get install iproute2"));
+    assert!(
+        did.status.success(),
+        "ip {arguments}: {}; this needs root",
+        String::from_utf8_lossy(&did.stderr)
+    );
+}

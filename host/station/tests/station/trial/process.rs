@@ -1,0 +1,142 @@
+//! A station that is a process of its own: `halfrow-station work`, with all that becomes of it.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::Ordering;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use tempfile::TempDir;
+
+use super::Trial;
+use super::network::Network;
+use crate::common::{self, PLAN, program};
+use crate::history::generated::Draw;
+
+/// How long a station that is asked to end may take.
+const ENDED: Duration = Duration::from_secs(60);
+/// How often it is looked whether the trial is over.
+const LOOK: Duration = Duration::from_millis(100);
+
+/// Where a station in `folder` keeps what it keeps: a client in the folder itself.
+pub(super) fn data(folder: &TempDir) -> PathBuf {
+    let data = folder.path().join("data");
+    if data.is_dir() { data } else { folder.path().to_owned() }
+}
+
+/// A station that takes jobs until the trial is over. Returns its folder.
+pub(super) fn work(trial: &Trial, number: u32, network: Option<Network>) -> TempDir {
+    let folder = common::folder();
+    let plant = match &network {
+        Some(network) => network.settings(trial, folder.path()),
+        None => format!("url = \"{}\"\n", trial.url()),
+    };
+    settings(folder.path(), &format!("station {number}"), &plant);
+    let mut station = Station { trial, folder, network, draw: Draw(1_000 + u64::from(number)) };
+    let mut child = station.start();
+    while !trial.is_over() {
+        station.wait();
+        match station.draw.below(5) {
+            0 | 1 => {
+                child.kill().unwrap();
+                child.wait().unwrap();
+                trial.happened.kills.fetch_add(1, Ordering::Relaxed);
+                child = station.start();
+            }
+            2 => station.stand_still(&child),
+            _ => station.unplug(),
+        }
+    }
+    station.end(child);
+    station.folder
+}
+
+fn settings(folder: &Path, name: &str, plant: &str) {
+    fs::write(folder.join("plan.toml"), PLAN).unwrap();
+    let text = format!(
+        "schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n[plant]\n{plant}[work]\nplans = [\"plan.toml\"]\n"
+    );
+    fs::write(folder.join("station.toml"), text).unwrap();
+}
+
+struct Station<'a> {
+    trial: &'a Trial,
+    folder: TempDir,
+    network: Option<Network>,
+    draw: Draw,
+}
+
+impl Station<'_> {
+    /// The program with these arguments, where it is.
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = match &self.network {
+            Some(network) => network.command(program()),
+            None => Command::new(program()),
+        };
+        let said =
+            File::options().create(true).append(true).open(self.folder.path().join("said.txt")).unwrap();
+        command.args(arguments).arg("--settings").arg(self.folder.path().join("station.toml"));
+        command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(said);
+        command
+    }
+
+    fn start(&self) -> Child {
+        self.command(&["work"]).spawn().unwrap()
+    }
+
+    /// Two to five seconds, or until the trial is over.
+    fn wait(&mut self) {
+        let until = Instant::now() + Duration::from_millis(2_000 + self.draw.below(3_000));
+        while Instant::now() < until && !self.trial.is_over() {
+            thread::sleep(LOOK);
+        }
+    }
+
+    /// It does nothing at all for longer than it may.
+    fn stand_still(&self, child: &Child) {
+        let Some(stall) = self.trial.shape.stall else { return };
+        let signal = |signal| kill(Pid::from_raw(child.id() as i32), signal).unwrap();
+        self.trial.happened.stalls.fetch_add(1, Ordering::Relaxed);
+        signal(Signal::SIGSTOP);
+        thread::sleep(stall);
+        signal(Signal::SIGCONT);
+    }
+
+    /// Its network is away for a while, now and then for longer than it may.
+    fn unplug(&mut self) {
+        let Some(network) = &self.network else { return };
+        self.trial.happened.unplugged.fetch_add(1, Ordering::Relaxed);
+        network.plug(false);
+        thread::sleep(Duration::from_secs(1 + self.draw.below(45)));
+        network.plug(true);
+    }
+
+    /// Ends it, and sends what it still has.
+    fn end(&self, mut child: Child) {
+        kill(Pid::from_raw(child.id() as i32), Signal::SIGTERM).unwrap();
+        let until = Instant::now() + ENDED;
+        while child.try_wait().unwrap().is_none() {
+            assert!(Instant::now() < until, "{}", self.said());
+            thread::sleep(LOOK);
+        }
+        // What was killed in a run is closed by the next start.
+        let closed = self.command(&["work", "--once"]).status().unwrap();
+        assert!(closed.success() || !self.is_sent(), "{}", self.said());
+        while !self.is_sent() {
+            assert!(Instant::now() < until, "{}", self.said());
+            let _ = self.command(&["outbox", "send"]).status().unwrap();
+            thread::sleep(LOOK);
+        }
+    }
+
+    fn is_sent(&self) -> bool {
+        common::query(&data(&self.folder), "SELECT count(*) FROM outbox WHERE done_ms IS NULL") == ["0"]
+    }
+
+    fn said(&self) -> String {
+        fs::read_to_string(self.folder.path().join("said.txt")).unwrap()
+    }
+}

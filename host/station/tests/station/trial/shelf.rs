@@ -1,0 +1,62 @@
+//! Boards that clients judge, as far as it matters who has them: each numbers its sessions, and hears the last one only.
+
+use std::collections::HashMap;
+use std::sync::Mutex;
+
+use super::lock;
+
+/// All boards.
+pub(super) struct Shelf {
+    sessions: Mutex<HashMap<String, u32>>,
+    /// Runs that ended although another one had begun on their board.
+    at_once: Mutex<Vec<String>>,
+    is_fenced: bool,
+}
+
+/// Somebody else has begun on the board.
+#[derive(Debug)]
+pub(super) struct Superseded;
+
+/// A session of a board.
+pub(super) struct Session<'a> {
+    shelf: &'a Shelf,
+    board: String,
+    number: u32,
+}
+
+impl Shelf {
+    pub(super) fn new(is_fenced: bool) -> Self {
+        Self { sessions: Mutex::default(), at_once: Mutex::default(), is_fenced }
+    }
+
+    /// Begins a session, which ends the one before.
+    pub(super) fn begin(&self, board: &str) -> Session<'_> {
+        let mut sessions = lock(&self.sessions);
+        let number = sessions.entry(board.to_owned()).or_default();
+        *number += 1;
+        Session { shelf: self, board: board.to_owned(), number: *number }
+    }
+
+    /// Runs that were judged although another one had begun on their board.
+    pub(super) fn at_once(&self) -> usize {
+        lock(&self.at_once).len()
+    }
+}
+
+impl Session<'_> {
+    fn is_last(&self) -> bool {
+        lock(&self.shelf.sessions).get(&self.board) == Some(&self.number)
+    }
+
+    /// Exchanges something with the board.
+    pub(super) fn exchange(&self) -> Result<(), Superseded> {
+        if self.is_last() || !self.shelf.is_fenced { Ok(()) } else { Err(Superseded) }
+    }
+
+    /// Has the run of this session judged.
+    pub(super) fn judged(&self, run: &str) {
+        if !self.is_last() {
+            lock(&self.shelf.at_once).push(run.to_owned());
+        }
+    }
+}
