@@ -5,6 +5,7 @@ mod control;
 mod counted;
 mod exports;
 pub(crate) mod generated;
+pub(crate) mod in_time;
 mod kept;
 mod looked_at;
 pub(crate) mod made;

@@ -1,5 +1,7 @@
 //! How many runs a second a plant takes, and how large it grows by them.
 
+use std::sync::mpsc::{Receiver, sync_channel};
+use std::thread;
 use std::time::Instant;
 
 use super::sent::send;
@@ -8,16 +10,24 @@ use crate::history::made::{BEGIN_MS, End, Made, Run};
 
 /// A year of two hundred stations at two hundred boards a day.
 const YEAR: f64 = 200.0 * 200.0 * 365.0;
+/// How many runs one folder has, which is gone when they are sent.
+const FOLDER: u32 = 20_000;
 
-/// So many runs, one in thirty of them a FAIL.
-fn made(count: u32) -> Made {
-    let mut made = Made::new();
-    for number in 0..count {
-        let end = if number % 30 == 0 { End::Fail(&["clock"]) } else { End::Pass };
-        let started_ms = BEGIN_MS + i64::from(number) * 2_000;
-        made.run(&Run { started_ms, ..Run::of(&format!("S{number}"), end) });
-    }
-    made
+/// So many runs, one in thirty of them a FAIL, in folders; the next one is made while one is sent.
+fn made(count: u32) -> Receiver<Made> {
+    let (sender, folders) = sync_channel(0);
+    thread::spawn(move || {
+        for first in (0..count).step_by(FOLDER as usize) {
+            let mut made = Made::new();
+            for number in first..count.min(first + FOLDER) {
+                let end = if number % 30 == 0 { End::Fail(&["clock"]) } else { End::Pass };
+                let started_ms = BEGIN_MS + i64::from(number) * 2_000;
+                made.run(&Run { started_ms, ..Run::of(&format!("S{number}"), end) });
+            }
+            sender.send(made).unwrap();
+        }
+    });
+    folders
 }
 
 #[test]
@@ -25,15 +35,19 @@ fn made(count: u32) -> Made {
 fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
     let count = std::env::var("HALFROW_PLANT_RUNS").map_or(20_000, |count| count.parse().unwrap());
     let server = Server::prepared();
-    let made = made(count);
     let size = || {
         let rows = server.rows("SELECT pg_database_size('plant')");
         rows[0][0].parse::<f64>().unwrap()
     };
-    let (empty, begun) = (size(), Instant::now());
-    let (_made, all) = send(made, server.address());
-    let seconds = begun.elapsed().as_secs_f64();
-    assert_eq!(all.sent, count as usize);
+    let (empty, mut sent, mut seconds) = (size(), 0, 0.0);
+    for made in made(count) {
+        let begun = Instant::now();
+        let (_made, all) = send(made, server.address());
+        let took = begun.elapsed().as_secs_f64();
+        (sent, seconds) = (sent + all.sent, seconds + took);
+        println!("{sent} runs, {:.0} runs/s, {:.0} MB", all.sent as f64 / took, size() / 1e6);
+    }
+    assert_eq!(sent, count as usize);
     let (rate, each) = (f64::from(count) / seconds, (size() - empty) / f64::from(count));
     println!("{count} runs by one outbox: {rate:.0} runs/s, {each:.0} bytes each");
     println!(
@@ -41,8 +55,10 @@ fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
         YEAR * each / 1e9,
         YEAR / 31_536_000.0
     );
+    let begun = Instant::now();
+    server.client("plant").batch_execute("VACUUM ANALYZE").unwrap();
+    println!("VACUUM ANALYZE in {:.0} s", begun.elapsed().as_secs_f64());
     let tables = "SELECT relname, n_live_tup, pg_total_relation_size(relid) FROM pg_stat_user_tables WHERE n_live_tup > 0 ORDER BY 3 DESC";
-    server.client("plant").batch_execute("ANALYZE").unwrap();
     for row in server.rows(tables) {
         println!("  {:<12} {:>9} rows {:>12} bytes", row[0], row[1], row[2]);
     }

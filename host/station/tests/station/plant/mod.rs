@@ -4,6 +4,7 @@ mod cut;
 mod figures;
 mod late;
 pub(crate) mod link;
+mod million;
 pub(crate) mod pages;
 mod plans;
 mod refused;

@@ -6,7 +6,7 @@ use super::server::Server;
 use crate::history::made::Made;
 
 /// Tables that a plant has of a station, each with the columns by which its rows are put in order.
-const TABLES: [(&str, &str); 12] = [
+pub(super) const TABLES: [(&str, &str); 12] = [
     ("plan", "sha256"),
     ("unit", "id"),
     ("run", "id"),
@@ -25,7 +25,7 @@ const TABLES: [(&str, &str); 12] = [
 pub(crate) type Table = Vec<Vec<String>>;
 
 /// The columns of a table, as the station has them, each as text; numbers that are not whole as their bits are.
-fn columns(data: &Path, table: &str) -> Vec<(String, String)> {
+pub(super) fn columns(data: &Path, table: &str) -> Vec<(String, String)> {
     let of = |what: &str| {
         crate::common::query(data, &format!("SELECT {what} FROM pragma_table_info('{table}') ORDER BY cid"))
     };
