@@ -32,7 +32,7 @@ fn cut_at(numbers: impl IntoIterator<Item = usize>) {
                 .batch_execute("TRUNCATE plan, unit, run, record, audit, station CASCADE")
                 .unwrap();
             let commits = AtomicUsize::new(0);
-            let once = move || (commits.fetch_add(1, Ordering::SeqCst) == number).then_some(cut);
+            let once = move |_| (commits.fetch_add(1, Ordering::SeqCst) == number).then_some(cut);
             let url = format!("postgres://postgres@127.0.0.1:{}/plant", way(server.port(), once));
             let address = PlantAddress::new(&url, None, None).unwrap();
             let (made, first) = send(history(), address.clone());

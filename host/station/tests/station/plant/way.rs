@@ -20,8 +20,9 @@ pub(crate) enum Cut {
 /// What a server answers to a COMMIT: CommandComplete, and ReadyForQuery outside of a transaction (PostgreSQL, 55.7).
 const COMMITTED: &[u8] = b"C\0\0\0\x0bCOMMIT\0Z\0\0\0\x05I";
 
-/// A way to the server on the port `to` that is cut at those COMMITs at which `cuts` says so. Returns its port.
-pub(crate) fn way(to: u16, cuts: impl Fn() -> Option<Cut> + Send + Sync + 'static) -> u16 {
+/// A way to the server on the port `to` that is cut at those COMMITs at which `cuts` says so, which hears how many bytes went to
+/// the server since the COMMIT before. Returns its port.
+pub(crate) fn way(to: u16, cuts: impl Fn(usize) -> Option<Cut> + Send + Sync + 'static) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
     let cuts = Arc::new(cuts);
@@ -34,9 +35,11 @@ pub(crate) fn way(to: u16, cuts: impl Fn() -> Option<Cut> + Send + Sync + 'stati
             thread::spawn(move || carried(from, &back, |_| true));
             thread::spawn(move || {
                 let asked = client.try_clone().unwrap();
+                let mut since = 0;
                 carried(asked, &server, |bytes| {
+                    since += bytes.len();
                     let is_commit = bytes.windows(6).any(|word| word == b"COMMIT");
-                    let cut = if is_commit { cuts() } else { None };
+                    let cut = if is_commit { cuts(std::mem::take(&mut since)) } else { None };
                     cut.is_none_or(|cut| carry_out(cut, bytes, &client, &server))
                 });
                 let _ = client.shutdown(Shutdown::Both);
@@ -71,7 +74,7 @@ fn some(from: &mut TcpStream) -> Option<Vec<u8>> {
 }
 
 /// Carries bytes on for as long as `watch` lets them.
-fn carried(mut from: TcpStream, mut to: &TcpStream, watch: impl Fn(&[u8]) -> bool) {
+fn carried(mut from: TcpStream, mut to: &TcpStream, mut watch: impl FnMut(&[u8]) -> bool) {
     while let Some(bytes) = some(&mut from) {
         if !watch(&bytes) || to.write_all(&bytes).is_err() {
             break;

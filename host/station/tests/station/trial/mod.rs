@@ -30,6 +30,8 @@ use found::Found;
 use network::Network;
 use shelf::Shelf;
 
+/// What is sent in a transaction that has a run's record has more bytes than any other.
+const RUN: usize = 2_000;
 /// How often it is looked how far the trial is.
 const LOOK: Duration = Duration::from_millis(200);
 /// How long a trial that waits for no lease may stand still until all of them have run out.
@@ -49,8 +51,6 @@ struct Shape {
     restarts: u32,
     /// How long somebody stands still; none if the plant's clock is set on instead.
     stall: Option<Duration>,
-    /// Of a thousand COMMITs, how many are cut.
-    cuts: u64,
     /// Whether a run says which claim it is of, and a board knows who has it: without, the trial is a control, which must fail.
     is_fenced: bool,
 }
@@ -59,7 +59,10 @@ struct Shape {
 #[derive(Debug, Default)]
 struct Happened {
     kills: AtomicU32,
+    /// Cuts around COMMITs of runs.
     cuts: AtomicU32,
+    /// And around others: of claims, of leases.
+    other_cuts: AtomicU32,
     stalls: AtomicU32,
     unplugged: AtomicU32,
 }
@@ -91,12 +94,14 @@ impl Trial {
             network::opened(&mut server);
         }
         let happened: &'static Happened = Box::leak(Box::default());
-        let (draw, most) = (Mutex::new(Draw(5)), shape.cuts);
-        let cut = move || {
+        let draw = Mutex::new(Draw(5));
+        let cut = move |bytes| {
             let drawn = lock(&draw).below(1000);
+            let (most, counted) =
+                if bytes >= RUN { (120, &happened.cuts) } else { (20, &happened.other_cuts) };
             (drawn < most).then(|| {
-                happened.cuts.fetch_add(1, Ordering::Relaxed);
-                if drawn % 2 == 0 { Cut::Before } else { Cut::Behind }
+                counted.fetch_add(1, Ordering::Relaxed);
+                if drawn.is_multiple_of(2) { Cut::Before } else { Cut::Behind }
             })
         };
         let port = way(server.port(), cut);
@@ -239,16 +244,8 @@ fn tried(shape: Shape) -> (Found, &'static Happened) {
 }
 
 /// Some stations and some hundred boards, where nobody waits for a lease to run out.
-const SHORT: Shape = Shape {
-    boards: 150,
-    clients: 8,
-    processes: 2,
-    networks: 0,
-    restarts: 1,
-    stall: None,
-    cuts: 60,
-    is_fenced: true,
-};
+const SHORT: Shape =
+    Shape { boards: 150, clients: 8, processes: 2, networks: 0, restarts: 1, stall: None, is_fenced: true };
 
 #[test]
 fn whatever_happens_to_stations_every_job_is_judged_once() {
