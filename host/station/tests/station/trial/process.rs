@@ -16,8 +16,8 @@ use super::network::Network;
 use crate::common::{self, PLAN, program};
 use crate::history::generated::Draw;
 
-/// How long a station that is asked to end may take.
-const ENDED: Duration = Duration::from_secs(60);
+/// How long each step of a station's end may take, over a cable that was just plugged in.
+const ENDED: Duration = Duration::from_secs(120);
 /// How often it is looked whether the trial is over.
 const LOOK: Duration = Duration::from_millis(100);
 
@@ -117,17 +117,19 @@ impl Station<'_> {
     /// Ends it, and sends what it still has.
     fn end(&self, mut child: Child) {
         kill(Pid::from_raw(child.id() as i32), Signal::SIGTERM).unwrap();
-        let until = Instant::now() + ENDED;
-        while child.try_wait().unwrap().is_none() {
-            assert!(Instant::now() < until, "{}", self.said());
-            thread::sleep(LOOK);
-        }
+        self.until(|| child.try_wait().unwrap().is_some());
         // What was killed in a run is closed by the next start.
-        let closed = self.command(&["work", "--once"]).status().unwrap();
-        assert!(closed.success() || !self.is_sent(), "{}", self.said());
-        while !self.is_sent() {
+        self.until(|| self.command(&["work", "--once"]).status().unwrap().success());
+        self.until(|| {
+            let sends = || self.command(&["outbox", "send"]).status().unwrap();
+            self.is_sent() || (sends().success() && self.is_sent())
+        });
+    }
+
+    fn until(&self, mut is_so: impl FnMut() -> bool) {
+        let until = Instant::now() + ENDED;
+        while !is_so() {
             assert!(Instant::now() < until, "{}", self.said());
-            let _ = self.command(&["outbox", "send"]).status().unwrap();
             thread::sleep(LOOK);
         }
     }
