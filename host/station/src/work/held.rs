@@ -203,3 +203,30 @@ fn give_back(plant: &PlantLink, held: &Held) {
         );
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What was last renewed so long ago.
+    fn renewed(ago: Duration) -> Known {
+        let since = Instant::now().checked_sub(ago).unwrap();
+        let renewed = Mutex::new(Renewed { since, said: "no route to host".to_owned() });
+        Known { board: "shelf-1".to_owned(), is_taken: AtomicBool::new(false), renewed }
+    }
+
+    /// Whoever renews it may be stuck in a question: nobody tells that it is lost.
+    #[test]
+    fn time_alone_loses_what_is_held_before_somebody_else_may_have_it() {
+        let lost = renewed(HELD.checked_sub(ENDS).unwrap()).lost().unwrap();
+        assert!(
+            matches!(&lost, Lost::Unreached { seconds: 26, said, .. } if said == "no route to host"),
+            "{lost:?}"
+        );
+        let held = renewed(RENEWED);
+        assert_eq!(held.lost(), None);
+        held.renew(Instant::now());
+        held.is_taken.store(true, Ordering::Relaxed);
+        assert_eq!(held.lost(), Some(Lost::Taken { board: "shelf-1".to_owned() }));
+    }
+}
