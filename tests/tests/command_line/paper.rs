@@ -1,7 +1,7 @@
 //! `paper`: what it writes, what it finds, and what it refuses.
 
 use halfrow_tests::program::Folder;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::refused;
 
@@ -53,10 +53,12 @@ fn pictures_and_numbers_are_files_and_the_page_stands_alone() {
         "fig-3.csv",
         "fig-3a.svg",
         "fig-3b.svg",
+        "fig-4-lines.csv",
         "fig-4.csv",
         "fig-4a.png",
         "fig-4b.png",
         "fig-4c.png",
+        "fig-4d.png",
         "fig-4e.png",
         "fig-6a.csv",
         "fig-6a.svg",
@@ -71,12 +73,61 @@ fn pictures_and_numbers_are_files_and_the_page_stands_alone() {
     ];
     assert_eq!(folder.names("out"), expected);
     let page = folder.text("out/paper.html");
-    assert!(page.contains("Carroll et al., is left out"));
+    assert!(page.contains("Fig. 4(d): the projection of Carroll et al."));
     assert!(!page.contains("src=\"http") && !page.contains("<script"), "the page loads something");
-    assert_eq!(page.matches("src=\"data:image/").count(), 11);
+    assert_eq!(page.matches("src=\"data:image/").count(), 12);
     // Exact columns stay straight; a row of the table is longitude, fisheye, perspective, Mercator, exact.
     let straight = folder.text("out/fig-4.csv");
     assert!(straight.lines().skip(1).all(|line| line.ends_with(",0.000,0.000,0.000")), "{straight}");
+}
+
+/// Where a lens whose circle has the radius 320 around (319.5, 319.5) images a point of the world: r = R · θ / 90°.
+fn imaged([u, v, w]: [f64; 3]) -> [f64; 2] {
+    let (aside, angle) = (u.hypot(v), u.hypot(v).atan2(w));
+    let r = 320.0 * angle / std::f64::consts::FRAC_PI_2;
+    [319.5 + r * u / aside, 319.5 + r * v / aside]
+}
+
+/// Two upright edges and a wall's long foot, in a photograph of one's own: the street's, as it was written before.
+#[test]
+fn a_photograph_is_shown_by_lines_that_are_marked_in_it() {
+    let folder = Folder::new();
+    made(&folder, 0, &["fig4"]);
+    folder.write("photograph.png", folder.read("out/fig-4a.png"));
+    let line = |from, to, is: &str| json!({ "from": imaged(from), "to": imaged(to), "is": is });
+    let lines = [
+        line([-4.0, -3.0, 4.0], [-4.0, 3.0, 4.0], "upright"),
+        line([3.0, -3.0, 4.0], [3.0, 3.0, 4.0], "upright"),
+        line([-6.0, 3.0, 4.0], [6.0, 3.0, 4.0], "level"),
+        line([-5.0, -4.0, 2.0], [-5.0, -4.0, 30.0], "straight"),
+    ];
+    let file =
+        |lines: &[Value]| json!({ "circle": { "centre": [319.5, 319.5], "radius": 320 }, "lines": lines });
+    folder.write("lines.json", file(&lines).to_string());
+    let call = ["fig4", "--photograph", "photograph.png", "--lines", "lines.json", "--overwrite"];
+    let (report, _) = made(&folder, 0, &call);
+    assert_eq!(report["items"][0]["claims"], json!([]), "what the street must fulfil is not asked of it");
+    let table = folder.text("out/fig-4-lines.csv");
+    let straight = |name: &str| -> f64 {
+        let line = table.lines().find(|line| line.starts_with(name)).unwrap();
+        line.split(',').nth(1).unwrap().parse().unwrap()
+    };
+    let (own, mercator, plane) = (straight("Carroll"), straight("Mercator"), straight("perspective"));
+    assert!(own < 1.0 && mercator > 10.0 && plane < 0.01, "{table}");
+    // The same picture, seen by the same lens.
+    assert_eq!(folder.read("out/fig-4a.png"), folder.read("photograph.png"));
+    for (content, said) in [
+        ("{}".to_owned(), "is no file of lines"),
+        (json!({ "circle": { "centre": [1, 1], "radius": 0 }, "lines": [] }).to_string(), "has the radius 0"),
+        (
+            file(&[lines[0].clone(), json!({ "from": [9, 9], "to": [9, 9], "is": "level" })]).to_string(),
+            "line 2 in lines.json",
+        ),
+    ] {
+        folder.write("lines.json", content);
+        refused(&folder, &["paper", "-o", "out", call[0], call[1], call[2], call[3], call[4], call[5]], said);
+    }
+    refused(&folder, &["paper", "-o", "out", "fig4", "--lines", "lines.json"], "--photograph");
 }
 
 #[test]
@@ -97,13 +148,13 @@ fn resources_come_from_the_synthesis_report_or_say_how_to_make_one() {
     let folder = Folder::new();
     let (_, said) = made(&folder, 5, &["resources"]);
     assert!(said.contains("run `scripts/hardware resources`"), "{said}");
-    let part = |used: f64, percent: f64| serde_json::json!({ "used": used, "percent": percent });
+    let part = |used: f64, percent: f64| json!({ "used": used, "percent": percent });
     let report = |mean: f64| {
-        let build = serde_json::json!({
+        let build = json!({
             "name": "core, 5 taps, 1 bank", "luts": part(478.0, 3.2), "registers": part(608.0, 2.0),
             "block_rams": part(7.5, 14.4), "dsps": part(5.0, 13.2), "mean": mean,
         });
-        serde_json::json!({ "tool": "Yosys", "device": "XC6SLX25", "builds": [build] }).to_string()
+        json!({ "tool": "Yosys", "device": "XC6SLX25", "builds": [build] }).to_string()
     };
     folder.write("good.json", report(8.2));
     folder.write("large.json", report(10.0));

@@ -19,7 +19,7 @@ use crate::settings::SettingsError;
 use halfrow::result::codes::{self, CodeList, Coded};
 use halfrow::result::{Problem, examples};
 use halfrow::run::{RECORDING_LOST, REPORT_LOST};
-use halfrow_lab::paper::{FolderError, PaperError, PhotographError};
+use halfrow_lab::paper::{FolderError, MarkedError, PaperError, PhotographError};
 use halfrow_lab::training::TrainingError;
 
 #[derive(Debug, Args)]
@@ -91,8 +91,16 @@ codes::codes! {
         Correct => "paper-frame-not-corrected",
         Geometry => "paper-geometry-refused",
         Lens => "paper-lens-refused",
+        Lines => "scene-lines-contradict",
         Tables => "paper-tables-refused",
         = Misfit,
+    }
+    MarkedError {
+        Photograph => "photograph-not-read",
+        Io [path] => "lines-file-unreadable",
+        Content [path] => "lines-file-malformed",
+        Radius [path, radius] => "lines-file-without-circle",
+        Line [path, number] => "scene-line-not-shown",
     }
     PhotographError {
         Read [number] => "photograph-unreadable",

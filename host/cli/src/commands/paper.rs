@@ -17,7 +17,9 @@ use crate::{console, progress};
 use halfrow::board::Board;
 use halfrow::frames::preview::RgbImage;
 use halfrow::target::BoardKind;
-use halfrow_lab::paper::{self, Claim, Exhibit, Folder, Item, Material, PaperError, TestedBoard};
+use halfrow_lab::paper::{
+    self, Claim, Exhibit, Folder, Item, MarkedError, MarkedPhotograph, Material, PaperError, TestedBoard,
+};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -29,6 +31,12 @@ pub(super) struct Arguments {
     /// The folder of the 24 photographs, kodim01.png to kodim24.png
     #[arg(long, value_name = "FOLDER", env = "HALFROW_IMAGES")]
     images: Option<PathBuf>,
+    /// A photograph by a fisheye lens, for Fig. 4 instead of the street
+    #[arg(long, value_name = "FILE", requires = "lines")]
+    photograph: Option<PathBuf>,
+    /// Its image circle and its straight lines, as docs/paper.md describes them
+    #[arg(long, value_name = "FILE", requires = "photograph")]
+    lines: Option<PathBuf>,
     /// The report of `scripts/hardware resources`
     #[arg(long, value_name = "FILE", default_value = "target/hardware/resources/report.json")]
     synthesis: PathBuf,
@@ -56,14 +64,22 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     Files::new(arguments.overwrite)
         .reads(&context.settings_file)
         .reads([&arguments.synthesis])
+        .reads(&arguments.photograph)
+        .reads(&arguments.lines)
         .writes_into("--output", Folder::fixed_files(&arguments.output))
         .check()
         .map_err(Failure::call)?;
     let photographs = arguments.photographs(&items).map_err(Failure::call)?;
+    let marked = arguments.marked().map_err(Failure::call)?;
     let folder = Folder::prepare(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
     let through_board = arguments.board.is_named(&context.settings);
-    let mut material =
-        Material { photographs: &photographs, board: None, through_board, synthesis: &arguments.synthesis };
+    let mut material = Material {
+        photographs: &photographs,
+        marked: marked.as_ref(),
+        board: None,
+        through_board,
+        synthesis: &arguments.synthesis,
+    };
     if items.iter().any(|&item| material.uses_board(item)) {
         material.board = Some(arguments.open(&context.settings)?);
     }
@@ -167,6 +183,11 @@ impl Arguments {
             anyhow::bail!(CallError::PhotographsMissing { needing, others: names(false) });
         };
         Ok(paper::read_photographs(folder)?)
+    }
+
+    fn marked(&self) -> Result<Option<MarkedPhotograph>, MarkedError> {
+        let [Some(photograph), Some(lines)] = [&self.photograph, &self.lines] else { return Ok(None) };
+        MarkedPhotograph::read(photograph, lines).map(Some)
     }
 
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {

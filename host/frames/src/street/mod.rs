@@ -9,6 +9,7 @@ mod facade;
 mod figures;
 mod ground;
 mod light;
+mod lines;
 mod sensor;
 mod sky;
 mod town;
@@ -16,6 +17,7 @@ mod town;
 use halfrow_model::{Colour, Frame, FrameError};
 
 pub use edges::{EdgeDeviation, edge_deviation};
+pub use lines::{SceneLine, lines};
 
 use super::scene::Scene;
 use light::Light;

@@ -43,6 +43,9 @@ pub enum PaperError {
     /// The paper's lens is none.
     #[error("the paper's lens is refused; this is a fault of halfrow, so report it")]
     Lens(#[from] LensError),
+    /// A projection could not be made from lines.
+    #[error("no projection keeps these lines; check that none of them is given twice, in two ways")]
+    Lines,
     /// The paper's row factors are none.
     #[error("the paper's row factors are refused; this is a fault of halfrow, so report it")]
     Tables(#[from] TableError),

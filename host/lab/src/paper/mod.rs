@@ -4,6 +4,7 @@
 //! JSON. Equations, sections, figures and tables are those of Lai et al., *Real-time distortion correction of fish-eye lens
 //! based on Bayer image signal*, Optical Review 2014.
 
+mod carroll;
 mod delay;
 mod details;
 mod distortion;
@@ -16,9 +17,12 @@ mod folder;
 mod graticule;
 mod interpolants;
 mod item;
+mod lines;
+mod marked;
 mod page;
 mod photographs;
 mod psnr;
+mod quality;
 mod resources;
 mod scene_views;
 mod svg;
@@ -32,6 +36,7 @@ pub use error::PaperError;
 pub use exhibit::{Accepted, Cell, Claim, Exhibit, Picture, Table};
 pub use folder::{Folder, FolderError, numbers};
 pub use item::Item;
+pub use marked::{MarkedError, MarkedPhotograph};
 pub use photographs::{PhotographError, read as read_photographs};
 pub(crate) use psnr::psnr;
 pub use tested_board::TestedBoard;
@@ -48,6 +53,8 @@ use halfrow::progress::Progress;
 pub struct Material<'a> {
     /// The 24 photographs; empty when no item needs them.
     pub photographs: &'a [RgbImage],
+    /// What Fig. 4 shows instead of the street.
+    pub marked: Option<&'a MarkedPhotograph>,
     /// The board, if one was opened.
     pub board: Option<TestedBoard>,
     /// Whether Table 1 goes through the board too.
@@ -64,7 +71,7 @@ impl Material<'_> {
     pub fn exhibit(&mut self, item: Item, progress: &dyn Progress) -> Result<Exhibit, PaperError> {
         match item {
             Item::Fig3 => graticule::figure_3(),
-            Item::Fig4 => scene_views::figure_4(),
+            Item::Fig4 => scene_views::figure_4(self.marked),
             Item::Fig5 => error_map::exhibit(),
             Item::Fig6 => scene_views::figure_6(),
             Item::Fig8 => Ok(interpolants::exhibit()),

@@ -2,14 +2,23 @@
 
 use halfrow_model::{BitDepth, Equidistant, Geometry, Phase};
 
-use super::exhibit::{Cell, Drawing, Exhibit, Picture, Table};
+use super::carroll::{self, Net};
+use super::exhibit::{Accepted, Cell, Claim, Drawing, Exhibit, Picture, Table};
+use super::lines::{self, Line};
+use super::marked::MarkedPhotograph;
 use super::views::{View, ray};
-use super::{Item, PaperError, graticule};
+use super::{Item, PaperError, graticule, quality};
 use halfrow::frames::preview::{RgbImage, demosaic};
 use halfrow::frames::{Builtin, Scene};
 
 /// Columns and rows of the pictures: the whole image circle, 2R.
 const SIDE: usize = 640;
+
+/// The column, and the row, of their middle.
+const MIDDLE: f64 = (SIDE as f64 - 1.0) / 2.0;
+
+/// What the projection of Fig. 4(d) is called.
+const OPTIMISED: &str = "Carroll et al.";
 
 /// The scene's vertical lines of the table, in degrees of longitude.
 const LONGITUDES: [i32; 5] = [15, 30, 45, 60, 75];
@@ -17,17 +26,20 @@ const LONGITUDES: [i32; 5] = [15, 30, 45, 60, 75];
 /// They reach from −60° to 60° of latitude.
 const REACH: i32 = 60;
 
-/// Fig. 4: all projections but the simplified one.
-pub(super) fn figure_4() -> Result<Exhibit, PaperError> {
-    let (lens, fisheye) = fisheye()?;
+/// Fig. 4: all projections but the simplified one, of the street or of a photograph with lines of its own.
+pub(super) fn figure_4(marked: Option<&MarkedPhotograph>) -> Result<Exhibit, PaperError> {
+    let subject = marked.map_or_else(Subject::street, Subject::photograph)?;
     let mut exhibit = Exhibit::new(Item::Fig4);
+    exhibit.remark(match marked {
+        None => "The paper's photograph is not public; a rendered street, seen by an equidistant lens, stands for it.",
+        Some(_) => "A photograph of your own stands for the paper's, as an equidistant lens would have taken it.",
+    });
     exhibit.remark(
-        "The paper's photograph is not public; a rendered street, seen by an equidistant lens, stands for it.",
+        "Fig. 4(d) is the method of Carroll et al. (ACM Transactions on Graphics 28, 2009), which makes a projection for each \
+         picture from lines that are known to be straight: the street's own upright edges, roofs and feet of walls, or those that \
+         were marked in a photograph.",
     );
-    exhibit.remark(
-        "Fig. 4(d), the method of Carroll et al., is left out: it optimises each picture anew from lines that a person \
-         marks in it, so there is no formula to reproduce.",
-    );
+    let net = Net::optimised(&subject.lines, subject.lens.focal_length())?;
     let figures = [
         (View::Fisheye, "fig-4a", "Fig. 4(a): the fisheye picture, 180° across."),
         (View::Perspective, "fig-4b", "Fig. 4(b): perspective, 120° across."),
@@ -35,48 +47,157 @@ pub(super) fn figure_4() -> Result<Exhibit, PaperError> {
         (View::Exact, "fig-4e", "Fig. 4(e): the paper's exact projection (Eqs. 6, 7)."),
     ];
     for (view, name, caption) in figures {
-        exhibit.pictures.push(picture(&lens, &fisheye, view, name, caption));
+        exhibit.pictures.push(subject.picture(view, name, caption));
     }
-    exhibit.tables.push(straightness(&lens, "fig-4", &View::ALL[..4]));
+    exhibit.pictures.insert(3, subject.optimised(&net));
+    exhibit.tables.push(straightness(&subject.lens, "fig-4", &View::ALL[..4]));
+    let kept = kept(&subject, &net);
+    if marked.is_none() {
+        exhibit.claims = optimised_for(&kept);
+    }
+    exhibit.tables.push(table_of(&kept, subject.lines.len()));
     Ok(exhibit)
 }
 
 /// Fig. 6: the simplified projection, as a map and as a picture.
 pub(super) fn figure_6() -> Result<Exhibit, PaperError> {
-    let (lens, fisheye) = fisheye()?;
+    let subject = Subject::street()?;
     let mut exhibit = Exhibit::new(Item::Fig6);
     graticule::figure_6a(&mut exhibit)?;
     let caption = "Fig. 6(b): the simplified projection (Eqs. 8, 9).";
-    exhibit.pictures.push(picture(&lens, &fisheye, View::Simplified, "fig-6b", caption));
-    exhibit.tables.push(straightness(&lens, "fig-6b", &[View::Exact, View::Simplified]));
+    exhibit.pictures.push(subject.picture(View::Simplified, "fig-6b", caption));
+    exhibit.tables.push(straightness(&subject.lens, "fig-6b", &[View::Exact, View::Simplified]));
     Ok(exhibit)
 }
 
-/// The street through a lens whose image circle fills the picture.
-fn fisheye() -> Result<(Equidistant, RgbImage), PaperError> {
-    let lens = Equidistant::from_radius(SIDE as f64 / 2.0)?;
-    let geometry = Geometry::centred(SIDE, SIDE, BitDepth::Twelve)?;
-    let scene = Scene { geometry, centre_y: None, phase: Phase::Grbg, lens, seed: 1 };
-    Ok((lens, demosaic(&Builtin::Street.render(&scene)?)))
+/// What is shown.
+struct Subject {
+    /// Its image circle fills the pictures that are made.
+    lens: Equidistant,
+    fisheye: RgbImage,
+    /// The middle of the image circle in it.
+    centre: (f64, f64),
+    /// Its pixels for one of the pictures.
+    scale: f64,
+    lines: Vec<Line>,
 }
 
-fn picture(lens: &Equidistant, fisheye: &RgbImage, view: View, name: &str, caption: &str) -> Picture {
-    Picture {
-        name: name.to_owned(),
-        caption: caption.to_owned(),
-        drawing: Drawing::Pixels(shown(lens, fisheye, view), 1),
+impl Subject {
+    /// The street.
+    fn street() -> Result<Self, PaperError> {
+        let lens = Equidistant::from_radius(SIDE as f64 / 2.0)?;
+        let geometry = Geometry::centred(SIDE, SIDE, BitDepth::Twelve)?;
+        let scene = Scene { geometry, centre_y: None, phase: Phase::Grbg, lens, seed: 1 };
+        let fisheye = demosaic(&Builtin::Street.render(&scene)?);
+        Ok(Self { lens, fisheye, centre: (MIDDLE, MIDDLE), scale: 1.0, lines: lines::of_the_street() })
+    }
+
+    fn photograph(marked: &MarkedPhotograph) -> Result<Self, PaperError> {
+        let MarkedPhotograph { image, centre, radius, lines } = marked.clone();
+        let lens = Equidistant::from_radius(SIDE as f64 / 2.0)?;
+        Ok(Self { scale: radius / lens.radius(), lens, fisheye: image, centre, lines })
+    }
+
+    /// The colour at the fisheye point (`x`, `y`), in pixels of the pictures that are made.
+    fn colour(&self, (x, y): (f64, f64)) -> [u8; 3] {
+        sampled(&self.fisheye, self.centre.0 + self.scale * x, self.centre.1 + self.scale * y)
+    }
+
+    /// It in a projection, black where the lens sees nothing.
+    fn picture(&self, view: View, name: &str, caption: &str) -> Picture {
+        let places = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column)));
+        let data = places.flat_map(|(row, column)| {
+            let source = view.source(&self.lens, column as f64 - MIDDLE, row as f64 - MIDDLE);
+            source.map_or([0; 3], |point| self.colour(point))
+        });
+        let image = RgbImage { width: SIDE, height: SIDE, data: data.collect() };
+        pixels(name, caption, image)
+    }
+
+    /// Fig. 4(d): it in the projection that was made for its lines.
+    fn optimised(&self, net: &Net) -> Picture {
+        let colour = |longitude, latitude| self.colour(self.lens.image_point(ray(longitude, latitude)));
+        let caption = "Fig. 4(d): the projection of Carroll et al., made for these lines.";
+        pixels("fig-4d", caption, carroll::shown(net, SIDE, &colour))
     }
 }
 
-/// `fisheye` in a projection, black where the lens sees nothing.
-fn shown(lens: &Equidistant, fisheye: &RgbImage, view: View) -> RgbImage {
-    let centre = (SIDE as f64 - 1.0) / 2.0;
-    let places = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| (row, column)));
-    let data = places.flat_map(|(row, column)| {
-        let source = view.source(lens, column as f64 - centre, row as f64 - centre);
-        source.map_or([0; 3], |(x, y)| sampled(fisheye, x + centre, y + centre))
-    });
-    RgbImage { width: SIDE, height: SIDE, data: data.collect() }
+fn pixels(name: &str, caption: &str, image: RgbImage) -> Picture {
+    Picture { name: name.to_owned(), caption: caption.to_owned(), drawing: Drawing::Pixels(image, 1) }
+}
+
+/// What a projection keeps of lines and shapes.
+struct Kept {
+    name: &'static str,
+    /// See [`quality::straightness`].
+    straightness: f64,
+    /// See [`quality::conformality`].
+    conformality: f64,
+}
+
+/// What each projection of Fig. 4 keeps, in its order.
+fn kept(subject: &Subject, net: &Net) -> Vec<Kept> {
+    let kept = |name, place: quality::Place<'_>| Kept {
+        name,
+        straightness: quality::straightness(place, &subject.lines),
+        conformality: quality::conformality(place),
+    };
+    let of_view = |&view: &View| {
+        kept(view.name(), &|longitude, latitude| view.place(&subject.lens, ray(longitude, latitude)))
+    };
+    let mut all: Vec<_> = View::ALL[..4].iter().map(of_view).collect();
+    all.insert(3, kept(OPTIMISED, &|longitude, latitude| net.place(longitude, latitude)));
+    all
+}
+
+/// The optimised projection is what it is for.
+fn optimised_for(kept: &[Kept]) -> Vec<Claim> {
+    let named = |name: &str| kept.iter().find(|kept| kept.name == name);
+    let views = [View::Mercator, View::Perspective].map(|view| named(view.name()));
+    let (Some(own), [Some(mercator), Some(perspective)]) = (named(OPTIMISED), views) else {
+        return Vec::new();
+    };
+    let below = |what: &str, unit, found: f64, limit: f64| Claim {
+        what: what.to_owned(),
+        unit,
+        paper: None,
+        found,
+        accepted: Accepted::Below((limit * 1e4).round() / 1e4),
+        judges_board: false,
+    };
+    vec![
+        below(
+            "farthest from straight, Carroll et al. against Mercator",
+            "px",
+            own.straightness,
+            mercator.straightness,
+        ),
+        below(
+            "shapes, Carroll et al. against perspective",
+            "nepers",
+            own.conformality,
+            perspective.conformality,
+        ),
+    ]
+}
+
+fn table_of(kept: &[Kept], lines: usize) -> Table {
+    let row = |kept: &Kept| {
+        let Kept { name, straightness, conformality } = kept;
+        vec![Cell::Text((*name).to_owned()), Cell::Number(*straightness, 2), Cell::Number(*conformality, 4)]
+    };
+    Table {
+        name: "fig-4-lines",
+        caption: format!(
+            "How far a line is from its chord at most, of {lines}, in pixels of a picture of {SIDE}; and how far small shapes are \
+             from what they are, mean |ln(σ1/σ2)| over ±60° of longitude and ±45° of latitude."
+        ),
+        columns: ["projection", "farthest from straight, px", "shapes, mean |ln(σ1/σ2)|"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: kept.iter().map(row).collect(),
+        on_page: true,
+    }
 }
 
 /// The colour at column `x`, row `y` of `image`, bilinear between four pixels.

@@ -4,7 +4,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 use std::time::Instant;
 
-use super::sent::send;
+use super::sent::send_as;
 use super::server::Server;
 use crate::history::made::{BEGIN_MS, End, Made, Run};
 
@@ -40,9 +40,10 @@ fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
         rows[0][0].parse::<f64>().unwrap()
     };
     let (empty, mut sent, mut seconds) = (size(), 0, 0.0);
-    for made in made(count) {
+    for (made, number) in made(count).into_iter().zip(1..) {
         let begun = Instant::now();
-        let (_made, all) = send(made, server.address());
+        let (_made, all) = send_as(&format!("station {number}"), made, server.address());
+        assert!(!all.is_away && all.failed == 0, "{all:?}");
         let took = begun.elapsed().as_secs_f64();
         (sent, seconds) = (sent + all.sent, seconds + took);
         println!("{sent} runs, {:.0} runs/s, {:.0} MB", all.sent as f64 / took, size() / 1e6);

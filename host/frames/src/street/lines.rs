@@ -1,0 +1,87 @@
+//! The street's straight lines, for projections that are made from them.
+
+use super::town::{CAMERA, ROWS, Row, Side};
+
+/// A straight line of the scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SceneLine {
+    /// Its ends, in metres from the camera: to the right, down, ahead.
+    pub ends: [[f64; 3]; 2],
+    /// Whether it stands upright; the others are level.
+    pub is_upright: bool,
+}
+
+/// The edges between neighbouring façades, the lines of the roofs, and where the façades stand on the ground, as far as they are
+/// ahead of the camera.
+#[must_use]
+pub fn lines() -> Vec<SceneLine> {
+    ROWS.iter().flat_map(|row| upright(row).chain(level(row)).chain(foot(row))).collect()
+}
+
+/// Metres ahead of the camera from which on a line counts.
+const AHEAD: f64 = 0.5;
+
+/// From the ground to the lower of two neighbours' roofs.
+fn upright(row: &Row) -> impl Iterator<Item = SceneLine> {
+    row.houses.windows(2).filter_map(|pair| {
+        let roof = pair[0].roof.min(pair[1].roof);
+        let ends = [0.0, roof].map(|height| row.place(pair[0].to, height));
+        (ends[0][2] > AHEAD).then_some(SceneLine { ends, is_upright: true })
+    })
+}
+
+/// Along the roof of each house.
+fn level(row: &Row) -> impl Iterator<Item = SceneLine> {
+    row.houses.iter().filter_map(|house| {
+        let from = if row.side == Side::Across { house.from } else { house.from.max(AHEAD) };
+        let ends = [from, house.to].map(|along| row.place(along, house.roof));
+        (from < house.to).then_some(SceneLine { ends, is_upright: false })
+    })
+}
+
+/// Where the whole row stands on the ground.
+fn foot(row: &Row) -> Option<SceneLine> {
+    let (first, last) = (row.houses.first()?, row.houses.last()?);
+    let from = if row.side == Side::Across { first.from } else { first.from.max(AHEAD) };
+    Some(SceneLine { ends: [from, last.to].map(|along| row.place(along, 0.0)), is_upright: false })
+}
+
+impl Row {
+    /// The place on its façades so far along it and so high above the ground.
+    fn place(&self, along: f64, height: f64) -> [f64; 3] {
+        let down = CAMERA - height;
+        match self.side {
+            Side::Left => [-self.distance, down, along],
+            Side::Right => [self.distance, down, along],
+            Side::Across => [along, down, self.distance],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::street::town::{Seen, seen};
+
+    /// A little below a roof is its façade, unless something stands in front of it; a little above is none of that height.
+    #[test]
+    fn lines_are_where_the_street_has_them() {
+        let all = lines();
+        let upright = all.iter().filter(|line| line.is_upright).count();
+        assert!(upright > 10 && all.len() > upright + 10, "{upright} of {}", all.len());
+        for line in all.iter().filter(|line| !line.is_upright && line.ends[0][1] < CAMERA) {
+            let middle: [f64; 3] =
+                std::array::from_fn(|at| f64::midpoint(line.ends[0][at], line.ends[1][at]));
+            let length = middle.map(|part| part * part).iter().sum::<f64>().sqrt();
+            let ray = |down: f64| [middle[0] / length, (middle[1] + down) / length, middle[2] / length];
+            let roof = CAMERA - middle[1];
+            if let Seen::Facade { height, .. } = seen(ray(0.1)) {
+                assert!((roof - height).abs() < 0.5, "{line:?}: {height}");
+            }
+            assert!(
+                !matches!(seen(ray(-0.1)), Seen::Facade { height, .. } if (roof - height).abs() < 0.05),
+                "{line:?}"
+            );
+        }
+    }
+}

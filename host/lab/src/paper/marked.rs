@@ -1,0 +1,126 @@
+//! A photograph in which somebody has marked straight lines, for Fig. 4.
+//!
+//! ```json
+//! {"circle": {"centre": [959.5, 539.5], "radius": 640},
+//!  "lines": [{"from": [700, 200], "to": [690, 820], "is": "upright"}, …]}
+//! ```
+//!
+//! Points are columns and rows of the photograph from 0. The circle is where the lens, which is taken for an equidistant one,
+//! images 90° from its axis.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use halfrow::frames::preview::RgbImage;
+use halfrow::frames::{self, ReadError};
+use halfrow_model::Equidistant;
+use serde::Deserialize;
+
+use super::lines::{Held, Line};
+
+/// The radius of the lens that directions are found by; the photograph's own is a scale.
+const RADIUS: f64 = 1000.0;
+
+/// A photograph, its image circle and its lines.
+#[derive(Clone, Debug)]
+pub struct MarkedPhotograph {
+    pub(super) image: RgbImage,
+    /// Column and row of the circle's middle.
+    pub(super) centre: (f64, f64),
+    /// Pixels.
+    pub(super) radius: f64,
+    pub(super) lines: Vec<Line>,
+}
+
+/// A photograph or its lines that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum MarkedError {
+    /// The photograph cannot be read.
+    #[error("the photograph cannot be used; give a picture in colours, such as a PNG")]
+    Photograph(#[from] ReadError),
+    /// The file of lines cannot be read.
+    #[error("{} cannot be read; check that it is there and readable", path.display())]
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// The file of lines is none.
+    #[error(
+        "{} is no file of lines; write {{\"circle\": {{\"centre\": [x, y], \"radius\": r}}, \"lines\": [{{\"from\": [x, y], \
+         \"to\": [x, y], \"is\": \"upright\"}}]}}",
+        path.display()
+    )]
+    Content {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong, and where.
+        source: serde_json::Error,
+    },
+    /// A circle without a size.
+    #[error("the circle in {} has the radius {radius}; give the pixels from its middle to where the lens images 90°", path.display())]
+    Radius {
+        /// The file.
+        path: PathBuf,
+        /// The radius.
+        radius: f64,
+    },
+    /// A line that the lens does not show.
+    #[error(
+        "line {number} in {} is too short, or lies beyond what a projection shows; mark it inside of the image circle",
+        path.display()
+    )]
+    Line {
+        /// The file.
+        path: PathBuf,
+        /// Which, from 1.
+        number: usize,
+    },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Content {
+    circle: Circle,
+    lines: Vec<Marked>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Circle {
+    centre: [f64; 2],
+    radius: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Marked {
+    from: [f64; 2],
+    to: [f64; 2],
+    is: Held,
+}
+
+impl MarkedPhotograph {
+    /// The photograph in the file `photograph`, with the lines in the file `lines`.
+    ///
+    /// # Errors
+    /// [`MarkedError`] for the first thing that is wrong.
+    pub fn read(photograph: &Path, lines: &Path) -> Result<Self, MarkedError> {
+        let path = || lines.to_owned();
+        let text =
+            std::fs::read_to_string(lines).map_err(|source| MarkedError::Io { path: path(), source })?;
+        let content: Content =
+            serde_json::from_str(&text).map_err(|source| MarkedError::Content { path: path(), source })?;
+        let Circle { centre: [column, row], radius } = content.circle;
+        let lens = Equidistant::from_radius(RADIUS).ok().filter(|_| radius >= 1.0);
+        let lens = lens.ok_or_else(|| MarkedError::Radius { path: path(), radius })?;
+        let ray = |[x, y]: [f64; 2]| lens.ray((x - column) / radius * RADIUS, (y - row) / radius * RADIUS);
+        let marked = content.lines.iter().zip(1..).map(|(line, number)| {
+            let found = Line::between([ray(line.from), ray(line.to)], line.is);
+            found.ok_or_else(|| MarkedError::Line { path: path(), number })
+        });
+        let lines = marked.collect::<Result<_, _>>()?;
+        Ok(Self { image: frames::read_rgb(photograph)?, centre: (column, row), radius, lines })
+    }
+}
