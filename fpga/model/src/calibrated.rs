@@ -114,6 +114,24 @@ impl CalibratedLens {
         Some((column, row.copysign(latitude)))
     }
 
+    /// The lowest row below the centre that a ray `angle` radians off the axis reaches, [`Self::widest`] at most.
+    pub(crate) fn lowest_row(&self, angle: f64) -> f64 {
+        let [_, [yx, yy]] = self.pixels;
+        yx.hypot(yy) * self.profile.radius(angle).unwrap_or(self.profile.farthest())
+    }
+
+    /// The columns from the centre, left and right, at which rays `angle` radians off the axis cross row `y`, which is nearer
+    /// to the centre than [`Self::lowest_row`].
+    pub(crate) fn columns_at(&self, angle: f64, y: f64) -> [f64; 2] {
+        let radius = self.profile.radius(angle).unwrap_or(self.profile.farthest());
+        // |(a, b)·x + (c, d)| = radius.
+        let [[a, c], [b, d]] = [self.image[0], self.image[1]].map(|[x_part, y_part]| [x_part, y_part * y]);
+        let square = a * a + b * b;
+        let middle = -(a * c + b * d) / square;
+        let half = ((radius * radius - c * c - d * d) / square + middle * middle).max(0.0).sqrt();
+        [middle - half, middle + half]
+    }
+
     /// Whether the profile has not turned back at the image point (`x`, `y`).
     pub(crate) fn reaches(&self, x: f64, y: f64) -> bool {
         let (right, down) = transformed(self.image, x, y);

@@ -198,6 +198,27 @@ impl Camera {
         Residual { columns: middle + stretched - target.right_column, rows: row as f64 - target.right_row }
     }
 
+    /// How far each of [`Self::targets`] of row `row` is from where it belongs, in a frame behind `tables`.
+    pub fn residuals<'a>(
+        &'a self,
+        tables: &'a TableSet,
+        row: usize,
+    ) -> impl Iterator<Item = (Target, Residual)> + 'a {
+        let stretched = tables.row_factor(row);
+        let values = if stretched.is_none() { tables.values(row) } else { None };
+        self.targets(row).filter_map(move |target| {
+            let residual = match (stretched, &values) {
+                (Some(row_factor), _) => self.residual(row, row_factor, target),
+                (None, Some(values)) => {
+                    let columns = values.output(target.column as f64) - target.right_column;
+                    Residual { columns, rows: row as f64 - target.right_row }
+                }
+                (None, None) => return None,
+            };
+            Some((target, residual))
+        })
+    }
+
     /// How many rows lie outside the image circle of [`Self::radius`].
     #[must_use]
     pub fn rows_outside_circle(&self) -> usize {

@@ -1,7 +1,8 @@
 //! The corrector: the integer datapath, bit for bit (DATAPATH.md). Written to be read, since boards are judged by it.
 
 use crate::kernel::WEIGHT_ONE;
-use crate::{Frame, Geometry, Kernel, RowFactor, TableSet};
+use crate::table::Entries;
+use crate::{Frame, Geometry, Kernel, RowFactor, RowValues, TableSet};
 
 /// Where an output sample comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +57,7 @@ pub fn source(geometry: &Geometry, row_factor: RowFactor, column: usize) -> Sour
 /// 2^24 the column may lie outside the row.
 #[must_use]
 pub fn source_by_entry(geometry: &Geometry, entry: u32, column: usize) -> Source {
-    locate(row_start(geometry, entry) + 2 * column as i64 * i64::from(entry), column)
+    locate(rounded(row_start(geometry, entry) + 2 * column as i64 * i64::from(entry)), column)
 }
 
 /// S[0] = C · (2^24 − Q), in units of 2^-25 pixel.
@@ -64,9 +65,13 @@ fn row_start(geometry: &Geometry, entry: u32) -> i64 {
     i64::from(geometry.centre2()) * (i64::from(RowFactor::ONE.get()) - i64::from(entry))
 }
 
-/// The source of `column` from its coordinate S in units of 2^-25 pixel.
-fn locate(coordinate: i64, column: usize) -> Source {
-    let rounded = (coordinate + (1 << 11)) >> 12;
+/// q: S in units of 2^-25 pixel, rounded to 2^-13.
+fn rounded(coordinate: i64) -> i64 {
+    (coordinate + (1 << 11)) >> 12
+}
+
+/// The source of `column` from q.
+pub(crate) fn locate(rounded: i64, column: usize) -> Source {
     let floor = rounded >> 13;
     let base = base_column(floor, column);
     let position = rounded - (base << 13);
@@ -107,17 +112,46 @@ pub fn correct_row(
     row: &[u16],
     output: &mut [u16],
 ) {
-    let row = &row[..geometry.width()];
     let mut coordinate = row_start(geometry, row_factor.get());
+    let source = |column| {
+        let source = locate(rounded(coordinate), column);
+        coordinate += 2 * i64::from(row_factor.get());
+        source
+    };
+    correct_from(geometry, source, kernel, row, output);
+}
+
+/// Corrects one row of the values `values` into `output`, which are of a table for this geometry.
+///
+/// # Panics
+/// When `row` or `output` holds fewer samples than the geometry's width, or `values` are of a narrower one.
+pub fn correct_row_of_values(
+    geometry: &Geometry,
+    values: &RowValues,
+    kernel: &Kernel,
+    row: &[u16],
+    output: &mut [u16],
+) {
+    correct_from(geometry, |column| values.source(column), kernel, row, output);
+}
+
+/// Corrects a row whose outputs come from `source`, which is asked column after column.
+fn correct_from(
+    geometry: &Geometry,
+    mut source: impl FnMut(usize) -> Source,
+    kernel: &Kernel,
+    row: &[u16],
+    output: &mut [u16],
+) {
+    let row = &row[..geometry.width()];
     for (column, sample) in output[..geometry.width()].iter_mut().enumerate() {
-        let source = locate(coordinate, column);
+        let source = source(column);
         let weights = kernel.weights_at(source.node, source.fraction);
         *sample = blend(weights, taps(geometry, row, source.base), geometry.depth().max());
-        coordinate += 2 * i64::from(row_factor.get());
     }
 }
 
-/// The corrected frame: what a board of this datapath must return.
+/// The corrected frame: what a board must return.
 ///
 /// # Errors
 /// [`CorrectError`] when the frame has another size or depth than the tables are for.
@@ -126,8 +160,15 @@ pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Fram
     check_frame(geometry, frame)?;
     let mut samples = vec![0; frame.samples().len()];
     let outputs = samples.chunks_exact_mut(geometry.width());
-    for ((row, &row_factor), output) in frame.rows().zip(tables.row_factors()).zip(outputs) {
-        correct_row(geometry, row_factor, kernel, row, output);
+    let mut values = RowValues::default();
+    for (index, (row, output)) in frame.rows().zip(outputs).enumerate() {
+        match tables.entries() {
+            Entries::Rows(row_factors) => correct_row(geometry, row_factors[index], kernel, row, output),
+            Entries::Grid(grid) => {
+                grid.values(geometry, index, &mut values);
+                correct_row_of_values(geometry, &values, kernel, row, output);
+            }
+        }
     }
     Ok(frame.with_samples(samples))
 }

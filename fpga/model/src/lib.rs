@@ -3,7 +3,7 @@
 //! From the lens to the corrected frame, in the order of the data:
 //!
 //! ```text
-//! Equidistant ──► TableSet ─┐                            Camera makes one for a calibrated lens
+//! Equidistant ──► TableSet ─┐                            row factors or a grid; Camera makes one for a calibrated lens
 //! Interpolant ──► Kernel ───┼─► correct ──► Frame     the integer datapath, bit for bit
 //! Frame ────────────────────┘
 //! ```
@@ -23,12 +23,14 @@ mod corrector;
 mod fast;
 mod frame;
 mod geometry;
+mod grid;
 mod interpolant;
 mod kernel;
 mod lens;
 mod profile;
 mod projection;
 mod real;
+mod ring;
 mod row_factor;
 mod table;
 
@@ -36,10 +38,13 @@ pub use bayer::{Colour, Phase, UnknownPhase};
 pub use calibrated::CalibratedLens;
 pub use camera::{Camera, CameraError, Residual, Target};
 pub use content::{Content, frame_signature, row_signature, xorshift32};
-pub use corrector::{CorrectError, Source, correct, correct_row, source, source_by_entry};
+pub use corrector::{
+    CorrectError, Source, correct, correct_row, correct_row_of_values, source, source_by_entry,
+};
 pub use fast::{Corrector, ModelPath, Signer, UnavailablePath, UnknownPath};
 pub use frame::{BitDepth, Frame, FrameError};
 pub use geometry::{Geometry, GeometryError, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH};
+pub use grid::{GridShape, GridShapeError, RowValues};
 pub use interpolant::{Interpolant, UnknownInterpolant};
 pub use kernel::{Kernel, KernelError, NODES, TAP_NAMES, Taps, WEIGHT_ONE};
 pub use lens::{Equidistant, LensError, MAX_RADIUS, MIN_RADIUS, Short, Spherical};

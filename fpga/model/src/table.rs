@@ -1,16 +1,28 @@
-//! The table set: one row factor a row, which is all that the datapath keeps of the lens.
+//! The table set: row factors or a grid of them, which is all that the datapath keeps of the lens.
 
+use std::ops::RangeInclusive;
+
+use crate::grid::{ENTRY_BITS, Grid, GridFault};
 use crate::projection::shrink_factor;
-use crate::{Equidistant, Geometry, RowFactor, RowFactorError, source};
+use crate::{Equidistant, Geometry, GridShape, RowFactor, RowFactorError, RowValues};
 
-/// The row factors together with the geometry they were made for (DATAPATH.md, "Table").
+/// One row factor a row, or a grid, together with the geometry they were made for (DATAPATH.md, "Table" and "Grid").
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TableSet {
     geometry: Geometry,
-    row_factors: Vec<RowFactor>,
+    entries: Entries,
 }
 
-/// Row factors that no board could use.
+/// What a bank of tables holds.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Entries {
+    /// Datapath 1: the row factor of every row.
+    Rows(Vec<RowFactor>),
+    /// Datapath 2.
+    Grid(Grid),
+}
+
+/// Tables that no board could use.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum TableError {
     /// Not one row factor a row.
@@ -28,6 +40,51 @@ pub enum TableError {
         row: usize,
         /// What is wrong with its entry.
         source: RowFactorError,
+    },
+    /// Not as many entries as the grid has.
+    #[error(
+        "{entries} entries for a grid of {columns} columns and {rows} grid rows; give {}, column by column",
+        .columns * .rows
+    )]
+    GridCount {
+        /// Entries given.
+        entries: usize,
+        /// N + 2.
+        columns: usize,
+        /// Z.
+        rows: usize,
+    },
+    /// An entry of more bits than a board keeps.
+    #[error("entry ({column}, {row}) of the grid is {units}; give 0 to {max}", max = TableSet::GRID_RANGE.end())]
+    GridEntry {
+        /// c: 0 for offsets, 1 + s for node s.
+        column: usize,
+        /// b.
+        row: usize,
+        /// The entry.
+        units: u32,
+    },
+    /// A row that begins in front of the frame.
+    #[error(
+        "row {row} begins left of the frame; raise the offsets of its grid rows by {raise}, or make the grid from the \
+         lens again"
+    )]
+    BeforeFirst {
+        /// The first such row.
+        row: usize,
+        /// The least number that O lacks.
+        raise: i64,
+    },
+    /// A row that ends behind the frame.
+    #[error(
+        "row {row} ends {excess} columns right of the frame; lower the offsets of its grid rows, or make the grid from \
+         the lens again"
+    )]
+    BehindLast {
+        /// The first such row.
+        row: usize,
+        /// Columns too far right.
+        excess: usize,
     },
     /// A vertical centre that is no finite number.
     #[error("the optical centre is at row {0}; give a finite number, or none for the middle of the frame")]
@@ -59,6 +116,9 @@ pub enum TableError {
 }
 
 impl TableSet {
+    /// All entries of a grid.
+    pub const GRID_RANGE: RangeInclusive<u32> = 0..=(1 << ENTRY_BITS) - 1;
+
     /// The table of `row_factors`, one for each row of `geometry` from the top.
     ///
     /// # Errors
@@ -67,7 +127,23 @@ impl TableSet {
         if row_factors.len() != geometry.height() {
             return Err(TableError::Count { row_factors: row_factors.len(), height: geometry.height() });
         }
-        Ok(Self { geometry, row_factors })
+        Ok(Self { geometry, entries: Entries::Rows(row_factors) })
+    }
+
+    /// The grid of shape `shape` with these entries, column by column from that of the offsets, each column from its first
+    /// grid row: as a board takes them.
+    ///
+    /// # Errors
+    /// [`TableError`] when there are not (N + 2)·Z entries or one is outside [`Self::GRID_RANGE`].
+    pub fn from_grid(geometry: Geometry, shape: GridShape, entries: Vec<u32>) -> Result<Self, TableError> {
+        let (columns, rows) = (shape.columns(&geometry), shape.rows(&geometry));
+        let grid = Grid::new(&geometry, shape, entries).map_err(|fault| match fault {
+            GridFault::Count(entries) => TableError::GridCount { entries, columns, rows },
+            GridFault::Entry { place, units } => {
+                TableError::GridEntry { column: place / rows, row: place % rows, units }
+            }
+        })?;
+        Ok(Self { geometry, entries: Entries::Grid(grid) })
     }
 
     /// The table of the row factors `units` in units of 2^-24, one for each row of `geometry` from the top.
@@ -103,64 +179,115 @@ impl TableSet {
 
     /// The table with `row_factor` of every row.
     pub(crate) fn of_rows(geometry: Geometry, row_factor: impl Fn(usize) -> RowFactor) -> Self {
-        Self { geometry, row_factors: (0..geometry.height()).map(row_factor).collect() }
+        let row_factors = (0..geometry.height()).map(row_factor).collect();
+        Self { geometry, entries: Entries::Rows(row_factors) }
     }
 
-    /// The geometry that the row factors are for.
+    /// The table of a grid made for `geometry`.
+    pub(crate) fn of_grid(geometry: Geometry, grid: Grid) -> Self {
+        Self { geometry, entries: Entries::Grid(grid) }
+    }
+
+    /// The same entries for frames of as many columns and rows, and of another depth or centre.
+    ///
+    /// # Errors
+    /// [`TableError`] when `geometry` has another size, so that there are too few or too many of them.
+    pub fn with_geometry(&self, geometry: Geometry) -> Result<Self, TableError> {
+        match &self.entries {
+            Entries::Rows(row_factors) => Self::new(geometry, row_factors.clone()),
+            Entries::Grid(grid) => Self::from_grid(geometry, grid.shape(), grid.entries().to_vec()),
+        }
+    }
+
+    /// The tables of the upper `rows` rows alone; none when there are not so many, or none of them.
+    #[must_use]
+    pub fn upper(&self, rows: usize) -> Option<Self> {
+        let own = &self.geometry;
+        let rows = Some(rows).filter(|&rows| rows <= own.height())?;
+        let geometry = Geometry::new(own.width(), rows, own.depth(), own.centre2()).ok()?;
+        let entries = match &self.entries {
+            Entries::Rows(row_factors) => Entries::Rows(row_factors.get(..rows)?.to_vec()),
+            Entries::Grid(grid) => Entries::Grid(grid.upper(&geometry)?),
+        };
+        Some(Self { geometry, entries })
+    }
+
+    /// The tables that stretch half as far: every entry half way to 2^24, rounded down.
+    #[must_use]
+    pub fn halved(&self) -> Self {
+        let entries = match &self.entries {
+            Entries::Rows(row_factors) => {
+                Entries::Rows(row_factors.iter().map(|own| own.midpoint(RowFactor::ONE)).collect())
+            }
+            Entries::Grid(grid) => Entries::Grid(grid.halved()),
+        };
+        Self { geometry: self.geometry, entries }
+    }
+
+    /// The geometry that the tables are for.
     #[must_use]
     pub fn geometry(&self) -> &Geometry {
         &self.geometry
     }
 
-    /// The row factor of every row from the top.
-    #[must_use]
-    pub fn row_factors(&self) -> &[RowFactor] {
-        &self.row_factors
+    pub(crate) fn entries(&self) -> &Entries {
+        &self.entries
     }
 
-    /// The row factor of row `row`, if the frame has it.
+    /// The shape of a grid; none of row factors.
+    #[must_use]
+    pub fn shape(&self) -> Option<GridShape> {
+        match &self.entries {
+            Entries::Rows(_) => None,
+            Entries::Grid(grid) => Some(grid.shape()),
+        }
+    }
+
+    /// The row factor of every row from the top; none of a grid, whose factors depend on the column.
+    #[must_use]
+    pub fn row_factors(&self) -> Option<&[RowFactor]> {
+        match &self.entries {
+            Entries::Rows(row_factors) => Some(row_factors),
+            Entries::Grid(_) => None,
+        }
+    }
+
+    /// The row factor of row `row`, if the tables are row factors and the frame has it.
     #[must_use]
     pub fn row_factor(&self, row: usize) -> Option<RowFactor> {
-        self.row_factors.get(row).copied()
+        self.row_factors()?.get(row).copied()
     }
 
-    /// The row factors from the top in units of 2^-24, which [`Self::from_units`] takes.
-    pub fn units(&self) -> impl DoubleEndedIterator<Item = u32> + '_ {
-        self.row_factors.iter().map(|row_factor| row_factor.get())
-    }
-
-    /// Whether a ring of `ring` samples holds every sample that every row reads (DATAPATH.md, "Ring").
-    ///
-    /// # Errors
-    /// [`TableError::LookAhead`] or [`TableError::LookBack`] for the first row that breaks a condition.
-    pub fn check_ring(&self, ring: usize) -> Result<(), TableError> {
-        let mut rows = self.row_factors.iter().enumerate();
-        rows.try_for_each(|(row, &row_factor)| self.check_row(row, row_factor, ring))
-    }
-
-    /// Both conditions for one row. Columns minus sources never fall along a row, so its two ends decide.
-    fn check_row(&self, row: usize, row_factor: RowFactor, ring: usize) -> Result<(), TableError> {
-        let half = self.geometry.width() / 2;
-        let last = self.geometry.width() - 1;
-        let ahead = source(&self.geometry, row_factor, 0).column + 4;
-        if let Some(excess) = excess(ahead, half + 3) {
-            return Err(TableError::LookAhead { row, excess });
+    /// The values of row `row`, if the frame has it.
+    #[must_use]
+    pub fn values(&self, row: usize) -> Option<RowValues> {
+        let mut values = RowValues::default();
+        match &self.entries {
+            Entries::Rows(row_factors) => values.take_factor(&self.geometry, *row_factors.get(row)?),
+            Entries::Grid(grid) if row < self.geometry.height() => {
+                grid.values(&self.geometry, row, &mut values);
+            }
+            Entries::Grid(_) => return None,
         }
-        let back = last as i64 - source(&self.geometry, row_factor, last).column + half as i64 - 1;
-        match excess(back + 1, ring) {
-            Some(excess) => Err(TableError::LookBack { row, excess, ring }),
-            None => Ok(()),
-        }
+        Some(values)
     }
 
-    /// The table as a board takes it: each row factor as 32 bits, little endian, from the top row.
+    /// The entries in a board's order, in units of 2^-24: row factors from the top, which [`Self::from_units`] takes, or
+    /// those of a grid, which [`Self::from_grid`] takes.
+    pub fn units(&self) -> impl DoubleEndedIterator<Item = u32> + ExactSizeIterator + '_ {
+        let count = match &self.entries {
+            Entries::Rows(row_factors) => row_factors.len(),
+            Entries::Grid(grid) => grid.entries().len(),
+        };
+        (0..count).map(|place| match &self.entries {
+            Entries::Rows(row_factors) => row_factors[place].get(),
+            Entries::Grid(grid) => grid.entries()[place],
+        })
+    }
+
+    /// The tables as a board takes them: each entry as 32 bits, little endian, in a board's order.
     #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         self.units().flat_map(u32::to_le_bytes).collect()
     }
-}
-
-/// By how much `value` is above `limit`, if it is.
-fn excess(value: i64, limit: usize) -> Option<usize> {
-    usize::try_from(value).ok()?.checked_sub(limit).filter(|&excess| excess > 0)
 }

@@ -1,6 +1,6 @@
-//! What row factors leave of a lens's distortion.
+//! What tables leave of a lens's distortion.
 
-use halfrow_model::{Camera, RowFactor, TableSet};
+use halfrow_model::{Camera, TableSet};
 use serde::Serialize;
 
 /// Mean and largest amount, in pixels.
@@ -21,9 +21,9 @@ pub struct Spread {
 pub struct Residuals {
     /// The samples that count.
     pub samples: usize,
-    /// The amounts in columns: what the factors leave.
+    /// The amounts in columns: what the tables leave.
     pub horizontal: Spread,
-    /// The amounts in rows, which no factor changes: how far each sample is from the row at which the lens images its
+    /// The amounts in rows, which no table changes: how far each sample is from the row at which the lens images its
     /// latitude above or below the axis.
     pub vertical: Spread,
     /// The amount in columns at every sample, row after row; 0 where none counts.
@@ -35,17 +35,16 @@ impl Residuals {
     #[must_use]
     pub fn of(camera: &Camera, tables: &TableSet) -> Self {
         let (mut horizontal, mut vertical) = (Sum::default(), Sum::default());
-        let mut row_of_map = |(row, &row_factor): (usize, &RowFactor)| {
+        let mut row_of_map = |row| {
             let mut amounts = vec![0.0; camera.geometry().width()];
-            for target in camera.targets(row) {
-                let residual = camera.residual(row, row_factor, target);
+            for (target, residual) in camera.residuals(tables, row) {
                 amounts[target.column] = residual.columns.abs();
                 horizontal.add(residual.columns.abs());
                 vertical.add(residual.rows.abs());
             }
             amounts
         };
-        let map = tables.row_factors().iter().enumerate().map(&mut row_of_map).collect();
+        let map = (0..camera.geometry().height()).map(&mut row_of_map).collect();
         Self { samples: horizontal.count, horizontal: horizontal.spread(), vertical: vertical.spread(), map }
     }
 }

@@ -63,14 +63,14 @@ impl Chain {
         expected: &Frame,
         mut corrector: Option<&mut Corrector>,
     ) -> bool {
-        let rows = frame.rows().zip(expected.rows()).zip(tables.row_factors());
-        rows.enumerate().fold(true, |right, (index, ((row, expected), &row_factor))| {
+        let rows = frame.rows().zip(expected.rows());
+        rows.enumerate().fold(true, |right, (index, (row, expected))| {
             self.row(index, black_box(row));
             let found = match corrector.as_deref_mut() {
                 None => &self.received,
                 Some(corrector) => {
                     self.corrected.resize(row.len(), 0);
-                    corrector.correct_row(tables.geometry(), row_factor, &self.received, &mut self.corrected);
+                    corrector.correct_row_of(tables, index, &self.received, &mut self.corrected);
                     &self.corrected
                 }
             };

@@ -5,7 +5,7 @@ use halfrow::result::NotExercised;
 use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
-use halfrow_model::{BitDepth, Geometry, TableSet};
+use halfrow_model::{BitDepth, Geometry};
 use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, judge_by_plan, open, streamed};
@@ -16,9 +16,9 @@ const SYSTEM: System = System { width: 160, height: 16, radius: 17.0, board: "mo
 /// The plan of `SYSTEM` with frames of 8 bits.
 fn eight_bits() -> Plan {
     let plan = SYSTEM.plan();
-    let (own, factors) = (plan.tables.geometry(), plan.tables.row_factors().to_vec());
+    let own = plan.tables.geometry();
     let geometry = Geometry::new(own.width(), own.height(), BitDepth::Eight, own.centre2()).unwrap();
-    Plan { tables: TableSet::new(geometry, factors).unwrap(), ..plan }
+    Plan { tables: plan.tables.with_geometry(geometry).unwrap(), ..plan }
 }
 
 #[test]

@@ -1,17 +1,19 @@
 //! The paths behind one face.
 
 use super::ModelPath;
+use super::located::Located;
 use super::nodes::Nodes;
+use super::padded::{Ends, Padded};
 use super::scalar;
-use super::walk::{Ends, Located, Padded, Walk};
+use super::walk::{Curve, Line, Walk};
 #[cfg(target_arch = "x86_64")]
 use super::x86;
-use crate::corrector::correct_row;
-use crate::{Geometry, Kernel, RowFactor};
+use crate::corrector::{correct_row, correct_row_of_values};
+use crate::{Geometry, Kernel, RowFactor, RowValues};
 
-/// Rows of one row factor, to be corrected together.
-pub(super) struct Rows<'a, const ROWS: usize> {
-    pub(super) walk: Walk,
+/// Rows whose outputs come from the same places, to be corrected together.
+pub(super) struct Rows<'a, W, const ROWS: usize> {
+    pub(super) walk: W,
     pub(super) width: usize,
     pub(super) max: u16,
     pub(super) inputs: [Padded<'a>; ROWS],
@@ -54,22 +56,48 @@ impl Engine {
         rows: [&[u16]; ROWS],
         outputs: [&mut [u16]; ROWS],
     ) {
-        let width = geometry.width();
         if let Self::Reference(kernel) = self {
             for (row, output) in rows.into_iter().zip(outputs) {
                 correct_row(geometry, row_factor, kernel, row, output);
             }
             return;
         }
+        self.correct_along(Line::new(geometry, row_factor), ends, geometry, rows, outputs);
+    }
+
+    /// Corrects a row of the values `values`, with `ends` to keep its ends in.
+    pub(super) fn correct_row_of_values(
+        &self,
+        ends: &mut [Ends; 2],
+        geometry: &Geometry,
+        values: &RowValues,
+        row: &[u16],
+        output: &mut [u16],
+    ) {
+        if let Self::Reference(kernel) = self {
+            correct_row_of_values(geometry, values, kernel, row, output);
+            return;
+        }
+        self.correct_along(Curve(values), ends, geometry, [row], [output]);
+    }
+
+    fn correct_along<W: Walk, const ROWS: usize>(
+        &self,
+        walk: W,
+        ends: &mut [Ends; 2],
+        geometry: &Geometry,
+        rows: [&[u16]; ROWS],
+        outputs: [&mut [u16]; ROWS],
+    ) {
+        let width = geometry.width();
         let rows = rows.map(|row| &row[..width]);
         rows.iter().zip(&mut *ends).for_each(|(row, ends)| ends.take(row));
         let inputs = std::array::from_fn(|row| Padded::new(rows[row], &ends[row]));
-        let walk = Walk::new(geometry, row_factor);
         self.correct(Rows { walk, width, max: geometry.depth().max(), inputs, outputs });
     }
 
     /// Corrects padded rows; the oracle takes none.
-    fn correct<const ROWS: usize>(&self, rows: Rows<'_, ROWS>) {
+    fn correct<W: Walk, const ROWS: usize>(&self, rows: Rows<'_, W, ROWS>) {
         match self {
             Self::Reference(_) => {}
             Self::Scalar(weights) => scalar::correct(weights, rows),
@@ -80,8 +108,8 @@ impl Engine {
         }
     }
 
-    /// The sources of a block of columns.
-    pub(super) fn locate(&self, walk: Walk, column: usize) -> Located {
+    /// The sources of a block of columns; the oracle has those of its own.
+    pub(super) fn locate(&self, walk: impl Walk, column: usize) -> Located {
         match self {
             Self::Reference(_) | Self::Scalar(_) => scalar::locate_block(walk, column),
             #[cfg(target_arch = "x86_64")]

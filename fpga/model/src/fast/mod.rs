@@ -3,11 +3,13 @@
 //! The oracle beside it stays as DATAPATH.md has it, and each path here is checked against it. What is done otherwise:
 //! a row's ends are copied with its edges drawn out, so that no tap is a special case; coordinates are taken relative to
 //! the block of columns, so that 32 bits hold them; and rows of one row factor, above and below the lens's axis, share
-//! coordinates and weights.
+//! coordinates and weights. Rows of a grid do not, since none mirrors another to the bit.
 
 mod content;
 mod engine;
+mod located;
 mod nodes;
+mod padded;
 mod path;
 mod scalar;
 mod signer;
@@ -19,9 +21,12 @@ pub use path::{ModelPath, UnavailablePath, UnknownPath};
 pub use signer::Signer;
 
 use crate::corrector::check_frame;
-use crate::{CorrectError, Frame, Geometry, Kernel, RowFactor, TableSet};
+use crate::table::Entries;
+use crate::{CorrectError, Frame, Geometry, Kernel, RowFactor, RowValues, Source, TableSet, source};
 use engine::{Engine, Rows};
-use walk::{Ends, Located, Walk, blocks};
+use located::Located;
+use padded::Ends;
+use walk::{Curve, Line, Walk, blocks};
 
 /// Columns that are computed together. Every width holds at least two blocks.
 const BLOCK: usize = 32;
@@ -35,6 +40,8 @@ pub struct Corrector {
     engine: Engine,
     /// Of the two rows that are corrected together.
     ends: [Ends; 2],
+    /// Of the grid's row that is corrected.
+    values: RowValues,
 }
 
 impl Corrector {
@@ -44,14 +51,14 @@ impl Corrector {
     /// [`UnavailablePath`] when this processor cannot take `path`.
     pub fn new(path: ModelPath, kernel: &Kernel) -> Result<Self, UnavailablePath> {
         let engine = Engine::new(path, kernel).ok_or(UnavailablePath(path))?;
-        Ok(Self { path, engine, ends: Default::default() })
+        Ok(Self { path, engine, ends: Default::default(), values: RowValues::default() })
     }
 
     /// A corrector that is the oracle, which every processor can run.
     #[must_use]
     pub fn oracle(kernel: &Kernel) -> Self {
         let engine = Engine::Reference(Box::new(kernel.clone()));
-        Self { path: ModelPath::Reference, engine, ends: Default::default() }
+        Self { path: ModelPath::Reference, engine, ends: Default::default(), values: RowValues::default() }
     }
 
     /// The path that it takes.
@@ -76,6 +83,27 @@ impl Corrector {
         self.engine.correct_rows(&mut self.ends, geometry, row_factor, [row], [output]);
     }
 
+    /// Corrects `row`, which is row `index` of a frame behind `tables`, into `output`. A row that the frame does not have
+    /// leaves `output` as it is.
+    ///
+    /// The samples of `row` must be within the geometry's depth, as those of a [`Frame`] are.
+    ///
+    /// # Panics
+    /// When `row` or `output` holds fewer samples than the geometry's width.
+    pub fn correct_row_of(&mut self, tables: &TableSet, index: usize, row: &[u16], output: &mut [u16]) {
+        let geometry = tables.geometry();
+        if index >= geometry.height() {
+            return;
+        }
+        match tables.entries() {
+            Entries::Rows(row_factors) => self.correct_row(geometry, row_factors[index], row, output),
+            Entries::Grid(grid) => {
+                grid.values(geometry, index, &mut self.values);
+                self.engine.correct_row_of_values(&mut self.ends, geometry, &self.values, row, output);
+            }
+        }
+    }
+
     /// Corrects `frame` into `samples`, row after row. Rows of one row factor that mirror each other are corrected together.
     ///
     /// # Errors
@@ -91,14 +119,13 @@ impl Corrector {
     ) -> Result<(), CorrectError> {
         check_frame(tables.geometry(), frame)?;
         assert_eq!(samples.len(), frame.samples().len(), "the output has another size than the frame");
-        let geometry = tables.geometry();
         let (upper, lower) = samples.split_at_mut(frame.height().div_ceil(2) * frame.width());
         let mut lower = lower.rchunks_exact_mut(frame.width());
         for (row, output) in upper.chunks_exact_mut(frame.width()).enumerate() {
             let mirrored = frame.height() - 1 - row;
             let inputs = [row, mirrored].map(|row| frame.row(row));
             match lower.next() {
-                None => self.correct_row(geometry, tables.row_factors()[row], inputs[0], output),
+                None => self.correct_row_of(tables, row, inputs[0], output),
                 Some(below) => self.correct_pair(tables, [row, mirrored], inputs, [output, below]),
             }
         }
@@ -113,14 +140,14 @@ impl Corrector {
         inputs: [&[u16]; 2],
         outputs: [&mut [u16]; 2],
     ) {
-        let geometry = tables.geometry();
-        let factors = rows.map(|row| tables.row_factors()[row]);
-        if factors[0] == factors[1] {
-            self.engine.correct_rows(&mut self.ends, geometry, factors[0], inputs, outputs);
+        if let [Some(upper), Some(lower)] = rows.map(|row| tables.row_factor(row))
+            && upper == lower
+        {
+            self.engine.correct_rows(&mut self.ends, tables.geometry(), upper, inputs, outputs);
             return;
         }
-        for ((factor, input), output) in factors.into_iter().zip(inputs).zip(outputs) {
-            self.correct_row(geometry, factor, input, output);
+        for ((row, input), output) in rows.into_iter().zip(inputs).zip(outputs) {
+            self.correct_row_of(tables, row, input, output);
         }
     }
 
@@ -146,10 +173,36 @@ impl Corrector {
         bases: &mut [i16],
         distances: &mut [u16],
     ) {
-        let walk = Walk::new(geometry, row_factor);
+        let walk = Line::new(geometry, row_factor);
+        let oracle = |column| source(geometry, row_factor, column);
+        self.locate_along(walk, oracle, geometry, (bases, distances));
+    }
+
+    /// [`Self::locate`] in a row of the values `values`: those that [`RowValues::source`] tells.
+    ///
+    /// # Panics
+    /// When `bases` or `distances` is shorter than the geometry's width, or `values` are of a narrower one.
+    pub fn locate_by_values(
+        &self,
+        geometry: &Geometry,
+        values: &RowValues,
+        bases: &mut [i16],
+        distances: &mut [u16],
+    ) {
+        let oracle = |column| values.source(column);
+        self.locate_along(Curve(values), oracle, geometry, (bases, distances));
+    }
+
+    fn locate_along(
+        &self,
+        walk: impl Walk,
+        oracle: impl Fn(usize) -> Source,
+        geometry: &Geometry,
+        (bases, distances): (&mut [i16], &mut [u16]),
+    ) {
         for column in blocks(geometry.width(), BLOCK) {
             let located = match self.engine {
-                Engine::Reference(_) => Located::by_oracle(geometry, row_factor, column),
+                Engine::Reference(_) => Located::by_oracle(column, &oracle),
                 _ => self.engine.locate(walk, column),
             };
             located.write(&mut bases[column..column + BLOCK], &mut distances[column..column + BLOCK]);

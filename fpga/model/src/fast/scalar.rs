@@ -3,8 +3,9 @@
 //! The weights of all seven taps at all 2^14 distances x are computed once a kernel. A sample is then one sum of products,
 //! which compilers make of the vector instructions that every processor of a kind has.
 
+use super::located::Located;
 use super::nodes::{G0, G4, G6, Nodes, R1, R5};
-use super::walk::{Located, Walk, blocks};
+use super::walk::{LEADS, Start, Walk, blocks};
 use super::{BLOCK, Rows};
 use crate::WEIGHT_ONE;
 
@@ -37,24 +38,23 @@ fn weights_at(nodes: &Nodes, x: usize) -> [i32; TERMS] {
     [g0, r1, WEIGHT_ONE - g0 - g4 - g6, -r1 - r5, g4, r5, g6, 0]
 }
 
-pub(super) fn correct<const ROWS: usize>(weights: &Weights, rows: Rows<'_, ROWS>) {
+pub(super) fn correct<W: Walk, const ROWS: usize>(weights: &Weights, rows: Rows<'_, W, ROWS>) {
     match weights {
         Weights::Narrow(weights) => correct_as(weights, rows),
         Weights::Wide(weights) => correct_as(weights, rows),
     }
 }
 
-fn correct_as<W: Copy + Into<i32>, const ROWS: usize>(weights: &[[W; TERMS]], rows: Rows<'_, ROWS>) {
+fn correct_as<W: Walk, T: Copy + Into<i32>, const ROWS: usize>(
+    weights: &[[T; TERMS]],
+    rows: Rows<'_, W, ROWS>,
+) {
     let Rows { walk, width, max, inputs, mut outputs } = rows;
     let max = i32::from(max);
     let Some(weights) = weights.first_chunk::<DISTANCES>() else { return };
     for column in blocks(width, BLOCK) {
         let start = walk.start(column);
-        let mut places = [(0, 0); BLOCK];
-        for (index, place) in places.iter_mut().enumerate() {
-            let (first, x) = locate(walk, column + index);
-            *place = (first - start.first, x);
-        }
+        let places = locate(walk, column, &start);
         for (row, output) in inputs.iter().zip(&mut outputs) {
             let output = &mut output[column..column + BLOCK];
             correct_block(weights, row.window(start.first), &places, max, output);
@@ -62,19 +62,19 @@ fn correct_as<W: Copy + Into<i32>, const ROWS: usize>(weights: &[[W; TERMS]], ro
     }
 }
 
-/// Corrects a block of one row whose taps begin at `places` of the window, at the distances beside them.
-fn correct_block<W: Copy + Into<i32>>(
-    weights: &[[W; TERMS]; DISTANCES],
+/// Corrects a block of one row whose taps begin at the places' bases of the window.
+fn correct_block<T: Copy + Into<i32>>(
+    weights: &[[T; TERMS]; DISTANCES],
     window: &[u16],
-    places: &[(usize, usize); BLOCK],
+    places: &Places,
     max: i32,
     output: &mut [u16],
 ) {
     // The sums first, and then what vectors do at once to all of them.
     let mut sums = [0; BLOCK];
-    for (sum, &(offset, x)) in sums.iter_mut().zip(places) {
-        // Below 32 as it is; that the compiler sees it saves checking.
-        let offset = offset % BLOCK;
+    for ((sum, base), x) in sums.iter_mut().zip(places.base).zip(places.x) {
+        // Both as they are; that the compiler sees it saves checking.
+        let (offset, x) = (usize::from(base) % BLOCK, usize::from(x) % DISTANCES);
         *sum = weighted(&weights[x], &window[offset..offset + TERMS]);
     }
     for (output, sum) in output.iter_mut().zip(sums) {
@@ -82,25 +82,38 @@ fn correct_block<W: Copy + Into<i32>>(
     }
 }
 
-/// The padded row's sample of tap G0, and x below [`DISTANCES`].
+/// Where the outputs of a block come from.
+struct Places {
+    /// a − the block's least a.
+    base: [u16; BLOCK],
+    /// x, below [`DISTANCES`].
+    x: [u16; BLOCK],
+}
+
+/// n, then a and x, of the whole block: what compilers make vectors of.
 #[inline]
-fn locate(walk: Walk, column: usize) -> (usize, usize) {
-    let coordinate = walk.coordinate(column);
-    let n = (coordinate >> 25) as usize;
-    let back = (n ^ column) & 1;
-    let x = (coordinate >> 12) as usize & 0x1fff | back << 13;
-    (Walk::first_tap(n) - back, x)
+fn locate<W: Walk>(walk: W, column: usize, start: &Start) -> Places {
+    let relatives = walk.relatives(column, start);
+    let leads = &LEADS[usize::from(start.lead)];
+    let mut places = Places { base: [0; BLOCK], x: [0; BLOCK] };
+    for (index, relative) in relatives.into_iter().enumerate() {
+        let n = relative >> 25;
+        let back = (n ^ index as u32) & 1;
+        places.x[index] = (relative >> 12 & 0x1fff | back << 13) as u16;
+        places.base[index] = ((n + (index as u32 & 1)) as u16 & !1).wrapping_add(leads[index]);
+    }
+    places
 }
 
 /// The sum of the taps' products; samples are at most 12 bits.
 #[inline]
-fn weighted<W: Copy + Into<i32>>(weights: &[W; TERMS], taps: &[u16]) -> i32 {
+fn weighted<T: Copy + Into<i32>>(weights: &[T; TERMS], taps: &[u16]) -> i32 {
     weights.iter().zip(taps).map(|(&weight, &tap)| weight.into() * i32::from(tap as i16)).sum()
 }
 
 /// The sources of one block, for those who check them.
-pub(super) fn locate_block(walk: Walk, column: usize) -> Located {
-    let located: [_; BLOCK] = std::array::from_fn(|index| locate(walk, column + index));
-    let first = walk.start(column).first;
-    Located { first, base: located.map(|(tap, _)| (tap - first) as u16), x: located.map(|(_, x)| x as u16) }
+pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
+    let start = walk.start(column);
+    let Places { base, x } = locate(walk, column, &start);
+    Located { first: start.first, base, x }
 }

@@ -44,7 +44,7 @@ fn spread(residuals: &[f64]) -> (f64, f64) {
 }
 
 fn residuals(camera: &Camera, tables: &TableSet) -> Vec<Residual> {
-    let factors = tables.row_factors().iter().enumerate();
+    let factors = tables.row_factors().unwrap().iter().enumerate();
     factors
         .flat_map(|(row, &factor)| {
             camera.targets(row).map(move |target| camera.residual(row, factor, target))
@@ -148,7 +148,7 @@ fn a_profile_that_turns_back_inside_the_frame_is_refused_and_outside_of_it_taken
     assert!(new(300.0, 129.0).is_ok());
     let far = new(900.0, 180.0).unwrap();
     assert!((far.radius() - 450.0 * std::f64::consts::PI).abs() < 1e-9);
-    assert!(far.fitted().row_factors().iter().all(|&factor| factor < RowFactor::ONE));
+    assert!(far.fitted().row_factors().unwrap().iter().all(|&factor| factor < RowFactor::ONE));
 }
 
 #[test]

@@ -34,7 +34,7 @@ fn any_weight() -> impl Strategy<Value = fn(i16) -> i16> {
     ])
 }
 
-fn any_kernel() -> impl Strategy<Value = Kernel> {
+pub(crate) fn any_kernel() -> impl Strategy<Value = Kernel> {
     let nodes = prop::collection::vec(any::<[i16; 5]>(), NODES);
     let random = (nodes, any_weight(), any::<bool>()).prop_map(|(nodes, weight, five)| {
         let node = |node: [i16; 5]| {
@@ -69,7 +69,7 @@ fn any_geometry(heights: std::ops::RangeInclusive<usize>, widest: usize) -> impl
 }
 
 /// Samples of a seed: of every size, or the least and the greatest alone.
-fn samples(geometry: &Geometry, seed: u32) -> Vec<u16> {
+pub(crate) fn samples(geometry: &Geometry, seed: u32) -> Vec<u16> {
     let max = geometry.depth().max();
     let count = (geometry.width() * geometry.height()) as u32;
     (0..count)

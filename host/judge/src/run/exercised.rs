@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_model::{Frame, NODES, RowFactor, Source, TableSet, source};
+use halfrow_model::{Frame, NODES, RowFactor, Source, TableSet};
 
 use super::plan::Generation;
 use crate::result::{Identity, NotExercised};
@@ -108,18 +108,18 @@ fn line_memory_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     lines(board.ring.into()).filter(|line| 1_i64 << line > longest).collect()
 }
 
-/// The most samples that are stored behind one that is still needed. The row that is stretched most decides, at its end.
+/// The most samples that are stored behind one that is still needed. The end of a row decides.
 fn look_back(tables: &TableSet) -> Option<i64> {
-    let (geometry, &least) = (tables.geometry(), tables.row_factors().iter().min()?);
-    let last = geometry.width() - 1;
-    Some(last as i64 - source(geometry, least, last).column + geometry.width() as i64 / 2 - 1)
+    let (width, rows) = (tables.geometry().width(), 0..tables.geometry().height());
+    let ends = rows.filter_map(|row| Some(tables.values(row)?.source(width - 1).column));
+    Some(width as i64 - 1 - ends.min()? + width as i64 / 2 - 1)
 }
 
 /// Lines of the board's row table that tell no two rows of different factors apart.
 fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
     let tells = |line: &usize| {
         tables.iter().any(|tables| {
-            let factors = tables.row_factors();
+            let factors: Vec<_> = tables.units().collect();
             let above = (0..factors.len()).filter(|row| row >> line & 1 == 1);
             above.into_iter().any(|row| factors[row] != factors[row - (1 << line)])
         })
@@ -128,8 +128,7 @@ fn row_table_lines(tables: &[&TableSet], board: &Identity) -> Vec<usize> {
 }
 
 fn factor_bits(tables: &[&TableSet]) -> Vec<usize> {
-    let factors = tables.iter().flat_map(|tables| tables.row_factors());
-    Levels::of(factors.map(|factor| factor.get())).constant(RowFactor::BITS)
+    Levels::of(tables.iter().flat_map(|tables| tables.units())).constant(RowFactor::BITS)
 }
 
 /// Nodes that no output is made with, and taps of a board of `taps` that weigh nothing in any.
@@ -137,7 +136,8 @@ fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<S
     let (mut used, mut weighed) = ([false; NODES], [false; TAPS.len()]);
     let alike = |one: &Generation, other: &Generation| {
         one.tables.geometry().centre2() == other.tables.geometry().centre2()
-            && one.tables.row_factors() == other.tables.row_factors()
+            && one.tables.shape() == other.tables.shape()
+            && one.tables.units().eq(other.tables.units())
             && one.kernel == other.kernel
     };
     for (place, generation) in generations.iter().enumerate() {
@@ -161,10 +161,9 @@ fn unused_of_kernel(generations: &[&Generation], taps: u8) -> (Vec<usize>, Vec<S
 /// The nodes that outputs are made with: the one left of the source, and the next one unless it lies right on the first.
 fn nodes_used(tables: &TableSet) -> [bool; NODES] {
     let (geometry, mut used) = (tables.geometry(), [false; NODES]);
-    let factors: BTreeSet<_> = tables.row_factors().iter().copied().collect();
-    for factor in factors {
+    for values in (0..geometry.height()).filter_map(|row| tables.values(row)) {
         for column in 0..geometry.width() {
-            let Source { node, fraction, .. } = source(geometry, factor, column);
+            let Source { node, fraction, .. } = values.source(column);
             used[node] = true;
             used[node + 1] |= fraction > 0;
         }

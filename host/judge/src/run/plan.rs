@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
-use halfrow_model::{Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet};
+use halfrow_model::{Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet};
 
 use super::parts::{Part, Selection};
 use super::variations::{Build, Vary, varied};
@@ -29,10 +29,7 @@ impl Generation {
     /// The same for frames of the first `rows` rows.
     pub(super) fn upper(&self, rows: usize) -> Option<Self> {
         let Self { number, tables, kernel } = self;
-        let own = tables.geometry();
-        let geometry = Geometry::new(own.width(), rows, own.depth(), own.centre2()).ok()?;
-        let tables = TableSet::new(geometry, tables.row_factors().get(..rows)?.to_vec()).ok()?;
-        Some(Self { number: *number, tables, kernel: kernel.clone() })
+        Some(Self { number: *number, tables: tables.upper(rows)?, kernel: kernel.clone() })
     }
 }
 
@@ -232,10 +229,11 @@ impl Plan {
     /// A row factor half way to 1 reaches half as far, so the ring's limits hold.
     #[must_use]
     pub fn generations(&self, build: &Build) -> Vec<Generation> {
-        let halved = self.tables.row_factors().iter().map(|own| own.midpoint(RowFactor::ONE)).collect();
         let kernel = self.decoy_kernel(build.taps);
-        let decoy = TableSet::new(*self.tables.geometry(), halved).ok();
-        let decoy = decoy.map(|tables| Generation { number: DECOY, tables, kernel });
+        let decoy = Generation { number: DECOY, tables: self.tables.halved(), kernel };
+        // Rounding may bring a row of a grid that begins or ends at the frame's edge beyond it.
+        let fits = |tables: &TableSet| tables.shape().is_none() || tables.check_ring(build.ring).is_ok();
+        let decoy = Some(decoy).filter(|decoy| fits(&decoy.tables));
         let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
         decoy.into_iter().chain([judged]).chain(self.varied(build)).collect()
     }

@@ -35,7 +35,7 @@ impl Run<'_> {
     fn upload(&mut self, generation: &Generation, first_frame: u16, rows: usize) -> Result<(), End> {
         let Generation { number, tables, kernel } = generation;
         self.board.upload(tables, kernel).map_err(|error| End::board(CheckName::Upload, &error))?;
-        let (entries, nodes) = (tables.row_factors().len(), kernel.nodes().len());
+        let (entries, nodes) = (tables.units().len(), kernel.nodes().len());
         let uploaded = Finding::TablesUploaded { rows: entries, nodes, generation: *number };
         self.findings.passed(CheckName::Upload, uploaded);
         let ports = self.check_read_back(CheckName::ReadBack, Bank::Shadow, generation)?;

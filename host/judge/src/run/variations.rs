@@ -48,12 +48,12 @@ impl Build {
     }
 }
 
-/// The row factors of `tables` with what `vary` names set otherwise, one thing at a time, each legal for `build`.
+/// The entries of `tables` with what `vary` names set otherwise, one thing at a time, each legal for `build`.
 pub(super) fn varied(tables: &TableSet, vary: Vary, build: &Build) -> Vec<TableSet> {
     let own = tables.geometry();
     let of = |depth, centre2| {
         let geometry = Geometry::new(own.width(), own.height(), depth, centre2).ok()?;
-        TableSet::new(geometry, tables.row_factors().to_vec()).ok()
+        tables.with_geometry(geometry).ok()
     };
     let centre = vary.centre.then(|| {
         other_centres(own).find_map(|centre2| {

@@ -7,9 +7,7 @@ use halfrow::compare::Comparison;
 use halfrow::diagnosis::{Case, Uploaded, diagnose};
 use halfrow::result::{Evidence, FrameReport, FrameTiming, Suspect};
 use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
-use halfrow_model::{
-    BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, RowFactor, TableSet, correct,
-};
+use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet, correct};
 use halfrow_pipe::Parameters;
 
 use crate::scenes::{Scene, scene};
@@ -77,8 +75,7 @@ impl Bench {
         let lens = Equidistant::from_radius(radius).unwrap();
         let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
         tables.check_ring(ring.into()).unwrap();
-        let halves = tables.row_factors().iter().map(|own| own.midpoint(RowFactor::ONE)).collect();
-        let decoy = TableSet::new(geometry, halves).unwrap();
+        let decoy = tables.halved();
         let generations = [
             Generation { number: 1, tables: decoy, kernel: Kernel::from(Interpolant::Linear) },
             Generation { number: 2, tables, kernel: Kernel::from(judged) },

@@ -1,6 +1,6 @@
 //! The normal equations of a kernel's nodes: 65 times the five stored weights.
 
-use halfrow_model::{Interpolant, Kernel, NODES, Taps, WEIGHT_ONE, source};
+use halfrow_model::{Interpolant, Kernel, NODES, Taps, WEIGHT_ONE};
 
 use super::{TrainingError, Warped, cholesky};
 
@@ -41,10 +41,11 @@ impl Equations {
     /// Adds every sample of a frame, and the same seen from the other side: light has no preferred direction.
     pub(crate) fn observe(&mut self, warped: &Warped) {
         let geometry = warped.tables.geometry();
-        let rows = warped.distorted.rows().zip(warped.reference.rows()).zip(warped.tables.row_factors());
-        for ((row, wanted), &row_factor) in rows {
+        let rows = warped.distorted.rows().zip(warped.reference.rows()).enumerate();
+        let rows = rows.filter_map(|(index, rows)| Some((warped.tables.values(index)?, rows)));
+        for (values, (row, wanted)) in rows {
             for (column, &wanted) in wanted.iter().enumerate() {
-                let source = source(geometry, row_factor, column);
+                let source = values.source(column);
                 let mut taps: [f64; 7] = std::array::from_fn(|tap| {
                     row[geometry.sample_column(source.base - 2 + tap as i64)].into()
                 });

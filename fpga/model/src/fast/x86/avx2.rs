@@ -5,10 +5,11 @@
 
 use std::arch::x86_64::*;
 
-use super::entry::{load_8_samples, load_16_bytes, store_16_samples};
+use super::entry::{load_8_samples, load_8_words, load_16_bytes, store_16_samples};
 use crate::WEIGHT_ONE;
+use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, INTERVALS, Nodes, R1, R5};
-use crate::fast::walk::{LEADS, Located, Start, Walk, blocks};
+use crate::fast::walk::{LEADS, Piece, Start, Walk, blocks};
 use crate::fast::{BLOCK, Rows};
 
 /// Columns of a vector, and of a half of it.
@@ -52,7 +53,7 @@ fn bytes(words: &[i16; INTERVALS]) -> [Plane; 2] {
 #[derive(Clone, Copy)]
 struct Places {
     /// The padded row's sample of tap G0 for base 0, for each half.
-    first: [usize; 2],
+    first: [isize; 2],
     /// a − the half's least a, 0 to 7.
     base: __m256i,
     /// x, the lower 14 bits.
@@ -61,19 +62,19 @@ struct Places {
 
 /// Corrects the rows with the kernel's own combination of taps and wildness.
 #[target_feature(enable = "avx2")]
-pub(super) fn correct<const ROWS: usize>(planes: &Planes, rows: Rows<'_, ROWS>) {
+pub(super) fn correct<W: Walk, const ROWS: usize>(planes: &Planes, rows: Rows<'_, W, ROWS>) {
     match (planes.outer, planes.wild) {
-        (false, false) => correct_as::<ROWS, 3, false>(planes, rows),
-        (true, false) => correct_as::<ROWS, 5, false>(planes, rows),
-        (false, true) => correct_as::<ROWS, 3, true>(planes, rows),
-        (true, true) => correct_as::<ROWS, 5, true>(planes, rows),
+        (false, false) => correct_as::<W, ROWS, 3, false>(planes, rows),
+        (true, false) => correct_as::<W, ROWS, 5, false>(planes, rows),
+        (false, true) => correct_as::<W, ROWS, 3, true>(planes, rows),
+        (true, true) => correct_as::<W, ROWS, 5, true>(planes, rows),
     }
 }
 
 #[target_feature(enable = "avx2")]
-fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
+fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
     planes: &Planes,
-    rows: Rows<'_, ROWS>,
+    rows: Rows<'_, W, ROWS>,
 ) {
     let Rows { walk, width, max, inputs, mut outputs } = rows;
     let lanes = lanes(walk);
@@ -82,7 +83,9 @@ fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
         let places = [locate(walk, lanes, column), locate(walk, lanes, column + VECTOR)];
         let weights = weights::<WEIGHTS, WILD>(planes, [places[0].x, places[1].x]);
         // None of the offsets exceeds 25; that the compiler sees that they are below 32 saves checking.
-        let offset = |part: usize, half: usize| (places[part].first[half] - places[0].first[0]) % BLOCK;
+        let offset = |part: usize, half: usize| {
+            (places[part].first[half] - places[0].first[0]).cast_unsigned() % BLOCK
+        };
         for (row, output) in inputs.iter().zip(&mut outputs) {
             let window = row.window(places[0].first[0]);
             let output = &mut output[column..column + BLOCK];
@@ -97,7 +100,7 @@ fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
 
 /// The sources of one block, for those who check them.
 #[target_feature(enable = "avx2")]
-pub(super) fn locate_block(walk: Walk, column: usize) -> Located {
+pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
     let first = walk.start(column).first;
     let mut located = Located { first, base: [0; BLOCK], x: [0; BLOCK] };
     for from in [0, VECTOR] {
@@ -112,8 +115,8 @@ pub(super) fn locate_block(walk: Walk, column: usize) -> Located {
 
 /// 2Q times the even columns of each half, 0 to 6, in 32-bit lanes; and 2Q.
 #[target_feature(enable = "avx2")]
-fn lanes(walk: Walk) -> [__m256i; 2] {
-    let stride = _mm256_set1_epi32(walk.stride as i32);
+fn lanes(walk: impl Walk) -> [__m256i; 2] {
+    let stride = _mm256_set1_epi32(walk.stride() as i32);
     [_mm256_mullo_epi32(stride, _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6)), stride]
 }
 
@@ -124,13 +127,44 @@ fn halves(low: u32, high: u32) -> __m256i {
     _mm256_set_m128i(_mm_set1_epi32(high as i32), _mm_set1_epi32(low as i32))
 }
 
-/// n, then a and x, from S: relative to the half, 31 bits hold it.
+/// The coordinates of the even and of the odd columns, relative to each half: 31 bits hold them.
 #[target_feature(enable = "avx2")]
 #[inline]
-fn locate(walk: Walk, lanes: [__m256i; 2], column: usize) -> Places {
+fn relatives<W: Walk>(walk: W, lanes: [__m256i; 2], column: usize, starts: &[Start; 2]) -> [__m256i; 2] {
+    if !W::CURVED {
+        let even = _mm256_add_epi32(halves(starts[0].relative, starts[1].relative), lanes[0]);
+        return [even, _mm256_add_epi32(even, lanes[1])];
+    }
+    let piece = |half: usize| walk.piece(column + HALF * half, HALF, &starts[half]);
+    let (Some(low), Some(high)) = (piece(0), piece(1)) else {
+        let of = |first: usize| {
+            std::array::from_fn(|lane| walk.relative(first + 2 * lane, &starts[lane / (HALF / 2)]))
+        };
+        return [column, column + 1].map(|first| load_8_words(&of(first)));
+    };
+    let even = _mm256_setr_epi32(-4, -2, 0, 2, -4, -2, 0, 2);
+    let odd = _mm256_setr_epi32(-3, -1, 1, 3, -3, -1, 1, 3);
+    [even, odd].map(|columns| along([low, high], columns))
+}
+
+/// The pieces' coordinates at these columns from their middles, each half's of its own piece.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn along([low, high]: [Piece; 2], columns: __m256i) -> __m256i {
+    let both = |of: fn(Piece) -> u32| halves(of(low), of(high));
+    let squares = _mm256_mullo_epi32(columns, columns);
+    let bent = _mm256_mullo_epi32(squares, both(|piece| piece.curve.cast_unsigned()));
+    let bent = _mm256_srai_epi32::<3>(_mm256_add_epi32(bent, both(|piece| piece.rest)));
+    let straight = _mm256_mullo_epi32(columns, both(|piece| piece.slope));
+    _mm256_add_epi32(_mm256_add_epi32(straight, both(|piece| piece.middle)), bent)
+}
+
+/// n, then a and x, from the coordinates relative to each half.
+#[target_feature(enable = "avx2")]
+#[inline]
+fn locate<W: Walk>(walk: W, lanes: [__m256i; 2], column: usize) -> Places {
     let starts: [Start; 2] = [walk.start(column), walk.start(column + HALF)];
-    let even = _mm256_add_epi32(halves(starts[0].relative, starts[1].relative), lanes[0]);
-    let odd = _mm256_add_epi32(even, lanes[1]);
+    let [even, odd] = relatives(walk, lanes, column, &starts);
     let n = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<25>(even), _mm256_srli_epi32::<9>(odd));
     let q = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<12>(even), _mm256_slli_epi32::<4>(odd));
     // n counts from an even column, so bit 13 of q tells its parity, and that of x whether it is the output's.

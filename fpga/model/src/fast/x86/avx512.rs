@@ -2,16 +2,17 @@
 
 use std::arch::x86_64::*;
 
-use super::entry::{load_32_samples, load_32_weights, store_32_samples};
+use super::entry::{load_16_words, load_32_samples, load_32_weights, store_32_samples};
 use crate::WEIGHT_ONE;
+use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, Nodes, R1, R5, Tap};
-use crate::fast::walk::{LEADS, Located, Start, Walk, blocks};
+use crate::fast::walk::{LEADS, Piece, Start, Walk, blocks};
 use crate::fast::{BLOCK, Rows};
 
 /// Lanes of the odd columns.
 const ODD: u32 = 0xAAAA_AAAA;
 
-/// What the lanes of one row have in common.
+/// What the lanes of a row of one factor have in common.
 struct Lanes {
     /// 2Q times the even columns, 0 to 30, in 32-bit lanes.
     even: __m512i,
@@ -37,19 +38,19 @@ struct Table {
 
 /// Corrects the rows with the kernel's own combination of taps and wildness.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-pub(super) fn correct<const ROWS: usize>(nodes: &Nodes, rows: Rows<'_, ROWS>) {
+pub(super) fn correct<W: Walk, const ROWS: usize>(nodes: &Nodes, rows: Rows<'_, W, ROWS>) {
     match (nodes.outer, nodes.wild) {
-        (false, false) => correct_as::<ROWS, 3, false>(nodes, rows),
-        (true, false) => correct_as::<ROWS, 5, false>(nodes, rows),
-        (false, true) => correct_as::<ROWS, 3, true>(nodes, rows),
-        (true, true) => correct_as::<ROWS, 5, true>(nodes, rows),
+        (false, false) => correct_as::<W, ROWS, 3, false>(nodes, rows),
+        (true, false) => correct_as::<W, ROWS, 5, false>(nodes, rows),
+        (false, true) => correct_as::<W, ROWS, 3, true>(nodes, rows),
+        (true, true) => correct_as::<W, ROWS, 5, true>(nodes, rows),
     }
 }
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
+fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
     nodes: &Nodes,
-    rows: Rows<'_, ROWS>,
+    rows: Rows<'_, W, ROWS>,
 ) {
     let Rows { walk, width, max, inputs, mut outputs } = rows;
     let mut tables = [table(&nodes.taps[0]); WEIGHTS];
@@ -60,7 +61,7 @@ fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
     let max = _mm512_set1_epi16(max as i16);
     for column in blocks(width, BLOCK) {
         let start = walk.start(column);
-        let places = locate(&lanes, start);
+        let places = locate(relatives(walk, &lanes, column, &start), start.lead);
         let weights = weights::<WEIGHTS, WILD>(&tables, places.x);
         for (row, output) in inputs.iter().zip(&mut outputs) {
             let window = row.window(start.first);
@@ -71,9 +72,9 @@ fn correct_as<const ROWS: usize, const WEIGHTS: usize, const WILD: bool>(
 
 /// The sources of one block, for those who check them.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-pub(super) fn locate_block(walk: Walk, column: usize) -> Located {
+pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
     let start = walk.start(column);
-    let places = locate(&lanes(walk), start);
+    let places = locate(relatives(walk, &lanes(walk), column, &start), start.lead);
     let mut located = Located { first: start.first, base: [0; BLOCK], x: [0; BLOCK] };
     store_32_samples(&mut located.base, 0, places.base);
     store_32_samples(&mut located.x, 0, places.x);
@@ -90,24 +91,50 @@ fn table(tap: &Tap) -> Table {
 }
 
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
-fn lanes(walk: Walk) -> Lanes {
-    let stride = _mm512_set1_epi32(walk.stride as i32);
+fn lanes(walk: impl Walk) -> Lanes {
+    let stride = _mm512_set1_epi32(walk.stride() as i32);
     let columns = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
     Lanes { even: _mm512_mullo_epi32(stride, columns), stride }
 }
 
-/// n, then a and x, from S: below 2^26 + 31 · 2^25 relative to the block, so 31 bits hold it.
+/// The coordinates of the even and of the odd columns relative to the block: below 2^26 + 31 · 2^25, so 31 bits hold them.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 #[inline]
-fn locate(lanes: &Lanes, start: Start) -> Places {
-    let even = _mm512_add_epi32(_mm512_set1_epi32(start.relative as i32), lanes.even);
-    let odd = _mm512_add_epi32(even, lanes.stride);
+fn relatives<W: Walk>(walk: W, lanes: &Lanes, column: usize, start: &Start) -> [__m512i; 2] {
+    if !W::CURVED {
+        let even = _mm512_add_epi32(_mm512_set1_epi32(start.relative as i32), lanes.even);
+        return [even, _mm512_add_epi32(even, lanes.stride)];
+    }
+    let Some(piece) = walk.piece(column, BLOCK, start) else {
+        let of = |first: usize| std::array::from_fn(|lane| walk.relative(first + 2 * lane, start));
+        return [column, column + 1].map(|first| load_16_words(&of(first)));
+    };
+    let even = _mm512_setr_epi32(-16, -14, -12, -10, -8, -6, -4, -2, 0, 2, 4, 6, 8, 10, 12, 14);
+    let odd = _mm512_setr_epi32(-15, -13, -11, -9, -7, -5, -3, -1, 1, 3, 5, 7, 9, 11, 13, 15);
+    [along(piece, even), along(piece, odd)]
+}
+
+/// The piece's coordinates at these columns from its middle.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+#[inline]
+fn along(piece: Piece, columns: __m512i) -> __m512i {
+    let squares = _mm512_mullo_epi32(columns, columns);
+    let bent = _mm512_mullo_epi32(squares, _mm512_set1_epi32(piece.curve));
+    let bent = _mm512_srai_epi32::<3>(_mm512_add_epi32(bent, _mm512_set1_epi32(piece.rest as i32)));
+    let straight = _mm512_mullo_epi32(columns, _mm512_set1_epi32(piece.slope as i32));
+    _mm512_add_epi32(_mm512_add_epi32(straight, _mm512_set1_epi32(piece.middle as i32)), bent)
+}
+
+/// n, then a and x, from the coordinates relative to the block.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+#[inline]
+fn locate([even, odd]: [__m512i; 2], lead: bool) -> Places {
     let n = _mm512_mask_blend_epi16(ODD, _mm512_srli_epi32::<25>(even), _mm512_srli_epi32::<9>(odd));
     let q = _mm512_mask_blend_epi16(ODD, _mm512_srli_epi32::<12>(even), _mm512_slli_epi32::<4>(odd));
     // n counts from an even column, so bit 13 of q tells its parity, and that of x whether it is the output's.
     let x = _mm512_xor_si512(q, _mm512_set1_epi32(1 << 29));
     let rounded = _mm512_and_si512(_mm512_add_epi16(n, _mm512_set1_epi32(1 << 16)), _mm512_set1_epi16(!1));
-    let base = _mm512_add_epi16(rounded, load_32_samples(&LEADS[usize::from(start.lead)], 0));
+    let base = _mm512_add_epi16(rounded, load_32_samples(&LEADS[usize::from(lead)], 0));
     Places { base, x }
 }
 

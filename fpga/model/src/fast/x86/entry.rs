@@ -6,13 +6,15 @@
 #![allow(unsafe_code)]
 
 use std::arch::x86_64::{
-    __m128i, __m256i, __m512i, _mm_loadu_si128, _mm256_storeu_si256, _mm512_loadu_si512, _mm512_storeu_si512,
+    __m128i, __m256i, __m512i, _mm_loadu_si128, _mm256_loadu_si256, _mm256_storeu_si256, _mm512_loadu_si512,
+    _mm512_storeu_si512,
 };
 
 use super::{avx2, avx512};
 use crate::fast::Rows;
+use crate::fast::located::Located;
 use crate::fast::nodes::Nodes;
-use crate::fast::walk::{Located, Walk};
+use crate::fast::walk::Walk;
 
 /// The proof that this processor has AVX2.
 #[derive(Clone, Copy)]
@@ -27,12 +29,16 @@ impl Avx2 {
         is_x86_feature_detected!("avx2").then_some(Self(()))
     }
 
-    pub(in crate::fast) fn correct<const ROWS: usize>(self, nodes: &avx2::Planes, rows: Rows<'_, ROWS>) {
+    pub(in crate::fast) fn correct<W: Walk, const ROWS: usize>(
+        self,
+        nodes: &avx2::Planes,
+        rows: Rows<'_, W, ROWS>,
+    ) {
         // SAFETY: the token says that the processor has AVX2.
         unsafe { avx2::correct(nodes, rows) }
     }
 
-    pub(in crate::fast) fn locate(self, walk: Walk, column: usize) -> Located {
+    pub(in crate::fast) fn locate(self, walk: impl Walk, column: usize) -> Located {
         // SAFETY: the token says that the processor has AVX2.
         unsafe { avx2::locate_block(walk, column) }
     }
@@ -46,12 +52,12 @@ impl Avx512 {
         all.then_some(Self(()))
     }
 
-    pub(in crate::fast) fn correct<const ROWS: usize>(self, nodes: &Nodes, rows: Rows<'_, ROWS>) {
+    pub(in crate::fast) fn correct<W: Walk, const ROWS: usize>(self, nodes: &Nodes, rows: Rows<'_, W, ROWS>) {
         // SAFETY: the token says that the processor has the three features.
         unsafe { avx512::correct(nodes, rows) }
     }
 
-    pub(in crate::fast) fn locate(self, walk: Walk, column: usize) -> Located {
+    pub(in crate::fast) fn locate(self, walk: impl Walk, column: usize) -> Located {
         // SAFETY: the token says that the processor has the three features.
         unsafe { avx512::locate_block(walk, column) }
     }
@@ -81,6 +87,22 @@ pub(super) fn store_16_samples(samples: &mut [u16], from: usize, vector: __m256i
     let samples = &mut samples[from..from + 16];
     // SAFETY: 32 bytes may be written at the slice's address, and the store asks for no alignment.
     unsafe { _mm256_storeu_si256(samples.as_mut_ptr().cast(), vector) }
+}
+
+/// Eight 32-bit words.
+#[target_feature(enable = "avx2")]
+#[inline]
+pub(super) fn load_8_words(words: &[u32; 8]) -> __m256i {
+    // SAFETY: 32 bytes may be read at the array's address, and the load asks for no alignment.
+    unsafe { _mm256_loadu_si256(words.as_ptr().cast()) }
+}
+
+/// Sixteen 32-bit words.
+#[target_feature(enable = "avx512f")]
+#[inline]
+pub(super) fn load_16_words(words: &[u32; 16]) -> __m512i {
+    // SAFETY: 64 bytes may be read at the array's address, and the load asks for no alignment.
+    unsafe { _mm512_loadu_si512(words.as_ptr().cast()) }
 }
 
 /// 32 samples from `from` on.

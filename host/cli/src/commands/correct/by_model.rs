@@ -25,7 +25,7 @@ impl Job<'_> {
         let geometry = self.chosen.tables.geometry();
         let mut rows = self.inputs[index].rows(&self.how, &self.scene).map_err(Failure::call)?;
         let mut entering = vec![0; geometry.width()];
-        let mut row_factors = self.chosen.tables.row_factors().iter();
+        let mut numbers = 0..;
         let mut kept = Vec::new();
         let shape = FrameShape {
             width: geometry.width(),
@@ -35,8 +35,8 @@ impl Job<'_> {
         };
         let correct_next = |leaving: &mut [u16]| -> anyhow::Result<()> {
             rows.next_row(&mut entering)?;
-            if let Some(&row_factor) = row_factors.next() {
-                corrector.correct_row(geometry, row_factor, &entering, leaving);
+            if let Some(row) = numbers.next() {
+                corrector.correct_row_of(&self.chosen.tables, row, &entering, leaving);
             }
             if !places.previews.is_empty() {
                 kept.extend_from_slice(leaving);

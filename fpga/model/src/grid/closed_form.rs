@@ -1,0 +1,131 @@
+//! A grid from a lens by formula: a spline that takes the exact projection's values at a lattice of points.
+
+use super::projection::ProjectedRow;
+use super::rows::RowSpline;
+use super::{ENTRY_BITS, Grid, rounded};
+use crate::{Camera, Geometry, GridShape, RowFactor, RowValues, TableSet};
+
+/// What rounds a factor whose last three bits fall away.
+const ROUNDING: f64 = 4.0;
+
+/// How often offsets are corrected by what remains at the node next to the centre, of which rounding is a part.
+const CORRECTIONS: usize = 3;
+
+/// The coefficients of sources as a quadratic B-spline in both directions, column by column: (s, b) belongs to column
+/// h·(s − 1/2) and row 2^v·(b − 1/2).
+pub(super) struct Spline {
+    pub(super) shape: GridShape,
+    pub(super) rows: usize,
+    pub(super) coefficients: Vec<f64>,
+}
+
+impl Spline {
+    /// The quasi-interpolant (−f[−1] + 10·f[0] − f[1])/8 of the exact projection in both directions.
+    pub(super) fn of_camera(camera: &Camera, shape: GridShape) -> Self {
+        let (columns, rows) = (shape.columns(camera.geometry()), shape.rows(camera.geometry()));
+        let place = |index: usize, pitch: usize| pitch as f64 * (index as f64 - 1.5);
+        let lines: Vec<Vec<f64>> = (0..rows + 2)
+            .map(|row| {
+                let row = ProjectedRow::new(camera, place(row, shape.row_pitch()));
+                let column = |column| row.source(place(column, shape.column_pitch()));
+                smoothed(&(0..columns + 2).map(column).collect::<Vec<_>>())
+            })
+            .collect();
+        let column = |column: usize| lines.iter().map(|line| line[column]).collect::<Vec<_>>();
+        let coefficients = (0..columns).flat_map(|index| smoothed(&column(index))).collect();
+        Self { shape, rows, coefficients }
+    }
+
+    /// The table of this spline for `camera`, its offsets such that the node next to the centre is hit.
+    pub(super) fn table(&self, camera: &Camera) -> TableSet {
+        let geometry = camera.geometry();
+        let mut grid = Grid { shape: self.shape, entries: self.entries(geometry), rows: self.rows };
+        correct_offsets(camera, &mut grid);
+        raise_offsets(geometry, &mut grid);
+        TableSet::of_grid(*geometry, grid)
+    }
+
+    fn entries(&self, geometry: &Geometry) -> Vec<u32> {
+        let one = f64::from(RowFactor::ONE.get());
+        let (pitch, centre) = (self.shape.column_pitch() as f64, f64::from(geometry.centre2()) / 2.0);
+        let columns = || self.coefficients.chunks_exact(self.rows);
+        let factor = |(left, right): (&f64, &f64)| (one * (right - left) / pitch + 0.5).floor() + ROUNDING;
+        let factors = columns().zip(columns().skip(1)).flat_map(|(left, right)| left.iter().zip(right));
+        let factors: Vec<f64> = factors.map(factor).collect();
+        let (left, right) = self.coefficients.split_at(self.rows);
+        let first = left.iter().zip(right).zip(&factors);
+        let offsets = first.map(|((left, right), factor)| {
+            let turned = centre * (1.0 - (factor - ROUNDING) / one);
+            (one + 8192.0 * (f64::midpoint(*left, *right) - turned) + 0.5).floor()
+        });
+        offsets.chain(factors.iter().copied()).map(entry).collect()
+    }
+}
+
+/// The nearest word that an entry can be.
+fn entry(value: f64) -> u32 {
+    (value as u32).min((1 << ENTRY_BITS) - 1)
+}
+
+/// The quasi-interpolant's coefficients of all values but the first and the last.
+fn smoothed(values: &[f64]) -> Vec<f64> {
+    values.windows(3).map(|three| (10.0 * three[1] - three[0] - three[2]) / 8.0).collect()
+}
+
+/// Takes from the offsets, by least squares over all rows, what the row's values miss the node next to the centre by.
+fn correct_offsets(camera: &Camera, grid: &mut Grid) {
+    let geometry = camera.geometry();
+    let (shape, pitch) = (grid.shape, grid.shape.column_pitch());
+    let node = (geometry.centre2() as usize + pitch) / (2 * pitch);
+    let last = shape.segments(geometry);
+    let column = node.min(last - 1) * pitch;
+    let wanted: Vec<f64> = (0..geometry.height())
+        .map(|row| ProjectedRow::new(camera, row as f64).source(column as f64))
+        .collect();
+    let spline = RowSpline::new(shape, geometry);
+    let mut values = RowValues::default();
+    for _ in 0..CORRECTIONS {
+        let misses = wanted.iter().enumerate().map(|(row, wanted)| {
+            grid.values(geometry, row, &mut values);
+            8192.0 * (values.coordinate(column) as f64 / f64::from(1 << 28) - wanted)
+        });
+        let corrections = spline.fitted(misses);
+        for (offset, correction) in grid.entries.iter_mut().zip(corrections) {
+            *offset = entry(f64::from(*offset) - (correction + 0.5).floor());
+        }
+    }
+}
+
+/// Raises the offsets of rows that would begin in front of the frame.
+fn raise_offsets(geometry: &Geometry, grid: &mut Grid) {
+    let mut values = RowValues::default();
+    for row in 0..geometry.height() {
+        grid.values(geometry, row, &mut values);
+        let raise = -rounded(values.coordinate(0));
+        if raise > 0 {
+            let (first, _) = super::spline(grid.shape, row);
+            for offset in &mut grid.entries[first..first + 3] {
+                *offset = entry(f64::from(*offset) + raise as f64);
+            }
+        }
+    }
+}
+
+impl Camera {
+    /// The source of the output at column `column` of row `row` by the exact projection, which keeps rows: f(x, y) of Eqs. 5
+    /// to 7 with this lens's own r(θ), as [`CalibratedLens::straightened`](crate::CalibratedLens::straightened) has it.
+    ///
+    /// Beyond 90 degrees, where an output would need more of the row than a column a column, it goes on as a parabola, and
+    /// rows beyond the poles of the image circle are as the one there.
+    #[must_use]
+    pub fn source_column(&self, column: f64, row: f64) -> f64 {
+        ProjectedRow::new(self, row).source(column)
+    }
+
+    /// The grid of shape `shape` that follows the exact projection, by formula: the quadratic spline that takes its values at
+    /// the middles of the grid's cells.
+    #[must_use]
+    pub fn grid_by_formula(&self, shape: GridShape) -> TableSet {
+        Spline::of_camera(self, shape).table(self)
+    }
+}

@@ -1,0 +1,127 @@
+//! The values of a row: what the datapath finds of a table before the row leaves (DATAPATH.md, "Values of a row").
+
+use crate::corrector::{Source, locate};
+use crate::{Geometry, GridShape, RowFactor};
+
+/// Bits of a source coordinate: a board keeps S modulo 2^40.
+const COORDINATE_BITS: u32 = 40;
+
+/// Bits of S below those of q.
+const BELOW: u32 = 15;
+
+/// O and Q\[0\] to Q\[N\] of a row, and where its segments start. One factor a row is O = 0 and that factor at every node.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RowValues {
+    /// The binary logarithm of a segment's columns.
+    k: u32,
+    offset: i32,
+    factors: Vec<u32>,
+    /// S\[s · h\] for s from 0 to N − 1.
+    starts: Vec<i64>,
+}
+
+/// The parabola that S follows within a segment: start + i · (slope + i · curve) at its column i.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Parabola {
+    /// S\[s · h\].
+    pub(crate) start: i64,
+    /// 16·Q\[s\].
+    pub(crate) slope: i64,
+    /// G\[s\].
+    pub(crate) curve: i64,
+}
+
+impl RowValues {
+    /// Takes the offset `offset` and the `factors` of the nodes 0 to N, 2^`k` columns apart, for those that it has had.
+    pub(crate) fn take(
+        &mut self,
+        geometry: &Geometry,
+        k: u32,
+        offset: i32,
+        factors: impl Iterator<Item = u32>,
+    ) {
+        (self.k, self.offset) = (k, offset);
+        self.factors.clear();
+        self.factors.extend(factors);
+        self.starts.clear();
+        let short = RowFactor::ONE.get() - self.factors.first().copied().unwrap_or(0);
+        let mut start = 8 * i64::from(geometry.centre2()) * i64::from(short) + (i64::from(offset) << BELOW);
+        for pair in self.factors.windows(2) {
+            self.starts.push(start);
+            start += (i64::from(pair[0]) + i64::from(pair[1])) << (k + 3);
+        }
+    }
+
+    /// Takes the one factor of a row.
+    pub(crate) fn take_factor(&mut self, geometry: &Geometry, row_factor: RowFactor) {
+        let shape = GridShape::FINEST;
+        let nodes = shape.segments(geometry) + 1;
+        self.take(geometry, shape.k(), 0, std::iter::repeat_n(row_factor.get(), nodes));
+    }
+
+    /// O: how much farther right the row begins than the factors alone tell, in units of 2^-13 column.
+    #[must_use]
+    pub fn offset(&self) -> i32 {
+        self.offset
+    }
+
+    /// Q of every node from the left in units of 2^-24, 0 to 2^24.
+    #[must_use]
+    pub fn factors(&self) -> &[u32] {
+        &self.factors
+    }
+
+    /// S of column `column`, 0 to W − 1, in units of 2^-28 column; exactly, where a board keeps it modulo 2^40.
+    ///
+    /// # Panics
+    /// When the row has no such column.
+    #[must_use]
+    pub fn coordinate(&self, column: usize) -> i64 {
+        let Parabola { start, slope, curve } = self.parabola(column >> self.k);
+        let i = (column % self.pitch()) as i64;
+        start + i * (slope + i * curve)
+    }
+
+    /// Where the output of column `column`, 0 to W − 1, comes from. Of a grid that no ring could serve n is what a board
+    /// has, modulo 2^12.
+    ///
+    /// # Panics
+    /// When the row has no such column.
+    #[must_use]
+    pub fn source(&self, column: usize) -> Source {
+        locate(rounded(self.coordinate(column)) & ((1 << (COORDINATE_BITS - BELOW)) - 1), column)
+    }
+
+    /// Where the output lies that comes from the column `source`: between two columns, or beyond the row's end at the rate
+    /// there.
+    pub(crate) fn output(&self, source: f64) -> f64 {
+        let columns = self.starts.len() << self.k;
+        let at = |column: usize| self.coordinate(column) as f64 / f64::from(1 << 28);
+        let (mut low, mut high) = (0, columns - 1);
+        while high - low > 1 {
+            let middle = usize::midpoint(low, high);
+            *(if at(middle) <= source { &mut low } else { &mut high }) = middle;
+        }
+        let rate = at(high) - at(low);
+        // A row that does not move at all shows no other source anywhere.
+        low as f64 + if rate > 0.0 { (source - at(low)) / rate } else { 0.0 }
+    }
+
+    /// h: columns of a segment.
+    pub(crate) fn pitch(&self) -> usize {
+        1 << self.k
+    }
+
+    /// How S goes in segment `segment`.
+    #[inline]
+    pub(crate) fn parabola(&self, segment: usize) -> Parabola {
+        let [left, right] = [segment, segment + 1].map(|node| i64::from(self.factors[node]));
+        let curve = ((right - left) >> 3) << (6 - self.k);
+        Parabola { start: self.starts[segment], slope: 16 * left, curve }
+    }
+}
+
+/// q: S rounded to 2^-13 column.
+pub(crate) fn rounded(coordinate: i64) -> i64 {
+    (coordinate + (1 << (BELOW - 1))) >> BELOW
+}
