@@ -189,14 +189,15 @@ impl Bursts {
 
     /// Plays a row of the frame under way, with the blanking before it.
     fn play(&mut self, row: u16, player: &mut Player, tables: &mut Tables) {
-        let &Settings { width, height, centre2, depth, blanking, .. } = player.settings();
+        let settings = player.settings().clone();
+        let Settings { width, height, centre2, depth, blanking, .. } = settings;
         if row > 0 {
             self.blank(player, blanking.into());
         }
         let Some(burst) = &mut self.burst else { return };
         let frame = burst.begun - 1;
         let (intended, taken) = burst.banks(frame, row, self.defects, self.least_frame_blanking);
-        let bound = tables.bind_from(taken, row);
+        let bound = tables.bind_from(taken, row, &settings);
         let generation = if intended == Bank::Active { bound.generation } else { 0 };
         let ends_frame = row + 1 == height;
         burst.row = (!ends_frame).then_some(row + 1);
@@ -207,7 +208,7 @@ impl Bursts {
         let last_in = first_in + u64::from(width) - 1;
         let follows = row > 0 || frame > 0;
         self.signer.enter(RowInside { first_in, last_in, row, width, follows, ends_frame }, generation);
-        let binding = RowBinding { width, centre2, depth, factor: bound.factor, kernel: bound.kernel };
+        let binding = RowBinding { width, centre2, depth, values: bound.values, kernel: bound.kernel };
         let mut begins = Some(&binding);
         for &sample in &self.samples {
             let (leaving, now) = player.clock(Some(Entering { sample, begins: begins.take() }));

@@ -2,10 +2,13 @@
 
 mod defects;
 mod delay;
+#[cfg(test)]
+mod grid_tests;
 mod kernel;
 mod reader;
 mod ring;
 mod source;
+mod values;
 mod weights;
 mod window;
 
@@ -20,6 +23,7 @@ pub(crate) use defects::{CoreDefects, DeadTap, StuckBits};
 pub use delay::Leaving;
 pub use kernel::{Kernel, NODES, Node, Weight};
 pub use reader::RowBinding;
+pub use values::{GridShape, RowValues, UNSTRETCHED};
 
 /// Samples that must have entered beyond half a row before a column can be read; part of the latency L.
 const LOOK_AHEAD: u32 = 3;

@@ -27,9 +27,9 @@ pub enum BoardFault {
         /// The level that it is stuck at.
         value: bool,
     },
-    /// A bit of a row's table entry is flipped, in both banks.
+    /// A bit of a table entry is flipped, in both banks: of a row factor, or of what a grid has in its place.
     RowFactor {
-        /// The entry's row.
+        /// The row, or the number of the grid's entry.
         row: u16,
         /// The bit, 0 to 24.
         bit: u8,
@@ -81,7 +81,7 @@ pub enum BoardFault {
     DriftingTable {
         /// Rows of the generation that are played before.
         after: u32,
-        /// The entry's row.
+        /// The row, or the number of the grid's entry.
         row: u16,
         /// The bit, 0 to 24.
         bit: u8,
@@ -126,6 +126,8 @@ pub enum BoardFault {
 
 /// A row that small frames have too is the default.
 const ROW: Parameter = Parameter::new("row", Range::Whole(0, 2047), Some("3"), "the row");
+const ENTRY: Parameter =
+    Parameter::new("row", Range::Whole(0, 65534), Some("3"), "the row, or the number of a grid's entry");
 const FACTOR_BIT: Parameter = Parameter::new("bit", Range::Whole(0, 24), Some("18"), "the bit of the entry");
 const HIDDEN: Parameter = Parameter::new(
     "hidden",
@@ -168,13 +170,18 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
             })
         },
     ),
-    fault("row-factor", "a bit of a row's table entry is flipped", &[ROW, FACTOR_BIT, HIDDEN], |values| {
-        Ok(BoardFault::RowFactor {
-            row: values.whole("row")?,
-            bit: values.whole("bit")?,
-            hidden: values.choice("hidden", &[false, true])?,
-        })
-    }),
+    fault(
+        "row-factor",
+        "a bit of a row's or a grid's table entry is flipped",
+        &[ENTRY, FACTOR_BIT, HIDDEN],
+        |values| {
+            Ok(BoardFault::RowFactor {
+                row: values.whole("row")?,
+                bit: values.whole("bit")?,
+                hidden: values.choice("hidden", &[false, true])?,
+            })
+        },
+    ),
     fault(
         "kernel-word",
         "a bit of a kernel word is flipped",
@@ -249,7 +256,7 @@ pub const FAULTS: &[Fault<BoardFault>] = &[
                 Some("8"),
                 "rows of the generation that are played before",
             ),
-            ROW,
+            ENTRY,
             FACTOR_BIT,
         ],
         |values| {

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! [`Core`] is the datapath with its one ring of samples and its timing. [`Player`] feeds it rows and measures how
-//! long each takes. [`Tables`] hold the stretch factors and the kernel in a shadow bank and a committed one.
+//! long each takes. [`Tables`] hold the row factors or a grid of them, and the kernel, in a shadow bank and a committed one.
 //! Behind the wire a board also makes frames itself and signs them, as `fpga/AT-SPEED.md` says: about one of 1920 x 1080 with
 //! every packet that it gets, so that it takes no time of its own there either.
 //! [`BoardFault`] breaks one part of the board on purpose, so that a judge of boards can be judged.
@@ -31,10 +31,12 @@ mod tables;
 pub use crate::banks::{OutBanks, RowName, RowOut};
 pub use crate::board::Board;
 pub use crate::connect::{ConnectError, board_fault, connect};
-pub use crate::core::{Core, Entering, Kernel, Leaving, NODES, Node, RowBinding, Weight};
+pub use crate::core::{
+    Core, Entering, GridShape, Kernel, Leaving, NODES, Node, RowBinding, RowValues, UNSTRETCHED, Weight,
+};
 pub use crate::depth::Depth;
 pub use crate::faults::{BoardFault, FAULTS, Streamed, catalogue};
 pub use crate::options::{BurstBuild, OptionError, Options, TapCount};
 pub use crate::player::{PlayError, Player, RowIn};
 pub use crate::settings::{Settings, SettingsError};
-pub use crate::tables::{Bank, Bound, Port, TableError, Tables, UNSTRETCHED};
+pub use crate::tables::{Bank, Bound, MOST_GRID_ENTRY, Port, TableError, Tables};

@@ -16,6 +16,9 @@ const MAX_HEIGHT: Limits = Limits::new("max-height", 1, 2048);
 const PIXEL_CLOCK: Limits = Limits::new("pixel-clock", 1, 1_000_000_000);
 const RECORDS: Limits = Limits::new("records", 2, 1024);
 const LEAST_FRAME_BLANKING: Limits = Limits::new("least-frame-blanking", 0, 4095);
+const ENTRIES: Limits = Limits::new("entries", LEAST_ENTRIES as i64, 65535);
+/// The fewest entries of a bank that may hold a grid.
+const LEAST_ENTRIES: u16 = 2048;
 /// As wide as the number that a Spartan-6 has, which is of 57 bits.
 const SERIAL: Limits = Limits::new("serial", 0, (1 << 57) - 1);
 
@@ -30,6 +33,11 @@ const BURSTS: &str = "bursts";
 
 /// The name of the option that says whether rows come back with the CRC-32 of what entered.
 const ENTERED: &str = "entered";
+
+/// The name of the option that says whether the board takes grids.
+const DATAPATH2: &str = "datapath2";
+
+const TRUTHS: &[(&str, bool)] = &[("no", false), ("yes", true)];
 
 const BURST_BUILDS: &[(&str, BurstBuild)] =
     &[("no", BurstBuild::None), ("untrapped", BurstBuild::Untrapped), ("trapped", BurstBuild::Trapped)];
@@ -122,6 +130,10 @@ pub struct Options {
     pub least_frame_blanking: u16,
     /// Whether rows come back with the CRC-32 of what entered.
     pub entered: bool,
+    /// Whether the board takes grids: `fpga/DATAPATH.md`, *Datapath 2*.
+    pub datapath2: bool,
+    /// Entries T of a bank of a board that takes grids, 2048 to 65535.
+    pub entries: u16,
 }
 
 impl Default for Options {
@@ -143,6 +155,8 @@ impl Default for Options {
             records: 64,
             least_frame_blanking: 8,
             entered: true,
+            datapath2: true,
+            entries: LEAST_ENTRIES,
         }
     }
 }
@@ -152,6 +166,12 @@ impl Options {
     #[must_use]
     pub fn ring_size(&self) -> u16 {
         self.ring.unwrap_or_else(|| self.max_width.next_power_of_two())
+    }
+
+    /// Entries of a bank of tables.
+    #[must_use]
+    pub fn bank_entries(&self) -> u16 {
+        if self.datapath2 { self.entries.max(self.max_height) } else { self.max_height }
     }
 
     /// Whether a build with these options can exist.
@@ -170,6 +190,7 @@ impl Options {
         SERIAL.check(i64::try_from(self.serial).unwrap_or(i64::MAX))?;
         RECORDS.check(self.records.into())?;
         LEAST_FRAME_BLANKING.check(self.least_frame_blanking.into())?;
+        ENTRIES.check(self.entries.into())?;
         let (ring, max_width) = (self.ring_size(), self.max_width);
         RING.check(ring.into())?;
         if !ring.is_power_of_two() {
@@ -205,6 +226,8 @@ impl BoardOptions for Options {
         RECORDS.key(),
         LEAST_FRAME_BLANKING.key(),
         ENTERED,
+        DATAPATH2,
+        ENTRIES.key(),
     ];
 
     const FAULTS: &'static [Fault<BoardFault>] = FAULTS;
@@ -225,7 +248,9 @@ impl BoardOptions for Options {
             "records" => self.records = RECORDS.parse(value)?,
             "least-frame-blanking" => self.least_frame_blanking = LEAST_FRAME_BLANKING.parse(value)?,
             BURSTS => self.bursts = parse_word(BURSTS, value, BURST_BUILDS)?,
-            ENTERED => self.entered = parse_word(ENTERED, value, &[("no", false), ("yes", true)])?,
+            "entries" => self.entries = ENTRIES.parse(value)?,
+            ENTERED => self.entered = parse_word(ENTERED, value, TRUTHS)?,
+            DATAPATH2 => self.datapath2 = parse_word(DATAPATH2, value, TRUTHS)?,
             TAPS => {
                 self.taps = parse_word(TAPS, value, &[("five", TapCount::Five), ("seven", TapCount::Seven)])?;
             }

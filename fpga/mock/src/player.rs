@@ -196,11 +196,11 @@ impl Player {
 
     /// Lets the samples of a row enter, bound to what the tables hold now.
     fn enter(&mut self, row: &RowIn, tables: &mut Tables) {
-        let bound = tables.bind(row.row);
+        let bound = tables.bind(row.row, &self.settings);
         let &RowIn { sequence, frame, row: number, .. } = row;
         let name = RowName { sequence, frame, row: number, generation: bound.generation };
         let &Settings { width, centre2, depth, .. } = &self.settings;
-        let binding = RowBinding { width, centre2, depth, factor: bound.factor, kernel: bound.kernel };
+        let binding = RowBinding { width, centre2, depth, values: bound.values, kernel: bound.kernel };
         let mut begins = Some(&binding);
         let mut pauses = 0_u16;
         let mut samples = Cow::Borrowed(&row.samples);

@@ -1,47 +1,23 @@
 //! The tables that rows are made with, in two banks: one is written while rows use the other. A small build has one
 //! bank, which is both.
 
+mod defects;
+mod error;
+
 use std::sync::Arc;
 
-use crate::core::{Kernel, NODES, Node, Weight};
+use crate::core::{GridShape, Kernel, NODES, Node, RowValues, UNSTRETCHED};
 use crate::faults::{BoardFault, Defects};
 use crate::options::{Options, TapCount};
+use crate::settings::Settings;
 
-/// The table entry of a row that is not stretched, 1.0; also the largest.
-pub const UNSTRETCHED: u32 = 1 << 24;
+use defects::flipped;
 
-/// A write or a commit that the tables refuse.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum TableError {
-    /// The entry is not in the table.
-    #[error("entry {entry} is not in a table of {entries}; write entries below {entries}")]
-    NoSuchEntry {
-        /// The entry's number.
-        entry: usize,
-        /// Entries of the table.
-        entries: usize,
-    },
-    /// The factor is zero or above one.
-    #[error("the factor {factor} of row {row} is out of range; give 1 to {UNSTRETCHED}")]
-    Factor {
-        /// The entry's row.
-        row: usize,
-        /// What was to be written.
-        factor: u32,
-    },
-    /// The build has five taps and the kernel needs seven.
-    #[error("node {node} weighs G0 or G6, which this five-tap build lacks; use a five-tap kernel")]
-    OuterTaps {
-        /// The node's number.
-        node: usize,
-    },
-    /// The shadow bank has been committed and no row has used it yet.
-    #[error("the shadow bank waits for row 0 of frame {first_frame}; play that row first")]
-    CommitPending {
-        /// The frame that the commit takes effect with.
-        first_frame: u16,
-    },
-}
+pub(crate) use defects::{Drift, FlippedBit, Stale, TableDefects};
+pub use error::TableError;
+
+/// The largest entry of a grid.
+pub const MOST_GRID_ENTRY: u32 = (1 << 25) - 1;
 
 /// A bank of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,8 +40,8 @@ pub enum Port {
 /// What a row takes from the tables when its first sample enters.
 #[derive(Clone, Debug)]
 pub struct Bound {
-    /// The row's table entry Q.
-    pub factor: u32,
+    /// Where its columns come from.
+    pub values: RowValues,
     /// The kernel.
     pub kernel: Arc<Kernel>,
     /// The generation that the row will be named after.
@@ -75,7 +51,10 @@ pub struct Bound {
 /// The contents of one bank.
 #[derive(Debug)]
 struct Contents {
-    factors: Vec<u32>,
+    /// Row factors or a grid.
+    entries: Vec<u32>,
+    /// How a grid lies; none for row factors.
+    shape: Option<GridShape>,
     kernel: Arc<Kernel>,
     generation: u8,
 }
@@ -87,52 +66,6 @@ struct Commit {
     first_frame: u16,
 }
 
-/// What is wrong with tables; nothing by default.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct TableDefects {
-    /// A bit of a factor is flipped at some ports, in both banks.
-    pub(crate) factor: Option<FlippedBit<u16>>,
-    /// A bit of a kernel word is flipped at some ports, in both banks.
-    pub(crate) word: Option<FlippedBit<(u8, Weight)>>,
-    /// Rows are made with the tables before the last commit.
-    pub(crate) stale: Option<Stale>,
-    /// A bit of a factor flips while the board runs.
-    pub(crate) drift: Option<Drift>,
-    /// A commit is taken whatever the tables read back as.
-    pub(crate) unchecked: bool,
-}
-
-/// A bit of an entry that is not as it was written.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FlippedBit<Entry> {
-    /// Which entry.
-    pub(crate) entry: Entry,
-    /// The bit.
-    pub(crate) bit: u8,
-    /// Whether only the datapath sees it and reading back shows the right value.
-    pub(crate) hidden: bool,
-}
-
-/// What rows that are made with the tables before the last commit are named after.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Stale {
-    /// The generation that they are made with.
-    Admitted,
-    /// The new one.
-    Hidden,
-}
-
-/// A bit of a factor that flips while the board runs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Drift {
-    /// Rows of the generation that are played before.
-    pub(crate) after: u32,
-    /// The factor's row.
-    pub(crate) row: u16,
-    /// The bit.
-    pub(crate) bit: u8,
-}
-
 /// The banks of tables, and what is wrong with them.
 #[derive(Debug)]
 pub struct Tables {
@@ -141,6 +74,8 @@ pub struct Tables {
     active: Contents,
     commit: Option<Commit>,
     taps: TapCount,
+    /// Entries that hold row factors.
+    max_height: usize,
     defects: TableDefects,
     rows_bound: u32,
 }
@@ -150,7 +85,8 @@ impl Tables {
     #[must_use]
     pub fn new(options: &Options, fault: Option<BoardFault>) -> Self {
         let contents = || Contents {
-            factors: vec![UNSTRETCHED; options.max_height.into()],
+            entries: vec![UNSTRETCHED; options.bank_entries().into()],
+            shape: None,
             kernel: Arc::default(),
             generation: 0,
         };
@@ -159,6 +95,7 @@ impl Tables {
             active: contents(),
             commit: None,
             taps: options.taps,
+            max_height: options.max_height.into(),
             defects: Defects::of(fault).tables,
             rows_bound: 0,
         }
@@ -170,11 +107,27 @@ impl Tables {
     /// If a row is not in the table, a factor is not from 1 to 2^24, or the shadow bank waits for its frame.
     pub fn write_factors(&mut self, first: usize, factors: &[u32]) -> Result<(), TableError> {
         self.check_writable()?;
-        let entries = span(&mut self.shadow_mut().factors, first, factors.len())?;
+        let max_height = self.max_height;
+        let entries = span(&mut self.shadow_mut().entries[..max_height], first, factors.len())?;
         if let Some(place) = factors.iter().position(|factor| !(1..=UNSTRETCHED).contains(factor)) {
             return Err(TableError::Factor { row: first + place, factor: factors[place] });
         }
         entries.copy_from_slice(factors);
+        Ok(())
+    }
+
+    /// Writes entries of a grid into the shadow bank, where the row factors are, from the entry `first` on: all of them or,
+    /// on an error, none.
+    ///
+    /// # Errors
+    /// If an entry is not in the bank, a value is above 2^25 − 1, or the shadow bank waits for its frame.
+    pub fn write_grid(&mut self, first: usize, values: &[u32]) -> Result<(), TableError> {
+        self.check_writable()?;
+        let entries = span(&mut self.shadow_mut().entries, first, values.len())?;
+        if let Some(place) = values.iter().position(|&value| value > MOST_GRID_ENTRY) {
+            return Err(TableError::GridEntry { entry: first + place, value: values[place] });
+        }
+        entries.copy_from_slice(values);
         Ok(())
     }
 
@@ -193,13 +146,27 @@ impl Tables {
         Ok(())
     }
 
-    /// Commits the shadow bank: from row 0 of `first_frame` on it is the active one and has this generation. With one bank
-    /// it has it at once.
+    /// Commits the row factors of the shadow bank: from row 0 of `first_frame` on it is the active one and has this
+    /// generation. With one bank it has it at once.
     ///
     /// # Errors
     /// If an earlier commit has not taken effect yet.
     pub fn commit(&mut self, generation: u8, first_frame: u16) -> Result<(), TableError> {
+        self.commit_shape(generation, first_frame, None)
+    }
+
+    /// Commits the shadow bank as [`Self::commit`] does, as a grid of this shape or, without one, as row factors.
+    ///
+    /// # Errors
+    /// If an earlier commit has not taken effect yet.
+    pub fn commit_shape(
+        &mut self,
+        generation: u8,
+        first_frame: u16,
+        shape: Option<GridShape>,
+    ) -> Result<(), TableError> {
         self.check_writable()?;
+        self.shadow_mut().shape = shape;
         if self.shadow.is_some() {
             self.commit = Some(Commit { generation, first_frame });
         } else {
@@ -218,13 +185,13 @@ impl Tables {
         }
     }
 
-    /// What the row that begins now is bound to.
-    pub fn bind(&mut self, row: u16) -> Bound {
-        self.bind_from(Bank::Active, row)
+    /// What the row that begins now is bound to, in a frame of these settings.
+    pub fn bind(&mut self, row: u16, settings: &Settings) -> Bound {
+        self.bind_from(Bank::Active, row, settings)
     }
 
     /// What a row that begins now with the tables of a bank is bound to.
-    pub(crate) fn bind_from(&mut self, bank: Bank, row: u16) -> Bound {
+    pub(crate) fn bind_from(&mut self, bank: Bank, row: u16, settings: &Settings) -> Bound {
         self.drift();
         let (bank, named_after) = match self.defects.stale {
             None => (bank, bank),
@@ -232,17 +199,37 @@ impl Tables {
             Some(Stale::Hidden) => (Bank::Shadow, bank),
         };
         Bound {
-            factor: self.factor(bank, row.into(), Port::Datapath).unwrap_or(UNSTRETCHED),
+            values: self.values(bank, row, settings),
             kernel: self.kernel(bank, Port::Datapath),
             generation: self.contents(named_after).generation,
+        }
+    }
+
+    /// The values of a row of a frame of these settings, as the datapath makes them of a bank.
+    fn values(&self, bank: Bank, row: u16, settings: &Settings) -> RowValues {
+        let Contents { entries, shape, .. } = self.contents(bank);
+        // An address beyond the bank wraps: a frame may have become larger since its grid was committed.
+        let read = |index: usize| {
+            let wrapped = index.checked_rem(entries.len());
+            wrapped.and_then(|index| self.entry(bank, index, Port::Datapath)).unwrap_or(UNSTRETCHED)
+        };
+        match shape {
+            None => read(row.into()).into(),
+            Some(shape) => RowValues::of_grid(*shape, (settings.width, settings.height), row, read),
         }
     }
 
     /// The factor of a row as a port sees it; none for a row that is not in the table.
     #[must_use]
     pub fn factor(&self, bank: Bank, row: usize, port: Port) -> Option<u32> {
-        let stored = *self.contents(bank).factors.get(row)?;
-        let flip = self.defects.factor.filter(|flip| row == usize::from(flip.entry) && flip.shows(port));
+        self.entry(bank, row, port).filter(|_| row < self.max_height)
+    }
+
+    /// An entry of a bank as a port sees it, whatever it holds; none beyond its end.
+    #[must_use]
+    pub fn entry(&self, bank: Bank, index: usize, port: Port) -> Option<u32> {
+        let stored = *self.contents(bank).entries.get(index)?;
+        let flip = self.defects.entry.filter(|flip| index == usize::from(flip.entry) && flip.shows(port));
         Some(flip.map_or(stored, |flip| flipped(stored, flip.bit)))
     }
 
@@ -327,11 +314,11 @@ impl Tables {
 
     /// Lets a drifting entry flip once its time has come.
     fn drift(&mut self) {
-        if let Some(Drift { after, row, bit }) = self.defects.drift
+        if let Some(Drift { after, entry, bit }) = self.defects.drift
             && after == self.rows_bound
-            && let Some(factor) = self.active.factors.get_mut(usize::from(row))
+            && let Some(entry) = self.active.entries.get_mut(usize::from(entry))
         {
-            *factor = flipped(*factor, bit);
+            *entry = flipped(*entry, bit);
         }
         self.rows_bound = self.rows_bound.wrapping_add(1);
     }
@@ -342,16 +329,4 @@ fn span<T>(table: &mut [T], first: usize, count: usize) -> Result<&mut [T], Tabl
     let entries = table.len();
     let end = first.saturating_add(count);
     table.get_mut(first..end).ok_or(TableError::NoSuchEntry { entry: end.saturating_sub(1), entries })
-}
-
-impl<Entry> FlippedBit<Entry> {
-    /// Whether the bit is flipped at a port: at every one, or only at the datapath's.
-    fn shows(&self, port: Port) -> bool {
-        !self.hidden || port == Port::Datapath
-    }
-}
-
-/// A word with one bit flipped. A bit beyond the word leaves it as it is.
-fn flipped(word: u32, bit: u8) -> u32 {
-    word ^ 1_u32.checked_shl(bit.into()).unwrap_or(0)
 }

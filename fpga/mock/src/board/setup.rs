@@ -62,7 +62,9 @@ impl Board {
         let entry = |place: usize| u16::try_from(place).unwrap_or(u16::MAX);
         written.map_err(|error| match error {
             TableError::NoSuchEntry { .. } => (RefusalCode::Range, entries.span.first),
-            TableError::Factor { row, .. } => (RefusalCode::Range, entry(row)),
+            TableError::Factor { row: place, .. } | TableError::GridEntry { entry: place, .. } => {
+                (RefusalCode::Range, entry(place))
+            }
             TableError::OuterTaps { node } => (RefusalCode::Taps, entry(node)),
             TableError::CommitPending { .. } => (RefusalCode::Busy, 0),
         })

@@ -7,6 +7,7 @@ use super::delay::Leaving;
 use super::kernel::Kernel;
 use super::ring::Ring;
 use super::source::{FRACTION_BITS, Source};
+use super::values::RowValues;
 use super::weights::Weights;
 use super::window::Window;
 use crate::depth::Depth;
@@ -20,8 +21,8 @@ pub struct RowBinding {
     pub centre2: u16,
     /// Bits a sample; outputs are clamped to it.
     pub depth: Depth,
-    /// The row's table entry Q, 1/k in units of 2^-24 (Eq. 9).
-    pub factor: u32,
+    /// Where its columns come from.
+    pub values: RowValues,
     /// The interpolation kernel.
     pub kernel: Arc<Kernel>,
 }
@@ -42,7 +43,7 @@ impl Reader {
     #[cold]
     pub(crate) fn start(binding: &RowBinding, base: usize, ring: &Ring, defects: &CoreDefects) -> Self {
         let row = RowInRing { base, width: i32::from(binding.width), offset: defects.tap_offset };
-        let source = Source::new(binding.centre2, binding.factor);
+        let source = Source::new(binding.centre2, &binding.values);
         let window = Window::load(source.position().n, |column| row.sample(ring, column));
         let largest = i32::from(binding.depth.largest());
         Self { row, kernel: Arc::clone(&binding.kernel), largest, column: 0, source, window }

@@ -1,23 +1,33 @@
 //! Where in the row an output column comes from.
 
-/// The source coordinate has 37 bits, unsigned; a faulty factor wraps as the register does.
-const COORDINATE_MASK: u64 = (1 << 37) - 1;
+use super::values::{RowValues, UNSTRETCHED};
 
-/// 1.0 as a table entry; the coordinate has one fractional bit more.
-const ONE: u64 = 1 << 24;
+/// The source coordinate has 40 bits, unsigned; that of an illegal table wraps as the register does.
+const COORDINATE_MASK: u64 = (1 << 40) - 1;
+
+/// The step from one coordinate to the next has 29.
+const STEP_MASK: u64 = (1 << 29) - 1;
 
 /// Fractional bits dropped before the kernel's position is formed, and their half.
-const DROPPED_BITS: u32 = 12;
+const DROPPED_BITS: u32 = 15;
 const DROPPED_HALF: u64 = 1 << (DROPPED_BITS - 1);
 
 /// Fractional bits of the position: five choose the node, eight interpolate.
 pub(crate) const FRACTION_BITS: u32 = 13;
 
-/// The source coordinate S of one output column after the other, in units of 2^-25 column.
+/// The source coordinate S of one output column after the other, in units of 2^-28 column, by two adders.
 #[derive(Debug)]
 pub(crate) struct Source {
     coordinate: u64,
+    /// D: from this coordinate to the next.
     step: u64,
+    /// 2·G: from this step to the next, within a segment.
+    bend: u64,
+    /// Columns that are left of the segment.
+    left: u32,
+    /// The node at the segment's end.
+    node: usize,
+    values: RowValues,
 }
 
 /// A source coordinate, rounded to 2^-13 column.
@@ -30,25 +40,61 @@ pub(crate) struct Position {
 }
 
 impl Source {
-    /// S[0] = C·(2^24 − Q), from twice the centre's column and the row's table entry.
-    pub(crate) fn new(centre2: u16, factor: u32) -> Self {
-        let shortfall = ONE.wrapping_sub(u64::from(factor));
-        let coordinate = u64::from(centre2).wrapping_mul(shortfall) & COORDINATE_MASK;
-        Self { coordinate, step: 2 * u64::from(factor) }
+    /// S[0] = 8·C·(2^24 − Q[0]) + 2^15·O, from twice the centre's column and the row's values.
+    pub(crate) fn new(centre2: u16, values: &RowValues) -> Self {
+        let first = values.factors.first().copied().unwrap_or(UNSTRETCHED);
+        let shortfall = u64::from(UNSTRETCHED).wrapping_sub(first.into());
+        let stretched = (8 * u64::from(centre2)).wrapping_mul(shortfall);
+        let moved = i64::from(values.offset).cast_unsigned() << DROPPED_BITS;
+        let mut source = Self {
+            coordinate: stretched.wrapping_add(moved) & COORDINATE_MASK,
+            step: 0,
+            bend: 0,
+            left: 0,
+            node: 0,
+            values: values.clone(),
+        };
+        source.begin_segment();
+        source
     }
 
-    /// The position of the present column; moves on to the next, S[j+1] = S[j] + 2Q.
+    /// S of the present column.
+    #[cfg(test)]
+    pub(super) fn coordinate(&self) -> u64 {
+        self.coordinate
+    }
+
+    /// The position of the present column; moves on to the next.
     #[inline]
     pub(crate) fn advance(&mut self) -> Position {
         let position = self.position();
         self.coordinate = (self.coordinate + self.step) & COORDINATE_MASK;
+        self.step = (self.step + self.bend) & STEP_MASK;
+        self.left -= 1;
+        if self.left == 0 {
+            self.begin_segment();
+        }
         position
     }
 
     /// The position of the present column.
     pub(crate) fn position(&self) -> Position {
-        let rounded = (self.coordinate + DROPPED_HALF) >> DROPPED_BITS;
+        let rounded = ((self.coordinate + DROPPED_HALF) & COORDINATE_MASK) >> DROPPED_BITS;
         let fraction = rounded as u32 & ((1 << FRACTION_BITS) - 1);
         Position { n: (rounded >> FRACTION_BITS) as i32, fraction }
+    }
+
+    /// D = 16·Q[s] + G[s]. Behind the last node, which is where a row with one factor begins, the steps are all alike.
+    #[cold]
+    fn begin_segment(&mut self) {
+        let RowValues { factors, k, .. } = &self.values;
+        let first = factors.get(self.node).or(factors.last()).copied().unwrap_or(UNSTRETCHED);
+        self.node += 1;
+        let (bend, columns) = match factors.get(self.node) {
+            None => (0, u32::MAX),
+            Some(&next) => (((i64::from(next) - i64::from(first)) >> 3) << (6 - k), 1 << k),
+        };
+        self.step = (16 * u64::from(first)).wrapping_add_signed(bend) & STEP_MASK;
+        (self.bend, self.left) = ((2 * bend).cast_unsigned() & STEP_MASK, columns);
     }
 }

@@ -32,7 +32,7 @@ impl Defects {
             Some(BoardFault::StuckData { bit, value }) => core.data_lines = StuckBits::one(bit, value),
             Some(BoardFault::StuckAddress { bit, value }) => core.address_lines = StuckBits::one(bit, value),
             Some(BoardFault::RowFactor { row, bit, hidden }) => {
-                tables.factor = Some(FlippedBit { entry: row, bit, hidden });
+                tables.entry = Some(FlippedBit { entry: row, bit, hidden });
             }
             Some(BoardFault::KernelWord { node, weight, bit, hidden }) => {
                 tables.word = Some(FlippedBit { entry: (node, weight), bit, hidden });
@@ -47,7 +47,7 @@ impl Defects {
                 tables.stale = Some(if hidden { Stale::Hidden } else { Stale::Admitted });
             }
             Some(BoardFault::DriftingTable { after, row, bit }) => {
-                tables.drift = Some(Drift { after, row, bit });
+                tables.drift = Some(Drift { after, entry: row, bit });
             }
             Some(BoardFault::UncheckedCommit) => tables.unchecked = true,
             Some(BoardFault::WrongDatapath) => claims.datapath = 1,

@@ -45,7 +45,7 @@ fn a_row_flat_in_each_colour_stays_flat_up_to_its_edges() {
         for (centre2, factor) in
             [(0, GOLDEN_FACTOR), (63, GOLDEN_FACTOR), (126, 1 << 24), (63, 1), (10, 1 << 23)]
         {
-            let row = RowBinding { centre2, factor, ..unchanged(64) };
+            let row = RowBinding { centre2, values: factor.into(), ..unchanged(64) };
             assert_eq!(corrected(&samples, RowBinding { kernel: kernel.clone().into(), ..row }), samples);
         }
     }

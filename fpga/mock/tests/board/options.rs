@@ -17,26 +17,30 @@ fn the_default_build_can_exist() {
     assert_eq!(Options::default().ring_size(), 2048);
 }
 
+/// Every option, at a value that is not its default.
+const GIVEN: &[(&str, &str)] = &[
+    ("latency", "32"),
+    ("ring", "4096"),
+    ("least-blanking", "7"),
+    ("row-banks-in", "2"),
+    ("row-banks-out", "3"),
+    ("table-banks", "1"),
+    ("taps", "five"),
+    ("max-width", "2592"),
+    ("max-height", "1944"),
+    ("depths", "8+12"),
+    ("pixel-clock", "50000000"),
+    ("serial", "144115188075855871"),
+    ("bursts", "untrapped"),
+    ("records", "1024"),
+    ("least-frame-blanking", "4095"),
+    ("entered", "no"),
+    ("datapath2", "no"),
+    ("entries", "4096"),
+];
+
 #[test]
 fn every_option_is_set_by_its_name() {
-    let given = [
-        ("latency", "32"),
-        ("ring", "4096"),
-        ("least-blanking", "7"),
-        ("row-banks-in", "2"),
-        ("row-banks-out", "3"),
-        ("table-banks", "1"),
-        ("taps", "five"),
-        ("max-width", "2592"),
-        ("max-height", "1944"),
-        ("depths", "8+12"),
-        ("pixel-clock", "50000000"),
-        ("serial", "144115188075855871"),
-        ("bursts", "untrapped"),
-        ("records", "1024"),
-        ("least-frame-blanking", "4095"),
-        ("entered", "no"),
-    ];
     let expected = Options {
         latency: 32,
         ring: Some(4096),
@@ -55,8 +59,10 @@ fn every_option_is_set_by_its_name() {
         records: 1024,
         least_frame_blanking: 4095,
         entered: false,
+        datapath2: false,
+        entries: 4096,
     };
-    assert_eq!(options(&given), Ok(expected));
+    assert_eq!(options(GIVEN), Ok(expected));
 }
 
 #[test]
@@ -101,6 +107,8 @@ fn values_that_are_no_numbers_or_no_known_words_are_refused() {
     let refusal = |key, value| options(&[(key, value)]).unwrap_err().to_string();
     assert_eq!(refusal("ring", "big"), "ring=big is not a whole number; give one from 64 to 16384");
     assert_eq!(refusal("bursts", "yes"), "bursts=yes is not known; give one of no, untrapped, trapped");
+    assert_eq!(refusal("entries", "2047"), "entries=2047 is out of range; give a number from 2048 to 65535");
+    assert_eq!(refusal("datapath2", "1"), "datapath2=1 is not known; give one of no, yes");
     assert_eq!(refusal("records", "1"), "records=1 is out of range; give a number from 2 to 1024");
     assert_eq!(refusal("taps", "six"), "taps=six is not known; give one of five, seven");
     assert_eq!(refusal("depths", "8+9"), "depths=9 is not known; give one of 8, 10, 12");

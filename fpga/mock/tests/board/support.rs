@@ -28,7 +28,13 @@ pub(crate) fn constant(node: Node) -> Kernel {
 
 /// A 12-bit row with its centre in the middle.
 pub(crate) fn binding(width: u16, factor: u32, kernel: Kernel) -> RowBinding {
-    RowBinding { width, centre2: width - 1, depth: Depth::Twelve, factor, kernel: Arc::new(kernel) }
+    RowBinding {
+        width,
+        centre2: width - 1,
+        depth: Depth::Twelve,
+        values: factor.into(),
+        kernel: Arc::new(kernel),
+    }
 }
 
 /// A row that comes out as it went in.

@@ -59,7 +59,8 @@ proptest! {
         inputs in prop::collection::vec((any::<u16>(), 0_u8..40), 0..600),
     ) {
         let mut binding = unchanged(64);
-        (binding.width, binding.centre2, binding.factor, binding.depth) = (width, centre2, factor, Depth::Eight);
+        (binding.width, binding.centre2, binding.depth) = (width, centre2, Depth::Eight);
+        binding.values = factor.into();
         let mut core = core(4, 64, None);
         for (sample, kind) in inputs {
             let entering = Entering { sample, begins: (kind == 1).then_some(&binding) };
