@@ -19,7 +19,7 @@ FROM_HOST = {
     0x00: "nonce:I host:I version_min:B version_max:B take_over:B",
     0x01: "", 0x02: "clear:B", 0x03: "level:B next_row:I", 0x04: "bytes",
     0x10: SPAN + "entries", 0x11: SPAN, 0x12: SPAN,
-    0x13: "steps_crc:I kernel_crc:I first_frame:H generation:B",
+    0x13: "steps_crc:I kernel_crc:I first_frame:H generation:B shape",
     0x18: "width:H height:H centre2:H blanking:H gap_seed:I bits:B",
     0x20: PLACE + "samples", 0x22: "",
     0x30: "burst:I frames:I seed:I first_frame:H frame_blanking:H mode:B",
@@ -41,10 +41,13 @@ CAPABILITIES = dict(enumerate((
     "datapath max_width max_height depths taps latency ring least_blanking table_banks row_banks_in row_banks_out"
     " step_ports kernel_ports clock_source clock_hz").split(), 1)) | {0x11: "entered", 0x20: "nature", 0x21: "name"}
 BURSTS = "content:H records:H least_frame_blanking:H trap:B"  # of the capability 10
+GRIDS = "further_datapath:H entries:H ks:B grid_blanking:B grid_width:H"  # of the capability 12
+SHAPE = "v:B k:B"
+TABLES = {0: "I", 1: "hhhhh", 3: "I"}  # the words of an entry
 RECORD = "signature:I samples:I rows:H least_latency:H most_latency:H pauses:H generation:B flags:B"
 TRAPPED = "frame:I row:H width:H signature:I samples"
-MEANINGS = {"take_over": 2, "level": 3, "table": 2, "bank": 2, "mode": 4, "state": 3,
-            "kept": 2}  # how many values, from 0, have a meaning
+MEANINGS = {"take_over": range(2), "level": range(3), "table": TABLES, "bank": range(2), "mode": range(4),
+            "state": range(3), "kept": range(2)}  # the values that have a meaning
 
 
 def unstuff(piece):
@@ -69,9 +72,14 @@ def samples(data, fields):
 
 
 def entries(data, fields):
-    """Row factors are u32; a node is five i16."""
-    letters = "I" * fields["count"] if fields["table"] == 0 else "h" * 5 * fields["count"]
-    return " ".join(map(str, struct.unpack_from("<" + letters, data)))
+    """Row factors and entries of a grid are u32; a node is five i16."""
+    return " ".join(map(str, struct.unpack_from("<" + TABLES[fields["table"]] * fields["count"], data)))
+
+
+def shape(data, fields):
+    """Of a bank that holds a grid: both numbers, or none."""
+    if len(data) >= 2:
+        fields |= read_fields(SHAPE, data)
 
 
 def capabilities(data, fields):
@@ -83,6 +91,8 @@ def capabilities(data, fields):
             fields[CAPABILITIES[tag]] = value.decode() if tag == 0x21 else int.from_bytes(value, "little")
         elif tag == 0x10 and value:
             fields |= read_fields(BURSTS, value)
+        elif tag == 0x12 and value:
+            fields |= read_fields(GRIDS, value)
 
 
 def entered(data, fields):
@@ -111,7 +121,7 @@ def trapped(data, fields):
 
 
 TAILS = {"samples": samples, "entries": entries, "capabilities": capabilities, "bytes": lambda data, _: data.hex(" "),
-         "entered": entered, "records": records, "signatures": signatures, "trapped": trapped}
+         "entered": entered, "records": records, "signatures": signatures, "trapped": trapped, "shape": shape}
 
 
 def read_fields(layout, data):
@@ -121,7 +131,7 @@ def read_fields(layout, data):
         if letter:
             (value,) = struct.unpack_from("<" + letter, data)
             data = data[struct.calcsize("<" + letter) :]
-            if name in MEANINGS and value >= MEANINGS[name]:
+            if value not in MEANINGS.get(name, (value,)):
                 raise ValueError(f"{name} {value} has no meaning")
             fields[name] = value.hex(" ") if letter == "4s" else value
         elif (value := TAILS[name](data, fields)) is not None:

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use halfrow_protocol::message::{
     Bursts, Capabilities, Entries, Expect, FrameRecord, MAGIC, NODE_WEIGHTS, Records, Refusal, RowIn, RowOut,
-    RowPlace, Span, Table, TrappedRow,
+    RowPlace, Shape, Span, Table, TrappedRow,
 };
 use halfrow_protocol::{Damage, Decoder, Encoder, Header, Kind, Malformed, Packet, Reply, Request, samples};
 
@@ -83,7 +83,7 @@ fn span_fields(span: Span) -> Fields {
 
 fn entries_fields(entries: Entries<'_>) -> Fields {
     let values = match entries.span.table {
-        Table::RowFactors => list(entries.row_factors()),
+        Table::RowFactors | Table::Grid => list(entries.row_factors()),
         Table::Kernel => list(entries.nodes().flat_map(<[i16; NODE_WEIGHTS]>::into_iter)),
     };
     [span_fields(entries.span), vec![("entries", values)]].concat()
@@ -135,6 +135,9 @@ fn capability_fields(board: &Capabilities) -> Fields {
         fields.push(("trap", u8::from(*trap).to_string()));
     }
     fields.extend(board.entered.then(|| ("entered", "1".into())));
+    if let Some(grids) = &board.grids {
+        fields.extend(fields![grids; further_datapath entries ks grid_blanking grid_width]);
+    }
     fields.push(("nature", (board.nature as u8).to_string()));
     // A board without a name sends none; the crate reads that as an empty one.
     fields.extend((!board.name.is_empty()).then(|| ("name", board.name.clone())));
@@ -155,7 +158,10 @@ fn request_fields(request: &Request<'_>) -> Fields {
         Request::Echo(bytes) => vec![("bytes", hex(bytes))],
         Request::TableWrite(entries) => entries_fields(entries),
         Request::TableRead(span) | Request::TableCrc(span) => span_fields(span),
-        Request::Commit(commit) => fields![commit; steps_crc kernel_crc first_frame generation],
+        Request::Commit(commit) => {
+            let shape = commit.shape.iter().flat_map(|shape: &Shape| fields![shape; v k]);
+            fields![commit; steps_crc kernel_crc first_frame generation].into_iter().chain(shape).collect()
+        }
         Request::Configure(set) => fields![set; width height centre2 blanking gap_seed bits],
         // A host's rows have no generation; the crate sends 0 for it and does not look at it.
         Request::RowIn(RowIn { place, packed }) => row_fields(place, 0, packed),

@@ -109,6 +109,7 @@ impl Board {
         }
         let done = match Request::read(packet) {
             _ if !self.knows(header.kind) => Err((RefusalCode::Kind, 0)),
+            Ok(request) if !self.has_table(&request) => Err((RefusalCode::Payload, 0)),
             Ok(request) => self.carry_out(&header, &request, now),
             Err(Malformed::Kind(_)) => Err((RefusalCode::Kind, 0)),
             Err(_) => Err((RefusalCode::Payload, 0)),

@@ -34,8 +34,8 @@ pub(crate) fn every_board_sends_all_tags_in_their_widths(on: &dyn Boards) {
     }
     let name = widths.remove(&0x21).unwrap();
     assert!(name > 0);
-    // A board need not make bursts, nor say what entered.
-    for (tag, width) in [(0x10, 7), (0x11, 1)] {
+    // A board need not make bursts, nor say what entered, nor take grids.
+    for (tag, width) in [(0x10, 7), (0x11, 1), (0x12, 8)] {
         assert_eq!(widths.remove(&tag).unwrap_or(width), width, "tag {tag:#04x}");
     }
     let numbers = [2, 2, 2, 1, 1, 1, 2, 2, 1, 1, 1, 1, 1, 1, 4];

@@ -1,6 +1,6 @@
 //! What the tests feed boards with, made from the paper's formulas and the specification's sample formula.
 
-use halfrow_protocol::message::{NODE_WEIGHTS, NODES};
+use halfrow_protocol::message::{NODE_WEIGHTS, NODES, Shape};
 
 /// The table entry of a row that is not stretched, 1.0.
 pub const UNSTRETCHED: u32 = 1 << 24;
@@ -52,6 +52,22 @@ pub fn factors(height: u16, radius: f64) -> Vec<u32> {
         (f64::from(UNSTRETCHED) * (radius * radius - y * y).sqrt() / radius + 0.5).floor() as u32
     };
     (0..height).map(entry).collect()
+}
+
+/// N and Z: segments of a row, and grid rows of a frame.
+#[must_use]
+pub fn grid_size(shape: Shape, width: u16, height: u16) -> (usize, usize) {
+    let (columns, rows) = (1 << shape.k, 1 << shape.v);
+    (usize::from(width).div_ceil(columns), (usize::from(height) - 1) / rows + 3)
+}
+
+/// A legal grid that bends every row, drawn from a seed: no offsets, and factors from 0.875 to 0.9375.
+#[must_use]
+pub fn drawn_grid(shape: Shape, width: u16, height: u16, seed: u32) -> Vec<u32> {
+    let (segments, grid_rows) = grid_size(shape, width, height);
+    let factors = grid_rows as u32..((segments + 2) * grid_rows) as u32;
+    let factor = |entry: u32| 14_680_064 + ((entry + seed).wrapping_mul(2_654_435_761) >> 12);
+    std::iter::repeat_n(UNSTRETCHED, grid_rows).chain(factors.map(factor)).collect()
 }
 
 /// CRC-32 of samples as 16-bit little-endian words.

@@ -2,7 +2,7 @@
 
 use halfrow_protocol::message::{
     Bank, Burst, BurstMode, Commit, Configuration, Entries, Expect, Hello, Reply, Request, Reset, ResetLevel,
-    RowIn, RowPlace, Span, Status, Table,
+    RowIn, RowPlace, Shape, Span, Status, Table,
 };
 use halfrow_protocol::{Kind, MAX_PAYLOAD, samples};
 use proptest::prelude::*;
@@ -86,7 +86,8 @@ fn payload(kind: Kind, [a, b, c, d]: [u32; 4]) -> Vec<u8> {
         Kind::TableRead | Kind::TableCrc => Request::TableCrc(span([a, b, c, d])).write(&mut payload),
         Kind::Commit => {
             let (first_frame, generation) = (c as u16, d as u8);
-            Request::Commit(Commit { steps_crc: a, kernel_crc: b, first_frame, generation })
+            let shape = (a % 2 == 1).then_some(Shape { v: a as u8 % 9, k: b as u8 % 8 });
+            Request::Commit(Commit { steps_crc: a, kernel_crc: b, first_frame, generation, shape })
                 .write(&mut payload);
         }
         Kind::Configure => Request::Configure(configuration([a, b, c, d])).write(&mut payload),
@@ -122,7 +123,7 @@ fn at_speed(kind: Kind, [a, b, c, d]: [u32; 4], payload: &mut Vec<u8>) {
 }
 
 fn span([a, b, c, d]: [u32; 4]) -> Span {
-    let table = if a.is_multiple_of(2) { Table::RowFactors } else { Table::Kernel };
+    let table = [Table::RowFactors, Table::Kernel, Table::Grid][a as usize % 3];
     let bank = if b.is_multiple_of(3) { Bank::Active } else { Bank::Shadow };
     Span { table, bank, port: a as u8 % 4, first: c as u16, count: d as u16 }
 }

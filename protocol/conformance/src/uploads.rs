@@ -1,6 +1,8 @@
 //! Tables on their way to the board and back.
 
-use halfrow_protocol::message::{Bank, Commit, Entries, ROW_FACTOR_BYTES, Reply, Request, Span, Table};
+use halfrow_protocol::message::{
+    Bank, Commit, Entries, ROW_FACTOR_BYTES, Reply, Request, Shape, Span, Table,
+};
 
 use crate::bench::Bench;
 use crate::material::{Nodes, UNSTRETCHED, hermite};
@@ -8,11 +10,12 @@ use crate::material::{Nodes, UNSTRETCHED, hermite};
 /// Row factors of one packet.
 const FACTORS: usize = 1000;
 
-/// Row factors and a kernel, as a host uploads them.
+/// Row factors or a grid, and a kernel, as a host uploads them.
 #[derive(Clone)]
 pub struct TableSet {
     factors: Vec<u8>,
     nodes: Vec<u8>,
+    shape: Option<Shape>,
 }
 
 impl TableSet {
@@ -22,7 +25,14 @@ impl TableSet {
         Self {
             factors: factors.iter().flat_map(|factor| factor.to_le_bytes()).collect(),
             nodes: kernel.iter().flatten().flat_map(|weight| weight.to_le_bytes()).collect(),
+            shape: None,
         }
+    }
+
+    /// The entries of a grid of this shape, and this kernel.
+    #[must_use]
+    pub fn grid(shape: Shape, entries: &[u32], kernel: &Nodes) -> Self {
+        Self { shape: Some(shape), ..Self::new(entries, kernel) }
     }
 
     /// Tables that change no sample.
@@ -32,8 +42,9 @@ impl TableSet {
 
     /// Writes both into the shadow bank.
     pub fn upload(&self, bench: &mut Bench) {
-        for (first, factors) in (0..).step_by(FACTORS).zip(self.factors.chunks(FACTORS * ROW_FACTOR_BYTES)) {
-            bench.done(&write(Table::RowFactors, first, factors));
+        let table = if self.shape.is_some() { Table::Grid } else { Table::RowFactors };
+        for (factors, first) in self.factors.chunks(FACTORS * ROW_FACTOR_BYTES).zip((0..).step_by(FACTORS)) {
+            bench.done(&write(table, first, factors));
         }
         bench.done(&write(Table::Kernel, 0, &self.nodes));
     }
@@ -43,7 +54,7 @@ impl TableSet {
     pub fn commit(&self, generation: u8, first_frame: u16) -> Request<'static> {
         let steps_crc = crc32fast::hash(&self.factors);
         let kernel_crc = crc32fast::hash(&self.nodes);
-        Request::Commit(Commit { steps_crc, kernel_crc, first_frame, generation })
+        Request::Commit(Commit { steps_crc, kernel_crc, first_frame, generation, shape: self.shape })
     }
 }
 

@@ -74,6 +74,50 @@ impl Bursts {
     }
 }
 
+/// What a board can do of a datapath beside the one of [`Capabilities::datapath`]: DATAPATH.md, *Datapath 2*.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Grids {
+    /// The id of the further datapath. A host asks for nothing of an id other than 2.
+    pub further_datapath: u16,
+    /// T: entries of a bank, at least 2048 and as many as the highest frame has rows.
+    pub entries: u16,
+    /// Bit k is set for every k that it takes; 5 or 6 is among them.
+    pub ks: u8,
+    /// The fewest pixel clocks between rows of a grid that are narrower than `grid_width`.
+    pub grid_blanking: u8,
+    /// Columns from which on rows of a grid need no more blanking than others.
+    pub grid_width: u16,
+}
+
+impl Grids {
+    /// Whether nodes can lie every 2^k columns.
+    #[must_use]
+    pub fn takes(&self, k: u8) -> bool {
+        self.ks.checked_shr(k.into()).is_some_and(|ks| ks & 1 == 1)
+    }
+
+    fn write(&self) -> [u8; 8] {
+        let [[d0, d1], [e0, e1], [w0, w1]] =
+            [self.further_datapath, self.entries, self.grid_width].map(u16::to_le_bytes);
+        [d0, d1, e0, e1, self.ks, self.grid_blanking, w0, w1]
+    }
+
+    /// A value without bytes is as none.
+    fn read(mut value: Fields<'_>) -> Result<Option<Self>, Malformed> {
+        if value.0.is_empty() {
+            return Ok(None);
+        }
+        let grids = Self {
+            further_datapath: value.u16()?,
+            entries: value.u16()?,
+            ks: value.u8()?,
+            grid_blanking: value.u8()?,
+            grid_width: value.u16()?,
+        };
+        Ok(value.end(Some(grids)))
+    }
+}
+
 macro_rules! capabilities {
     ($($(#[$doc:meta])* $tag:literal $name:ident: $type:ident,)*) => {
         /// What a board is and can do.
@@ -84,6 +128,8 @@ macro_rules! capabilities {
             pub bursts: Option<Bursts>,
             /// Whether ROW_OUT ends with the CRC-32 of the samples that entered.
             pub entered: bool,
+            /// The grids that it takes; none where datapath 1 is all.
+            pub grids: Option<Grids>,
             /// What stands behind the wire.
             pub nature: BoardNature,
             /// The board's name, for people; UTF-8, at most 255 bytes.
@@ -93,6 +139,7 @@ macro_rules! capabilities {
         impl Capabilities {
             const BURSTS: u8 = 0x10;
             const ENTERED: u8 = 0x11;
+            const GRIDS: u8 = 0x12;
             const NATURE: u8 = 0x20;
             const NAME: u8 = 0x21;
 
@@ -104,13 +151,16 @@ macro_rules! capabilities {
                 if self.entered {
                     tagged(payload, Self::ENTERED, &[1]);
                 }
+                if let Some(grids) = &self.grids {
+                    tagged(payload, Self::GRIDS, &grids.write());
+                }
                 tagged(payload, Self::NATURE, &[self.nature as u8]);
                 tagged(payload, Self::NAME, cut(&self.name).as_bytes());
             }
 
             pub(crate) fn read(mut fields: Fields<'_>) -> Result<Self, Malformed> {
                 $(let mut $name = None;)*
-                let (mut bursts, mut entered) = (None, false);
+                let (mut bursts, mut entered, mut grids) = (None, false, None);
                 let (mut nature, mut name) = (None, String::new());
                 while !fields.0.is_empty() {
                     let tag = fields.u8()?;
@@ -120,6 +170,7 @@ macro_rules! capabilities {
                         $($tag => $name = Some($type::from_le_bytes(value.array()?)),)*
                         Self::BURSTS => bursts = Bursts::read(value)?,
                         Self::ENTERED => entered = length > 0 && value.u8()? != 0,
+                        Self::GRIDS => grids = Grids::read(value)?,
                         Self::NATURE => nature = Some(BoardNature::from_code(value.u8()?)?),
                         Self::NAME => name = cut(&String::from_utf8_lossy(value.rest())).into(),
                         _ => {}
@@ -129,6 +180,7 @@ macro_rules! capabilities {
                     $($name: $name.ok_or(Malformed::MissingCapability(stringify!($name)))?,)*
                     bursts,
                     entered,
+                    grids,
                     nature: nature.ok_or(Malformed::MissingCapability("nature"))?,
                     name,
                 })

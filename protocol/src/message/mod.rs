@@ -13,14 +13,16 @@ mod tables;
 use alloc::vec::Vec;
 
 pub use bursts::{Burst, BurstMode, BurstState, Expect, FrameRecord, Records, TrappedRow};
-pub use capabilities::{BoardNature, Bursts, Capabilities, Depths};
+pub use capabilities::{BoardNature, Bursts, Capabilities, Depths, Grids};
 pub use datapath::{Datapath, UnknownDatapath};
 pub use hello::{Hello, MAGIC, Welcome};
 pub use refusal::{Refusal, RefusalCode};
 pub use rows::{RowIn, RowOut, RowPlace};
 pub use setup::{Configuration, Reset, ResetLevel};
 pub use status::Status;
-pub use tables::{Bank, Commit, Entries, NODE_BYTES, NODE_WEIGHTS, NODES, ROW_FACTOR_BYTES, Span, Table};
+pub use tables::{
+    Bank, Commit, Entries, NODE_BYTES, NODE_WEIGHTS, NODES, ROW_FACTOR_BYTES, Shape, Span, Table,
+};
 
 use crate::bytes::Fields;
 use crate::{Kind, Packet};

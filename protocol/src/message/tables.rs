@@ -5,7 +5,7 @@ use alloc::vec::Vec;
 use crate::Malformed;
 use crate::bytes::Fields;
 
-/// Bytes of a row factor on the wire: an unsigned 32-bit word that holds 25 bits.
+/// Bytes of a row factor or of a grid's entry on the wire: an unsigned 32-bit word that holds 25 bits.
 pub const ROW_FACTOR_BYTES: usize = 4;
 /// Nodes of a kernel.
 pub const NODES: usize = 65;
@@ -14,7 +14,7 @@ pub const NODE_WEIGHTS: usize = 5;
 /// Bytes of a node on the wire: five signed 16-bit words.
 pub const NODE_BYTES: usize = 2 * NODE_WEIGHTS;
 
-/// One of a board's two tables.
+/// One of a board's tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Table {
@@ -22,6 +22,8 @@ pub enum Table {
     RowFactors = 0,
     /// The kernel's nodes.
     Kernel = 1,
+    /// The entries of a grid, in the memory of the row factors; of boards with [`super::Grids`] alone.
+    Grid = 3,
 }
 
 impl Table {
@@ -29,7 +31,7 @@ impl Table {
     #[must_use]
     pub const fn entry_bytes(self) -> usize {
         match self {
-            Self::RowFactors => ROW_FACTOR_BYTES,
+            Self::RowFactors | Self::Grid => ROW_FACTOR_BYTES,
             Self::Kernel => NODE_BYTES,
         }
     }
@@ -38,6 +40,7 @@ impl Table {
         match fields.u8()? {
             0 => Ok(Self::RowFactors),
             1 => Ok(Self::Kernel),
+            3 => Ok(Self::Grid),
             other => Err(Malformed::Value { field: "table", value: other.into() }),
         }
     }
@@ -99,7 +102,8 @@ pub struct Entries<'a> {
 }
 
 impl<'a> Entries<'a> {
-    /// Row factors, if they are the table's: words as they came, which the board that takes them must check.
+    /// Row factors or entries of a grid, if they are the table's: words as they came, which the board that takes them must
+    /// check.
     pub fn row_factors(&self) -> impl Iterator<Item = u32> + use<'a> {
         self.bytes.as_chunks::<ROW_FACTOR_BYTES>().0.iter().map(|&word| u32::from_le_bytes(word))
     }
@@ -124,10 +128,20 @@ impl<'a> Entries<'a> {
     }
 }
 
+/// How the rows of a bank use its entries (DATAPATH.md, *Datapath 2*): any two numbers, which the board that takes them must
+/// check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// A grid row lies every 2^v rows; 0 for one row factor a row.
+    pub v: u8,
+    /// A node lies every 2^k columns; without meaning if v is 0.
+    pub k: u8,
+}
+
 /// Makes the shadow tables the active ones, from a frame on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Commit {
-    /// CRC-32 of the first H row factors, 4 bytes each.
+    /// CRC-32 of the first H row factors, or of all entries of the grid, 4 bytes each.
     pub steps_crc: u32,
     /// CRC-32 of the 65 nodes, 10 bytes each.
     pub kernel_crc: u32,
@@ -135,6 +149,8 @@ pub struct Commit {
     pub first_frame: u16,
     /// The generation that the tables become, 1 to 255; not the present one, so that a repeated request is known.
     pub generation: u8,
+    /// The bank's shape; none for one row factor a row. Only for a board with [`super::Grids`]: others do not look at it.
+    pub shape: Option<Shape>,
 }
 
 impl Commit {
@@ -143,6 +159,7 @@ impl Commit {
         payload.extend_from_slice(&self.kernel_crc.to_le_bytes());
         payload.extend_from_slice(&self.first_frame.to_le_bytes());
         payload.push(self.generation);
+        payload.extend(self.shape.into_iter().flat_map(|Shape { v, k }| [v, k]));
     }
 
     pub(crate) fn read(mut fields: Fields<'_>) -> Result<Self, Malformed> {
@@ -151,6 +168,7 @@ impl Commit {
             kernel_crc: fields.u32()?,
             first_frame: fields.u16()?,
             generation: fields.u8()?,
+            shape: fields.array().ok().map(|[v, k]| Shape { v, k }),
         };
         Ok(fields.end(commit))
     }

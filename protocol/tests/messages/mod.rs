@@ -2,8 +2,8 @@
 
 use halfrow_protocol::message::{
     Bank, BoardNature, Burst, BurstMode, BurstState, Bursts, Capabilities, Commit, Configuration, Entries,
-    Expect, FrameRecord, Hello, Records, Refusal, RefusalCode, Reset, ResetLevel, RowIn, RowOut, RowPlace,
-    Span, Status, Table, TrappedRow, Welcome,
+    Expect, FrameRecord, Grids, Hello, Records, Refusal, RefusalCode, Reset, ResetLevel, RowIn, RowOut,
+    RowPlace, Shape, Span, Status, Table, TrappedRow, Welcome,
 };
 use halfrow_protocol::samples::packed_length;
 use halfrow_protocol::{MAX_PAYLOAD, Reply, Request};
@@ -130,8 +130,9 @@ fn welcome() -> impl Strategy<Value = Welcome> {
 fn capabilities() -> impl Strategy<Value = Capabilities> {
     let nature = select(vec![BoardNature::Hardware, BoardNature::Simulation, BoardNature::Mock]);
     // Sixty characters are at most 240 bytes; a name has at most 255.
-    (any::<([u16; 5], [u8; 9], u32, bool)>(), proptest::option::of(bursts()), nature, "\\PC{0,60}").prop_map(
-        |((words, bytes, clock_hz, entered), bursts, nature, name)| {
+    let further = (proptest::option::of(bursts()), proptest::option::of(grids()));
+    (any::<([u16; 5], [u8; 9], u32, bool)>(), further, nature, "\\PC{0,60}").prop_map(
+        |((words, bytes, clock_hz, entered), (bursts, grids), nature, name)| {
             let [datapath, max_width, max_height, ring, least_blanking] = words;
             let [
                 depths,
@@ -162,6 +163,7 @@ fn capabilities() -> impl Strategy<Value = Capabilities> {
                 clock_hz,
                 bursts,
                 entered,
+                grids,
                 nature,
                 name,
             }
@@ -218,12 +220,16 @@ fn reset() -> impl Strategy<Value = Reset> {
 }
 
 fn commit() -> impl Strategy<Value = Commit> {
-    any::<(u32, u32, u16, u8)>().prop_map(|(steps_crc, kernel_crc, first_frame, generation)| Commit {
-        steps_crc,
-        kernel_crc,
-        first_frame,
-        generation,
-    })
+    let shape = proptest::option::of(any::<(u8, u8)>().prop_map(|(v, k)| Shape { v, k }));
+    (any::<(u32, u32, u16, u8)>(), shape).prop_map(
+        |((steps_crc, kernel_crc, first_frame, generation), shape)| Commit {
+            steps_crc,
+            kernel_crc,
+            first_frame,
+            generation,
+            shape,
+        },
+    )
 }
 
 fn configuration() -> impl Strategy<Value = Configuration> {
@@ -233,7 +239,7 @@ fn configuration() -> impl Strategy<Value = Configuration> {
 }
 
 fn span() -> impl Strategy<Value = Span> {
-    let table = select(vec![Table::RowFactors, Table::Kernel]);
+    let table = select(vec![Table::RowFactors, Table::Kernel, Table::Grid]);
     let bank = select(vec![Bank::Shadow, Bank::Active]);
     (table, bank, any::<(u8, u16, u16)>()).prop_map(|(table, bank, (port, first, count))| Span {
         table,
@@ -286,6 +292,12 @@ fn bursts() -> impl Strategy<Value = Bursts> {
         records,
         least_frame_blanking,
         trap,
+    })
+}
+
+fn grids() -> impl Strategy<Value = Grids> {
+    any::<([u16; 3], [u8; 2])>().prop_map(|([further_datapath, entries, grid_width], [ks, grid_blanking])| {
+        Grids { further_datapath, entries, ks, grid_blanking, grid_width }
     })
 }
 

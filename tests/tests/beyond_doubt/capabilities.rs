@@ -1,7 +1,7 @@
 //! Boards that say of themselves what no board can be: refused, by name, and never judged.
 
 use halfrow::verdict::Cause;
-use halfrow_protocol::message::Capabilities;
+use halfrow_protocol::message::{Capabilities, Grids};
 use halfrow_tests::altered::{judge_claims, judge_claims_by};
 use halfrow_tests::system::{System, streamed};
 
@@ -35,10 +35,18 @@ const IMPOSSIBLE: &[Claim] = &[
     ("kernel_ports = 0", |board| board.kernel_ports = 0),
     ("records = 0", |board| records(board, 0)),
     ("records = 1", |board| records(board, 1)),
+    ("entries = 0", |board| grids(board, |grids| grids.entries = 0)),
+    ("entries = 2047", |board| grids(board, |grids| grids.entries = 2047)),
+    ("ks = 0", |board| grids(board, |grids| grids.ks = 0)),
+    ("ks = 159", |board| grids(board, |grids| grids.ks = 0x9f)),
 ];
 
 fn records(board: &mut Capabilities, records: u16) {
     board.bursts.iter_mut().for_each(|bursts| bursts.records = records);
+}
+
+fn grids(board: &mut Capabilities, change: fn(&mut Grids)) {
+    change(board.grids.as_mut().unwrap());
 }
 
 /// What is unusual, and legal.
@@ -49,6 +57,9 @@ const UNUSUAL: &[Claim] = &[
     ("an odd width", |board| board.max_width = 2047),
     ("12 bits alone", |board| board.depths = 4),
     ("a depth to come", |board| board.depths = 0x0f),
+    ("the most entries", |board| grids(board, |grids| (grids.entries, grids.ks) = (u16::MAX, 0x20))),
+    ("another k besides", |board| grids(board, |grids| grids.ks = 0xd0)),
+    ("a further datapath to come", |board| grids(board, |grids| (grids.further_datapath, grids.ks) = (3, 0))),
 ];
 
 #[test]

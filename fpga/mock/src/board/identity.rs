@@ -1,14 +1,20 @@
 //! What the board says of itself.
 
-use halfrow_protocol::message::{BoardNature, Capabilities, Status};
+use halfrow_protocol::message::{BoardNature, Capabilities, Grids, Status};
 
 use super::Board;
 use super::bursts::capability;
+use crate::core::GridShape;
 use crate::faults::Defects;
-use crate::options::TapCount;
+use crate::options::{Options, TapCount};
 
 /// The arithmetic of fpga/DATAPATH.md.
 const DATAPATH: u16 = 1;
+/// Its section of grids.
+const FURTHER_DATAPATH: u16 = 2;
+/// What the Verilog needs between rows of a grid that are narrower than so many columns. The mock needs no time.
+const GRID_BLANKING: u8 = 32;
+const GRID_WIDTH: u16 = 192;
 /// Ports by which the datapath reads row factors.
 pub(super) const ROW_FACTOR_PORTS: u8 = 1;
 /// Ports by which it reads nodes: i and i + 1 at once.
@@ -21,6 +27,17 @@ pub(crate) struct WrongClaims {
     pub(crate) datapath: u16,
     /// L, in pixel clocks.
     pub(crate) latency: u8,
+}
+
+/// What a build says of the grids that it takes.
+fn grids(options: &Options) -> Option<Grids> {
+    options.datapath2.then(|| Grids {
+        further_datapath: FURTHER_DATAPATH,
+        entries: options.bank_entries(),
+        ks: GridShape::KS.into_iter().fold(0, |ks, k| ks | 1 << k),
+        grid_blanking: GRID_BLANKING,
+        grid_width: GRID_WIDTH,
+    })
 }
 
 impl Board {
@@ -48,6 +65,7 @@ impl Board {
             clock_hz: options.pixel_clock,
             bursts: capability(options),
             entered: options.entered,
+            grids: grids(options),
             nature: BoardNature::Mock,
             name: "halfrow mock board".to_owned(),
         }

@@ -1,11 +1,13 @@
 //! Geometry and tables: written, read back through the datapath's ports, committed.
 
 use halfrow_protocol::MAX_PAYLOAD;
-use halfrow_protocol::message::{Bank, Commit, Configuration, Entries, NODES, RefusalCode, Span, Table};
+use halfrow_protocol::message::{
+    Bank, Commit, Configuration, Entries, NODES, RefusalCode, Request, Shape, Span, Table,
+};
 
 use super::identity::{KERNEL_PORTS, ROW_FACTOR_PORTS};
 use super::{Board, Refused};
-use crate::core::Node;
+use crate::core::{GridShape, Node};
 use crate::depth::Depth;
 use crate::settings::{Settings, SettingsError};
 use crate::tables::{self, Port, TableError};
@@ -55,6 +57,7 @@ impl Board {
         let first = usize::from(first);
         let written = match table {
             Table::RowFactors => self.tables.write_factors(first, &entries.row_factors().collect::<Vec<_>>()),
+            Table::Grid => self.tables.write_grid(first, &entries.row_factors().collect::<Vec<_>>()),
             Table::Kernel => {
                 self.tables.write_nodes(first, &entries.nodes().map(Node::from).collect::<Vec<_>>())
             }
@@ -85,6 +88,7 @@ impl Board {
         }
         let (ports, entries) = match table {
             Table::RowFactors => (ROW_FACTOR_PORTS, usize::from(self.options.max_height)),
+            Table::Grid => (ROW_FACTOR_PORTS, usize::from(self.options.bank_entries())),
             Table::Kernel => (KERNEL_PORTS, NODES),
         };
         let (start, end) = (usize::from(first), usize::from(first) + usize::from(count));
@@ -96,8 +100,8 @@ impl Board {
             Bank::Active => tables::Bank::Active,
         };
         Ok(match table {
-            Table::RowFactors => (start..end)
-                .filter_map(|row| self.tables.factor(bank, row, Port::ReadBack))
+            Table::RowFactors | Table::Grid => (start..end)
+                .filter_map(|index| self.tables.entry(bank, index, Port::ReadBack))
                 .flat_map(u32::to_le_bytes)
                 .collect(),
             Table::Kernel => {
@@ -118,12 +122,16 @@ impl Board {
         if commit.generation == 0 {
             return Err((RefusalCode::Range, 0));
         }
+        let shape = self.shape(commit)?;
         if self.tables.has_commit() {
             return Err((RefusalCode::Busy, 0));
         }
-        let height = self.player.settings().height;
+        let &Settings { width, height, .. } = self.player.settings();
+        let (rows, count) = shape.map_or((Table::RowFactors, height), |shape| {
+            (Table::Grid, u16::try_from(shape.entries(width, height)).unwrap_or(u16::MAX))
+        });
         for (table, ports, count, crc) in [
-            (Table::RowFactors, ROW_FACTOR_PORTS, height, commit.steps_crc),
+            (rows, ROW_FACTOR_PORTS, count, commit.steps_crc),
             (Table::Kernel, KERNEL_PORTS, NODES as u16, commit.kernel_crc),
         ] {
             for port in 0..ports {
@@ -133,6 +141,30 @@ impl Board {
                 }
             }
         }
-        self.tables.commit(commit.generation, commit.first_frame).map_err(|_| (RefusalCode::Busy, 0))
+        let committed = self.tables.commit_shape(commit.generation, commit.first_frame, shape);
+        committed.map_err(|_| (RefusalCode::Busy, 0))
+    }
+
+    /// The shape of the grid that is committed, if it is one. A board that takes none does not look at it.
+    fn shape(&self, commit: &Commit) -> Result<Option<GridShape>, Refused> {
+        let Some(Shape { v, k }) = commit.shape.filter(|shape| self.options.datapath2 && shape.v > 0) else {
+            return Ok(None);
+        };
+        if v > GridShape::MOST_V {
+            return Err((RefusalCode::Range, 1));
+        }
+        let &Settings { width, height, .. } = self.player.settings();
+        let fits = |shape: &GridShape| shape.entries(width, height) <= self.options.bank_entries().into();
+        GridShape::new(v, k).filter(fits).map(Some).ok_or((RefusalCode::Range, 2))
+    }
+
+    /// Whether the board knows the table that a request is about.
+    pub(super) fn has_table(&self, request: &Request<'_>) -> bool {
+        let table = match request {
+            Request::TableWrite(entries) => entries.span.table,
+            Request::TableRead(span) | Request::TableCrc(span) => span.table,
+            _ => return true,
+        };
+        table != Table::Grid || self.options.datapath2
     }
 }

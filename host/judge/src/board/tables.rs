@@ -96,7 +96,7 @@ impl Board {
             .into_iter()
             .map(|port| {
                 let (count, expected) = match port.table {
-                    Table::RowFactors => row_factors,
+                    Table::RowFactors | Table::Grid => row_factors,
                     Table::Kernel => nodes,
                 };
                 let span = Span { table: port.table, bank, port: port.port, first: 0, count };
@@ -156,6 +156,7 @@ impl Board {
             kernel_crc: crc32fast::hash(&kernel.to_bytes()),
             first_frame,
             generation,
+            shape: None,
         };
         self.conversation.request(&Request::Commit(commit), Step::Request, |reply| match reply {
             Reply::Commit { generation: named } if named == generation => Some(()),

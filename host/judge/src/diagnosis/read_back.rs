@@ -53,7 +53,7 @@ impl<'a> Words<'a> {
     /// Words in an entry.
     fn per_entry(self) -> usize {
         match self.table {
-            Table::RowFactors => 1,
+            Table::RowFactors | Table::Grid => 1,
             Table::Kernel => TAP_NAMES.len(),
         }
     }
@@ -61,7 +61,7 @@ impl<'a> Words<'a> {
     /// Bits that a word uses.
     fn bits(self) -> u32 {
         match self.table {
-            Table::RowFactors => RowFactor::BITS,
+            Table::RowFactors | Table::Grid => RowFactor::BITS,
             Table::Kernel => 16,
         }
     }
@@ -84,14 +84,14 @@ impl<'a> Words<'a> {
     /// A word as people write it.
     fn value(self, word: u32) -> i64 {
         match self.table {
-            Table::RowFactors => i64::from(word),
+            Table::RowFactors | Table::Grid => i64::from(word),
             Table::Kernel => i64::from(word as u16 as i16),
         }
     }
 
     fn memory(self) -> Memory {
         match self.table {
-            Table::RowFactors => Memory::Rows,
+            Table::RowFactors | Table::Grid => Memory::Rows,
             Table::Kernel => Memory::Kernel,
         }
     }
@@ -99,7 +99,7 @@ impl<'a> Words<'a> {
     /// The tap that the word at `index` weighs, in a kernel.
     fn weight(self, index: usize) -> Option<String> {
         match self.table {
-            Table::RowFactors => None,
+            Table::RowFactors | Table::Grid => None,
             Table::Kernel => TAP_NAMES.get(index % self.per_entry()).map(|&weight| weight.to_owned()),
         }
     }

@@ -1,5 +1,7 @@
 //! What a board may say of itself: `protocol/WIRE.md` section 3 and `fpga/DATAPATH.md`.
 
+use halfrow_protocol::message::Grids;
+
 use crate::board::{Capabilities, Datapath};
 use crate::result::Finding;
 
@@ -21,8 +23,17 @@ const NARROWEST: u16 = 64;
 /// L = 3 + p: what an output may need beside its column, and the pipeline.
 const LATENCY: std::ops::RangeInclusive<u8> = 3..=super::MAX_LATENCY;
 
-/// Of datapath 1.
-const RULES: [Rule; 12] = [
+/// The fewest entries of a bank that takes grids, and the id of the datapath that they are of.
+const LEAST_ENTRIES: u16 = 2048;
+const OF_GRIDS: u16 = 2;
+
+/// The grids that a board takes; none of a datapath that is not known.
+fn grids(board: &Capabilities) -> Option<Grids> {
+    board.grids.filter(|grids| grids.further_datapath == OF_GRIDS)
+}
+
+/// Of datapath 1, and of 2 beside it.
+const RULES: [Rule; 14] = [
     Rule {
         name: "max_width",
         legal: "rows have 64 to 2592 samples",
@@ -94,6 +105,18 @@ const RULES: [Rule; 12] = [
         legal: "a board that makes bursts keeps at least 2",
         value: |board| board.bursts.map_or(0, |bursts| bursts.records),
         holds: |board| board.bursts.is_none_or(|bursts| bursts.records >= 2),
+    },
+    Rule {
+        name: "entries",
+        legal: "a board that takes grids has at least 2048 entries, and as many as rows",
+        value: |board| grids(board).map_or(0, |grids| grids.entries),
+        holds: |board| grids(board).is_none_or(|it| it.entries >= board.max_height.max(LEAST_ENTRIES)),
+    },
+    Rule {
+        name: "ks",
+        legal: "a board that takes grids has nodes every 2^5 or every 2^6 columns",
+        value: |board| grids(board).map_or(0, |grids| grids.ks.into()),
+        holds: |board| grids(board).is_none_or(|grids| grids.takes(5) || grids.takes(6)),
     },
 ];
 

@@ -275,6 +275,7 @@ pub fn usual_capabilities(plan: &Plan, nature: BoardNature) -> Capabilities {
         clock_hz: 0,
         bursts: Some(Bursts { content: at_speed::CONTENT, records: 64, least_frame_blanking: 8, trap: true }),
         entered: true,
+        grids: None,
         nature,
         name: String::new(),
     }

@@ -75,7 +75,7 @@ impl Run<'_> {
         wrong: &ReadBack,
     ) -> End {
         let expected = match wrong.port.table {
-            Table::RowFactors => generation.tables.to_bytes(),
+            Table::RowFactors | Table::Grid => generation.tables.to_bytes(),
             Table::Kernel => generation.kernel.to_bytes(),
         };
         let entries = expected.len() / wrong.port.table.entry_bytes();

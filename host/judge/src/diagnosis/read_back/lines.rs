@@ -70,7 +70,7 @@ fn data_lines(words: Words<'_>, bit: u32, value: u8) -> Vec<Line<'_>> {
         read: Box::new(move |index| words.word(index).map(forced)),
     };
     let weights = match words.table {
-        Table::RowFactors => &[][..],
+        Table::RowFactors | Table::Grid => &[][..],
         Table::Kernel => &TAP_NAMES[..],
     };
     let of_weight = |(tap, weight): (usize, &&str)| Line {

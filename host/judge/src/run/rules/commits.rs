@@ -43,6 +43,7 @@ impl Rules<'_, '_> {
             kernel_crc: crc32fast::hash(&kernel.to_bytes()),
             first_frame,
             generation,
+            shape: None,
         }
     }
 

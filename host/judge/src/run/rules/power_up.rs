@@ -13,7 +13,8 @@ const GENERATION: u8 = 0xff;
 impl Rules<'_, '_> {
     pub(super) fn power_up(&mut self) -> Result<(), End> {
         self.run.board.forget().map_err(of_board)?;
-        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: GENERATION };
+        let commit =
+            Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: GENERATION, shape: None };
         self.not_ready(&Request::Commit(commit))?;
         self.not_ready_for_rows()?;
         self.configure(self.small.rows())?;
@@ -30,7 +31,7 @@ impl Rules<'_, '_> {
         self.configure(rows.into())?;
         let steps_crc = crc32fast::hash(&row_factors(rows));
         let kernel_crc = crc32fast::hash(&nodes());
-        let right = Commit { steps_crc, kernel_crc, first_frame: 0, generation: GENERATION };
+        let right = Commit { steps_crc, kernel_crc, first_frame: 0, generation: GENERATION, shape: None };
         let other = Commit { steps_crc: crc32fast::hash(&row_factors(rows - 1)), ..right };
         self.refused(
             Rule::CommitCrc,

@@ -28,7 +28,7 @@ impl Rules<'_, '_> {
     /// Every request by a byte too short, and with a field that has no meaning.
     fn without_meaning(&mut self) -> Result<(), End> {
         let span = Span { count: 0, ..FIRST_FACTOR };
-        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1 };
+        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: 1, shape: None };
         let burst = self.run.board.capabilities.bursts.map(|bursts| Burst {
             burst: 0,
             frames: 0,

@@ -146,7 +146,8 @@ impl Rules<'_, '_> {
 
     /// What must wait until the core is empty.
     pub(super) fn busy(&mut self, rule: Rule) -> Result<(), End> {
-        let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: !GENERATION };
+        let commit =
+            Commit { steps_crc: 0, kernel_crc: 0, first_frame: 0, generation: !GENERATION, shape: None };
         let requests = [
             Request::TableRead(FIRST_FACTOR),
             Request::TableCrc(FIRST_FACTOR),

@@ -61,7 +61,7 @@ impl Rules<'_, '_> {
             let entries = self.entries_of(table);
             let shadow = Span { table, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
             let ports = match table {
-                Table::RowFactors => self.capabilities.step_ports,
+                Table::RowFactors | Table::Grid => self.capabilities.step_ports,
                 Table::Kernel => self.capabilities.kernel_ports,
             };
             let bits = (0..u16::BITS).map(|bit| 1_u16 << bit);
