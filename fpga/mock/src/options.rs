@@ -132,7 +132,7 @@ pub struct Options {
     pub entered: bool,
     /// Whether the board takes grids: `fpga/DATAPATH.md`, *Datapath 2*.
     pub datapath2: bool,
-    /// Entries T of a bank of a board that takes grids, 2048 to 65535.
+    /// Entries T of a bank, 2048 to 65535; those beyond the highest frame are of use to grids alone.
     pub entries: u16,
 }
 
@@ -168,10 +168,10 @@ impl Options {
         self.ring.unwrap_or_else(|| self.max_width.next_power_of_two())
     }
 
-    /// Entries of a bank of tables.
+    /// Entries of a bank, in which the highest frame finds its row factors.
     #[must_use]
     pub fn bank_entries(&self) -> u16 {
-        if self.datapath2 { self.entries.max(self.max_height) } else { self.max_height }
+        self.entries.max(self.max_height)
     }
 
     /// Whether a build with these options can exist.

@@ -23,6 +23,10 @@ mod damage;
 mod echo;
 pub mod frames;
 pub mod golden_rows;
+mod grid_bursts;
+mod grid_commits;
+mod grid_rows;
+pub mod grids;
 mod loss;
 mod lossy_link;
 pub mod material;
@@ -179,6 +183,29 @@ suite! { $
         fields_without_meaning_are_refused,
         entries_and_samples_that_are_missing_make_the_payload_too_short,
         the_reply_flag_of_a_request_is_not_looked_at;
+    grid_bursts:
+        a_burst_goes_through_the_grid,
+        an_alternating_burst_goes_through_each_banks_own_shape;
+    grid_commits:
+        a_board_without_grids_looks_at_no_shape,
+        a_shape_out_of_range_is_named_the_first_of_several,
+        a_grid_may_fill_its_bank_and_no_more,
+        the_crc_covers_the_entries_of_the_configured_frame,
+        a_crc_that_is_not_the_grids_is_refused_with_its_table,
+        a_repeated_commit_of_another_shape_changes_nothing,
+        hello_forgets_a_pending_grid_and_the_next_commit_may_be_of_row_factors;
+    grid_rows:
+        every_shape_makes_the_rows_of_the_page,
+        without_a_shape_or_with_v_0_rows_have_one_factor_each,
+        frames_back_to_back_change_between_grids_and_row_factors,
+        with_one_bank_a_grid_takes_effect_at_once;
+    grids:
+        a_board_without_grids_refuses_their_spans_before_anything_else,
+        a_grid_and_row_factors_are_one_memory,
+        an_entry_out_of_range_is_named_by_its_index_and_nothing_is_written,
+        spans_of_a_grid_end_before_its_last_entry,
+        before_any_write_every_entry_of_a_grid_is_1,
+        a_grid_is_neither_read_nor_written_while_row_factors_are_not;
     loss:
         a_row_that_waits_in_a_bank_is_not_taken_twice,
         a_row_inside_the_core_is_not_answered,

@@ -1,6 +1,8 @@
 //! The source coordinates that two adders make, beside the golden values of `fpga/DATAPATH.md`, *Datapath 2*.
 
 use halfrow_conformance::material;
+use proptest::prelude::*;
+use proptest::sample::Index;
 
 use super::source::Source;
 use super::values::{GridShape, RowValues, UNSTRETCHED};
@@ -28,7 +30,7 @@ impl Case {
     fn drawn(&self, seed: u32, kind: Drawn) -> Vec<u32> {
         let entries = 0..self.shape.entries(self.width, self.height) as u32;
         let value = |entry: u32| {
-            let x = (entry + seed).wrapping_mul(2_654_435_761);
+            let x = entry.wrapping_add(seed).wrapping_mul(2_654_435_761);
             match kind {
                 Drawn::Narrow => 14_680_064 + (x >> 12),
                 Drawn::Wide => x >> 7,
@@ -116,6 +118,36 @@ fn the_largest_factor_is_one() {
             let expected: Vec<u64> = (0..2592).map(|column| column << 28).collect();
             assert_eq!(coordinates(case.centre2, &values, case.width), expected, "v = {v}, k = {k}");
         }
+    }
+}
+
+/// S of a column by the page's closed form, modulo 2^40.
+fn closed_form(centre2: u16, values: &RowValues, column: u16) -> i128 {
+    let factor = |node: usize| i128::from(values.factors[node]);
+    let segments = (0..usize::from(column >> values.k)).map(|s| factor(s) + factor(s + 1));
+    let begun = segments.sum::<i128>() << (values.k + 3);
+    let first =
+        8 * i128::from(centre2) * (i128::from(UNSTRETCHED) - factor(0)) + (i128::from(values.offset) << 15);
+    let (s, i) = (usize::from(column >> values.k), i128::from(column % (1 << values.k)));
+    let bend = ((factor(s + 1) - factor(s)) / 8) << (6 - values.k);
+    (first + begun + i * (16 * factor(s) + i * bend)).rem_euclid(1 << 40)
+}
+
+proptest! {
+    /// Whatever the entries, and whether they are legal or not: the coordinates wrap, and none is more than a column from
+    /// the one before.
+    #[test]
+    fn two_adders_make_the_closed_form_of_any_grid(
+        v in 1_u8..=6, k in 5_u8..=6, half in 32_u16..=200, height in 1_u16..=80, row: Index, centre: Index, seed: u32,
+    ) {
+        let (width, shape) = (2 * half, GridShape::new(v, k).unwrap());
+        let case = Case { width, height, centre2: centre.index(2 * usize::from(width) - 1) as u16, shape };
+        let values = case.values(&case.drawn(seed, Drawn::Wide), row.index(height.into()) as u16);
+        let made = coordinates(case.centre2, &values, width);
+        for (column, &coordinate) in (0..).zip(&made) {
+            prop_assert_eq!(i128::from(coordinate), closed_form(case.centre2, &values, column), "column {}", column);
+        }
+        prop_assert!(made.windows(2).all(|pair| pair[1].wrapping_sub(pair[0]) % (1 << 40) <= 1 << 28));
     }
 }
 

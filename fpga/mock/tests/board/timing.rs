@@ -1,6 +1,6 @@
 //! Half a row of delay, to the clock.
 
-use halfrow_mock::{Depth, Entering, Options};
+use halfrow_mock::{Depth, Entering, GridShape, Options, RowBinding, RowValues};
 use proptest::prelude::*;
 
 use crate::support::{core, noise_row, run, unchanged};
@@ -67,6 +67,26 @@ proptest! {
             let out = core.clock((kind > 0).then_some(entering));
             prop_assert!(out.is_none_or(|leaving| leaving.sample <= 255 && leaving.column < width));
         }
+    }
+}
+
+proptest! {
+    #[test]
+    fn no_grid_makes_the_core_panic_or_late(
+        v in 1_u8..=6, k in 5_u8..=6, half in 32_u16..=100, height in 1_u16..=70, centre2: u16, entry: u32, step: u32,
+    ) {
+        let (width, shape) = (2 * half, GridShape::new(v, k).unwrap());
+        let grid = |index: usize| entry.wrapping_add(step.wrapping_mul(index as u32));
+        let rows: Vec<_> = (0..3)
+            .map(|row| {
+                let values = RowValues::of_grid(shape, (width, height), row % height, grid);
+                (noise_row(row.into(), width), RowBinding { values, centre2, ..unchanged(width) })
+            })
+            .collect();
+        let outputs = run(&mut core(12, 256, None), &rows, 0);
+        let delay = usize::from(half) + 12;
+        let clocks: Vec<_> = outputs.iter().map(|(clock, _)| *clock).collect();
+        prop_assert_eq!(clocks, (delay..delay + 3 * usize::from(width)).collect::<Vec<_>>());
     }
 }
 

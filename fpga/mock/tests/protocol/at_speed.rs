@@ -12,7 +12,7 @@ use halfrow_protocol::message::{
 use halfrow_protocol::samples;
 
 /// Mocks of one build, with this fault or none.
-struct Built(Options, Option<BoardFault>);
+pub(crate) struct Built(pub(crate) Options, pub(crate) Option<BoardFault>);
 
 impl Boards for Built {
     fn offers(&self, build: &Build) -> bool {

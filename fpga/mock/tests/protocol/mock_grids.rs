@@ -1,0 +1,173 @@
+//! Grids on the mock: builds that no other board has, and its faults, each of which shows in rows that go through a grid, too.
+
+use halfrow_conformance::at_speed::ONE;
+use halfrow_conformance::capabilities::values;
+use halfrow_conformance::frames::{row, samples_of};
+use halfrow_conformance::grids::{greeted, narrow};
+use halfrow_conformance::material::{drawn_grid, hermite};
+use halfrow_conformance::uploads::{TableSet, span};
+use halfrow_conformance::{Bench, Build, Heard, suite};
+use halfrow_mock::{Board, BoardFault, FAULTS, Options};
+use halfrow_pipe::Parameters;
+use halfrow_protocol::message::{
+    Bank, Burst, BurstMode, Commit, RefusalCode, Request, Reset, ResetLevel, Shape, Table,
+};
+
+use crate::at_speed::Built;
+
+const SHAPE: Shape = Shape { v: 1, k: 5 };
+
+fn without() -> Options {
+    Options { datapath2: false, ..Options::default() }
+}
+
+fn with_entries(entries: u16) -> Built {
+    Built(Options { entries, ..Options::default() }, None)
+}
+
+/// The first four bytes of what the board says of its grids: the datapath's id and T.
+fn said(options: &Options) -> Option<u32> {
+    values(&mut Bench::of(Box::new(Board::new(options, None).unwrap()))).get(&0x12).copied()
+}
+
+#[test]
+fn the_mock_takes_grids_unless_it_is_told_not_to() {
+    assert_eq!(said(&Options::default()), Some(2 | 2048 << 16));
+    assert_eq!(said(&with_entries(4096).0), Some(2 | 4096 << 16));
+    assert_eq!(said(&without()), None);
+}
+
+#[test]
+fn a_mock_without_grids_is_as_a_board_was_before() {
+    let board = Built(without(), None);
+    suite::grids::a_board_without_grids_refuses_their_spans_before_anything_else(&board);
+    suite::grid_commits::a_board_without_grids_looks_at_no_shape(&board);
+    suite::table_writes::spans_end_before_max_height_and_node_65(&board);
+    assert!(greeted(&board, &Build::default()).is_none());
+}
+
+#[test]
+fn a_mock_of_more_entries_takes_larger_grids() {
+    for entries in [4096, 32768] {
+        let board = with_entries(entries);
+        suite::grids::spans_of_a_grid_end_before_its_last_entry(&board);
+        suite::grids::before_any_write_every_entry_of_a_grid_is_1(&board);
+        suite::grid_commits::a_grid_may_fill_its_bank_and_no_more(&board);
+    }
+}
+
+/// A mock with this fault or none that waits for tables for frames of `height` rows of 64 samples.
+fn configured(fault: Option<BoardFault>, height: u16) -> Bench {
+    let (mut bench, grids) = greeted(&Built(Options::default(), fault), &Build::default()).unwrap();
+    bench.done(&Request::Configure(narrow(&grids, height)));
+    bench
+}
+
+fn grid(height: u16, seed: u32) -> TableSet {
+    TableSet::grid(SHAPE, &drawn_grid(SHAPE, 64, height, seed), &hermite())
+}
+
+/// The fault of this name, with parameters that show it in small frames.
+fn fault(name: &str, given: &[(&str, &str)]) -> BoardFault {
+    let mut given: Parameters =
+        given.iter().map(|(key, value)| (key.to_string(), value.to_string())).collect();
+    BoardFault::from_name(name, &mut given).unwrap()
+}
+
+/// All that a host hears of a board that plays frames of four rows through grids, makes frames itself, and is given one
+/// commit that it must refuse.
+fn heard_of(fault: Option<BoardFault>) -> Vec<Heard> {
+    let mut bench = configured(fault, 4);
+    let mut heard = bench.say(&Request::Capabilities);
+    let tables = [grid(4, 7), grid(4, 8)];
+    tables[0].upload(&mut bench);
+    let Request::Commit(right) = tables[0].commit(1, 0) else { unreachable!() };
+    heard.extend(bench.say(&Request::Commit(Commit { steps_crc: !right.steps_crc, generation: 3, ..right })));
+    heard.extend(bench.say(&Request::Commit(right)));
+    for frame in 0..4 {
+        if frame == 3 {
+            tables[1].upload(&mut bench);
+            heard.extend(bench.say(&tables[1].commit(2, 3)));
+        }
+        heard.extend(bench.send_all(4, 4 * frame..4 * (frame + 1)));
+        bench.acknowledge(4 * (frame + 1));
+    }
+    bench.say(&Request::Reset(Reset { level: ResetLevel::Rows, next_row: 16 }));
+    let close = Burst { frames: 4, mode: BurstMode::Alternating, frame_blanking: 8, ..ONE };
+    heard.extend(bench.say(&Request::Burst(close)));
+    heard.extend(bench.say(&Request::Records { from: 0 }));
+    heard
+}
+
+#[test]
+fn every_fault_of_the_board_shows_in_what_is_made_with_grids() {
+    let sound = heard_of(None);
+    assert_eq!(heard_of(None), sound);
+    for info in FAULTS.iter().map(|fault| fault.info) {
+        // One output in 100,000 is fewer than there are.
+        let often: &[_] = if info.name == "slow-path" { &[("one-in", "50")] } else { &[] };
+        assert_ne!(heard_of(Some(fault(info.name, often))), sound, "{}", info.name);
+    }
+}
+
+/// The rows of a frame of twelve that a board with this fault or none makes with these tables.
+fn rows_of(fault: Option<BoardFault>, tables: &TableSet) -> Vec<Vec<u16>> {
+    let mut bench = configured(fault, 12);
+    tables.upload(&mut bench);
+    bench.done(&tables.commit(1, 0));
+    let mut rows = Vec::new();
+    for number in 0..12 {
+        rows.extend(bench.send(&row(12, number)).iter().map(|packet| samples_of(&packet.row())));
+        bench.acknowledge(rows.len() as u32);
+    }
+    rows
+}
+
+/// Of eight grid rows, entry 11 is that of node 0 in grid row 3. The rows 2 to 7 have it among their three, of which row 2
+/// gives it no weight.
+#[test]
+fn a_hidden_bit_of_an_entry_changes_the_rows_around_its_grid_row_as_another_entry_would() {
+    let hidden = fault("row-factor", &[("row", "11"), ("bit", "20"), ("hidden", "true")]);
+    let mut entries = drawn_grid(SHAPE, 64, 12, 7);
+    let sound = rows_of(None, &grid(12, 7));
+    let broken = rows_of(Some(hidden), &grid(12, 7));
+    entries[11] ^= 1 << 20;
+    assert_eq!(broken, rows_of(None, &TableSet::grid(SHAPE, &entries, &hermite())));
+    let wrong: Vec<_> = (0..12).filter(|&row| broken[row] != sound[row]).collect();
+    assert_eq!(wrong, [3, 4, 5, 6, 7]);
+}
+
+#[test]
+fn a_bit_of_an_entry_that_reads_back_wrong_is_not_committed() {
+    let mut bench = configured(Some(fault("row-factor", &[("row", "11"), ("bit", "0")])), 12);
+    grid(12, 7).upload(&mut bench);
+    let uploaded = drawn_grid(SHAPE, 64, 12, 7)[11];
+    let read = bench.read(span(Table::Grid, Bank::Shadow, 0, 11, 1));
+    assert_eq!(read, (uploaded ^ 1).to_le_bytes());
+    assert_eq!(bench.refused(&grid(12, 7).commit(1, 0)), (RefusalCode::TableCrc, Table::Grid as u16));
+}
+
+/// It flips behind the first of two frames.
+#[test]
+fn a_drifting_entry_of_a_grid_spoils_the_rows_that_use_it_from_then_on() {
+    let drifting = fault("drifting-table", &[("after", "12"), ("row", "11"), ("bit", "20")]);
+    let mut bench = configured(Some(drifting), 12);
+    grid(12, 7).upload(&mut bench);
+    bench.done(&grid(12, 7).commit(1, 0));
+    let sound = rows_of(None, &grid(12, 7));
+    for frame in 0..2 {
+        let mut wrong = Vec::new();
+        for number in 0..12 {
+            let mut sent = row(12, 12 * frame + number);
+            sent.samples = row(12, number).samples;
+            for packet in bench.send(&sent) {
+                let out = packet.row();
+                if samples_of(&out) != sound[usize::from(out.place.row)] {
+                    wrong.push(out.place.row);
+                }
+                bench.window = out.place.row_sequence + 1;
+            }
+        }
+        assert_eq!(wrong, if frame == 0 { vec![] } else { vec![3, 4, 5, 6, 7] });
+    }
+}
