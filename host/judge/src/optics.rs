@@ -1,7 +1,7 @@
 //! From a lens, or a file of tables, to what a board is judged with.
 //!
 //! ```text
-//!  lens file ──► Optics ──► row factors ─┐
+//!  lens file ──► Optics ──► tables ──────┐
 //!  table file ───────────────────────────┼─► Chosen ─► Plan
 //!  kernel's name or file ────────────────┘
 //! ```
@@ -10,8 +10,8 @@ use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Interpolant, Kernel,
-    LensError, Phase, RowFactor, TableError, TableSet,
+    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, GridRoomError,
+    Interpolant, Kernel, LensError, Phase, RowFactor, TableError, TableSet,
 };
 
 use crate::frames::Scene;
@@ -25,22 +25,33 @@ pub const PAPER_SIZE: (usize, usize) = (1920, 1080);
 /// The paper's image circle, in degrees.
 pub const PAPER_FIELD: f64 = 180.0;
 
-/// How row factors are found.
+/// How tables are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RowsBy {
+pub enum TablesBy {
     /// For every row the factor with the smallest largest error.
     Fitting,
-    /// The paper's formula.
+    /// For every row the paper's formula.
     Equation9,
+    /// A grid of factors that follows the exact projection (DATAPATH.md, *Datapath 2*).
+    Exact {
+        /// The most entries that it may have: T of the board.
+        entries: usize,
+    },
 }
 
-impl RowsBy {
+impl TablesBy {
+    /// The entries that every board with datapath 2 has room for.
+    pub const LEAST_ENTRIES: usize = 2048;
+}
+
+impl TablesBy {
     /// Its name: stable, lower case.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Fitting => "fitted",
             Self::Equation9 => "equation-9",
+            Self::Exact { .. } => "exact",
         }
     }
 }
@@ -86,6 +97,9 @@ pub enum OpticsError {
     /// The row factors are none that a board can have.
     #[error(transparent)]
     Tables(#[from] TableError),
+    /// No grid has so few entries.
+    #[error(transparent)]
+    Room(#[from] GridRoomError),
     /// The image circle misses the frame's rows.
     #[error(
         "{}, so nothing would be stretched; check the lens, its centre and the size of the frames",
@@ -128,8 +142,8 @@ pub struct Optics {
     is_calibrated: bool,
     /// The row of the axis; none for the middle.
     pub centre_y: Option<f64>,
-    /// How its row factors are found.
-    pub rows: RowsBy,
+    /// How its tables are found.
+    pub by: TablesBy,
     /// What the lens is, for people.
     pub name: String,
 }
@@ -137,21 +151,21 @@ pub struct Optics {
 impl Optics {
     /// An equidistant lens, with its axis in row `centre_y`, or the middle, of the frames of `camera`.
     #[must_use]
-    pub fn equidistant(camera: Camera, lens: Equidistant, centre_y: Option<f64>, rows: RowsBy) -> Self {
-        Self { camera, lens, is_calibrated: false, centre_y, rows, name: "equidistant lens".to_owned() }
+    pub fn equidistant(camera: Camera, lens: Equidistant, centre_y: Option<f64>, by: TablesBy) -> Self {
+        Self { camera, lens, is_calibrated: false, centre_y, by, name: "equidistant lens".to_owned() }
     }
 
     /// The lens of `camera`, which was calibrated and is called `name`.
     ///
     /// # Errors
     /// [`LensError`] when its radius is none that built-in frames can be rendered through.
-    pub fn calibrated(camera: Camera, name: String, rows: RowsBy) -> Result<Self, LensError> {
+    pub fn calibrated(camera: Camera, name: String, by: TablesBy) -> Result<Self, LensError> {
         Ok(Self {
             lens: Equidistant::from_radius(camera.radius())?,
             is_calibrated: true,
             centre_y: Some(camera.centre().1),
             camera,
-            rows,
+            by,
             name,
         })
     }
@@ -169,7 +183,7 @@ impl Optics {
             .for_frame(width, height)
             .map_err(|source| OpticsError::Shape { path: path.to_owned(), source })?;
         let camera = Camera::new(geometry, lens, centre, PAPER_FIELD)?;
-        Ok(Self::calibrated(camera, format!("{} {}", file.model, path.display()), RowsBy::Fitting)?)
+        Ok(Self::calibrated(camera, format!("{} {}", file.model, path.display()), TablesBy::Fitting)?)
     }
 
     /// What built-in frames are made for.
@@ -179,24 +193,25 @@ impl Optics {
         Scene { geometry, centre_y, phase, lens, seed }
     }
 
-    /// The row factors that are asked for.
+    /// The tables that are asked for.
     ///
     /// # Errors
-    /// [`TableError`] as of [`Self::tables_by`].
-    pub fn tables(&self) -> Result<TableSet, TableError> {
-        self.tables_by(self.rows)
+    /// [`OpticsError`] as of [`Self::tables_by`].
+    pub fn tables(&self) -> Result<TableSet, OpticsError> {
+        self.tables_by(self.by)
     }
 
-    /// The row factors that are found so.
+    /// The tables that are found so.
     ///
     /// # Errors
-    /// [`TableError`] when a factor is none that a board can have.
-    pub fn tables_by(&self, rows: RowsBy) -> Result<TableSet, TableError> {
-        Ok(match rows {
-            RowsBy::Fitting => self.camera.fitted(),
-            RowsBy::Equation9 if self.is_calibrated => self.camera.equation_9(),
+    /// [`OpticsError`] when a factor is none that a board can have, or a grid needs more entries.
+    pub fn tables_by(&self, by: TablesBy) -> Result<TableSet, OpticsError> {
+        Ok(match by {
+            TablesBy::Exact { entries } => self.camera.best_grid(entries)?,
+            TablesBy::Fitting => self.camera.fitted(),
+            TablesBy::Equation9 if self.is_calibrated => self.camera.equation_9(),
             // From R as it was given, which the camera has from f.
-            RowsBy::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
+            TablesBy::Equation9 => TableSet::from_lens(*self.camera.geometry(), &self.lens, self.centre_y)?,
         })
     }
 
@@ -221,14 +236,21 @@ impl Optics {
         Ok(())
     }
 
-    /// A sentence on where the row factors come from.
+    /// A sentence on where `tables` come from, which were asked for.
+    #[must_use]
+    pub fn source_of(&self, tables: &TableSet) -> String {
+        let how = match (self.by, tables.shape()) {
+            (_, Some(shape)) => format!("exact projection, {shape}"),
+            (TablesBy::Fitting, None) => "fitted rows".to_owned(),
+            (TablesBy::Equation9 | TablesBy::Exact { .. }, None) => "Eq. 9".to_owned(),
+        };
+        format!("{} ({how})", self.source())
+    }
+
+    /// What the lens is, in a sentence.
     #[must_use]
     pub fn source(&self) -> String {
-        let how = match self.rows {
-            RowsBy::Fitting => "fitted rows",
-            RowsBy::Equation9 => "Eq. 9",
-        };
-        format!("{}, R = {:.3} pixels ({how})", self.name, self.camera.radius())
+        format!("{}, R = {:.3} pixels", self.name, self.camera.radius())
     }
 }
 
@@ -251,7 +273,7 @@ pub fn kernel(name: &OsStr) -> Result<Kernel, OpticsError> {
 pub struct Chosen {
     /// The lens that built-in frames are rendered through, whether the tables are its own or not.
     pub optics: Optics,
-    /// The row factors.
+    /// The row factors, or the grid.
     pub tables: TableSet,
     /// The kernel.
     pub kernel: Kernel,
@@ -289,7 +311,8 @@ pub fn choose(
     let named = kernel_name.map(kernel).transpose()?;
     let kernel_name = kernel_name.map(OsStr::to_string_lossy);
     let Some((path, file)) = file else {
-        let (tables, from) = (optics.tables()?, optics.source());
+        let tables = optics.tables()?;
+        let from = optics.source_of(&tables);
         optics.check_circle(&tables)?;
         let name = kernel_name.as_deref().unwrap_or(Interpolant::Hermite.name());
         let kernel = named.unwrap_or_else(|| Kernel::from(Interpolant::Hermite));

@@ -228,7 +228,11 @@ impl Capabilities {
     /// # Errors
     /// [`UnknownDatapath`], of which a host can neither make tables nor judge.
     pub fn known_datapath(&self) -> Result<Datapath, UnknownDatapath> {
-        self.datapath.try_into()
+        match self.datapath.try_into()? {
+            Datapath::RowFactors => Ok(Datapath::RowFactors),
+            // Told by a capability of its own; every board has datapath 1.
+            Datapath::Grids => Err(UnknownDatapath { id: self.datapath }),
+        }
     }
 
     /// The sample depths.

@@ -35,6 +35,8 @@ macro_rules! datapaths {
 datapaths! {
     /// DATAPATH.md: one row factor a row, and a kernel.
     RowFactors = 1,
+    /// DATAPATH.md, *Datapath 2*: a grid of factors, and a kernel.
+    Grids = 2,
 }
 
 impl Datapath {

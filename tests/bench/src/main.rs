@@ -2,8 +2,8 @@
 //!
 //! Without arguments it prints the names of its benchmarks, a line each and an empty one; then, for every line `TIMES NAME`
 //! that it reads, it runs that benchmark so often and prints the nanoseconds that all of it took. `halfrow-bench PATH
-//! KERNEL FRAMES` corrects some rows so many times by one path of the model and ends: `scripts/instructions` counts what
-//! that executes.
+//! KERNEL [grid] FRAMES` corrects some rows so many times by one path of the model, by one factor each or behind a grid, and
+//! ends: `scripts/instructions` counts what that executes.
 
 mod chain;
 mod mock;
@@ -26,8 +26,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         [] => serve(
             [model::benchmarks()?, chain::benchmarks()?, mock::benchmarks()?].into_iter().flatten().collect(),
         ),
-        [path, kernel, frames] => model::count(path.parse()?, kernel.parse()?, frames.parse()?),
-        _ => Err("usage: halfrow-bench, or halfrow-bench PATH KERNEL FRAMES".into()),
+        [path, kernel, frames] => model::count(path.parse()?, kernel.parse()?, false, frames.parse()?),
+        [path, kernel, grid, frames] if grid == "grid" => {
+            model::count(path.parse()?, kernel.parse()?, true, frames.parse()?)
+        }
+        _ => Err("usage: halfrow-bench, or halfrow-bench PATH KERNEL [grid] FRAMES".into()),
     }
 }
 

@@ -10,7 +10,7 @@ use halfrow_model::{
 };
 
 use crate::Benchmark;
-use crate::scene::{HEIGHT, batch, frame, tables};
+use crate::scene::{HEIGHT, batch, frame, grid, tables};
 
 /// Rows of a frame whose instructions are counted.
 const COUNTED: usize = 32;
@@ -30,16 +30,18 @@ impl Batch {
 
 /// One frame again and again, as it stays in the cache, and a batch whose frames do not.
 pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
-    let tables = Arc::new(tables(HEIGHT)?);
+    let (tables, grid) = (Arc::new(tables(HEIGHT)?), Arc::new(grid(HEIGHT)?));
     let one = Arc::new(vec![frame(HEIGHT, 0)?]);
     let batch = Arc::new(batch()?);
     let mut benchmarks = vec![copy("memcpy", &one), copy("batch memcpy", &batch)];
     for path in ModelPath::available() {
         for interpolant in [Interpolant::Hermite, Interpolant::Keys] {
             let kernel = Kernel::from(interpolant);
-            check(&tables, &kernel, &one[0], path)?;
-            let name = format!("{path} {interpolant}");
-            benchmarks.push(corrector(name, &one, &tables, vec![Corrector::new(path, &kernel)?]));
+            for (tables, what) in [(&tables, ""), (&grid, " grid")] {
+                check(tables, &kernel, &one[0], path)?;
+                let name = format!("{path} {interpolant}{what}");
+                benchmarks.push(corrector(name, &one, tables, vec![Corrector::new(path, &kernel)?]));
+            }
         }
         let kernel = Kernel::from(Interpolant::Hermite);
         benchmarks.push(signer(path, &tables, &kernel)?);
@@ -48,6 +50,10 @@ pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
             let name = format!("batch {path} on {threads}");
             let correctors = (0..threads).map(|_| Corrector::new(path, &kernel)).collect::<Result<_, _>>()?;
             benchmarks.push(corrector(name, &batch, &tables, correctors));
+        }
+        if path != ModelPath::Reference {
+            let name = format!("batch {path} grid");
+            benchmarks.push(corrector(name, &batch, &grid, vec![Corrector::new(path, &kernel)?]));
         }
     }
     Ok(benchmarks)
@@ -120,9 +126,15 @@ fn correct_share(share: (&mut Corrector, &[Frame], &mut [Vec<u16>]), tables: &Ta
     }
 }
 
-/// Corrects `COUNTED` rows `frames` times.
-pub(crate) fn count(path: ModelPath, interpolant: Interpolant, frames: usize) -> Result<(), Box<dyn Error>> {
-    let (tables, frame) = (tables(COUNTED)?, frame(COUNTED, 0)?);
+/// Corrects `COUNTED` rows `frames` times, by one factor each or behind a grid.
+pub(crate) fn count(
+    path: ModelPath,
+    interpolant: Interpolant,
+    behind_grid: bool,
+    frames: usize,
+) -> Result<(), Box<dyn Error>> {
+    let tables = if behind_grid { grid(COUNTED)? } else { tables(COUNTED)? };
+    let frame = frame(COUNTED, 0)?;
     let mut corrector = Corrector::new(path, &Kernel::from(interpolant))?;
     let mut output = vec![0; frame.samples().len()];
     for _ in 0..frames {

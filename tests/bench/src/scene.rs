@@ -2,7 +2,7 @@
 
 use std::error::Error;
 
-use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Phase, TableSet};
+use halfrow_model::{BitDepth, Camera, Equidistant, Frame, Geometry, GridShape, Phase, TableSet};
 
 /// Radius of the image circle, in pixels (DATAPATH.md, "Golden values").
 const RADIUS: f64 = 1106.697;
@@ -14,6 +14,14 @@ pub(crate) const HEIGHT: usize = 1080;
 pub(crate) fn tables(height: usize) -> Result<TableSet, Box<dyn Error>> {
     let geometry = Geometry::centred(1920, height, BitDepth::Twelve)?;
     Ok(TableSet::from_lens(geometry, &Equidistant::from_radius(RADIUS)?, None)?)
+}
+
+/// The grid of the paper's lens for frames of `height` rows, as DATAPATH.md has it for 1080.
+pub(crate) fn grid(height: usize) -> Result<TableSet, Box<dyn Error>> {
+    let geometry = Geometry::centred(1920, height, BitDepth::Twelve)?;
+    let centre = (959.5, (height - 1) as f64 / 2.0);
+    let camera = Camera::new(geometry, Equidistant::from_radius(RADIUS)?.into(), centre, 180.0)?;
+    Ok(camera.grid_by_formula(GridShape::new(5, 6)?))
 }
 
 /// Frames that take turns where a batch is timed: with their outputs twice what a cache of 64 MiB holds.

@@ -78,7 +78,7 @@ impl Engine {
             correct_row_of_values(geometry, values, kernel, row, output);
             return;
         }
-        self.correct_along(Curve(values), ends, geometry, [row], [output]);
+        self.correct_along(Curve::new(values), ends, geometry, [row], [output]);
     }
 
     fn correct_along<W: Walk, const ROWS: usize>(

@@ -190,7 +190,7 @@ impl Corrector {
         distances: &mut [u16],
     ) {
         let oracle = |column| values.source(column);
-        self.locate_along(Curve(values), oracle, geometry, (bases, distances));
+        self.locate_along(Curve::new(values), oracle, geometry, (bases, distances));
     }
 
     fn locate_along(

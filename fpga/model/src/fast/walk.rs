@@ -17,36 +17,17 @@ pub(super) trait Walk: Copy {
     /// Whether the way from one output to the next changes along the row.
     const CURVED: bool;
 
-    /// The coordinate of `column`.
-    fn coordinate(self, column: usize) -> i64;
-
-    /// The coordinates of `column`, which is even, and of the one behind it.
-    fn pair(self, column: usize) -> [i64; 2];
+    /// The block that starts at `column`, which is even.
+    fn start(self, column: usize) -> Start;
 
     /// How far one output is from the next; 0 where that changes.
     fn stride(self) -> u32;
 
-    /// The coordinates of the `columns` columns from `column` on as one parabola; none where they are not of one.
-    fn piece(self, column: usize, columns: usize, start: &Start) -> Option<Piece>;
-
-    /// The coordinate of `column`, less than a block right of where `start` is.
-    fn relative(self, column: usize, start: &Start) -> u32 {
-        (self.coordinate(column) - start.origin()) as u32
-    }
+    /// The coordinate of `column`, which is in the block that `start` starts, relative to it.
+    fn relative(self, column: usize, start: &Start) -> u32;
 
     /// Those of the block that starts at `column`.
     fn relatives(self, column: usize, start: &Start) -> [u32; BLOCK];
-
-    /// The block that starts at `column`, which is even.
-    #[inline]
-    fn start(self, column: usize) -> Start {
-        let [own, next] = self.pair(column);
-        let even = own >> (FRACTION + 1);
-        let [relative, next] = [own, next].map(|coordinate| (coordinate - (even << (FRACTION + 1))) as u32);
-        let lead = next < 1 << FRACTION;
-        let first = first_tap(2 * even as isize) - isize::from(lead);
-        Start { first, relative, lead, even: even as isize }
-    }
 }
 
 /// Where a block of columns that starts at an even one finds its samples.
@@ -61,22 +42,29 @@ pub(super) struct Start {
     pub(super) relative: u32,
     /// That even column − `least`, 0 or 1.
     pub(super) lead: bool,
-    /// Half of that even column.
-    even: isize,
+    /// The coordinate of that even column.
+    origin: i64,
+    /// The way of a whole block within one segment.
+    pub(super) piece: Piece,
 }
 
 impl Start {
-    /// The coordinate that others are relative to.
-    fn origin(&self) -> i64 {
-        (self.even as i64) << (FRACTION + 1)
+    /// Of the coordinates of the first two columns.
+    #[inline]
+    fn new(own: i64, next: i64, piece: Piece) -> Self {
+        let even = own >> (FRACTION + 1);
+        let origin = even << (FRACTION + 1);
+        let lead = next - origin < 1 << FRACTION;
+        let first = 2 * even as isize + LEFT as isize - 2 - isize::from(lead);
+        Self { first, relative: (own - origin) as u32, lead, origin, piece }
     }
 }
 
-/// A parabola about the middle of some columns: `middle` + i · `slope` + ((i² · `curve` + `rest`) >> 3), with i from −half of
-/// them on. Up to 32 columns keep all of it within 31 bits.
-#[derive(Clone, Copy)]
+/// A parabola about the middle of a block: `middle` + i · `slope` + ((i² · `curve` + `rest`) >> 3), with i from −16 on. All of
+/// it keeps within 31 bits.
+#[derive(Clone, Copy, Default)]
 pub(super) struct Piece {
-    /// The coordinate in the middle, relative to the block's.
+    /// The coordinate in the middle, less that of the first column.
     pub(super) middle: u32,
     /// The three bits below it.
     pub(super) rest: u32,
@@ -99,11 +87,6 @@ pub(super) const LEADS: [[u16; BLOCK]; 2] = {
     leads
 };
 
-/// The padded row's sample of tap G0 for base column `base`.
-fn first_tap(base: isize) -> isize {
-    base + LEFT as isize - 2
-}
-
 /// The way of one factor.
 #[derive(Clone, Copy)]
 pub(super) struct Line {
@@ -123,73 +106,86 @@ impl Walk for Line {
     const CURVED: bool = false;
 
     #[inline]
-    fn coordinate(self, column: usize) -> i64 {
-        self.origin + column as i64 * i64::from(self.stride)
-    }
-
-    #[inline]
-    fn pair(self, column: usize) -> [i64; 2] {
-        let own = self.coordinate(column);
-        [own, own + i64::from(self.stride)]
+    fn start(self, column: usize) -> Start {
+        let own = self.origin + column as i64 * i64::from(self.stride);
+        Start::new(own, own + i64::from(self.stride), Piece::default())
     }
 
     fn stride(self) -> u32 {
         self.stride
     }
 
+    fn relative(self, column: usize, start: &Start) -> u32 {
+        (self.origin + column as i64 * i64::from(self.stride) - start.origin) as u32
+    }
+
     #[inline]
     fn relatives(self, _: usize, start: &Start) -> [u32; BLOCK] {
         std::array::from_fn(|index| start.relative + index as u32 * self.stride)
-    }
-
-    fn piece(self, _: usize, _: usize, _: &Start) -> Option<Piece> {
-        None
     }
 }
 
 /// The way of a grid's row.
 #[derive(Clone, Copy)]
-pub(super) struct Curve<'a>(pub(super) &'a RowValues);
+pub(super) struct Curve<'a> {
+    segments: &'a [Parabola],
+    /// The binary logarithm of a segment's columns.
+    k: u32,
+}
 
-impl Curve<'_> {
-    /// The parabola of `column`'s segment, and the column's place in it.
+impl<'a> Curve<'a> {
+    pub(super) fn new(values: &'a RowValues) -> Self {
+        let (segments, k) = values.segments();
+        Self { segments, k }
+    }
+
+    /// S of `column` with half a unit of q, how it would go on along a line, and how it bends.
     #[inline]
-    fn segment(self, column: usize) -> (Parabola, i64) {
-        let pitch = self.0.pitch();
-        (self.0.parabola(column / pitch), (column % pitch) as i64)
+    fn at(self, column: usize) -> [i64; 3] {
+        let Parabola { start, slope, curve } = self.segments[column >> self.k];
+        let i = (column & ((1 << self.k) - 1)) as i64;
+        let turned = i * curve;
+        [start + HALF + i * (slope + turned), slope + 2 * turned, curve]
     }
 }
 
-/// S of a grid with half a unit of q.
+/// S of a grid for half a unit of q.
 const HALF: i64 = 1 << 14;
+
+/// Columns of half a block.
+const MIDDLE: i64 = BLOCK as i64 / 2;
 
 impl Walk for Curve<'_> {
     const CURVED: bool = true;
 
     #[inline]
-    fn coordinate(self, column: usize) -> i64 {
-        (self.0.coordinate(column) + HALF) >> 3
-    }
-
-    #[inline]
-    fn pair(self, column: usize) -> [i64; 2] {
-        let (Parabola { start, slope, curve }, i) = self.segment(column);
-        let own = start + HALF + i * (slope + i * curve);
-        [own >> 3, (own + slope + (2 * i + 1) * curve) >> 3]
+    fn start(self, column: usize) -> Start {
+        let [own, slope, curve] = self.at(column);
+        let middle = own + MIDDLE * (slope + MIDDLE * curve);
+        let piece = Piece {
+            middle: ((middle >> 3) - (own >> 3)) as u32,
+            rest: (middle & 7) as u32,
+            slope: ((slope + 2 * MIDDLE * curve) >> 3) as u32,
+            curve: curve as i32,
+        };
+        Start::new(own >> 3, (own + slope + curve) >> 3, piece)
     }
 
     fn stride(self) -> u32 {
         0
     }
 
+    fn relative(self, column: usize, start: &Start) -> u32 {
+        ((self.at(column)[0] >> 3) - start.origin) as u32
+    }
+
     #[inline]
     fn relatives(self, column: usize, start: &Start) -> [u32; BLOCK] {
-        if !column.is_multiple_of(BLOCK) {
+        if !is_within_segment(column) {
             return std::array::from_fn(|index| self.relative(column + index, start));
         }
-        let (Parabola { start: first, slope, curve }, i) = self.segment(column);
-        let mut own = first + HALF + i * (slope + i * curve) - (start.origin() << 3);
-        let mut stride = slope + (2 * i + 1) * curve;
+        let [own, slope, curve] = self.at(column);
+        let (mut own, mut stride) = (own - (start.origin << 3), slope + curve);
         std::array::from_fn(|_| {
             let relative = (own >> 3) as u32;
             own += stride;
@@ -197,22 +193,12 @@ impl Walk for Curve<'_> {
             relative
         })
     }
+}
 
-    #[inline]
-    fn piece(self, column: usize, columns: usize, start: &Start) -> Option<Piece> {
-        if !column.is_multiple_of(columns) {
-            return None;
-        }
-        let (Parabola { start: first, slope, curve }, i) = self.segment(column);
-        let i = i + columns as i64 / 2;
-        let middle = first + HALF + i * (slope + i * curve);
-        Some(Piece {
-            middle: ((middle >> 3) - start.origin()) as u32,
-            rest: (middle & 7) as u32,
-            slope: ((slope + 2 * i * curve) >> 3) as u32,
-            curve: curve as i32,
-        })
-    }
+/// Whether the block at `column` lies within one segment: the last of a row, which ends with it, may not.
+#[inline]
+pub(super) fn is_within_segment(column: usize) -> bool {
+    column.is_multiple_of(BLOCK)
 }
 
 /// The starts of the blocks of `block` columns that cover a row. The last one is moved left to end with the row.

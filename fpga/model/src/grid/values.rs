@@ -16,8 +16,8 @@ pub struct RowValues {
     k: u32,
     offset: i32,
     factors: Vec<u32>,
-    /// S\[s · h\] for s from 0 to N − 1.
-    starts: Vec<i64>,
+    /// How S goes in each segment, 0 to N − 1.
+    segments: Vec<Parabola>,
 }
 
 /// The parabola that S follows within a segment: start + i · (slope + i · curve) at its column i.
@@ -43,12 +43,14 @@ impl RowValues {
         (self.k, self.offset) = (k, offset);
         self.factors.clear();
         self.factors.extend(factors);
-        self.starts.clear();
+        self.segments.clear();
         let short = RowFactor::ONE.get() - self.factors.first().copied().unwrap_or(0);
         let mut start = 8 * i64::from(geometry.centre2()) * i64::from(short) + (i64::from(offset) << BELOW);
         for pair in self.factors.windows(2) {
-            self.starts.push(start);
-            start += (i64::from(pair[0]) + i64::from(pair[1])) << (k + 3);
+            let [left, right] = [pair[0], pair[1]].map(i64::from);
+            let curve = ((right - left) >> 3) << (6 - k);
+            self.segments.push(Parabola { start, slope: 16 * left, curve });
+            start += (left + right) << (k + 3);
         }
     }
 
@@ -77,8 +79,8 @@ impl RowValues {
     /// When the row has no such column.
     #[must_use]
     pub fn coordinate(&self, column: usize) -> i64 {
-        let Parabola { start, slope, curve } = self.parabola(column >> self.k);
-        let i = (column % self.pitch()) as i64;
+        let Parabola { start, slope, curve } = self.segments[column >> self.k];
+        let i = (column & ((1 << self.k) - 1)) as i64;
         start + i * (slope + i * curve)
     }
 
@@ -95,7 +97,7 @@ impl RowValues {
     /// Where the output lies that comes from the column `source`: between two columns, or beyond the row's end at the rate
     /// there.
     pub(crate) fn output(&self, source: f64) -> f64 {
-        let columns = self.starts.len() << self.k;
+        let columns = self.segments.len() << self.k;
         let at = |column: usize| self.coordinate(column) as f64 / f64::from(1 << 28);
         let (mut low, mut high) = (0, columns - 1);
         while high - low > 1 {
@@ -107,17 +109,9 @@ impl RowValues {
         low as f64 + if rate > 0.0 { (source - at(low)) / rate } else { 0.0 }
     }
 
-    /// h: columns of a segment.
-    pub(crate) fn pitch(&self) -> usize {
-        1 << self.k
-    }
-
-    /// How S goes in segment `segment`.
-    #[inline]
-    pub(crate) fn parabola(&self, segment: usize) -> Parabola {
-        let [left, right] = [segment, segment + 1].map(|node| i64::from(self.factors[node]));
-        let curve = ((right - left) >> 3) << (6 - self.k);
-        Parabola { start: self.starts[segment], slope: 16 * left, curve }
+    /// How S goes in each segment of 2^k columns, and k.
+    pub(crate) fn segments(&self) -> (&[Parabola], u32) {
+        (&self.segments, self.k)
     }
 }
 

@@ -54,6 +54,14 @@ pub(super) enum CallError {
          and --focal-length without it"
     )]
     RadiusTwice,
+    /// A way to make row factors beside a grid.
+    #[error(
+        "--rows says how one factor a row is found, and --projection exact takes a grid of them; leave out one of the two"
+    )]
+    RowsOfGrid,
+    /// Room for a grid that is not made.
+    #[error("--entries is for the grid of --projection exact; leave it out, or give that")]
+    EntriesOfRows,
     /// A calibration without a size.
     #[error("the lens file {} does not say how large its pictures are; give --width and --height", path.display())]
     LensSizeMissing { path: PathBuf },

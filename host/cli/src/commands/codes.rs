@@ -39,6 +39,8 @@ codes::codes! {
         PitchAlone => "pixel-pitch-without-effect",
         LensPitchWithoutFile => "lens-pitch-without-lens-file",
         RadiusTwice => "radius-given-twice",
+        RowsOfGrid => "rows-of-grid",
+        EntriesOfRows => "entries-without-grid",
         LensSizeMissing [path] => "lens-size-missing",
         TablesFormat [path] => "tables-format-unknown",
         OtherFormat [path] => "frame-format-contradicted",

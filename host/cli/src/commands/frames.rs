@@ -32,7 +32,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    if arguments.lens.has_rows() {
+    if arguments.lens.says_how() {
         return Err(Failure::call(CallError::RowsOfFrame));
     }
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);

@@ -39,8 +39,18 @@ pub(super) enum Decider {
 pub(super) const IN_TABLE_FILES: [&str; 4] = ["width", "height", "bits", "centre_x"];
 
 /// Options that mean nothing but making tables, or rendering built-in frames through their lens.
-const LENS: [&str; 8] =
-    ["lens", "lens_pitch", "rows", "radius", "focal_length", "pixel_pitch", "field_of_view", "centre_y"];
+const LENS: [&str; 10] = [
+    "lens",
+    "lens_pitch",
+    "rows",
+    "projection",
+    "entries",
+    "radius",
+    "focal_length",
+    "pixel_pitch",
+    "field_of_view",
+    "centre_y",
+];
 
 /// What a recording says of its run beside the options that make tables. Its time limit is on the board's clock, which
 /// leaves --timeout that of this computer.

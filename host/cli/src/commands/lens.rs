@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::{Value, json};
+use halfrow_model::{GridResidual, GridResiduals, GridShape, TableError};
+use serde_json::{Map, Value, json};
 
 use super::document::print_result;
 use super::files::Files;
@@ -12,7 +13,7 @@ use super::{Context, Failure, print};
 use crate::console;
 use crate::exit::Exit;
 use halfrow::frames::{self, HeatMap};
-use halfrow::optics::{Optics, OpticsError, RowsBy};
+use halfrow::optics::{Optics, OpticsError, TablesBy};
 use halfrow_lab::{Residuals, Spread};
 
 #[derive(Debug, Args)]
@@ -39,7 +40,10 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let figures = Figures::of(&optics).map_err(Failure::call)?;
     let most = match &arguments.map {
         None => None,
-        Some(path) => Some(write_map(path, figures.used(), arguments.overwrite)?),
+        Some(path) => match figures.used() {
+            Some(used) => Some(write_map(path, &used.residuals, arguments.overwrite)?),
+            None => None,
+        },
     };
     if context.json {
         let map = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
@@ -53,34 +57,64 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     Ok(Exit::Pass)
 }
 
+/// What tables that are found in one way leave.
+struct Left {
+    by: TablesBy,
+    /// Of a grid.
+    shape: Option<GridShape>,
+    residuals: Residuals,
+    /// Apart: where the picture is, and at its rim and poles.
+    parts: GridResiduals,
+}
+
 /// What there is to say.
 struct Figures<'a> {
     optics: &'a Optics,
-    equation_9: Residuals,
-    fitted: Residuals,
-    /// Why a board would not take the row factors that are asked for.
-    illegal: Option<halfrow_model::TableError>,
+    /// Eq. 9, fitted rows, and the grid if one has so few entries.
+    all: Vec<Left>,
+    /// Why there is no grid.
+    no_grid: Option<OpticsError>,
+    /// Why a board would not take the tables that are asked for.
+    illegal: Option<TableError>,
 }
+
+/// Columns from one output to the next at which parts of the picture are looked at.
+const STEP: usize = 5;
 
 impl<'a> Figures<'a> {
     fn of(optics: &'a Optics) -> Result<Self, OpticsError> {
-        let (equation_9, fitted) = (optics.tables_by(RowsBy::Equation9)?, optics.tables_by(RowsBy::Fitting)?);
-        let used = if optics.rows == RowsBy::Fitting { &fitted } else { &equation_9 };
-        optics.check_circle(used)?;
-        let illegal = used.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
-        let residuals = |tables| Residuals::of(&optics.camera, tables);
-        Ok(Self { optics, equation_9: residuals(&equation_9), fitted: residuals(&fitted), illegal })
+        let exact = match optics.by {
+            by @ TablesBy::Exact { .. } => by,
+            _ => TablesBy::Exact { entries: TablesBy::LEAST_ENTRIES },
+        };
+        let (mut all, mut no_grid, mut illegal) = (Vec::new(), None, None);
+        for by in [TablesBy::Equation9, TablesBy::Fitting, exact] {
+            let tables = match optics.tables_by(by) {
+                Err(error @ OpticsError::Room(_)) if by != optics.by => {
+                    no_grid = Some(error);
+                    continue;
+                }
+                tables => tables?,
+            };
+            if by == optics.by {
+                optics.check_circle(&tables)?;
+                illegal = tables.check_ring(optics.camera.geometry().width().next_power_of_two()).err();
+            }
+            let residuals = Residuals::of(&optics.camera, &tables);
+            let parts = optics.camera.grid_residuals(&tables, STEP);
+            all.push(Left { by, shape: tables.shape(), residuals, parts });
+        }
+        Ok(Self { optics, all, no_grid, illegal })
     }
 
-    /// What the row factors leave that are asked for.
-    fn used(&self) -> &Residuals {
-        if self.optics.rows == RowsBy::Fitting { &self.fitted } else { &self.equation_9 }
+    /// What the tables leave that are asked for.
+    fn used(&self) -> Option<&Left> {
+        self.all.iter().find(|left| left.by == self.optics.by)
     }
 
     fn text(&self) -> String {
         let (camera, lens) = (&self.optics.camera, self.optics.camera.lens());
         let geometry = camera.geometry();
-        let amounts = |Spread { mean, max }: Spread| format!("{mean:9.4} {max:9.4}");
         let mut lines = vec![
             self.optics.source(),
             format!(
@@ -98,18 +132,58 @@ impl<'a> Figures<'a> {
                 camera.field_of_view().to_degrees(),
                 camera.rows_outside_circle()
             ),
-            format!("error left at {} samples, in pixels     mean       max", self.fitted.samples),
-            format!("  horizontal, Eq. 9               {}", amounts(self.equation_9.horizontal)),
-            format!("  horizontal, fitted rows         {}", amounts(self.fitted.horizontal)),
-            format!("  vertical, whatever the rows     {}", amounts(self.fitted.vertical)),
         ];
-        lines.extend(self.illegal.as_ref().map(|error| format!("no board takes these rows: {error}")));
+        lines.extend(self.errors());
+        lines.extend(self.no_grid.as_ref().map(|error| format!("there is no exact projection: {error}")));
+        lines.extend(self.illegal.as_ref().map(|error| format!("no board takes these tables: {error}")));
         lines.join("\n")
+    }
+
+    /// The error that each way leaves.
+    fn errors(&self) -> Vec<String> {
+        let Some(first) = self.all.first() else { return Vec::new() };
+        let amounts = |Spread { mean, max }: Spread| format!("{mean:9.4} {max:9.4}");
+        let head = format!("error left at {} samples, in pixels", first.residuals.samples);
+        let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05")];
+        for left in &self.all {
+            let name = match (left.by, left.shape) {
+                (TablesBy::Equation9, _) => "Eq. 9".to_owned(),
+                (TablesBy::Fitting, _) => "fitted rows".to_owned(),
+                (TablesBy::Exact { .. }, shape) => {
+                    shape.map_or_else(String::new, |shape| format!("exact projection, {shape}"))
+                }
+            };
+            let (horizontal, inner) = (amounts(left.residuals.horizontal), left.parts.inner);
+            lines.push(format!("  {name:<45} {horizontal} {:11.4} {:9.2} %", inner.max, 100.0 * inner.share));
+        }
+        lines.push(format!(
+            "  {:<45} {}",
+            "vertical, whatever the tables",
+            amounts(first.residuals.vertical)
+        ));
+        lines.push(
+            "inner: up to 85 degrees off the axis and 0.9 of the circle's height. Rows are kept (Eq. 7): level lines bend as before.".to_owned(),
+        );
+        if self.optics.camera.lens().widest() > std::f64::consts::FRAC_PI_2 {
+            lines.push(
+                "What lies beyond 90 degrees is shown without being stretched, and not exactly.".to_owned(),
+            );
+        }
+        lines
     }
 
     fn json(&self, map: Option<&Value>) -> Value {
         let (camera, lens) = (&self.optics.camera, self.optics.camera.lens());
         let geometry = camera.geometry();
+        let first = self.all.first().map(|left| &left.residuals);
+        let horizontal =
+            self.all.iter().map(|left| (left.by.name().to_owned(), json!(left.residuals.horizontal)));
+        let part = |part: GridResidual| json!({ "mean": part.mean, "max": part.max, "share_above_0.05": part.share });
+        let parts = self.all.iter().map(|left| {
+            let GridResiduals { circle, inner } = left.parts;
+            (left.by.name().to_owned(), json!({ "circle": part(circle), "inner": part(inner) }))
+        });
+        let shape = self.all.iter().find_map(|left| left.shape);
         json!({
             "lens": {
                 "name": self.optics.name,
@@ -121,13 +195,15 @@ impl<'a> Figures<'a> {
             },
             "frame": { "width": geometry.width(), "height": geometry.height() },
             "centre": { "column": camera.centre().0, "row": camera.centre().1, "centre2": geometry.centre2() },
-            "rows": self.optics.rows.name(),
+            "rows": self.optics.by.name(),
+            "grid": shape.map(|shape| json!({ "v": shape.v(), "k": shape.k(), "entries": shape.entries(geometry) })),
             "rows_outside_circle": camera.rows_outside_circle(),
             "illegal": self.illegal.as_ref().map(ToString::to_string),
-            "samples": self.fitted.samples,
+            "samples": first.map(|residuals| residuals.samples),
             "residual_px": {
-                "horizontal": { "equation-9": self.equation_9.horizontal, "fitted": self.fitted.horizontal },
-                "vertical": self.fitted.vertical,
+                "horizontal": horizontal.collect::<Map<_, _>>(),
+                "vertical": first.map(|residuals| residuals.vertical),
+                "parts": parts.collect::<Map<_, _>>(),
             },
             "map": map,
         })

@@ -16,7 +16,7 @@ use halfrow::kernels;
 use halfrow::lenses::LensFile;
 
 use super::table_file::NamedTables;
-use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, RowsBy};
+use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
 
 /// The pixels of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
@@ -49,6 +49,13 @@ pub(super) struct LensArguments {
     /// How the row factors are found [default: fitted for a lens file, equation-9 otherwise]
     #[arg(long, value_enum)]
     rows: Option<Rows>,
+    /// What tables follow: the projection by rows, one factor each, or the exact one by a grid of factors, which boards with
+    /// datapath 2 take [default: rows]
+    #[arg(long, value_enum)]
+    projection: Option<Projection>,
+    /// The most entries of a grid, as many as the board has room for [default: 2048, which every one has]
+    #[arg(long, value_name = "ENTRIES", requires = "projection")]
+    entries: Option<usize>,
     /// Radius of the image of 180 degrees, in pixels, instead of focal length and pixel pitch
     #[arg(long, value_name = "PIXELS", conflicts_with_all = ["focal_length", "pixel_pitch", "field_of_view"])]
     radius: Option<f64>,
@@ -97,13 +104,22 @@ enum Rows {
     Equation9,
 }
 
-impl From<Rows> for RowsBy {
+impl From<Rows> for TablesBy {
     fn from(rows: Rows) -> Self {
         match rows {
             Rows::Fitted => Self::Fitting,
             Rows::Equation9 => Self::Equation9,
         }
     }
+}
+
+/// What tables follow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Projection {
+    /// One factor a row, as --rows says
+    Rows,
+    /// Eqs. 5 to 7, by a grid of factors
+    Exact,
 }
 
 fn depth(text: &str) -> Result<BitDepth, String> {
@@ -129,9 +145,19 @@ impl LensArguments {
         }
     }
 
-    /// Whether the call says how row factors are made.
-    pub(super) fn has_rows(&self) -> bool {
-        self.rows.is_some()
+    /// Whether the call says how tables are made.
+    pub(super) fn says_how(&self) -> bool {
+        self.rows.is_some() || self.projection.is_some()
+    }
+
+    /// How tables are made.
+    fn by(&self, otherwise: Rows) -> TablesBy {
+        match self.projection {
+            Some(Projection::Exact) => {
+                TablesBy::Exact { entries: self.entries.unwrap_or(TablesBy::LEAST_ENTRIES) }
+            }
+            Some(Projection::Rows) | None => self.rows.unwrap_or(otherwise).into(),
+        }
     }
 
     /// The frame and the lens before it.
@@ -147,6 +173,13 @@ impl LensArguments {
     /// Refuses options that say nothing beside the lens, or something else than it.
     fn check(&self) -> anyhow::Result<()> {
         let scales = self.lens_pitch.is_some();
+        let is_exact = self.projection == Some(Projection::Exact);
+        if is_exact && self.rows.is_some() {
+            bail!(CallError::RowsOfGrid);
+        }
+        if !is_exact && self.entries.is_some() {
+            bail!(CallError::EntriesOfRows);
+        }
         match self.lens {
             Some(LensName::File(_)) if self.pixel_pitch.is_some() && !scales => {
                 bail!(CallError::PitchAlone)
@@ -182,8 +215,7 @@ impl LensArguments {
         };
         let geometry = self.geometry(PAPER_SIZE)?;
         let camera = self.camera(geometry, lens.into(), middle(&geometry))?;
-        let rows = self.rows.unwrap_or(Rows::Equation9);
-        Ok(Optics::equidistant(camera, lens, self.centre_y, rows.into()))
+        Ok(Optics::equidistant(camera, lens, self.centre_y, self.by(Rows::Equation9)))
     }
 
     fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {
@@ -203,8 +235,8 @@ impl LensArguments {
                 .with_context(|| format!("the lens file {} does not fit", path.display()))?,
         };
         let camera = self.camera(geometry, lens, centre)?;
-        let (name, rows) = (format!("{} {}", file.model, path.display()), self.rows.unwrap_or(Rows::Fitted));
-        Ok(Optics::calibrated(camera, name, rows.into())?)
+        let name = format!("{} {}", file.model, path.display());
+        Ok(Optics::calibrated(camera, name, self.by(Rows::Fitted))?)
     }
 
     /// Pixels of the frame for each of a camera with pixels of `pitch`.

@@ -14,7 +14,7 @@ mod tables;
 
 use std::time::Duration;
 
-use halfrow_model::Geometry;
+use halfrow_model::{Geometry, GridShape};
 use halfrow_protocol::message::{Configuration, Hello, Reply, Request, Reset, ResetLevel};
 use halfrow_protocol::{Kind, VERSION};
 
@@ -73,6 +73,8 @@ pub struct Board {
     pub welcome: Welcome,
     /// What it can do.
     pub capabilities: Capabilities,
+    /// The shapes of the tables of the last commit, and of the other bank.
+    shapes: [Option<GridShape>; 2],
 }
 
 impl Board {
@@ -95,7 +97,7 @@ impl Board {
         };
         match open() {
             Ok((welcome, capabilities, counted_from)) => {
-                Ok(Self { conversation, counted_from, welcome, capabilities })
+                Ok(Self { conversation, counted_from, welcome, capabilities, shapes: [None; 2] })
             }
             Err(error) => Err((error, Box::new(conversation.tally))),
         }

@@ -2,7 +2,7 @@
 
 use halfrow_model::{Kernel, TableSet};
 use halfrow_protocol::MAX_PAYLOAD;
-use halfrow_protocol::message::{Bank, Commit, Entries, NODES, Reply, Request, Span, Table};
+use halfrow_protocol::message::{Bank, Commit, Entries, NODES, Reply, Request, Shape, Span, Table};
 
 use super::deadlines::Step;
 use super::{Board, BoardError};
@@ -36,20 +36,23 @@ impl ReadBack {
 }
 
 impl Board {
-    /// Every port that the datapath reads tables by.
-    pub(crate) fn table_ports(&self) -> Vec<TablePort> {
+    /// Every port that the datapath reads tables by, its rows' as those of `rows`: row factors or a grid.
+    pub(crate) fn table_ports(&self, rows: Table) -> Vec<TablePort> {
         let ports = |table, count| (0..count).map(move |port| TablePort { table, port });
-        ports(Table::RowFactors, self.capabilities.step_ports)
+        ports(rows, self.capabilities.step_ports)
             .chain(ports(Table::Kernel, self.capabilities.kernel_ports))
             .collect()
     }
 
-    /// Writes row factors and nodes into the shadow bank.
+    /// Writes row factors or a grid, and the kernel's nodes, into the shadow bank.
     ///
     /// # Errors
     /// [`BoardError`] when the board refuses or does not answer.
     pub fn upload(&mut self, tables: &TableSet, kernel: &Kernel) -> Result<(), BoardError> {
-        self.write(Table::RowFactors, &tables.to_bytes())?;
+        self.write(table_of(tables), &tables.to_bytes())?;
+        if tables.shape().is_none() {
+            self.shapes[1] = None;
+        }
         self.write(Table::Kernel, &kernel.to_bytes())
     }
 
@@ -90,13 +93,13 @@ impl Board {
         tables: &TableSet,
         kernel: &Kernel,
     ) -> Result<Vec<ReadBack>, BoardError> {
-        let row_factors = (tables.geometry().height() as u16, crc32fast::hash(&tables.to_bytes()));
+        let entries = (tables.units().len() as u16, crc32fast::hash(&tables.to_bytes()));
         let nodes = (NODES as u16, crc32fast::hash(&kernel.to_bytes()));
-        self.table_ports()
+        self.table_ports(table_of(tables))
             .into_iter()
             .map(|port| {
                 let (count, expected) = match port.table {
-                    Table::RowFactors | Table::Grid => row_factors,
+                    Table::RowFactors | Table::Grid => entries,
                     Table::Kernel => nodes,
                 };
                 let span = Span { table: port.table, bank, port: port.port, first: 0, count };
@@ -156,11 +159,25 @@ impl Board {
             kernel_crc: crc32fast::hash(&kernel.to_bytes()),
             first_frame,
             generation,
-            shape: None,
+            shape: tables.shape().map(|shape| Shape { v: shape.v() as u8, k: shape.k() as u8 }),
         };
         self.conversation.request(&Request::Commit(commit), Step::Request, |reply| match reply {
             Reply::Commit { generation: named } if named == generation => Some(()),
             _ => None,
-        })
+        })?;
+        self.shapes = [tables.shape(), self.shapes[0]];
+        Ok(())
     }
+
+    /// Whether rows can be made with `tables` of the bank that was not committed last, once they are written into it: a grid has
+    /// its shape from a commit alone.
+    #[must_use]
+    pub(crate) fn knows_shape_of(&self, tables: &TableSet) -> bool {
+        tables.shape().is_none_or(|shape| self.shapes[1] == Some(shape))
+    }
+}
+
+/// The table that these tables are beside the kernel.
+fn table_of(tables: &TableSet) -> Table {
+    if tables.shape().is_some() { Table::Grid } else { Table::RowFactors }
 }

@@ -28,7 +28,7 @@ const LEAST_ENTRIES: u16 = 2048;
 const OF_GRIDS: u16 = 2;
 
 /// The grids that a board takes; none of a datapath that is not known.
-fn grids(board: &Capabilities) -> Option<Grids> {
+pub(super) fn grids(board: &Capabilities) -> Option<Grids> {
     board.grids.filter(|grids| grids.further_datapath == OF_GRIDS)
 }
 
@@ -123,7 +123,7 @@ const RULES: [Rule; 14] = [
 /// Why no board of `datapath` can have these capabilities, if none can.
 pub(super) fn impossible(datapath: Datapath, capabilities: &Capabilities) -> Option<Finding> {
     let rules = match datapath {
-        Datapath::RowFactors => &RULES,
+        Datapath::RowFactors | Datapath::Grids => &RULES,
     };
     let broken = rules.iter().find(|rule| !(rule.holds)(capabilities))?;
     let (Rule { name, legal, .. }, value) = (broken, (broken.value)(capabilities));

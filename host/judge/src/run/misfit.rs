@@ -1,8 +1,9 @@
 //! Whether a board can have what a plan uploads.
 
 use halfrow_model::{Kernel, TableError, TableSet, Taps};
-use halfrow_protocol::message::{BoardNature, Datapath, UnknownDatapath};
+use halfrow_protocol::message::{BoardNature, UnknownDatapath};
 
+use super::legal::grids;
 use super::plan::TooManyFrames;
 use super::within::WithinError;
 use crate::board::Capabilities;
@@ -36,6 +37,30 @@ pub enum Misfit {
         /// Bits a sample.
         bits: u32,
     },
+    /// The tables are a grid, and the board takes one factor a row.
+    #[error(
+        "the tables are a grid of datapath 2, and the board has datapath 1 alone; leave out --projection exact, or use a \
+         bitstream with datapath 2"
+    )]
+    NoGrids,
+    /// The grid has more entries than a bank of the board.
+    #[error(
+        "the grid has {entries} entries, and the board takes {most}; make the tables with --entries {most}"
+    )]
+    GridEntries {
+        /// Entries of the grid.
+        entries: usize,
+        /// T.
+        most: usize,
+    },
+    /// The board has no nodes so far apart.
+    #[error(
+        "the grid has nodes every {pitch} columns, and the board takes others; make the tables for this board"
+    )]
+    GridPitch {
+        /// 2^k.
+        pitch: usize,
+    },
     /// The kernel needs more taps than the board has.
     #[error("the kernel needs seven taps and the board has five; use a five-tap kernel such as hermite")]
     Taps,
@@ -61,10 +86,8 @@ impl Misfit {
 /// Why a board with these capabilities cannot have the tables and the kernel, if it cannot.
 #[must_use]
 pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -> Option<Misfit> {
-    match capabilities.known_datapath() {
-        // That of the tables.
-        Ok(Datapath::RowFactors) => {}
-        Err(unknown) => return Some(unknown.into()),
+    if let Err(unknown) = capabilities.known_datapath() {
+        return Some(unknown.into());
     }
     let geometry = tables.geometry();
     let (width, height) = (geometry.width(), geometry.height());
@@ -83,8 +106,22 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
     if !capabilities.sample_depths().has(bits as u8) {
         return Some(Misfit::Depth { bits });
     }
+    if let Some(misfit) = grid_misfit(tables, capabilities) {
+        return Some(misfit);
+    }
     if kernel.taps() == Taps::Seven && capabilities.taps < 7 {
         return Some(Misfit::Taps);
     }
     tables.check_ring(usize::from(capabilities.ring)).err().map(Misfit::Ring)
+}
+
+/// Why a board cannot have the grid, if the tables are one and it cannot.
+fn grid_misfit(tables: &TableSet, capabilities: &Capabilities) -> Option<Misfit> {
+    let shape = tables.shape()?;
+    let Some(grids) = grids(capabilities) else { return Some(Misfit::NoGrids) };
+    let (entries, most) = (tables.units().len(), usize::from(grids.entries));
+    if entries > most {
+        return Some(Misfit::GridEntries { entries, most });
+    }
+    (!grids.takes(shape.k() as u8)).then(|| Misfit::GridPitch { pitch: shape.column_pitch() })
 }

@@ -15,7 +15,7 @@ use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
 use super::reconnect::WayBack;
 use super::variations::Build;
-use crate::board::{Board, Datapath, UnknownDatapath};
+use crate::board::{Board, UnknownDatapath};
 use crate::progress::{Progress, Step};
 use crate::reference;
 use crate::result::{CheckName, Finding, NotExercised, Problem};
@@ -150,7 +150,7 @@ impl Run<'_> {
     fn identity(&mut self) -> Result<(), End> {
         let error = |cause, finding: Finding| Err(End::error(CheckName::Identity, cause, finding));
         let datapath = match self.board.capabilities.known_datapath() {
-            Ok(datapath @ Datapath::RowFactors) => datapath,
+            Ok(datapath) => datapath,
             Err(UnknownDatapath { id: datapath }) => {
                 let known = DATAPATH.id();
                 return error(Cause::Refused, Finding::DatapathUnknown { datapath, known });

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::PathBuf;
 
-use halfrow_model::{GeometryError, KernelError, TableError};
+use halfrow_model::{GeometryError, GridShapeError, KernelError, TableError};
 
 use halfrow_protocol::message::Datapath;
 
@@ -67,7 +67,7 @@ impl TableFileError {
 /// Tables for a datapath that is not known.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "the tables are for datapath {found}, and this program knows datapath {known} alone; \
+    "the tables are for datapath {found}, and this program knows {known} alone; \
      make them again with `halfrow tables`, or use a halfrow that knows datapath {found}",
     known = known()
 )]
@@ -170,6 +170,9 @@ pub enum ContentError {
     /// The numbers make no geometry.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// The numbers make no grid.
+    #[error(transparent)]
+    Shape(#[from] GridShapeError),
     /// The numbers make no table set.
     #[error(transparent)]
     Tables(#[from] TableError),
@@ -208,6 +211,9 @@ pub enum MemError {
     /// The numbers make no geometry.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// The comments give no grid.
+    #[error(transparent)]
+    Shape(#[from] GridShapeError),
     /// The words make no table set.
     #[error(transparent)]
     Tables(#[from] TableError),

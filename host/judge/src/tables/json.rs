@@ -4,7 +4,8 @@ use std::io;
 use std::path::Path;
 
 use halfrow_model::{
-    BitDepth, Geometry, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, RowFactor, TAP_NAMES, TableSet,
+    BitDepth, Geometry, GridShape, Kernel, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, NODES, RowFactor, TAP_NAMES,
+    TableSet,
 };
 use halfrow_protocol::message::Datapath;
 use serde_json::{Map, Value};
@@ -34,7 +35,7 @@ pub struct KernelFile {
 }
 
 impl TableFile {
-    /// The keys, in the order of the file.
+    /// The keys of row factors, in the order of the file.
     pub(super) const KEYS: [Place; 8] = [
         Place::Datapath,
         Place::About,
@@ -43,6 +44,19 @@ impl TableFile {
         Place::Bits,
         Place::Centre2,
         Place::RowFactors,
+        Place::Kernel,
+    ];
+    /// The keys of a grid.
+    pub(super) const GRID_KEYS: [Place; 10] = [
+        Place::Datapath,
+        Place::About,
+        Place::Width,
+        Place::Height,
+        Place::Bits,
+        Place::Centre2,
+        Place::V,
+        Place::K,
+        Place::Grid,
         Place::Kernel,
     ];
 
@@ -64,6 +78,7 @@ impl TableFile {
         match members.datapath()? {
             // Without a datapath it is missed in its turn.
             None | Some(Datapath::RowFactors) => Self::of_row_factors(members),
+            Some(Datapath::Grids) => Self::of_grid(members),
         }
     }
 
@@ -74,6 +89,21 @@ impl TableFile {
         let row_factors = row_factors(&members.take(Place::RowFactors)?, geometry.height())?;
         Ok(Self {
             tables: TableSet::from_units(geometry, &row_factors)?,
+            kernel: kernel(&members.take(Place::Kernel)?)?,
+            about: members.take_about()?,
+        })
+    }
+
+    fn of_grid(mut members: Members) -> Result<Self, ContentError> {
+        members.check_keys(&Self::GRID_KEYS)?;
+        members.take(Place::Datapath)?;
+        let geometry = geometry(&mut members)?;
+        let v = members.take_number(Place::V, &GridShape::V)?;
+        let k = members.take_number(Place::K, &GridShape::K)?;
+        let shape = GridShape::new(v, k)?;
+        let entries = grid(&members.take(Place::Grid)?, shape.entries(&geometry))?;
+        Ok(Self {
+            tables: TableSet::from_grid(geometry, shape, entries)?,
             kernel: kernel(&members.take(Place::Kernel)?)?,
             about: members.take_about()?,
         })
@@ -113,7 +143,8 @@ impl KernelFile {
     pub fn parse(text: &str) -> Result<Self, ContentError> {
         let mut members = Members::parse(text)?;
         match members.datapath()? {
-            None | Some(Datapath::RowFactors) => members.check_keys(&Self::KEYS)?,
+            // A kernel is the same in both.
+            None | Some(Datapath::RowFactors | Datapath::Grids) => members.check_keys(&Self::KEYS)?,
         }
         Ok(Self { kernel: kernel(&members.take(Place::Kernel)?)?, about: members.take_about()? })
     }
@@ -155,6 +186,11 @@ fn geometry(members: &mut Members) -> Result<Geometry, ContentError> {
 fn row_factors(value: &Value, height: usize) -> Result<Vec<u32>, ContentError> {
     let values = list(Place::RowFactors, value, height)?.iter().enumerate();
     values.map(|(row, value)| number(Place::RowFactor { row }, value, &RowFactor::RANGE)).collect()
+}
+
+fn grid(value: &Value, entries: usize) -> Result<Vec<u32>, ContentError> {
+    let values = list(Place::Grid, value, entries)?.iter().enumerate();
+    values.map(|(entry, value)| number(Place::GridEntry { entry }, value, &TableSet::GRID_RANGE)).collect()
 }
 
 fn kernel(value: &Value) -> Result<Kernel, ContentError> {

@@ -1,23 +1,28 @@
-//! How table files look: a key a line, some row factors a line, a node a line.
+//! How table files look: a key a line, some entries a line, a node a line.
 
 use halfrow_model::Kernel;
 use serde_json::{Map, Value};
 
-use super::{DATAPATH, KernelFile, Place, TableFile};
+use super::{DATAPATH, KernelFile, Place, TableFile, datapath_of};
 
-/// Row factors on a line: 8 digits and a comma each fill about a hundred columns.
-const FACTORS_A_LINE: usize = 10;
+/// Entries on a line: 8 digits and a comma each fill about a hundred columns.
+const ENTRIES_A_LINE: usize = 10;
 
-/// The text of a table file, its members in the order of [`TableFile::KEYS`].
+/// The text of a table file, its members in the order of [`TableFile::KEYS`] or of [`TableFile::GRID_KEYS`].
 pub(super) fn table_file(file: &TableFile) -> String {
     let geometry = file.tables.geometry();
-    let row_factors: Vec<_> = file.tables.units().map(|units| units.to_string()).collect();
-    let members = TableFile::KEYS.into_iter().filter_map(|place| match place {
+    let entries: Vec<_> = file.tables.units().map(|units| units.to_string()).collect();
+    let shape = file.tables.shape();
+    let keys = if shape.is_some() { &TableFile::GRID_KEYS[..] } else { &TableFile::KEYS };
+    let members = keys.iter().filter_map(|&place| match place {
+        Place::Datapath => Some((place, datapath_of(&file.tables).to_string())),
         Place::Width => Some((place, geometry.width().to_string())),
         Place::Height => Some((place, geometry.height().to_string())),
         Place::Bits => Some((place, geometry.depth().bits().to_string())),
         Place::Centre2 => Some((place, geometry.centre2().to_string())),
-        Place::RowFactors => Some((place, list(&row_factors, FACTORS_A_LINE))),
+        Place::V => Some((place, shape?.v().to_string())),
+        Place::K => Some((place, shape?.k().to_string())),
+        Place::RowFactors | Place::Grid => Some((place, list(&entries, ENTRIES_A_LINE))),
         other => shared_member(other, &file.kernel, file.about.as_ref()),
     });
     object(members)

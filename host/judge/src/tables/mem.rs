@@ -1,21 +1,21 @@
 //! Memory images for Verilog's `$readmemh`: NAME.steps.mem and NAME.kernel.mem.
 //!
-//! A row factor is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20 digits: g0 r1 g4 r5 g6,
+//! A row factor, or an entry of a grid, is a word of 25 bits, written as 7 hexadecimal digits. A node is a word of 80 bits, 20 digits: g0 r1 g4 r5 g6,
 //! 16 bits each in two's complement, g0 the most significant. Comments at the top say so, and give the geometry that
 //! reading needs.
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use halfrow_model::{BitDepth, Geometry, Kernel, TAP_NAMES, TableSet};
+use halfrow_model::{BitDepth, Geometry, GridShape, Kernel, TAP_NAMES, TableSet};
 use halfrow_protocol::message::Datapath;
 
 use super::text::{self, quoted};
-use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath};
+use super::{DATAPATH, MemError, Place, TableFileError, WrongDatapath, datapath_of};
 use halfrow_frames::written_aside::{Aside, Claim, WriteAsideError};
 
-/// Hexadecimal digits of a row factor.
-const FACTOR_DIGITS: usize = 7;
+/// Hexadecimal digits of a row factor, and of an entry of a grid.
+const ENTRY_DIGITS: usize = 7;
 
 /// Hexadecimal digits of a weight.
 const WEIGHT_DIGITS: usize = 4;
@@ -73,21 +73,28 @@ fn read_one<T>(path: PathBuf, parse: fn(&str) -> Result<T, MemError>) -> Result<
     }
 }
 
-/// The memory image of the row factors.
+/// The memory image of the row factors or the grid.
 #[must_use]
 pub fn row_factors_text(tables: &TableSet) -> String {
     let geometry = tables.geometry();
+    let what = match tables.shape() {
+        None => "row factors Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first",
+        Some(_) => "grid for $readmemh: 25 bits a word, column by column, offsets first",
+    };
+    let shape = tables.shape().map(|shape| format!(" v={} k={}", shape.v(), shape.k()));
     let header = [
-        "// halfrow row factors Q = 2^24 / k for $readmemh: 25 bits a word, row 0 first".to_owned(),
+        format!("// halfrow {what}"),
         format!(
-            "// datapath={DATAPATH} width={} height={} bits={} centre2={}",
+            "// datapath={} width={} height={} bits={} centre2={}{}",
+            datapath_of(tables),
             geometry.width(),
             geometry.height(),
             geometry.depth().bits(),
-            geometry.centre2()
+            geometry.centre2(),
+            shape.unwrap_or_default()
         ),
     ];
-    let words = tables.units().map(|units| format!("{units:0FACTOR_DIGITS$x}"));
+    let words = tables.units().map(|units| format!("{units:0ENTRY_DIGITS$x}"));
     lines(header.into_iter().chain(words))
 }
 
@@ -115,18 +122,23 @@ fn lines(lines: impl Iterator<Item = String>) -> String {
 /// [`MemError`] for the first thing that is wrong: the datapath, the geometry, the words from the top.
 pub fn parse_row_factors(text: &str) -> Result<TableSet, MemError> {
     match datapath(text)? {
-        Datapath::RowFactors => row_factors(text),
+        Datapath::RowFactors => Ok(TableSet::from_units(geometry(text)?, &units(text)?)?),
+        Datapath::Grids => {
+            let shape = GridShape::new(noted(text, Place::V)?, noted(text, Place::K)?)?;
+            Ok(TableSet::from_grid(geometry(text)?, shape, units(text)?)?)
+        }
     }
 }
 
-fn row_factors(text: &str) -> Result<TableSet, MemError> {
+fn geometry(text: &str) -> Result<Geometry, MemError> {
     let bits = noted(text, Place::Bits)?;
     let depth = BitDepth::from_bits(bits).ok_or(MemError::Bits { found: bits })?;
     let (width, height) = (noted(text, Place::Width)?, noted(text, Place::Height)?);
-    let geometry = Geometry::new(width, height, depth, noted(text, Place::Centre2)?)?;
-    let units: Result<Vec<_>, _> =
-        words::<FACTOR_DIGITS>(text).map(|word| word.map(|units| units as u32)).collect();
-    Ok(TableSet::from_units(geometry, &units?)?)
+    Ok(Geometry::new(width, height, depth, noted(text, Place::Centre2)?)?)
+}
+
+fn units(text: &str) -> Result<Vec<u32>, MemError> {
+    words::<ENTRY_DIGITS>(text).map(|word| word.map(|units| units as u32)).collect()
 }
 
 /// The kernel with the memory image `text`.
@@ -135,7 +147,8 @@ fn row_factors(text: &str) -> Result<TableSet, MemError> {
 /// [`MemError`] for the first thing that is wrong: the datapath, the words from x = 0.
 pub fn parse_kernel(text: &str) -> Result<Kernel, MemError> {
     match datapath(text)? {
-        Datapath::RowFactors => {}
+        // It is the same in both.
+        Datapath::RowFactors | Datapath::Grids => {}
     }
     let nodes: Result<_, _> = words::<NODE_DIGITS>(text).map(|word| word.map(weights)).collect();
     Ok(Kernel::from_nodes(nodes?)?)

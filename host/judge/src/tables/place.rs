@@ -24,6 +24,17 @@ pub enum Place {
         /// The row, from 0 at the top.
         row: usize,
     },
+    /// `v`: the binary logarithm of the rows between grid rows.
+    V,
+    /// `k`: the binary logarithm of the columns between nodes.
+    K,
+    /// `grid`: the list of all its entries, column by column.
+    Grid,
+    /// One entry of the grid.
+    GridEntry {
+        /// Its place in the list, from 0.
+        entry: usize,
+    },
     /// `kernel`: the list of all nodes.
     Kernel,
     /// The weights of one node.
@@ -52,6 +63,9 @@ impl Place {
             Self::Bits => "bits",
             Self::Centre2 => "centre2",
             Self::RowFactors | Self::RowFactor { .. } => "step",
+            Self::V => "v",
+            Self::K => "k",
+            Self::Grid | Self::GridEntry { .. } => "grid",
             Self::Kernel | Self::Node { .. } | Self::Weight { .. } => "kernel",
         }
     }
@@ -69,6 +83,12 @@ impl Place {
             Self::RowFactor { .. } => {
                 "a row factor is 2^24 / k, rounded, with a stretch factor k of at least 1"
             }
+            Self::V => "2^v rows lie between two grid rows; give 1 to 6",
+            Self::K => "2^k columns lie between two nodes; give 5 or 6",
+            Self::Grid => "give the entries column by column: the offsets first, then a column for each node",
+            Self::GridEntry { .. } => {
+                "an entry of a grid has 25 bits; make the tables again with `halfrow tables`"
+            }
             Self::Kernel => "give one node for each x = 0, 1/32, ..., 2",
             Self::Node { .. } => "give the five weights g0, r1, g4, r5, g6",
             Self::Weight { .. } => {
@@ -82,6 +102,7 @@ impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::RowFactor { row } => write!(f, "the row factor of row {row}"),
+            Self::GridEntry { entry } => write!(f, "entry {entry} of `grid`"),
             Self::Node { node } => write!(f, "node {node} of `kernel`"),
             Self::Weight { node, tap } => write!(f, "the weight {tap} of node {node}"),
             whole => write!(f, "`{}`", whole.key()),

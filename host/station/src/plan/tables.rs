@@ -8,7 +8,7 @@ use halfrow::FrameSource;
 use halfrow::frames::{self, ReadOptions};
 use halfrow::lenses::LensFile;
 use halfrow::model::{BitDepth, Camera, Equidistant, Frame, Geometry, Phase};
-use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, RowsBy};
+use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
 use halfrow::tables::TableFile;
 use toml::Spanned;
 
@@ -97,7 +97,7 @@ impl TablesText {
     fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
         let file = TableFile::read(path)?;
         let geometry = *file.tables.geometry();
-        optics::choose(Some((path, file)), equidistant(geometry, None, RowsBy::Equation9)?, kernel)
+        optics::choose(Some((path, file)), equidistant(geometry, None, TablesBy::Equation9)?, kernel)
     }
 
     fn of_lens(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
@@ -109,26 +109,26 @@ impl TablesText {
         let (lens, centre) = file.for_frame(width, height).map_err(shape)?;
         let camera = Camera::new(geometry, lens, centre, PAPER_FIELD)?;
         let name = format!("{} {}", file.model, path.display());
-        optics::choose(None, Optics::calibrated(camera, name, self.rows_by(RowsBy::Fitting))?, kernel)
+        optics::choose(None, Optics::calibrated(camera, name, self.rows_by(TablesBy::Fitting))?, kernel)
     }
 
     fn of_radius(&self, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
         let (width, height) = self.size(PAPER_SIZE);
         let geometry = Geometry::centred(width, height, self.depth().unwrap_or_default())?;
         let radius = self.radius.as_ref().map(|radius| *radius.get_ref());
-        optics::choose(None, equidistant(geometry, radius, self.rows_by(RowsBy::Equation9))?, kernel)
+        optics::choose(None, equidistant(geometry, radius, self.rows_by(TablesBy::Equation9))?, kernel)
     }
 
-    fn rows_by(&self, otherwise: RowsBy) -> RowsBy {
+    fn rows_by(&self, otherwise: TablesBy) -> TablesBy {
         match self.rows {
-            Some(RowsText::Fitted) => RowsBy::Fitting,
-            Some(RowsText::Equation9) => RowsBy::Equation9,
+            Some(RowsText::Fitted) => TablesBy::Fitting,
+            Some(RowsText::Equation9) => TablesBy::Equation9,
             None => otherwise,
         }
     }
 }
 
-fn equidistant(geometry: Geometry, radius: Option<f64>, rows: RowsBy) -> Result<Optics, OpticsError> {
+fn equidistant(geometry: Geometry, radius: Option<f64>, rows: TablesBy) -> Result<Optics, OpticsError> {
     let lens = radius.map_or_else(|| Ok(Equidistant::default()), Equidistant::from_radius)?;
     let middle = ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0);
     let camera = Camera::new(geometry, lens.into(), middle, PAPER_FIELD)?;

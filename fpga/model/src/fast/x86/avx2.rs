@@ -9,12 +9,11 @@ use super::entry::{load_8_samples, load_8_words, load_16_bytes, store_16_samples
 use crate::WEIGHT_ONE;
 use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, INTERVALS, Nodes, R1, R5};
-use crate::fast::walk::{LEADS, Piece, Start, Walk, blocks};
+use crate::fast::walk::{LEADS, Start, Walk, blocks, is_within_segment};
 use crate::fast::{BLOCK, Rows};
 
-/// Columns of a vector, and of a half of it.
+/// Columns of a vector.
 const VECTOR: usize = 16;
-const HALF: usize = 8;
 
 /// One byte of a table's 64 words.
 type Plane = [[u8; 16]; INTERVALS / 16];
@@ -52,12 +51,21 @@ fn bytes(words: &[i16; INTERVALS]) -> [Plane; 2] {
 /// Where the outputs of 16 columns come from, in 16-bit lanes.
 #[derive(Clone, Copy)]
 struct Places {
-    /// The padded row's sample of tap G0 for base 0, for each half.
-    first: [isize; 2],
+    /// The least a of each half from the block's least one on, below 32.
+    least: [usize; 2],
     /// a − the half's least a, 0 to 7.
     base: __m256i,
     /// x, the lower 14 bits.
     x: __m256i,
+}
+
+/// What the lanes of a row of one factor have in common.
+#[derive(Clone, Copy)]
+struct Lanes {
+    /// 2Q times the even columns of each vector, in 32-bit lanes.
+    even: [__m256i; 2],
+    /// 2Q in 32-bit lanes.
+    stride: __m256i,
 }
 
 /// Corrects the rows with the kernel's own combination of taps and wildness.
@@ -80,17 +88,16 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
     let lanes = lanes(walk);
     let max = _mm256_set1_epi16(max as i16);
     for column in blocks(width, BLOCK) {
-        let places = [locate(walk, lanes, column), locate(walk, lanes, column + VECTOR)];
+        let start = walk.start(column);
+        let places = locate(relatives(walk, &lanes, column, &start), start.lead);
         let weights = weights::<WEIGHTS, WILD>(planes, [places[0].x, places[1].x]);
-        // None of the offsets exceeds 25; that the compiler sees that they are below 32 saves checking.
-        let offset = |part: usize, half: usize| {
-            (places[part].first[half] - places[0].first[0]).cast_unsigned() % BLOCK
-        };
         for (row, output) in inputs.iter().zip(&mut outputs) {
-            let window = row.window(places[0].first[0]);
+            let window = row.window(start.first);
             let output = &mut output[column..column + BLOCK];
             for part in 0..2 {
-                let halves = [&window[offset(part, 0)..], &window[offset(part, 1)..]];
+                let [low, high] = places[part].least;
+                // Both below 32 as they are; that the compiler sees it saves checking.
+                let halves = [&window[low % BLOCK..], &window[high % BLOCK..]];
                 let samples = blend::<WEIGHTS, WILD>(&weights[part], halves, places[part].base, max);
                 store_16_samples(output, VECTOR * part, samples);
             }
@@ -101,11 +108,11 @@ fn correct_as<W: Walk, const ROWS: usize, const WEIGHTS: usize, const WILD: bool
 /// The sources of one block, for those who check them.
 #[target_feature(enable = "avx2")]
 pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
-    let first = walk.start(column).first;
-    let mut located = Located { first, base: [0; BLOCK], x: [0; BLOCK] };
-    for from in [0, VECTOR] {
-        let places = locate(walk, lanes(walk), column + from);
-        let [low, high] = places.first.map(|half| _mm_set1_epi16((half - first) as i16));
+    let start = walk.start(column);
+    let mut located = Located { first: start.first, base: [0; BLOCK], x: [0; BLOCK] };
+    let places = locate(relatives(walk, &lanes(walk), column, &start), start.lead);
+    for (from, places) in [0, VECTOR].into_iter().zip(places) {
+        let [low, high] = places.least.map(|least| _mm_set1_epi16(least as i16));
         let base = _mm256_add_epi16(places.base, _mm256_set_m128i(high, low));
         store_16_samples(&mut located.base, from, base);
         store_16_samples(&mut located.x, from, places.x);
@@ -113,66 +120,78 @@ pub(super) fn locate_block(walk: impl Walk, column: usize) -> Located {
     located
 }
 
-/// 2Q times the even columns of each half, 0 to 6, in 32-bit lanes; and 2Q.
 #[target_feature(enable = "avx2")]
-fn lanes(walk: impl Walk) -> [__m256i; 2] {
+fn lanes(walk: impl Walk) -> Lanes {
     let stride = _mm256_set1_epi32(walk.stride() as i32);
-    [_mm256_mullo_epi32(stride, _mm256_setr_epi32(0, 2, 4, 6, 0, 2, 4, 6)), stride]
+    let first = _mm256_mullo_epi32(stride, _mm256_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14));
+    Lanes { even: [first, _mm256_add_epi32(first, _mm256_slli_epi32::<4>(stride))], stride }
 }
 
-/// One value in each half's 32-bit lanes.
+/// The coordinates of each vector's even and odd columns relative to the block: below 2^26 + 31 · 2^25, so 31 bits hold them.
 #[target_feature(enable = "avx2")]
 #[inline]
-fn halves(low: u32, high: u32) -> __m256i {
-    _mm256_set_m128i(_mm_set1_epi32(high as i32), _mm_set1_epi32(low as i32))
-}
-
-/// The coordinates of the even and of the odd columns, relative to each half: 31 bits hold them.
-#[target_feature(enable = "avx2")]
-#[inline]
-fn relatives<W: Walk>(walk: W, lanes: [__m256i; 2], column: usize, starts: &[Start; 2]) -> [__m256i; 2] {
+fn relatives<W: Walk>(walk: W, lanes: &Lanes, column: usize, start: &Start) -> [[__m256i; 2]; 2] {
     if !W::CURVED {
-        let even = _mm256_add_epi32(halves(starts[0].relative, starts[1].relative), lanes[0]);
-        return [even, _mm256_add_epi32(even, lanes[1])];
+        let first = _mm256_set1_epi32(start.relative as i32);
+        let [low, high] = [_mm256_add_epi32(first, lanes.even[0]), _mm256_add_epi32(first, lanes.even[1])];
+        return [[low, _mm256_add_epi32(low, lanes.stride)], [high, _mm256_add_epi32(high, lanes.stride)]];
     }
-    let piece = |half: usize| walk.piece(column + HALF * half, HALF, &starts[half]);
-    let (Some(low), Some(high)) = (piece(0), piece(1)) else {
-        let of = |first: usize| {
-            std::array::from_fn(|lane| walk.relative(first + 2 * lane, &starts[lane / (HALF / 2)]))
-        };
-        return [column, column + 1].map(|first| load_8_words(&of(first)));
-    };
-    let even = _mm256_setr_epi32(-4, -2, 0, 2, -4, -2, 0, 2);
-    let odd = _mm256_setr_epi32(-3, -1, 1, 3, -3, -1, 1, 3);
-    [even, odd].map(|columns| along([low, high], columns))
+    if !is_within_segment(column) {
+        return scattered(walk, column, start);
+    }
+    let even = _mm256_setr_epi32(-16, -14, -12, -10, -8, -6, -4, -2);
+    let odd = _mm256_setr_epi32(-15, -13, -11, -9, -7, -5, -3, -1);
+    let later = |columns| _mm256_add_epi32(columns, _mm256_set1_epi32(VECTOR as i32));
+    [[along(start, even), along(start, odd)], [along(start, later(even)), along(start, later(odd))]]
 }
 
-/// The pieces' coordinates at these columns from their middles, each half's of its own piece.
+/// The coordinates of columns that lie across two segments.
+#[target_feature(enable = "avx2")]
+#[cold]
+#[inline(never)]
+fn scattered(walk: impl Walk, column: usize, start: &Start) -> [[__m256i; 2]; 2] {
+    let of = |first: usize| std::array::from_fn(|lane| walk.relative(column + first + 2 * lane, start));
+    let words = |first: usize| load_8_words(&of(first));
+    [[words(0), words(1)], [words(VECTOR), words(VECTOR + 1)]]
+}
+
+/// The coordinates at these columns from the block's middle.
 #[target_feature(enable = "avx2")]
 #[inline]
-fn along([low, high]: [Piece; 2], columns: __m256i) -> __m256i {
-    let both = |of: fn(Piece) -> u32| halves(of(low), of(high));
+fn along(start: &Start, columns: __m256i) -> __m256i {
+    let piece = &start.piece;
     let squares = _mm256_mullo_epi32(columns, columns);
-    let bent = _mm256_mullo_epi32(squares, both(|piece| piece.curve.cast_unsigned()));
-    let bent = _mm256_srai_epi32::<3>(_mm256_add_epi32(bent, both(|piece| piece.rest)));
-    let straight = _mm256_mullo_epi32(columns, both(|piece| piece.slope));
-    _mm256_add_epi32(_mm256_add_epi32(straight, both(|piece| piece.middle)), bent)
+    let bent = _mm256_mullo_epi32(squares, _mm256_set1_epi32(piece.curve));
+    let bent = _mm256_srai_epi32::<3>(_mm256_add_epi32(bent, _mm256_set1_epi32(piece.rest as i32)));
+    let straight = _mm256_mullo_epi32(columns, _mm256_set1_epi32(piece.slope as i32));
+    let middle = _mm256_set1_epi32((start.relative + piece.middle) as i32);
+    _mm256_add_epi32(_mm256_add_epi32(straight, middle), bent)
 }
 
-/// n, then a and x, from the coordinates relative to each half.
+/// n, then a and x, of each vector from its coordinates.
 #[target_feature(enable = "avx2")]
 #[inline]
-fn locate<W: Walk>(walk: W, lanes: [__m256i; 2], column: usize) -> Places {
-    let starts: [Start; 2] = [walk.start(column), walk.start(column + HALF)];
-    let [even, odd] = relatives(walk, lanes, column, &starts);
+fn locate([low, high]: [[__m256i; 2]; 2], lead: bool) -> [Places; 2] {
+    [place(low, lead), place(high, lead)]
+}
+
+#[target_feature(enable = "avx2")]
+#[inline]
+fn place([even, odd]: [__m256i; 2], lead: bool) -> Places {
     let n = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<25>(even), _mm256_srli_epi32::<9>(odd));
     let q = _mm256_blend_epi16::<0xAA>(_mm256_srli_epi32::<12>(even), _mm256_slli_epi32::<4>(odd));
     // n counts from an even column, so bit 13 of q tells its parity, and that of x whether it is the output's.
     let x = _mm256_xor_si256(q, _mm256_set1_epi32(1 << 29));
     let rounded = _mm256_and_si256(_mm256_add_epi16(n, _mm256_set1_epi32(1 << 16)), _mm256_set1_epi16(!1));
-    let lead = |start: Start| load_8_samples(&LEADS[usize::from(start.lead)], 0);
-    let base = _mm256_add_epi16(rounded, _mm256_set_m128i(lead(starts[1]), lead(starts[0])));
-    Places { first: [starts[0].first, starts[1].first], base, x }
+    let leads = _mm256_broadcastsi128_si256(load_8_samples(&LEADS[usize::from(lead)], 0));
+    let from_block = _mm256_add_epi16(rounded, leads);
+    // The lesser of a half's first two is its least.
+    let first = _mm256_shuffle_epi8(from_block, _mm256_set1_epi16(0x0100));
+    let second = _mm256_shuffle_epi8(from_block, _mm256_set1_epi16(0x0302));
+    let least = _mm256_min_epu16(first, second);
+    let halves = [_mm256_extract_epi16::<0>(least), _mm256_extract_epi16::<8>(least)];
+    let base = _mm256_sub_epi16(from_block, least);
+    Places { least: [halves[0] as usize, halves[1] as usize], base, x }
 }
 
 /// The weights of 32 columns: w = low + ((rise · t + 2^7) >> 8), which is what a rounding multiplication by t · 2^7 gives.

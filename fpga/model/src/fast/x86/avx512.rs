@@ -6,7 +6,7 @@ use super::entry::{load_16_words, load_32_samples, load_32_weights, store_32_sam
 use crate::WEIGHT_ONE;
 use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, Nodes, R1, R5, Tap};
-use crate::fast::walk::{LEADS, Piece, Start, Walk, blocks};
+use crate::fast::walk::{LEADS, Start, Walk, blocks, is_within_segment};
 use crate::fast::{BLOCK, Rows};
 
 /// Lanes of the odd columns.
@@ -105,24 +105,36 @@ fn relatives<W: Walk>(walk: W, lanes: &Lanes, column: usize, start: &Start) -> [
         let even = _mm512_add_epi32(_mm512_set1_epi32(start.relative as i32), lanes.even);
         return [even, _mm512_add_epi32(even, lanes.stride)];
     }
-    let Some(piece) = walk.piece(column, BLOCK, start) else {
-        let of = |first: usize| std::array::from_fn(|lane| walk.relative(first + 2 * lane, start));
-        return [column, column + 1].map(|first| load_16_words(&of(first)));
-    };
+    if !is_within_segment(column) {
+        return scattered(walk, column, start);
+    }
     let even = _mm512_setr_epi32(-16, -14, -12, -10, -8, -6, -4, -2, 0, 2, 4, 6, 8, 10, 12, 14);
     let odd = _mm512_setr_epi32(-15, -13, -11, -9, -7, -5, -3, -1, 1, 3, 5, 7, 9, 11, 13, 15);
-    [along(piece, even), along(piece, odd)]
+    [along(start, even), along(start, odd)]
 }
 
-/// The piece's coordinates at these columns from its middle.
+/// The coordinates of columns that lie across two segments.
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+#[cold]
+#[inline(never)]
+fn scattered(walk: impl Walk, column: usize, start: &Start) -> [__m512i; 2] {
+    let of = |first: usize| std::array::from_fn(|lane| walk.relative(first + 2 * lane, start));
+    [load_16_words(&of(column)), load_16_words(&of(column + 1))]
+}
+
+/// The coordinates at these columns from the block's middle.
 #[target_feature(enable = "avx512f,avx512bw,avx512vl")]
 #[inline]
-fn along(piece: Piece, columns: __m512i) -> __m512i {
+fn along(start: &Start, columns: __m512i) -> __m512i {
+    let piece = &start.piece;
     let squares = _mm512_mullo_epi32(columns, columns);
     let bent = _mm512_mullo_epi32(squares, _mm512_set1_epi32(piece.curve));
     let bent = _mm512_srai_epi32::<3>(_mm512_add_epi32(bent, _mm512_set1_epi32(piece.rest as i32)));
     let straight = _mm512_mullo_epi32(columns, _mm512_set1_epi32(piece.slope as i32));
-    _mm512_add_epi32(_mm512_add_epi32(straight, _mm512_set1_epi32(piece.middle as i32)), bent)
+    _mm512_add_epi32(
+        _mm512_add_epi32(straight, _mm512_set1_epi32((start.relative + piece.middle) as i32)),
+        bent,
+    )
 }
 
 /// n, then a and x, from the coordinates relative to the block.

@@ -95,6 +95,7 @@ codes! {
         Bits [found] => "table-depth-unknown",
         = Datapath,
         = Geometry,
+        = Shape,
         = Tables,
         = Kernel,
     }
@@ -104,6 +105,7 @@ codes! {
         Word [line, found, digits] => "mem-word-wrong",
         = Datapath,
         = Geometry,
+        = Shape,
         = Tables,
         = Kernel,
     }
@@ -111,6 +113,7 @@ codes! {
         Kernel [name] => "kernel-not-found",
         Shape [path] => "lens-file-of-other-shape",
         OutsideCircle [outside, rows, radius, centre] => "image-circle-misses-frame",
+        = Room,
         = Damaged,
         = File,
         = LensFile,

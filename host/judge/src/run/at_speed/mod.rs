@@ -181,7 +181,10 @@ impl Run<'_> {
         let active =
             Generation { number, tables: self.plan.tables.clone(), kernel: self.plan.kernel.clone() };
         let decoy = self.generations.iter().find(|generation| generation.number == DECOY).cloned();
-        let Some(decoy) = decoy.filter(|_| self.board.capabilities.table_banks > 1) else {
+        let can_have = |decoy: &Generation| {
+            self.board.capabilities.table_banks > 1 && self.board.knows_shape_of(&decoy.tables)
+        };
+        let Some(decoy) = decoy.filter(can_have) else {
             return Ok(vec![active]);
         };
         let uploaded = self.board.upload(&decoy.tables, &decoy.kernel);

@@ -41,7 +41,7 @@ impl Rules<'_, '_> {
         row_factors: &[u8],
         nodes: &[u8],
     ) -> Result<(), End> {
-        for TablePort { table, port } in self.run.board.table_ports() {
+        for TablePort { table, port } in self.run.board.table_ports(Table::RowFactors) {
             let bytes = if table == Table::Kernel { nodes } else { row_factors };
             let count = (bytes.len() / table.entry_bytes()) as u16;
             let request = Request::TableCrc(Span { table, bank, port, first: 0, count });
@@ -56,7 +56,7 @@ impl Rules<'_, '_> {
 
     /// Spans past the end, of ports that are not there, into the active bank, of more than a packet holds.
     fn spans(&mut self) -> Result<(), End> {
-        for port in self.run.board.table_ports().into_iter().filter(|port| port.port == 0) {
+        for port in self.run.board.table_ports(Table::RowFactors).into_iter().filter(|port| port.port == 0) {
             let table = port.table;
             let entries = self.entries_of(table);
             let shadow = Span { table, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
