@@ -1,7 +1,7 @@
 //! A grid from a lens by formula: a spline that takes the exact projection's values at a lattice of points.
 
 use super::projection::ProjectedRow;
-use super::rows::RowSpline;
+use super::rows::{RowSpline, fractions};
 use super::{ENTRY_BITS, Grid, rounded};
 use crate::{Camera, Geometry, GridShape, RowFactor, RowValues, TableSet};
 
@@ -13,6 +13,7 @@ const CORRECTIONS: usize = 3;
 
 /// The coefficients of sources as a quadratic B-spline in both directions, column by column: (s, b) belongs to column
 /// h·(s − 1/2) and row 2^v·(b − 1/2).
+#[derive(Clone)]
 pub(super) struct Spline {
     pub(super) shape: GridShape,
     pub(super) rows: usize,
@@ -38,11 +39,36 @@ impl Spline {
 
     /// The table of this spline for `camera`, its offsets such that the node next to the centre is hit.
     pub(super) fn table(&self, camera: &Camera) -> TableSet {
+        let node = self.next_to_centre(camera.geometry());
+        let column = (node * self.shape.column_pitch()) as f64;
+        self.table_through(camera, node, |row| ProjectedRow::new(camera, row as f64).source(column))
+    }
+
+    /// The table of this spline for `camera`, its offsets such that the node next to the centre is where the spline has it.
+    pub(super) fn fitted_table(&self, camera: &Camera) -> TableSet {
+        let node = self.next_to_centre(camera.geometry());
+        let [left, right] = [node, node + 1].map(|column| &self.coefficients[column * self.rows..]);
+        self.table_through(camera, node, |row| {
+            let (first, weights) = fractions(self.shape, row);
+            (0..3).map(|b| weights[b] * f64::midpoint(left[first + b], right[first + b])).sum()
+        })
+    }
+
+    /// The table whose offsets bring `node` to the sources `wanted` of all rows.
+    fn table_through(&self, camera: &Camera, node: usize, wanted: impl Fn(usize) -> f64) -> TableSet {
         let geometry = camera.geometry();
         let mut grid = Grid { shape: self.shape, entries: self.entries(geometry), rows: self.rows };
-        correct_offsets(camera, &mut grid);
+        let wanted: Vec<f64> = (0..geometry.height()).map(wanted).collect();
+        correct_offsets(geometry, &mut grid, node, &wanted);
         raise_offsets(geometry, &mut grid);
         TableSet::of_grid(*geometry, grid)
+    }
+
+    /// The node next to the centre that is a column of the frame.
+    fn next_to_centre(&self, geometry: &Geometry) -> usize {
+        let pitch = self.shape.column_pitch();
+        let node = (geometry.centre2() as usize + pitch) / (2 * pitch);
+        node.min(self.shape.segments(geometry) - 1)
     }
 
     fn entries(&self, geometry: &Geometry) -> Vec<u32> {
@@ -72,17 +98,10 @@ fn smoothed(values: &[f64]) -> Vec<f64> {
     values.windows(3).map(|three| (10.0 * three[1] - three[0] - three[2]) / 8.0).collect()
 }
 
-/// Takes from the offsets, by least squares over all rows, what the row's values miss the node next to the centre by.
-fn correct_offsets(camera: &Camera, grid: &mut Grid) {
-    let geometry = camera.geometry();
-    let (shape, pitch) = (grid.shape, grid.shape.column_pitch());
-    let node = (geometry.centre2() as usize + pitch) / (2 * pitch);
-    let last = shape.segments(geometry);
-    let column = node.min(last - 1) * pitch;
-    let wanted: Vec<f64> = (0..geometry.height())
-        .map(|row| ProjectedRow::new(camera, row as f64).source(column as f64))
-        .collect();
-    let spline = RowSpline::new(shape, geometry);
+/// Takes from the offsets, by least squares over all rows, what the rows' values miss the sources `wanted` of `node` by.
+fn correct_offsets(geometry: &Geometry, grid: &mut Grid, node: usize, wanted: &[f64]) {
+    let column = node * grid.shape.column_pitch();
+    let spline = RowSpline::new(grid.shape, geometry);
     let mut values = RowValues::default();
     for _ in 0..CORRECTIONS {
         let misses = wanted.iter().enumerate().map(|(row, wanted)| {

@@ -1,11 +1,17 @@
 //! The grid: factors that depend on the column, too (DATAPATH.md, "Datapath 2: a grid of factors").
 
+mod choice;
 mod closed_form;
+mod fit;
+mod lattice;
+mod normal;
 mod projection;
 mod rows;
 mod shape;
 mod values;
 
+pub use choice::GridRoomError;
+pub use lattice::{GridResidual, GridResiduals};
 pub use shape::{GridShape, GridShapeError};
 pub use values::RowValues;
 pub(crate) use values::{Parabola, rounded};

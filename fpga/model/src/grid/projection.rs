@@ -11,6 +11,9 @@ pub(crate) const POLE: f64 = 0.998;
 /// Beyond 90 degrees the projection goes on as a parabola, through three points so far apart, in parts of the circle's width.
 const STEP: f64 = 1.0 / 64.0;
 
+/// The most columns a column that it goes on with, in the mean: far out, and next to a pole, the parabola is much steeper.
+const STEEPEST: f64 = 1.5;
+
 /// One row of the exact projection, in columns and rows from the optical centre.
 pub(crate) struct ProjectedRow<'a> {
     camera: &'a Camera,
@@ -80,8 +83,11 @@ impl<'a> ProjectedRow<'a> {
     fn beyond(&self, end: f64, output: f64) -> f64 {
         let step = STEP * end;
         let [near, middle, far] = [end, end - step, end - 2.0 * step].map(|output| self.inside(output));
-        let steps = if step == 0.0 { 0.0 } else { (output - end) / step };
+        if step == 0.0 {
+            return near + output - end;
+        }
         let (slope, bend) = ((3.0 * near - 4.0 * middle + far) / 2.0, (near - 2.0 * middle + far) / 2.0);
-        near + steps * (slope + steps * bend)
+        let rate = (slope + bend * (output - end) / step) / step;
+        near + (output - end) * rate.clamp(0.0, STEEPEST)
     }
 }

@@ -4,7 +4,7 @@ use super::spline;
 use crate::{Geometry, GridShape};
 
 /// What keeps an entry that next to no row depends on from growing, in parts of a row.
-const DAMPING: f64 = 1e-6;
+const DAMPING: f64 = 1e-3;
 
 /// The normal equations of all rows of a frame, factored: L·Lᵀ with two diagonals below the main one.
 pub(super) struct RowSpline {
@@ -57,7 +57,7 @@ impl RowSpline {
 }
 
 /// The weights of a row as fractions.
-fn fractions(shape: GridShape, row: usize) -> (usize, [f64; 3]) {
+pub(super) fn fractions(shape: GridShape, row: usize) -> (usize, [f64; 3]) {
     let (first, weights) = spline(shape, row);
     (first, weights.map(|weight| f64::from(weight) / 8192.0))
 }

@@ -32,6 +32,9 @@ impl GridShape {
     /// All k of a grid.
     pub const K: RangeInclusive<u32> = 5..=6;
 
+    /// The fewest nodes and grid rows.
+    pub(crate) const COARSEST: Self = Self { v: 6, k: 6 };
+
     /// The most nodes and grid rows.
     pub(crate) const FINEST: Self = Self { v: 1, k: 5 };
 

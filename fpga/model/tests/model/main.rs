@@ -15,6 +15,7 @@ mod grid;
 mod grid_fast;
 mod grid_golden;
 mod grid_legal;
+mod grid_lens;
 mod kernel;
 mod lens;
 mod projection;

@@ -1,0 +1,72 @@
+//! The grid for a lens that a board has room for.
+
+use super::fit::fitted;
+use super::lattice::Lattice;
+use crate::{Camera, GridShape, TableSet};
+
+/// Columns between the outputs to which a grid is fitted.
+const COLUMN_STEP: usize = 8;
+
+/// The most rows between them, and about how many of the frame's they are at least.
+const ROW_STEP: usize = 4;
+const ROWS: usize = 128;
+
+/// Shapes that are fitted: those of the least largest error by formula.
+const TRIED: usize = 2;
+
+/// Too few entries for any grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "no grid for frames of {width} x {height} has {entries} entries or fewer; take a board of at least {least}, which \
+     the shape {shape} needs, or smaller frames"
+)]
+pub struct GridRoomError {
+    /// Entries of a bank.
+    pub entries: usize,
+    /// Columns of a frame.
+    pub width: usize,
+    /// Rows of a frame.
+    pub height: usize,
+    /// Entries of the smallest grid.
+    pub least: usize,
+    /// Its shape.
+    pub shape: GridShape,
+}
+
+impl Camera {
+    /// The grid of shape `shape` whose largest error in the inner part of the picture is about as small as it can be; the rest
+    /// of the image circle follows by least squares.
+    ///
+    /// It starts from [`Self::grid_by_formula`] and is never farther off than that. The same lens gives the same grid.
+    #[must_use]
+    pub fn fitted_grid(&self, shape: GridShape) -> TableSet {
+        fitted(self, shape, &self.lattice())
+    }
+
+    /// The grid of at most `entries` entries whose largest error in the inner part of the picture is least, of those that a
+    /// ring of the fewest samples can serve, if there are any.
+    ///
+    /// # Errors
+    /// [`GridRoomError`] when every grid has more entries.
+    pub fn best_grid(&self, entries: usize) -> Result<TableSet, GridRoomError> {
+        let geometry = self.geometry();
+        let fits = |shape: &GridShape| shape.entries(geometry) <= entries;
+        let lattice = self.lattice();
+        let error = |tables: &TableSet| lattice.error(tables);
+        let mut shapes: Vec<_> =
+            GridShape::all().filter(fits).map(|shape| (error(&self.grid_by_formula(shape)), shape)).collect();
+        shapes.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let tried = shapes.into_iter().take(TRIED).map(|(_, shape)| fitted(self, shape, &lattice));
+        tried.min_by(|one, other| error(one).total_cmp(&error(other))).ok_or_else(|| self.no_room(entries))
+    }
+
+    fn no_room(&self, entries: usize) -> GridRoomError {
+        let (width, height) = (self.geometry().width(), self.geometry().height());
+        let shape = GridShape::COARSEST;
+        GridRoomError { entries, width, height, least: shape.entries(self.geometry()), shape }
+    }
+
+    fn lattice(&self) -> Lattice {
+        Lattice::new(self, COLUMN_STEP, (self.geometry().height() / ROWS).clamp(1, ROW_STEP))
+    }
+}

@@ -1,0 +1,159 @@
+//! The grid whose largest error is least: weighted least squares, in which what is far off weighs more every time (Lawson's
+//! algorithm), from the closed form on.
+
+use std::collections::BTreeSet;
+
+use super::closed_form::Spline;
+use super::lattice::{Lattice, Part};
+use super::normal::Normal;
+use super::rows::fractions;
+use crate::{Camera, GridShape, TableSet};
+
+/// Times that errors are weighed anew.
+const ROUNDS: usize = 16;
+
+/// The weight of outputs next to the rim or to a pole, which is not made greater: no grid follows there.
+const RIM: f64 = 0.01;
+
+/// What keeps coefficients that no output depends on at the closed form.
+const DAMPING: f64 = 1e-6;
+
+/// The least weight of an inner output: what is right on still weighs something, or it would be lost for good.
+const LEAST: f64 = 3e-3;
+
+/// The weight of a node whose factor would be cut at 1, and is therefore held there: what is cut moves the rest of the row.
+const HELD: f64 = 30.0;
+
+/// A fit of one shape to the outputs of a lattice.
+struct Fit<'a> {
+    lattice: &'a Lattice,
+    shape: GridShape,
+    spline: Spline,
+    weights: Vec<f64>,
+    /// Nodes that are held at 1, with the rows of the lattice.
+    held: BTreeSet<(usize, usize)>,
+}
+
+impl Fit<'_> {
+    /// The coefficients that the output at `column` of `row` is made of, rising, and their weights.
+    fn terms(&self, column: usize, row: usize) -> [(usize, f64); 9] {
+        let pitch = self.shape.column_pitch();
+        let (segment, u) = (column / pitch, (column % pitch) as f64 / pitch as f64);
+        let (left, right) = ((1.0 - u).powi(2) / 2.0, u.powi(2) / 2.0);
+        let across = [left, 1.0 - left - right, right];
+        let (first, down) = fractions(self.shape, row);
+        std::array::from_fn(|term| {
+            let (c, b) = (term / 3, term % 3);
+            ((segment + c) * self.spline.rows + first + b, across[c] * down[b])
+        })
+    }
+
+    /// Takes from every output how far it is off, in the lattice's order.
+    fn misses(&self) -> Vec<f64> {
+        let found = |(column, row)| -> f64 {
+            let terms = self.terms(column, row);
+            terms.iter().map(|&(place, weight)| weight * self.spline.coefficients[place]).sum()
+        };
+        let places = self.places().map(found);
+        places.zip(&self.lattice.wanted).map(|(found, (wanted, _))| wanted - found).collect()
+    }
+
+    /// Column and row of every output.
+    fn places(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let columns = &self.lattice.columns;
+        self.lattice.rows.iter().flat_map(move |&row| columns.iter().map(move |&column| (column, row)))
+    }
+
+    /// Brings the spline as near to the outputs as their weights say.
+    fn solve(&mut self) {
+        let misses = self.misses();
+        let mut normal = Normal::new(self.spline.coefficients.len(), 2 * self.spline.rows + 2, DAMPING);
+        for ((place, miss), &weight) in self.places().zip(&misses).zip(&self.weights) {
+            if weight > 0.0 {
+                normal.add(&self.terms(place.0, place.1), *miss, weight);
+            }
+        }
+        self.hold(&mut normal);
+        for (coefficient, correction) in self.spline.coefficients.iter_mut().zip(normal.solved()) {
+            *coefficient += correction;
+        }
+    }
+
+    /// Adds to `normal` that nodes whose factor is above 1, or has been, shall have 1.
+    fn hold(&mut self, normal: &mut Normal) {
+        let pitch = self.shape.column_pitch() as f64;
+        let nodes = 0..self.spline.coefficients.len() / self.spline.rows - 1;
+        for &row in &self.lattice.rows {
+            for node in nodes.clone() {
+                let terms = self.step_terms(node, row);
+                let step: f64 =
+                    terms.iter().map(|&(place, weight)| weight * self.spline.coefficients[place]).sum();
+                if step > pitch {
+                    self.held.insert((node, row));
+                }
+                if self.held.contains(&(node, row)) {
+                    normal.add(&terms, pitch - step, HELD);
+                }
+            }
+        }
+    }
+
+    /// The coefficients that h times the factor of `node` on `row` is made of, rising, and their weights.
+    fn step_terms(&self, node: usize, row: usize) -> [(usize, f64); 6] {
+        let (first, down) = fractions(self.shape, row);
+        std::array::from_fn(|term| {
+            let (c, b) = (term / 3, term % 3);
+            ((node + c) * self.spline.rows + first + b, if c == 0 { -down[b] } else { down[b] })
+        })
+    }
+
+    /// Has outputs of the inner part weigh as much more as they are farther off.
+    fn weigh(&mut self) {
+        let misses = self.misses();
+        let inner = || misses.iter().zip(&self.lattice.wanted).filter(|(_, (_, part))| *part == Part::Inner);
+        let largest = inner().map(|(miss, _)| miss.abs()).fold(0.0, f64::max);
+        let parts = self.lattice.wanted.iter().map(|(_, part)| *part);
+        for ((weight, miss), part) in self.weights.iter_mut().zip(&misses).zip(parts) {
+            if part == Part::Inner && largest > 0.0 {
+                *weight *= miss.abs() / largest;
+            }
+        }
+        self.scale();
+    }
+
+    /// Has the inner outputs weigh one each on the average.
+    fn scale(&mut self) {
+        let parts = || self.lattice.wanted.iter().map(|(_, part)| *part == Part::Inner);
+        let inner = self.weights.iter().zip(parts()).filter(|(_, inner)| *inner);
+        let (count, sum) = inner.fold((0.0, 0.0), |(count, sum), (weight, _)| (count + 1.0, sum + weight));
+        let scale = if sum > 0.0 { count / sum } else { 1.0 };
+        for (weight, _) in self.weights.iter_mut().zip(parts()).filter(|(_, inner)| *inner) {
+            *weight = (*weight * scale).max(LEAST);
+        }
+    }
+}
+
+/// The table of shape `shape` that takes the outputs of `lattice` from places nearest to the right ones: of the closed form
+/// and all rounds' fits, as integers, the one whose largest error in the inner part is least.
+pub(super) fn fitted(camera: &Camera, shape: GridShape, lattice: &Lattice) -> TableSet {
+    let closed = Spline::of_camera(camera, shape);
+    let table = closed.table(camera);
+    let weight = |&(_, part): &(f64, Part)| match part {
+        Part::Outside => 0.0,
+        Part::Rim => RIM,
+        Part::Inner => 1.0,
+    };
+    let weights = lattice.wanted.iter().map(weight).collect();
+    let mut fit = Fit { lattice, shape, spline: closed, weights, held: BTreeSet::new() };
+    let mut best = (lattice.error(&table), table);
+    for _ in 0..ROUNDS {
+        fit.solve();
+        let table = fit.spline.fitted_table(camera);
+        let found = lattice.error(&table);
+        if found < best.0 {
+            best = (found, table);
+        }
+        fit.weigh();
+    }
+    best.1
+}

@@ -1,0 +1,145 @@
+//! The exact projection at a lattice of outputs, and how far tables are from it.
+
+use super::projection::{POLE, ProjectedRow};
+use crate::{Camera, RowValues, TableSet};
+
+/// cos θ up to which an output counts as inner: 85 degrees off the axis.
+const INNER: f64 = 0.087_155_742_747_658_17;
+
+/// The part of the circle's height in which rows count as inner.
+const INNER_ROWS: f64 = 0.9;
+
+/// An amount in columns that can be seen.
+const VISIBLE: f64 = 0.05;
+
+/// Columns by which outputs are taken from wrong places, of one part of the frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GridResidual {
+    /// The mean amount; 0 of no output.
+    pub mean: f64,
+    /// The largest.
+    pub max: f64,
+    /// The share of outputs for which it is above 0.05, 0 to 1.
+    pub share: f64,
+}
+
+/// What tables leave of the exact projection.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct GridResiduals {
+    /// In the whole image circle: up to 90 degrees off the axis, but for the 500th part of its height next to the poles.
+    pub circle: GridResidual,
+    /// In its inner part: up to 85 degrees off the axis, and 0.9 of the circle's height.
+    pub inner: GridResidual,
+}
+
+/// Where in the picture an output is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    /// It shows nothing within 90 degrees, or a pole.
+    Outside,
+    /// Next to the rim or to a pole.
+    Rim,
+    Inner,
+}
+
+/// Outputs at the crossings of some columns and some rows.
+pub(super) struct Lattice {
+    pub(super) columns: Vec<usize>,
+    pub(super) rows: Vec<usize>,
+    /// f and the part of each, row by row.
+    pub(super) wanted: Vec<(f64, Part)>,
+}
+
+impl Lattice {
+    /// Every so many columns and rows of `camera`'s frame, the last ones among them.
+    pub(super) fn new(camera: &Camera, column_step: usize, row_step: usize) -> Self {
+        let (columns, rows) =
+            (steps(camera.geometry().width(), column_step), steps(camera.geometry().height(), row_step));
+        let wanted = rows.iter().flat_map(|&row| {
+            let projected = ProjectedRow::new(camera, row as f64);
+            let of = |&column: &usize| {
+                let source = projected.source(column as f64);
+                (source, part(camera, source, row))
+            };
+            columns.iter().map(of).collect::<Vec<_>>()
+        });
+        Self { wanted: wanted.collect(), columns, rows }
+    }
+
+    /// The largest error of the inner part; infinite where no ring can serve `tables`.
+    pub(super) fn error(&self, tables: &TableSet) -> f64 {
+        let shortest = tables.geometry().width().next_power_of_two();
+        if tables.check_ring(shortest).is_ok() { self.residuals(tables).inner.max } else { f64::INFINITY }
+    }
+
+    /// What `tables` leave.
+    pub(super) fn residuals(&self, tables: &TableSet) -> GridResiduals {
+        let (mut circle, mut inner) = (Sum::default(), Sum::default());
+        for (&row, wanted) in self.rows.iter().zip(self.wanted.chunks_exact(self.columns.len())) {
+            let values = tables.values(row).unwrap_or_default();
+            for (&column, &(wanted, part)) in self.columns.iter().zip(wanted) {
+                let amount = (found(&values, column) - wanted).abs();
+                if part == Part::Inner {
+                    inner.add(amount);
+                }
+                if part != Part::Outside {
+                    circle.add(amount);
+                }
+            }
+        }
+        GridResiduals { circle: circle.residual(), inner: inner.residual() }
+    }
+}
+
+/// The source of `column` in columns.
+fn found(values: &RowValues, column: usize) -> f64 {
+    values.coordinate(column) as f64 / f64::from(1 << 28)
+}
+
+/// 0 to `count` − 1 in steps, and the last.
+fn steps(count: usize, step: usize) -> Vec<usize> {
+    let last = Some(count - 1).filter(|last| !last.is_multiple_of(step.max(1)));
+    (0..count).step_by(step.max(1)).chain(last).collect()
+}
+
+/// The part in which the output that comes from column `source` of row `row` is.
+fn part(camera: &Camera, source: f64, row: usize) -> Part {
+    let (x, y) = (source - camera.centre().0, row as f64 - camera.centre().1);
+    let height = y.abs() / camera.lens().lowest_row(std::f64::consts::FRAC_PI_2);
+    match camera.lens().ray(x, y) {
+        Some([.., ahead]) if ahead >= INNER && height <= INNER_ROWS => Part::Inner,
+        Some([.., ahead]) if ahead >= 0.0 && height < POLE => Part::Rim,
+        _ => Part::Outside,
+    }
+}
+
+#[derive(Default)]
+struct Sum {
+    count: usize,
+    sum: f64,
+    max: f64,
+    visible: usize,
+}
+
+impl Sum {
+    fn add(&mut self, amount: f64) {
+        self.count += 1;
+        self.sum += amount;
+        self.max = self.max.max(amount);
+        self.visible += usize::from(amount > VISIBLE);
+    }
+
+    fn residual(&self) -> GridResidual {
+        let count = self.count.max(1) as f64;
+        GridResidual { mean: self.sum / count, max: self.max, share: self.visible as f64 / count }
+    }
+}
+
+impl Camera {
+    /// What `tables` leave of the exact projection at every `step`th column and row of the frame: columns by which outputs are
+    /// taken from a wrong place of their row.
+    #[must_use]
+    pub fn grid_residuals(&self, tables: &TableSet, step: usize) -> GridResiduals {
+        Lattice::new(self, step, step).residuals(tables)
+    }
+}

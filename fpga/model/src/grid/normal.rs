@@ -1,0 +1,66 @@
+//! Normal equations of the tensor spline: symmetric, with few diagonals.
+
+/// The lower half of a symmetric matrix: entry (i, i − d) at i · (`band` + 1) + d.
+pub(super) struct Normal {
+    band: usize,
+    entries: Vec<f64>,
+    right: Vec<f64>,
+}
+
+impl Normal {
+    /// Of `count` unknowns, of which those that meet are at most `band` apart; `damping` keeps each near 0.
+    pub(super) fn new(count: usize, band: usize, damping: f64) -> Self {
+        let mut entries = vec![0.0; count * (band + 1)];
+        entries.iter_mut().step_by(band + 1).for_each(|diagonal| *diagonal = damping);
+        Self { band, entries, right: vec![0.0; count] }
+    }
+
+    /// Adds the equation that these unknowns, in rising order, with these factors make `value`, so many times.
+    pub(super) fn add(&mut self, terms: &[(usize, f64)], value: f64, weight: f64) {
+        for (place, &(row, factor)) in terms.iter().enumerate() {
+            let weighted = weight * factor;
+            self.right[row] += weighted * value;
+            for &(column, other) in &terms[..=place] {
+                self.entries[row * (self.band + 1) + row - column] += weighted * other;
+            }
+        }
+    }
+
+    /// The unknowns, by Cholesky's factor L of the matrix.
+    pub(super) fn solved(mut self) -> Vec<f64> {
+        for row in 0..self.right.len() {
+            self.factor_row(row);
+        }
+        let (stride, count) = (self.band + 1, self.right.len());
+        let (l, mut x) = (self.entries, self.right);
+        for row in 0..count {
+            let reach = row.min(self.band);
+            let known: f64 = (1..=reach).map(|back| l[row * stride + back] * x[row - back]).sum();
+            x[row] = (x[row] - known) / l[row * stride];
+        }
+        for row in (0..count).rev() {
+            x[row] /= l[row * stride];
+            for back in 1..=row.min(self.band) {
+                x[row - back] -= l[row * stride + back] * x[row];
+            }
+        }
+        x
+    }
+
+    /// A row of L from those above it.
+    fn factor_row(&mut self, row: usize) {
+        let stride = self.band + 1;
+        for back in (0..=row.min(self.band)).rev() {
+            let column = row - back;
+            // Of both rows, what lies left of the column and within the band of this one.
+            let reach = (self.band - back).min(column);
+            let own = &self.entries[row * stride + back + 1..][..reach];
+            let above = &self.entries[column * stride + 1..][..reach];
+            let known: f64 = own.iter().zip(above).map(|(own, above)| own * above).sum();
+            let rest = self.entries[row * stride + back] - known;
+            let diagonal = self.entries[column * stride];
+            self.entries[row * stride + back] =
+                if back == 0 { rest.max(f64::MIN_POSITIVE).sqrt() } else { rest / diagonal };
+        }
+    }
+}

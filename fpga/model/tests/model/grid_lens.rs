@@ -1,0 +1,157 @@
+//! Grids from lenses: the projection against its inverse, what grids leave of it, and which grid is chosen.
+
+use halfrow_model::{
+    BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResiduals, TableSet, exact_inverse,
+};
+use proptest::prelude::*;
+
+use crate::calibrated::{DSL215_CENTRE, dsl215, kannala_brandt};
+use crate::grid::shape;
+use crate::lens::assert_close;
+
+fn camera(size: (usize, usize), lens: impl Into<CalibratedLens>, centre: (f64, f64)) -> Camera {
+    let geometry = Geometry::centred(size.0, size.1, BitDepth::Twelve).unwrap();
+    Camera::new(geometry, lens.into(), centre, 180.0).unwrap()
+}
+
+fn paper(size: (usize, usize), scale: f64) -> Camera {
+    let lens = Equidistant::from_radius(1106.697 * scale).unwrap();
+    camera(size, lens, ((size.0 - 1) as f64 / 2.0, (size.1 - 1) as f64 / 2.0))
+}
+
+/// The DSL215 on half as many pixels as it was measured on, of which a grid needs few.
+fn half_dsl215() -> Camera {
+    let centre = (DSL215_CENTRE.0 / 2.0, DSL215_CENTRE.1 / 2.0);
+    camera((376, 240), dsl215().scaled(0.5).unwrap(), centre)
+}
+
+fn largest(camera: &Camera, tables: &TableSet) -> f64 {
+    camera.grid_residuals(tables, 3).inner.max
+}
+
+fn check_ring(tables: &TableSet) {
+    assert_eq!(tables.check_ring(tables.geometry().width().next_power_of_two()), Ok(()));
+}
+
+#[test]
+fn sources_of_an_equidistant_lens_are_the_inverse_of_eq_6() {
+    let lens = Equidistant::from_radius(500.0).unwrap();
+    let camera = camera((960, 700), lens, (400.5, 300.0));
+    for (column, row) in [(0.0, 0.0), (400.5, 17.0), (400.0, 300.0), (899.75, 699.0), (12.5, -100.0)] {
+        let (x_d, _) = exact_inverse(&lens, column - 400.5, row - 300.0).unwrap();
+        assert_close(camera.source_column(column, row), 400.5 + x_d);
+    }
+}
+
+#[test]
+fn what_a_source_shows_belongs_at_its_output() {
+    let cameras = [half_dsl215(), camera((640, 360), kannala_brandt(0.5), (316.5, 171.25))];
+    for camera in cameras {
+        let (centre_x, centre_y) = camera.centre();
+        for (column, row) in [(centre_x + 7.0, centre_y), (30.0, 10.0), (200.0, 230.0), (340.0, 5.5)] {
+            let source = camera.source_column(column, row);
+            let ray = camera.lens().ray(source - centre_x, row - centre_y).unwrap();
+            let (right, _) = camera.lens().straightened(ray).unwrap();
+            assert_close(right, column - centre_x);
+        }
+    }
+}
+
+/// From DATAPATH.md's design figures: 0.0013 columns at most and 0.0002 on the average, at every fifth column and row.
+#[test]
+fn the_golden_table_leaves_what_was_computed_elsewhere() {
+    let camera = paper((1920, 1080), 1.0);
+    let GridResiduals { circle, inner } = camera.grid_residuals(&camera.grid_by_formula(shape(5, 6)), 5);
+    assert!(
+        (0.001_25..0.001_35).contains(&circle.max) && (0.000_15..0.000_25).contains(&circle.mean),
+        "{circle:?}"
+    );
+    assert_eq!(inner, circle);
+    assert!(circle.share.abs() < f64::EPSILON);
+    // Eq. 9 leaves 35 columns in the corrected frame.
+    let by_rows = camera.grid_residuals(&camera.equation_9(), 5);
+    assert!(by_rows.circle.max > 10.0 && by_rows.circle.share > 0.9, "{by_rows:?}");
+}
+
+#[test]
+fn a_fit_is_nearer_than_the_formula_and_the_same_every_time() {
+    for (camera, shape, gain) in [
+        (paper((480, 270), 0.25), shape(4, 6), 0.6),
+        (half_dsl215(), shape(3, 5), 0.9),
+        (paper((480, 270), 0.2), shape(5, 5), 0.7),
+    ] {
+        let closed = camera.grid_by_formula(shape);
+        let fitted = camera.fitted_grid(shape);
+        let (before, after) = (largest(&camera, &closed), largest(&camera, &fitted));
+        assert!(after < gain * before, "{shape}: {after} instead of {before}");
+        assert_eq!(fitted, camera.fitted_grid(shape));
+        check_ring(&fitted);
+    }
+}
+
+#[test]
+fn the_best_grid_has_the_least_error_that_the_entries_allow() {
+    let camera = paper((320, 180), 1.0 / 6.0);
+    let mut before = f64::INFINITY;
+    for entries in [48, 90, 200, 2048] {
+        let best = camera.best_grid(entries).unwrap();
+        assert!(best.units().len() <= entries);
+        let found = largest(&camera, &best);
+        assert!(found < before, "{found} with {entries} entries, {before} with fewer");
+        before = found;
+        check_ring(&best);
+    }
+}
+
+#[test]
+fn too_few_entries_are_refused_with_what_fits() {
+    let camera = paper((1920, 1080), 1.0);
+    let refused = camera.best_grid(607).unwrap_err();
+    // (30 + 2) · (floor(1079/64) + 3) = 32 · 19.
+    assert_eq!((refused.entries, refused.least), (607, 608));
+    assert_eq!(
+        refused.to_string(),
+        "no grid for frames of 1920 x 1080 has 607 entries or fewer; take a board of at least 608, which the shape \
+         v = 6, k = 6 needs, or smaller frames"
+    );
+}
+
+/// Poles and rim inside the frame: rows beyond a pole are as the one there, and outputs beyond 90 degrees a column a column.
+#[test]
+fn a_frame_that_shows_more_than_the_circle_has_a_grid() {
+    let camera = camera((256, 200), Equidistant::from_radius(80.0).unwrap(), (127.5, 99.5));
+    for row in [0.0, 19.5, 20.0, 99.5, 199.0] {
+        assert!((0..256).all(|column| camera.source_column(f64::from(column), row).is_finite()));
+    }
+    let beyond = [250.0, 251.0].map(|column| camera.source_column(column, 99.5));
+    assert!((beyond[1] - beyond[0] - 1.0).abs() < 0.05, "{beyond:?}");
+    let best = camera.best_grid(2048).unwrap();
+    check_ring(&best);
+    let residuals = camera.grid_residuals(&best, 1);
+    assert!(residuals.inner.max < 0.5 && residuals.inner.share < residuals.circle.share, "{residuals:?}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+
+    /// Nothing that a lens may be makes a grid impossible; where it is legal the row's ends lie in the row.
+    #[test]
+    fn every_lens_has_a_grid(
+        half in 32..=100_usize, height in 1..=120_usize, radius in prop_oneof![1.0..20.0, 20.0..400.0, 400.0..1e9],
+        place in (0.0..1.0, -1.0..2.0), v in 1..=6_u32, k in 5..=6_u32, calibrated in any::<bool>(),
+    ) {
+        let (width, centre) = (2 * half, (place.0 * (2 * half - 1) as f64, place.1 * height as f64));
+        let lens = Equidistant::from_radius(radius).unwrap();
+        let lens = if calibrated { dsl215().scaled(radius / 388.0).unwrap() } else { lens.into() };
+        let geometry = Geometry::centred(width, height, BitDepth::Twelve).unwrap();
+        if let Ok(camera) = Camera::new(geometry, lens, centre, 180.0) {
+            let tables = camera.grid_by_formula(shape(v, k));
+            prop_assert_eq!(tables.units().len(), shape(v, k).entries(&geometry));
+            let residuals = camera.grid_residuals(&tables, 7);
+            prop_assert!(residuals.circle.max.is_finite());
+            // Every row begins in the frame or right of it.
+            let begins = |row| tables.values(row).unwrap().coordinate(0) >= -(1 << 14);
+            prop_assert!((0..height).all(begins));
+        }
+    }
+}
