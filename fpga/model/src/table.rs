@@ -195,7 +195,7 @@ impl TableSet {
     pub fn with_geometry(&self, geometry: Geometry) -> Result<Self, TableError> {
         match &self.entries {
             Entries::Rows(row_factors) => Self::new(geometry, row_factors.clone()),
-            Entries::Grid(grid) => Self::from_grid(geometry, grid.shape(), grid.entries().to_vec()),
+            Entries::Grid(grid) => Self::from_grid(geometry, grid.shape(), self.units().collect()),
         }
     }
 
@@ -277,11 +277,11 @@ impl TableSet {
     pub fn units(&self) -> impl DoubleEndedIterator<Item = u32> + ExactSizeIterator + '_ {
         let count = match &self.entries {
             Entries::Rows(row_factors) => row_factors.len(),
-            Entries::Grid(grid) => grid.entries().len(),
+            Entries::Grid(grid) => grid.len(),
         };
         (0..count).map(|place| match &self.entries {
             Entries::Rows(row_factors) => row_factors[place].get(),
-            Entries::Grid(grid) => grid.entries()[place],
+            Entries::Grid(grid) => grid.entry(place),
         })
     }
 

@@ -57,7 +57,7 @@ impl Spline {
     /// The table whose offsets bring `node` to the sources `wanted` of all rows.
     fn table_through(&self, camera: &Camera, node: usize, wanted: impl Fn(usize) -> f64) -> TableSet {
         let geometry = camera.geometry();
-        let mut grid = Grid { shape: self.shape, entries: self.entries(geometry), rows: self.rows };
+        let mut grid = Grid::of_columns(geometry, self.shape, &self.entries(geometry));
         let wanted: Vec<f64> = (0..geometry.height()).map(wanted).collect();
         correct_offsets(geometry, &mut grid, node, &wanted);
         raise_offsets(geometry, &mut grid);
@@ -109,7 +109,8 @@ fn correct_offsets(geometry: &Geometry, grid: &mut Grid, node: usize, wanted: &[
             8192.0 * (values.coordinate(column) as f64 / f64::from(1 << 28) - wanted)
         });
         let corrections = spline.fitted(misses);
-        for (offset, correction) in grid.entries.iter_mut().zip(corrections) {
+        for (row, correction) in corrections.into_iter().enumerate() {
+            let offset = grid.offset_mut(row);
             *offset = entry(f64::from(*offset) - (correction + 0.5).floor());
         }
     }
@@ -123,7 +124,8 @@ fn raise_offsets(geometry: &Geometry, grid: &mut Grid) {
         let raise = -rounded(values.coordinate(0));
         if raise > 0 {
             let (first, _) = super::spline(grid.shape, row);
-            for offset in &mut grid.entries[first..first + 3] {
+            for row in first..first + 3 {
+                let offset = grid.offset_mut(row);
                 *offset = entry(f64::from(*offset) + raise as f64);
             }
         }

@@ -24,14 +24,14 @@ pub(crate) const ENTRY_BITS: u32 = 25;
 /// Weights of the B-spline add up to 2^13.
 const WEIGHT_BITS: u32 = 13;
 
-/// The entries of a grid, column by column.
+/// The entries of a grid. They are kept grid row by grid row, since a row is made of three of those.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Grid {
     shape: GridShape,
-    /// (c, b) at c · `rows` + b.
+    /// (c, b) at b · `columns` + c.
     entries: Vec<u32>,
-    /// Z.
-    rows: usize,
+    /// N + 2.
+    columns: usize,
 }
 
 /// Entries that make no grid.
@@ -51,24 +51,41 @@ impl Grid {
         let wide = |(_, units): &(usize, &u32)| **units >> ENTRY_BITS != 0;
         match entries.iter().enumerate().find(wide) {
             Some((place, &units)) => Err(GridFault::Entry { place, units }),
-            None => Ok(Self { shape, entries, rows: shape.rows(geometry) }),
+            None => Ok(Self::of_columns(geometry, shape, &entries)),
         }
+    }
+
+    /// The grid of `entries`, as many as it has, in a board's order.
+    fn of_columns(geometry: &Geometry, shape: GridShape, entries: &[u32]) -> Self {
+        let rows = shape.rows(geometry);
+        let row = |row| entries.iter().skip(row).step_by(rows).copied();
+        Self { shape, entries: (0..rows).flat_map(row).collect(), columns: shape.columns(geometry) }
     }
 
     pub(crate) fn shape(&self) -> GridShape {
         self.shape
     }
 
-    pub(crate) fn entries(&self) -> &[u32] {
-        &self.entries
+    /// (N + 2)·Z.
+    pub(crate) fn len(&self) -> usize {
+        self.entries.len()
+    }
+
+    /// The entry at `place` in a board's order.
+    pub(crate) fn entry(&self, place: usize) -> u32 {
+        let rows = self.entries.len() / self.columns;
+        self.entries[place % rows * self.columns + place / rows]
+    }
+
+    /// The offset of grid row `row`.
+    fn offset_mut(&mut self, row: usize) -> &mut u32 {
+        &mut self.entries[row * self.columns]
     }
 
     /// The upper grid rows, as many as `geometry` has, which is as wide as the grid's own and not higher.
     pub(crate) fn upper(&self, geometry: &Geometry) -> Option<Self> {
-        let rows = self.shape.rows(geometry);
-        let columns = self.entries.chunks_exact(self.rows).map(|column| column.get(..rows));
-        let entries = columns.collect::<Option<Vec<_>>>()?.concat();
-        Some(Self { shape: self.shape, entries, rows })
+        let entries = self.entries.get(..self.shape.entries(geometry))?.to_vec();
+        Some(Self { entries, ..*self })
     }
 
     /// Every entry half way to 2^24, rounded down.
@@ -80,16 +97,23 @@ impl Grid {
     /// The values of row `row`, which the frame has, in the place of those that `values` held.
     pub(crate) fn values(&self, geometry: &Geometry, row: usize, values: &mut RowValues) {
         let (first, weights) = spline(self.shape, row);
-        let value = |column: &[u32]| {
-            let terms = column[first..first + 3].iter().zip(weights);
-            let sum: u64 = terms.map(|(&entry, weight)| u64::from(entry) * u64::from(weight)).sum();
+        let [above, own, below] = weights.map(u64::from);
+        let value = |[first, second, third]: [u32; 3]| {
+            let sum = above * u64::from(first) + own * u64::from(second) + below * u64::from(third);
             ((sum + (1 << (WEIGHT_BITS - 1))) >> WEIGHT_BITS) as u32
         };
-        let mut columns = self.entries.chunks_exact(self.rows).map(value);
+        let [upper, middle, lower] =
+            [0, 1, 2].map(|row| &self.entries[(first + row) * self.columns..][..self.columns]);
         let one = RowFactor::ONE.get();
-        let offset = columns.next().map_or(0, |offset| offset as i32 - one as i32);
-        let factors = columns.map(|factor| 8 * (factor >> 3).min(one >> 3));
-        values.take(geometry, self.shape.k(), offset, factors);
+        let offset = value([upper[0], middle[0], lower[0]]) as i32 - one as i32;
+        let nodes = upper[1..].iter().zip(&middle[1..]).zip(&lower[1..]);
+        // A loop over slices, of which compilers make vectors.
+        for (factor, ((&upper, &middle), &lower)) in
+            values.factors_mut(self.columns - 1).iter_mut().zip(nodes)
+        {
+            *factor = 8 * (value([upper, middle, lower]) >> 3).min(one >> 3);
+        }
+        values.take(geometry, self.shape.k(), offset);
     }
 }
 

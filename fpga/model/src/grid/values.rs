@@ -32,33 +32,34 @@ pub(crate) struct Parabola {
 }
 
 impl RowValues {
-    /// Takes the offset `offset` and the `factors` of the nodes 0 to N, 2^`k` columns apart, for those that it has had.
-    pub(crate) fn take(
-        &mut self,
-        geometry: &Geometry,
-        k: u32,
-        offset: i32,
-        factors: impl Iterator<Item = u32>,
-    ) {
+    /// The factors of `nodes` nodes, to be filled in before [`Self::take`].
+    pub(crate) fn factors_mut(&mut self, nodes: usize) -> &mut [u32] {
+        self.factors.resize(nodes, 0);
+        &mut self.factors
+    }
+
+    /// Takes the offset `offset`, for factors that are those of nodes 2^`k` columns apart.
+    pub(crate) fn take(&mut self, geometry: &Geometry, k: u32, offset: i32) {
         (self.k, self.offset) = (k, offset);
-        self.factors.clear();
-        self.factors.extend(factors);
         self.segments.clear();
         let short = RowFactor::ONE.get() - self.factors.first().copied().unwrap_or(0);
         let mut start = 8 * i64::from(geometry.centre2()) * i64::from(short) + (i64::from(offset) << BELOW);
-        for pair in self.factors.windows(2) {
-            let [left, right] = [pair[0], pair[1]].map(i64::from);
+        let nodes = self.factors.iter().zip(self.factors.iter().skip(1));
+        self.segments.extend(nodes.map(|(&left, &right)| {
+            let [left, right] = [left, right].map(i64::from);
             let curve = ((right - left) >> 3) << (6 - k);
-            self.segments.push(Parabola { start, slope: 16 * left, curve });
+            let parabola = Parabola { start, slope: 16 * left, curve };
             start += (left + right) << (k + 3);
-        }
+            parabola
+        }));
     }
 
     /// Takes the one factor of a row.
     pub(crate) fn take_factor(&mut self, geometry: &Geometry, row_factor: RowFactor) {
         let shape = GridShape::FINEST;
         let nodes = shape.segments(geometry) + 1;
-        self.take(geometry, shape.k(), 0, std::iter::repeat_n(row_factor.get(), nodes));
+        self.factors_mut(nodes).fill(row_factor.get());
+        self.take(geometry, shape.k(), 0);
     }
 
     /// O: how much farther right the row begins than the factors alone tell, in units of 2^-13 column.
