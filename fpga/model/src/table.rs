@@ -135,7 +135,7 @@ impl TableSet {
     ///
     /// # Errors
     /// [`TableError`] when there are not (N + 2)·Z entries or one is outside [`Self::GRID_RANGE`].
-    pub fn from_grid(geometry: Geometry, shape: GridShape, entries: Vec<u32>) -> Result<Self, TableError> {
+    pub fn from_grid(geometry: Geometry, shape: GridShape, entries: &[u32]) -> Result<Self, TableError> {
         let (columns, rows) = (shape.columns(&geometry), shape.rows(&geometry));
         let grid = Grid::new(&geometry, shape, entries).map_err(|fault| match fault {
             GridFault::Count(entries) => TableError::GridCount { entries, columns, rows },
@@ -195,7 +195,7 @@ impl TableSet {
     pub fn with_geometry(&self, geometry: Geometry) -> Result<Self, TableError> {
         match &self.entries {
             Entries::Rows(row_factors) => Self::new(geometry, row_factors.clone()),
-            Entries::Grid(grid) => Self::from_grid(geometry, grid.shape(), self.units().collect()),
+            Entries::Grid(grid) => Self::from_grid(geometry, grid.shape(), &self.units().collect::<Vec<_>>()),
         }
     }
 

@@ -44,14 +44,14 @@ pub(crate) enum GridFault {
 
 impl Grid {
     /// The grid of `entries` in a board's order.
-    pub(crate) fn new(geometry: &Geometry, shape: GridShape, entries: Vec<u32>) -> Result<Self, GridFault> {
+    pub(crate) fn new(geometry: &Geometry, shape: GridShape, entries: &[u32]) -> Result<Self, GridFault> {
         if entries.len() != shape.entries(geometry) {
             return Err(GridFault::Count(entries.len()));
         }
         let wide = |(_, units): &(usize, &u32)| **units >> ENTRY_BITS != 0;
         match entries.iter().enumerate().find(wide) {
             Some((place, &units)) => Err(GridFault::Entry { place, units }),
-            None => Ok(Self::of_columns(geometry, shape, &entries)),
+            None => Ok(Self::of_columns(geometry, shape, entries)),
         }
     }
 

@@ -16,7 +16,7 @@ pub(crate) fn shape(v: u32, k: u32) -> GridShape {
 
 /// Every entry 2^24.
 pub(crate) fn identity(geometry: Geometry, shape: GridShape) -> TableSet {
-    TableSet::from_grid(geometry, shape, vec![ONE; shape.entries(&geometry)]).unwrap()
+    TableSet::from_grid(geometry, shape, &vec![ONE; shape.entries(&geometry)]).unwrap()
 }
 
 /// Grids of a seed: of every size of entry, of the limits alone, or as gentle as those of a lens.
@@ -44,8 +44,8 @@ pub(crate) fn any_grid(widest: usize) -> impl Strategy<Value = TableSet> {
             }
         };
         let shape = shape(v, k);
-        let entries = (0..shape.entries(&geometry) as u32).map(entry).collect();
-        TableSet::from_grid(geometry, shape, entries).unwrap()
+        let entries: Vec<_> = (0..shape.entries(&geometry) as u32).map(entry).collect();
+        TableSet::from_grid(geometry, shape, &entries).unwrap()
     })
 }
 
@@ -93,7 +93,7 @@ fn a_row_has_the_values_of_the_worked_example() {
     entries[1..4].copy_from_slice(&[16_777_216, 16_785_408, 16_793_600]);
     entries[8..11].copy_from_slice(&[14_680_064, 14_684_160, 14_696_448]);
     entries[15..18].copy_from_slice(&[14_745_600, 14_745_600, 14_749_696]);
-    let tables = TableSet::from_grid(geometry, shape(1, 5), entries).unwrap();
+    let tables = TableSet::from_grid(geometry, shape(1, 5), &entries).unwrap();
     let values = tables.values(3).unwrap();
     assert_eq!(values.offset(), 8192);
     assert_eq!(values.factors()[..2], [14_685_184, 14_746_112]);
@@ -128,7 +128,7 @@ fn a_grid_has_as_many_entries_as_its_shape_says() {
     let shape = shape(4, 5);
     assert_eq!((shape.segments(&geometry), shape.rows(&geometry), shape.entries(&geometry)), (5, 7, 49));
     for entries in [0, 48, 50] {
-        let refused = TableSet::from_grid(geometry, shape, vec![ONE; entries]).unwrap_err();
+        let refused = TableSet::from_grid(geometry, shape, &vec![ONE; entries]).unwrap_err();
         assert_eq!(refused, TableError::GridCount { entries, columns: 7, rows: 7 });
         assert!(
             refused.to_string().ends_with("7 columns and 7 grid rows; give 49, column by column"),
@@ -137,9 +137,9 @@ fn a_grid_has_as_many_entries_as_its_shape_says() {
     }
     let mut entries = vec![0; 49];
     entries[2 * 7 + 3] = (1 << 25) - 1;
-    assert!(TableSet::from_grid(geometry, shape, entries.clone()).is_ok());
+    assert!(TableSet::from_grid(geometry, shape, &entries).is_ok());
     entries[2 * 7 + 3] = 1 << 25;
-    let refused = TableSet::from_grid(geometry, shape, entries).unwrap_err();
+    let refused = TableSet::from_grid(geometry, shape, &entries).unwrap_err();
     assert_eq!(refused, TableError::GridEntry { column: 2, row: 3, units: 1 << 25 });
     assert!(
         refused.source().is_none() && refused.to_string().contains("entry (2, 3) of the grid is 33554432")
@@ -160,7 +160,7 @@ fn a_shape_has_one_to_six_and_five_or_six() {
 fn a_grid_is_sent_column_by_column_little_endian() {
     let geometry = Geometry::new(64, 1, BitDepth::Twelve, 63).unwrap();
     let entries: Vec<u32> = (0..9).map(|entry| 0x0012_3400 + entry).collect();
-    let tables = TableSet::from_grid(geometry, shape(6, 6), entries.clone()).unwrap();
+    let tables = TableSet::from_grid(geometry, shape(6, 6), &entries).unwrap();
     assert!(tables.units().eq(entries));
     assert_eq!(tables.to_bytes()[..8], [0x00, 0x34, 0x12, 0, 0x01, 0x34, 0x12, 0]);
     assert_eq!((tables.row_factors(), tables.row_factor(0)), (None, None));
@@ -186,7 +186,7 @@ fn tables_that_stretch_half_as_far_lie_half_way_to_the_identity() {
     let tables = TableSet::from_units(geometry, &[ONE / 2, ONE]).unwrap();
     assert!(tables.halved().units().eq([ONE / 4 * 3, ONE]));
     let entries = [ONE, 0, (1 << 25) - 1, 1, 2, 3, ONE, ONE, ONE];
-    let grid = TableSet::from_grid(geometry, shape(6, 6), entries.to_vec()).unwrap();
+    let grid = TableSet::from_grid(geometry, shape(6, 6), &entries).unwrap();
     assert!(grid.halved().units().take(6).eq([ONE, ONE / 2, 25_165_823, 8_388_608, 8_388_609, 8_388_609]));
 }
 

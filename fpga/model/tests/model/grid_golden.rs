@@ -23,8 +23,8 @@ pub(crate) fn golden_table() -> TableSet {
 pub(crate) fn drawn(geometry: Geometry, shape: GridShape, seed: u32, narrow: bool) -> TableSet {
     let drawn = |place: u32| (place + seed).wrapping_mul(2_654_435_761);
     let entry = |place| if narrow { 14_680_064 + (drawn(place) >> 12) } else { drawn(place) >> 7 };
-    let entries = (0..shape.entries(&geometry) as u32).map(entry).collect();
-    TableSet::from_grid(geometry, shape, entries).unwrap()
+    let entries: Vec<_> = (0..shape.entries(&geometry) as u32).map(entry).collect();
+    TableSet::from_grid(geometry, shape, &entries).unwrap()
 }
 
 /// S modulo 2^40 of every output, row after row.

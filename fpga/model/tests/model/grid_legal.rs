@@ -12,7 +12,7 @@ fn bent(centre2: u32, [offset, left, right]: [u32; 3]) -> TableSet {
     let geometry = Geometry::new(64, 128, BitDepth::Twelve, centre2).unwrap();
     // Z = 4: row 32 is made of the grid rows 0 to 2 with 1/8, 3/4 and 1/8.
     let column = |entry| [entry; 4];
-    TableSet::from_grid(geometry, shape(6, 6), [offset, left, right].map(column).concat()).unwrap()
+    TableSet::from_grid(geometry, shape(6, 6), &[offset, left, right].map(column).concat()).unwrap()
 }
 
 /// The grid's entry for an offset of `units` times 2^-13 column.
@@ -75,7 +75,7 @@ fn the_row_that_is_illegal_is_named() {
     let mut entries = vec![ONE; 3 * 6];
     // Grid row 4 is met from row 128 on; there t = 0, so row 129 is the first that it weighs in, with t² = 1 of 2^13.
     entries[4] = ONE - 8 * 8192;
-    let tables = TableSet::from_grid(geometry, shape(6, 6), entries).unwrap();
+    let tables = TableSet::from_grid(geometry, shape(6, 6), &entries).unwrap();
     assert_eq!(tables.check_ring(64), Err(TableError::BeforeFirst { row: 129, raise: 8 }));
 }
 
