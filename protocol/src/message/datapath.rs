@@ -70,12 +70,12 @@ mod tests {
 
     use super::*;
 
-    /// WIRE.md, tag 01: DATAPATH.md describes 1.
+    /// WIRE.md, tags 01 and 12: DATAPATH.md describes 1 and 2.
     #[test]
-    fn the_datapath_that_is_described_is_known_and_no_other() {
+    fn the_datapaths_that_are_described_are_known_and_no_other() {
         let known: Vec<u16> = (0..=u16::MAX).filter(|&id| Datapath::try_from(id).is_ok()).collect();
-        assert_eq!(known, [1]);
-        assert_eq!(Datapath::try_from(2), Err(UnknownDatapath { id: 2 }));
+        assert_eq!(known, [1, 2]);
+        assert_eq!(Datapath::try_from(3), Err(UnknownDatapath { id: 3 }));
     }
 
     #[test]

@@ -33,20 +33,33 @@ fn upright(row: &Row) -> impl Iterator<Item = SceneLine> {
 /// Along the roof of each house.
 fn level(row: &Row) -> impl Iterator<Item = SceneLine> {
     row.houses.iter().filter_map(|house| {
-        let from = if row.side == Side::Across { house.from } else { house.from.max(AHEAD) };
-        let ends = [from, house.to].map(|along| row.place(along, house.roof));
-        (from < house.to).then_some(SceneLine { ends, is_upright: false })
+        let (first, last) = row.seen()?;
+        let (from, to) = (house.from.max(first), house.to.min(last));
+        let ends = [from, to].map(|along| row.place(along, house.roof));
+        (from < to).then_some(SceneLine { ends, is_upright: false })
     })
 }
 
 /// Where the whole row stands on the ground.
 fn foot(row: &Row) -> Option<SceneLine> {
-    let (first, last) = (row.houses.first()?, row.houses.last()?);
-    let from = if row.side == Side::Across { first.from } else { first.from.max(AHEAD) };
-    Some(SceneLine { ends: [from, last.to].map(|along| row.place(along, 0.0)), is_upright: false })
+    let (first, last) = row.seen()?;
+    Some(SceneLine { ends: [first, last].map(|along| row.place(along, 0.0)), is_upright: false })
 }
 
 impl Row {
+    /// From where to where along it it is seen: ahead of the camera, and between the rows at the sides.
+    fn seen(&self) -> Option<(f64, f64)> {
+        let (first, last) = (self.houses.first()?.from, self.houses.last()?.to);
+        if self.side != Side::Across {
+            return Some((first.max(AHEAD), last));
+        }
+        let beside = |side: Side| {
+            let row = ROWS.iter().find(|row| row.side == side)?;
+            Some(row.distance * self.distance / row.houses.last()?.to)
+        };
+        Some((first.max(-beside(Side::Left)?), last.min(beside(Side::Right)?)))
+    }
+
     /// The place on its façades so far along it and so high above the ground.
     fn place(&self, along: f64, height: f64) -> [f64; 3] {
         let down = CAMERA - height;

@@ -103,7 +103,7 @@ impl TableFile {
         let shape = GridShape::new(v, k)?;
         let entries = grid(&members.take(Place::Grid)?, shape.entries(&geometry))?;
         Ok(Self {
-            tables: TableSet::from_grid(geometry, shape, entries)?,
+            tables: TableSet::from_grid(geometry, shape, &entries)?,
             kernel: kernel(&members.take(Place::Kernel)?)?,
             about: members.take_about()?,
         })

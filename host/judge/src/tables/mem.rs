@@ -125,7 +125,7 @@ pub fn parse_row_factors(text: &str) -> Result<TableSet, MemError> {
         Datapath::RowFactors => Ok(TableSet::from_units(geometry(text)?, &units(text)?)?),
         Datapath::Grids => {
             let shape = GridShape::new(noted(text, Place::V)?, noted(text, Place::K)?)?;
-            Ok(TableSet::from_grid(geometry(text)?, shape, units(text)?)?)
+            Ok(TableSet::from_grid(geometry(text)?, shape, &units(text)?)?)
         }
     }
 }

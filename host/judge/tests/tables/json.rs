@@ -157,11 +157,11 @@ fn what_is_wrong_inside_a_file_names_the_file() {
 fn tables_for_another_datapath_are_told_apart() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("t.json");
-    fs::write(&path, r#"{"datapath": 2, "rows": "of some later kind"}"#).unwrap();
+    fs::write(&path, r#"{"datapath": 3, "rows": "of some later kind"}"#).unwrap();
     for refused in [TableFile::read(&path).unwrap_err(), KernelFile::read(&path).unwrap_err()] {
-        assert!(matches!(&refused, TableFileError::Datapath { source, .. } if source.found == 2));
+        assert!(matches!(&refused, TableFileError::Datapath { source, .. } if source.found == 3));
         let chain = format!("{:#}", anyhow::Error::new(refused));
-        assert!(chain.contains("t.json is refused: the tables are for datapath 2"), "{chain}");
+        assert!(chain.contains("t.json is refused: the tables are for datapath 3"), "{chain}");
         assert!(chain.contains("`halfrow tables`"), "{chain}");
     }
 }

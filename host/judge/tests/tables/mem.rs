@@ -105,7 +105,7 @@ fn a_missing_or_foreign_file_is_named() {
     assert!(matches!(mem::read(&path), Err(TableFileError::Io { path, .. }) if path == rows));
     fs::write(&rows, "// datapath=1\n").unwrap();
     assert!(matches!(mem::read(&path), Err(TableFileError::Mem { path, .. }) if path == rows));
-    fs::write(&rows, "// datapath=2\n").unwrap();
+    fs::write(&rows, "// datapath=3\n").unwrap();
     assert!(matches!(mem::read(&path), Err(TableFileError::Datapath { path, .. }) if path == rows));
 }
 

@@ -55,15 +55,15 @@ fn nesting_without_end_is_refused() {
 
 #[test]
 fn another_datapath_is_told_before_anything_else() {
-    for id in [0, 2, 65536, -1] {
+    for id in [0, 3, 65536, -1] {
         let refused = TableFile::parse(&json!({"datapath": id, "rows": []}).to_string()).unwrap_err();
         assert!(matches!(&refused, ContentError::Datapath(wrong) if wrong.found == id.into()), "{refused:?}");
     }
-    let refused = KernelFile::parse(r#"{"datapath": 2}"#).unwrap_err();
+    let refused = KernelFile::parse(r#"{"datapath": 3}"#).unwrap_err();
     says(
         &refused,
-        "the tables are for datapath 2, and this program knows datapath 1 alone; make them again with `halfrow \
-         tables`, or use a halfrow that knows datapath 2",
+        "the tables are for datapath 3, and this program knows 1 and 2 alone; make them again with `halfrow tables`, \
+         or use a halfrow that knows datapath 3",
     );
 }
 
