@@ -207,3 +207,38 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
         assert_eq!(ended.code, Some(1), "{fault}: {}", ended.stdout);
     }
 }
+
+/// Behind a grid the fault's row is the number of an entry, of which there are more than rows.
+#[test]
+fn a_fault_of_a_grids_entry_is_held_against_the_grid() {
+    let folder = Folder::new();
+    let verify = |fault: &str| {
+        let board = format!("mock,fault={fault}");
+        let size = ["--width", "192", "--height", "24", "--radius", "130", "--projection", "exact"];
+        let call = ["verify", "-q", "--frame", "builtin:noise", "--board", &board];
+        folder.halfrow(call.into_iter().chain(size))
+    };
+    let told = |fault: &str| {
+        let ended = verify(fault);
+        assert_eq!(ended.code, Some(2), "{fault}: {}{}", ended.stdout, ended.stderr);
+        ended.stderr
+    };
+    let missing = told("row-factor,row=65534");
+    let entries = missing.split("in a grid of ").nth(1).and_then(|rest| rest.split(';').next()).unwrap();
+    let entries: usize = entries.parse().unwrap();
+    assert!(entries > 24, "{missing}");
+    let last = entries - 1;
+    assert!(
+        missing.contains(&format!(
+            "there is no entry row=65534 in a grid of {entries}; give one from 0 to {last}"
+        ))
+    );
+    assert!(told(&format!("drifting-table,row={entries}")).contains(&format!("no entry row={entries}")));
+    assert!(told("lost-row,row=24").contains("there is no row=24 in frames of 24 rows"));
+    // One frame and two of noise with these tables.
+    assert!(told("drifting-table,after=72").contains("give 71 at most"));
+    for fault in [format!("row-factor,row={last}"), "drifting-table,after=71".to_owned()] {
+        let ended = verify(&fault);
+        assert_eq!(ended.code, Some(1), "{fault}: {}", ended.stdout);
+    }
+}

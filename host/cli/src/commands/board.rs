@@ -90,7 +90,9 @@ impl BoardArguments {
             .into_iter()
             .flat_map(|segment| segment.frames);
         let frames = judged.filter(|frame| frame.generation == JUDGED).count();
-        let streamed = Streamed { height: plan.tables.geometry().height(), frames };
+        let tables = &plan.tables;
+        let grid = tables.shape().map(|_| tables.units().len());
+        let streamed = Streamed { height: tables.geometry().height(), grid, frames };
         match fault.and_then(|fault| fault.without_effect(&streamed)) {
             None => Ok(()),
             Some(why) => Err(Failure::call(CallError::FaultWithoutEffect {

@@ -2,28 +2,55 @@
 //!
 //! Other samples, factors and weights go through the reference itself, [`RowTables::corrected`]. What it has no input for
 //! is here, and here alone: a sum that is not rounded or not clamped, taps that carry other samples, memory that changes
-//! between two reads, and a factor above 1. It reads the row as a board does, by a window of eight samples and one read a
-//! pixel clock (DATAPATH.md, "Ring").
+//! between two reads, a factor above 1, and a grid that leads out of the row. It reads the row as a board does, by a window
+//! of eight samples and one read a pixel clock (DATAPATH.md, "Ring").
 
-use halfrow_model::{Geometry, Kernel, RowFactor, Source, correct_row, source_by_entry};
+use std::ops::Range;
+use std::rc::Rc;
+
+use halfrow_model::{
+    Geometry, Kernel, RowFactor, RowValues, Source, TableSet, correct_row, correct_row_of_values,
+    source_by_entry,
+};
 
 /// Samples in the window, columns n − 3 to n + 4.
 const WINDOW: usize = 8;
 /// Columns of the window left and right of n.
 const LEFT: i64 = 3;
 const RIGHT: i64 = 4;
+/// Columns that the newest sample is ahead of the middle of the row when the first output is read.
+pub(super) const LOOK_AHEAD: usize = 3;
 /// The column n has 12 bits; a factor above 1 makes it wrap.
 const COLUMNS: i64 = 1 << 12;
 /// A position has 13 fractional bits; the next one says that the base is left of n.
 const LEFT_OF_N: usize = 1 << 13;
 
+/// How far a row is stretched.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) enum Stretch {
+    /// By its entry of the table as the board reads it: a row factor when the board is sound, else any word.
+    Factor(u32),
+    /// By what the board finds of a grid.
+    Grid(Rc<RowValues>),
+}
+
+impl Stretch {
+    /// That of a row by the tables, if they have the row.
+    pub(super) fn of(tables: &TableSet, row: usize) -> Option<Self> {
+        match tables.shape() {
+            None => tables.row_factor(row).map(|factor| Self::Factor(factor.get())),
+            Some(_) => tables.values(row).map(|values| Self::Grid(Rc::new(values))),
+        }
+    }
+}
+
 /// What a row is made with.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct RowTables<'a> {
     /// Size, depth and centre.
     pub(super) geometry: &'a Geometry,
-    /// The table's entry as the board reads it: a row factor when the board is sound, else any word.
-    pub(super) entry: u32,
+    /// How far the row is stretched.
+    pub(super) stretch: Stretch,
     /// The kernel.
     pub(super) kernel: &'a Kernel,
 }
@@ -70,12 +97,53 @@ impl Default for Wiring {
 impl RowTables<'_> {
     /// What a board without defect makes of `input`, a row of the geometry's width, with these tables.
     pub(super) fn corrected(&self, input: &[u16]) -> Vec<u16> {
-        let Ok(row_factor) = RowFactor::new(self.entry) else {
-            return self.run(&Wiring::default(), |column, _| self.sample_of(input, column));
-        };
         let mut output = vec![0; self.geometry.width()];
-        correct_row(self.geometry, row_factor, self.kernel, input, &mut output);
+        match &self.stretch {
+            Stretch::Factor(entry) => {
+                let Ok(row_factor) = RowFactor::new(*entry) else { return self.read(input) };
+                correct_row(self.geometry, row_factor, self.kernel, input, &mut output);
+            }
+            Stretch::Grid(_) if !self.lies_in_row() => return self.read(input),
+            Stretch::Grid(values) => {
+                correct_row_of_values(self.geometry, values, self.kernel, input, &mut output);
+            }
+        }
         output
+    }
+
+    /// The same by the window, which follows tables that are not legal as well.
+    fn read(&self, input: &[u16]) -> Vec<u16> {
+        self.run(&Wiring::default(), |column, _| self.sample_of(input, column))
+    }
+
+    /// Whether every output comes from within the row: n never falls but where it wraps.
+    fn lies_in_row(&self) -> bool {
+        let last = self.geometry.width() - 1;
+        let [first, end] = [0, last].map(|column| self.source(column).column);
+        (first..=last as i64).contains(&end)
+    }
+
+    /// The columns for which a board with a ring of `ring` samples has every sample that it reads, the widest stretch of
+    /// them: all, but of tables that are not legal.
+    pub(super) fn foretold(&self, ring: usize) -> Range<usize> {
+        let in_ring = |output: usize, column: i64| {
+            let newest = output + self.geometry.width() / 2 + LOOK_AHEAD;
+            newest.checked_sub(self.geometry.sample_column(column)).is_some_and(|age| age < ring)
+        };
+        let mut sound = Vec::new();
+        let mut reads = 0;
+        let mut before = None;
+        for output in 0..self.geometry.width() {
+            let column = self.source(output).column.rem_euclid(COLUMNS);
+            if before != Some(column) {
+                let first = if before.is_none() { column - LEFT } else { column + RIGHT };
+                let read = (first..=column + RIGHT).map(|m| in_ring(output, m));
+                reads = read.fold(reads, |reads, sound| if sound { reads + 1 } else { 0 });
+                before = Some(column);
+            }
+            sound.push(reads >= WINDOW);
+        }
+        widest(&sound)
     }
 
     /// What a board wired like this makes of a row. `read` gives the sample that the window gets for a column, which may
@@ -98,7 +166,10 @@ impl RowTables<'_> {
 
     /// Where the output of a column is taken from.
     pub(super) fn source(&self, column: usize) -> Source {
-        source_by_entry(self.geometry, self.entry, column)
+        match &self.stretch {
+            Stretch::Factor(entry) => source_by_entry(self.geometry, *entry, column),
+            Stretch::Grid(values) => values.source(column),
+        }
     }
 
     /// The output at one column of `input`.
@@ -149,6 +220,20 @@ impl Wiring {
         let clamps = if value < 0 { self.clamps_low } else { self.clamps_high };
         (if clamps { value.clamp(0, max) } else { value & max }) as u16
     }
+}
+
+/// The longest range in which all are true, the first of several.
+fn widest(marks: &[bool]) -> Range<usize> {
+    let mut widest = 0..0;
+    let mut start = 0;
+    for (place, mark) in marks.iter().enumerate() {
+        if !mark {
+            start = place + 1;
+        } else if place + 1 - start > widest.len() {
+            widest = start..place + 1;
+        }
+    }
+    widest
 }
 
 /// The eight samples that serve all taps of an output.

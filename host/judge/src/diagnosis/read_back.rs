@@ -4,13 +4,16 @@ mod lines;
 
 use halfrow_model::{RowFactor, TAP_NAMES};
 
+use super::Uploaded;
 use crate::board::Table;
 use crate::result::{Account, Defect, Memory, Suspect};
 
-/// A table as words: row factors, or the weights of nodes one after the other.
+/// A table as words: row factors, the entries of a grid, or the weights of nodes one after the other.
 #[derive(Clone, Copy, Debug)]
 struct Words<'a> {
     table: Table,
+    /// Rows of a grid.
+    grid_rows: Option<usize>,
     bytes: &'a [u8],
 }
 
@@ -22,14 +25,20 @@ struct WrongWord {
     found: u32,
 }
 
-/// The parts that explain why `found` was read of `table` where `expected` was uploaded, both as on the wire: at most
-/// three, the likeliest first, none when they are equal.
+/// The parts that explain why `found`, as on the wire, was read of `table` where it was uploaded otherwise: at most three,
+/// the likeliest first, none when they are equal.
 ///
 /// One wrong entry is named with the bits that differ. Several are named by the line that would make them, if a single
 /// one would, and else by their number and the first.
 #[must_use]
-pub fn read_back(table: Table, expected: &[u8], found: &[u8]) -> Vec<Suspect> {
-    let (expected, found) = (Words { table, bytes: expected }, Words { table, bytes: found });
+pub fn read_back(uploaded: &Uploaded<'_>, table: Table, found: &[u8]) -> Vec<Suspect> {
+    let Uploaded { tables, kernel, .. } = uploaded;
+    let bytes = match table {
+        Table::RowFactors | Table::Grid => tables.to_bytes(),
+        Table::Kernel => kernel.to_bytes(),
+    };
+    let grid_rows = tables.shape().map(|shape| shape.rows(tables.geometry()));
+    let [expected, found] = [&bytes[..], found].map(|bytes| Words { table, grid_rows, bytes });
     if expected.bytes.len() != found.bytes.len() {
         return vec![wrong_length(expected, found)];
     }
@@ -115,14 +124,23 @@ fn wrong_length(expected: Words<'_>, found: Words<'_>) -> Suspect {
 /// The word `word`, the first of `count` that are wrong.
 fn one_word(words: Words<'_>, word: WrongWord, count: usize) -> Suspect {
     let differing = word.expected ^ word.found;
-    let defect = Defect::TableWordWrong {
-        table: words.memory(),
-        entry: word.index / words.per_entry(),
-        weight: words.weight(word.index),
-        bits: (0..u32::BITS).filter(|bit| differing >> bit & 1 == 1).collect(),
-        uploaded: words.value(word.expected),
-        read: words.value(word.found),
-        wrong: count,
+    let bits = (0..u32::BITS).filter(|bit| differing >> bit & 1 == 1).collect();
+    let [uploaded, read] = [word.expected, word.found].map(|word| words.value(word));
+    let entry = word.index / words.per_entry();
+    let defect = match (words.table, words.grid_rows) {
+        (Table::Grid, Some(rows)) => {
+            let (column, row) = (entry / rows, entry % rows);
+            Defect::GridEntryReadsWrong { column, row, bits, uploaded, read, wrong: count }
+        }
+        _ => Defect::TableWordWrong {
+            table: words.memory(),
+            entry,
+            weight: words.weight(word.index),
+            bits,
+            uploaded,
+            read,
+            wrong: count,
+        },
     };
     let account = Account::Words { wrong: count, explained: 1, others: 0 };
     Suspect { defect, account, explained: 1.0 / count as f64 }

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use halfrow_model::{Frame, Geometry, RowFactor};
+use halfrow_model::{Frame, Geometry};
 
-use super::datapath::RowTables;
+use super::datapath::{RowTables, Stretch};
 use super::{Case, Uploaded};
 use crate::result::Evidence;
 
@@ -52,8 +52,8 @@ impl<'a> Witness<'a> {
     /// What the row must be made with.
     pub(super) fn tables(&self) -> RowTables<'a> {
         let Uploaded { tables, kernel, .. } = self.uploaded;
-        let entry = tables.row_factor(self.row).map_or(0, RowFactor::get);
-        RowTables { geometry: tables.geometry(), entry, kernel }
+        let stretch = Stretch::of(tables, self.row).unwrap_or(Stretch::Factor(0));
+        RowTables { geometry: tables.geometry(), stretch, kernel }
     }
 
     /// Where it stands in the run.

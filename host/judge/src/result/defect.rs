@@ -32,6 +32,19 @@ pub enum Defect {
         /// What was uploaded.
         uploaded: u32,
     },
+    /// One bit of one entry of a grid.
+    GridEntryBitWrong {
+        /// The grid's column: 0 for offsets, 1 + s for node s.
+        column: usize,
+        /// The grid's row.
+        row: usize,
+        /// The bit.
+        bit: u32,
+        /// What is read.
+        reading: Reading,
+        /// Whether the grid that is read leads out of the row or the ring, where only part of a row can be foretold.
+        illegal: bool,
+    },
     /// One bit of one word of the kernel.
     KernelWordBitWrong {
         /// The node, 0 to 64.
@@ -231,6 +244,21 @@ pub enum Defect {
         /// What was read.
         read: i64,
         /// Words that are wrong in all.
+        wrong: usize,
+    },
+    /// An entry of a grid reads back as another.
+    GridEntryReadsWrong {
+        /// The grid's column: 0 for offsets, 1 + s for node s.
+        column: usize,
+        /// The grid's row.
+        row: usize,
+        /// The bits that differ.
+        bits: Vec<u32>,
+        /// What was uploaded.
+        uploaded: i64,
+        /// What was read.
+        read: i64,
+        /// Entries that are wrong in all.
         wrong: usize,
     },
     /// A data line of a table, as it reads back.

@@ -199,6 +199,13 @@ fn in_tables() -> Vec<Defect> {
             most: 16_000_001,
             uploaded: 16_000_100,
         },
+        Defect::GridEntryBitWrong {
+            column: 12,
+            row: 4,
+            bit: 6,
+            reading: reading(16_000_064, 16_000_000),
+            illegal: false,
+        },
         Defect::KernelWordBitWrong { node: 7, weight: "G4".to_owned(), bit: 3, reading: reading(-120, -128) },
         Defect::KernelWordWrong {
             node: 7,
@@ -255,6 +262,14 @@ fn read_back() -> impl Iterator<Item = Defect> {
             bits: vec![3],
             uploaded: -128,
             read: -120,
+            wrong: 1,
+        },
+        Defect::GridEntryReadsWrong {
+            column: 0,
+            row: 4,
+            bits: vec![6],
+            uploaded: 16_777_216,
+            read: 16_777_280,
             wrong: 1,
         },
         Defect::TableDataStuck { table, weight: None, bit: 7, value: 1 },

@@ -4,7 +4,7 @@ use super::findings::End;
 use super::plan::{Generation, SENSOR_BLANKING, Segment, Timing};
 use super::steps::Run;
 use crate::board::{Bank, BoardError, ReadBack, RefusalCode, RowTiming, Table};
-use crate::diagnosis;
+use crate::diagnosis::{self, Uploaded};
 use crate::result::{CheckName, Finding, Suspect};
 
 impl Run<'_> {
@@ -74,16 +74,17 @@ impl Run<'_> {
         generation: &Generation,
         wrong: &ReadBack,
     ) -> End {
-        let expected = match wrong.port.table {
-            Table::RowFactors | Table::Grid => generation.tables.to_bytes(),
-            Table::Kernel => generation.kernel.to_bytes(),
+        let Generation { number, tables, kernel } = generation;
+        let uploaded = Uploaded { generation: *number, tables, kernel };
+        let entries = match wrong.port.table {
+            Table::RowFactors | Table::Grid => tables.units().len(),
+            Table::Kernel => kernel.nodes().len(),
         };
-        let entries = expected.len() / wrong.port.table.entry_bytes();
         let found = match self.board.read_entries(bank, wrong.port, entries) {
             Ok(found) => found,
             Err(error) => return End::board(check, &error),
         };
-        let suspects = diagnosis::read_back(wrong.port.table, &expected, &found);
+        let suspects = diagnosis::read_back(&uploaded, wrong.port.table, &found);
         let finding = match suspects.first().cloned() {
             Some(Suspect { defect, account, .. }) => {
                 Finding::TableReadsWrong { defect: Box::new(defect), account }

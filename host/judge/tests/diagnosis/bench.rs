@@ -6,8 +6,8 @@ use std::iter;
 use halfrow::compare::Comparison;
 use halfrow::diagnosis::{Case, Uploaded, diagnose};
 use halfrow::result::{Evidence, FrameReport, FrameTiming, Suspect};
-use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
-use halfrow_model::{BitDepth, Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet, correct};
+use halfrow_mock::{BoardFault, Depth, GridShape, Node, Options, Player, RowIn, Settings, Tables};
+use halfrow_model::{BitDepth, Camera, Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet, correct};
 use halfrow_pipe::Parameters;
 
 use crate::scenes::{Scene, scene};
@@ -73,8 +73,13 @@ impl Bench {
 
     pub(crate) fn with(geometry: Geometry, radius: f64, ring: u16, judged: Interpolant) -> Self {
         let lens = Equidistant::from_radius(radius).unwrap();
-        let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
+        Self::of(TableSet::from_lens(geometry, &lens, None).unwrap(), ring, judged)
+    }
+
+    /// Frames that are corrected by `tables`.
+    pub(crate) fn of(tables: TableSet, ring: u16, judged: Interpolant) -> Self {
         tables.check_ring(ring.into()).unwrap();
+        let geometry = *tables.geometry();
         let decoy = tables.halved();
         let generations = [
             Generation { number: 1, tables: decoy, kernel: Kernel::from(Interpolant::Linear) },
@@ -172,9 +177,15 @@ impl Bench {
             _ => return,
         };
         let nodes: Vec<_> = generation.kernel.nodes().iter().copied().map(Node::from).collect();
-        tables.write_factors(0, &generation.tables.units().collect::<Vec<_>>()).unwrap();
+        let entries: Vec<_> = generation.tables.units().collect();
+        let shape =
+            generation.tables.shape().map(|shape| GridShape::new(shape.v() as u8, shape.k() as u8).unwrap());
+        match shape {
+            None => tables.write_factors(0, &entries).unwrap(),
+            Some(_) => tables.write_grid(0, &entries).unwrap(),
+        }
         tables.write_nodes(0, &nodes).unwrap();
-        tables.commit(generation.number, first_frame).unwrap();
+        tables.commit_shape(generation.number, first_frame, shape).unwrap();
     }
 
     fn settings(&self, timing: Timing) -> Settings {
@@ -273,6 +284,15 @@ pub(crate) fn wide() -> Bench {
 pub(crate) fn off_centre() -> Bench {
     let geometry = Geometry::new(192, 24, BitDepth::Eight, 150).unwrap();
     Bench::with(geometry, 30.0, 256, Interpolant::Keys)
+}
+
+/// Frames that are corrected by a grid: 7 nodes and 8 grid rows.
+pub(crate) fn grid() -> Bench {
+    let geometry = Geometry::centred(192, 24, BitDepth::Twelve).unwrap();
+    let lens = Equidistant::from_radius(130.0).unwrap();
+    let camera = Camera::new(geometry, lens.into(), (95.5, 11.5), 180.0).unwrap();
+    let shape = halfrow_model::GridShape::new(2, 5).unwrap();
+    Bench::of(camera.grid_by_formula(shape), 256, Interpolant::Hermite)
 }
 
 /// A fault must be explained by the part at `place`, wholly and by nothing else.

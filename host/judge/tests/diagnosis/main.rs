@@ -6,6 +6,7 @@
 
 mod altered;
 mod bench;
+mod grids;
 mod memory;
 mod read_back;
 mod scenes;

@@ -1,26 +1,48 @@
 //! Tables that read back wrong.
 
 use halfrow::board::Table;
-use halfrow::diagnosis::read_back;
+use halfrow::diagnosis::{Uploaded, read_back};
 use halfrow::result::Suspect;
-use halfrow_model::{Interpolant, Kernel};
+use halfrow_model::{BitDepth, Geometry, Interpolant, Kernel, TableSet};
 
-use crate::bench::narrow;
+use crate::bench::grid;
 
 fn factors() -> Vec<u32> {
     (0..100_u32).map(|row| 16_777_216 - row.wrapping_mul(2_654_435_761) % 5_000_000).collect()
 }
 
+/// What is said of `found`, read of `table` of a board with `tables` and Hermite's kernel.
+fn read(tables: &TableSet, table: Table, found: &[u8]) -> Vec<Suspect> {
+    let kernel = Kernel::from(Interpolant::Hermite);
+    read_back(&Uploaded { generation: 2, tables, kernel: &kernel }, table, found)
+}
+
+fn bytes(entries: &[u32]) -> Vec<u8> {
+    entries.iter().flat_map(|entry| entry.to_le_bytes()).collect()
+}
+
+fn of_factors() -> TableSet {
+    let geometry = Geometry::centred(64, 100, BitDepth::Twelve).unwrap();
+    TableSet::from_units(geometry, &factors()).unwrap()
+}
+
 fn read_factors(found: &[u32]) -> Vec<Suspect> {
-    let bytes = |factors: &[u32]| factors.iter().flat_map(|factor| factor.to_le_bytes()).collect::<Vec<_>>();
-    read_back(Table::RowFactors, &bytes(&factors()), &bytes(found))
+    read(&of_factors(), Table::RowFactors, &bytes(found))
+}
+
+/// A grid of 8 columns and 8 rows whose entries are changed.
+fn read_grid(change: impl Fn(usize, &mut u32)) -> Vec<Suspect> {
+    let tables = &grid().generations[1].tables;
+    let mut entries: Vec<_> = tables.units().collect();
+    entries.iter_mut().enumerate().for_each(|(index, entry)| change(index, entry));
+    read(tables, Table::Grid, &bytes(&entries))
 }
 
 fn read_nodes(change: impl Fn(usize, &mut [i16; 5])) -> Vec<Suspect> {
     let kernel = Kernel::from(Interpolant::Hermite);
     let mut nodes = kernel.nodes().to_vec();
     nodes.iter_mut().enumerate().for_each(|(node, weights)| change(node, weights));
-    read_back(Table::Kernel, &kernel.to_bytes(), &Kernel::from_nodes(nodes).unwrap().to_bytes())
+    read(&of_factors(), Table::Kernel, &Kernel::from_nodes(nodes).unwrap().to_bytes())
 }
 
 /// What is named first, and how much of the wrong words it explains.
@@ -31,8 +53,8 @@ fn first(suspects: &[Suspect]) -> (String, f64) {
 #[test]
 fn equal_tables_have_no_suspects() {
     assert_eq!(read_factors(&factors()), []);
-    let bytes = narrow().generations[1].tables.to_bytes();
-    assert_eq!(read_back(Table::RowFactors, &bytes, &bytes), []);
+    assert_eq!(read_grid(|_, _| ()), []);
+    assert_eq!(read_nodes(|_, _| ()), []);
 }
 
 #[test]
@@ -117,5 +139,31 @@ fn words_without_a_common_cause_are_counted() {
 fn a_table_of_another_length_is_told_by_its_length() {
     let suspects = read_factors(&factors()[..60]);
     assert_eq!(suspects[0].evidence(), "100 entries were uploaded and 60 came back");
-    assert_eq!(read_back(Table::Kernel, &[1, 2, 3], &[1, 2, 4]), []);
+    let half_a_node = read(&of_factors(), Table::Kernel, &[1, 2, 3]);
+    assert_eq!(half_a_node[0].evidence(), "65 entries were uploaded and 0 came back");
+}
+
+#[test]
+fn a_wrong_entry_of_a_grid_is_named_by_grid_row_and_node() {
+    for (entry, place) in [
+        (0, "grid row 0, offset, bit 12"),
+        (7, "grid row 7, offset, bit 12"),
+        (8, "grid row 0, node 0, bit 12"),
+        (8 * 5 + 3, "grid row 3, node 4, bit 12"),
+        (63, "grid row 7, node 6, bit 12"),
+    ] {
+        let suspects = read_grid(|index, word| *word ^= u32::from(index == entry) << 12);
+        assert_eq!(first(&suspects), (place.to_owned(), 1.0));
+        assert_eq!(suspects[0].part(), "grid entry");
+        assert!(suspects[0].evidence().contains("was read where"), "{}", suspects[0].evidence());
+    }
+}
+
+#[test]
+fn wrong_entries_of_a_grid_are_counted_or_named_by_their_line() {
+    let suspects = read_grid(|index, word| *word ^= u32::from(index % 30 == 19) << 3);
+    assert_eq!(first(&suspects), ("grid row 3, node 1, bit 3".to_owned(), 0.5));
+    assert!(suspects[0].evidence().contains("the first of 2 wrong words"), "{}", suspects[0].evidence());
+    let suspects = read_grid(|_, word| *word |= 1 << 9);
+    assert_eq!(first(&suspects), ("row table, data bit 9".to_owned(), 1.0));
 }

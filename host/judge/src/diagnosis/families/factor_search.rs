@@ -2,11 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use halfrow_model::RowFactor;
+use halfrow_model::{RowFactor, source_by_entry};
 
 use super::first_where;
 use super::row_factor::{FEW_ROWS, with_entry};
-use crate::diagnosis::datapath::RowTables;
+use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
@@ -26,7 +26,7 @@ fn any_value<'a>(witnesses: &Witnesses<'a>, row: usize) -> Option<Hypothesis<'a>
     let mut seen: Vec<_> = witnesses.sample(usize::MAX).filter(|witness| witness.row == row).collect();
     seen.sort_by_key(|witness| std::cmp::Reverse(witness.differences));
     let generation = seen.first()?.uploaded.generation;
-    let uploaded = seen.first()?.tables().entry;
+    let uploaded = seen.first()?.uploaded.tables.row_factor(row)?.get();
     seen.retain(|witness| witness.uploaded.generation == generation);
     seen.truncate(FRAMES);
     let factors = matching_factors(&seen)?;
@@ -60,7 +60,7 @@ fn matching_factors(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
             let mut start = *range.start();
             while start <= *range.end() {
                 budget = budget.checked_sub(1)?;
-                let end = last_alike(&RowTables { entry: start, ..first.tables() }, column, *range.end());
+                let end = last_alike(first, start, column, *range.end());
                 if seen.iter().all(|row| gives(row, start, column)) {
                     join(&mut kept, start..=end);
                 }
@@ -72,16 +72,16 @@ fn matching_factors(seen: &[&Witness<'_>]) -> Option<Vec<RangeInclusive<u32>>> {
     Some(ranges)
 }
 
-/// The largest factor up to `limit` that takes `column` from the same source as the tables' own: the source moves one way
-/// with the factor.
-fn last_alike(tables: &RowTables<'_>, column: usize, limit: u32) -> u32 {
-    let here = tables.source(column);
-    let differs = |entry: i64| RowTables { entry: entry as u32, ..*tables }.source(column) != here;
-    first_where(tables.entry.into()..i64::from(limit) + 1, differs) as u32 - 1
+/// The largest factor up to `limit` that takes `column` from the same source as `factor`: the source moves one way with the
+/// factor.
+fn last_alike(row: &Witness<'_>, factor: u32, column: usize, limit: u32) -> u32 {
+    let source = |factor| source_by_entry(row.geometry(), factor, column);
+    let here = source(factor);
+    first_where(factor.into()..i64::from(limit) + 1, |other| source(other as u32) != here) as u32 - 1
 }
 
 fn gives(row: &Witness<'_>, entry: u32, column: usize) -> bool {
-    let tables = RowTables { entry, ..row.tables() };
+    let tables = RowTables { stretch: Stretch::Factor(entry), ..row.tables() };
     row.found.get(column) == Some(&tables.output(row.samples(), column))
 }
 

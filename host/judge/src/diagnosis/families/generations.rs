@@ -6,7 +6,7 @@ use halfrow_model::{Kernel, NODES, RowFactor};
 
 use super::row_factor::FEW_ROWS;
 use crate::diagnosis::Case;
-use crate::diagnosis::datapath::RowTables;
+use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::{Defect, MadeWith, StaleFrames};
@@ -63,15 +63,19 @@ fn tables<'b>(
     row: &Witness<'b>,
 ) -> Option<RowTables<'b>> {
     let uploaded = |generation| case.uploaded.iter().rfind(|uploaded| uploaded.generation == generation);
-    let row_factor = match made.factors {
-        Some(generation) => uploaded(generation)?.tables.row_factor(row.row)?,
-        None => RowFactor::ONE,
+    let width = row.geometry().width();
+    let stretch = match made.factors {
+        Some(generation) => {
+            let tables = uploaded(generation)?.tables;
+            Stretch::of(tables, row.row).filter(|_| tables.geometry().width() == width)?
+        }
+        None => Stretch::Factor(RowFactor::ONE.get()),
     };
     let kernel = match made.kernel {
         Some(generation) => uploaded(generation)?.kernel,
         None => blank,
     };
-    Some(RowTables { geometry: row.geometry(), entry: row_factor.get(), kernel })
+    Some(RowTables { geometry: row.geometry(), stretch, kernel })
 }
 
 fn defect(witnesses: &Witnesses<'_>, frames: BTreeMap<usize, Vec<MadeWith>>) -> Defect {

@@ -32,10 +32,11 @@ fn any_value<'a>(
     let mut values = VALUES;
     let rows = witnesses.sample(ROWS).filter(|row| row.uploaded.generation == uploaded.generation);
     for row in rows {
+        let tables = row.tables();
         for column in 0..row.found.len() {
-            let node = row.tables().source(column).node;
+            let node = tables.source(column).node;
             if node == word.node || node + 1 == word.node {
-                values = narrowed(values, row, column, word)?;
+                values = narrowed(values, row, &tables, column, word)?;
             }
         }
     }
@@ -48,12 +49,18 @@ fn any_value<'a>(
 }
 
 /// Those of the values that give the sample that was found; none if none does. An output moves one way with a weight.
-fn narrowed(values: Range<i64>, row: &Witness<'_>, column: usize, word: KernelWord) -> Option<Range<i64>> {
+fn narrowed(
+    values: Range<i64>,
+    row: &Witness<'_>,
+    tables: &RowTables<'_>,
+    column: usize,
+    word: KernelWord,
+) -> Option<Range<i64>> {
     let found = *row.found.get(column)?;
     let output = |value: i64| {
         let kernel = word.replaced(row.uploaded.kernel, value as i16);
         kernel.map_or(found, |kernel| {
-            RowTables { kernel: &kernel, ..row.tables() }.output(row.samples(), column)
+            RowTables { kernel: &kernel, ..tables.clone() }.output(row.samples(), column)
         })
     };
     let rises = output(values.start) <= output(values.end - 1);

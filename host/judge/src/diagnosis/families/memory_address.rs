@@ -6,13 +6,10 @@
 
 use std::ops::Range;
 
-use crate::diagnosis::datapath::Wiring;
+use crate::diagnosis::datapath::{LOOK_AHEAD, Wiring};
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::{Counting, Defect};
-
-/// Columns that the newest sample is ahead of the middle of the row when the first output is read.
-const LOOK_AHEAD: usize = 3;
 
 /// From where the ring's addresses are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,6 +3,7 @@
 mod arithmetic;
 mod factor_search;
 mod generations;
+mod grid_entry;
 mod kernel_search;
 mod kernel_word;
 mod memory_address;
@@ -17,18 +18,19 @@ mod taps;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use halfrow_model::Kernel;
+use halfrow_model::{Kernel, TableSet};
 
 use super::Uploaded;
-use super::datapath::RowTables;
-use super::hypothesis::Hypothesis;
-use super::witnesses::Witnesses;
+use super::datapath::{RowTables, Stretch};
+use super::hypothesis::{Hypothesis, Prediction};
+use super::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
 
 /// The defects that the pattern of differences leaves possible, those of the smallest parts first.
 pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
     [
         row_factor::propose,
+        grid_entry::propose,
         kernel_word::propose,
         memory_data::propose,
         memory_address::propose,
@@ -65,6 +67,23 @@ fn with_kernels<'a>(defect: Defect, kernels: BTreeMap<u8, Kernel>) -> Hypothesis
         let kernel = kernels.get(&witness.uploaded.generation)?;
         Some(RowTables { kernel, ..witness.tables() }.corrected(witness.samples()).into())
     })
+}
+
+/// Rows made with these grids on a board with a ring of `ring` samples, by generation; other generations are as they should
+/// be.
+fn with_grids<'a>(defect: Defect, grids: BTreeMap<u8, TableSet>, ring: usize) -> Hypothesis<'a> {
+    Hypothesis::new(defect, move |witness| {
+        let tables = with_grid(witness, grids.get(&witness.uploaded.generation)?)?;
+        let samples = tables.corrected(witness.samples());
+        Some(Prediction::partly(samples, tables.foretold(ring)))
+    })
+}
+
+/// What a row is made with by another grid; none where that leaves it as it should be.
+fn with_grid<'a>(witness: &Witness<'a>, grid: &TableSet) -> Option<RowTables<'a>> {
+    let own = witness.tables();
+    let stretch = Stretch::of(grid, witness.row).filter(|stretch| *stretch != own.stretch)?;
+    Some(RowTables { stretch, ..own })
 }
 
 /// The first number of a range from which on `holds` is true, found by bisection; the range's end if it never is.

@@ -3,7 +3,7 @@
 use halfrow_model::RowFactor;
 
 use super::table_word::{Word, changed, inversions, reading};
-use crate::diagnosis::datapath::RowTables;
+use crate::diagnosis::datapath::{RowTables, Stretch};
 use crate::diagnosis::hypothesis::{Hypothesis, Prediction};
 use crate::diagnosis::witnesses::{Witness, Witnesses};
 use crate::result::Defect;
@@ -42,5 +42,5 @@ fn is_illegal(read: &[Word]) -> bool {
 
 /// The witness's row made with another entry of the table.
 pub(super) fn with_entry(witness: &Witness<'_>, entry: u32) -> Prediction {
-    RowTables { entry, ..witness.tables() }.corrected(witness.samples()).into()
+    RowTables { stretch: Stretch::Factor(entry), ..witness.tables() }.corrected(witness.samples()).into()
 }

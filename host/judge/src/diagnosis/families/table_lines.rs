@@ -32,8 +32,9 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
 fn factor_data<'a>(line: StuckLine) -> Hypothesis<'a> {
     let defect = Defect::RowTableDataStuck { bit: line.bit, value: line.value() };
     Hypothesis::new(defect, move |witness| {
-        let entry = line.carry(witness.tables().entry);
-        (entry != witness.tables().entry).then(|| with_entry(witness, entry))
+        let uploaded = witness.uploaded.tables.row_factor(witness.row)?.get();
+        let entry = line.carry(uploaded);
+        (entry != uploaded).then(|| with_entry(witness, entry))
     })
 }
 

@@ -10,7 +10,10 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
         Defect::TableLengthWrong { uploaded, read, .. } => {
             return format!("{uploaded} entries were uploaded and {read} came back");
         }
-        Defect::TableWordWrong { uploaded, read, wrong, .. } => return word(*read, *uploaded, *wrong),
+        Defect::TableWordWrong { uploaded, read, wrong, .. }
+        | Defect::GridEntryReadsWrong { uploaded, read, wrong, .. } => {
+            return word(*read, *uploaded, *wrong);
+        }
         _ => {}
     }
     let defect = words(defect).defect;

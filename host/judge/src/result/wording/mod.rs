@@ -68,19 +68,12 @@ pub fn technician(defect: &Defect) -> String {
 }
 
 fn words(defect: &Defect) -> Words {
+    tables::as_seen(defect).unwrap_or_else(|| elsewhere(defect))
+}
+
+/// The words of defects that are in no single word of a table.
+fn elsewhere(defect: &Defect) -> Words {
     match defect {
-        Defect::RowFactorBitWrong { row, bit, reading, above_one } => {
-            tables::row_bit(*row, *bit, reading, *above_one)
-        }
-        Defect::RowFactorWrong { row, generation, least, most, uploaded } => {
-            tables::row_value(*row, *generation, (*least, *most), *uploaded)
-        }
-        Defect::KernelWordBitWrong { node, weight, bit, reading } => {
-            tables::word_bit(*node, weight, *bit, reading)
-        }
-        Defect::KernelWordWrong { node, weight, generation, least, most, uploaded } => {
-            tables::word_value((*node, weight), *generation, (*least, *most), *uploaded)
-        }
         Defect::LineMemoryDataStuck { bit, value } => lines::line_memory_data(*bit, *value),
         Defect::OutputDataStuck { bit, value } => lines::output_data(*bit, *value),
         Defect::LineMemoryAddressStuck { bit, counting } => lines::line_memory_address(*bit, *counting),

@@ -3,12 +3,32 @@
 use super::{LOGIC, MEMORY, Words, memory};
 use crate::result::{Defect, Memory, Reading};
 
-pub(super) fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
+/// The words of what samples show of single words of tables.
+pub(super) fn as_seen(defect: &Defect) -> Option<Words> {
+    Some(match defect {
+        Defect::RowFactorBitWrong { row, bit, reading, above_one } => {
+            row_bit(*row, *bit, reading, *above_one)
+        }
+        Defect::RowFactorWrong { row, generation, least, most, uploaded } => {
+            row_value(*row, *generation, (*least, *most), *uploaded)
+        }
+        Defect::GridEntryBitWrong { column, row, bit, reading, illegal } => {
+            grid_bit((*column, *row), *bit, reading, *illegal)
+        }
+        Defect::KernelWordBitWrong { node, weight, bit, reading } => word_bit(*node, weight, *bit, reading),
+        Defect::KernelWordWrong { node, weight, generation, least, most, uploaded } => {
+            word_value((*node, weight), *generation, (*least, *most), *uploaded)
+        }
+        _ => return None,
+    })
+}
+
+fn row_bit(row: usize, bit: u32, reading: &Reading, above_one: bool) -> Words {
     let illegal = if above_one { ", above 1, where only part of the row can be foretold," } else { "" };
     row_factor(row, format!("row {row}'s factor, bit {bit}"), format!("{}{illegal}", read(reading)))
 }
 
-pub(super) fn row_value(row: usize, generation: u8, values: (u32, u32), uploaded: u32) -> Words {
+fn row_value(row: usize, generation: u8, values: (u32, u32), uploaded: u32) -> Words {
     let values = (i64::from(values.0), i64::from(values.1));
     row_factor(row, format!("row {row}'s factor"), read_value(values, uploaded.into(), generation))
 }
@@ -25,11 +45,34 @@ fn row_factor(row: usize, place: String, defect: String) -> Words {
     }
 }
 
-pub(super) fn word_bit(node: usize, weight: &str, bit: u32, reading: &Reading) -> Words {
+fn grid_bit(entry: (usize, usize), bit: u32, reading: &Reading, illegal: bool) -> Words {
+    let illegal =
+        if illegal { ", which leads out of the row, where only part of it can be foretold," } else { "" };
+    let (column, row) = entry;
+    Words {
+        part: "grid entry",
+        place: format!("{}, bit {bit}", grid_entry(entry)),
+        defect: format!("{}{illegal}", read(reading)),
+        designer: format!(
+            "Check entry ({column}, {row}) of the grid as the datapath reads it, and the memory that holds it."
+        ),
+        technician: MEMORY,
+    }
+}
+
+/// "grid row 4, node 11"
+fn grid_entry((column, row): (usize, usize)) -> String {
+    match column.checked_sub(1) {
+        None => format!("grid row {row}, offset"),
+        Some(node) => format!("grid row {row}, node {node}"),
+    }
+}
+
+fn word_bit(node: usize, weight: &str, bit: u32, reading: &Reading) -> Words {
     kernel_word(node, weight, &format!(", bit {bit}"), read(reading))
 }
 
-pub(super) fn word_value(word: (usize, &str), generation: u8, values: (i64, i64), uploaded: i16) -> Words {
+fn word_value(word: (usize, &str), generation: u8, values: (i64, i64), uploaded: i16) -> Words {
     kernel_word(word.0, word.1, "", read_value(values, uploaded.into(), generation))
 }
 
@@ -67,6 +110,10 @@ pub(super) fn read_back(defect: &Defect) -> Option<Words> {
         }
         Defect::TableWordWrong { table, entry, weight, bits, .. } => {
             (table, word(*entry, weight.as_deref(), bits), String::new())
+        }
+        Defect::GridEntryReadsWrong { column, row, bits, .. } => {
+            let place = format!("{}, {}", grid_entry((*column, *row)), labelled(bits));
+            return Some(Words { part: "grid entry", ..of_table(Memory::Rows, place, String::new()) });
         }
         Defect::TableDataStuck { table, weight, bit, value } => {
             let weight = weight.as_ref().map_or_else(String::new, |weight| format!(", weight {weight}"));
@@ -107,7 +154,12 @@ fn word(entry: usize, weight: Option<&str>, bits: &[u32]) -> String {
         None => format!("row {entry}'s factor"),
         Some(weight) => format!("kernel node {entry}, weight {weight}"),
     };
+    format!("{name}, {}", labelled(bits))
+}
+
+/// "bits 3, 7"
+fn labelled(bits: &[u32]) -> String {
     let label = if bits.len() == 1 { "bit" } else { "bits" };
     let bits: Vec<_> = bits.iter().map(u32::to_string).collect();
-    format!("{name}, {label} {}", bits.join(", "))
+    format!("{label} {}", bits.join(", "))
 }

@@ -1,0 +1,143 @@
+//! Boards that correct by a grid: what is named for rows is named for them, and a wrong entry by its grid row and node.
+
+use halfrow::result::Suspect;
+use halfrow_model::{Kernel, correct};
+
+use crate::bench::{Bench, assert_named, fault, grid};
+use crate::scenes::Random;
+
+/// Grid rows, and columns with that of the offsets, of [`grid`].
+const ROWS: usize = 8;
+const COLUMNS: usize = 8;
+
+/// The fault of a bit of the entry (c, b), which reads back right, and the place that must be named.
+fn wrong_entry(column: usize, row: usize, bit: u32) -> (String, String) {
+    let entry = match column {
+        0 => "offset".to_owned(),
+        node => format!("node {}", node - 1),
+    };
+    let text = format!("row-factor,row={},bit={bit},hidden=true", column * ROWS + row);
+    (text, format!("grid row {row}, {entry}, bit {bit}"))
+}
+
+#[test]
+fn a_bit_of_a_grids_entry_is_named() {
+    let bench = grid();
+    for (column, row, bit) in [
+        (0, 0, 14),
+        (0, 4, 18),
+        (1, 2, 16),
+        (1, 5, 13),
+        (2, 3, 17),
+        (4, 1, 17),
+        (4, 6, 15),
+        (6, 4, 19),
+        (7, 3, 18),
+    ] {
+        let (text, place) = wrong_entry(column, row, bit);
+        assert_named(&bench, &text, &place);
+    }
+}
+
+/// Every entry that more than a corner of the frame is made of, by a bit that moves samples and one that hardly does.
+#[test]
+fn no_wrong_entry_is_named_for_certain() {
+    let bench = grid();
+    let mut random = Random::new(16);
+    let (mut alone, mut tried) = (0, 0);
+    for _ in 0..60 {
+        let mut below = |bound: usize| random.below(bound as u64) as usize;
+        let (text, place) = wrong_entry(below(COLUMNS), below(ROWS), below(23) as u32);
+        let suspects = bench.diagnose(fault(&text));
+        let places: Vec<_> = suspects.iter().map(Suspect::place).collect();
+        let [first, others @ ..] = &suspects[..] else { continue };
+        let unsure = first.explained < 1.0 || first.evidence().contains("not certain");
+        assert!(places[0] == place && others.is_empty() || unsure, "{text}: {suspects:#?}");
+        tried += 1;
+        alone += usize::from(places == [place]);
+    }
+    assert!(4 * alone >= 3 * tried && tried >= 30, "{alone} of {tried}");
+}
+
+/// The row leads out of the frame, and which samples come then is not defined.
+#[test]
+fn the_highest_bits_of_a_grids_entry_are_named_first() {
+    for (column, row, bit) in [(0, 3, 23), (0, 5, 24), (1, 4, 24), (3, 2, 23), (5, 5, 24)] {
+        let (text, place) = wrong_entry(column, row, bit);
+        let suspects = grid().diagnose(fault(&text));
+        assert_eq!(suspects[0].place(), place, "{suspects:#?}");
+    }
+}
+
+#[test]
+fn a_grids_entry_that_drifts_during_the_run_is_named_with_its_onset() {
+    let bench = grid();
+    let mut seen = bench.play(Some(fault("drifting-table,after=100,row=28,bit=18")));
+    seen.keep_all(bench.sound_frames());
+    let suspects = bench.judge(&seen);
+    assert_eq!(suspects[0].place(), "grid row 4, node 2, bit 18", "{suspects:#?}");
+    assert_eq!((suspects.len(), suspects[0].explained), (1, 1.0));
+    assert!(suspects[0].evidence().contains("set in during the run"), "{}", suspects[0].evidence());
+}
+
+#[test]
+fn lines_taps_and_weights_are_named_behind_a_grid() {
+    for (text, place) in [
+        ("stuck-data,bit=5,value=1", "line memory, data bit 5, stuck at 1"),
+        ("stuck-data,bit=11,value=0", "line memory, data bit 11, stuck at 0"),
+        ("stuck-address,bit=3", "line memory, address bit 3"),
+        ("stuck-address,bit=6", "line memory, address bit 6"),
+        ("kernel-word,node=16,weight=g4,bit=12,hidden=true", "kernel node 16, weight g4, bit 12"),
+        ("tap-offset,columns=1", "the window's read address, one column to the right"),
+        ("tap-offset,columns=-3", "the window's read address, 3 columns to the left"),
+        ("no-rounding", "the output's rounding"),
+        ("dead-tap,tap=4", "tap G4, stuck at 0"),
+        ("dead-tap,tap=1,reads=5", "tap R1, reading R5"),
+    ] {
+        assert_named(&grid(), text, place);
+    }
+}
+
+#[test]
+fn an_address_line_is_named_behind_a_grid_although_the_ring_did_not_begin_with_the_run() {
+    let bench = Bench { rows_before: 1, ..grid() };
+    assert_named(&bench, "stuck-address,bit=5", "line memory, address bit 5");
+}
+
+#[test]
+fn a_weight_of_any_value_is_found_behind_a_grid() {
+    let bench = grid();
+    let mut seen = bench.play(None);
+    for evidence in bench.sound_frames().into_iter().enumerate() {
+        let (index, (generation, input, expected)) = evidence;
+        let made = &bench.generations[usize::from(generation) - 1];
+        let mut nodes = made.kernel.nodes().to_vec();
+        nodes[16][2] = -1234;
+        let found = correct(&made.tables, &Kernel::from_nodes(nodes).unwrap(), &input).unwrap();
+        if generation == 2 {
+            seen.frames.truncate(index);
+            seen.take(generation, input, expected, found);
+        }
+    }
+    let suspects = bench.judge(&seen);
+    assert_eq!(suspects[0].place(), "kernel node 16, weight g4", "{suspects:#?}");
+    assert_eq!(suspects[0].explained, 1.0, "{suspects:#?}");
+}
+
+#[test]
+fn stale_grids_are_named_frame_by_frame() {
+    for name in ["stale-table", "stale-table-hidden"] {
+        let suspects = grid().diagnose(fault(name));
+        let [only] = &suspects[..] else { panic!("{suspects:#?}") };
+        assert_eq!((only.part(), only.explained), ("stale tables", 1.0));
+        for clause in ["frame 0 as it went in", "with the tables of generation 1 instead of 2"] {
+            assert!(only.evidence().contains(clause), "{}", only.evidence());
+        }
+    }
+}
+
+#[test]
+fn a_sound_board_with_a_grid_has_no_suspects() {
+    let bench = grid();
+    assert_eq!(bench.judge(&bench.play(None)), []);
+}
