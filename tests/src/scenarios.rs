@@ -1,11 +1,13 @@
 //! All scenarios, as data: sound boards, broken boards, poor links, and calls that fit no board.
 
 mod broken_boards;
+mod broken_grids;
 mod misfits;
 mod poor_links;
 mod sound_boards;
 
 pub use broken_boards::BROKEN_BOARDS;
+pub use broken_grids::BROKEN_GRIDS;
 pub use misfits::MISFITS;
 pub use poor_links::{HOPELESS_LINKS, REPAIRED_LINKS, SLOW_LINKS};
 pub use sound_boards::SOUND_BOARDS;
@@ -14,7 +16,8 @@ use crate::scenario::{On, Scenario};
 
 /// Every scenario there is.
 pub fn all() -> impl Iterator<Item = &'static Scenario> {
-    [SOUND_BOARDS, BROKEN_BOARDS, REPAIRED_LINKS, SLOW_LINKS, HOPELESS_LINKS, MISFITS].into_iter().flatten()
+    let boards = [SOUND_BOARDS, BROKEN_BOARDS, BROKEN_GRIDS, MISFITS];
+    boards.into_iter().chain([REPAIRED_LINKS, SLOW_LINKS, HOPELESS_LINKS]).flatten()
 }
 
 /// What a run ends with when nothing is wrong.

@@ -7,7 +7,7 @@ use halfrow::board::deadlines::Step;
 use halfrow_tests::program::halfrow;
 use halfrow_tests::scenario::{Scenario, boards, run_all};
 use halfrow_tests::scenarios::{
-    self, BROKEN_BOARDS, HOPELESS_LINKS, MISFITS, REPAIRED_LINKS, SLOW_LINKS, SOUND_BOARDS,
+    self, BROKEN_BOARDS, BROKEN_GRIDS, HOPELESS_LINKS, MISFITS, REPAIRED_LINKS, SLOW_LINKS, SOUND_BOARDS,
 };
 use serde_json::Value;
 
@@ -36,6 +36,13 @@ fn sound_boards_pass_with_every_sample_compared() {
 #[test]
 fn broken_boards_fail_and_the_broken_part_is_named() {
     for report in on_all_boards(BROKEN_BOARDS) {
+        assert!(report["remedy"].is_string() || report["exit_code"] == 6, "{}", report["board"]["target"]);
+    }
+}
+
+#[test]
+fn broken_boards_fail_and_the_broken_part_is_named_behind_a_grid_as_well() {
+    for report in on_all_boards(BROKEN_GRIDS) {
         assert!(report["remedy"].is_string() || report["exit_code"] == 6, "{}", report["board"]["target"]);
     }
 }
@@ -89,10 +96,15 @@ fn every_fault_that_the_program_lists_has_a_scenario() {
         listed["faults"].as_array().unwrap().iter().filter_map(|fault| fault["name"].as_str()).collect();
     let names: Vec<_> = halfrow_mock::catalogue().map(|fault| fault.name).collect();
     assert_eq!(listed, names);
-    let has_scenario = |name: &&&str| {
-        let fault = format!("fault={name}");
-        scenarios::all().any(|scenario| scenario.options.split(',').any(|option| option == fault))
-    };
-    let missing: Vec<_> = names.iter().filter(|name| !has_scenario(name)).collect();
+    let missing: Vec<_> = names.iter().filter(|name| !is_in(scenarios::all(), name)).collect();
     assert!(missing.is_empty(), "no scenario for {missing:?}");
+    let board = halfrow_mock::FAULTS.iter().map(|fault| fault.info.name);
+    let missing: Vec<_> = board.filter(|name| !is_in(BROKEN_GRIDS.iter(), name)).collect();
+    assert!(missing.is_empty(), "no scenario behind a grid for {missing:?}");
+}
+
+/// Whether one of the scenarios has the fault called `name`.
+fn is_in(mut scenarios: impl Iterator<Item = &'static Scenario>, name: &str) -> bool {
+    let fault = format!("fault={name}");
+    scenarios.any(|scenario| scenario.options.split(',').any(|option| option == fault))
 }

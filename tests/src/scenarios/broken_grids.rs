@@ -1,0 +1,76 @@
+//! Broken boards that correct by a grid: every fault is found as it is with one factor a row.
+
+use super::expect;
+use crate::scenario::Scenario;
+
+/// Every fault of the board that the mock has, once more with a grid of 5 rows and 7 nodes.
+pub const BROKEN_GRIDS: &[Scenario] = &[
+    fails("a data line behind a grid", ",fault=stuck-data", "data bit 5, stuck at 1"),
+    fails("an address line behind a grid", ",fault=stuck-address", "line memory, address bit 3"),
+    fails("an offset", ",fault=row-factor", "grid row 3, offset, bit 18"),
+    fails("an offset that reads back right", ",fault=row-factor,hidden=true", "grid row 3, offset, bit 18"),
+    fails("a node", ",fault=row-factor,row=23,bit=24", "grid row 3, node 3, bit 24"),
+    fails(
+        "a node that reads back right",
+        ",fault=row-factor,row=23,bit=14,hidden=true",
+        "grid row 3, node 3, bit 14",
+    ),
+    fails(
+        "a node in the only bank",
+        ",table-banks=1,fault=row-factor,row=32,bit=17,hidden=true",
+        "grid row 2, node 5, bit 17",
+    ),
+    fails("a kernel word behind a grid", ",fault=kernel-word", "kernel node 16, weight g4, bit 12"),
+    fails(
+        "a kernel word that reads back right behind a grid",
+        ",fault=kernel-word,hidden=true",
+        "kernel node 16, weight g4, bit 12",
+    ),
+    fails("a window beside its place behind a grid", ",fault=tap-offset", "one column to the right"),
+    fails("no rounding behind a grid", ",fault=no-rounding", "the output's rounding"),
+    fails("a dead tap behind a grid", ",fault=dead-tap", "tap G4, stuck at 0"),
+    fails("a tap that copies another behind a grid", ",fault=dead-tap,tap=1,reads=5", "tap R1, reading R5"),
+    fails("a pipeline that is too long behind a grid", ",fault=late", "took 109 pixel clocks"),
+    fails("a false claim of latency behind a grid", ",fault=wrong-latency-claim", "the board claims 109"),
+    fails(
+        "a lost row behind a grid",
+        ",fault=lost-row",
+        "row 3 of frame 0 went into the board and never came out",
+    ),
+    fails("stale grids", ",fault=stale-table", "names the tables of generation 0"),
+    fails("stale grids under a new name", ",fault=stale-table-hidden", "the choice of the table bank"),
+    fails(
+        "a grid that drifts",
+        ",fault=drifting-table,row=17,bit=3",
+        "the tables changed during the run: grid row 2, node 2, bit 3",
+    ),
+    fails(
+        "a commit of a grid that is not checked",
+        ",fault=unchecked-commit",
+        "the board must refuse Commit",
+    ),
+    fails("a row that changes on its way to a grid", ",fault=spoilt-row", "not computed wrongly"),
+    fails(
+        "a path that is too slow behind a grid",
+        ",fault=slow-path,one-in=2000",
+        "fails at the full pixel clock, seen in bit 5",
+    ),
+    fails("a bit that flips when warm behind a grid", ",fault=warm-bit,row=1,bit=11", "in row 1 first"),
+    fails("grids that change late", ",fault=late-swap", "the change of table banks between two frames"),
+    fails("a pause that is not counted behind a grid", ",fault=hidden-pause", "pixel clocks of most latency"),
+    expect(
+        "ERROR",
+        6,
+        "another datapath than one of grids",
+        ",fault=wrong-datapath",
+        GRID,
+        "this program judges datapath 1",
+    ),
+];
+
+/// Frames as wide as they must be to follow each other without blanking.
+const GRID: &[&str] = &["--width", "192", "--height", "24", "--radius", "130", "--projection", "exact"];
+
+const fn fails(name: &'static str, options: &'static str, sentence: &'static str) -> Scenario {
+    expect("FAIL", 1, name, options, GRID, sentence)
+}
