@@ -30,8 +30,9 @@ module halfrow_camera_bench;
         .frame_valid(frame_valid), .row_missed(missed));
 
     halfrow_core core (
-        .clk(clk), .rst(rst), .enable(1'b1), .width(width[11:0]), .centre2(width[12:0] - 13'd1), .depth(2'd2),
-        .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared),
+        .clk(clk), .rst(rst), .enable(1'b1), .width(width[11:0]), .last_row(11'd0), .centre2(width[12:0] - 13'd1), .depth(2'd2),
+        .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepare_shape(4'd0),
+        .prepared(prepared),
         .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample),
         .out_valid(out_valid), .out_start(out_start), .out_last(out_last), .out_sample(out_sample),
         .row_short(short), .row_long(long), .row_unprepared(unprepared),

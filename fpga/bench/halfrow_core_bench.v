@@ -30,8 +30,9 @@ module halfrow_core_check #(parameter TAPS = 7) (input wire start, output reg do
     wire [79:0] node_port_0, node_port_1;
 
     halfrow_core #(.TAPS(TAPS)) core (
-        .clk(clk), .rst(rst), .enable(enable), .width(12'd64), .centre2(centre2), .depth(depth),
-        .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared),
+        .clk(clk), .rst(rst), .enable(enable), .width(12'd64), .last_row(11'd0), .centre2(centre2), .depth(depth),
+        .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank),
+        .prepare_shape(4'd0), .prepared(prepared),
         .in_valid(in_valid), .in_start(in_start), .in_sample(in_sample),
         .out_valid(out_valid), .out_start(out_start), .out_last(out_last), .out_sample(out_sample),
         .row_short(row_short), .row_long(row_long), .row_unprepared(row_unprepared),

@@ -30,8 +30,11 @@ struct Bench {
     std::deque<Expected> expected;
     uint64_t pixel_clock = 0, strict_from = 0, outputs = 0;
     uint32_t crc = 0;
+    int64_t clock = 0, prepared_since = 0;
     int shorts = 0, longs = 0, unprepared = 0;
     static constexpr int NEVER = -1;
+    int shapes[2] = {0, 0};                  // of the banks, as prepare_shape has them
+    int patience = 24;                       // clocks that a row may take to be prepared
     struct { int column = NEVER, bank, row; } next; // the row behind is prepared with this column of the one that is played
 
     int draw(int count) { return random() % count; }
@@ -48,6 +51,9 @@ struct Bench {
         core.clk = 1;
         core.eval();
         core.prepare = 0;
+        clock++;
+        if (!core.prepared)
+            prepared_since = clock + 1;
         shorts += core.row_short;
         longs += core.row_long;
         unprepared += core.row_unprepared;
@@ -158,6 +164,7 @@ struct Bench {
         core.prepare = 1;
         core.prepare_row = row;
         core.prepare_bank = bank;
+        core.prepare_shape = shapes[bank];
     }
 
     void prepare(int bank, int row) {
@@ -167,18 +174,30 @@ struct Bench {
 
     void await_prepared() {
         for (int waited = 0; !core.prepared; waited++) {
-            if (waited == 24)
+            if (waited == patience)
                 fail("the row is not prepared");
             edge();
         }
     }
 
+    // Clocks by which the row was prepared later than now.
+    int64_t late() {
+        await_prepared();
+        return prepared_since - clock;
+    }
+
     void expect(const Row &row, int64_t step, const Kernel &kernel) {
+        Row outputs;
+        for (int j = 0; j < frame.width; j++)
+            outputs.push_back(output(frame, step, kernel, row, j));
+        expect(outputs);
+    }
+
+    void expect(const Row &outputs) {
         if (strict_from == UNKNOWN)
             strict_from = pixel_clock + frame.width / 2 + LATENCY;
         for (int j = 0; j < frame.width; j++)
-            expected.push_back({pixel_clock + j + frame.width / 2 + LATENCY, output(frame, step, kernel, row, j), j == 0,
-                                j == frame.width - 1});
+            expected.push_back({pixel_clock + j + frame.width / 2 + LATENCY, outputs[j], j == 0, j == frame.width - 1});
     }
 
     void play(const Row &row, int count) {

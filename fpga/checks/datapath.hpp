@@ -36,8 +36,9 @@ inline int64_t tap(const Row &row, int64_t column) {
     return row[column < 0 ? parity : column >= width ? width - 2 + parity : column];
 }
 
-inline int output(const Frame &frame, int64_t step, const Kernel &kernel, const Row &row, int64_t column) {
-    int64_t q = floor_shift(source(frame, step, column) + 2048, 12), n = floor_shift(q, 13);
+// The output of a column whose kernel position is q.
+inline int output_at(const Frame &frame, int64_t q, const Kernel &kernel, const Row &row, int64_t column) {
+    int64_t n = floor_shift(q, 13);
     int64_t base = (n - column) % 2 == 0 ? n : n - 1, x = q - base * 8192, node = x / 256, fraction = x % 256;
     int64_t weight[5], near[7];
     for (int k = 0; k < 5; k++)
@@ -48,6 +49,10 @@ inline int output(const Frame &frame, int64_t step, const Kernel &kernel, const 
                 + weight[4] * (near[6] - near[2]) + weight[1] * (near[1] - near[3]) + weight[3] * (near[5] - near[3]);
     int64_t rounded = floor_shift(sum + 8192, 14), largest = (1 << frame.bits) - 1;
     return rounded < 0 ? 0 : rounded > largest ? largest : rounded;
+}
+
+inline int output(const Frame &frame, int64_t step, const Kernel &kernel, const Row &row, int64_t column) {
+    return output_at(frame, floor_shift(source(frame, step, column) + 2048, 12), kernel, row, column);
 }
 
 inline int64_t step_of(int row, int height, double radius) {

@@ -34,7 +34,8 @@ def expected(page):
         numbers[f"REFUSAL_{constant(name)}"] = int(code)
     tags = section(page, "01 CAPABILITIES", "02")
     for tag, value in re.findall(r"^\| ([0-9a-f]{2}) \| ([^|]+) \|", tags, re.MULTILINE):
-        numbers["TAG_" + (constant(value.split()[1].strip(",")) if value.startswith("`") else "NAME")] = int(tag, 16)
+        name = "TAG_" + (constant(value.split()[1].strip(",")) if value.startswith("`") else "NAME")
+        numbers[name if name not in numbers else name.replace("TAG_", "TAG_FURTHER_")] = int(tag, 16)
     for group, row, names in [("CLOCK", "clock_source", {"the host's own": "HOST", "the sensor's PIXCLK": "PIXCLK", "a PLL": "PLL"}),
                               ("NATURE", "nature", {name: name.upper() for name in ("hardware", "simulation", "mock")})]:
         text = re.search(rf"`u8` {row} \| (.*?) \|$", tags, re.MULTILINE)[1]
@@ -62,13 +63,14 @@ def alone(page):
         "WIRE_VERSION": said(r"`u8` version \| (\d+)\."),
         "WIRE_MAGIC": int.from_bytes(magic, "little"),
         "DATAPATH_ID": int(re.search(r"\*\*datapath id\*\* of this page is \*\*(\d+)\*\*", DATAPATH.read_text())[1]),
+        "GRID_DATAPATH_ID": said(r"a further datapath of \[DATAPATH.md\]\([^)]*\), which is (\d+):"),
         "CONTENT_ID": int(re.search(r"\*\*content id\*\* of this page is \*\*(\d+)\*\*", AT_SPEED.read_text())[1]),
         "RECORD_BYTES": said(r"count records of (\d+) bytes"),
         "RESET_CLOSES": said(r"; (\d) also closes the session"),
         "RESET_WIPES": said(r"; (\d) also drops configuration and tables"),
         "SPAN_BYTES": sum(int(bits) for bits in re.findall(r"`u(\d+)`", span)) // 8,
         "MOST_PAYLOAD": said(r"Request: any bytes, up to (\d+)\."),
-        "NODES": said(r"Spans end before row max_height and node (\d+)"),
+        "NODES": said(r"Spans end before row max_height, node (\d+) and grid entry T"),
         "LEAST_WIDTH": said(r"Width is even, (\d+) to max_width"),
     }
 
@@ -87,7 +89,7 @@ def main():
     groups = {group: sum(name.startswith(group + "_") for name in tables) for group in
               ("KIND", "REFUSAL", "TAG", "CLOCK", "NATURE", "COUNTER")}
     # Fewer than version 1 has: the page's form has changed, and is not understood.
-    least = {"KIND": 18, "REFUSAL": 12, "TAG": 19, "CLOCK": 3, "NATURE": 3, "COUNTER": 16}
+    least = {"KIND": 18, "REFUSAL": 12, "TAG": 20, "CLOCK": 3, "NATURE": 3, "COUNTER": 16}
     if any(groups[group] < least[group] for group in least):
         sys.exit(f"wire: found only {groups} in {PAGE.name}; has the form of its tables changed?")
     wanted, given = {**tables, **alone(page)}, included()

@@ -50,7 +50,7 @@ module core_rows #(
         .in_valid(in_valid), .in_start(in_start), .in_sample(12'd0),
         .out_valid(out_valid), .out_start(out_start), .out_last(out_last), .row_short(row_short), .row_long(row_long),
         .ring_write(ring_write), .write_address(write_address), .ring_read(ring_read), .read_address(read_address),
-        .\source.s (s));
+        .\source.line.sum (s));
 
     // Bit k: the sample that was taken k + 1 pixel clocks ago.
     reg [D-1:0] valids = {D{1'b0}}, starts = {D{1'b0}}, lasts = {D{1'b0}};

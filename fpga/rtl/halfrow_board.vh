@@ -5,6 +5,11 @@ function integer latency_of(input integer taps);
     latency_of = taps == 7 ? 12 : 11;
 endfunction
 
+// Rows with a grid that are narrower than so many columns need so many pixel clocks between them, in which the next
+// one's values are found; fpga/checks/grid_bench.cpp holds halfrow_core to it.
+localparam GRID_WIDTH = 144;
+localparam GRID_BLANKING = 32;
+
 // Bits that number so many things from 0 on, at least one.
 function integer bits_for(input integer things);
     for (bits_for = 1; (1 << bits_for) < things; bits_for = bits_for + 1) ;

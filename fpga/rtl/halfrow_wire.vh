@@ -3,6 +3,7 @@
 localparam [7:0] WIRE_VERSION = 8'd1;
 localparam [31:0] WIRE_MAGIC = 32'h31575248;          // "HRW1", the first byte in [7:0]
 localparam [15:0] DATAPATH_ID = 16'd1;                // of fpga/DATAPATH.md
+localparam [15:0] GRID_DATAPATH_ID = 16'd2;           // of its section "Datapath 2"
 localparam [15:0] CONTENT_ID = 16'd1;                 // of fpga/AT-SPEED.md
 
 localparam [7:0] KIND_HELLO = 8'h00;
@@ -54,6 +55,7 @@ localparam [7:0] TAG_CLOCK_SOURCE = 8'h0e;
 localparam [7:0] TAG_CLOCK_HZ = 8'h0f;
 localparam [7:0] TAG_CONTENT = 8'h10;
 localparam [7:0] TAG_ENTERED = 8'h11;
+localparam [7:0] TAG_FURTHER_DATAPATH = 8'h12;
 localparam [7:0] TAG_NATURE = 8'h20;
 localparam [7:0] TAG_NAME = 8'h21;
 

@@ -1,9 +1,11 @@
-// A row on its way out: the source coordinate of each column by exact accumulation, S[j+1] = S[j] + 2Q, and from it
-// the kernel position, the samples to read, and which of the two colours is the output's own.
+// A row on its way out: the source coordinate of each column by exact accumulation, S[j+1] = S[j] + 2Q or that of
+// halfrow_parabolas, and from it the kernel position, the samples to read, and which of the two colours is the output's
+// own.
 `default_nettype none
 
 module halfrow_source #(
-    parameter RING_BITS = 11
+    parameter RING_BITS = 11,
+    parameter GRID = 0
 ) (
     input  wire                 clk,
     input  wire                 rst,
@@ -11,9 +13,16 @@ module halfrow_source #(
     input  wire [11:0]          width,
 
     input  wire                 row_begin,
-    input  wire [36:0]          position,      // S[0] + 2^11
-    input  wire [24:0]          step,          // Q
+    input  wire [36:0]          position,      // S[0] + 2^11; of a grid S[0] / 8 + 2^11
+    input  wire [24:0]          step,          // Q, or Q[0]
     input  wire                 bank,
+
+    input  wire                 has_grid,      // of the row that begins
+    input  wire                 long_segments,
+    input  wire signed [23:0]   first_slope,
+    input  wire signed [23:0]   next_slope,    // of the row that leaves
+    input  wire signed [23:0]   hand_over,
+    output wire                 ask_next,
 
     input  wire [RING_BITS-1:0] first_address, // of the sample in front of the first to be read
     input  wire                 row_end,       // the row that enters has got all of its samples
@@ -33,23 +42,41 @@ module halfrow_source #(
     output wire                 made_start,
     output wire                 made_last
 );
-    reg [36:0] s;
-    reg [24:0] row_step;
+    wire [36:0] s;
     reg [11:0] begun; // columns, with the present one
     reg reading, starting;
     wire last = begun == width;
     wire n_is_odd = s[25];
     wire not_own = n_is_odd ^ !begun[0];
+    wire unused_bits = &{1'b0, s[36:26], s[11:0]};
 
-    always @(posedge clk)
-        if (enable)
-            s <= row_begin ? position : s + {11'd0, row_step, 1'b0};
+    generate
+        if (GRID != 0) begin : grid
+            halfrow_parabolas parabolas (
+                .clk(clk), .enable(enable), .row_begin(row_begin), .position(position), .factor(step),
+                .has_grid(has_grid), .long_segments(long_segments), .first_slope(first_slope), .next_slope(next_slope),
+                .hand_over(hand_over), .reading(reading), .begun(begun[5:0]), .ask_next(ask_next), .s(s));
+        end else begin : line
+            reg [36:0] sum;
+            reg [24:0] row_step;
 
-    always @(posedge clk)
-        if (row_begin) begin
-            row_step <= step;
-            leaving_bank <= bank;
+            always @(posedge clk)
+                if (enable)
+                    sum <= row_begin ? position : sum + {11'd0, row_step, 1'b0};
+
+            always @(posedge clk)
+                if (row_begin)
+                    row_step <= step;
+
+            assign s = sum;
+            assign ask_next = 1'b0;
+            wire unused = &{1'b0, has_grid, long_segments, first_slope, next_slope, hand_over};
         end
+    endgenerate
+
+    always @(posedge clk)
+        if (row_begin)
+            leaving_bank <= bank;
 
     always @(posedge clk)
         if (enable)

@@ -219,6 +219,8 @@ module halfrow_bridge #(
     wire core_reset, prepare, prepare_bank;
     wire row_short, row_long, row_unprepared;
     wire [ROW_BITS-1:0] prepare_row;
+    wire [10:0] last_row = height[10:0] - 11'd1;
+    wire [3:0] prepare_shape = 4'd0;
 
     halfrow_multiplexer #(.ROW_BITS(ROW_BITS)) multiplexer (
         .clk(clk), .rst(rst), .session_open(session_open), .tables_ready(idle), .burst(burst),
@@ -236,8 +238,9 @@ module halfrow_bridge #(
     halfrow_core #(
         .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS), .TABLE_BANKS(TABLE_BANKS)
     ) core (
-        .clk(clk), .rst(core_reset), .enable(core_enable), .width(width), .centre2(centre2), .depth(depth),
-        .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank), .prepared(prepared),
+        .clk(clk), .rst(core_reset), .enable(core_enable), .width(width), .last_row(last_row), .centre2(centre2),
+        .depth(depth), .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank),
+        .prepare_shape(prepare_shape), .prepared(prepared),
         .in_valid(core_valid), .in_start(core_start), .in_sample(core_sample),
         .out_valid(out_valid), .out_start(out_start), .out_last(out_last), .out_sample(out_sample),
         .row_short(row_short), .row_long(row_long), .row_unprepared(row_unprepared),
