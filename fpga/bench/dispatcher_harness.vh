@@ -1,5 +1,5 @@
 // A dispatcher between a receiver, a sender, a core and a row path that do as a bench says. Included in the bench's module,
-// behind its localparams MAX_WIDTH, MAX_HEIGHT, ROW_BITS, TAPS, LEAST_BLANKING, TABLE_BANKS, ROW_BANKS_IN, ROW_BANKS_OUT.
+// behind its localparams MAX_WIDTH, MAX_HEIGHT, GRID, ENTRY_BITS, TAPS, LEAST_BLANKING, TABLE_BANKS, ROW_BANKS_IN, ROW_BANKS_OUT.
 localparam HELLO = 8'h00, CAPABILITIES = 8'h01, STATUS = 8'h02, RESET = 8'h03, ECHO = 8'h04, TABLE_WRITE = 8'h10,
            TABLE_READ = 8'h11, TABLE_CRC = 8'h12, COMMIT = 8'h13, CONFIGURE = 8'h18, ROW_IN = 8'h20, ROW_ACK = 8'h22,
            BURST = 8'h30, RECORDS = 8'h31, EXPECT = 8'h32, TRAP = 8'h33;
@@ -96,27 +96,28 @@ always @(posedge clk)
     end
 
 // The core
-wire                step_write, node_write, table_bank, table_read;
-wire [ROW_BITS-1:0] table_entry;
-wire [        79:0] table_data;
-reg  [        24:0] step_port;
-reg  [        79:0] node_port_0, node_port_1;
-reg  [        24:0] steps   [0:8191];   // {bank, entry}
-reg  [        79:0] nodes_0 [0:255];
-reg  [        79:0] nodes_1 [0:255];
-reg  [        12:0] address_1, address_2;
-reg                 read_1, read_2;
-integer             writes;
-wire                idle;
+wire                   step_write, node_write, table_bank, table_read;
+wire [ENTRY_BITS-1:0]  table_entry;
+wire [         7:0]    shapes;
+wire [        79:0]    table_data;
+reg  [        24:0]    step_port;
+reg  [        79:0]    node_port_0, node_port_1;
+reg  [        24:0]    steps   [0:8191];   // {bank, entry}
+reg  [        79:0]    nodes_0 [0:255];
+reg  [        79:0]    nodes_1 [0:255];
+reg  [        12:0]    address_1, address_2;
+reg                    read_1, read_2;
+integer                writes;
+wire                   idle;
 
 always @(posedge clk) begin
-    if (step_write) steps[{table_bank, {12 - ROW_BITS{1'b0}}, table_entry}] <= table_data[24:0];
+    if (step_write) steps[{table_bank, 12'd0} | table_entry] <= table_data[24:0];
     if (node_write) begin
         nodes_0[{table_bank, table_entry[6:0]}] <= table_data;
         nodes_1[{table_bank, table_entry[6:0]}] <= table_data;
     end
     if (step_write || node_write) writes = writes + 1;
-    address_1   <= {table_bank, {12 - ROW_BITS{1'b0}}, table_entry};
+    address_1   <= {table_bank, 12'd0} | table_entry;
     read_1      <= table_read;
     step_port   <= table_read && read_1 ? steps[address_1] : 25'hx;
     node_port_0 <= table_read && read_1 ? nodes_0[{address_1[12], address_1[6:0]}] : 80'hx;
@@ -124,7 +125,7 @@ always @(posedge clk) begin
 end
 
 halfrow_dispatcher #(
-    .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .TAPS(TAPS),
+    .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT), .GRID(GRID), .ENTRY_BITS(ENTRY_BITS), .TAPS(TAPS),
     .LEAST_BLANKING(LEAST_BLANKING), .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN), .ROW_BANKS_OUT(ROW_BANKS_OUT),
     .BUILD(32'h9f3c1e07), .NAME({"straightener ", 24'he28496, " 7"})
 ) dut (
@@ -146,7 +147,7 @@ halfrow_dispatcher #(
     .new_session(new_session), .hold(hold), .acknowledged(acknowledged), .next_row_in(next_row_in),
     .rows_waiting(rows_waiting), .rows_held(rows_held), .core_busy(core_busy), .shadow_in_use(shadow_in_use),
     .frame_start(frame_start), .frame_number(frame_number), .generation(generation), .active_bank(active_bank),
-    .commit_pending(commit_pending), .commit_frame(commit_frame), .row_accepted(row_accepted), .row_left(row_left),
+    .shapes(shapes), .commit_pending(commit_pending), .commit_frame(commit_frame), .row_accepted(row_accepted), .row_left(row_left),
     .row_repeated(row_repeated), .row_unneeded(row_unneeded), .sample_over(sample_over), .latency_valid(latency_valid),
     .first_latency(first_latency), .last_latency(last_latency), .step_write(step_write), .node_write(node_write),
     .table_bank(table_bank), .table_entry(table_entry), .table_data(table_data), .table_read(table_read),

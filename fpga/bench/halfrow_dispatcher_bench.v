@@ -3,7 +3,7 @@
 `default_nettype none
 
 module halfrow_dispatcher_bench;
-    localparam MAX_WIDTH = 1920, MAX_HEIGHT = 1080, ROW_BITS = 11, TAPS = 7, LEAST_BLANKING = 7, TABLE_BANKS = 2,
+    localparam MAX_WIDTH = 1920, MAX_HEIGHT = 1080, GRID = 0, ENTRY_BITS = 11, TAPS = 7, LEAST_BLANKING = 7, TABLE_BANKS = 2,
                ROW_BANKS_IN = 4, ROW_BANKS_OUT = 3;
     `include "dispatcher_harness.vh"
 

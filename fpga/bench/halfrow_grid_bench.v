@@ -136,7 +136,7 @@ module halfrow_grid_bench;
         drawn(16, 32'd1, 1'b0); expect_frame(32, 32'h2617fe6d);
         configure(12'd130, 40, 13'd31, 3'd3, 5);
         drawn(49, 32'd2, 1'b1); expect_frame(32, 32'h21b519cd);
-        configure(12'd192, 5, 13'd383, 3'd2, 6);
+        configure(12'd192, 5, 13'd382, 3'd2, 6);
         drawn(20, 32'd3, 1'b1); expect_frame(0, 32'hc53e6168);
         $display("PASS the drawn grids, at the least blanking, with and without pauses");
 

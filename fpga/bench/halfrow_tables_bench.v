@@ -4,7 +4,8 @@
 
 module tables_cases #(
     parameter MAX_HEIGHT = 2048,
-    parameter ROW_BITS = 11,
+    parameter GRID = 0,
+    parameter ENTRY_BITS = 11,
     parameter TAPS = 7,
     parameter TABLE_BANKS = 2
 ) (
@@ -303,7 +304,7 @@ module halfrow_tables_bench;
     wire large_finished, small_finished;
 
     tables_cases of_large (.finished(large_finished));
-    tables_cases #(.MAX_HEIGHT(100), .ROW_BITS(7), .TAPS(5), .TABLE_BANKS(1)) of_small (.finished(small_finished));
+    tables_cases #(.MAX_HEIGHT(100), .ENTRY_BITS(7), .TAPS(5), .TABLE_BANKS(1)) of_small (.finished(small_finished));
 
     always @(large_finished or small_finished)
         if (large_finished && small_finished) begin

@@ -34,8 +34,7 @@ def expected(page):
         numbers[f"REFUSAL_{constant(name)}"] = int(code)
     tags = section(page, "01 CAPABILITIES", "02")
     for tag, value in re.findall(r"^\| ([0-9a-f]{2}) \| ([^|]+) \|", tags, re.MULTILINE):
-        name = "TAG_" + (constant(value.split()[1].strip(",")) if value.startswith("`") else "NAME")
-        numbers[name if name not in numbers else name.replace("TAG_", "TAG_FURTHER_")] = int(tag, 16)
+        numbers["TAG_" + (constant(value.split()[1].strip(",")) if value.startswith("`") else "NAME")] = int(tag, 16)
     for group, row, names in [("CLOCK", "clock_source", {"the host's own": "HOST", "the sensor's PIXCLK": "PIXCLK", "a PLL": "PLL"}),
                               ("NATURE", "nature", {name: name.upper() for name in ("hardware", "simulation", "mock")})]:
         text = re.search(rf"`u8` {row} \| (.*?) \|$", tags, re.MULTILINE)[1]
@@ -68,6 +67,9 @@ def alone(page):
         "RECORD_BYTES": said(r"count records of (\d+) bytes"),
         "RESET_CLOSES": said(r"; (\d) also closes the session"),
         "RESET_WIPES": said(r"; (\d) also drops configuration and tables"),
+        "TABLE_STEPS": said(r"`u8` table \((\d): row factors,"),
+        "TABLE_KERNEL": said(r"`u8` table \([^)]*(\d): kernel,"),
+        "TABLE_GRID": said(r"`u8` table \([^)]*(\d): grid\)"),
         "SPAN_BYTES": sum(int(bits) for bits in re.findall(r"`u(\d+)`", span)) // 8,
         "MOST_PAYLOAD": said(r"Request: any bytes, up to (\d+)\."),
         "NODES": said(r"Spans end before row max_height, node (\d+) and grid entry T"),

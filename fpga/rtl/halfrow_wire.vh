@@ -87,6 +87,10 @@ localparam [3:0] COUNTER_MOST_LATENCY = 4'd15;
 localparam [7:0] RESET_CLOSES = 8'd1;                 // level 1: the session, too
 localparam [7:0] RESET_WIPES = 8'd2;                  // level 2: configuration and tables, too; the greatest
 
+localparam [1:0] TABLE_STEPS = 2'd0;
+localparam [1:0] TABLE_KERNEL = 2'd1;
+localparam [1:0] TABLE_GRID = 2'd3;
+
 localparam [15:0] SPAN_BYTES = 16'd7;
 localparam [4:0] RECORD_BYTES = 5'd18;
 localparam [15:0] MOST_PAYLOAD = 16'd4080;            // bytes

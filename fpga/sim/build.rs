@@ -55,8 +55,8 @@ const BUILDS: [Model; 7] = [
     },
 ];
 
-/// What every board under simulation says of itself.
-const IDENTITY: [&str; 2] = ["NATURE=2", "NAME=\"halfrow simulated board\""];
+/// What every board under simulation is and says of itself.
+const IDENTITY: [&str; 3] = ["GRID=1", "NATURE=2", "NAME=\"halfrow simulated board\""];
 
 const REMEDY: &str = "install it with `apt-get install verilator g++`, or build without `--features sim`";
 

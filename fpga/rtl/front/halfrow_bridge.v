@@ -13,6 +13,8 @@ module halfrow_bridge #(
     parameter ROW_BANKS_IN = 2,           // powers of two
     parameter ROW_BANKS_OUT = 2,
     parameter TRAP = 1,                   // there is one
+    parameter GRID = 0,                   // 1: datapath 2 besides
+    parameter ENTRIES = 2048,             // and then T, 2048 or 4096
     parameter [31:0] BUILD = 32'd0,       // the start of the commit
     parameter [7:0] NATURE = 8'd1,        // 1: hardware, 2: simulation
     parameter [8*69-1:0] NAME = "halfrow" // 1 to 68 bytes
@@ -48,10 +50,12 @@ module halfrow_bridge #(
     `include "halfrow_board.vh"
 
     generate // what a build cannot have
+        if (ENTRIES != 2048 && ENTRIES != 4096) halfrow_illegal_ENTRIES is_2048_or_4096 ();
         if (RING_BITS < bits_for(MAX_WIDTH) || RING_BITS > 15) halfrow_illegal_RING_BITS holds_the_widest_row ();
     endgenerate
 
-    localparam ROW_BITS = bits_for(MAX_HEIGHT > NODES ? MAX_HEIGHT : NODES); // of a table's entry as well
+    localparam ROW_BITS = bits_for(MAX_HEIGHT > NODES ? MAX_HEIGHT : NODES);
+    localparam ENTRY_BITS = GRID == 1 ? bits_for(ENTRIES) : ROW_BITS; // of a table's entry
     localparam COLUMN_BITS = bits_for(MAX_WIDTH);
 
     // The packet under way.
@@ -94,7 +98,7 @@ module halfrow_bridge #(
     wire hold, acknowledge, drop_rows, new_session, row_start, row_done, configured, idle;
     wire [31:0] acknowledge_window, drop_next_row, acknowledged, next_row_in, gap_seed;
     wire [3:0] row_refusal;
-    wire [7:0] session, generation;
+    wire [7:0] session, generation, shapes;
     wire [11:0] width, height;
     wire [12:0] centre2;
     wire [15:0] blanking, commit_frame, frame_number, first_latency, last_latency;
@@ -112,14 +116,14 @@ module halfrow_bridge #(
     wire row_accepted, row_left, row_repeated, row_unneeded, sample_over, latency_valid;
 
     wire step_write, node_write, table_bank, table_read;
-    wire [ROW_BITS-1:0] table_entry;
+    wire [ENTRY_BITS-1:0] table_entry;
     wire [79:0] table_data, node_port_0, node_port_1;
     wire [24:0] step_port;
 
     halfrow_dispatcher #(
         .MAX_WIDTH(MAX_WIDTH), .MAX_HEIGHT(MAX_HEIGHT),
         .POWER_UP_WIDTH(POWER_UP_WIDTH), .POWER_UP_HEIGHT(POWER_UP_HEIGHT),
-        .ROW_BITS(ROW_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS),
+        .GRID(GRID), .ENTRY_BITS(ENTRY_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS),
         .LEAST_BLANKING(0), .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN),
         .ROW_BANKS_OUT(ROW_BANKS_OUT), .TRAP(TRAP), .BUILD(BUILD), .NATURE(NATURE), .NAME(NAME)
     ) dispatcher (
@@ -147,7 +151,7 @@ module halfrow_bridge #(
         .acknowledged(acknowledged), .next_row_in(next_row_in), .rows_waiting(rows_waiting), .rows_held(rows_held),
         .core_busy(core_busy), .shadow_in_use(shadow_in_use),
         .frame_start(frame_start), .frame_number(frame_number), .generation(generation), .active_bank(active_bank),
-        .commit_pending(commit_pending), .commit_frame(commit_frame),
+        .shapes(shapes), .commit_pending(commit_pending), .commit_frame(commit_frame),
         .row_accepted(row_accepted), .row_left(row_left), .row_repeated(row_repeated), .row_unneeded(row_unneeded),
         .sample_over(sample_over), .latency_valid(latency_valid), .first_latency(first_latency),
         .last_latency(last_latency),
@@ -220,7 +224,7 @@ module halfrow_bridge #(
     wire row_short, row_long, row_unprepared;
     wire [ROW_BITS-1:0] prepare_row;
     wire [10:0] last_row = height[10:0] - 11'd1;
-    wire [3:0] prepare_shape = 4'd0;
+    wire [3:0] prepare_shape = prepare_bank ? shapes[7:4] : shapes[3:0];
 
     halfrow_multiplexer #(.ROW_BITS(ROW_BITS)) multiplexer (
         .clk(clk), .rst(rst), .session_open(session_open), .tables_ready(idle), .burst(burst),
@@ -236,7 +240,8 @@ module halfrow_bridge #(
         .in_sample(core_sample), .out_valid(out_valid));
 
     halfrow_core #(
-        .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .RING_BITS(RING_BITS), .TAPS(TAPS), .TABLE_BANKS(TABLE_BANKS)
+        .MAX_HEIGHT(MAX_HEIGHT), .ROW_BITS(ROW_BITS), .GRID(GRID), .ENTRY_BITS(ENTRY_BITS), .RING_BITS(RING_BITS),
+        .TAPS(TAPS), .TABLE_BANKS(TABLE_BANKS)
     ) core (
         .clk(clk), .rst(core_reset), .enable(core_enable), .width(width), .last_row(last_row), .centre2(centre2),
         .depth(depth), .prepare(prepare), .prepare_row(prepare_row), .prepare_bank(prepare_bank),

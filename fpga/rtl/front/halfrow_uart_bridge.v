@@ -13,6 +13,8 @@ module halfrow_uart_bridge #(
     parameter ROW_BANKS_IN = 2,
     parameter ROW_BANKS_OUT = 2,
     parameter TRAP = 1,
+    parameter GRID = 0,
+    parameter ENTRIES = 2048,
     parameter [31:0] BUILD = 32'd0,
     parameter [7:0] NATURE = 8'd1,
     parameter [8*69-1:0] NAME = "halfrow" // 1 to 68 bytes
@@ -71,6 +73,7 @@ module halfrow_uart_bridge #(
         .POWER_UP_WIDTH(POWER_UP_WIDTH), .POWER_UP_HEIGHT(POWER_UP_HEIGHT),
         .RING_BITS(RING_BITS), .TAPS(TAPS),
         .TABLE_BANKS(TABLE_BANKS), .ROW_BANKS_IN(ROW_BANKS_IN), .ROW_BANKS_OUT(ROW_BANKS_OUT), .TRAP(TRAP),
+        .GRID(GRID), .ENTRIES(ENTRIES),
         .BUILD(BUILD), .NATURE(NATURE), .NAME(NAME)
     ) bridge (
         .clk(clk), .rst(rst), .rx_valid(rx_valid), .rx_data(rx_data), .rx_ready(rx_ready),

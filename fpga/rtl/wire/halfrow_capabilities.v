@@ -11,6 +11,8 @@ module halfrow_capabilities #(
     parameter ROW_BANKS_IN = 2,
     parameter ROW_BANKS_OUT = 2,
     parameter TRAP = 1,                   // there is one
+    parameter GRID = 0,                   // datapath 2 besides
+    parameter ENTRY_BITS = 11,            // and then T = 2 ** ENTRY_BITS
     parameter [7:0] NATURE = 8'd1,        // 1: hardware, 2: simulation
     parameter [8*69-1:0] NAME = "halfrow" // 1 to 68 bytes
 ) (
@@ -31,6 +33,7 @@ module halfrow_capabilities #(
         if (ROW_BANKS_IN < 2 || ROW_BANKS_IN > 255) halfrow_illegal_ROW_BANKS_IN is_2_to_255 ();
         if (ROW_BANKS_OUT < 2 || ROW_BANKS_OUT > 255) halfrow_illegal_ROW_BANKS_OUT is_2_to_255 ();
         if (TRAP != 0 && TRAP != 1) halfrow_illegal_TRAP is_0_or_1 ();
+        if (GRID != 0 && GRID != 1) halfrow_illegal_GRID is_0_or_1 ();
         if (NATURE != NATURE_HARDWARE && NATURE != NATURE_SIMULATION)
             halfrow_illegal_NATURE is_hardware_or_simulation ();
     endgenerate
@@ -39,6 +42,7 @@ module halfrow_capabilities #(
     localparam DEPTHS = 7; // 8, 10 and 12 bits
     localparam STEP_PORTS = 1;
     localparam KERNEL_PORTS = 2;
+    localparam KS = 8'h60; // k of a grid: 5 or 6
 
     function integer bytes_of(input [8*69-1:0] name);
         reg [8*69-1:0] rest;
@@ -56,7 +60,9 @@ module halfrow_capabilities #(
     localparam FIXED = 58;
     localparam BURST_BYTES = 12; // and what entered
     localparam BURSTS = FIXED + NAME_LENGTH;
-    localparam TOTAL = BURSTS + BURST_BYTES;
+    localparam GRID_BYTES = 10;
+    localparam GRIDS = BURSTS + BURST_BYTES;
+    localparam TOTAL = GRIDS + (GRID == 1 ? GRID_BYTES : 0);
 
     localparam [15:0] MAX_WIDTH_16 = MAX_WIDTH[15:0];
     localparam [15:0] MAX_HEIGHT_16 = MAX_HEIGHT[15:0];
@@ -73,6 +79,10 @@ module halfrow_capabilities #(
     localparam [15:0] BURST_RECORDS_16 = BURST_RECORDS[15:0];
     localparam [15:0] LEAST_FRAME_BLANKING_16 = LEAST_FRAME_BLANKING[15:0];
     localparam [7:0] TRAP_8 = TRAP[7:0];
+    localparam [15:0] ENTRIES_16 = 1 << ENTRY_BITS;
+    localparam [7:0] KS_8 = KS[7:0];
+    localparam [7:0] GRID_BLANKING_8 = GRID_BLANKING[7:0];
+    localparam [15:0] GRID_WIDTH_16 = GRID_WIDTH[15:0];
     localparam [7:0] NAME_LENGTH_8 = NAME_LENGTH[7:0];
 
     // {value, length, tag}, the first byte to go in [7:0]
@@ -106,7 +116,9 @@ module halfrow_capabilities #(
     assign list[8*BURSTS +: 8*BURST_BYTES] = {
         8'd1, 8'd1, TAG_ENTERED,
         TRAP_8, LEAST_FRAME_BLANKING_16, BURST_RECORDS_16, CONTENT_ID, 8'd7, TAG_CONTENT};
-    assign list[2047:8*TOTAL] = {(2048-8*TOTAL){1'b0}};
+    assign list[8*GRIDS +: 8*GRID_BYTES] = {80{GRID == 1}} & {
+        GRID_WIDTH_16, GRID_BLANKING_8, KS_8, ENTRIES_16, GRID_DATAPATH_ID, 8'd8, TAG_FURTHER_DATAPATH};
+    assign list[2047:8*(GRIDS+GRID_BYTES)] = {(2048-8*(GRIDS+GRID_BYTES)){1'b0}};
 
     assign value = list[{index, 3'b000} +: 8];
     assign length = TOTAL[7:0];

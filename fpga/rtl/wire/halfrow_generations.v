@@ -1,4 +1,4 @@
-// Which bank of tables rows use and under which generation, and the commit that waits for its frame.
+// Which bank of tables rows use and under which generation, the shape of each, and the commit that waits for its frame.
 `default_nettype none
 
 module halfrow_generations #(
@@ -9,6 +9,7 @@ module halfrow_generations #(
     input  wire        forget,         // pulse: no commit waits
     input  wire        commit,         // pulse: the shadow bank is good
     input  wire [7:0]  new_generation, // 1 to 255 with `commit`
+    input  wire [3:0]  new_shape,      // with `commit`: {k is 6, v} of fpga/DATAPATH.md
     input  wire [15:0] first_frame,
     input  wire        frame_start,    // pulse: row 0 of a frame is about to enter; what it uses shows a clock later
     input  wire [15:0] frame_number,
@@ -16,6 +17,7 @@ module halfrow_generations #(
     output reg  [7:0]  generation,     // 0 for none
     output reg         active_bank,
     output wire        shadow_bank,    // the same one in a build with one bank
+    output reg  [7:0]  shapes,         // {bank 1, bank 0}
     output reg         commit_pending,
     output reg  [15:0] commit_frame
 );
@@ -26,6 +28,12 @@ module halfrow_generations #(
     assign shadow_bank = (TABLE_BANKS == 2) && !active_bank;
 
     wire begins = commit_pending && frame_start && frame_number == commit_frame;
+
+    always @(posedge clk)
+        if (wipe)
+            shapes <= 8'd0;
+        else if (commit)
+            shapes <= shadow_bank ? {new_shape, shapes[3:0]} : {shapes[7:4], new_shape};
 
     always @(posedge clk) begin
         if (commit) begin

@@ -2,7 +2,8 @@
 `default_nettype none
 
 module halfrow_request #(
-    parameter TRAP = 1 // there is one
+    parameter TRAP = 1, // there is one
+    parameter GRID = 0  // there are grids
 ) (
     input  wire        clk,
     input  wire [7:0]  kind,
@@ -11,12 +12,14 @@ module halfrow_request #(
     // two clocks behind the inputs
     output reg         unknown,    // no request that the board knows
     output reg         malformed,
+    output reg         has_shape,  // of a COMMIT: its fields v and k are there
     output reg  [12:0] read_length // of the reply to a TABLE_READ
 );
     `include "halfrow_wire.vh"
 
     wire [7:0] first_byte = fields[7:0];
-    wire span_kernel = fields[0];
+    wire span_kernel = fields[1:0] == TABLE_KERNEL;
+    wire known_table = fields[7:1] == 7'd0 || (GRID == 1 && first_byte == {6'd0, TABLE_GRID});
     wire [15:0] count = fields[55:40];
     reg [4:0] least; // bytes
     reg short, meaningless, count_too_large;
@@ -37,10 +40,11 @@ module halfrow_request #(
     end
 
     always @(posedge clk) begin
+        has_shape <= length[11:5] != 7'd0 || length[4:0] >= 5'd13;
         short <= length[11:5] == 7'd0 && length[4:0] < least;
         meaningless <= (kind == KIND_RESET && first_byte > RESET_WIPES)
                         || (kind[7:2] == KIND_TABLE_WRITE[7:2] && kind != KIND_COMMIT
-                            && (fields[7:1] != 7'd0 || fields[15:9] != 7'd0));
+                            && (!known_table || fields[15:9] != 7'd0));
         count_too_large <= count[15:10] != 6'd0;
         entries_length <= (span_kernel ? {1'b0, count[9:0], 3'd0} : {2'd0, count[9:0], 2'd0})
                          + (span_kernel ? {3'd0, count[9:0], 1'b0} : 14'd0);

@@ -18,7 +18,7 @@ struct Simulated;
 
 /// The builds, as the suite and as the mock describe them.
 fn builds() -> [(halfrow_sim::Build, Build, Options); 4] {
-    let mock = Options { records: 16, least_frame_blanking: 256, datapath2: false, ..Options::default() };
+    let mock = Options { records: 16, least_frame_blanking: 256, ..Options::default() };
     let four = Build::default();
     [
         (
