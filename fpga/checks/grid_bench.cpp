@@ -9,7 +9,9 @@
 
 // What the build advertises (halfrow_board.vh).
 constexpr int GRID_WIDTH = 144, GRID_BLANKING = 32;
-constexpr int ENTRIES = 2048;
+#ifndef ENTRIES
+#define ENTRIES 2048
+#endif
 // Clocks in front of a row's start by which it must be prepared, so that nothing waits for it.
 constexpr int HEAD_START = 3;
 
@@ -179,7 +181,7 @@ static void disturb(Bench &bench) {
 static void cases(Bench &bench, int count, bool hostile) {
     for (int k = 0; k < count; k++) {
         bench.reset();
-        bench.configure(bench.drawn_frame(bench.draw(3) ? 200 : bench.draw(3) ? 260 : 700));
+        bench.configure(bench.drawn_frame(bench.draw(3) ? 200 : bench.draw(3) ? 260 : std::min(2592, RING)));
         bench.gaps = bench.draw(2) ? 0 : 2 + bench.draw(6);
         if (hostile)
             disturb(bench);
