@@ -1,7 +1,7 @@
 //! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
 
 /// What sentences of the libraries say, and the flag for it. None of them is part of another.
-pub const FLAGS: [(&str, &str); 16] = [
+pub const FLAGS: [(&str, &str); 18] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
     ("another place for the report", "--report"),
@@ -17,6 +17,8 @@ pub const FLAGS: [(&str, &str); 16] = [
     ("name the layout", "--raw"),
     ("name the phase", "--phase"),
     ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
+    ("leave out the exact projection", "--projection"),
+    ("the most entries of a grid", "--entries"),
     ("Cargo's feature `sim`", "cargo run --release --features sim"),
 ];
 

@@ -84,8 +84,8 @@ fn rows_that_reach_beyond_the_ring_are_refused() {
 fn tables_of_another_datapath_are_refused_like_boards_of_another_datapath() {
     changed(
         6,
-        |file| file["datapath"] = 2.into(),
-        "the tables are for datapath 2, and this program knows datapath 1",
+        |file| file["datapath"] = 3.into(),
+        "the tables are for datapath 3, and this program knows 1 and 2 alone",
     );
 }
 

@@ -39,13 +39,13 @@ pub enum Misfit {
     },
     /// The tables are a grid, and the board takes one factor a row.
     #[error(
-        "the tables are a grid of datapath 2, and the board has datapath 1 alone; leave out --projection exact, or use a \
+        "the tables are a grid of datapath 2, and the board has datapath 1 alone; leave out the exact projection, or use a \
          bitstream with datapath 2"
     )]
     NoGrids,
     /// The grid has more entries than a bank of the board.
     #[error(
-        "the grid has {entries} entries, and the board takes {most}; make the tables with --entries {most}"
+        "the grid has {entries} entries, and the board takes {most}; say that {most} are the most entries of a grid"
     )]
     GridEntries {
         /// Entries of the grid.

@@ -73,7 +73,7 @@ impl EntryBit {
     fn replaced(self, tables: &TableSet, word: u32) -> Option<TableSet> {
         let mut entries: Vec<_> = tables.units().collect();
         *entries.get_mut(self.index(tables)?)? = word;
-        TableSet::from_grid(*tables.geometry(), tables.shape()?, entries).ok()
+        TableSet::from_grid(*tables.geometry(), tables.shape()?, &entries).ok()
     }
 
     /// Whether the inverted bit gives most of a few samples of the row that differ, as far as they can be foretold.
