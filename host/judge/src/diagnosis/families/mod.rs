@@ -4,6 +4,7 @@ mod arithmetic;
 mod factor_search;
 mod generations;
 mod grid_entry;
+mod grid_lines;
 mod kernel_search;
 mod kernel_word;
 mod memory_address;
@@ -37,6 +38,7 @@ pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
         taps::propose,
         arithmetic::propose,
         table_lines::propose,
+        grid_lines::propose,
         generations::propose,
         places::propose,
     ]

@@ -51,11 +51,12 @@ fn neighbour<'a>(distance: isize) -> Hypothesis<'a> {
 /// Rows made with the entry of another row. What lies beyond the table is not known.
 fn from_other_entry<'a>(defect: Defect, entry: impl Fn(usize) -> Option<usize> + 'a) -> Hypothesis<'a> {
     Hypothesis::new(defect, move |witness| {
+        let factors = witness.uploaded.tables.row_factors()?;
         let other = entry(witness.row);
         if other == Some(witness.row) {
             return None;
         }
-        let read = other.and_then(|row| witness.uploaded.tables.row_factor(row));
+        let read = other.and_then(|row| factors.get(row));
         Some(read.map_or_else(Prediction::unknown, |read| with_entry(witness, read.get())))
     })
 }

@@ -43,7 +43,7 @@ pub(super) fn row_table_data(bit: u32, value: u8) -> Words {
     Words {
         part: "row table data",
         place: format!("row table, data bit {bit}, {}", stuck(value)),
-        defect: format!("bit {bit} of every factor at {value}"),
+        defect: format!("bit {bit} of every entry at {value}"),
         designer: format!("Check data line {bit} of the row table's memory."),
         technician: MEMORY,
     }
@@ -53,7 +53,7 @@ pub(super) fn row_table_address(bit: u32, value: u8) -> Words {
     Words {
         part: "row table address",
         place: format!("row table, address bit {bit}, {}", stuck(value)),
-        defect: format!("every row with another bit {bit} made with another row's factor"),
+        defect: format!("every entry with another bit {bit} in its number read as another"),
         designer: format!("Check address line {bit} of the row table's memory."),
         technician: MEMORY,
     }
@@ -64,8 +64,8 @@ pub(super) fn row_table_off(entries: isize) -> Words {
     Words {
         part: "row table address",
         place: format!("the row table's address, one entry {way}"),
-        defect: format!("every row made with the factor of the row {side} it"),
-        designer: "Check when the row counter that addresses the row table moves on.".to_owned(),
+        defect: format!("every entry read as the one {side} it"),
+        designer: "Check when the counter that addresses the row table moves on.".to_owned(),
         technician: LOGIC,
     }
 }

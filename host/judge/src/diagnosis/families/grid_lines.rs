@@ -1,0 +1,61 @@
+//! A line of the memory that holds a grid stuck, or its address off, so that many entries are read wrong.
+
+use halfrow_model::{RowFactor, TableSet};
+
+use super::{StuckLine, with_grids};
+use crate::diagnosis::Uploaded;
+use crate::diagnosis::hypothesis::Hypothesis;
+use crate::diagnosis::witnesses::Witnesses;
+use crate::result::Defect;
+
+/// Every data and address line, and entries that are read one too early or too late.
+pub(super) fn propose<'a>(witnesses: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {
+    let mut generations = witnesses.generations();
+    generations.retain(|uploaded| uploaded.tables.shape().is_some());
+    let entries = generations.iter().map(|uploaded| uploaded.tables.units().len()).max();
+    let Some(entries) = entries else { return Vec::new() };
+    let address_bits = usize::BITS - (entries - 1).leading_zeros();
+    let lines = Lines { generations, ring: witnesses.case.ring };
+    StuckLine::all(RowFactor::BITS)
+        .map(|line| lines.data(line))
+        .chain(StuckLine::all(address_bits).map(|line| lines.address(line)))
+        .chain([-1, 1].map(|distance| lines.neighbour(distance)))
+        .collect()
+}
+
+/// The grids that a line may spoil.
+struct Lines<'a> {
+    generations: Vec<Uploaded<'a>>,
+    ring: usize,
+}
+
+impl Lines<'_> {
+    fn data<'a>(&self, line: StuckLine) -> Hypothesis<'a> {
+        let defect = Defect::RowTableDataStuck { bit: line.bit, value: line.value() };
+        self.read(defect, |entries, index| entries.get(index).map(|&entry| line.carry(entry)))
+    }
+
+    fn address<'a>(&self, line: StuckLine) -> Hypothesis<'a> {
+        let defect = Defect::RowTableAddressStuck { bit: line.bit, value: line.value() };
+        self.read(defect, |entries, index| entries.get(line.carry(index as u32) as usize).copied())
+    }
+
+    fn neighbour<'a>(&self, distance: isize) -> Hypothesis<'a> {
+        let defect = Defect::RowTableAddressOff { entries: distance };
+        self.read(defect, |entries, index| entries.get(index.checked_add_signed(distance)?).copied())
+    }
+
+    /// Rows made with grids of which `read` gives each entry. What lies beyond a grid is taken for what a bank holds when the
+    /// board was switched on.
+    fn read<'a>(&self, defect: Defect, read: impl Fn(&[u32], usize) -> Option<u32>) -> Hypothesis<'a> {
+        let grid = |uploaded: &Uploaded<'_>| {
+            let tables = uploaded.tables;
+            let entries: Vec<_> = tables.units().collect();
+            let entry = |index| read(&entries, index).unwrap_or(RowFactor::ONE.get());
+            let read: Vec<_> = (0..entries.len()).map(entry).collect();
+            let grid = TableSet::from_grid(*tables.geometry(), tables.shape()?, &read).ok()?;
+            Some((uploaded.generation, grid))
+        };
+        with_grids(defect, self.generations.iter().filter_map(grid).collect(), self.ring)
+    }
+}
