@@ -123,16 +123,16 @@ fn drawn() -> Bench {
         let drawn = (index as u32).wrapping_mul(2_654_435_761);
         if index < ROWS { (1 << 24) + (drawn >> 18) } else { 14_680_064 + (drawn >> 12) }
     };
-    let entries = (0..ROWS * COLUMNS).map(entry).collect();
-    let tables = TableSet::from_grid(*tables.geometry(), tables.shape().unwrap(), entries).unwrap();
+    let entries: Vec<_> = (0..ROWS * COLUMNS).map(entry).collect();
+    let tables = TableSet::from_grid(*tables.geometry(), tables.shape().unwrap(), &entries).unwrap();
     Bench::of(tables, 256, Interpolant::Hermite)
 }
 
 /// The grid with entries that are read otherwise.
 fn read_as(tables: &TableSet, read: impl Fn(&[u32], usize) -> u32) -> TableSet {
     let entries: Vec<_> = tables.units().collect();
-    let read = (0..entries.len()).map(|index| read(&entries, index)).collect();
-    TableSet::from_grid(*tables.geometry(), tables.shape().unwrap(), read).unwrap()
+    let read: Vec<_> = (0..entries.len()).map(|index| read(&entries, index)).collect();
+    TableSet::from_grid(*tables.geometry(), tables.shape().unwrap(), &read).unwrap()
 }
 
 #[test]
