@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use halfrow_model::{
     BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, GridRoomError,
-    Interpolant, Kernel, LensError, Phase, RowFactor, TableError, TableSet,
+    GridShape, Interpolant, Kernel, LensError, Phase, RowFactor, TableError, TableSet,
 };
 
 use crate::frames::Scene;
@@ -53,6 +53,17 @@ impl TablesBy {
             Self::Equation9 => "equation-9",
             Self::Exact { .. } => "exact",
         }
+    }
+
+    /// How tables were found, for people; `shape` is that of a grid.
+    #[must_use]
+    pub fn how(self, shape: Option<GridShape>) -> String {
+        let how = match self {
+            Self::Fitting => "fitted rows",
+            Self::Equation9 => "Eq. 9",
+            Self::Exact { .. } => "exact projection",
+        };
+        shape.map_or_else(|| how.to_owned(), |shape| format!("{how}, {shape}"))
     }
 }
 
@@ -239,12 +250,7 @@ impl Optics {
     /// A sentence on where `tables` come from, which were asked for.
     #[must_use]
     pub fn source_of(&self, tables: &TableSet) -> String {
-        let how = match (self.by, tables.shape()) {
-            (_, Some(shape)) => format!("exact projection, {shape}"),
-            (TablesBy::Fitting, None) => "fitted rows".to_owned(),
-            (TablesBy::Equation9 | TablesBy::Exact { .. }, None) => "Eq. 9".to_owned(),
-        };
-        format!("{} ({how})", self.source())
+        format!("{} ({})", self.source(), self.by.how(tables.shape()))
     }
 
     /// What the lens is, in a sentence.

@@ -38,13 +38,8 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         .map_err(Failure::call)?;
     let optics = arguments.lens.optics()?;
     let figures = Figures::of(&optics).map_err(Failure::call)?;
-    let most = match &arguments.map {
-        None => None,
-        Some(path) => match figures.used() {
-            Some(used) => Some(write_map(path, &used.residuals, arguments.overwrite)?),
-            None => None,
-        },
-    };
+    let map = arguments.map.as_ref().zip(figures.used());
+    let most = map.map(|(path, used)| write_map(path, &used.residuals, arguments.overwrite)).transpose()?;
     if context.json {
         let map = most.map(|most| json!({ "file": arguments.map.as_ref().map(|path| path.display().to_string()), "brightest_px": most }));
         print_result("lens", Exit::Pass, None, figures.json(map.as_ref()))?;
@@ -146,13 +141,7 @@ impl<'a> Figures<'a> {
         let head = format!("error left at {} samples, in pixels", first.residuals.samples);
         let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05")];
         for left in &self.all {
-            let name = match (left.by, left.shape) {
-                (TablesBy::Equation9, _) => "Eq. 9".to_owned(),
-                (TablesBy::Fitting, _) => "fitted rows".to_owned(),
-                (TablesBy::Exact { .. }, shape) => {
-                    shape.map_or_else(String::new, |shape| format!("exact projection, {shape}"))
-                }
-            };
+            let name = left.by.how(left.shape);
             let (horizontal, inner) = (amounts(left.residuals.horizontal), left.parts.inner);
             lines.push(format!("  {name:<45} {horizontal} {:11.4} {:9.2} %", inner.max, 100.0 * inner.share));
         }

@@ -200,8 +200,9 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
     let is_over = || over.load(Ordering::Relaxed) || signal.by().is_some();
     let holder = format!("{station} {:016x}", rng().random::<u64>());
     let waiter = Waiter::new(kind, &holder, station).map_err(Failure::error)?;
-    let Some(held) = wait(address, &waiter, &is_over)? else { return Ok(Exit::Pass) };
-    let holding = Holding::begin(PlantLink::new(address.clone()), Held::Board(held.clone()));
+    let plant = PlantLink::new(address.clone());
+    let Some(held) = wait(&plant, &waiter, &is_over)? else { return Ok(Exit::Pass) };
+    let holding = Holding::begin(plant, Held::Board(held.clone()));
     print(&json!({ "held": held }).to_string())?;
     while !is_over() {
         if let Some(lost) = holding.lost() {
@@ -216,13 +217,13 @@ fn hold(address: &PlantAddress, kind: &str, station: &str) -> Result<Exit, Failu
 
 /// Waits for its turn, and says how many are in front.
 fn wait(
-    address: &PlantAddress,
+    plant: &PlantLink,
     waiter: &Waiter,
     is_over: &dyn Fn() -> bool,
 ) -> Result<Option<crate::store::Lease>, Failure> {
-    let (begun, mut plant) = (Instant::now(), Plant::connect(address)?);
+    let begun = Instant::now();
     loop {
-        let before = match plant.wait(waiter)? {
+        let before = match plant.ask(|plant| plant.wait(waiter))? {
             Turn::Held(lease) => return Ok(Some(lease)),
             Turn::Never => return Err(Failure::call(NoKind { kind: waiter.kind.clone() })),
             Turn::Waits { before } => before,
@@ -230,15 +231,15 @@ fn wait(
         print(&json!({ "waits": { "before": before, "seconds": begun.elapsed().as_secs() } }).to_string())?;
         sleep_unless(ASKED, is_over);
         if is_over() {
-            left(&mut plant, waiter);
+            left(plant, waiter);
             return Ok(None);
         }
     }
 }
 
 /// Leaves the queue; who says nothing any more is forgotten anyway.
-fn left(plant: &mut Plant, waiter: &Waiter) {
-    if let Err(StoreError::Plant { source, .. }) = plant.leave(waiter) {
+fn left(plant: &PlantLink, waiter: &Waiter) {
+    if let Err(StoreError::Plant { source, .. }) = plant.ask(|plant| plant.leave(waiter)) {
         console::error(&format_args!("the place in the queue is forgotten in some seconds: {source}"));
     }
 }

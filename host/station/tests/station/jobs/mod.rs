@@ -59,7 +59,7 @@ pub(crate) fn worker(station: &str) -> Worker {
 }
 
 /// All leases have run out, as if their holders had said nothing for long.
-fn run_out(server: &Server) {
+pub(crate) fn run_out(server: &Server) {
     server
         .client("plant")
         .batch_execute("UPDATE job SET until_ms = 0; UPDATE board SET until_ms = 0")

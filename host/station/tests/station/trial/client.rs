@@ -6,7 +6,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use halfrow_station::record::{JobClaim, RunCause};
 use halfrow_station::run;
-use halfrow_station::store::{Claim, PlantAddress, PlantLink, Worker};
+use halfrow_station::store::{Claim, PlantLink, Worker};
 use halfrow_station::work::{Held, Holding};
 use tempfile::TempDir;
 
@@ -179,7 +179,7 @@ impl Client<'_> {
     fn send(&mut self, long: Duration, is_lost: &dyn Fn() -> bool) -> u32 {
         let (address, name, begun) = (self.trial.address(), self.name, Instant::now());
         loop {
-            self.with(|made| sent(name, made, &address));
+            self.with(|made| send_as(name, made, address.clone()).0);
             let unsent = self.made.as_ref().unwrap().folder().unsent().unwrap();
             let left = unsent.iter().map(|of| of.entries).sum();
             if left == 0 || begun.elapsed() >= long || is_lost() {
@@ -192,11 +192,6 @@ impl Client<'_> {
     fn with(&mut self, act: impl FnOnce(Made) -> Made) {
         self.made = self.made.take().map(act);
     }
-}
-
-fn sent(name: &str, made: Made, address: &PlantAddress) -> Made {
-    let (made, _) = send_as(name, made, address.clone());
-    made
 }
 
 fn now_ms() -> i64 {

@@ -23,7 +23,7 @@ use halfrow_station::store::{Plant, PlantAddress, PlantLink};
 use tempfile::TempDir;
 
 use crate::history::generated::Draw;
-use crate::jobs::{any, board, job, plan};
+use crate::jobs::{any, board, job, plan, run_out};
 use crate::plant::server::Server;
 use crate::plant::way::{Cut, way};
 use found::Found;
@@ -126,22 +126,19 @@ impl Trial {
     /// Lets everything happen until all jobs are done, and returns the folders of all stations, with nothing left to be sent.
     fn run(&self) -> Vec<TempDir> {
         thread::scope(|scope| {
-            let clients =
-                (0..self.shape.clients).map(|number| scope.spawn(move || client::work(self, number)));
+            // However it ends: stations that went on would keep a failed trial from its end.
+            let over = Over(&self.is_over);
+            let Shape { clients, processes, networks, .. } = self.shape;
+            let clients = (0..clients).map(|number| scope.spawn(move || client::work(self, number)));
             let clients: Vec<_> = clients.collect();
-            let processes = (0..self.shape.processes)
-                .map(|number| scope.spawn(move || process::work(self, number, None)));
-            let processes: Vec<_> = processes.collect();
-            let networks = (0..self.shape.networks).map(|number| {
-                scope.spawn(move || {
-                    process::work(self, self.shape.processes + number, Some(Network::new(number)))
-                })
+            let programs = (0..processes + networks).map(|number| {
+                let network = number.checked_sub(processes).map(Network::new);
+                scope.spawn(move || process::work(self, number, network))
             });
-            let networks: Vec<_> = networks.collect();
+            let programs: Vec<_> = programs.collect();
             self.watch();
-            self.is_over.store(true, Ordering::Relaxed);
-            let all = clients.into_iter().chain(processes).chain(networks);
-            all.map(|station| station.join().unwrap()).collect()
+            drop(over);
+            clients.into_iter().chain(programs).map(|station| station.join().unwrap()).collect()
         })
     }
 
@@ -159,7 +156,7 @@ impl Trial {
                 (last, moved) = (done, Instant::now());
             }
             if self.shape.stall.is_none() && moved.elapsed() > HURRY {
-                self.all_run_out();
+                run_out(&lock(&self.server));
             }
             assert!(
                 moved.elapsed() < STUCK,
@@ -180,11 +177,6 @@ impl Trial {
                 restarts += 1;
             }
         }
-    }
-
-    fn all_run_out(&self) {
-        let text = "UPDATE job SET until_ms = 0 WHERE state = 'claimed'; UPDATE board SET until_ms = 0 WHERE holder IS NOT NULL";
-        lock(&self.server).client("plant").batch_execute(text).unwrap();
     }
 
     /// How many jobs are done. What was claimed five times in vain is tried again, as a person would have it.
@@ -214,6 +206,15 @@ impl Trial {
              UPDATE board SET until_ms = 0 WHERE name = '{board}' AND holder IS NOT NULL"
         );
         lock(&self.server).client("plant").batch_execute(&text).unwrap();
+    }
+}
+
+/// Dropped, it ends a trial.
+struct Over<'a>(&'a AtomicBool);
+
+impl Drop for Over<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
     }
 }
 
