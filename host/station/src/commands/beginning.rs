@@ -58,17 +58,12 @@ pub(super) struct SettingsFile {
 }
 
 impl SettingsFile {
-    /// What they say.
-    pub(super) fn load(&self) -> Result<Settings, Failure> {
-        settings(&self.settings)
-    }
-
     /// Where they are.
     pub(super) fn path(&self) -> Result<PathBuf, Failure> {
         path::absolute(&self.settings).map_err(Failure::call)
     }
 
-    /// What they say to whoever needs no lanes: a plant has none.
+    /// What they say to whoever needs no lanes: a plant has none, nor has a station that takes jobs alone.
     pub(super) fn load_plant(&self) -> Result<Settings, Failure> {
         let path = self.path()?;
         Settings::load_plant(&path).map_err(Failure::call)

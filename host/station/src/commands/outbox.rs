@@ -62,7 +62,7 @@ struct Left {
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
-    let settings = settings.load()?;
+    let settings = settings.load_plant()?;
     let folder = Folder::new(&settings.data);
     match what {
         What::List { json } => either(&Left { unsent: folder.unsent()?, dead: folder.dead()? }, *json, text),

@@ -88,6 +88,13 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
         .output()
         .unwrap();
     assert!(again.status.success(), "{again:?}");
+    // Without a lane, too, it tells what it has not sent.
+    let unsent = Command::new(program())
+        .args(["outbox", "list", "--settings"])
+        .arg(folder.path().join("station.toml"))
+        .output()
+        .unwrap();
+    assert!(unsent.status.success(), "{unsent:?}");
     assert!(fs::exists(folder.path().join("data/station.db")).unwrap());
     assert_eq!(server.rows("SELECT count(*) FROM run WHERE verdict = 'PASS'"), [["1"]]);
 }

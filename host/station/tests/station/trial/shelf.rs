@@ -1,5 +1,6 @@
 //! Boards that clients judge, as far as it matters who has them: each numbers its sessions, and hears the last one only.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::sync::Mutex;
 
@@ -8,7 +9,7 @@ use super::lock;
 /// All boards.
 pub(super) struct Shelf {
     sessions: Mutex<HashMap<String, u32>>,
-    /// Runs that ended although another one had begun on their board.
+    /// Runs that were judged although another one had begun on their board while they were at it.
     at_once: Mutex<Vec<String>>,
     is_fenced: bool,
 }
@@ -22,6 +23,8 @@ pub(super) struct Session<'a> {
     shelf: &'a Shelf,
     board: String,
     number: u32,
+    /// Whether it went on when another one had begun.
+    is_beside: Cell<bool>,
 }
 
 impl Shelf {
@@ -34,10 +37,10 @@ impl Shelf {
         let mut sessions = lock(&self.sessions);
         let number = sessions.entry(board.to_owned()).or_default();
         *number += 1;
-        Session { shelf: self, board: board.to_owned(), number: *number }
+        Session { shelf: self, board: board.to_owned(), number: *number, is_beside: Cell::new(false) }
     }
 
-    /// Runs that were judged although another one had begun on their board.
+    /// How many runs were judged although another one had begun on their board while they were at it.
     pub(super) fn at_once(&self) -> usize {
         lock(&self.at_once).len()
     }
@@ -50,12 +53,17 @@ impl Session<'_> {
 
     /// Exchanges something with the board.
     pub(super) fn exchange(&self) -> Result<(), Superseded> {
-        if self.is_last() || !self.shelf.is_fenced { Ok(()) } else { Err(Superseded) }
+        let is_last = self.is_last();
+        if self.shelf.is_fenced && !is_last {
+            return Err(Superseded);
+        }
+        self.is_beside.set(self.is_beside.get() || !is_last);
+        Ok(())
     }
 
-    /// Has the run of this session judged.
+    /// Has the run of this session judged. Whoever begins behind its last exchange is not beside it.
     pub(super) fn judged(&self, run: &str) {
-        if !self.is_last() {
+        if self.is_beside.get() {
             lock(&self.shelf.at_once).push(run.to_owned());
         }
     }
