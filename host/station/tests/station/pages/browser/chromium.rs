@@ -90,8 +90,15 @@ impl Chromium {
         self.number
     }
 
-    /// Waits for the answer of this number.
+    /// Waits for the answer of this number, which is no error.
     fn answer(&mut self, number: u64) -> Value {
+        let answer = self.heard(number);
+        assert!(answer["error"].is_null(), "{answer}");
+        answer["result"].clone()
+    }
+
+    /// Waits for the answer of this number, or for why there is none.
+    fn heard(&mut self, number: u64) -> Value {
         loop {
             let message =
                 self.from.recv_timeout(HANG).unwrap_or_else(|_| panic!("the browser does not answer"));
@@ -99,8 +106,7 @@ impl Chromium {
                 self.asked.push(message["params"]["request"]["url"].as_str().unwrap().to_owned());
             }
             if message["id"] == number {
-                assert!(message["error"].is_null(), "{message}");
-                return message["result"].clone();
+                return message;
             }
         }
     }
@@ -112,16 +118,28 @@ impl Chromium {
 
     /// What the page's script says.
     pub(super) fn evaluate(&mut self, script: &str) -> Value {
+        self.evaluated(script).unwrap_or_else(|left| panic!("{script}: {left}"))
+    }
+
+    /// The same; an error if the page is left for another one meanwhile.
+    fn evaluated(&mut self, script: &str) -> Result<Value, Value> {
         let parameters = json!({ "expression": script, "awaitPromise": true, "returnByValue": true });
-        let said = self.call("Runtime.evaluate", parameters);
+        let number = self.put("Runtime.evaluate", &parameters);
+        let answer = self.heard(number);
+        if answer["error"]["message"] == "Inspected target navigated or closed" {
+            return Err(answer);
+        }
+        assert!(answer["error"].is_null(), "{script}: {answer}");
+        let said = &answer["result"];
         assert!(said["exceptionDetails"].is_null(), "{script}: {said}");
-        said["result"]["value"].clone()
+        Ok(said["result"]["value"].clone())
     }
 
     /// Waits until the page's script says yes.
     pub(super) fn wait(&mut self, script: &str) {
         let start = Instant::now();
-        while self.evaluate(script) != json!(true) {
+        // A page that is left has not said yes.
+        while self.evaluated(script) != Ok(json!(true)) {
             if start.elapsed() > HANG {
                 let page = self.evaluate("document.body.innerText");
                 panic!("{script} did not come true; the page says {page}");
