@@ -5,7 +5,13 @@ use std::process::ExitCode;
 use halfrow_cli::commands::{self, Cli, Failure};
 use halfrow_cli::exit::Exit;
 use halfrow_cli::{console, flags, guard, signals};
+use halfrow_program::built::Built;
 use halfrow_program::{line, log};
+
+const BUILT: Built = Built {
+    features: if cfg!(feature = "sim") { &["sim"] } else { &[] },
+    licences: include_str!("../licences.txt"),
+};
 
 fn main() -> ExitCode {
     guard::end(program)
@@ -15,7 +21,7 @@ fn program() -> Exit {
     let cli = match Cli::read() {
         Ok(cli) => cli,
         Err(told) => {
-            let told = line::tell(&told, &Cli::line());
+            let told = line::tell(&told, &Cli::line(), BUILT);
             return told.unwrap_or_else(|unprinted| explain(&Failure::error(unprinted), None));
         }
     };

@@ -60,8 +60,14 @@ pub use result::Report;
 pub use run::{Finished, FrameSource, Misfit, Plan, RunOptions, verify};
 pub use verdict::{Cause, StoppedBy, Verdict};
 
-/// The commit that this library was built from, abbreviated; `unknown` without git.
-pub(crate) const COMMIT: &str = env!("HALFROW_COMMIT");
+/// The commit that this library was built from, abbreviated; `unknown` without git, and in builds that are not optimised.
+pub const COMMIT: &str = env!("HALFROW_COMMIT");
 
 /// The version and, in brackets, the commit.
 pub const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("HALFROW_COMMIT"), ")");
+
+/// The system that this library was built for, as Rust calls it.
+pub const TARGET: &str = env!("HALFROW_TARGET");
+
+/// The compiler that it was built by, with its version.
+pub const RUSTC: &str = env!("HALFROW_RUSTC");

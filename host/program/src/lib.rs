@@ -5,8 +5,10 @@
 //! * [`log`]: what goes to stderr when somebody wants to know.
 //! * [`guard`]: a panic is an error with exit code 3, never 101.
 //! * [`json`]: what documents of both programs begin with, and [`codes`]: why there is no result.
-//! * [`mod@line`]: what a command line that asks for help, or is wrong, is told.
+//! * [`mod@line`]: what a command line that asks for help, or is wrong, is told, and [`built`]: what `--version --verbose` tells.
+//! * [`man_pages`]: man pages and completion scripts.
 
+pub mod built;
 pub mod codes;
 pub mod console;
 pub mod exit;
@@ -14,3 +16,4 @@ pub mod guard;
 pub mod json;
 pub mod line;
 pub mod log;
+pub mod man_pages;

@@ -4,23 +4,27 @@ use clap::Command;
 use clap::error::ErrorKind;
 use halfrow::result::Problem;
 
+use crate::built::{self, Built};
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
 use crate::{codes, json};
 
 /// Tells what the reader of the command line of `program` has to tell: help and version on stdout, what is wrong with a call on
-/// stderr, and as JSON on stdout where that is asked for.
+/// stderr, and as JSON on stdout where that is asked for. With `--verbose` the version says what the program was built from.
 ///
 /// # Errors
 /// [`Unprinted`] when somebody asked for help or version, and stdout does not take it.
-pub fn tell(told: &clap::Error, program: &Command) -> Result<Exit, Unprinted> {
-    let text = told.render().ansi().to_string();
+pub fn tell(told: &clap::Error, program: &Command, built: Built) -> Result<Exit, Unprinted> {
+    let mut text = told.render().ansi().to_string();
+    let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
+    let options: Vec<_> = arguments.take_while(|argument| argument != "--").collect();
+    if told.kind() == ErrorKind::DisplayVersion && built::is_asked(&options) {
+        text += &built.lines();
+    }
     if !told.use_stderr() {
         return console::print_raw(&text).map(|()| Exit::Pass);
     }
     console::diagnose_raw(&text);
-    let arguments = std::env::args_os().skip(1).map(|argument| argument.to_string_lossy().into_owned());
-    let options: Vec<_> = arguments.take_while(|argument| argument != "--").collect();
     if options.iter().any(|option| option == "--json") {
         console::tell(&document(told, program, &options));
     }

@@ -3,8 +3,11 @@
 use std::process::ExitCode;
 
 use clap::{CommandFactory as _, Parser as _};
+use halfrow_program::built::Built;
 use halfrow_program::{console, exit::Exit, guard, line, log};
 use halfrow_station::commands::{self, Cli, Failure};
+
+const BUILT: Built = Built { features: &[], licences: include_str!("../licences.txt") };
 
 fn main() -> ExitCode {
     guard::end(program)
@@ -14,7 +17,7 @@ fn program() -> Exit {
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(told) => {
-            let told = line::tell(&told, &Cli::command());
+            let told = line::tell(&told, &Cli::command(), BUILT);
             return told.unwrap_or_else(|unprinted| explain(&Failure::error(unprinted), None));
         }
     };

@@ -12,7 +12,8 @@ use halfrow_model::ModelPath;
 #[derive(Debug, Parser)]
 #[command(name = "halfrow", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
 pub(super) struct Line<Commands: Subcommand> {
-    /// Log what happens on the link to stderr; twice for every packet that is late or damaged
+    /// Log what happens on the link to stderr; twice for every packet that is late or damaged. With --version: tell
+    /// what the program was built from
     #[arg(short, long, global = true, action = ArgAction::Count)]
     pub(super) verbose: u8,
     /// Show no progress

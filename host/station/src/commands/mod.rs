@@ -14,6 +14,7 @@ mod lane;
 mod lanes;
 mod lang_check;
 mod looking;
+mod manual;
 mod notify;
 mod outbox;
 mod pareto;
@@ -46,7 +47,8 @@ use crate::store::StoreError;
 #[derive(Debug, Parser)]
 #[command(name = "halfrow-station", version = halfrow::VERSION, propagate_version = true, max_term_width = 100)]
 pub struct Cli {
-    /// Log what happens to stderr; twice for every packet that is late or damaged
+    /// Log what happens to stderr; twice for every packet that is late or damaged. With --version: tell
+    /// what the program was built from
     #[arg(short, long, global = true, action = ArgAction::Count)]
     verbose: u8,
     #[command(subcommand)]
@@ -81,6 +83,8 @@ enum Command {
     Demo(demo::Arguments),
     User(user::Arguments),
     Token(token::Arguments),
+    Completions(manual::Completions),
+    Manual(manual::Manual),
     Lane(lane::Arguments),
 }
 
@@ -156,6 +160,8 @@ impl Cli {
             Command::Demo(arguments) => demo::run(arguments),
             Command::User(arguments) => user::run(arguments),
             Command::Token(arguments) => token::run(arguments),
+            Command::Completions(arguments) => manual::complete(arguments),
+            Command::Manual(arguments) => manual::write(arguments),
             Command::Lane(arguments) => lane::run(arguments),
         }
     }

@@ -1,0 +1,67 @@
+//! A program's man pages and its completion scripts, made of its command line.
+
+use std::io;
+
+use clap::Command;
+use clap_mangen::Man;
+
+pub use clap_complete::Shell;
+
+/// A man page of section 1.
+#[derive(Debug)]
+pub struct Page {
+    /// The file's name.
+    pub name: String,
+    /// What it holds, for troff.
+    pub text: String,
+}
+
+/// The script by which `shell` completes calls of `program`, without a line's end behind it.
+#[must_use]
+pub fn completions(shell: Shell, program: &mut Command) -> String {
+    let name = program.get_name().to_owned();
+    let mut script = Vec::new();
+    clap_complete::generate(shell, program, name, &mut script);
+    String::from_utf8_lossy(&script).trim_end().to_owned()
+}
+
+/// The pages of all commands of `program` that are not hidden, then its own.
+///
+/// # Errors
+/// What the renderer of pages says, which writes to memory alone.
+pub fn all(program: Command) -> io::Result<Vec<Page>> {
+    let mut program = program.disable_help_subcommand(true);
+    program.build();
+    let mut pages = Vec::new();
+    collect(&program, &mut pages)?;
+    Ok(pages)
+}
+
+fn collect(command: &Command, pages: &mut Vec<Page>) -> io::Result<()> {
+    for subcommand in command.get_subcommands().filter(|subcommand| !subcommand.is_hide_set()) {
+        collect(subcommand, pages)?;
+    }
+    let man = Man::new(command.clone());
+    let mut rendered = Vec::new();
+    man.render(&mut rendered)?;
+    let text = with_value_names(command, &String::from_utf8_lossy(&rendered));
+    pages.push(Page { name: man.get_filename(), text });
+    Ok(())
+}
+
+/// `page` with the names of values in its synopsis, where clap leaves them out.
+fn with_value_names(command: &Command, page: &str) -> String {
+    const SYNOPSIS: &str = ".SH SYNOPSIS\n";
+    let Some((before, rest)) = page.split_once(SYNOPSIS) else { return page.to_owned() };
+    let (synopsis, after) = rest.split_at(rest.find("\n.SH ").unwrap_or(rest.len()));
+    let takes_value = |argument: &&clap::Arg| argument.get_action().takes_values();
+    let synopsis = command.get_opts().filter(takes_value).fold(synopsis.to_owned(), |synopsis, option| {
+        let Some(long) = option.get_long() else { return synopsis };
+        let name =
+            option.get_value_names().and_then(<[_]>::first).map_or("VALUE", clap::builder::Str::as_str);
+        let (written, name) = (long.replace('-', "\\-"), name.replace('-', "\\-"));
+        let option = format!("\\fB\\-\\-{written}\\fR");
+        synopsis.replace(&option, &format!("{option} \\fI{name}\\fR"))
+    });
+    format!("{before}{SYNOPSIS}{synopsis}{after}")
+}
