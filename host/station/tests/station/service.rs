@@ -6,15 +6,14 @@ use std::process::Command;
 use crate::common::{Did, folder, program};
 
 const UNIT: &str = include_str!("../../systemd/halfrow-station.service");
-/// Where the unit has the program.
-const INSTALLED: &str = "/usr/local/bin/halfrow-station";
+/// How the unit begins the program, which systemd finds where it is installed.
+const STARTS: &str = "ExecStart=halfrow-station";
 /// The most that `systemd-analyze security` may count, of 10; it counts boards, their groups and the network, too.
 const EXPOSURE: f64 = 2.0;
 
 #[test]
 fn the_unit_calls_the_program_as_it_is_called() {
-    let line = UNIT.lines().find_map(|line| line.strip_prefix("ExecStart=")).unwrap();
-    let arguments = line.strip_prefix(INSTALLED).unwrap();
+    let arguments = UNIT.lines().find_map(|line| line.strip_prefix(STARTS)).unwrap();
     let nowhere = arguments.replace("/etc/halfrow", "/nowhere");
     let did: Did = Command::new(program()).args(nowhere.split_whitespace()).output().unwrap().into();
     assert_eq!(did.code, Some(2), "{did:?}");
@@ -25,7 +24,7 @@ fn the_unit_calls_the_program_as_it_is_called() {
 fn analysed(unit: &str, how: &[&str]) -> Did {
     let folder = folder();
     let path = folder.path().join("halfrow-station.service");
-    fs::write(&path, unit.replace(INSTALLED, &program().display().to_string())).unwrap();
+    fs::write(&path, unit.replace(STARTS, &format!("ExecStart={}", program().display()))).unwrap();
     let did = Command::new("systemd-analyze").args(how).arg("--no-pager").arg(&path).output();
     did.unwrap_or_else(|_| panic!("systemd-analyze is missing; run: apt-get install systemd")).into()
 }
