@@ -1,7 +1,11 @@
 //! `halfrow-station work`
 
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, ScopedJoinHandle};
+
 use clap::Args;
 use halfrow::Verdict;
+use halfrow::verdict::StoppedBy;
 use rand::{RngExt as _, rng};
 use serde_json::json;
 
@@ -11,15 +15,16 @@ use super::publish::fetch_at_start;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
+use crate::guard::guarded;
 use crate::outbox::Outbox;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Worker};
 use crate::work::{Judged, Work, WorkError};
 
-/// Take jobs of the plant, one after the other, and judge the boards that they are about
+/// Take jobs of the plant, and judge the boards that they are about
 ///
-/// `[work]` of the settings has the plans of the jobs that are taken. A job is done when the plant has its run; until then job and
-/// board are held, and whoever loses them ends the run. A signal ends the run that is under way, and the program.
+/// `[work]` of the settings has the plans of the jobs that are taken, and how many are judged at once. A job is done when the plant has its run; until then job and
+/// board are held, and whoever loses them ends the run. A signal ends the runs that are under way, and the program.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -54,22 +59,50 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let plant = PlantLink::new(address);
     let work = Work { settings: &settings, plant, store, program, worker };
     let stop = || signal.by();
-    let ended = take_jobs(&work, arguments, &stop);
+    let at_once = settings.work.as_ref().map_or(1, |work| work.at_once);
+    let ended = take_jobs(&work, arguments, at_once, &stop);
     outbox.close();
     ended?;
     Ok(signal.by().map_or(Exit::Pass, |by| halfrow::Cause::Stopped(by).into()))
 }
 
-/// Judges one job after the other.
-fn take_jobs(
+/// What tells that a run is to end, to every hand.
+type Stop<'a> = &'a (dyn Fn() -> Option<StoppedBy> + Sync);
+
+/// Judges so many jobs at once. When one hand cannot go on, the others end the boards that they have, and take no more.
+fn take_jobs(work: &Work<'_>, arguments: &Arguments, at_once: u32, stop: Stop<'_>) -> Result<(), Failure> {
+    let is_over = AtomicBool::new(false);
+    let next_stop = || stop().or_else(|| is_over.load(Ordering::Relaxed).then_some(StoppedBy::Caller));
+    let hand = || {
+        let ended =
+            guarded(|| one_by_one(work, arguments, stop, &next_stop)).map_err(Failure::error).flatten();
+        is_over.fetch_or(ended.is_err(), Ordering::Relaxed);
+        ended
+    };
+    thread::scope(|scope| {
+        let hands: Vec<_> = (1..at_once)
+            .map(|number| thread::Builder::new().name(format!("hand {number}")).spawn_scoped(scope, hand))
+            .collect();
+        let mut ended = hand();
+        for other in hands {
+            let other = other.map_err(Failure::error).map(ScopedJoinHandle::join);
+            ended = ended.and(other.and_then(|joined| joined.unwrap_or(Ok(()))));
+        }
+        ended
+    })
+}
+
+/// Judges one job after the other, until `next_stop` says that no other one is to be begun; `stop` ends the one under way.
+fn one_by_one(
     work: &Work<'_>,
     arguments: &Arguments,
-    stop: &dyn Fn() -> Option<halfrow::verdict::StoppedBy>,
+    stop: Stop<'_>,
+    next_stop: Stop<'_>,
 ) -> Result<(), Failure> {
     loop {
-        let claim = if arguments.once { work.claim()? } else { work.next(stop)? };
+        let claim = if arguments.once { work.claim()? } else { work.next(next_stop)? };
         let Some(claim) = claim else { return Ok(()) };
-        if stop().is_some() {
+        if next_stop().is_some() {
             work.decline(&claim);
             return Ok(());
         }

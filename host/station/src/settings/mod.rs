@@ -101,6 +101,8 @@ pub struct WorkSettings {
     pub plans: Vec<usize>,
     /// What it has that jobs may need.
     pub has: Vec<String>,
+    /// How many jobs it judges at once.
+    pub at_once: u32,
 }
 
 /// A plan with its file.

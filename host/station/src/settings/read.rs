@@ -34,6 +34,8 @@ const MOST_HOURS: f64 = 720.0;
 const MOST_SECONDS: f64 = 86_400.0;
 /// The most characters of a lane's name, which stands on a barcode and is read from afar.
 const MOST_NAME: usize = 16;
+/// The most jobs that are judged at once, each by a process of its own.
+const MOST_AT_ONCE: u32 = 64;
 
 /// The settings of `text` in the file `path`.
 pub(super) fn settings(path: &Path, text: &str, has_lanes: bool) -> Result<Settings, Fault> {
@@ -87,7 +89,20 @@ fn work(text: &WorkText, plans: &mut Plans<'_>) -> Result<WorkSettings, Fault> {
         let what = format!("`{}` is no word that a job could name", word.get_ref());
         return Err(Fault::wrong(word.span().start, what, "write one without blanks"));
     }
-    Ok(WorkSettings { plans: files, has: text.has.iter().map(|word| word.get_ref().clone()).collect() })
+    let has = text.has.iter().map(|word| word.get_ref().clone()).collect();
+    Ok(WorkSettings { plans: files, has, at_once: at_once(text.at_once.as_ref())? })
+}
+
+/// How many jobs are judged at once: one if nothing is said.
+fn at_once(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
+    let wanted = text.map_or(1, |text| *text.get_ref());
+    match text {
+        Some(text) if !(1..=MOST_AT_ONCE).contains(&wanted) => {
+            let what = format!("{wanted} jobs cannot be judged at once");
+            Err(Fault::wrong(text.span().start, what, format!("give 1 to {MOST_AT_ONCE}")))
+        }
+        _ => Ok(wanted),
+    }
 }
 
 /// The plans that the settings of `text` would have of the plant, where the station's folder is, and the plant.

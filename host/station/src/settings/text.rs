@@ -121,6 +121,7 @@ pub(super) struct WorkText {
     pub(super) plans: Spanned<Vec<Spanned<String>>>,
     #[serde(default)]
     pub(super) has: Vec<Spanned<String>>,
+    pub(super) at_once: Option<Spanned<u32>>,
 }
 
 /// A `[[sink]]`

@@ -1,4 +1,4 @@
-//! A station that takes jobs of its plant: one after the other, each on a board that several computers share.
+//! A station that takes jobs of its plant, as many at once as its settings say, each on a board that several computers share.
 //!
 //! ```text
 //!  claim: job and board, together ─► run, as every run ─► kept here ─► outbox ─► plant: the job is done, by just this run

@@ -3,6 +3,8 @@
 use std::fs;
 use std::process::{Command, Stdio};
 
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use serde_json::Value;
 
 use super::{any, job, plan, run_out, settings, shared};
@@ -97,6 +99,56 @@ fn a_worker_that_is_killed_leaves_a_job_that_another_one_does() {
     assert!(unsent.status.success(), "{unsent:?}");
     assert!(fs::exists(folder.path().join("data/station.db")).unwrap());
     assert_eq!(server.rows("SELECT count(*) FROM run WHERE verdict = 'PASS'"), [["1"]]);
+}
+
+/// Boards that are judged for as long as one wants.
+fn endless(number: usize) -> halfrow_station::store::SharedBoard {
+    halfrow_station::store::SharedBoard {
+        target: "mock,pace=real,speed=20000".to_owned(),
+        ..super::board(number, "mock")
+    }
+}
+
+/// A station takes as many jobs at once as its settings say, by one connection, and gives all of them back when it is told to end.
+#[test]
+fn a_station_judges_so_many_jobs_at_once_and_ends_all_of_them_when_it_is_told_to() {
+    let (server, mut plant) = shared(0);
+    for number in 0..3 {
+        plant.share(&endless(number), "engel").unwrap();
+    }
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 3).unwrap();
+    drop(plant);
+    let folder = crate::common::folder();
+    let path = settings(&server, folder.path(), "12");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.clone() + "at_once = 2\n").unwrap();
+    let mut command = Command::new(program());
+    command.args(["work", "--json", "--any-disk", "--settings"]).arg(&path);
+    let mut worker = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let open =
+        || crate::common::query(&folder.path().join("data"), "SELECT lane FROM run WHERE state = 'open'");
+    let both = "SELECT 1 FROM job WHERE state = 'claimed' HAVING count(*) = 2";
+    while server.rows(both).is_empty() || open().len() < 2 {
+        assert_eq!(worker.try_wait().unwrap(), None, "it ends");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    // Both hands are full: the third board is free, and its job waits.
+    assert_eq!(
+        server.rows("SELECT state, count(*) FROM job GROUP BY state ORDER BY state"),
+        [["claimed", "2"], ["waiting", "1"]]
+    );
+    let connections = "SELECT count(*) FROM pg_stat_activity WHERE application_name = 'halfrow-station'";
+    // One for what it holds, one for what it sends.
+    assert_eq!(server.rows(connections), [["2"]]);
+    kill(Pid::from_raw(worker.id() as i32), Signal::SIGTERM).unwrap();
+    let did = Did::from(worker.wait_with_output().unwrap());
+    assert_eq!(did.code, Some(143), "{did:?}");
+    assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
+    assert_eq!(open(), [""; 0]);
+    fs::write(&path, text + "at_once = 0\n").unwrap();
+    let refused = Did::from(command.output().unwrap());
+    assert!(refused.code == Some(2) && refused.complained.contains("give 1 to 64"), "{refused:?}");
 }
 
 /// The commands of an engineer at a plant.

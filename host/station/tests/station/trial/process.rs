@@ -34,7 +34,8 @@ pub(super) fn work(trial: &Trial, number: u32, network: Option<Network>) -> Temp
         Some(network) => network.settings(trial, folder.path()),
         None => format!("url = \"{}\"\n", trial.url()),
     };
-    settings(folder.path(), &format!("station {number}"), &plant);
+    // Every second one judges two boards at once.
+    settings(folder.path(), &format!("station {number}"), &plant, 1 + number % 2);
     let mut station = Station { trial, folder, network, draw: Draw(1_000 + u64::from(number)) };
     let mut child = station.start();
     while !trial.is_over() {
@@ -54,11 +55,10 @@ pub(super) fn work(trial: &Trial, number: u32, network: Option<Network>) -> Temp
     station.folder
 }
 
-fn settings(folder: &Path, name: &str, plant: &str) {
+fn settings(folder: &Path, name: &str, plant: &str, at_once: u32) {
     fs::write(folder.join("plan.toml"), PLAN).unwrap();
-    let text = format!(
-        "schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n[plant]\n{plant}[work]\nplans = [\"plan.toml\"]\n"
-    );
+    let station = format!("schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n");
+    let text = format!("{station}[plant]\n{plant}[work]\nplans = [\"plan.toml\"]\nat_once = {at_once}\n");
     fs::write(folder.join("station.toml"), text).unwrap();
 }
 
