@@ -3,6 +3,8 @@
 use std::path::{self, Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::Duration;
 
 use clap::Args;
 use halfrow::verdict::StoppedBy;
@@ -16,6 +18,9 @@ use crate::outbox::{self, Outbox, PlantSink, Sink};
 use crate::run::{self as runs, Saved};
 use crate::settings::Settings;
 use crate::store::{Folder, Store};
+
+/// How often it is looked whether a signal came.
+const LOOK: Duration = Duration::from_millis(100);
 
 /// Which disks are taken for new results.
 #[derive(Debug, Args)]
@@ -89,6 +94,17 @@ impl Signal {
     /// Who wants the program to end.
     pub(super) fn by(&self) -> Option<StoppedBy> {
         Exit::stopped_by(self.0.load(Ordering::Relaxed))
+    }
+
+    /// Waits for whoever wants that, and calls `meanwhile` ten times a second.
+    pub(super) fn wait(&self, mut meanwhile: impl FnMut()) -> StoppedBy {
+        loop {
+            if let Some(by) = self.by() {
+                return by;
+            }
+            meanwhile();
+            thread::sleep(LOOK);
+        }
     }
 }
 

@@ -10,7 +10,7 @@ use super::{Failure, print};
 use crate::exit::Exit;
 use crate::outbox::{OutboxError, Round, round};
 use crate::settings::Settings;
-use crate::store::{Dead, Folder, SharedStore, Store, Unsent};
+use crate::store::{Dead, Folder, SharedStore, Snapshot, Store, Unsent};
 
 /// See what is still to be sent on, send it, or have it tried again
 #[derive(Debug, Args)]
@@ -65,7 +65,10 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let settings = settings.load_plant()?;
     let folder = Folder::new(&settings.data);
     match what {
-        What::List { json } => either(&Left { unsent: folder.unsent()?, dead: folder.dead()? }, *json, text),
+        What::List { json } => {
+            let now = Snapshot::take(&folder)?;
+            either(&Left { unsent: now.unsent()?, dead: now.dead()? }, *json, text)
+        }
         What::Send { disk } => send(&settings, disk.opens(&settings.data)?),
         What::Release { id, sink, why } => release(&folder, id.as_deref(), sink.as_deref(), why),
         What::Forget { sink, why } => forget(&settings, &folder, sink, why),
@@ -114,7 +117,7 @@ fn send(settings: &Settings, mut store: Store) -> Result<Exit, Failure> {
             }
         }
     }
-    let left = store.with(|store| store.folder().unsent())?;
+    let left = store.with(|store| Snapshot::take(store.folder())?.unsent())?;
     print(&format!("{} sent, {} not", all.sent, all.failed))?;
     if all.failed == 0 { Ok(Exit::Pass) } else { print(&table_of(&left)).map(|_| Exit::Error) }
 }

@@ -3,7 +3,6 @@
 use std::io;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -17,9 +16,6 @@ use crate::engine::Engine;
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::web::{Access, App, Server, User, Who};
-
-/// How often it is looked whether a signal came.
-const LOOK: Duration = Duration::from_millis(100);
 
 /// How often systemd is told that the engine works.
 const TELL: Duration = Duration::from_secs(1);
@@ -78,16 +74,12 @@ pub(super) fn serve(
     let notify = Notify::of_environment();
     notify.ready();
     let mut told = Instant::now();
-    let by = loop {
-        if let Some(by) = signal.by() {
-            break by;
-        }
+    let by = signal.wait(|| {
         if told.elapsed() >= TELL && engine.is_well() {
             told = Instant::now();
             notify.works();
         }
-        thread::sleep(LOOK);
-    };
+    });
     engine.close(Some(by));
     outbox.close();
     server.close();

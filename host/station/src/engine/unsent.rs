@@ -5,7 +5,7 @@ use nix::sys::statvfs::statvfs;
 use crate::outbox::PlantSink;
 use crate::said::{Said, Saying};
 use crate::settings::Settings;
-use crate::store::Folder;
+use crate::store::{Folder, Snapshot};
 
 /// How full the disk may be, in per cent, while results wait for a plant.
 const MOST_PERCENT: u64 = 95;
@@ -13,7 +13,7 @@ const MOST_PERCENT: u64 = 95;
 /// Why no other board is judged: more is unsent than the settings allow, or the disk has no room for what waits.
 pub(super) fn refuses(settings: &Settings, folder: &Folder) -> Option<Said> {
     let most = settings.plant.as_ref()?.most_unsent;
-    let entries = match folder.unsent() {
+    let entries = match Snapshot::take(folder).and_then(|now| now.unsent()) {
         // What others are sent is kept by the plant, too.
         Ok(unsent) => {
             unsent.iter().find(|unsent| unsent.sink == PlantSink::NAME).map_or(0, |plant| plant.entries)

@@ -21,7 +21,7 @@ pub use sinks::{SinkError, SinkSettingsError, open};
 use crate::clock;
 use crate::guard::guarded;
 use crate::said::Said;
-use crate::store::{Entry, Parcel, SharedStore, StoreError, Tried};
+use crate::store::{Entry, Parcel, SharedStore, Snapshot, StoreError, Tried};
 
 /// How often it is looked whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
@@ -168,7 +168,7 @@ pub enum OutboxError {
 }
 
 fn beat(store: &SharedStore, sink: &mut dyn Sink) {
-    let unsent = store.with(|store| store.folder().unsent()).unwrap_or_default();
+    let unsent = store.with(|store| Snapshot::take(store.folder())?.unsent()).unwrap_or_default();
     let ours = unsent.iter().find(|unsent| unsent.sink == sink.name());
     sink.beat(ours.map_or(0, |ours| ours.entries), ours.map_or(0, |ours| ours.dead));
 }

@@ -238,6 +238,17 @@ impl Snapshot {
             Ok(Unsent { sink, entries, dead, since_ms, said: row.get(4)? })
         })
     }
+
+    /// Every entry that waits for a person.
+    ///
+    /// # Errors
+    /// As [`Self::unsent`].
+    pub fn dead(&self) -> Result<Vec<Dead>, StoreError> {
+        self.rows("to tell what waits for a person", sql::OUTBOX_DEAD, &[], |row| {
+            let said = row.get::<Option<String>>(5)?.unwrap_or_default();
+            Ok(Dead { sink: row.get(0)?, entry: entry(row, 1)?, dead_ms: row.get(4)?, said })
+        })
+    }
 }
 
 impl Folder {
@@ -248,27 +259,6 @@ impl Folder {
     pub fn due(&self, sink: &str, now_ms: i64) -> Result<Vec<Entry>, StoreError> {
         self.read("to tell what is to be sent", |from| {
             from.all(sql::OUTBOX_DUE, values![sink, now_ms], |row| entry(row, 0))
-        })
-    }
-
-    /// How it stands with each sink that does not have all.
-    ///
-    /// # Errors
-    /// As [`Self::due`].
-    pub fn unsent(&self) -> Result<Vec<Unsent>, StoreError> {
-        Snapshot::take(self)?.unsent()
-    }
-
-    /// Every entry that waits for a person.
-    ///
-    /// # Errors
-    /// As [`Self::due`].
-    pub fn dead(&self) -> Result<Vec<Dead>, StoreError> {
-        self.read("to tell what waits for a person", |from| {
-            from.all(sql::OUTBOX_DEAD, &[], |row| {
-                let said = row.get::<Option<String>>(5)?.unwrap_or_default();
-                Ok(Dead { sink: row.get(0)?, entry: entry(row, 1)?, dead_ms: row.get(4)?, said })
-            })
         })
     }
 

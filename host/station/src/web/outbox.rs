@@ -12,17 +12,14 @@ use super::routes::{Route, Who, act, look};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
-use crate::store::{Dead, Entry, Folder, Kind, StoreError, Unsent};
+use crate::store::{Dead, Entry, Kind, Unsent};
 
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/outbox", Who::Reader, page), act("/outbox/{id}/release", Who::Engineer, release)]
 }
 
 async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let folder = Folder::new(&app.settings().data);
-    let look = move || -> Result<_, StoreError> { Ok((folder.unsent()?, folder.dead()?)) };
-    let found = app.blocking(&visit, look).await?;
-    let (unsent, dead) = found.map_err(|error| Trouble::store(&visit, error))?;
+    let (unsent, dead) = app.look(&visit, |now| Ok((now.unsent()?, now.dead()?))).await?;
     let content = html! {
         h1 { (visit.say("outbox.title")) }
         @if unsent.is_empty() { p.nothing { (visit.say("outbox.none")) } } @else { (sinks(&visit, &unsent)) }

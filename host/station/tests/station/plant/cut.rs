@@ -38,7 +38,7 @@ fn cut_at(numbers: impl IntoIterator<Item = usize>) {
             let (made, first) = send(history(), address.clone());
             assert!(first.is_away && first.failed == 1, "{cut:?} {number}: {first:?}");
             // What the station holds to be unsent is there if, and only if, the server had heard of the COMMIT.
-            let [unsent] = &made.folder().unsent().unwrap()[..] else { panic!("nothing was cut") };
+            let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("nothing was cut") };
             let there = server
                 .rows("SELECT id FROM run UNION ALL SELECT id FROM audit UNION ALL SELECT id FROM waiver");
             let surplus = usize::from(cut == Cut::Behind);
@@ -63,7 +63,7 @@ fn a_server_that_is_killed_and_comes_back_gets_all() {
     server.kill();
     let (made, vain) = send(history(), server.address());
     assert_eq!((vain.sent, vain.failed, vain.is_away), (0, 1, true));
-    let [unsent] = &made.folder().unsent().unwrap()[..] else { panic!("all was sent") };
+    let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert_eq!((unsent.entries, unsent.dead), (10, 0));
     assert!(unsent.said.as_ref().unwrap().contains("refuses a connection"), "{unsent:?}");
     server.again();

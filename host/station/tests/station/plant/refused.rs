@@ -39,7 +39,7 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     let (made, all) = send(made, server.address());
     // All others are sent.
     assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
-    let [dead] = &made.folder().dead().unwrap()[..] else { panic!("nothing waits") };
+    let [dead] = &made.now().dead().unwrap()[..] else { panic!("nothing waits") };
     assert_eq!(dead.entry.subject, run);
     assert!(dead.said.contains("nothing was changed: keep both"), "{dead:?}");
     let at_plant = format!("SELECT record_sha256 FROM run WHERE id = '{run}'");
@@ -79,7 +79,7 @@ fn a_waiver_waits_for_its_run() {
     let later = "UPDATE outbox SET next_ms = 9000000000000 WHERE subject = (SELECT run_id FROM waiver)";
     assert_eq!(database.execute(later, []).unwrap(), 1);
     let (made, _) = send(made, server.address());
-    let [unsent] = &made.folder().unsent().unwrap()[..] else { panic!("all was sent") };
+    let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert_eq!((unsent.entries, unsent.dead), (2, 0), "{unsent:?}");
     assert!(unsent.said.as_ref().unwrap().contains("which comes first"), "{unsent:?}");
     due(&made);
@@ -159,7 +159,7 @@ fn a_station_with_another_folder_is_taken_for_itself_when_a_person_says_so() {
     made.run(&Run { started_ms: BEGIN_MS + 40 * HOUR_MS, ..Run::of("S9", End::Pass) });
     let (made, refused) = send(made, server.address());
     assert_eq!((refused.sent, refused.is_away), (0, true));
-    let [unsent] = &made.folder().unsent().unwrap()[..] else { panic!("all was sent") };
+    let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
     assert!(
         unsent.said.as_ref().unwrap().contains("another station of this plant is called station 7"),
         "{unsent:?}"

@@ -69,5 +69,5 @@ fn all_that_a_station_keeps_comes_to_the_plant_once() {
     let (made, all) = send(made, server.address());
     assert_eq!(all.sent, 11);
     is_as(&server, &made);
-    assert!(made.folder().unsent().unwrap().is_empty());
+    assert!(made.now().unsent().unwrap().is_empty());
 }

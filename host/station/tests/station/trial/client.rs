@@ -180,7 +180,7 @@ impl Client<'_> {
         let (address, name, begun) = (self.trial.address(), self.name, Instant::now());
         loop {
             self.with(|made| send_as(name, made, address.clone()).0);
-            let unsent = self.made.as_ref().unwrap().folder().unsent().unwrap();
+            let unsent = self.made.as_ref().unwrap().now().unsent().unwrap();
             let left = unsent.iter().map(|of| of.entries).sum();
             if left == 0 || begun.elapsed() >= long || is_lost() {
                 return left;
