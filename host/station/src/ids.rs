@@ -32,6 +32,13 @@ pub(crate) fn made_ms(id: &str) -> i64 {
     i64::from_str_radix(&digits, 16).unwrap_or_default()
 }
 
+/// What is in front of every id of version 7 that is made at the moment `ms` or later, and behind all others.
+#[must_use]
+pub(crate) fn first_of(ms: i64) -> String {
+    let ms = ms.max(0).unsigned_abs();
+    format!("{:08x}-{:04x}", ms >> 16, ms & 0xffff)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -42,6 +49,8 @@ mod tests {
         let id = new(0x017F_22E2_79B0).unwrap();
         assert_eq!((id.get_version_num(), id.get_variant()), (7, uuid::Variant::RFC4122));
         assert!(id.to_string().starts_with("017f22e2-79b0-7"), "{id}");
+        assert_eq!(first_of(0x017F_22E2_79B0), "017f22e2-79b0");
+        assert!(first_of(0x017F_22E2_79B0) < id.to_string() && first_of(0x017F_22E2_79B1) > id.to_string());
         assert_ne!(new(1).unwrap(), new(1).unwrap());
         assert_eq!(seed("017F22E2-79B0-7CC3-98C4-DC0C0C07398F".parse().unwrap()), 0xDC0C_0C07_398F);
     }

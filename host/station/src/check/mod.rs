@@ -1,11 +1,17 @@
 //! Whether everything is as it was written: every hash anew, and the index made anew from the records beside the one
 //! that is there.
 
-use std::collections::BTreeMap;
+mod compare;
+mod fault;
+mod plant;
+
+use compare::compare;
+pub use fault::Fault;
+pub use plant::check_plant;
 
 use crate::plan::plan_hash;
-use crate::record::{BlobError, Blobs, Record, RecordError};
-use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Row, Snapshot, StoreError, TABLES};
+use crate::record::{Blobs, PlanRecord, Record};
+use crate::store::{Folder, OpenRun, Rebinding, Rebuilt, Removed, Snapshot, StoreError, TABLES};
 
 /// What was looked at, and what is wrong.
 #[derive(Debug)]
@@ -20,85 +26,6 @@ pub struct Checked {
     pub pruned: usize,
     /// What is not as it was written.
     pub faults: Vec<Fault>,
-}
-
-/// Something that is not as it was written.
-#[derive(Debug, thiserror::Error)]
-pub enum Fault {
-    /// SQLite finds its own file damaged.
-    #[error("the database is damaged ({said}); restore it from a copy")]
-    Database {
-        /// What it says.
-        said: String,
-    },
-    /// A record or an attachment is not there, or other than its hash.
-    #[error("evidence of run {run}: {source}")]
-    Evidence {
-        /// The run.
-        run: String,
-        /// What is wrong.
-        source: BlobError,
-    },
-    /// A record is whole and cannot be read.
-    #[error("the record of run {run}: {source}")]
-    Record {
-        /// The run.
-        run: String,
-        /// Why.
-        source: RecordError,
-    },
-    /// A record does not fit the records before it.
-    #[error("the record of run {run} does not fit those before it: {source}")]
-    Contradiction {
-        /// The run.
-        run: String,
-        /// Why.
-        source: Box<StoreError>,
-    },
-    /// A line of the audit does not fit the records.
-    #[error("the binding of line {id} of the audit does not fit the records: {source}")]
-    Audit {
-        /// The line.
-        id: String,
-        /// Why.
-        source: Box<StoreError>,
-    },
-    /// The plan in a record is not what its hash says.
-    #[error("the plan in the record of run {run} has another hash than it says; look at the record")]
-    Plan {
-        /// The run.
-        run: String,
-    },
-    /// A row is not what the records say.
-    #[error("table {table}, row {key}: {column} is `{stored}`, and the records say `{rebuilt}`")]
-    Differs {
-        /// The table.
-        table: &'static str,
-        /// The row's key.
-        key: String,
-        /// The column.
-        column: String,
-        /// What is there.
-        stored: String,
-        /// What should be.
-        rebuilt: String,
-    },
-    /// A row is not there.
-    #[error("table {table} has no row {key}, and the records have")]
-    Missing {
-        /// The table.
-        table: &'static str,
-        /// The row's key.
-        key: String,
-    },
-    /// A row is there without a record.
-    #[error("table {table} has a row {key}, and no record has")]
-    Surplus {
-        /// The table.
-        table: &'static str,
-        /// The row's key.
-        key: String,
-    },
 }
 
 /// Looks at all that the station in `folder` has kept. Nothing is changed; runs may go on meanwhile.
@@ -120,7 +47,7 @@ pub fn check(folder: &Folder) -> Result<Checked, StoreError> {
     look.at_all(&finals, &open, &snapshot.rebindings()?);
     faults.append(&mut look.faults);
     for (table, key) in TABLES {
-        compare(table, key, snapshot.table(table, key)?, look.rebuilt.table(table, key)?, &mut faults);
+        compare(table, snapshot.table(table, key), look.rebuilt.table(table, key), &mut faults)?;
     }
     let Look { evidence, pruned, .. } = look;
     Ok(Checked { runs: finals.len(), open: open.len(), evidence, pruned, faults })
@@ -187,8 +114,7 @@ impl Look {
                 Ok(_) => self.evidence += 1,
             }
         }
-        let plan = &record.plan;
-        if plan.files.as_ref().is_some_and(|files| plan_hash(&plan.text, files) != plan.sha256) {
+        if !is_as_hashed(&record.plan) {
             self.faults.push(Fault::Plan { run: owned() });
         }
         let added = self.rebuilt.add(&record, hash);
@@ -196,26 +122,7 @@ impl Look {
     }
 }
 
-/// Compares a table with the one that was made anew.
-fn compare(table: &'static str, key: &str, stored: Vec<Row>, rebuilt: Vec<Row>, faults: &mut Vec<Fault>) {
-    let by_key =
-        |rows: Vec<Row>| rows.into_iter().map(|row| (key_of(key, &row), row)).collect::<BTreeMap<_, _>>();
-    let (stored, mut rebuilt) = (by_key(stored), by_key(rebuilt));
-    for (key, row) in stored {
-        let Some(right) = rebuilt.remove(&key) else {
-            faults.push(Fault::Surplus { table, key });
-            continue;
-        };
-        let differing = row.into_iter().zip(right).filter(|(stored, rebuilt)| stored != rebuilt);
-        faults.extend(differing.map(|((column, stored), (_, rebuilt))| {
-            let key = key.clone();
-            Fault::Differs { table, key, column, stored, rebuilt }
-        }));
-    }
-    faults.extend(rebuilt.into_keys().map(|key| Fault::Missing { table, key }));
-}
-
-fn key_of(key: &str, row: &Row) -> String {
-    let value = |name: &str| row.iter().find(|(column, _)| column == name).map(|(_, value)| value.as_str());
-    key.split(", ").filter_map(value).collect::<Vec<_>>().join(" ")
+/// Whether a plan is what its hash says, if the record says which files belong to it.
+fn is_as_hashed(PlanRecord { sha256, text, files, .. }: &PlanRecord) -> bool {
+    files.as_ref().is_none_or(|files| plan_hash(text, files) == *sha256)
 }

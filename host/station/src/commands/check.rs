@@ -13,7 +13,7 @@ use crate::store::Folder;
 
 /// Read everything that the station has kept, and say what is not as it was written
 ///
-/// Every hash is computed anew, and the database is made anew from the records, in memory, and compared. Exit codes: 0
+/// Every hash is computed anew, and the database is made anew from the records, beside it, and compared. Exit codes: 0
 /// all is as it was written, 3 something is not.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -27,8 +27,13 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let checked = check::check(&Folder::new(&arguments.data))?;
+    tell(&checked, arguments.json)
+}
+
+/// Says what was found, and whether all is as it was written.
+pub(super) fn tell(checked: &Checked, is_json: bool) -> Result<Exit, Failure> {
     let exit = if checked.faults.is_empty() { Exit::Pass } else { Exit::Error };
-    console::tell(&if arguments.json { document(&checked, exit)? } else { text(&checked) });
+    console::tell(&if is_json { document(checked, exit)? } else { text(checked) });
     Ok(exit)
 }
 

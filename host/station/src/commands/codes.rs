@@ -218,6 +218,8 @@ codes::codes! {
         Evidence [run] => "run-evidence-wrong",
         Record [run] => "run-record-wrong",
         Contradiction [run] => "run-contradicts",
+        Unkept [run, sha256] => "run-record-not-kept",
+        Job [job] => "job-without-run",
         Audit [id] => "audit-contradicts",
         Plan [run] => "run-plan-wrong",
         Differs [table, key, column, stored, rebuilt] => "table-row-differs",

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use halfrow::frames::written_aside::{Aside, WriteAsideError, write_aside};
 
-use super::looking::{Data, Filtered};
+use super::looking::{Filtered, Results};
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::export::{self, ExportError, Format, Table};
@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     /// The run, as `halfrow-station history` names it [default: all that the filters leave]
     run: Option<String>,
     #[command(flatten)]
-    data: Data,
+    results: Results,
     /// How they are written
     #[arg(long, value_enum, default_value = "record")]
     format: Format,
@@ -36,7 +36,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let snapshot = arguments.data.snapshot()?;
+    let snapshot = arguments.results.snapshot()?;
     match (&arguments.run, &arguments.to) {
         (Some(run), to) => one(&snapshot, run, arguments.format, to.as_deref()),
         (None, Some(to)) => all(&snapshot, &arguments.filtered.filter(), arguments.format, to),

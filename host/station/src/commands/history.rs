@@ -3,7 +3,7 @@
 use clap::Args;
 
 use super::Failure;
-use super::looking::{Data, Filtered, either, table, time};
+use super::looking::{Filtered, Results, either, table, time};
 use crate::exit::Exit;
 use crate::history::runs::{MOST, Page, Place, page};
 
@@ -11,7 +11,7 @@ use crate::history::runs::{MOST, Page, Place, page};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    data: Data,
+    results: Results,
     #[command(flatten)]
     filtered: Filtered,
     /// So many at most
@@ -27,7 +27,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let filter = arguments.filtered.filter();
-    let page = page(&arguments.data.snapshot()?, &filter, arguments.after.as_ref(), arguments.limit)?;
+    let page = page(&arguments.results.snapshot()?, &filter, arguments.after.as_ref(), arguments.limit)?;
     either(&page, arguments.json, text)
 }
 

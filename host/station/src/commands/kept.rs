@@ -84,7 +84,7 @@ pub(super) fn prune(arguments: &Prune) -> Result<Exit, Failure> {
 }
 
 /// Milliseconds since 1970, UTC, so many days ago.
-fn days_ago_ms(days: u32) -> i64 {
+pub(super) fn days_ago_ms(days: u32) -> i64 {
     clock::now_ms().saturating_sub(86_400_000 * i64::from(days))
 }
 

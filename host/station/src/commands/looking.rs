@@ -1,6 +1,6 @@
 //! What the commands that look at results have in common.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf, absolute};
 
 use clap::{Args, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
@@ -10,14 +10,16 @@ use jiff::civil::Date;
 use jiff::{Timestamp, tz::TimeZone};
 use serde::Serialize;
 
+use super::plant::plant;
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::history::Period;
 use crate::history::runs::Filter;
 use crate::history::yields::Wanted;
-use crate::store::{Folder, Snapshot};
+use crate::settings::Settings;
+use crate::store::{Folder, Plant, Snapshot};
 
-/// Where the results are.
+/// Where the station's results are.
 #[derive(Debug, Args)]
 pub(super) struct Data {
     /// The station's folder
@@ -30,10 +32,29 @@ impl Data {
     pub(super) fn folder(&self) -> Folder {
         Folder::new(&self.data)
     }
+}
 
+/// Whose results are looked at.
+#[derive(Debug, Args)]
+pub(super) struct Results {
+    /// The station's folder
+    #[arg(long, value_name = "FOLDER", env = "HALFROW_STATION_DATA", required_unless_present = "plant")]
+    data: Option<PathBuf>,
+    /// The results of all stations instead, from the plant of these settings
+    #[arg(long, value_name = "SETTINGS")]
+    plant: Option<PathBuf>,
+}
+
+impl Results {
     /// The results at this moment.
     pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
-        Ok(Snapshot::take(&self.folder())?)
+        if let Some(path) = &self.plant {
+            let settings = Settings::load_plant(&absolute(path).map_err(Failure::call)?);
+            let address = plant(&settings.map_err(Failure::call)?)?.address()?;
+            return Ok(Snapshot::of_plant(Plant::connect(&address)?)?);
+        }
+        let data = self.data.as_deref().unwrap_or(Path::new("."));
+        Ok(Snapshot::take(&Folder::new(data))?)
     }
 }
 

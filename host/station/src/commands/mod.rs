@@ -122,6 +122,7 @@ impl Cli {
         match &self.command {
             Command::Run(run::Arguments { json: true, .. }) => Some("run"),
             Command::Check(check::Arguments { json: true, .. }) => Some("check"),
+            Command::Plant(arguments) if arguments.is_documented() => Some("check"),
             Command::Prune(kept::Prune { json: true, .. }) => Some("prune"),
             Command::Codes(codes::Arguments { json: true }) => Some("codes"),
             _ => None,

@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::Failure;
-use super::looking::{Counted, Data, either, table};
+use super::looking::{Counted, Results, either, table};
 use crate::exit::Exit;
 use crate::history::pareto::{Of, Pareto, pareto};
 
@@ -11,7 +11,7 @@ use crate::history::pareto::{Of, Pareto, pareto};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    data: Data,
+    results: Results,
     /// Count by this
     #[arg(long, value_enum, default_value = "part")]
     by: Each,
@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         Each::Part => Of::Part,
         Each::Check => Of::Check,
     };
-    let pareto = pareto(&arguments.data.snapshot()?, &arguments.counted.wanted(), by)?;
+    let pareto = pareto(&arguments.results.snapshot()?, &arguments.counted.wanted(), by)?;
     either(&pareto, arguments.json, text)
 }
 

@@ -1,21 +1,22 @@
 //! `halfrow-station plant`
 
-use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::{Args, Subcommand};
 
 use super::beginning::{SettingsFile, Signal};
+use super::kept::days_ago_ms;
 use super::why::Why;
-use super::{Failure, print};
+use super::{Failure, check, print};
+use crate::check::check_plant;
 use crate::console;
 use crate::exit::Exit;
 use crate::settings::{PlantSettings, PlantSettingsError, Settings};
-use crate::store::{Plant, PlantAddress, PlantError};
+use crate::store::{Plant, PlantAddress, PlantError, Snapshot};
 use crate::web::{Access, App, Server, User, Who};
 
-/// How often it is looked whether a signal came.
-const LOOK: Duration = Duration::from_millis(100);
+/// How often it is said how far something long is.
+const TELL: Duration = Duration::from_secs(5);
 
 /// Keep the results of all stations in one PostgreSQL database
 ///
@@ -39,8 +40,33 @@ enum What {
         #[command(flatten)]
         why: Why,
     },
+    /// Read everything that the plant keeps, and say what is not as it was sent
+    ///
+    /// Every record's hash is computed anew, and all tables are made anew from the records, beside them, and compared: in memory, and
+    /// beyond 64 MiB in a file in the folder that SQLITE_TMPDIR or TMPDIR names. Exit codes: 0 all is as it was sent, 3 something is
+    /// not.
+    Check {
+        /// Print JSON
+        #[arg(long)]
+        json: bool,
+    },
+    /// Remove the steps and measurements of old runs, which their records have; runs, records and what is counted are kept for ever
+    Prune {
+        /// Of runs that began longer ago
+        #[arg(long, value_name = "DAYS", value_parser = clap::value_parser!(u32).range(1..))]
+        older_than: u32,
+        #[command(flatten)]
+        why: Why,
+    },
     /// Show the results of all stations in a browser; its pages only look
     Serve,
+}
+
+impl Arguments {
+    /// Whether a document was asked for.
+    pub(super) const fn is_documented(&self) -> bool {
+        matches!(self.what, What::Check { json: true })
+    }
 }
 
 pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Failure> {
@@ -57,7 +83,29 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             }
             Err(Failure::call(NoStation { station: station.clone() }))
         }
+        What::Check { json } => {
+            let snapshot = Snapshot::of_plant(Plant::connect(&address)?)?;
+            let mut told = progress("runs read");
+            check::tell(&check_plant(&snapshot, &mut |runs| told(runs as u64))?, *json)
+        }
+        What::Prune { older_than, why: Why { reason, operator } } => {
+            let before_ms = days_ago_ms(*older_than);
+            let mut told = progress("rows removed");
+            let removed = Plant::connect(&address)?.prune(before_ms, operator, reason, &mut told)?;
+            print(&format!("{removed} rows were removed; every record is kept"))
+        }
         What::Serve => serve(settings, address),
+    }
+}
+
+/// Says now and then how many are done by now, to whoever watches.
+fn progress(done: &'static str) -> impl FnMut(u64) {
+    let mut told = Instant::now();
+    move |count| {
+        if console::is_watched() && told.elapsed() >= TELL {
+            told = Instant::now();
+            console::diagnose(&format_args!("{count} {done}"));
+        }
     }
 }
 
@@ -71,12 +119,7 @@ fn serve(settings: Settings, plant: PlantAddress) -> Result<Exit, Failure> {
     let app = App::of_plant(settings, plant, access.at(at.port()));
     let server = Server::start(&app, listener).map_err(Failure::error)?;
     console::tell(&format!("The pages are at http://{at}/"));
-    let by = loop {
-        match signal.by() {
-            Some(by) => break by,
-            None => thread::sleep(LOOK),
-        }
-    };
+    let by = signal.wait(|| ());
     server.close();
     Ok(halfrow::Cause::Stopped(by).into())
 }

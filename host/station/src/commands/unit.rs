@@ -4,8 +4,9 @@ use clap::Args;
 use halfrow::report::wording::plain;
 
 use super::Failure;
-use super::looking::{Data, either, time};
+use super::looking::{Results, either, time};
 use crate::exit::Exit;
+use crate::history::mismatch::{Bound, Mismatch};
 use crate::history::unit::{Unit, UnitRun, units};
 
 /// Tell all that is known of the units of a serial number
@@ -14,14 +15,14 @@ pub(super) struct Arguments {
     /// The serial number
     serial: String,
     #[command(flatten)]
-    data: Data,
+    results: Results,
     /// Print JSON
     #[arg(long)]
     json: bool,
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let units = units(&arguments.data.snapshot()?, &arguments.serial)?;
+    let units = units(&arguments.results.snapshot()?, &arguments.serial)?;
     if units.is_empty() {
         let serial = &arguments.serial;
         let what = format!("no unit {serial} was tested here; `halfrow-station history` lists the runs");
@@ -36,8 +37,23 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 fn unit_lines(unit: &Unit) -> Vec<String> {
     let Unit { product, serial, runs, .. } = unit;
     let mut lines = vec![format!("{serial}, {product}, first seen {}", time(unit.first_seen_ms))];
+    lines.extend(unit.mismatches.iter().map(mismatch));
     lines.extend(runs.iter().flat_map(run_lines));
     lines
+}
+
+fn mismatch(one: &Mismatch) -> String {
+    let Bound { device, serial, from_ms, station, .. } = &one.bound;
+    let by = station.as_ref().map_or_else(|| "by a person".to_owned(), |name| format!("by {name}"));
+    format!(
+        "  mismatch  {} judges device {} as {}, last {} in run {}; here {serial} is device {device} since {}, {by}",
+        one.station,
+        one.device,
+        one.serial,
+        time(one.last_ms),
+        one.run,
+        time(*from_ms),
+    )
 }
 
 fn run_lines(run: &UnitRun) -> Vec<String> {

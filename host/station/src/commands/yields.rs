@@ -3,7 +3,7 @@
 use clap::{Args, ValueEnum};
 
 use super::Failure;
-use super::looking::{Counted, Data, either, table, time};
+use super::looking::{Counted, Results, either, table, time};
 use crate::exit::Exit;
 use crate::history::yields::{By, Flip, Yield, Yields, yields};
 
@@ -14,7 +14,7 @@ use crate::history::yields::{By, Flip, Yield, Yields, yields};
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    data: Data,
+    results: Results,
     /// A line for each
     #[arg(long, value_enum, default_value = "plan")]
     by: Each,
@@ -53,7 +53,7 @@ impl From<Each> for By {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
-    let snapshot = arguments.data.snapshot()?;
+    let snapshot = arguments.results.snapshot()?;
     let yields = yields(&snapshot, &arguments.counted.wanted(), arguments.by.into())?;
     either(&yields, arguments.json, text)
 }

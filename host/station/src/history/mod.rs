@@ -8,6 +8,7 @@
 //!  drift    whether a station judges otherwise than the others
 //!  pareto   what fails most, by part and by check
 //!  stations those of a plant, as it last heard of them
+//!  mismatch what two stations of a plant bound differently
 //!  counts   runs by verdict, for whoever asks every few seconds
 //! ```
 //!
@@ -16,6 +17,7 @@
 pub mod control;
 pub mod counts;
 pub mod drift;
+pub mod mismatch;
 pub mod pareto;
 pub mod rate;
 pub mod runs;

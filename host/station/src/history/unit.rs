@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::mismatch::{Mismatch, mismatches};
 use super::runs::RunLine;
 use crate::record::Attachment;
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, Waiver, statements, values};
@@ -23,6 +24,8 @@ pub struct Unit {
     pub runs: Vec<UnitRun>,
     /// The devices that it was bound to, the last one first.
     pub bindings: Vec<Binding>,
+    /// What stations of a plant bound differently of it; none at a station.
+    pub mismatches: Vec<Mismatch>,
 }
 
 /// A device under a serial number, from when to when.
@@ -105,9 +108,20 @@ pub struct Suspect {
 pub fn units(of: &Snapshot, serial: &str) -> Result<Vec<Unit>, StoreError> {
     let mut units = of.rows("to tell a unit", statements::UNITS_OF_SERIAL, values![serial], |row| {
         let (id, product, serial, first_seen_ms) = (row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?);
-        Ok(Unit { id, product, serial, first_seen_ms, runs: Vec::new(), bindings: Vec::new() })
+        Ok(Unit {
+            id,
+            product,
+            serial,
+            first_seen_ms,
+            runs: Vec::new(),
+            bindings: Vec::new(),
+            mismatches: Vec::new(),
+        })
     })?;
+    let mismatches = mismatches(of)?;
     for unit in &mut units {
+        let of_unit = mismatches.iter().filter(|one| one.is_of(&unit.product, &unit.serial));
+        unit.mismatches = of_unit.cloned().collect();
         unit.runs = runs(of, OF_UNIT, &unit.id)?;
         let binding = |row: &Found<'_>| {
             let (device, from_ms, to_ms) = (row.get(0)?, row.get(1)?, row.get(2)?);

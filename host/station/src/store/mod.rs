@@ -24,6 +24,7 @@ mod shared;
 mod shift;
 mod snapshot;
 pub(crate) mod statements;
+mod table;
 mod waivers;
 
 use std::collections::BTreeMap;
@@ -43,13 +44,14 @@ pub use error::StoreError;
 pub use keeping::Removed;
 pub use outbox::{AuditLine, Dead, Entry, Kind, Parcel, Tried, Unsent};
 pub use plant::{
-    Claim, Job, LEASE_MS, Lease, NewJob, Plant, PlantAddress, PlantAddressError, PlantError, PlantLink,
-    PlantPool, Presence, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
+    Claim, Job, Kept, LEASE_MS, Lease, NewJob, PlanOfJob, Plant, PlantAddress, PlantAddressError, PlantError,
+    PlantLink, PlantPool, Presence, STATES, SharedBoard, Turn, Waiter, Waiting, Wanted, Worker, boards, jobs,
     publications, waiters,
 };
 pub use shared::SharedStore;
 pub use shift::{Checked, Owed};
-pub use snapshot::{Rebuilt, Row, Snapshot, TABLES};
+pub use snapshot::{Rebuilt, Snapshot, TABLES};
+pub use table::{Key, Row, Rows};
 pub use waivers::{NoWaiver, Waiver};
 
 use crate::clock;

@@ -8,6 +8,7 @@ use halfrow::result::sha256;
 use rusqlite::Connection;
 
 use super::database::{Database, DatabaseError, Engine, Row as Found, Sqlite, Value, values};
+use super::table::{Rows, page};
 use super::{
     Folder, OpenRun, Plant, Rebinding, StoreError, bindings, migrations, open_run, rows, statements,
 };
@@ -27,9 +28,6 @@ pub const TABLES: [(&str, &str); 11] = [
     ("retest", "unit_id, plan"),
     ("failure", "run_id, kind, name"),
 ];
-
-/// A row, each value as text with its column.
-pub type Row = Vec<(String, String)>;
 
 /// The tables as they are, whatever is written meanwhile.
 #[derive(Debug)]
@@ -162,12 +160,10 @@ impl Snapshot {
         self.read("to tell who bound what", bindings::rebindings)
     }
 
-    /// All rows of a table, by its key.
-    ///
-    /// # Errors
-    /// [`StoreError`] when the database cannot be read.
-    pub fn table(&self, name: &str, key: &str) -> Result<Vec<Row>, StoreError> {
-        self.read("to tell a table", |reader| table(reader, name, key))
+    /// All rows of the table `name`, by its `key`.
+    #[must_use]
+    pub fn table(&self, name: &'static str, key: &'static str) -> Rows<'_> {
+        Rows::by(move |behind| self.read("to tell a table", |reader| page(reader, name, key, behind)))
     }
 
     /// What `row` makes of each row that `text`, a statement that reads, brings for `values`.
@@ -195,19 +191,7 @@ impl Snapshot {
     }
 }
 
-fn table(reader: &mut dyn Database, name: &str, key: &str) -> Result<Vec<Row>, DatabaseError> {
-    let text = |value: Value<'_>| match value {
-        Value::Null => "NULL".to_owned(),
-        Value::Whole(number) => number.to_string(),
-        Value::Real(number) => format!("{number:?}"),
-        Value::Text(text) => text.to_owned(),
-    };
-    reader.all(&format!("SELECT * FROM {name} ORDER BY {key}"), &[], |row| {
-        Ok(row.columns()?.into_iter().map(|(column, value)| (column, text(value))).collect())
-    })
-}
-
-/// Tables that are made anew, in memory.
+/// Tables that are made anew, in memory, and beyond 64 MiB in a file where the system keeps those that are nobody's.
 #[derive(Debug)]
 pub struct Rebuilt {
     database: Box<dyn Database>,
@@ -217,9 +201,13 @@ impl Rebuilt {
     /// Without a row.
     ///
     /// # Errors
-    /// [`StoreError`] when there is no memory for it.
+    /// [`StoreError`] when there is no room for it.
     pub fn new() -> Result<Self, StoreError> {
-        let database = Connection::open_in_memory().map_err(|source| refused(source.into()))?;
+        let opened = Connection::open("").and_then(|database| {
+            database.execute_batch("PRAGMA journal_mode = MEMORY; PRAGMA cache_size = -65536")?;
+            Ok(database)
+        });
+        let database = opened.map_err(|source| refused(source.into()))?;
         let mut database: Box<dyn Database> = Box::new(Sqlite::new(database));
         migrations::apply(&mut *database, "a rebuilt index".as_ref(), 0)?;
         Ok(Self { database })
@@ -254,18 +242,16 @@ impl Rebuilt {
         self.change(|to| bindings::rebind(to, change))
     }
 
-    /// All rows of a table, by its key.
-    ///
-    /// # Errors
-    /// [`StoreError`] when they cannot be read.
-    pub fn table(&mut self, name: &str, key: &str) -> Result<Vec<Row>, StoreError> {
-        table(&mut *self.database, name, key).map_err(refused)
+    /// All rows of the table `name`, by its `key`.
+    pub fn table(&mut self, name: &'static str, key: &'static str) -> Rows<'_> {
+        Rows::by(move |behind| page(&mut *self.database, name, key, behind).map_err(refused))
     }
 
-    fn change(
+    /// What `change` returns once it is made.
+    pub(super) fn change<T>(
         &mut self,
-        change: impl FnOnce(&mut dyn Database) -> Result<(), DatabaseError>,
-    ) -> Result<(), StoreError> {
+        change: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
+    ) -> Result<T, StoreError> {
         self.database.transaction(change).map_err(refused)
     }
 }

@@ -1,12 +1,13 @@
 //! The text of every statement. SQLite and PostgreSQL have the same, but for three words.
 
 /// The schemas, in order: numbered files that are never edited.
-pub(super) const SCHEMAS: [&str; 5] = [
+pub(super) const SCHEMAS: [&str; 6] = [
     include_str!("../../sql/schema-1.sql"),
     include_str!("../../sql/schema-2.sql"),
     include_str!("../../sql/schema-3.sql"),
     include_str!("../../sql/schema-4.sql"),
     include_str!("../../sql/schema-5.sql"),
+    include_str!("../../sql/schema-6.sql"),
 ];
 
 pub(super) const SCHEMA_VERSION: &str = include_str!("../../sql/schema-version.sql");
@@ -124,13 +125,24 @@ pub(super) const PUBLISH: &str = include_str!("../../sql/plant/publish.sql");
 pub(super) const PUBLICATION: &str = include_str!("../../sql/plant/publication.sql");
 pub(super) const HASH_OF_VERSION: &str = include_str!("../../sql/plant/hash-of-version.sql");
 pub(super) const PUBLICATIONS: &str = include_str!("../../sql/plant/publications.sql");
+pub(super) const ADD_MISMATCH: &str = include_str!("../../sql/plant/add-mismatch.sql");
+pub(crate) const MISMATCHES: &str = include_str!("../../sql/mismatches.sql");
+pub(super) const KEPT_RUNS: &str = include_str!("../../sql/plant/kept-runs.sql");
+pub(super) const UNNAMED_RECORDS: &str = include_str!("../../sql/plant/unnamed-records.sql");
+pub(super) const JOBS_WITHOUT_RUNS: &str = include_str!("../../sql/plant/jobs-without-runs.sql");
+pub(super) const PLANS_OF_JOBS: &str = include_str!("../../sql/plant/plans-of-jobs.sql");
+pub(super) const OTHER_MISMATCHES: &str = include_str!("../../sql/plant/other-mismatches.sql");
+pub(super) const NEXT_RUNS: &str = include_str!("../../sql/plant/next-runs.sql");
+pub(super) const PRUNE_STEPS: &str = include_str!("../../sql/plant/prune-steps.sql");
+pub(super) const PRUNE_MEASUREMENTS: &str = include_str!("../../sql/plant/prune-measurements.sql");
+pub(super) const PRUNED_ROWS: &str = include_str!("../../sql/plant/pruned-rows.sql");
 
 #[cfg(test)]
 mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 114] = [
+    const ALL: [&str; 125] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
@@ -245,6 +257,17 @@ mod tests {
         PUBLICATION,
         HASH_OF_VERSION,
         PUBLICATIONS,
+        ADD_MISMATCH,
+        MISMATCHES,
+        KEPT_RUNS,
+        UNNAMED_RECORDS,
+        JOBS_WITHOUT_RUNS,
+        PLANS_OF_JOBS,
+        OTHER_MISMATCHES,
+        NEXT_RUNS,
+        PRUNE_STEPS,
+        PRUNE_MEASUREMENTS,
+        PRUNED_ROWS,
     ];
 
     /// SQLite numbers `$1` by where it first stands, PostgreSQL by its digits.

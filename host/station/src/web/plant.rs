@@ -1,15 +1,16 @@
-//! The plant's first page: every station. All else that it shows is the history's, over all of them.
+//! The plant's first page: every station, and what two of them bound differently. All else that it shows is the history's, over all of them.
 
 use axum::extract::State;
 use axum::response::Response;
 use maud::{Markup, html};
 
-use super::history::show;
+use super::history::{mismatch, show};
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, look};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::Visit;
+use crate::history::mismatch::mismatches;
 use crate::history::stations::{Station, stations};
 use crate::published::Statement;
 use crate::store::publications;
@@ -19,10 +20,12 @@ pub(super) fn routes() -> Vec<Route> {
 }
 
 async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
-    let (found, plans) = app.look(&visit, |now| Ok((stations(now)?, publications(now)?))).await?;
+    let (found, differing, plans) =
+        app.look(&visit, |now| Ok((stations(now)?, mismatches(now)?, publications(now)?))).await?;
     let content = html! {
         h1 { (visit.say("plant.stations")) }
         @if found.is_empty() { p.nothing { (visit.say("plant.none")) } } @else { (table(&visit, &found)) }
+        (mismatch::table(&visit, &differing))
         @if !plans.is_empty() {
             h2 { (visit.say("plant.published")) }
             (published(&visit, &plans))

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 use std::process::{Command, Output};
+use std::time::SystemTime;
 
 use tempfile::TempDir;
 
@@ -32,6 +33,12 @@ timeout = 60
 pub(crate) fn guarded_plan(product: &str, letters: &str) -> String {
     let pattern = format!("^{letters}(?<number>[0-9]{{9}}[0-9X])$");
     PLAN.replace("CAM-T", product).replace("^CAT[0-9]{5}$", &pattern).replace("\"none\"", "\"mod11\"")
+}
+
+/// Milliseconds since 1970.
+pub(crate) fn now_ms() -> i64 {
+    let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).unwrap();
+    now.as_millis().try_into().unwrap()
 }
 
 /// A folder for a station, on a disk: where others keep temporary files may be memory.

@@ -8,7 +8,7 @@ use super::super::outbox::AuditLine;
 use super::super::{Rebinding, Waiver, bindings, rows, statements as sql};
 use crate::plan::Plan;
 use crate::plan::mock::is_mock;
-use crate::record::{JobClaim, Record};
+use crate::record::{DeviceSeen, JobClaim, Record};
 
 /// A run that is over, with all that follows from its record. One of this id that is there stays as it is.
 pub(super) fn run(
@@ -19,20 +19,39 @@ pub(super) fn run(
 ) -> Result<(), DatabaseError> {
     let unit = rows::unit(to, &record.run, &record.plan)?;
     to.one(sql::LOCK_UNIT, values![&unit], |_| Ok(()))?;
-    let counts = settles_job(to, record)? && !is_mock(&record.run.serial);
-    if enter(to, record, hash, &unit, counts)? == 0 {
+    let counts = settles_job(to, record)?;
+    if !entered(to, record, hash, &unit, counts)? {
         return Ok(());
     }
-    // What came first to the plant need not have come about first.
-    to.execute(sql::PLAN_EARLIER, values![record.run.started_ms, &record.plan.sha256])?;
-    to.execute(sql::UNIT_EARLIER, values![record.run.started_ms, &unit])?;
     to.execute(sql::ADD_RECORD, values![hash, text])?;
-    rows::parts(to, record)?;
     if let Some(device) = record.binds() {
         let of = values![&record.run.id, device, &unit, record.ended_ms, &record.run.operator, BY_RUN];
         to.execute(sql::ADD_BINDING_UNLESS, of)?;
     }
-    count(to, record, &unit, counts)
+    if record.device != DeviceSeen::NotChecked && record.conclusion.verdict != Verdict::Error {
+        to.execute(sql::ADD_MISMATCH, values![&record.run.id])?;
+    }
+    Ok(())
+}
+
+/// Enters the run of `unit` with what is counted by it, which `counts` unless it is superseded. Returns whether it was not there.
+pub(in crate::store) fn entered(
+    to: &mut dyn Database,
+    record: &Record,
+    hash: &str,
+    unit: &str,
+    counts: bool,
+) -> Result<bool, DatabaseError> {
+    let counts = counts && !is_mock(&record.run.serial);
+    if enter(to, record, hash, unit, counts)? == 0 {
+        return Ok(false);
+    }
+    // What came first to the plant need not have come about first.
+    to.execute(sql::PLAN_EARLIER, values![record.run.started_ms, &record.plan.sha256])?;
+    to.execute(sql::UNIT_EARLIER, values![record.run.started_ms, unit])?;
+    rows::parts(to, record)?;
+    count(to, record, unit, counts)?;
+    Ok(true)
 }
 
 /// Ends the job that the run was of, if it was of one, or gives it back when nothing was judged. Returns whether the run counts: not

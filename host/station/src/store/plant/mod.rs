@@ -4,16 +4,19 @@
 //! station has; only what is counted over the runs of a unit is counted over all stations.
 
 mod address;
-mod arrived;
+pub(super) mod arrived;
 mod boards;
 mod jobs;
+mod kept;
 mod link;
 mod plans;
 mod pool;
+mod prune;
 
 pub use address::{PlantAddress, PlantAddressError};
 pub use boards::{LEASE_MS, Lease, SharedBoard, Turn, Waiter, Waiting, boards, waiters};
 pub use jobs::{Claim, Job, NewJob, STATES, Wanted, Worker, jobs};
+pub use kept::{Kept, PlanOfJob};
 pub use link::PlantLink;
 pub use plans::publications;
 pub use pool::PlantPool;

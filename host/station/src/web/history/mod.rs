@@ -11,6 +11,7 @@ mod bars;
 mod csv;
 mod evidence;
 mod list;
+pub(super) mod mismatch;
 mod pareto;
 mod pictures;
 mod run;

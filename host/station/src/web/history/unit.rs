@@ -7,7 +7,7 @@ use maud::{Markup, html};
 
 use super::acts::Refused;
 use super::asked::Asked;
-use super::{acts, show};
+use super::{acts, mismatch, show};
 use crate::history::unit::{self, Binding, Unit, UnitRun};
 use crate::web::layout::{Here, Page};
 use crate::web::state::App;
@@ -60,6 +60,7 @@ fn of(visit: &Visit, asked: &Asked, unit: &Unit) -> Markup {
             }
             (flips(visit, unit))
             (devices(visit, &unit.bindings))
+            (mismatch::table(visit, &unit.mismatches))
             (acts::rebind_form(visit, unit))
             h2 { (visit.say("history.every")) }
             ol.story { @for run in unit.runs.iter().take(MOST_RUNS) { (story(visit, run)) } }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::text::{Kind, Label, Metric, Text};
 use super::{counted, turns};
 use crate::history::counts::{Cell, Count};
+use crate::history::mismatch::mismatches;
 use crate::history::stations::{Station, stations};
 use crate::web::state::App;
 use crate::web::visit::Visit;
@@ -51,30 +52,42 @@ const DEAD: Metric = Metric {
     help: "What of it waits for a person.",
 };
 
+const MISMATCHES: Metric = Metric {
+    name: "halfrow_plant_device_mismatches",
+    kind: Kind::Gauge,
+    help: "Devices and units that a station takes for one and the plant does not, since another one bound them first.",
+};
+
 /// What the plant holds.
 #[derive(Default)]
 struct Held {
     version: Option<u64>,
     counts: BTreeMap<Cell, Count>,
     stations: Vec<Station>,
+    mismatches: Option<u64>,
 }
 
 /// Writes all of them. A plant that is away is said to be.
 pub(super) async fn write(text: &mut Text, app: &App, visit: &Visit) {
     let held = turns::counted(app, visit, |now, tally| {
         let version = Some(now.version()?.unsigned_abs());
-        Ok(Held { version, counts: tally.counts(now)?, stations: stations(now)? })
+        let mismatches = Some(mismatches(now)?.len() as u64);
+        Ok(Held { version, counts: tally.counts(now)?, stations: stations(now)?, mismatches })
     });
     let held = held.await;
     text.of(&PLANT).put(&[("plant", app.station())], 1_u64);
     text.of(&UP).put(&[], held.is_some());
-    let Held { version, counts, stations } = held.unwrap_or_default();
+    let Held { version, counts, stations, mismatches } = held.unwrap_or_default();
     let mut of = text.of(&VERSION);
     if let Some(version) = version {
         of.put(&[], version);
     }
     counted(text, [&RUNS, &UNITS, &FIRST], &counts, labels);
     heard(text, &stations);
+    let mut of = text.of(&MISMATCHES);
+    if let Some(mismatches) = mismatches {
+        of.put(&[], mismatches);
+    }
 }
 
 fn labels(Cell { plan, station, .. }: &Cell) -> [Label<'_>; 3] {

@@ -45,6 +45,8 @@ pub(crate) struct Run {
     pub(crate) evidence: Vec<&'static str>,
     /// The job that it is of.
     pub(crate) job: Option<JobClaim>,
+    /// What was seen of the board's device, and its number; nobody looked if it is none.
+    pub(crate) device: Option<(DeviceSeen, &'static str)>,
 }
 
 impl Run {
@@ -61,6 +63,7 @@ impl Run {
             end,
             evidence: Vec::new(),
             job: None,
+            device: None,
         }
     }
 }
@@ -187,6 +190,10 @@ fn plan((name, version): (&str, &str)) -> PlanRecord {
 /// The record of a run that ended.
 fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
     let verify = verify(&run, made.end);
+    let mut board = verify.board.clone();
+    if let (Some(board), Some((_, device))) = (&mut board, made.device) {
+        board.device = Some(device.to_owned());
+    }
     let identity = step(&run, 1, "identity", (StepOutcome::Passed, RunCause::None, 0));
     let verdict = match verify.outcome {
         StepOutcome::Passed => Verdict::Pass,
@@ -208,8 +215,8 @@ fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
         plan,
         production: true,
         marginal: false,
-        device: DeviceSeen::NotChecked,
-        board: verify.board.clone(),
+        device: made.device.map_or(DeviceSeen::NotChecked, |(seen, _)| seen),
+        board,
         suspects: verify.suspects.clone(),
         steps: vec![identity, verify],
         measurements: judged(Maker::Run, &[("run.seconds", Some(1.5))], &[]),

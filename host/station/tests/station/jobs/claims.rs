@@ -71,7 +71,7 @@ fn a_job_is_had_by_one_at_a_time_and_so_is_a_board() {
 }
 
 /// What a worker that had stood still for too long does, and what the next one does: how many runs count as judgements.
-fn late(is_fenced: bool) -> (Server, Vec<Vec<String>>) {
+pub(crate) fn late(is_fenced: bool) -> (Server, Vec<Vec<String>>) {
     let (server, mut plant) = shared(1);
     let (plan, any) = (plan(), any());
     plant.add_jobs(&job(&plan, &any), 1).unwrap();

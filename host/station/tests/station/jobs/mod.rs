@@ -1,7 +1,7 @@
 //! Jobs of a plant, and boards that several computers share, on a real PostgreSQL server.
 
 mod boards;
-mod claims;
+pub(crate) mod claims;
 mod rate;
 mod work;
 

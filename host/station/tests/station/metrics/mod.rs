@@ -5,4 +5,4 @@ mod figures;
 mod of_plant;
 mod prometheus;
 mod rules;
-mod text;
+pub(crate) mod text;

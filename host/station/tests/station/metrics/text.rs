@@ -13,16 +13,16 @@ type Shape = (String, BTreeSet<String>);
 
 /// The figures of one answer.
 #[derive(Debug)]
-pub(super) struct Figures {
-    pub(super) text: String,
+pub(crate) struct Figures {
+    pub(crate) text: String,
     /// Every sample by its name with its labels.
-    pub(super) samples: BTreeMap<String, f64>,
+    pub(crate) samples: BTreeMap<String, f64>,
     kinds: BTreeMap<String, String>,
 }
 
 impl Figures {
     /// Those that are served now, in the format of Prometheus.
-    pub(super) fn of(serving: &Serving) -> Self {
+    pub(crate) fn of(serving: &Serving) -> Self {
         let answer = serving.here().get("/metrics").send();
         assert_eq!(answer.status, 200, "{}", answer.text());
         assert_eq!(answer.header("content-type"), Some("text/plain; version=0.0.4; charset=utf-8"));
@@ -45,12 +45,12 @@ impl Figures {
     }
 
     /// The value of this name with these labels.
-    pub(super) fn at(&self, name: &str) -> f64 {
+    pub(crate) fn at(&self, name: &str) -> f64 {
         *self.samples.get(name).unwrap_or_else(|| panic!("there is no {name} in\n{}", self.text))
     }
 
     /// Every metric with what it is. What has no sample has no labels here.
-    pub(super) fn shapes(&self) -> BTreeMap<String, Shape> {
+    pub(crate) fn shapes(&self) -> BTreeMap<String, Shape> {
         let mut shapes: BTreeMap<_, _> =
             self.kinds.iter().map(|(name, kind)| (name.clone(), (kind.clone(), BTreeSet::new()))).collect();
         for sample in self.samples.keys() {
@@ -66,7 +66,7 @@ impl Figures {
 }
 
 /// What the page says of metrics below this headline.
-pub(super) fn told(headline: &str) -> BTreeMap<String, Shape> {
+pub(crate) fn told(headline: &str) -> BTreeMap<String, Shape> {
     let page = include_str!("../../../../../docs/metrics.md");
     let section = page.split("\n## ").find(|section| section.starts_with(headline)).unwrap();
     let rows = section.lines().filter(|line| line.starts_with("| `"));
@@ -81,7 +81,7 @@ pub(super) fn told(headline: &str) -> BTreeMap<String, Shape> {
 }
 
 /// What `promtool` says when it is given this text.
-pub(super) fn promtool(arguments: &[&str], folder: &Path, said: &str) -> Did {
+pub(crate) fn promtool(arguments: &[&str], folder: &Path, said: &str) -> Did {
     let mut child = Command::new("promtool")
         .args(arguments)
         .current_dir(folder)
@@ -95,7 +95,7 @@ pub(super) fn promtool(arguments: &[&str], folder: &Path, said: &str) -> Did {
 }
 
 /// Has `promtool` look at a text of figures.
-pub(super) fn assert_sound(figures: &Figures) {
+pub(crate) fn assert_sound(figures: &Figures) {
     let did = promtool(&["check", "metrics"], Path::new("/"), &figures.text);
     assert_eq!((did.code, did.complained.as_str()), (Some(0), ""), "{}", figures.text);
 }

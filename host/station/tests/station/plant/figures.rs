@@ -4,6 +4,9 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::thread;
 use std::time::Instant;
 
+use halfrow_station::check::check_plant;
+use halfrow_station::store::{Plant, Snapshot};
+
 use super::sent::send_as;
 use super::server::Server;
 use crate::history::made::{BEGIN_MS, End, Made, Run};
@@ -56,11 +59,27 @@ fn a_plant_takes_so_many_runs_a_second_and_grows_by_so_much() {
         YEAR * each / 1e9,
         YEAR / 31_536_000.0
     );
+    println!("{}", vacuumed(&server, "VACUUM ANALYZE"));
+    let mut plant = Plant::connect(&server.address()).unwrap();
     let begun = Instant::now();
-    server.client("plant").batch_execute("VACUUM ANALYZE").unwrap();
-    println!("VACUUM ANALYZE in {:.0} s", begun.elapsed().as_secs_f64());
+    let checked = check_plant(&Snapshot::of_plant(plant).unwrap(), &mut |_| ()).unwrap();
+    assert!(checked.faults.is_empty() && checked.runs == count as usize, "{checked:?}");
+    println!("plant check in {:.0} s", begun.elapsed().as_secs_f64());
+    plant = Plant::connect(&server.address()).unwrap();
+    let begun = Instant::now();
+    let removed = plant.prune(i64::MAX, "engel", "the figure", &mut |_| ()).unwrap();
+    println!("plant prune of all runs: {removed} rows in {:.0} s", begun.elapsed().as_secs_f64());
+    println!("{}", vacuumed(&server, "VACUUM (FULL, ANALYZE)"));
+}
+
+/// How large each table is when this is done.
+fn vacuumed(server: &Server, how: &str) -> String {
+    let begun = Instant::now();
+    server.client("plant").batch_execute(how).unwrap();
+    let mut told = format!("{how} in {:.0} s", begun.elapsed().as_secs_f64());
     let tables = "SELECT relname, n_live_tup, pg_total_relation_size(relid) FROM pg_stat_user_tables WHERE n_live_tup > 0 ORDER BY 3 DESC";
     for row in server.rows(tables) {
-        println!("  {:<12} {:>9} rows {:>12} bytes", row[0], row[1], row[2]);
+        told += &format!("\n  {:<12} {:>9} rows {:>12} bytes", row[0], row[1], row[2]);
     }
+    told
 }

@@ -20,7 +20,7 @@ const COUNTED: [&str; 4] = [
 ];
 
 /// A few units, each judged several times under two plans on three stations.
-fn drawn(draw: &mut Draw) -> Vec<Run> {
+pub(super) fn drawn(draw: &mut Draw) -> Vec<Run> {
     let ends = [
         End::Pass,
         End::Pass,
@@ -60,7 +60,7 @@ fn at_one(runs: &[Run]) -> Vec<Vec<Vec<String>>> {
 }
 
 /// What several stations have to send of these runs.
-fn parcels(runs: &[Run]) -> Vec<Parcel> {
+pub(super) fn parcels(runs: &[Run]) -> Vec<Parcel> {
     let mut stations: Vec<_> = STATIONS.iter().map(|_| Made::new()).collect();
     let parcel = |(run, number): (&Run, u32)| {
         let place = STATIONS.iter().position(|name| *name == run.station).unwrap();
@@ -70,7 +70,7 @@ fn parcels(runs: &[Run]) -> Vec<Parcel> {
     runs.iter().zip(1..).map(parcel).collect()
 }
 
-fn shuffled(parcels: &[Parcel], draw: &mut Draw) -> Vec<usize> {
+pub(super) fn shuffled(parcels: &[Parcel], draw: &mut Draw) -> Vec<usize> {
     let mut order: Vec<_> = (0..parcels.len()).collect();
     for at in (1..order.len()).rev() {
         order.swap(at, draw.below(at as u64 + 1) as usize);

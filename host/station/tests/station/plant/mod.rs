@@ -1,10 +1,12 @@
 //! The plant, on a real PostgreSQL server, and what comes to it from stations.
 
+mod checked;
 mod cut;
 mod figures;
 mod late;
 pub(crate) mod link;
 mod million;
+mod mismatch;
 pub(crate) mod pages;
 mod plans;
 mod refused;

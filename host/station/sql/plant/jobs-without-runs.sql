@@ -1,0 +1,5 @@
+-- Jobs that are done by no run that is there.
+SELECT job.id FROM job
+LEFT JOIN run ON run.id = job.run_id
+WHERE run.id IS NULL AND (job.state = 'done' OR job.run_id IS NOT NULL)
+ORDER BY job.id;

@@ -1,0 +1,1 @@
+DELETE FROM measurement WHERE run_id > $1 AND run_id <= $2;

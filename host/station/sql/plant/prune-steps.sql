@@ -1,0 +1,1 @@
+DELETE FROM step WHERE run_id > $1 AND run_id <= $2;

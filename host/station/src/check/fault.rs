@@ -1,0 +1,99 @@
+//! What may be wrong.
+
+use crate::record::{BlobError, RecordError};
+use crate::store::StoreError;
+
+/// Something that is not as it was written.
+#[derive(Debug, thiserror::Error)]
+pub enum Fault {
+    /// SQLite finds its own file damaged.
+    #[error("the database is damaged ({said}); restore it from a copy")]
+    Database {
+        /// What it says.
+        said: String,
+    },
+    /// A record or an attachment is not there, or other than its hash.
+    #[error("evidence of run {run}: {source}")]
+    Evidence {
+        /// The run.
+        run: String,
+        /// What is wrong.
+        source: BlobError,
+    },
+    /// A record is whole and cannot be read.
+    #[error("the record of run {run}: {source}")]
+    Record {
+        /// The run.
+        run: String,
+        /// Why.
+        source: RecordError,
+    },
+    /// A record does not fit the records before it.
+    #[error("the record of run {run} does not fit those before it: {source}")]
+    Contradiction {
+        /// The run.
+        run: String,
+        /// Why.
+        source: Box<StoreError>,
+    },
+    /// A plant has not the record of a run, or another text under its hash.
+    #[error(
+        "the record {sha256} of run {run} is not there, or not as it was sent; put it back from the folder `blobs` of the station that sent it"
+    )]
+    Unkept {
+        /// The run.
+        run: String,
+        /// The hash of its record.
+        sha256: String,
+    },
+    /// A job is done, and the run that it is done by is not there.
+    #[error("the job {job} is done, and its run is not there; look at it by `halfrow-station job list`")]
+    Job {
+        /// The job.
+        job: String,
+    },
+    /// A line of the audit does not fit the records.
+    #[error("the binding of line {id} of the audit does not fit the records: {source}")]
+    Audit {
+        /// The line.
+        id: String,
+        /// Why.
+        source: Box<StoreError>,
+    },
+    /// The plan in a record is not what its hash says.
+    #[error("the plan in the record of run {run} has another hash than it says; look at the record")]
+    Plan {
+        /// The run.
+        run: String,
+    },
+    /// A row is not what the records say.
+    #[error("table {table}, row {key}: {column} is `{stored}`, and the records say `{rebuilt}`")]
+    Differs {
+        /// The table.
+        table: &'static str,
+        /// The row's key.
+        key: String,
+        /// The column.
+        column: String,
+        /// What is there.
+        stored: String,
+        /// What should be.
+        rebuilt: String,
+    },
+    /// A row is not there.
+    #[error("table {table} has no row {key}, and the records have")]
+    Missing {
+        /// The table.
+        table: &'static str,
+        /// The row's key.
+        key: String,
+    },
+    /// A row is there without a record.
+    #[error("table {table} has a row {key}, and no record has")]
+    Surplus {
+        /// The table.
+        table: &'static str,
+        /// The row's key.
+        key: String,
+    },
+}

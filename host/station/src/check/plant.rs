@@ -1,0 +1,156 @@
+//! A plant: its tables follow from the records that it keeps, in whatever order they came.
+
+use std::collections::BTreeSet;
+
+use halfrow::Verdict;
+use halfrow::result::sha256;
+
+use super::compare::compare;
+use super::{Checked, Fault, is_as_hashed};
+use crate::record::Record;
+use crate::store::{Kept, Rebinding, Rebuilt, Snapshot, StoreError, TABLES};
+
+/// Tables of a station that have no row at a plant, each with its key.
+const EMPTY: [(&str, &str); 2] = [("outbox", "sink, kind, subject"), ("origin", "id")];
+
+/// The table of which a plant has what came first.
+const BINDING: &str = "binding";
+
+/// Looks at all that a plant keeps, as it was at the moment of `plant`; `told` hears how many runs were read by now. Nothing is
+/// changed; stations may send meanwhile.
+///
+/// # Errors
+/// [`StoreError`] when the plant cannot be read at all.
+pub fn check_plant(plant: &Snapshot, told: &mut dyn FnMut(usize)) -> Result<Checked, StoreError> {
+    let mut look = Look { plant, rebuilt: Rebuilt::of_plant()?, runs: 0, faults: Vec::new() };
+    look.at_runs(told)?;
+    let rebindings = plant.rebindings()?;
+    look.at_rebindings(&rebindings);
+    for plan in plant.plans_of_jobs()? {
+        look.rebuilt.add_plan_of_job(&plan)?;
+    }
+    let mut faults = Vec::new();
+    for (table, key) in TABLES.into_iter().chain(EMPTY) {
+        compare(table, plant.table(table, key), look.rebuilt.table(table, key), &mut faults)?;
+    }
+    let excuse = Excuse {
+        ended: rebindings.iter().map(|change| change.at_ms.to_string()).collect(),
+        pruned_before: plant.pruned_before()?,
+    };
+    for fault in faults {
+        if !look.excuses(&fault, &excuse)? {
+            look.faults.push(fault);
+        }
+    }
+    look.at_what_names_runs()?;
+    let open = plant.open_runs()?.len();
+    let Look { runs, faults, .. } = look;
+    Ok(Checked { runs, open, evidence: runs, pruned: 0, faults })
+}
+
+/// Why a plant is otherwise than its records say.
+struct Excuse {
+    /// When persons bound anew, in milliseconds since 1970, UTC.
+    ended: BTreeSet<String>,
+    /// What the ids of runs stand in front of whose steps and measurements may be gone.
+    pruned_before: String,
+}
+
+struct Look<'a> {
+    plant: &'a Snapshot,
+    rebuilt: Rebuilt,
+    runs: usize,
+    faults: Vec<Fault>,
+}
+
+impl Look<'_> {
+    /// Goes through all runs in the order in which they began.
+    fn at_runs(&mut self, told: &mut dyn FnMut(usize)) -> Result<(), StoreError> {
+        let mut behind = String::new();
+        loop {
+            let page = self.plant.kept_runs(&behind)?;
+            let Some(last) = page.last() else { return Ok(()) };
+            behind.clone_from(&last.run);
+            for kept in &page {
+                self.runs += 1;
+                match self.record(kept) {
+                    Ok(record) => self.at_run(kept, record)?,
+                    Err(fault) => self.faults.push(fault),
+                }
+            }
+            told(self.runs);
+        }
+    }
+
+    /// The record of a run, if it is as it was sent.
+    fn record(&mut self, Kept { run, sha256: hash, text, .. }: &Kept) -> Result<Record, Fault> {
+        let text = text.as_ref().filter(|text| sha256([text.as_bytes()]) == *hash);
+        let text = text.ok_or_else(|| Fault::Unkept { run: run.clone(), sha256: hash.clone() })?;
+        let record = Record::parse(text.as_bytes());
+        let record = record.map_err(|source| Fault::Record { run: run.clone(), source })?;
+        if !is_as_hashed(&record.plan) {
+            self.faults.push(Fault::Plan { run: run.clone() });
+        }
+        Ok(record)
+    }
+
+    fn at_run(&mut self, kept: &Kept, mut record: Record) -> Result<(), StoreError> {
+        // A unit has the id that the first run gave it which came, not the first which began.
+        let known = match self.rebuilt.unit_of(&record.run)? {
+            None => self.plant.unit_of(&record.run.product, &record.run.serial)?,
+            known => known,
+        };
+        if let Some(unit) = known {
+            record.run.unit_id = unit;
+        }
+        let counts = self.counts(kept, &record)?;
+        if let Err(error) = self.rebuilt.add_kept(&record, &kept.sha256, counts) {
+            self.faults.push(Fault::Contradiction { run: kept.run.clone(), source: Box::new(error) });
+        }
+        Ok(())
+    }
+
+    /// Whether no other run of its job counts. Of those that came to no judgement only the plant knows which had the job.
+    fn counts(&self, kept: &Kept, record: &Record) -> Result<bool, StoreError> {
+        let Some(job) = &record.run.job else { return Ok(true) };
+        if record.conclusion.verdict == Verdict::Error {
+            return Ok(kept.nth > 0);
+        }
+        let done_by = self.plant.run_of_job(&job.id)?;
+        Ok(done_by.is_none_or(|run| run.as_ref() == Some(&kept.run)))
+    }
+
+    fn at_rebindings(&mut self, rebindings: &[Rebinding]) {
+        for change in rebindings {
+            if let Err(error) = self.rebuilt.add_bound(change) {
+                self.faults.push(Fault::Audit { id: change.id.clone(), source: Box::new(error) });
+            }
+        }
+    }
+
+    /// Whether a plant may be otherwise there: rows of old runs were removed, and what was bound first when it came stands in the
+    /// way of the rest until a person binds anew.
+    fn excuses(&mut self, fault: &Fault, excuse: &Excuse) -> Result<bool, StoreError> {
+        match fault {
+            Fault::Missing { table: "step" | "measurement", key } => Ok(*key < excuse.pruned_before),
+            Fault::Differs { table: BINDING, column, stored, .. } if column == "to_ms" => {
+                Ok(excuse.ended.contains(stored))
+            }
+            Fault::Missing { table: BINDING, key } => match self.rebuilt.bound(key)? {
+                Some((device, unit)) => self.plant.is_bound(&device, &unit),
+                None => Ok(false),
+            },
+            _ => Ok(false),
+        }
+    }
+
+    /// Records, jobs and mismatches against the runs that they are of.
+    fn at_what_names_runs(&mut self) -> Result<(), StoreError> {
+        let surplus = |table| move |key| Fault::Surplus { table, key };
+        self.faults.extend(self.plant.unnamed_records()?.into_iter().map(surplus("record")));
+        self.faults.extend(self.plant.other_mismatches()?.into_iter().map(surplus("mismatch")));
+        let jobs = self.plant.jobs_without_runs()?.into_iter();
+        self.faults.extend(jobs.map(|job| Fault::Job { job }));
+        Ok(())
+    }
+}

@@ -1,0 +1,180 @@
+//! What a plant keeps, read back, and its tables as they are when they are made anew from its records.
+
+use super::super::bindings::BY_RUN;
+use super::super::database::{DatabaseError, values};
+use super::super::{Rebinding, Rebuilt, Snapshot, StoreError, rows, statements as sql};
+use super::arrived;
+use crate::record::{PlanRecord, Record, RunHead};
+
+/// A run that a plant keeps.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Kept {
+    /// Its id.
+    pub run: String,
+    /// Its unit.
+    pub unit_id: String,
+    /// The how-manieth judgement of the unit it is; 0 of one that does not count.
+    pub nth: i64,
+    /// The hash of its record.
+    pub sha256: String,
+    /// Its record, if it is there.
+    pub text: Option<String>,
+}
+
+/// A plan that a job brought.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlanOfJob {
+    plan: PlanRecord,
+    product: String,
+    first_used_ms: i64,
+}
+
+impl Snapshot {
+    /// The next runs of a plant behind the one of the id `behind`, in the order in which they began; none behind the last.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read, as of all that follow.
+    pub fn kept_runs(&self, behind: &str) -> Result<Vec<Kept>, StoreError> {
+        self.rows("to tell its runs", sql::KEPT_RUNS, values![behind], |row| {
+            let (run, unit_id, nth) = (row.get(0)?, row.get(1)?, row.get(2)?);
+            Ok(Kept { run, unit_id, nth, sha256: row.get(3)?, text: row.get(4)? })
+        })
+    }
+
+    /// The id of a unit.
+    ///
+    /// # Errors
+    /// As [`Self::kept_runs`].
+    pub fn unit_of(&self, product: &str, serial: &str) -> Result<Option<String>, StoreError> {
+        let found = self.rows("to tell a unit", sql::UNIT_OF, values![product, serial], |row| row.get(0))?;
+        Ok(found.into_iter().next())
+    }
+
+    /// The run by which a job is done: none of a job that is not, or not there.
+    ///
+    /// # Errors
+    /// As [`Self::kept_runs`].
+    pub fn run_of_job(&self, job: &str) -> Result<Option<Option<String>>, StoreError> {
+        let found = self.rows("to tell a job", sql::RUN_OF_JOB, values![job], |row| row.get(0))?;
+        Ok(found.into_iter().next())
+    }
+
+    /// Whether this device or this unit is, or ever was, bound to anything.
+    ///
+    /// # Errors
+    /// As [`Self::kept_runs`].
+    pub fn is_bound(&self, device: &str, unit: &str) -> Result<bool, StoreError> {
+        let text = "SELECT 1 FROM binding WHERE device = $1 OR unit_id = $2 LIMIT 1";
+        Ok(!self.rows("to tell what is bound", text, values![device, unit], |_| Ok(()))?.is_empty())
+    }
+
+    /// The hashes of records that no run names.
+    ///
+    /// # Errors
+    /// As [`Self::kept_runs`].
+    pub fn unnamed_records(&self) -> Result<Vec<String>, StoreError> {
+        self.rows("to tell its records", sql::UNNAMED_RECORDS, &[], |row| row.get(0))
+    }
+
+    /// Jobs that are said to be done and have no run.
+    ///
+    /// # Errors
+    /// As [`Self::kept_runs`].
+    pub fn jobs_without_runs(&self) -> Result<Vec<String>, StoreError> {
+        self.rows("to tell its jobs", sql::JOBS_WITHOUT_RUNS, &[], |row| row.get(0))
+    }
+
+    /// The runs of mismatches that are not what their runs say.
+    ///
+    /// # Errors
+    /// As [`Self::kept_runs`].
+    pub fn other_mismatches(&self) -> Result<Vec<String>, StoreError> {
+        self.rows("to tell what is bound", sql::OTHER_MISMATCHES, &[], |row| row.get(0))
+    }
+
+    /// The plans that jobs brought.
+    ///
+    /// # Errors
+    /// As [`Self::kept_runs`].
+    pub fn plans_of_jobs(&self) -> Result<Vec<PlanOfJob>, StoreError> {
+        self.rows("to tell its plans", sql::PLANS_OF_JOBS, &[], |row| {
+            let [sha256, name, version, text] = [row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?];
+            let plan = PlanRecord { sha256, name, version, text, files: None };
+            Ok(PlanOfJob { plan, product: row.get(4)?, first_used_ms: row.get(5)? })
+        })
+    }
+}
+
+impl Rebuilt {
+    /// A plant's, without a row. What its stations bound may contradict itself.
+    ///
+    /// # Errors
+    /// [`StoreError`] when there is no room for it.
+    pub fn of_plant() -> Result<Self, StoreError> {
+        let mut rebuilt = Self::new()?;
+        rebuilt.change(|to| to.batch("DROP INDEX binding_device_now; DROP INDEX binding_unit_now"))?;
+        Ok(rebuilt)
+    }
+
+    /// The id of a unit, if there is one by now.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it cannot be read.
+    pub fn unit_of(
+        &mut self,
+        RunHead { product, serial, .. }: &RunHead,
+    ) -> Result<Option<String>, StoreError> {
+        self.change(|to| to.first(sql::UNIT_OF, values![product, serial], |row| row.get(0)))
+    }
+
+    /// The run of this record, whose hash is `hash`, as it comes to a plant; it `counts` unless another run of its job does. Runs
+    /// come in the order of their ids.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it contradicts the runs before.
+    pub fn add_kept(&mut self, record: &Record, hash: &str, counts: bool) -> Result<(), StoreError> {
+        self.change(|to| {
+            let unit = rows::unit(to, &record.run, &record.plan)?;
+            arrived::entered(to, record, hash, &unit, counts)?;
+            let Some(device) = record.binds() else { return Ok(()) };
+            let (id, operator) = (&record.run.id, &record.run.operator);
+            let bound = values![id, device, &unit, record.ended_ms, operator, BY_RUN];
+            to.execute(sql::ADD_BINDING, bound).map(drop)
+        })
+    }
+
+    /// What a person bound, beside all that was bound before; nothing if the unit is not there, for the plant left it out, too.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it contradicts what is there.
+    pub fn add_bound(&mut self, change: &Rebinding) -> Result<(), StoreError> {
+        let Rebinding { id, at_ms, operator, unit_id, device, reason } = change;
+        let Some(device) = device else { return Ok(()) };
+        self.change(|to| {
+            let known = to.first("SELECT 1 FROM unit WHERE id = $1", values![unit_id], |_| Ok(()))?;
+            let bound = values![id, device, unit_id, *at_ms, operator, reason];
+            known.map_or(Ok(()), |()| to.execute(sql::ADD_BINDING, bound).map(drop))
+        })
+    }
+
+    /// Which device and which unit the binding of this id is about.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it cannot be read.
+    pub fn bound(&mut self, id: &str) -> Result<Option<(String, String)>, StoreError> {
+        let text = "SELECT device, unit_id FROM binding WHERE id = $1";
+        self.change(|to| to.first(text, values![id], |row| Ok((row.get(0)?, row.get(1)?))))
+    }
+
+    /// A plan that a job brought, behind all runs. When it did is taken as it is, unless a run is earlier.
+    ///
+    /// # Errors
+    /// [`StoreError`] when it contradicts what is there.
+    pub fn add_plan_of_job(&mut self, of: &PlanOfJob) -> Result<(), StoreError> {
+        let PlanOfJob { plan: PlanRecord { sha256, name, version, text, .. }, product, first_used_ms } = of;
+        self.change(|to| -> Result<(), DatabaseError> {
+            to.execute(sql::ADD_PLAN, values![sha256, name, version, product, text, *first_used_ms])?;
+            to.execute(sql::PLAN_EARLIER, values![*first_used_ms, sha256]).map(drop)
+        })
+    }
+}

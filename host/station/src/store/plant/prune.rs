@@ -1,0 +1,55 @@
+//! Rows of old runs that are only there to be looked for: a record has all of them.
+
+use super::super::database::values;
+use super::super::{Snapshot, StoreError, statements as sql};
+use super::Plant;
+use crate::ids;
+
+/// What it is called in the audit. A station's own is of evidence.
+const PRUNE: &str = "prune rows";
+
+impl Plant {
+    /// Removes the steps and measurements of all runs that began before `before_ms`, milliseconds since 1970, UTC; `told` hears how
+    /// many rows are gone by now. That they are removed is in the audit before they are. Runs, records, and all that is counted stay.
+    /// What is interrupted is done again.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the plant does not take it.
+    pub fn prune(
+        &mut self,
+        before_ms: i64,
+        operator: &str,
+        reason: &str,
+        told: &mut dyn FnMut(u64),
+    ) -> Result<u64, StoreError> {
+        let bound = ids::first_of(before_ms);
+        self.audited(operator, PRUNE, &bound, reason, |_| Ok(1))?;
+        let (mut behind, mut removed) = (String::new(), 0);
+        loop {
+            let last: Option<String> = self.carry_out("to tell old runs", |database| {
+                database.one(sql::NEXT_RUNS, values![&behind, &bound], |row| row.get(0))
+            })?;
+            let Some(last) = last else { return Ok(removed) };
+            removed += self.carry_out("to be pruned", |database| {
+                database.transaction(|to| {
+                    let steps = to.execute(sql::PRUNE_STEPS, values![&behind, &last])?;
+                    Ok(steps + to.execute(sql::PRUNE_MEASUREMENTS, values![&behind, &last])?)
+                })
+            })?;
+            told(removed);
+            behind = last;
+        }
+    }
+}
+
+impl Snapshot {
+    /// What the ids of runs stand in front of whose steps and measurements may be gone; empty if none may.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read.
+    pub fn pruned_before(&self) -> Result<String, StoreError> {
+        let found =
+            self.rows("to tell what was removed", sql::PRUNED_ROWS, values![PRUNE], |row| row.get(0))?;
+        Ok(found.into_iter().next().flatten().unwrap_or_default())
+    }
+}

@@ -1,0 +1,157 @@
+//! Devices and units that two stations bound differently, neither of which knew of the other.
+
+use std::process::Command;
+
+use halfrow_station::history::mismatch::{Mismatch, mismatches};
+use halfrow_station::record::DeviceSeen;
+use halfrow_station::store::{Change, Plant, Snapshot};
+use serde_json::Value;
+
+use super::pages::{served, settings, text};
+use super::sent::send_as;
+use super::server::Server;
+use crate::common::{Did, program};
+use crate::history::made::{BEGIN_MS, DAY_MS, End, HOUR_MS, Made, Run};
+use crate::metrics::text::Figures;
+
+/// Long before whatever a person does while a test runs.
+const LONG_AGO_MS: i64 = BEGIN_MS - 2_000 * DAY_MS;
+
+const DEVICES: [&str; 4] = ["00000000000000d1", "00000000000000d2", "00000000000000d3", "00000000000000d4"];
+
+/// A station that judged these units, each with a device that it had not seen before.
+fn station(name: &'static str, first: u32, judged: &[(&str, &'static str)]) -> Made {
+    let mut made = Made::new();
+    for ((serial, device), number) in judged.iter().zip(first..) {
+        judge(&mut made, name, number, serial, (DeviceSeen::New, *device));
+    }
+    made
+}
+
+fn judge(
+    made: &mut Made,
+    station: &'static str,
+    number: u32,
+    serial: &str,
+    device: (DeviceSeen, &'static str),
+) {
+    let started_ms = LONG_AGO_MS + i64::from(number) * HOUR_MS;
+    let run = Run { station, started_ms, device: Some(device), ..Run::of(serial, End::Pass) };
+    made.numbered(number, &run);
+}
+
+/// Both took D1 for another unit, and B3 for another device; of B4 they say the same.
+pub(super) fn two() -> [Made; 2] {
+    let [d1, d2, d3, d4] = DEVICES;
+    [
+        station("station 7", 1, &[("B1", d1), ("B3", d2), ("B4", d4)]),
+        station("station 8", 11, &[("B2", d1), ("B3", d3), ("B4", d4)]),
+    ]
+}
+
+pub(super) fn found(server: &Server) -> Vec<Mismatch> {
+    let plant = Plant::connect(&server.address()).unwrap();
+    mismatches(&Snapshot::of_plant(plant).unwrap()).unwrap()
+}
+
+/// Who takes what for what, and what stands against it from where.
+fn told(server: &Server) -> Vec<String> {
+    let mut told: Vec<_> = found(server)
+        .into_iter()
+        .map(|one| {
+            let by = one.bound.station.unwrap_or_else(|| "a person".to_owned());
+            let end = |device: &str| device[14..].to_owned();
+            let ours = format!("{}: {} as {}", one.station, end(&one.device), one.serial);
+            format!("{ours}, {by}: {} as {}", end(&one.bound.device), one.bound.serial)
+        })
+        .collect();
+    told.sort();
+    told
+}
+
+#[test]
+fn what_two_stations_bound_differently_is_told_whoever_came_first() {
+    let server = Server::prepared();
+    let [seven, eight] = two();
+    send_as("station 7", seven, server.address());
+    assert_eq!(told(&server), [""; 0]);
+    send_as("station 8", eight, server.address());
+    let expected = ["station 8: d1 as B2, station 7: d1 as B1", "station 8: d3 as B3, station 7: d2 as B3"];
+    assert_eq!(told(&server), expected);
+    // The other way round.
+    let server = Server::prepared();
+    let [seven, eight] = two();
+    send_as("station 8", eight, server.address());
+    send_as("station 7", seven, server.address());
+    let expected = ["station 7: d1 as B1, station 8: d1 as B2", "station 7: d2 as B3, station 8: d3 as B3"];
+    assert_eq!(told(&server), expected);
+}
+
+#[test]
+fn a_person_who_binds_anew_settles_it_until_somebody_judges_otherwise_again() {
+    let server = Server::prepared();
+    let [seven, mut eight] = two();
+    send_as("station 7", seven, server.address());
+    let [d1, ..] = DEVICES;
+    let rebind = |made: &mut Made, serial, device| {
+        let change = Change { serial, product: None, device, operator: "engel", reason: "labels exchanged" };
+        made.store.rebind(&change).unwrap();
+    };
+    rebind(&mut eight, "B3", None);
+    let (mut eight, _) = send_as("station 8", eight, server.address());
+    assert_eq!(told(&server), ["station 8: d1 as B2, station 7: d1 as B1"]);
+    rebind(&mut eight, "B2", Some("00000000000000d9"));
+    let (mut eight, _) = send_as("station 8", eight, server.address());
+    assert_eq!(told(&server), [""; 0]);
+    // What an ERROR saw, and what nobody looked at, is no judgement of who is who.
+    let later = |number| BEGIN_MS + 4_000 * DAY_MS + number;
+    let device = Some((DeviceSeen::Known, d1));
+    let mut run = Run { station: "station 8", device, started_ms: later(1), ..Run::of("B2", End::Pass) };
+    let error = End::Error(halfrow_station::record::RunCause::Link);
+    eight.numbered(21, &Run { end: error, ..run.clone() });
+    run.started_ms = later(2);
+    eight.numbered(22, &Run { device: Some((DeviceSeen::NotChecked, d1)), ..run.clone() });
+    let (mut eight, _) = send_as("station 8", eight, server.address());
+    assert_eq!(told(&server), [""; 0]);
+    run.started_ms = later(3);
+    eight.numbered(23, &run);
+    send_as("station 8", eight, server.address());
+    let again = ["station 8: d1 as B2, a person: d9 as B2", "station 8: d1 as B2, station 7: d1 as B1"];
+    assert_eq!(told(&server), again);
+}
+
+#[test]
+fn it_is_on_the_pages_in_what_the_command_says_and_in_the_figures() {
+    let server = Server::prepared();
+    let [seven, eight] = two();
+    let (seven, _) = send_as("station 7", seven, server.address());
+    let (folder, serving) = served(&server);
+    let browser = serving.here();
+    let count = || Figures::of(&serving).at("halfrow_plant_device_mismatches");
+    assert!(count() == 0.0 && !text(&browser, "/").contains("differently"));
+    send_as("station 8", eight, server.address());
+    assert_eq!(count(), 2.0);
+    let stations = text(&browser, "/");
+    for expected in ["Bound differently", "station 8", "/unit?serial=B2", DEVICES[0], DEVICES[2]] {
+        assert!(stations.contains(expected), "{expected}: {stations}");
+    }
+    for (serial, is_told) in [("B1", true), ("B2", true), ("B3", true), ("B4", false)] {
+        let page = text(&browser, &format!("/unit?serial={serial}"));
+        assert_eq!(page.contains("Bound differently"), is_told, "{serial}: {page}");
+    }
+    let plant = settings(&server, folder.path(), "");
+    let unit = |place: &[&str], serial: &str| -> Did {
+        Command::new(program()).arg("unit").arg(serial).args(place).output().unwrap().into()
+    };
+    let at_plant = ["--plant", plant.to_str().unwrap()];
+    let said = unit(&at_plant, "B2");
+    let expected = format!("mismatch  station 8 judges device {} as B2, last ", DEVICES[0]);
+    assert!(said.code == Some(0) && said.said.contains(&expected), "{said:?}");
+    assert!(said.said.contains(&format!("here B1 is device {} since ", DEVICES[0])), "{said:?}");
+    assert!(!unit(&at_plant, "B4").said.contains("mismatch"));
+    // A station itself has none, from its own engine.
+    let data = seven.folder().path().to_owned();
+    let ours = unit(&["--json", "--data", data.to_str().unwrap()], "B1").said;
+    let ours: Value = serde_json::from_str(&ours).unwrap();
+    assert_eq!(ours[0]["mismatches"], Value::Array(Vec::new()));
+}
