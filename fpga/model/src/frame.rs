@@ -39,6 +39,11 @@ impl BitDepth {
     pub const fn max(self) -> u16 {
         (1 << self.bits()) - 1
     }
+
+    /// Whether all of `samples` are at most [`Self::max`]. Quicker than to look for the first that is not.
+    pub(crate) fn holds(self, samples: &[u16]) -> bool {
+        samples.iter().fold(0, |bits, sample| bits | sample) <= self.max()
+    }
 }
 
 /// A frame of raw samples, one colour each, `width` × `height`, row after row.
@@ -86,6 +91,21 @@ pub enum FrameError {
     },
 }
 
+impl FrameError {
+    /// Refuses the first of `samples`, in rows of `width`, that `depth` cannot hold.
+    pub(crate) fn check(width: usize, depth: BitDepth, samples: &[u16]) -> Result<(), Self> {
+        let rows = samples.chunks(width).enumerate();
+        let Some((row, samples)) = rows.into_iter().find(|(_, samples)| !depth.holds(samples)) else {
+            return Ok(());
+        };
+        let max = depth.max();
+        let bright = samples.iter().enumerate().find(|&(_, &sample)| sample > max);
+        bright.map_or(Ok(()), |(column, &value)| {
+            Err(Self::TooBright { row, column, value, max, bits: depth.bits() })
+        })
+    }
+}
+
 impl Frame {
     /// A frame of `samples`, row after row, each row `width` samples.
     ///
@@ -102,15 +122,7 @@ impl Frame {
         if !samples.len().is_multiple_of(width) {
             return Err(FrameError::Ragged { samples: samples.len(), width });
         }
-        if let Some(place) = samples.iter().position(|&sample| sample > depth.max()) {
-            return Err(FrameError::TooBright {
-                row: place / width,
-                column: place % width,
-                value: samples[place],
-                max: depth.max(),
-                bits: depth.bits(),
-            });
-        }
+        FrameError::check(width, depth, &samples)?;
         Ok(Self { width, depth, phase, samples })
     }
 
@@ -154,6 +166,12 @@ impl Frame {
     #[must_use]
     pub fn samples(&self) -> &[u16] {
         &self.samples
+    }
+
+    /// All samples, row after row, without a copy.
+    #[must_use]
+    pub fn into_samples(self) -> Vec<u16> {
+        self.samples
     }
 
     /// The samples of row `index`, which must be below [`Self::height`].

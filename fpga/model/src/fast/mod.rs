@@ -17,12 +17,16 @@ mod walk;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
+use std::convert::Infallible;
+
 pub use path::{ModelPath, UnavailablePath, UnknownPath};
 pub use signer::Signer;
 
 use crate::corrector::check_frame;
 use crate::table::Entries;
-use crate::{CorrectError, Frame, Geometry, Kernel, RowFactor, RowValues, Source, TableSet, source};
+use crate::{
+    CorrectError, Frame, FrameError, Geometry, Kernel, RowFactor, RowValues, Source, TableSet, source,
+};
 use engine::{Engine, Rows};
 use located::Located;
 use padded::Ends;
@@ -119,11 +123,49 @@ impl Corrector {
     ) -> Result<(), CorrectError> {
         check_frame(tables.geometry(), frame)?;
         assert_eq!(samples.len(), frame.samples().len(), "the output has another size than the frame");
-        let (upper, lower) = samples.split_at_mut(frame.height().div_ceil(2) * frame.width());
-        let mut lower = lower.rchunks_exact_mut(frame.width());
-        for (row, output) in upper.chunks_exact_mut(frame.width()).enumerate() {
-            let mirrored = frame.height() - 1 - row;
-            let inputs = [row, mirrored].map(|row| frame.row(row));
+        let _: Result<(), Infallible> = self.correct_pairs(tables, frame.samples(), samples, |_| Ok(()));
+        Ok(())
+    }
+
+    /// Corrects the samples of a frame for which there is no [`Frame`], as those that another program holds, into `output`:
+    /// both W·H samples, row after row. Each row is looked at just before it is corrected, while it is at hand.
+    ///
+    /// # Errors
+    /// [`FrameError::TooBright`] for the first sample that the depth cannot hold. What `output` holds is then of no use.
+    ///
+    /// # Panics
+    /// When `samples` or `output` has another length than W·H.
+    pub fn correct_samples(
+        &mut self,
+        tables: &TableSet,
+        samples: &[u16],
+        output: &mut [u16],
+    ) -> Result<(), FrameError> {
+        let geometry = tables.geometry();
+        let (width, depth) = (geometry.width(), geometry.depth());
+        assert_eq!(samples.len(), width * geometry.height(), "the input has another size than the tables");
+        assert_eq!(output.len(), samples.len(), "the output has another size than the input");
+        let checked = self
+            .correct_pairs(tables, samples, output, |row| if depth.holds(row) { Ok(()) } else { Err(()) });
+        // Rows are not taken from the top, and the first such sample is to be told.
+        checked.or_else(|()| FrameError::check(width, depth, samples))
+    }
+
+    /// Corrects rows that mirror each other in turn, each of which `check` has let pass.
+    fn correct_pairs<E>(
+        &mut self,
+        tables: &TableSet,
+        samples: &[u16],
+        output: &mut [u16],
+        check: impl Fn(&[u16]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (width, height) = (tables.geometry().width(), tables.geometry().height());
+        let (upper, lower) = output.split_at_mut(height.div_ceil(2) * width);
+        let mut lower = lower.rchunks_exact_mut(width);
+        for (row, output) in upper.chunks_exact_mut(width).enumerate() {
+            let mirrored = height - 1 - row;
+            let inputs = [row, mirrored].map(|row| &samples[row * width..][..width]);
+            inputs.iter().try_for_each(|row| check(row))?;
             match lower.next() {
                 None => self.correct_row_of(tables, row, inputs[0], output),
                 Some(below) => self.correct_pair(tables, [row, mirrored], inputs, [output, below]),

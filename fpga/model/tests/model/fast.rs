@@ -4,8 +4,8 @@ use std::io::Write as _;
 use std::sync::Once;
 
 use halfrow_model::{
-    BitDepth, CorrectError, Corrector, Frame, Geometry, Interpolant, Kernel, MAX_WIDTH, MIN_WIDTH, ModelPath,
-    NODES, Phase, TableSet, correct, correct_row, source,
+    BitDepth, CorrectError, Corrector, Frame, FrameError, Geometry, Interpolant, Kernel, MAX_WIDTH,
+    MIN_WIDTH, ModelPath, NODES, Phase, TableSet, correct, correct_row, source,
 };
 use proptest::prelude::*;
 
@@ -116,6 +116,9 @@ proptest! {
             let mut corrector = Corrector::new(path, &kernel).unwrap();
             corrector.correct_into(&tables, &frame, &mut found).unwrap();
             prop_assert_eq!(&found[..], expected.samples(), "{}", path);
+            let mut of_samples = vec![0xffff; found.len()];
+            corrector.correct_samples(&tables, frame.samples(), &mut of_samples).unwrap();
+            prop_assert_eq!(of_samples, found, "{}", path);
         }
     }
 
@@ -203,6 +206,24 @@ fn a_frame_that_the_tables_are_not_for_is_refused_by_every_path() {
         let mut corrector = Corrector::new(path, &Interpolant::Linear.into()).unwrap();
         let depth = CorrectError::Depth { frame: 10, tables: 12 };
         assert_eq!(corrector.correct(&tables, &frame), Err(depth));
+    }
+}
+
+/// Wherever the first of two such samples is: rows are taken from the top and from the bottom by turns.
+#[test]
+fn a_sample_that_the_depth_cannot_hold_is_named_by_every_path() {
+    let geometry = Geometry::centred(64, 5, BitDepth::Ten).unwrap();
+    let tables = TableSet::from_units(geometry, &[ONE; 5]).unwrap();
+    for path in ModelPath::available() {
+        let mut corrector = Corrector::new(path, &Interpolant::Linear.into()).unwrap();
+        for (row, column) in [(0, 0), (1, 63), (2, 7), (3, 32), (4, 62)] {
+            let (mut samples, mut output) = (vec![1023; 5 * 64], vec![0; 5 * 64]);
+            samples[row * 64 + column] = 1024;
+            samples[5 * 64 - 1] = u16::MAX;
+            let refused = FrameError::TooBright { row, column, value: 1024, max: 1023, bits: 10 };
+            assert_eq!(corrector.correct_samples(&tables, &samples, &mut output), Err(refused.clone()));
+            assert_eq!(Frame::new(64, BitDepth::Ten, Phase::Grbg, samples), Err(refused));
+        }
     }
 }
 
