@@ -6,17 +6,21 @@
 //!  kernel's name or file ────────────────┘
 //! ```
 
+mod view;
+
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, GridRoomError,
-    GridShape, Interpolant, Kernel, LensError, Phase, RowFactor, TableError, TableSet,
+    Camera, CameraError, Equidistant, GeometryError, GridRoomError, GridShape, Interpolant, Kernel,
+    LensError, Phase, RowFactor, TableError, TableSet,
 };
+
+pub use view::View;
 
 use crate::frames::Scene;
 use crate::kernels::{DamagedKernel, NamedKernel, UnknownKernel};
-use crate::lenses::{LensContentError, LensFile, LensFileError};
+use crate::lenses::{LensContentError, LensFileError};
 use crate::run::Plan;
 use crate::tables::{KernelFile, TableFile, TableFileError};
 
@@ -179,22 +183,6 @@ impl Optics {
             by,
             name,
         })
-    }
-
-    /// The lens in the file `path`, before frames of the size and the axis that it was calibrated with, or else of the
-    /// paper's size; with fitted row factors.
-    ///
-    /// # Errors
-    /// [`OpticsError`] when the file cannot be read, holds no lens, or one that such frames cannot have.
-    pub fn of_file(path: &Path, depth: BitDepth) -> Result<Self, OpticsError> {
-        let file = LensFile::read(path)?;
-        let (width, height) = file.size.unwrap_or(PAPER_SIZE);
-        let geometry = Geometry::centred(width, height, depth)?;
-        let (lens, centre): (CalibratedLens, _) = file
-            .for_frame(width, height)
-            .map_err(|source| OpticsError::Shape { path: path.to_owned(), source })?;
-        let camera = Camera::new(geometry, lens, centre, PAPER_FIELD)?;
-        Ok(Self::calibrated(camera, format!("{} {}", file.model, path.display()), TablesBy::Fitting)?)
     }
 
     /// What built-in frames are made for.

@@ -11,7 +11,7 @@ use clap::Args;
 use halfrow_model::{Frame, Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, Phase};
 
 use halfrow::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions, RowReader, Scene};
-use halfrow::result::{FileHash, sha256};
+use halfrow::result::FileHash;
 use halfrow::run::FrameSource;
 
 /// How frame files are read.
@@ -142,6 +142,5 @@ fn check_size(path: &Path, (width, height): (usize, usize), geometry: &Geometry)
 
 /// The file's SHA-256.
 pub(super) fn file_hash(path: &Path) -> anyhow::Result<FileHash> {
-    let bytes = fs::read(path).map_err(|source| CallError::Unreadable { path: path.to_owned(), source })?;
-    Ok(FileHash { path: path.display().to_string(), sha256: sha256([bytes]) })
+    Ok(FileHash::of(path).map_err(|source| CallError::Unreadable { path: path.to_owned(), source })?)
 }

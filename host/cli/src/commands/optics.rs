@@ -16,7 +16,7 @@ use halfrow::kernels;
 use halfrow::lenses::LensFile;
 
 use super::table_file::NamedTables;
-use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
+use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy, View};
 
 /// The pixels of the paper's sensor, in micrometres.
 const DEFAULT_PITCH: f64 = 2.2;
@@ -213,9 +213,18 @@ impl LensArguments {
                 Equidistant::from_focal_length(self.focal_length, self.pixel_pitch(), self.field_of_view())?
             }
         };
-        let geometry = self.geometry(PAPER_SIZE)?;
-        let camera = self.camera(geometry, lens.into(), middle(&geometry))?;
-        Ok(Optics::equidistant(camera, lens, self.centre_y, self.by(Rows::Equation9)))
+        Ok(Optics::of_equidistant(lens, &self.view(), self.by(Rows::Equation9))?)
+    }
+
+    fn view(&self) -> View {
+        View {
+            width: self.width,
+            height: self.height,
+            depth: self.bits,
+            centre_x: self.centre_x,
+            centre_y: self.centre_y,
+            field_of_view: self.field_of_view(),
+        }
     }
 
     fn calibrated(&self, path: &Path) -> anyhow::Result<Optics> {

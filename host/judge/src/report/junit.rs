@@ -11,7 +11,7 @@ use quick_junit::{
 };
 
 use super::wording::{self, plain};
-use crate::result::{Check, FrameReport, Outcome, Report, Suspect};
+use crate::result::{Check, FrameReport, Outcome, Report};
 use crate::verdict::Verdict;
 
 /// The name of the suite and the head of all class names.
@@ -84,17 +84,7 @@ fn verdict_case(report: &Report) -> TestCase {
         Verdict::Fail => Outcome::Failed,
         Verdict::Error => Outcome::Error,
     };
-    let said = |suspect: &Suspect| {
-        let (part, place) = (suspect.part(), suspect.place());
-        [
-            format!("{part}, {place}: {}", suspect.evidence()),
-            format!("Next: {}", suspect.designer()),
-            format!("At the bench: {}", suspect.technician()),
-        ]
-    };
-    let details = report.suspects.iter().flat_map(said).chain(wording::remedy(report));
-    let details: Vec<_> = details.map(|line| plain(&line).into_owned()).collect();
-    case("verify", "verdict", 0.0, status(outcome, &report.headline(), &details.join("\n")))
+    case("verify", "verdict", 0.0, status(outcome, &report.headline(), &wording::advice(report).join("\n")))
 }
 
 fn check_case(check: &Check) -> TestCase {

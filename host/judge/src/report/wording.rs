@@ -1,6 +1,7 @@
 //! The words and figures that the views share, here and in programs, so that all of them say the same.
 
 mod coverage;
+mod summary;
 mod within;
 
 use std::borrow::Cow;
@@ -12,6 +13,8 @@ use crate::result::{
 use crate::verdict::Verdict;
 
 pub use coverage::coverage;
+pub(super) use summary::advice;
+pub use summary::summary;
 pub use within::within;
 
 /// What a check's outcome is called. The loud ones are those to act on.
@@ -55,18 +58,6 @@ pub fn verdict_line(report: &Report) -> String {
         Verdict::Pass => format!("PASS ({})  {}", remark(&report.board), facts(report)),
         verdict => format!("{verdict}: {}", plain(&report.headline())),
     }
-}
-
-/// The verdict with every check and what to do, a line each: for views without a table.
-#[must_use]
-pub fn summary(report: &Report) -> String {
-    let mut lines = vec![verdict_line(report)];
-    lines.extend(report.checks.iter().map(|check| {
-        format!("{:<8} {:<13} {}", mark(check.outcome), check.name, plain(&check.finding.sentence()))
-    }));
-    lines.extend(not_exercised(report));
-    lines.extend(remedy(report).map(|remedy| plain(&remedy).into_owned()));
-    lines.join("\n")
 }
 
 /// What to do, unless a suspect or the headline already says so.

@@ -52,9 +52,9 @@ pub struct TooManyFrames {
 pub enum FrameSource {
     /// Rendered when its turn comes.
     Builtin(Builtin),
-    /// Read from a file before the board is opened.
+    /// There before the board is opened: read from a file, or a calling program's own.
     File {
-        /// The file.
+        /// The file, or what a frame without one is called in reports.
         path: PathBuf,
         /// Its frame.
         frame: Arc<Frame>,

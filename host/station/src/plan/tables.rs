@@ -6,9 +6,8 @@ use std::sync::Arc;
 
 use halfrow::FrameSource;
 use halfrow::frames::{self, ReadOptions};
-use halfrow::lenses::LensFile;
-use halfrow::model::{BitDepth, Camera, Equidistant, Frame, Geometry, Phase};
-use halfrow::optics::{self, Chosen, Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
+use halfrow::model::{BitDepth, Equidistant, Frame, Geometry, Phase};
+use halfrow::optics::{self, Chosen, Optics, OpticsError, TablesBy, View};
 use halfrow::tables::TableFile;
 use toml::Spanned;
 
@@ -89,34 +88,31 @@ impl TablesText {
         })
     }
 
-    fn size(&self, otherwise: (usize, usize)) -> (usize, usize) {
+    fn view(&self) -> View {
         let of = |given: &Option<Spanned<usize>>| given.as_ref().map(|size| *size.get_ref());
-        (of(&self.width).unwrap_or(otherwise.0), of(&self.height).unwrap_or(otherwise.1))
+        let depth = self.depth().unwrap_or_default();
+        View { width: of(&self.width), height: of(&self.height), depth, ..View::default() }
     }
 
     fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
         let file = TableFile::read(path)?;
-        let geometry = *file.tables.geometry();
-        optics::choose(Some((path, file)), equidistant(geometry, None, TablesBy::Equation9)?, kernel)
+        let geometry = file.tables.geometry();
+        let (width, height, depth) = (Some(geometry.width()), Some(geometry.height()), geometry.depth());
+        let view = View { width, height, depth, ..View::default() };
+        let optics = Optics::of_equidistant(Equidistant::default(), &view, TablesBy::Equation9)?;
+        optics::choose(Some((path, file)), optics, kernel)
     }
 
     fn of_lens(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
-        let depth = self.depth().unwrap_or_default();
-        let file = LensFile::read(path)?;
-        let (width, height) = self.size(file.size.unwrap_or(PAPER_SIZE));
-        let geometry = Geometry::centred(width, height, depth)?;
-        let shape = |source| OpticsError::Shape { path: path.to_owned(), source };
-        let (lens, centre) = file.for_frame(width, height).map_err(shape)?;
-        let camera = Camera::new(geometry, lens, centre, PAPER_FIELD)?;
-        let name = format!("{} {}", file.model, path.display());
-        optics::choose(None, Optics::calibrated(camera, name, self.rows_by(TablesBy::Fitting))?, kernel)
+        let by = self.rows_by(TablesBy::Fitting);
+        optics::choose(None, Optics::of_file(path, &self.view(), by)?, kernel)
     }
 
     fn of_radius(&self, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
-        let (width, height) = self.size(PAPER_SIZE);
-        let geometry = Geometry::centred(width, height, self.depth().unwrap_or_default())?;
         let radius = self.radius.as_ref().map(|radius| *radius.get_ref());
-        optics::choose(None, equidistant(geometry, radius, self.rows_by(TablesBy::Equation9))?, kernel)
+        let lens = radius.map_or_else(|| Ok(Equidistant::default()), Equidistant::from_radius)?;
+        let by = self.rows_by(TablesBy::Equation9);
+        optics::choose(None, Optics::of_equidistant(lens, &self.view(), by)?, kernel)
     }
 
     fn rows_by(&self, otherwise: TablesBy) -> TablesBy {
@@ -126,13 +122,6 @@ impl TablesText {
             None => otherwise,
         }
     }
-}
-
-fn equidistant(geometry: Geometry, radius: Option<f64>, rows: TablesBy) -> Result<Optics, OpticsError> {
-    let lens = radius.map_or_else(|| Ok(Equidistant::default()), Equidistant::from_radius)?;
-    let middle = ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0);
-    let camera = Camera::new(geometry, lens.into(), middle, PAPER_FIELD)?;
-    Ok(Optics::equidistant(camera, lens, None, rows))
 }
 
 /// The kernel's name, or its file's path.

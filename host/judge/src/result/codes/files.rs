@@ -1,8 +1,8 @@
 //! The codes of errors of files, of what is in them, and of the model's own values.
 
 use halfrow_model::{
-    CameraError, CorrectError, FrameError, GeometryError, KernelError, LensError, RowFactorError, TableError,
-    UnavailablePath, UnknownPhase,
+    CameraError, CorrectError, FrameError, GeometryError, GridRoomError, GridShapeError, KernelError,
+    LensError, RowFactorError, TableError, UnavailablePath, UnknownPath, UnknownPhase,
 };
 
 use super::codes;
@@ -172,6 +172,10 @@ codes! {
     ;
     RowFactorError [units] => "row-factor-out-of-range"
     ;
+    GridShapeError [v, k] => "grid-shape-impossible"
+    ;
+    GridRoomError [entries, least, width, height] => "grid-without-room"
+    ;
     KernelError => "kernel-impossible"
     ;
     LensError => "lens-impossible"
@@ -183,6 +187,8 @@ codes! {
     CorrectError => "frame-does-not-fit-tables"
     ;
     UnavailablePath => "model-path-not-available"
+    ;
+    UnknownPath => "model-path-unknown"
     ;
     UnknownPhase => "bayer-phase-unknown"
 }

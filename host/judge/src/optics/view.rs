@@ -1,0 +1,83 @@
+//! What a caller says of the frames that a lens is seen by.
+
+use std::path::Path;
+
+use halfrow_model::{BitDepth, CalibratedLens, Camera, Equidistant, Geometry};
+
+use super::{Optics, OpticsError, PAPER_FIELD, PAPER_SIZE, TablesBy};
+use crate::lenses::LensFile;
+
+/// Frames behind a lens. What is left out, the lens file says, and otherwise it is that of the paper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Columns, even, 64 to 2592.
+    pub width: Option<usize>,
+    /// Rows, 1 to 2048.
+    pub height: Option<usize>,
+    /// Bits of a sample.
+    pub depth: BitDepth,
+    /// The column of the lens's axis.
+    pub centre_x: Option<f64>,
+    /// The row of the lens's axis.
+    pub centre_y: Option<f64>,
+    /// The angle across what counts as image circle, in degrees, above 0 and at most 360.
+    pub field_of_view: f64,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        Self {
+            width: None,
+            height: None,
+            depth: BitDepth::default(),
+            centre_x: None,
+            centre_y: None,
+            field_of_view: PAPER_FIELD,
+        }
+    }
+}
+
+impl View {
+    fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, OpticsError> {
+        Ok(Geometry::centred(self.width.unwrap_or(width), self.height.unwrap_or(height), self.depth)?)
+    }
+
+    /// The lens with its axis at `centre`, unless another place is said.
+    fn camera(
+        &self,
+        geometry: Geometry,
+        lens: CalibratedLens,
+        centre: (f64, f64),
+    ) -> Result<Camera, OpticsError> {
+        let centre = (self.centre_x.unwrap_or(centre.0), self.centre_y.unwrap_or(centre.1));
+        Ok(Camera::new(geometry, lens, centre, self.field_of_view)?)
+    }
+}
+
+impl Optics {
+    /// The lens in the file `path`, before frames of the size and the axis that it was calibrated with, or else of the
+    /// paper's size, as far as `view` does not say it.
+    ///
+    /// # Errors
+    /// [`OpticsError`] when the file cannot be read, holds no lens, or one that such frames cannot have.
+    pub fn of_file(path: &Path, view: &View, by: TablesBy) -> Result<Self, OpticsError> {
+        let file = LensFile::read(path)?;
+        let geometry = view.geometry(file.size.unwrap_or(PAPER_SIZE))?;
+        let (lens, centre) = file
+            .for_frame(geometry.width(), geometry.height())
+            .map_err(|source| OpticsError::Shape { path: path.to_owned(), source })?;
+        let camera = view.camera(geometry, lens, centre)?;
+        Ok(Self::calibrated(camera, format!("{} {}", file.model, path.display()), by)?)
+    }
+
+    /// An equidistant lens before frames of the paper's size with the axis in their middle, as far as `view` does not say it.
+    ///
+    /// # Errors
+    /// [`OpticsError`] when such frames cannot have it.
+    pub fn of_equidistant(lens: Equidistant, view: &View, by: TablesBy) -> Result<Self, OpticsError> {
+        let geometry = view.geometry(PAPER_SIZE)?;
+        let middle = ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0);
+        let camera = view.camera(geometry, lens.into(), middle)?;
+        Ok(Self::equidistant(camera, lens, view.centre_y, by))
+    }
+}
