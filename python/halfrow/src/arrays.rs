@@ -1,0 +1,59 @@
+//! NumPy's arrays as frames: taken as they are or refused, never copied.
+
+use numpy::{
+    BorrowError, PyArray2, PyArrayDescrMethods as _, PyArrayMethods as _, PyReadonlyArray2,
+    PyReadwriteArray2, PyUntypedArray, PyUntypedArrayMethods as _, dtype,
+};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+/// The samples of `array`, to be read; `what` is its name in the call.
+pub(crate) fn read<'py>(array: &Bound<'py, PyAny>, what: &str) -> PyResult<PyReadonlyArray2<'py, u16>> {
+    let array = samples(array, what)?;
+    array.try_readonly().map_err(|error| refused(error, what))
+}
+
+/// The samples of `array`, to be written.
+pub(crate) fn write<'py>(array: &Bound<'py, PyAny>, what: &str) -> PyResult<PyReadwriteArray2<'py, u16>> {
+    let array = samples(array, what)?;
+    array.try_readwrite().map_err(|error| refused(error, what))
+}
+
+fn refused(error: BorrowError, what: &str) -> PyErr {
+    PyValueError::new_err(match error {
+        BorrowError::NotWriteable => format!("{what} is read-only; give an array that can be written"),
+        _ => format!(
+            "{what} shares memory with an array that is in use, its input or another call's; give one of its own"
+        ),
+    })
+}
+
+fn samples<'a, 'py>(array: &'a Bound<'py, PyAny>, what: &str) -> PyResult<&'a Bound<'py, PyArray2<u16>>> {
+    let Ok(untyped) = array.cast::<PyUntypedArray>() else {
+        return Err(PyTypeError::new_err(format!(
+            "{what} is a {}, not a numpy.ndarray; numpy.asarray({what}, numpy.uint16) makes one",
+            array.get_type().name()?
+        )));
+    };
+    if !untyped.dtype().is_equiv_to(&dtype::<u16>(array.py())) {
+        return Err(PyTypeError::new_err(format!(
+            "{what} holds {} ({}), not uint16 in this computer's byte order; {what}.astype(numpy.uint16) is a copy that does",
+            untyped.dtype(),
+            untyped.dtype().getattr("str")?
+        )));
+    }
+    if untyped.ndim() != 2 {
+        return Err(PyValueError::new_err(format!(
+            "{what} has {} dimensions, and a frame has rows and columns; give an array of shape (height, width), a colour \
+             picture mosaicked",
+            untyped.ndim()
+        )));
+    }
+    if !(untyped.is_c_contiguous() && untyped.is_aligned()) {
+        return Err(PyValueError::new_err(format!(
+            "{what} has its samples not one after the other in memory, row by row; numpy.ascontiguousarray({what}) is a \
+             copy that has, or numpy.array({what}) where they are not aligned"
+        )));
+    }
+    Ok(array.cast()?)
+}

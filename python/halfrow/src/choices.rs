@@ -1,0 +1,60 @@
+//! Arguments that are a word or a number of few.
+
+use std::time::Duration;
+
+use halfrow::model::{BitDepth, ModelPath, Phase, UnavailablePath, UnknownPath, UnknownPhase};
+use halfrow::optics::TablesBy;
+use pyo3::PyResult;
+
+use crate::errors;
+
+/// Bits of a sample.
+pub(crate) fn depth(bits: u32) -> PyResult<BitDepth> {
+    let depth = BitDepth::from_bits(bits);
+    depth.ok_or_else(|| errors::wrong_value(format!("a sample has no {bits} bits; give 8, 10 or 12")))
+}
+
+/// The arrangement of the colours.
+pub(crate) fn phase(name: &str) -> PyResult<Phase> {
+    name.parse().map_err(errors::input::<UnknownPhase>)
+}
+
+/// The path of the model that is named, or else the fastest of this processor.
+pub(crate) fn path(name: Option<&str>) -> PyResult<ModelPath> {
+    let Some(name) = name else { return Ok(ModelPath::best()) };
+    let path: ModelPath = name.parse().map_err(errors::input::<UnknownPath>)?;
+    if path.is_available() { Ok(path) } else { Err(errors::input(UnavailablePath(path))) }
+}
+
+/// How tables are found: as `--rows`, `--projection` and `--entries` say it, and `otherwise` if they say nothing.
+pub(crate) fn tables_by(
+    rows: Option<&str>,
+    projection: &str,
+    entries: Option<usize>,
+    otherwise: TablesBy,
+) -> PyResult<TablesBy> {
+    match (projection, rows) {
+        ("exact", None) => Ok(TablesBy::Exact { entries: entries.unwrap_or(TablesBy::LEAST_ENTRIES) }),
+        ("exact", Some(_)) => {
+            Err(errors::conflict("rows says nothing beside projection=\"exact\"; leave one of them out"))
+        }
+        ("rows", _) if entries.is_some() => {
+            Err(errors::conflict("entries says nothing without projection=\"exact\"; leave it out"))
+        }
+        ("rows", None) => Ok(otherwise),
+        ("rows", Some("fitted")) => Ok(TablesBy::Fitting),
+        ("rows", Some("equation-9")) => Ok(TablesBy::Equation9),
+        ("rows", Some(other)) => Err(errors::wrong_value(format!(
+            "`{other}` is no way to find row factors; give \"fitted\" or \"equation-9\""
+        ))),
+        (other, _) => {
+            Err(errors::wrong_value(format!("`{other}` is no projection; give \"rows\" or \"exact\"")))
+        }
+    }
+}
+
+/// A time in seconds, called `what`.
+pub(crate) fn seconds(what: &str, seconds: Option<f64>) -> PyResult<Option<Duration>> {
+    let time = seconds.map(Duration::try_from_secs_f64).transpose();
+    time.map_err(|_| errors::wrong_value(format!("{what} is no time; give seconds, 0 or more, not too many")))
+}

@@ -1,0 +1,60 @@
+//! The library's errors as Python's exceptions: the same codes, parameters, sentences and remedies.
+
+use std::error::Error;
+
+use halfrow::result::Problem;
+use pyo3::prelude::*;
+
+/// What the command line says of a value that is none.
+const VALUE_WRONG: &str = "usage-value-wrong";
+/// And of two options of which one leaves nothing for the other.
+const CONFLICT: &str = "usage-arguments-conflict";
+
+/// Whose an error is, which tells the exception's class.
+#[derive(Clone, Copy)]
+pub(crate) enum Whose {
+    /// The call or what it names: `halfrow.InputError`, a `ValueError`, too. The command line exits with 2 then.
+    Call,
+    /// Anything else's: `halfrow.HalfrowError`.
+    World,
+}
+
+/// The exception for a call that is wrong by `error`, or names what is.
+pub(crate) fn input<E: Error + 'static>(error: E) -> PyErr {
+    raised(Whose::Call, &error)
+}
+
+/// The exception for `error`, which the call cannot help.
+pub(crate) fn failed<E: Error + 'static>(error: E) -> PyErr {
+    raised(Whose::World, &error)
+}
+
+/// The exception for `error`.
+pub(crate) fn raised(whose: Whose, error: &(dyn Error + 'static)) -> PyErr {
+    exception(whose, &Problem::of(error))
+}
+
+/// The exception for an argument of no use, by a message that ends in what to do.
+pub(crate) fn wrong_value(message: impl Into<String>) -> PyErr {
+    exception(Whose::Call, &Problem::new(VALUE_WRONG, message))
+}
+
+/// The exception for an argument that says nothing beside another.
+pub(crate) fn conflict(message: impl Into<String>) -> PyErr {
+    exception(Whose::Call, &Problem::new(CONFLICT, message))
+}
+
+fn exception(whose: Whose, problem: &Problem) -> PyErr {
+    let class = match whose {
+        Whose::Call => "InputError",
+        Whose::World => "HalfrowError",
+    };
+    Python::attach(|py| {
+        let made = || {
+            let class = py.import("halfrow._errors")?.getattr(class)?;
+            let told = serde_json::to_string(problem).unwrap_or_default();
+            class.call_method1("_of_json", (told,))
+        };
+        made().map_or_else(|error| error, PyErr::from_value)
+    })
+}

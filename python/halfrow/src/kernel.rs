@@ -1,0 +1,102 @@
+//! Kernels.
+
+use std::path::PathBuf;
+
+use halfrow::model::{self, Interpolant, Taps, WEIGHT_ONE};
+use halfrow::optics;
+use halfrow::tables::KernelFile;
+use numpy::{PyArray2, PyArrayMethods as _, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::errors;
+
+/// An interpolation kernel as a board stores it: 65 nodes of five weights each.
+///
+/// `name` is one of `halfrow.KERNELS`, or the path of a kernel file. Raises InputError when it is neither.
+#[pyclass(frozen, module = "halfrow")]
+pub(crate) struct Kernel {
+    pub(crate) kernel: model::Kernel,
+    /// What it is called.
+    #[pyo3(get)]
+    pub(crate) name: String,
+}
+
+#[pymethods]
+impl Kernel {
+    #[new]
+    #[pyo3(signature = (name = PathBuf::from(Interpolant::Hermite.name())))]
+    fn new(name: PathBuf) -> PyResult<Self> {
+        let kernel = optics::kernel(name.as_os_str()).map_err(errors::input)?;
+        Ok(Self { kernel, name: name.display().to_string() })
+    }
+
+    /// The kernel of real weights: an array of float64 of shape (65, 5), a row for x = 0, 1/32, …, 2 with the weights of
+    /// G0, R1, G4, R5 and G6, each −2 to 2 − 2⁻¹⁴, rounded to 14 fractional bits. The weights of G2 and R3 follow from them.
+    #[staticmethod]
+    #[pyo3(signature = (weights, *, name = "own"))]
+    fn from_weights(weights: PyReadonlyArray2<'_, f64>, name: &str) -> PyResult<Self> {
+        let weights = weights.as_array();
+        if weights.ncols() != model::TAP_NAMES.len() {
+            return Err(errors::wrong_value(format!(
+                "a node has {} weights; give G0, R1, G4, R5 and G6",
+                weights.ncols()
+            )));
+        }
+        let node = |node: usize| std::array::from_fn(|tap| weights[[node, tap]]);
+        let nodes: Vec<[f64; 5]> = (0..weights.nrows()).map(node).collect();
+        let kernel = model::Kernel::from_weights(&nodes).map_err(errors::input)?;
+        Ok(Self { kernel, name: name.to_owned() })
+    }
+
+    /// The samples that it reads: 5 or 7.
+    #[getter]
+    fn taps(&self) -> u8 {
+        match self.kernel.taps() {
+            Taps::Five => 5,
+            Taps::Seven => 7,
+        }
+    }
+
+    /// The weights, float64 of shape (65, 5), as `from_weights` takes them.
+    #[getter]
+    fn weights<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let weights = self.kernel.nodes().as_flattened().iter();
+        let weights = weights.map(|&weight| f64::from(weight) / f64::from(WEIGHT_ONE)).collect();
+        numpy::PyArray1::from_vec(py, weights).reshape([model::NODES, model::TAP_NAMES.len()])
+    }
+
+    /// Writes it to a kernel file (JSON). A file that is there is replaced only with `overwrite`.
+    #[pyo3(signature = (path, *, overwrite = false))]
+    fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
+        let file = KernelFile { kernel: self.kernel.clone(), about: None };
+        file.write(&path, overwrite).map_err(errors::failed)
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Kernel({:?})", self.name)
+    }
+
+    fn __eq__(&self, other: &Self) -> bool {
+        self.kernel == other.kernel
+    }
+}
+
+/// A kernel as a call gives it: a [`Kernel`], or the name or path that makes one.
+#[derive(FromPyObject)]
+pub(crate) enum KernelLike<'py> {
+    Kernel(Bound<'py, Kernel>),
+    Name(PathBuf),
+}
+
+impl KernelLike<'_> {
+    /// It, and what it is called.
+    pub(crate) fn taken(self) -> PyResult<(model::Kernel, String)> {
+        match self {
+            Self::Kernel(kernel) => Ok((kernel.get().kernel.clone(), kernel.get().name.clone())),
+            Self::Name(name) => {
+                let Kernel { kernel, name } = Kernel::new(name)?;
+                Ok((kernel, name))
+            }
+        }
+    }
+}

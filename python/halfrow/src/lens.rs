@@ -1,0 +1,162 @@
+//! Lenses, and the frames behind them.
+
+use std::path::PathBuf;
+
+use halfrow::frames::Builtin;
+use halfrow::model::Equidistant;
+use halfrow::optics::{Optics, PAPER_FIELD, TablesBy, View};
+use halfrow::result::FileHash;
+use numpy::PyArray2;
+use pyo3::prelude::*;
+
+use crate::{choices, errors, frames};
+
+/// What stands before a radius in place of a lens file.
+const EQUIDISTANT: &str = "equidistant:";
+
+/// A fisheye lens before frames of some size.
+///
+/// `lens` is a file of OpenCV's fisheye model (FileStorage, camera_info, camchain) or of OCamCalib, or "equidistant:RADIUS"
+/// with the radius of the image of 180 degrees in pixels; without it the lens is that of the paper, R = 1106.74 pixels.
+///
+/// `width` (even, 64 to 2592) and `height` (1 to 2048) are those of the lens file's pictures, or else 1920 x 1080; frames of
+/// another size scale the lens, and must have the same shape. `bits` is 8, 10 or 12. `centre_x` and `centre_y`, column and row
+/// of the lens's axis, are the file's, or else the middle. `field_of_view` is the angle across the image circle, in degrees.
+///
+/// Raises InputError when a file cannot be read or holds no such lens, or when such frames cannot have it.
+#[pyclass(frozen, module = "halfrow")]
+pub(crate) struct Lens {
+    pub(crate) optics: Optics,
+    /// The file that it was read from.
+    pub(crate) file: Option<FileHash>,
+}
+
+#[pymethods]
+impl Lens {
+    #[new]
+    #[pyo3(signature = (
+        lens = None, *, width = None, height = None, bits = 12, centre_x = None, centre_y = None, field_of_view = PAPER_FIELD
+    ))]
+    fn new(
+        lens: Option<PathBuf>,
+        width: Option<usize>,
+        height: Option<usize>,
+        bits: u32,
+        centre_x: Option<f64>,
+        centre_y: Option<f64>,
+        field_of_view: f64,
+    ) -> PyResult<Self> {
+        let depth = choices::depth(bits)?;
+        Self::seen(lens, &View { width, height, depth, centre_x, centre_y, field_of_view })
+    }
+
+    /// Columns of the frames.
+    #[getter]
+    fn width(&self) -> usize {
+        self.optics.camera.geometry().width()
+    }
+
+    /// Rows of the frames.
+    #[getter]
+    fn height(&self) -> usize {
+        self.optics.camera.geometry().height()
+    }
+
+    /// Bits of a sample: 8, 10 or 12.
+    #[getter]
+    fn bits(&self) -> u32 {
+        self.optics.camera.geometry().depth().bits()
+    }
+
+    /// Column and row of the axis, counted from 0 at the middle of the first pixel.
+    #[getter]
+    fn centre(&self) -> (f64, f64) {
+        self.optics.camera.centre()
+    }
+
+    /// R: columns from the axis to the edge of the image circle.
+    #[getter]
+    fn radius(&self) -> f64 {
+        self.optics.camera.radius()
+    }
+
+    /// The angle across the image circle, in degrees.
+    #[getter]
+    fn field_of_view(&self) -> f64 {
+        self.optics.camera.field_of_view().to_degrees()
+    }
+
+    /// Rows that lie outside of the image circle, and are not stretched.
+    #[getter]
+    fn rows_outside_circle(&self) -> usize {
+        self.optics.camera.rows_outside_circle()
+    }
+
+    /// Where a ray `degrees` off the axis is imaged, in columns from the axis; None where the lens has no image of it.
+    fn column(&self, degrees: f64) -> Option<f64> {
+        self.optics.camera.lens().column(degrees.to_radians())
+    }
+
+    /// The built-in frame `name`, one of `halfrow.BUILTIN_FRAMES`, as this lens sees it: uint16 of shape (height, width).
+    ///
+    /// `phase` is grbg, rggb, bggr or gbrg; `seed` is that of noise.
+    #[pyo3(signature = (name, *, phase = "grbg", seed = 1))]
+    fn frame<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        phase: &str,
+        seed: u64,
+    ) -> PyResult<Bound<'py, PyArray2<u16>>> {
+        let builtin: Builtin = name.parse().map_err(errors::input::<halfrow::frames::UnknownBuiltin>)?;
+        let scene = self.optics.scene(choices::phase(phase)?, seed);
+        let frame = py.detach(|| builtin.render(&scene)).map_err(errors::failed)?;
+        frames::array(py, frame)
+    }
+
+    fn __repr__(&self) -> String {
+        let (optics, geometry) = (&self.optics, self.optics.camera.geometry());
+        format!("<Lens: {}, {} x {}>", optics.source(), geometry.width(), geometry.height())
+    }
+}
+
+impl Lens {
+    pub(crate) fn seen(lens: Option<PathBuf>, view: &View) -> PyResult<Self> {
+        let radius = lens.as_ref().and_then(|lens| lens.to_str()?.strip_prefix(EQUIDISTANT));
+        let equidistant = match (&lens, radius) {
+            (None, _) => Equidistant::default(),
+            (Some(_), Some(radius)) => {
+                let radius = radius.parse().map_err(|_| {
+                    errors::wrong_value(format!("`{radius}` is no radius; give {EQUIDISTANT} pixels"))
+                })?;
+                Equidistant::from_radius(radius).map_err(errors::input)?
+            }
+            (Some(path), None) => {
+                let optics = Optics::of_file(path, view, TablesBy::Fitting).map_err(errors::input)?;
+                return Ok(Self { optics, file: Some(frames::hash(path)?) });
+            }
+        };
+        let optics = Optics::of_equidistant(equidistant, view, TablesBy::Equation9).map_err(errors::input)?;
+        Ok(Self { optics, file: None })
+    }
+}
+
+/// A lens as a call gives it: a [`Lens`], or what makes one.
+#[derive(FromPyObject)]
+pub(crate) enum LensLike<'py> {
+    Lens(Bound<'py, Lens>),
+    Name(PathBuf),
+}
+
+impl LensLike<'_> {
+    /// The lens with the file that it was read from.
+    pub(crate) fn taken(self) -> PyResult<(Optics, Option<FileHash>)> {
+        match self {
+            Self::Lens(lens) => Ok((lens.get().optics.clone(), lens.get().file.clone())),
+            Self::Name(name) => {
+                let Lens { optics, file } = Lens::seen(Some(name), &View::default())?;
+                Ok((optics, file))
+            }
+        }
+    }
+}

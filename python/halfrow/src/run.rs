@@ -1,0 +1,35 @@
+//! A run that is over.
+
+use std::path::PathBuf;
+
+use halfrow::report::{self, wording};
+use halfrow::{Finished, ReportFolder};
+use pyo3::prelude::*;
+
+use crate::errors::{self, Whose};
+
+/// What a run found, from which halfrow/_report.py makes a Report.
+#[pyclass(frozen, module = "halfrow")]
+pub(crate) struct Run {
+    pub(crate) finished: Finished,
+}
+
+#[pymethods]
+impl Run {
+    /// All of it, as `halfrow schema` describes it, but the exit code.
+    fn json(&self) -> PyResult<String> {
+        report::json(&self.finished.report).map_err(errors::failed)
+    }
+
+    /// The verdict, every check, who is suspected, and what to do: a line each.
+    fn text(&self) -> String {
+        wording::summary(&self.finished.report)
+    }
+
+    /// Writes report.json, report.xml (JUnit) and report.html into the folder `path`.
+    fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
+        let Finished { report, evidence } = &self.finished;
+        py.detach(|| ReportFolder::prepare(&path, overwrite)?.commit(report, evidence))
+            .map_err(|error| errors::raised(Whose::World, &error))
+    }
+}

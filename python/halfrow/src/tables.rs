@@ -1,0 +1,216 @@
+//! Tables: what a board is given beside frames.
+
+use std::path::PathBuf;
+
+use halfrow::model::{Equidistant, Interpolant, RowFactor};
+use halfrow::optics::{self, Chosen, Optics, TablesBy, View};
+use halfrow::result::FileHash;
+use halfrow::tables::{TableFile, datapath_of, mem};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::kernel::{Kernel, KernelLike};
+use crate::lens::{Lens, LensLike};
+use crate::{choices, errors, frames};
+
+/// What a kernel without a name is called.
+const OF_FILE: &str = "the table file's";
+
+/// Row factors, or a grid of them, with the kernel and the frames that they are for. Made by `from_lens` or `read`.
+#[pyclass(frozen, module = "halfrow")]
+pub(crate) struct Tables {
+    pub(crate) chosen: Chosen,
+    /// What the kernel is called.
+    kernel_name: String,
+    /// The files that they were read from.
+    pub(crate) files: Vec<FileHash>,
+}
+
+#[pymethods]
+impl Tables {
+    /// The tables for `lens`: a Lens, a lens file, "equidistant:RADIUS", or the paper's lens.
+    ///
+    /// `projection` is "rows", one factor a row, or "exact", a grid of at most `entries` factors (2048), which boards with
+    /// datapath 2 take. `rows` says how row factors are found: "fitted" (of a lens file) or "equation-9" (of the others).
+    /// `kernel` is a Kernel, one of `halfrow.KERNELS`, or a kernel file. Raises InputError.
+    #[staticmethod]
+    #[pyo3(signature = (lens = None, *, projection = "rows", rows = None, entries = None, kernel = None))]
+    fn from_lens(
+        py: Python<'_>,
+        lens: Option<LensLike<'_>>,
+        projection: &str,
+        rows: Option<&str>,
+        entries: Option<usize>,
+        kernel: Option<KernelLike<'_>>,
+    ) -> PyResult<Self> {
+        let (mut optics, file) = match lens {
+            Some(lens) => lens.taken()?,
+            None => (Lens::seen(None, &View::default())?.optics, None),
+        };
+        optics.by = choices::tables_by(rows, projection, entries, optics.by)?;
+        let chosen = py.detach(|| optics::choose(None, optics, None)).map_err(errors::input)?;
+        let from = chosen.optics.source_of(&chosen.tables);
+        let kernel = kernel.unwrap_or_else(|| KernelLike::Name(Interpolant::Hermite.name().into()));
+        Self::with_kernel(chosen, &from, Some(kernel), file.into_iter().collect())
+    }
+
+    /// The tables in a file that `write` or `halfrow tables` has written: NAME.json, or NAME.mem for two files of memory images.
+    ///
+    /// `kernel` takes the place of the file's. Raises InputError, which names the file and the place in it.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, kernel = None))]
+    fn read(path: PathBuf, kernel: Option<KernelLike<'_>>) -> PyResult<Self> {
+        let is_mem = path.extension().is_some_and(|extension| extension == "mem");
+        let (file, paths) = if is_mem {
+            let (tables, kernel) = mem::read(&path).map_err(errors::input)?;
+            (TableFile { tables, kernel, about: None }, mem::paths(&path).to_vec())
+        } else {
+            (TableFile::read(&path).map_err(errors::input)?, vec![path.clone()])
+        };
+        let geometry = file.tables.geometry();
+        let (width, height, depth) = (Some(geometry.width()), Some(geometry.height()), geometry.depth());
+        let view = View { width, height, depth, ..View::default() };
+        let optics = Optics::of_equidistant(Equidistant::default(), &view, TablesBy::Equation9);
+        let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
+        let files = paths.iter().map(|path| frames::hash(path)).collect::<PyResult<_>>()?;
+        Self::with_kernel(chosen.map_err(errors::input)?, &path.display().to_string(), kernel, files)
+    }
+
+    /// Writes them with their kernel to NAME.json, or to two files of memory images for NAME.mem. Files that are there are
+    /// replaced only with `overwrite`.
+    #[pyo3(signature = (path, *, overwrite = false))]
+    fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
+        let (tables, kernel) = (&self.chosen.tables, &self.chosen.kernel);
+        match path.extension().and_then(|extension| extension.to_str()) {
+            Some("mem") => mem::write(&path, tables, kernel, overwrite).map(drop),
+            Some("json") => {
+                let file = TableFile { tables: tables.clone(), kernel: kernel.clone(), about: None };
+                file.write(&path, overwrite)
+            }
+            _ => {
+                return Err(errors::wrong_value(format!(
+                    "{} names no format of tables; give NAME.json or NAME.mem",
+                    path.display()
+                )));
+            }
+        }
+        .map_err(errors::failed)
+    }
+
+    /// Columns of the frames.
+    #[getter]
+    fn width(&self) -> usize {
+        self.chosen.tables.geometry().width()
+    }
+
+    /// Rows of the frames.
+    #[getter]
+    fn height(&self) -> usize {
+        self.chosen.tables.geometry().height()
+    }
+
+    /// Bits of a sample: 8, 10 or 12.
+    #[getter]
+    fn bits(&self) -> u32 {
+        self.chosen.tables.geometry().depth().bits()
+    }
+
+    /// The column of the optical centre, a multiple of a half.
+    #[getter]
+    fn centre_x(&self) -> f64 {
+        f64::from(self.chosen.tables.geometry().centre2()) / 2.0
+    }
+
+    /// 1 for one factor a row, 2 for a grid.
+    #[getter]
+    fn datapath(&self) -> u16 {
+        datapath_of(&self.chosen.tables).id()
+    }
+
+    /// v and k of a grid: 2^v rows from one grid row to the next, 2^k columns from one node to the next. None of row factors.
+    #[getter]
+    fn grid_shape(&self) -> Option<(u32, u32)> {
+        self.chosen.tables.shape().map(|shape| (shape.v(), shape.k()))
+    }
+
+    /// The entries in a board's order, in units of 2^-24: uint32 of shape (entries,), one a row for row factors.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
+        PyArray1::from_vec(py, self.chosen.tables.units().collect())
+    }
+
+    /// The row factor of each row, above 0 to 1: float64 of shape (height,). None of a grid.
+    #[getter]
+    fn row_factors<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        let fractions = self.chosen.tables.row_factors()?.iter().copied().map(RowFactor::fraction);
+        Some(PyArray1::from_vec(py, fractions.collect()))
+    }
+
+    /// The column that each output sample comes from, to the 2^-13 that the datapath keeps: float64 of shape (height, width).
+    fn sources<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (tables, (height, width)) = (&self.chosen.tables, (self.height(), self.width()));
+        let rows = py.detach(|| {
+            let of_row = |row| {
+                let values = tables.values(row).unwrap_or_default();
+                let source = |column| values.source(column);
+                (0..width)
+                    .map(source)
+                    .map(|it| it.base as f64 + (256 * it.node as i32 + it.fraction) as f64 / 8192.0)
+                    .collect()
+            };
+            (0..height).map(of_row).collect::<Vec<Vec<f64>>>()
+        });
+        Ok(PyArray2::from_vec2(py, &rows)?)
+    }
+
+    /// The kernel.
+    #[getter]
+    fn kernel(&self) -> Kernel {
+        Kernel { kernel: self.chosen.kernel.clone(), name: self.kernel_name.clone() }
+    }
+
+    /// The lens that built-in frames are seen through; for tables of a file, which does not say it, the paper's.
+    #[getter]
+    fn lens(&self) -> Lens {
+        Lens { optics: self.chosen.optics.clone(), file: None }
+    }
+
+    /// Where they come from, in words.
+    #[getter]
+    fn source(&self) -> &str {
+        &self.chosen.source
+    }
+
+    fn __repr__(&self) -> String {
+        format!("<Tables: {}, {} x {}, {} bits>", self.source(), self.width(), self.height(), self.bits())
+    }
+
+    /// Whether a board would be given the same: factors, frames and kernel.
+    fn __eq__(&self, other: &Self) -> bool {
+        (&self.chosen.tables, &self.chosen.kernel) == (&other.chosen.tables, &other.chosen.kernel)
+    }
+}
+
+impl Tables {
+    /// Those of the paper's lens.
+    pub(crate) fn of_paper() -> PyResult<Self> {
+        let optics = Lens::seen(None, &View::default())?.optics;
+        let chosen = optics::choose(None, optics, None).map_err(errors::input)?;
+        Self::with_kernel(chosen, "", None, Vec::new())
+    }
+
+    /// The tables `chosen`, which come from `from`, with their own kernel unless there is another.
+    fn with_kernel(
+        mut chosen: Chosen,
+        from: &str,
+        kernel: Option<KernelLike<'_>>,
+        files: Vec<FileHash>,
+    ) -> PyResult<Self> {
+        let mut kernel_name = OF_FILE.to_owned();
+        if let Some(kernel) = kernel {
+            (chosen.kernel, kernel_name) = kernel.taken()?;
+            chosen.source = format!("{from}, {kernel_name} kernel");
+        }
+        Ok(Self { chosen, kernel_name, files })
+    }
+}

@@ -1,0 +1,82 @@
+//! A board judged.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use halfrow::board::Stop;
+use halfrow::link::{self, Candidate, Class, Lost, OpenError, Recorder, RecordingFile};
+use halfrow::run::{self, RecordedRun};
+use halfrow::target::{Target, TargetError};
+use halfrow::{Finished, Plan, ReportFolder, RunOptions, StoppedBy};
+use pyo3::prelude::*;
+
+use crate::errors::{self, Whose};
+use crate::plan::Options;
+use crate::run::Run;
+use crate::watched::watched;
+
+/// Judges the board behind `target`; halfrow/_verify.py says how.
+#[pyfunction]
+pub(crate) fn verify(py: Python<'_>, target: &str, options: &Bound<'_, PyAny>) -> PyResult<Run> {
+    let mut asked: Options<'_> = options.extract()?;
+    let target: Target = target.parse().map_err(errors::input::<TargetError>)?;
+    let recording = link::recording(&target).map_err(not_opened)?;
+    let is_stopped = Arc::new(AtomicBool::new(false));
+    let stopped = Arc::clone(&is_stopped);
+    let stop = Stop::when(move || stopped.load(Ordering::Relaxed).then_some(StoppedBy::Person));
+    let (plan, options) = asked.planned(recording.as_ref(), stop)?;
+    let report = asked.report.as_deref().map(|path| ReportFolder::prepare(path, asked.overwrite));
+    let report = report.transpose().map_err(errors::input)?;
+    let record = asked.record.as_deref().map(|path| RecordingFile::prepare(path, asked.overwrite));
+    let record = record.transpose().map_err(errors::input)?;
+    let candidate = match recording {
+        None => py.detach(|| link::open(&target)),
+        Some(recording) => link::replay(&target, recording),
+    };
+    let job = Job { plan, options, candidate: candidate.map_err(not_opened)?, record, report };
+    let done = watched(py, asked.progress.as_ref(), &is_stopped, move |progress| job.run(progress))?;
+    Ok(Run { finished: done.map_err(|NotRun { whose, error }| errors::raised(whose, error.as_ref()))? })
+}
+
+fn not_opened(error: OpenError) -> PyErr {
+    let whose = if error.class() == Class::Call { Whose::Call } else { Whose::World };
+    errors::raised(whose, &error)
+}
+
+/// All that a run needs.
+struct Job {
+    plan: Plan,
+    options: RunOptions,
+    candidate: Candidate,
+    record: Option<RecordingFile>,
+    report: Option<ReportFolder>,
+}
+
+/// Why there is no run to report on.
+struct NotRun {
+    whose: Whose,
+    error: Box<dyn std::error::Error + Send + Sync>,
+}
+
+impl Job {
+    fn run(self, progress: &dyn halfrow::Progress) -> Result<Finished, NotRun> {
+        let mut candidate = self.candidate;
+        let mut lost = Lost::default();
+        if let Some(file) = self.record {
+            let link = Recorder::begin(candidate.link, file, &RecordedRun::of(&self.plan, &self.options))
+                .map_err(|error| NotRun { whose: Whose::World, error: error.into() })?;
+            lost = link.lost();
+            candidate = Candidate { link: Box::new(link), ..candidate };
+        }
+        let mut finished = run::verify(&self.plan, candidate, &self.options, progress)
+            .map_err(|error| NotRun { whose: Whose::Call, error: error.into() })?;
+        // A verdict that stands is not lost with its evidence, and a PASS without it is none: the report tells.
+        if let Some(error) = lost.get() {
+            finished.lose_recording(error);
+        }
+        if let Some(folder) = self.report {
+            _ = finished.commit(folder);
+        }
+        Ok(finished)
+    }
+}

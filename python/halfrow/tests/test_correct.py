@@ -1,0 +1,137 @@
+"""Corrected frames: the samples against the program, the memory against NumPy's own account of it."""
+import threading
+import tracemalloc
+
+import numpy as np
+import pytest
+
+import halfrow
+from conftest import until
+
+
+def noise(tables, seed=1):
+    shape = (tables.height, tables.width)
+    return np.random.default_rng(seed).integers(0, 2**tables.bits, shape, dtype=np.uint16)
+
+
+@pytest.mark.parametrize("options", [{}, {"projection": "exact"}])
+@pytest.mark.parametrize("kernel", ["hermite", "keys"])
+def test_frames_are_corrected_as_by_the_program(tmp_path, program, opencv, options, kernel):
+    tables = halfrow.Tables.from_lens(opencv, kernel=kernel, **options)
+    frame = noise(tables)
+    halfrow.write_frame(tmp_path / "in.pgm", frame)
+    tables.write(tmp_path / "tables.json")
+    arguments = ["correct", tmp_path / "in.pgm", "--model", "--tables", tmp_path / "tables.json", "-o", tmp_path / "out.pgm"]
+    assert program(*arguments)[0] == 0
+    theirs = halfrow.read_frame(tmp_path / "out.pgm")
+    for path in halfrow.MODEL_PATHS:
+        assert np.array_equal(halfrow.correct(frame, tables, path=path), theirs), path
+    assert not np.array_equal(frame, theirs)
+
+
+def test_every_path_and_kernel_gives_the_same_bits(small):
+    frame = noise(small)
+    for kernel in halfrow.KERNELS:
+        first = halfrow.correct(frame, small, kernel=kernel, path="reference")
+        for path in halfrow.MODEL_PATHS:
+            assert np.array_equal(halfrow.correct(frame, small, kernel=kernel, path=path), first), (kernel, path)
+
+
+def test_nothing_is_copied(small):
+    tables = halfrow.Tables.from_lens()
+    corrector, frame, out = halfrow.Corrector(tables), noise(tables), np.zeros((1080, 1920), np.uint16)
+    before = out.ctypes.data
+    assert corrector.correct(frame, out) is out and out.ctypes.data == before
+    # NumPy tells tracemalloc of its buffers: none is made beside `out`, and one without it.
+    tracemalloc.start()
+    try:
+        corrector.correct(frame, out)
+        assert tracemalloc.get_traced_memory()[1] < frame.nbytes / 100
+        tracemalloc.reset_peak()
+        made = corrector.correct(frame)
+        assert frame.nbytes <= tracemalloc.get_traced_memory()[1] < 1.01 * frame.nbytes
+    finally:
+        tracemalloc.stop()
+    assert np.array_equal(made, out)
+
+
+def test_a_part_of_a_larger_memory_is_corrected_where_it_is(small):
+    many = np.stack([noise(small, seed) for seed in range(3)])
+    outs = np.zeros_like(many)
+    halfrow.correct(many[1], small, out=outs[1])
+    assert np.array_equal(outs[1], halfrow.correct(many[1].copy(), small))
+    assert not outs[0].any() and not outs[2].any()
+
+
+def refused(call, kind, word):
+    with pytest.raises(kind) as raised:
+        call()
+    assert word in str(raised.value), raised.value
+
+
+def test_other_arrays_are_refused_and_never_copied(small):
+    frame = noise(small)
+    correct = lambda frame, **options: halfrow.correct(frame, small, **options)  # noqa: E731
+    refused(lambda: correct(frame.tolist()), TypeError, "list")
+    refused(lambda: correct(frame.astype(np.float32)), TypeError, "float32")
+    refused(lambda: correct(frame.astype(np.uint8)), TypeError, "uint8")
+    refused(lambda: correct(frame.astype(np.int16)), TypeError, "int16")
+    refused(lambda: correct(frame.astype(">u2")), TypeError, ">u2")
+    refused(lambda: correct(frame[None]), ValueError, "3 dimensions")
+    refused(lambda: correct(np.asfortranarray(frame)), ValueError, "ascontiguousarray")
+    refused(lambda: correct(np.repeat(frame, 2, axis=1)[:, ::2]), ValueError, "ascontiguousarray")
+    shifted = np.frombuffer(b"\0" + frame.tobytes(), np.uint8)[1:].view(np.uint16).reshape(frame.shape)
+    refused(lambda: correct(shifted), ValueError, "aligned")
+    read_only = np.zeros_like(frame)
+    read_only.flags.writeable = False
+    refused(lambda: correct(frame, out=read_only), ValueError, "read-only")
+    refused(lambda: correct(frame, out=frame), ValueError, "shares memory")
+    refused(lambda: correct(frame, out=np.zeros(frame.shape)), TypeError, "float64")
+    refused(lambda: correct(frame, path="fast"), ValueError, "fast")
+    # To be read alone is no reason to refuse an input.
+    frame.flags.writeable = False
+    correct(frame)
+
+
+def test_a_frame_that_does_not_fit_is_refused_by_its_code(small):
+    for shape in [(32, 130), (31, 128), (0, 0), (32, 0)]:
+        with pytest.raises(halfrow.InputError) as raised:
+            halfrow.correct(np.zeros(shape, np.uint16), small)
+        assert raised.value.code == "frame-does-not-fit-tables"
+    with pytest.raises(halfrow.InputError) as raised:
+        halfrow.correct(noise(small), small, out=np.zeros((32, 130), np.uint16))
+    assert raised.value.code == "frame-does-not-fit-tables"
+
+
+@pytest.mark.parametrize("place", [(0, 0), (5, 127), (31, 64)])
+def test_a_sample_too_bright_is_named(small, place):
+    frame = noise(small)
+    frame[31, 127] = frame[place] = 4096
+    with pytest.raises(halfrow.InputError) as raised:
+        halfrow.correct(frame, small)
+    assert raised.value.code == "frame-impossible"
+    assert f"row {place[0]}, column {place[1]} is 4096" in str(raised.value)
+
+
+def test_the_interpreters_lock_is_released(steps_beside):
+    tables = halfrow.Tables.from_lens()
+    corrector, frame = halfrow.Corrector(tables, path="reference"), noise(tables)
+    # What keeps the lock is told from what does not.
+    assert steps_beside(lambda: sum(range(1_000_000))) == 0
+    until(lambda: steps_beside(lambda: corrector.correct(frame)) > 0)
+
+
+def test_threads_share_a_corrector(small):
+    corrector = halfrow.Corrector(small)
+    frames = [noise(small, seed) for seed in range(8)]
+    expected = [halfrow.correct(frame, small) for frame in frames]
+    found = [None] * 8
+
+    def work(place):
+        for _ in range(50):
+            found[place] = corrector.correct(frames[place])
+
+    threads = [threading.Thread(target=work, args=(place,)) for place in range(8)]
+    [thread.start() for thread in threads]
+    [thread.join() for thread in threads]
+    assert all(map(np.array_equal, found, expected))

@@ -1,0 +1,97 @@
+"""Tables, lenses and kernels against the program and against arithmetic done here."""
+import json
+
+import numpy as np
+import pytest
+
+import halfrow
+
+
+def of_file(path):
+    return json.loads(path.read_text())
+
+
+@pytest.mark.parametrize(
+    "options, flags",
+    [
+        ({}, []),
+        ({"rows": "equation-9"}, ["--rows", "equation-9"]),
+        ({"projection": "exact"}, ["--projection", "exact"]),
+        ({"kernel": "keys"}, ["--kernel", "keys"]),
+    ],
+)
+def test_tables_are_those_of_the_program(tmp_path, program, opencv, options, flags):
+    written = tmp_path / "theirs.json"
+    kernel = [] if "--kernel" in flags else ["--kernel", "hermite"]
+    assert program("tables", "--lens", opencv, *flags, *kernel, "-o", written)[0] == 0
+    theirs = of_file(written)
+    tables = halfrow.Tables.from_lens(opencv, **options)
+    assert (tables.width, tables.height, tables.bits, tables.centre_x) == (1280, 720, 12, theirs["centre2"] / 2)
+    assert tables.units.tolist() == theirs.get("step", theirs.get("grid"))
+    nodes = np.array(theirs["kernel"])
+    assert np.array_equal(tables.kernel.weights * 2**14, nodes)
+    assert tables.datapath == theirs["datapath"]
+    assert tables == halfrow.Tables.read(written)
+
+
+def test_row_factors_are_those_of_equation_9():
+    lens = halfrow.Lens("equidistant:80", width=128, height=32)
+    tables = halfrow.Tables.from_lens(lens)
+    y = np.arange(32) - 15.5
+    expected = np.floor(2**24 * np.sqrt(80**2 - y**2) / 80 + 0.5)
+    assert np.array_equal(tables.units, expected)
+    assert np.array_equal(tables.row_factors, expected / 2**24)
+    # Every sample comes from the column that the factor takes it to (DATAPATH.md), to half of 2^-13.
+    columns = np.arange(128)
+    sources = 63.5 + tables.row_factors[:, None] * (columns - 63.5)
+    assert np.abs(tables.sources() - sources).max() <= 2**-14
+
+
+def test_the_papers_lens_is_the_default():
+    lens = halfrow.Lens()
+    assert (lens.width, lens.height, lens.bits, lens.field_of_view) == (1920, 1080, 12, 180)
+    # f = 1.55 mm, pixels of 2.2 um: R = f · pi/2.
+    assert lens.radius == pytest.approx(1.55 / 0.0022 * np.pi / 2)
+    assert lens.centre == (959.5, 539.5)
+    assert lens.column(45) == pytest.approx(lens.radius / 2)
+
+
+def test_a_calibrated_lens_images_rays_as_its_polynomial_says(opencv):
+    # fx and D of the file; r(theta) is OpenCV's: theta·(1 + k1·theta² + …).
+    k = [-0.0125, 0.0031, -0.0042, 0.0007]
+    theta = np.radians(60)
+    r = theta * (1 + sum(k * theta ** (2 * n) for n, k in enumerate(k, 1)))
+    lens = halfrow.Lens(opencv)
+    assert lens.column(60) == pytest.approx(552.25 * r)
+    assert lens.centre == (641.5, 358.25)
+    halved = halfrow.Lens(opencv, width=640, height=360)
+    assert halved.column(60) == pytest.approx(552.25 * r / 2)
+
+
+def test_tables_come_back_from_their_files(tmp_path, small):
+    for name in ("tables.json", "tables.mem"):
+        small.write(tmp_path / name)
+        assert halfrow.Tables.read(tmp_path / name) == small
+        with pytest.raises(halfrow.HalfrowError) as raised:
+            small.write(tmp_path / name)
+        assert raised.value.code == "file-exists"
+        small.write(tmp_path / name, overwrite=True)
+    other = halfrow.Tables.read(tmp_path / "tables.json", kernel="linear")
+    assert other != small and other.kernel == halfrow.Kernel("linear")
+
+
+@pytest.mark.parametrize("name", halfrow.KERNELS)
+def test_a_kernel_is_its_weights(tmp_path, name):
+    kernel = halfrow.Kernel(name)
+    assert kernel.weights.shape == (65, 5)
+    assert halfrow.Kernel.from_weights(kernel.weights) == kernel
+    assert kernel.taps == (7 if kernel.weights[:, [0, 4]].any() else 5)
+    kernel.write(tmp_path / "kernel.json")
+    assert halfrow.Kernel(tmp_path / "kernel.json") == kernel
+
+
+def test_linear_weights_are_straight_lines():
+    x = np.arange(65) / 32
+    expected = np.zeros((65, 5))
+    expected[:, 2] = x / 2
+    assert np.array_equal(halfrow.Kernel("linear").weights, expected)
