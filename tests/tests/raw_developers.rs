@@ -36,7 +36,8 @@ fn corrected(phase: Phase, depth: BitDepth) -> (Folder, Frame) {
         let ended = folder.halfrow(size.into_iter().chain(frame));
         assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     }
-    let frame = decode(&folder.read("frame.pgm"), &ReadOptions { depth, phase, raw: None }).unwrap();
+    let frame =
+        decode(&folder.read("frame.pgm"), &ReadOptions { depth, phase, ..ReadOptions::default() }).unwrap();
     (folder, frame)
 }
 
@@ -48,7 +49,7 @@ fn every_kind() -> impl Iterator<Item = (Phase, BitDepth)> {
 fn dcraw_and_libraw_find_every_sample_as_it_is() {
     for (phase, depth) in every_kind() {
         let (folder, frame) = corrected(phase, depth);
-        let how = ReadOptions { depth, phase, raw: None };
+        let how = ReadOptions { depth, phase, ..ReadOptions::default() };
         let by_dcraw = printed(&folder, "dcraw", "dcraw", &["-D", "-4", "-T", "-c", "frame.dng"]);
         assert!(decode(&by_dcraw, &how).unwrap() == frame, "{phase} {depth:?}, dcraw");
         printed(&folder, "libraw-bin", "unprocessed_raw", &["-q", "-T", "frame.dng"]);

@@ -23,11 +23,12 @@ use toml::Spanned;
 use halfrow::tables::text::{self, quoted};
 
 /// The keys of a settings file.
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 13] = [
     "board",
     "tables",
     "kernel",
     "frame",
+    "fit",
     "report",
     "overwrite",
     "timeout",
@@ -51,6 +52,8 @@ pub struct Settings {
     pub kernel: Option<String>,
     /// The frames to stream: files, or `builtin:NAME`.
     pub frame: Option<Vec<String>>,
+    /// Whether pictures in colour are cropped and scaled to the tables' size.
+    pub fit: Option<bool>,
     /// The folder that reports are written to.
     pub report: Option<PathBuf>,
     /// Whether files that are there may be replaced.
@@ -137,6 +140,7 @@ impl Settings {
             self.tables.is_some(),
             self.kernel.is_some(),
             self.frame.is_some(),
+            self.fit.is_some(),
             self.report.is_some(),
             self.overwrite.is_some(),
             self.timeout.is_some(),

@@ -7,6 +7,7 @@ use halfrow_model::{BitDepth, FrameError, Phase};
 
 use super::RawLayout;
 use super::format::Format;
+use super::photograph::MAX_PIXELS;
 use super::size::{MAX_FILE_BYTES, MAX_SIDE};
 use crate::written_aside::WriteAsideError;
 
@@ -51,7 +52,7 @@ pub enum DecodeError {
     Empty,
     /// No format known here begins like this.
     #[error(
-        "it begins like no format known here (PGM P5, PNG, TIFF, DNG); convert it, or name the layout of \
+        "it begins like no format known here (PGM P5, PNG, TIFF, DNG, JPEG, WebP, BMP); convert it, or name the layout of \
          samples without a header"
     )]
     UnknownFormat,
@@ -70,6 +71,29 @@ pub enum DecodeError {
         width: u64,
         /// Rows.
         height: u64,
+    },
+    /// A photograph is beyond what is decoded.
+    #[error(
+        "it is {width} x {height}, above {most} megapixels; scale it down first",
+        most = MAX_PIXELS / 1_000_000
+    )]
+    TooManyPixels {
+        /// Columns.
+        width: u64,
+        /// Rows.
+        height: u64,
+    },
+    /// A picture in colour has another size than the one asked for.
+    #[error("it is a picture of {width} x {height}, and {columns} x {rows} is wanted; crop and scale it")]
+    OtherSize {
+        /// Its columns.
+        width: usize,
+        /// Its rows.
+        height: usize,
+        /// Columns asked for.
+        columns: usize,
+        /// Rows asked for.
+        rows: usize,
     },
     /// Fewer bytes than the size calls for.
     #[error(
@@ -130,6 +154,14 @@ pub enum DecodeError {
         /// The header's maximum.
         maxval: u16,
     },
+    /// The decoder of a photograph gave up.
+    #[error("the {format} is damaged: {reason}; copy or export it again")]
+    Photograph {
+        /// JPEG, WebP, BMP or AVIF.
+        format: &'static str,
+        /// What the decoder found.
+        reason: String,
+    },
     /// The PNG decoder gave up.
     #[error("the PNG is damaged: {}; copy or export it again", png_damage(.0))]
     Png(png::DecodingError),
@@ -170,7 +202,7 @@ pub enum DecodeError {
 }
 
 /// What a reader says that came to the end of its bytes.
-const BROKEN_OFF: &str = "it breaks off";
+pub(super) const BROKEN_OFF: &str = "it breaks off";
 
 /// What the PNG decoder found, without the names of its own types.
 fn png_damage(error: &png::DecodingError) -> String {

@@ -9,7 +9,7 @@ use halfrow_model::Frame;
 use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
-use super::{FrameShape, ReadError, ReadOptions, WriteError, png};
+use super::{Decoded, FrameShape, ReadError, ReadOptions, WriteError, png};
 use crate::written_aside::{BUFFER, write_aside};
 
 /// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
@@ -17,6 +17,14 @@ use crate::written_aside::{BUFFER, write_aside};
 /// # Errors
 /// [`ReadError`] when the file cannot be read or holds no frame as `how` describes it.
 pub fn read(path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
+    read_fitted(path, how).map(|decoded| decoded.frame)
+}
+
+/// [`read`], and how a picture was fitted.
+///
+/// # Errors
+/// As those of [`read`].
+pub fn read_fitted(path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError> {
     decode(&bytes(path)?, path, how)
 }
 
@@ -24,13 +32,13 @@ pub fn read(path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
 ///
 /// # Errors
 /// As those of [`read`].
-pub(super) fn read_open(input: File, path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
+pub(super) fn read_open(input: File, path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError> {
     decode(&all_of(input, path)?, path, how)
 }
 
-fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Frame, ReadError> {
+fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Decoded, ReadError> {
     let _file = tracing::warn_span!("frame", path = %path.display()).entered();
-    super::decode(bytes, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+    super::decode_fitted(bytes, how).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
 }
 
 /// The picture in the PNG file `path`, in red, green and blue of 8 bits.

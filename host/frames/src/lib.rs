@@ -1,18 +1,21 @@
 //! Frames: reading and writing them, making them, and looking at them.
 //!
-//! A file's samples are taken as they are, never rescaled; only a colour picture is brought to the depth asked for, as it
-//! is mosaicked. The files mostly say neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
+//! A file's samples are taken as they are, never rescaled; only a picture in colour is brought to the size and depth asked for, as
+//! it is mosaicked. The files mostly say neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
 
 mod builtin;
 pub mod dng;
 mod error;
 mod file;
+mod fitting;
 mod format;
 mod heat_map;
+mod jpeg;
 mod mosaic;
 mod narrow;
 mod patterns;
 pub mod pgm;
+mod photograph;
 pub mod png;
 pub mod preview;
 mod raster;
@@ -31,10 +34,12 @@ use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{check_png, check_regular, read, read_rgb, write, write_rgb, write_rows};
+pub use file::{check_png, check_regular, read, read_fitted, read_rgb, write, write_rgb, write_rows};
+pub use fitting::{Fitting, PictureSize};
 pub use format::{Format, UnknownFormat};
 pub use heat_map::HeatMap;
 pub use mosaic::mosaic;
+pub use photograph::is_photograph;
 pub use raw::{RawGeometry, RawLayout, UnknownLayout};
 pub use rows::{FrameShape, RowReader};
 pub use scene::Scene;
@@ -50,6 +55,24 @@ pub struct ReadOptions {
     pub phase: Phase,
     /// The geometry of a file without a header. When it is given, no header is looked for.
     pub raw: Option<RawGeometry>,
+    /// What becomes of pictures in colour of another size.
+    pub size: PictureSize,
+}
+
+/// A frame that was read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decoded {
+    /// The frame.
+    pub frame: Frame,
+    /// How the picture that it was made of was brought to its size, if it was.
+    pub fitting: Option<Fitting>,
+}
+
+/// Of raw samples, or of a picture that had the size.
+impl From<Frame> for Decoded {
+    fn from(frame: Frame) -> Self {
+        Self { frame, fitting: None }
+    }
 }
 
 /// The frame in `bytes`: of the format that they begin with, or headerless when `how.raw` is given.
@@ -57,14 +80,21 @@ pub struct ReadOptions {
 /// # Errors
 /// [`DecodeError`] when the bytes are no frame as `how` describes it.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
+    decode_fitted(bytes, how).map(|decoded| decoded.frame)
+}
+
+/// [`decode`], and how a picture was fitted.
+fn decode_fitted(bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError> {
     if let Some(geometry) = how.raw {
-        raw::decode(bytes, geometry, how)
+        raw::decode(bytes, geometry, how).map(Decoded::from)
     } else if bytes.starts_with(png::MAGIC) {
-        png::decode(bytes, how)
+        png::picture(bytes)?.into_frame(how)
     } else if tiff::MAGICS.iter().any(|magic| bytes.starts_with(magic)) {
-        tiff::decode(bytes, how)
+        tiff::picture(bytes, how)?.into_frame(how)
     } else if bytes.starts_with(pgm::MAGIC) {
-        pgm::decode(bytes, how)
+        pgm::decode(bytes, how).map(Decoded::from)
+    } else if let Some(format) = photograph::Format::of(bytes) {
+        photograph::decode(format, bytes, how)
     } else {
         Err(unknown(bytes))
     }
@@ -73,20 +103,20 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// The refusal of `bytes` of no known format; those that people have get a remedy of their own.
 fn unknown(bytes: &[u8]) -> DecodeError {
     const PICTURE: &str = "convert it to PNG or TIFF";
-    const LOSSY: &str = "give the samples before compression, as PGM, PNG or TIFF";
+    const PHOTOGRAPH: &str = "convert it to JPEG or PNG";
     let (what, remedy) = match bytes {
         [] => return DecodeError::Empty,
         [b'P', b'2', ..] => ("a PGM in plain text (P2)", "convert it to the binary kind (P5)"),
         [b'P', b'3' | b'6', ..] => ("a PPM", PICTURE),
         [b'P', b'1' | b'4', ..] => ("a PBM, black and white,", "give the samples, as PGM, PNG or TIFF"),
         [b'P', b'7', b'\n', ..] => ("a PAM", "convert it to PGM (P5), PNG or TIFF"),
-        [0xff, 0xd8, 0xff, ..] => ("a JPEG", LOSSY),
         [b'I', b'I', b'+', 0, ..] | [b'M', b'M', 0, b'+', ..] => ("a BigTIFF", "save it as a classic TIFF"),
-        [b'B', b'M', ..] => ("a BMP", PICTURE),
         [b'G', b'I', b'F', b'8', ..] => ("a GIF", PICTURE),
-        [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => ("a WebP", LOSSY),
-        [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => ("an AVIF", LOSSY),
-        [_, _, _, _, b'f', b't', b'y', b'p', b'h' | b'm', b'e' | b'i', ..] => ("a HEIC", LOSSY),
+        [0, 0, 0, 12, b'J', b'X', b'L', b' ', ..] | [0xff, 0x0a, ..] => ("a JPEG XL", PHOTOGRAPH),
+        [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => {
+            ("an AVIF", "convert it to JPEG or PNG, or build with Cargo's feature `avif`")
+        }
+        [_, _, _, _, b'f', b't', b'y', b'p', b'h' | b'm', b'e' | b'i', ..] => ("a HEIC", PHOTOGRAPH),
         _ => return DecodeError::UnknownFormat,
     };
     DecodeError::Unsupported { what: what.to_owned(), remedy }

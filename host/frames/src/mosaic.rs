@@ -2,8 +2,10 @@
 
 use halfrow_model::{BitDepth, Colour, Frame, FrameError, Phase};
 
+use image::ImageBuffer;
+
 use super::preview::RgbImage;
-use super::{DecodeError, ReadOptions, narrow};
+use super::{DecodeError, Decoded, Fitting, ReadOptions, narrow};
 
 /// A decoded picture: `channels` interleaved samples a pixel, row after row.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,24 +21,27 @@ pub(super) struct Picture {
 }
 
 impl Picture {
-    /// The frame that the picture stands for. Grey is a raw Bayer frame and taken as it is. Of colour, each sample keeps
-    /// the colour of its place, scaled to the depth by [`scaled`], without gamma. Alpha is ignored.
+    /// The frame that the picture stands for. Grey is a raw Bayer frame and taken as it is. Of colour, which may be fitted, each
+    /// sample keeps the colour of its place, scaled to the depth by [`scaled`], without gamma. Alpha is ignored.
     ///
     /// # Errors
-    /// [`DecodeError`] when the samples are no frame of `how.depth`.
-    pub(super) fn into_frame(self, how: &ReadOptions) -> Result<Frame, DecodeError> {
+    /// [`DecodeError`] when the samples are no frame of `how.depth`, or colour is not of the size that `how` asks for.
+    pub(super) fn into_frame(self, how: &ReadOptions) -> Result<Decoded, DecodeError> {
         let Self { width, channels, full, samples } = self;
         if channels < 3 {
             narrow::note(full, how.depth);
+            let samples = if channels == 1 { samples } else { samples.into_iter().step_by(2).collect() };
+            return Ok(Frame::new(width, how.depth, how.phase, samples)?.into());
         }
-        let samples = match channels {
-            1 => samples,
-            2 => samples.chunks_exact(2).map(|pixel| pixel[0]).collect(),
-            _ => mosaicked(&samples, channels, width.max(1), how.phase)
-                .map(|sample| scaled(sample, full, how.depth))
-                .collect(),
+        let height = samples.len() / (channels * width.max(1));
+        let fitting = how.size.fitting((width, height))?;
+        let (width, channels, samples) = match fitting {
+            None => (width, channels, samples),
+            Some(fitting) => fitted(&fitting, (width, height), channels, &samples),
         };
-        Ok(Frame::new(width, how.depth, how.phase, samples)?)
+        let mosaic = mosaicked(&samples, channels, width.max(1), how.phase);
+        let samples = mosaic.map(|sample| scaled(sample, full, how.depth)).collect();
+        Ok(Decoded { frame: Frame::new(width, how.depth, how.phase, samples)?, fitting })
     }
 
     /// Red, green and blue as they are; none when the picture is grey or has more than 8 bits.
@@ -57,20 +62,47 @@ impl Picture {
 /// # Errors
 /// [`FrameError`] when the width is odd or there are no pixels.
 pub fn mosaic(image: &RgbImage, phase: Phase) -> Result<Frame, FrameError> {
-    let samples: Vec<u16> = image.data.iter().copied().map(u16::from).collect();
-    let samples = mosaicked(&samples, 3, image.width.max(1), phase).collect();
-    Frame::new(image.width, BitDepth::Eight, phase, samples)
+    of_rgb(image, &ReadOptions { depth: BitDepth::Eight, phase, ..ReadOptions::default() })
+}
+
+/// The frame of `how.depth` that is left of `image` under a filter array of `how.phase`.
+///
+/// # Errors
+/// As [`mosaic`].
+pub(super) fn of_rgb(image: &RgbImage, how: &ReadOptions) -> Result<Frame, FrameError> {
+    let mosaic = mosaicked(&image.data, 3, image.width.max(1), how.phase);
+    let samples = mosaic.map(|sample| scaled(sample, u8::MAX.into(), how.depth)).collect();
+    Frame::new(image.width, how.depth, how.phase, samples)
+}
+
+/// The colours of a picture of `size`, fitted: its new width, channels and samples.
+fn fitted(
+    fitting: &Fitting,
+    size: (usize, usize),
+    channels: usize,
+    samples: &[u16],
+) -> (usize, usize, Vec<u16>) {
+    let side = |length| u32::try_from(length).unwrap_or(u32::MAX);
+    let colours = samples.chunks_exact(channels).flat_map(|pixel| &pixel[..3]).copied().collect();
+    let image = ImageBuffer::from_raw(side(size.0), side(size.1), colours).unwrap_or_default();
+    let fitted = fitting.apply(&image);
+    (fitted.width() as usize, 3, fitted.into_raw())
 }
 
 /// The sample of each place's own colour, from three or more channels a pixel.
-fn mosaicked(samples: &[u16], channels: usize, width: usize, phase: Phase) -> impl Iterator<Item = u16> {
+fn mosaicked<Sample: Copy + Into<u16>>(
+    samples: &[Sample],
+    channels: usize,
+    width: usize,
+    phase: Phase,
+) -> impl Iterator<Item = u16> {
     samples.chunks_exact(channels).enumerate().map(move |(place, pixel)| {
         let channel = match phase.colour(place / width, place % width) {
             Colour::Red => 0,
             Colour::Green => 1,
             Colour::Blue => 2,
         };
-        pixel[channel]
+        pixel[channel].into()
     })
 }
 

@@ -19,7 +19,7 @@ pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
 /// [`DecodeError`] when the PNG is damaged, animated, followed by other bytes, or grey with fewer than 8 bits, or when a
 /// sample is above `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
-    whole(bytes)?.into_frame(how)
+    picture(bytes)?.into_frame(how).map(|decoded| decoded.frame)
 }
 
 /// The picture in the bytes of a PNG in red, green and blue of 8 bits, as it is; alpha is ignored.
@@ -27,7 +27,7 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// # Errors
 /// [`DecodeError`] when [`decode`] would refuse the PNG, or when it is grey or has 16 bits.
 pub(super) fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
-    whole(bytes)?.into_rgb().ok_or(DecodeError::Unsupported {
+    picture(bytes)?.into_rgb().ok_or(DecodeError::Unsupported {
         what: "a PNG that is not in colour with 8 bits a sample".to_owned(),
         remedy: "give the photograph itself, in red, green and blue",
     })
@@ -76,15 +76,18 @@ pub(super) fn write(
 }
 
 /// The picture that `bytes` hold, with nothing behind it.
-fn whole(bytes: &[u8]) -> Result<Picture, DecodeError> {
+///
+/// # Errors
+/// Those of [`decode`] that are the PNG's.
+pub(super) fn picture(bytes: &[u8]) -> Result<Picture, DecodeError> {
     let mut input = Cursor::new(bytes);
-    let picture = picture(&mut input)?;
+    let picture = read(&mut input)?;
     let read = usize::try_from(input.position()).unwrap_or(usize::MAX);
     size::exact(bytes.len(), read)?;
     Ok(picture)
 }
 
-fn picture(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {
+fn read(input: &mut Cursor<&[u8]>) -> Result<Picture, DecodeError> {
     let compressed = input.get_ref().len();
     let mut decoder = Decoder::new(input);
     decoder.set_transformations(Transformations::EXPAND);

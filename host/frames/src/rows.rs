@@ -8,7 +8,7 @@ use std::sync::Arc;
 use halfrow_model::{BitDepth, Frame, Phase};
 
 use super::raster::Raster;
-use super::{ReadError, ReadOptions, file, narrow, pgm, raw};
+use super::{Decoded, Fitting, ReadError, ReadOptions, file, narrow, pgm, raw};
 
 /// Bytes in which the header of a PGM is looked for. A file with a longer one is read whole.
 const HEAD: u64 = 4096;
@@ -34,6 +34,7 @@ pub struct RowReader {
     width: usize,
     height: usize,
     next: usize,
+    fitting: Option<Fitting>,
     source: Source,
 }
 
@@ -78,7 +79,7 @@ impl RowReader {
         let lines =
             Lines { path: path.to_owned(), input, raster, depth: how.depth, bytes: Vec::new(), taken: 0 };
         let source = Source::File(lines);
-        Ok(Self { width: raster.width, height: raster.height, next: 0, source })
+        Ok(Self { width: raster.width, height: raster.height, next: 0, fitting: None, source })
     }
 
     /// Columns.
@@ -91,6 +92,12 @@ impl RowReader {
     #[must_use]
     pub fn height(&self) -> usize {
         self.height
+    }
+
+    /// How the picture that the frame was made of was brought to its size, if it was.
+    #[must_use]
+    pub fn fitting(&self) -> Option<Fitting> {
+        self.fitting
     }
 
     /// Reads the next row into the first [`Self::width`] of `samples`, and returns whether there was one.
@@ -132,6 +139,12 @@ impl Lines {
     }
 }
 
+impl From<Decoded> for RowReader {
+    fn from(decoded: Decoded) -> Self {
+        Self { fitting: decoded.fitting, ..Self::from(decoded.frame) }
+    }
+}
+
 impl From<Frame> for RowReader {
     fn from(frame: Frame) -> Self {
         Self::from(Arc::new(frame))
@@ -140,7 +153,13 @@ impl From<Frame> for RowReader {
 
 impl From<Arc<Frame>> for RowReader {
     fn from(frame: Arc<Frame>) -> Self {
-        Self { width: frame.width(), height: frame.height(), next: 0, source: Source::Frame(frame) }
+        Self {
+            width: frame.width(),
+            height: frame.height(),
+            next: 0,
+            fitting: None,
+            source: Source::Frame(frame),
+        }
     }
 }
 

@@ -20,14 +20,21 @@ pub(super) const MAGICS: [&[u8]; 2] = [b"II*\0", b"MM\0*"];
 /// [`DecodeError`] when the file is damaged, of a kind that is not taken (several pictures, palettes, planes, lossy or
 /// unusual codings), says that its phase or depth is another than `how` has, or when a sample is above `how.depth`.
 pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
+    picture(bytes, how)?.into_frame(how).map(|decoded| decoded.frame)
+}
+
+/// The picture in the bytes of a TIFF or DNG.
+///
+/// # Errors
+/// Those of [`decode`] that are the file's.
+pub(super) fn picture(bytes: &[u8], how: &ReadOptions) -> Result<Picture, DecodeError> {
     match tiff_directory::check(bytes)? {
-        None => picture(bytes),
+        None => read(bytes),
         Some(array) => {
             array.check(how)?;
-            picture(&array.as_grey(bytes))
+            read(&array.as_grey(bytes))
         }
-    }?
-    .into_frame(how)
+    }
 }
 
 /// Writes `frame` as grey samples, as they are: of 8 bits when that is its depth, else of 16; uncompressed.
@@ -46,7 +53,7 @@ pub fn encode(frame: &Frame, out: &mut (impl Write + Seek)) -> Result<(), TiffEr
     }
 }
 
-fn picture(bytes: &[u8]) -> Result<Picture, DecodeError> {
+fn read(bytes: &[u8]) -> Result<Picture, DecodeError> {
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(DecodeError::Tiff)?;
     if decoder.more_images() {
         return Err(DecodeError::Unsupported {

@@ -18,6 +18,9 @@ const PLANAR: u16 = 284;
 const TILE_WIDTH: u16 = 322;
 const TILE_HEIGHT: u16 = 323;
 
+/// What brings raw samples into a form that is read here.
+const UNPACK: &str = "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T` does";
+
 /// What a TIFF or DNG tells of the colour filter array that its samples lie under.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FilterArray {
@@ -73,6 +76,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<Option<FilterArray>, DecodeError> {
     let (width, height) = size::checked(one(WIDTH, 0).into(), one(HEIGHT, 0).into())?;
     size::checked(one(TILE_WIDTH, 0).into(), one(TILE_HEIGHT, 0).into())?;
     let (colour, channels, bits) = (one(PHOTOMETRIC, 1), one(CHANNELS, 1), one(BITS, 1));
+    check_coding(one(COMPRESSION, 1))?;
     let array = tags.filter_array()?;
     if array.is_some() {
         tags.check_raw(&Bytes::new(bytes), width, height)?;
@@ -89,17 +93,23 @@ pub(super) fn check(bytes: &[u8]) -> Result<Option<FilterArray>, DecodeError> {
         let what = "a TIFF with a plane for each colour".to_owned();
         return Err(DecodeError::Unsupported { what, remedy: "save it with interleaved colours" });
     }
-    let compression = one(COMPRESSION, 1);
-    if !matches!(compression, 1 | 5 | 8 | 32773 | 32946) {
-        let what = format!("a TIFF with compression {compression}");
-        return Err(DecodeError::Unsupported {
-            what,
-            remedy: "save it uncompressed, or with LZW or deflate",
-        });
-    }
     let samples = width * height * if channels == 1 { 1 } else { 3 };
     size::plausible(bytes.len(), samples * if bits == 8 { 1 } else { 2 })?;
     Ok(array)
+}
+
+/// Refuses samples that are not packed by a coding that is read here.
+fn check_coding(compression: u32) -> Result<(), DecodeError> {
+    let (what, remedy) = match compression {
+        1 | 5 | 8 | 32773 | 32946 => return Ok(()),
+        6 | 7 => (format!("a TIFF or DNG packed as JPEG (compression {compression})"), UNPACK),
+        34892 => ("a DNG packed as lossy JPEG (compression 34892)".to_owned(), UNPACK),
+        52546 => ("a DNG packed as JPEG XL (compression 52546)".to_owned(), UNPACK),
+        _ => {
+            (format!("a TIFF with compression {compression}"), "save it uncompressed, or with LZW or deflate")
+        }
+    };
+    Err(DecodeError::Unsupported { what, remedy })
 }
 
 /// A tag of the first directory that holds a number, or four bytes as one, and where its entry stands.
@@ -187,7 +197,7 @@ impl Tags {
             _ if self.value(dng::VERSION).is_none() => return Ok(None),
             _ => {
                 let what = "a DNG whose first picture is not its raw one";
-                return refused(what, "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T` does");
+                return refused(what, UNPACK);
             }
         };
         if self.value(dng::LINEARISATION).is_some() {

@@ -84,9 +84,14 @@ fn samples_above_the_depth_are_refused() {
 fn what_is_no_frame_at_all_is_refused() {
     let folder = Folder::new();
     folder.write("notes.txt", "not a frame");
-    bad_frame(&folder, "notes.txt", &[], "it begins like no format known here (PGM P5, PNG, TIFF, DNG)");
+    bad_frame(
+        &folder,
+        "notes.txt",
+        &[],
+        "it begins like no format known here (PGM P5, PNG, TIFF, DNG, JPEG, WebP, BMP)",
+    );
     folder.write("photo.jpg", b"\xff\xd8\xff\xe0");
-    bad_frame(&folder, "photo.jpg", &[], "a JPEG cannot be used");
+    bad_frame(&folder, "photo.jpg", &[], "the JPEG is damaged: it breaks off; copy or export it again");
     folder.write("plain.pgm", "P2\n2 2\n255\n0 0 0 0\n");
     bad_frame(&folder, "plain.pgm", &[], "plain text (P2)");
     folder.write("zero.pgm", "P5\n0 16\n4095\n");
@@ -112,11 +117,12 @@ fn formats_that_people_have_are_refused_by_their_names() {
     for (bytes, sentence) in [
         (&b"II+\0\x08\0\0\0"[..], "a BigTIFF cannot be used; save it as a classic TIFF"),
         (b"MM\0+\0\x08\0\0", "a BigTIFF cannot be used"),
-        (b"\0\0\0\x18ftypheic\0\0\0\0", "a HEIC cannot be used; give the samples before compression"),
+        (b"\0\0\0\x18ftypheic\0\0\0\0", "a HEIC cannot be used; convert it to JPEG or PNG"),
         (b"\0\0\0\x18ftypmif1\0\0\0\0", "a HEIC cannot be used"),
-        (b"\0\0\0\x1cftypavif\0\0\0\0", "an AVIF cannot be used; give the samples before compression"),
-        (b"RIFF\x24\0\0\0WEBPVP8 ", "a WebP cannot be used; give the samples before compression"),
-        (b"BM\x36\0\0\0", "a BMP cannot be used; convert it to PNG or TIFF"),
+        (b"\0\0\0\x1cftypavif\0\0\0\0", "an AVIF cannot be used; convert it to JPEG or PNG"),
+        (b"RIFF\x24\0\0\0WEBPVP8 ", "the WebP is damaged: it breaks off"),
+        (b"BM\x36\0\0\0", "the BMP is damaged: it breaks off"),
+        (b"\0\0\0\x0cJXL \r\n\x87\n", "a JPEG XL cannot be used; convert it to JPEG or PNG"),
         (b"GIF89a", "a GIF cannot be used; convert it to PNG or TIFF"),
         (b"P7\nWIDTH 2\n", "a PAM cannot be used; convert it to PGM (P5), PNG or TIFF"),
         (b"P4\n8 1\n\0", "a PBM, black and white, cannot be used"),

@@ -169,7 +169,7 @@ fn the_model_takes_no_board() {
 #[test]
 fn a_layout_needs_a_file() {
     let folder = Folder::new();
-    let sentence = "--raw is for files without a header, and no frame is a file";
+    let sentence = "--raw is for frames that are files, and none is";
     refused(&folder, &small("verify", &["--raw", "u8"]), sentence);
     refused(
         &folder,

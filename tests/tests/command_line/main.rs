@@ -19,6 +19,7 @@ mod load;
 mod made_files;
 mod outputs;
 mod paper;
+mod photographs;
 mod pool;
 mod previewed;
 mod replay;

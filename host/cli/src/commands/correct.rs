@@ -15,11 +15,12 @@ use super::board::BoardArguments;
 use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
-use super::inputs::{FrameName, InputArguments};
+use super::inputs::{FrameName, InputArguments, tell_fitting};
 use super::optics::{self, LensArguments};
 use super::table_file::TableArgument;
 use super::{CallError, Context, Failure};
 use crate::exit::Exit;
+use crate::settings::Settings;
 use crate::{console, progress};
 use halfrow::frames::{self, Format, ReadOptions, Scene, WriteError, preview};
 use halfrow::optics::Chosen;
@@ -30,7 +31,7 @@ use places::{Places, Wanted};
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
-    /// The frames: PGM, PNG, TIFF, DNG, headerless files with --raw, or builtin:NAME
+    /// The frames: PGM, PNG, TIFF, DNG, JPEG, WebP, BMP, headerless files with --raw, or builtin:NAME
     #[arg(required = true, value_name = "IN")]
     inputs: Vec<OsString>,
     #[command(flatten)]
@@ -54,7 +55,7 @@ pub(super) struct Arguments {
     /// balanced. A raw developer does better with a DNG.
     #[arg(long, value_name = "OUT")]
     preview: Option<PathBuf>,
-    /// The samples of the preview are coded for the screen already, as those of a photograph are
+    /// The samples of the preview are coded for the screen already, as those of a JPEG, WebP or BMP are known to be
     #[arg(long, requires = "preview")]
     preview_coded: bool,
     /// Replace files that are there
@@ -72,12 +73,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return Err(Failure::call(CallError::NobodyCorrects));
     }
     let inputs = FrameName::all(&arguments.inputs).map_err(Failure::call)?;
-    if inputs.iter().all(|input| input.file().is_none()) {
-        arguments.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
-    }
-    if arguments.model {
-        arguments.given.refuse_void(Decider::Model, &settings.keys()).map_err(Failure::call)?;
-    }
+    arguments.refuse_void(&inputs, settings)?;
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
     let files = Files::new(arguments.overwrite)
         .reads(&context.settings_file)
@@ -90,11 +86,11 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let job = Job {
         arguments,
         inputs,
-        how: arguments.input.read_options(&geometry, arguments.lens.phase),
+        how: arguments.input.read_options(&geometry, arguments.lens.phase, settings),
         scene: Scene { geometry, ..chosen.optics.scene(arguments.lens.phase, 1) },
         chosen,
     };
-    job.check().map_err(Failure::call)?;
+    job.check(context.quiet).map_err(Failure::call)?;
     let places = Places::of(&job.inputs, &arguments.wanted()).map_err(Failure::call)?;
     let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
     files.check().map_err(Failure::call)?;
@@ -119,21 +115,36 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Whether all files are there and of the right size, before anything is written.
-    fn check(&self) -> anyhow::Result<()> {
-        let mut files = self.inputs.iter().filter(|input| input.can_be_read_twice());
-        files.try_for_each(|input| input.rows(&self.how, &self.scene).map(drop))
+    /// Whether all files are there and of the right size, before anything is written. Says how pictures are fitted.
+    fn check(&self, quiet: bool) -> anyhow::Result<()> {
+        let files = self.inputs.iter().filter(|input| input.can_be_read_twice());
+        for (input, path) in files.filter_map(|input| Some((input, input.file()?))) {
+            tell_fitting(path, input.rows(&self.how, &self.scene)?.fitting(), quiet);
+        }
+        Ok(())
     }
 
     /// Writes the preview of the frame with this index, if one is asked for.
     fn write_preview(&self, places: &Places, index: usize, corrected: &Frame) -> Result<(), WriteError> {
         let Some(path) = places.previews.get(index) else { return Ok(()) };
-        let develop = if self.arguments.preview_coded { preview::demosaic_coded } else { preview::demosaic };
+        let is_coded = self.arguments.preview_coded || self.inputs[index].is_photograph();
+        let develop = if is_coded { preview::demosaic_coded } else { preview::demosaic };
         frames::write_rgb(path, &develop(corrected), self.arguments.overwrite)
     }
 }
 
 impl Arguments {
+    /// Refuses options that do nothing for these inputs.
+    fn refuse_void(&self, inputs: &[FrameName], settings: &Settings) -> Result<(), Failure> {
+        if inputs.iter().all(|input| input.file().is_none()) {
+            self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
+        }
+        if self.model {
+            self.given.refuse_void(Decider::Model, &settings.keys()).map_err(Failure::call)?;
+        }
+        self.input.refuse_void(&self.given, settings)
+    }
+
     fn wanted(&self) -> Wanted<'_> {
         let (preview, format) = (self.preview.as_deref(), self.format);
         Wanted { output: &self.output, format, preview }

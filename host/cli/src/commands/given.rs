@@ -31,6 +31,8 @@ pub(super) enum Decider {
     Model,
     /// Frames none of which is a file.
     NoFrameFile,
+    /// Samples without a header.
+    Headerless,
     /// Items none of which goes through a board.
     NoBoardItem,
 }
@@ -54,12 +56,13 @@ const LENS: [&str; 10] = [
 
 /// What a recording says of its run beside the options that make tables. Its time limit is on the board's clock, which
 /// leaves --timeout that of this computer.
-const RECORDED: [&str; 12] = [
+const RECORDED: [&str; 13] = [
     "frame",
     "tables",
     "kernel",
     "phase",
     "raw",
+    "fit",
     "repeat",
     "at_speed",
     "fail_fast",
@@ -80,7 +83,8 @@ impl Decider {
             Self::Tables => &[&LENS],
             Self::Within => &[&["frame", "repeat"]],
             Self::Model | Self::NoBoardItem => &[&BOARD],
-            Self::NoFrameFile => &[&["raw"]],
+            Self::NoFrameFile => &[&["raw", "fit"]],
+            Self::Headerless => &[&["fit"]],
         };
         options.concat()
     }
@@ -95,9 +99,8 @@ impl Decider {
             Self::Tables => "is for making tables, and the file of --tables holds some; give one of them",
             Self::Within => "does nothing beside --within, which chooses the frames; give one of them",
             Self::Model => "does nothing beside --model, which corrects without a board; give one of them",
-            Self::NoFrameFile => {
-                "is for files without a header, and no frame is a file; leave it out, or name a file"
-            }
+            Self::NoFrameFile => "is for frames that are files, and none is; leave it out, or name a file",
+            Self::Headerless => "does nothing beside --raw, whose samples are never scaled; give one of them",
             Self::NoBoardItem => {
                 "does nothing, since no item that is asked for goes through a board; leave it out, or add table1 or \
                  delay"
@@ -194,6 +197,7 @@ mod tests {
             (Decider::Tables, options::<verify::Arguments>()),
             (Decider::Model, options::<correct::Arguments>()),
             (Decider::NoFrameFile, options::<correct::Arguments>()),
+            (Decider::Headerless, options::<correct::Arguments>()),
             (Decider::NoBoardItem, options::<paper::Arguments>()),
         ] {
             assert!(decider.voids().iter().all(|id| known.iter().any(|known| known == id)), "{decider:?}");

@@ -5,12 +5,18 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::CallError;
+use super::given::{Decider, Given};
+use super::{CallError, Failure};
+use crate::console;
+use crate::settings::Settings;
 use anyhow::ensure;
 use clap::Args;
+use clap::builder::FalseyValueParser;
 use halfrow_model::{Frame, Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, Phase};
 
-use halfrow::frames::{self, Builtin, RawGeometry, RawLayout, ReadOptions, RowReader, Scene};
+use halfrow::frames::{
+    self, Builtin, Decoded, Fitting, PictureSize, RawGeometry, RawLayout, ReadOptions, RowReader, Scene,
+};
 use halfrow::result::FileHash;
 use halfrow::run::FrameSource;
 
@@ -21,14 +27,29 @@ pub(super) struct InputArguments {
     /// Layout of headerless frame files: u8, u16le, mipi10 or mipi12; their size is the tables'
     #[arg(long, value_name = "LAYOUT")]
     raw: Option<RawLayout>,
+    /// Crop pictures in colour about their centre, and scale them, to the tables' size
+    #[arg(long, env = "HALFROW_FIT", value_parser = FalseyValueParser::new())]
+    fit: bool,
 }
 
 impl InputArguments {
+    /// Refuses `--fit` beside `--raw`.
+    pub(super) fn refuse_void(&self, given: &Given, settings: &Settings) -> Result<(), Failure> {
+        match self.raw {
+            Some(_) => given.refuse_void(Decider::Headerless, &settings.keys()).map_err(Failure::call),
+            None => Ok(()),
+        }
+    }
+
     /// How to read a frame for `geometry`.
-    pub(super) fn read_options(&self, geometry: &Geometry, phase: Phase) -> ReadOptions {
-        let raw =
-            self.raw.map(|layout| RawGeometry { width: geometry.width(), height: geometry.height(), layout });
-        ReadOptions { depth: geometry.depth(), phase, raw }
+    pub(super) fn read_options(&self, geometry: &Geometry, phase: Phase, settings: &Settings) -> ReadOptions {
+        let (width, height) = (geometry.width(), geometry.height());
+        let raw = self.raw.map(|layout| RawGeometry { width, height, layout });
+        let size = match self.fit || settings.fit == Some(true) {
+            true => PictureSize::Fitted(width, height),
+            false => PictureSize::Exactly(width, height),
+        };
+        ReadOptions { depth: geometry.depth(), phase, raw, size }
     }
 }
 
@@ -78,13 +99,18 @@ impl FrameName {
         }
     }
 
+    /// Whether it is a photograph, whose colours are coded for the screen.
+    pub(super) fn is_photograph(&self) -> bool {
+        self.file().is_some_and(frames::is_photograph)
+    }
+
     /// The rows of the frame: of a file that is read as `how` says, or rendered for `scene`, whose size both must have.
     pub(super) fn rows(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<RowReader> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.render(scene)?.into()),
             Self::File(path) => {
                 let rows = RowReader::open(path, how)?;
-                check_size(path, (rows.width(), rows.height()), &scene.geometry)?;
+                check_size(path, (rows.width(), rows.height()), how, &scene.geometry)?;
                 Ok(rows)
             }
         }
@@ -94,35 +120,53 @@ impl FrameName {
     pub(super) fn frame(&self, how: &ReadOptions, scene: &Scene) -> anyhow::Result<Frame> {
         match self {
             Self::Builtin(builtin) => Ok(builtin.render(scene)?),
-            Self::File(path) => read_frame(path, how, &scene.geometry),
+            Self::File(path) => Ok(read_frame(path, how, &scene.geometry)?.frame),
         }
     }
 }
 
-/// These frames, the files' read whole, which must fit `geometry`.
+/// Says how the picture in the file `path` was fitted, if it was.
+pub(super) fn tell_fitting(path: &Path, fitting: Option<Fitting>, quiet: bool) {
+    if let Some(fitting) = fitting.filter(|_| !quiet) {
+        console::diagnose(&format_args!("fitted {}: {fitting}", path.display()));
+    }
+}
+
+/// These frames, the files' read whole, which must fit `geometry`; and of those that were, `tell` is told how.
 pub(super) fn frame_sources(
     names: Vec<FrameName>,
     how: &ReadOptions,
     geometry: &Geometry,
+    tell: impl Fn(&Path, Option<Fitting>),
 ) -> anyhow::Result<Vec<FrameSource>> {
     let source = |name| match name {
         FrameName::Builtin(builtin) => Ok(FrameSource::Builtin(builtin)),
         FrameName::File(path) => {
-            let frame = Arc::new(read_frame(&path, how, geometry)?);
-            Ok(FrameSource::File { path, frame })
+            let Decoded { frame, fitting } = read_frame(&path, how, geometry)?;
+            tell(&path, fitting);
+            Ok(FrameSource::File { path, frame: Arc::new(frame) })
         }
     };
     names.into_iter().map(source).collect()
 }
 
-fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<Frame> {
-    let frame = frames::read(path, how)?;
-    check_size(path, (frame.width(), frame.height()), geometry)?;
-    Ok(frame)
+fn read_frame(path: &Path, how: &ReadOptions, geometry: &Geometry) -> anyhow::Result<Decoded> {
+    let decoded = frames::read_fitted(path, how)?;
+    check_size(path, (decoded.frame.width(), decoded.frame.height()), how, geometry)?;
+    Ok(decoded)
 }
 
-fn check_size(path: &Path, (width, height): (usize, usize), geometry: &Geometry) -> anyhow::Result<()> {
+/// Refuses raw samples of another size; of pictures in colour, their reader did.
+fn check_size(
+    path: &Path,
+    (width, height): (usize, usize),
+    how: &ReadOptions,
+    geometry: &Geometry,
+) -> anyhow::Result<()> {
     let remedy = match Geometry::centred(width, height, geometry.depth()) {
+        _ if matches!(how.size, PictureSize::Fitted(..)) => {
+            "raw samples are never scaled; give a picture in colour, or tables of the frame's size".to_owned()
+        }
         Ok(_) => format!(
             "make tables of the frame's size with `halfrow tables --width {width} --height {height}`, or give these \
              options here"

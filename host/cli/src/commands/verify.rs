@@ -1,12 +1,12 @@
 //! `halfrow verify`
 
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
 use super::given::{Decider, Given};
-use super::inputs::{FrameName, InputArguments, frame_sources};
+use super::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
 use super::listing;
 use super::run::{RunArguments, conclude, seconds, tell};
 use super::{Context, Failure};
@@ -23,7 +23,8 @@ use halfrow::target::BoardKind;
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
-    /// A frame to stream instead of the built-in ones: a file, or builtin:NAME; may be given several times
+    /// A frame to stream instead of the built-in ones: a file (PGM, PNG, TIFF, DNG, JPEG, WebP, BMP), or builtin:NAME; may be
+    /// given several times
     #[arg(long, value_name = "FILE", env = "HALFROW_FRAME")]
     frame: Vec<OsString>,
     /// Stream the frames this often
@@ -62,7 +63,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let recording = board.recording(settings)?;
     let frames = arguments.frames(settings)?;
     let files = arguments.input_files(&frames, settings);
-    let (plan, options) = arguments.planned(recording.as_ref(), frames, &files, settings)?;
+    let (plan, options) = arguments.planned(recording.as_ref(), frames, &files, context)?;
     if arguments.list {
         let target = board.target(settings)?;
         // A device need not be there to know what a run over it costs.
@@ -101,8 +102,9 @@ impl Arguments {
         recording: Option<&Recording>,
         frames: Vec<FrameName>,
         files: &[PathBuf],
-        settings: &Settings,
+        context: &Context,
     ) -> Result<(Plan, RunOptions), Failure> {
+        let settings = &context.settings;
         let (plan, options) = match recording {
             Some(recording) => {
                 self.given.refuse_void(Decider::Recording, &settings.keys()).map_err(Failure::call)?;
@@ -110,7 +112,7 @@ impl Arguments {
                 let require_hardware = self.run.requires_hardware(settings);
                 (plan, RunOptions { require_hardware, stop: self.run.board.stop(settings)?, ..options })
             }
-            None => self.plan(frames, files, settings)?,
+            None => self.plan(frames, files, context)?,
         };
         self.run.board.check_fault(settings, &plan)?;
         plan.check_length().map_err(Failure::call)?;
@@ -122,11 +124,13 @@ impl Arguments {
         &self,
         frames: Vec<FrameName>,
         files: &[PathBuf],
-        settings: &Settings,
+        context: &Context,
     ) -> Result<(Plan, RunOptions), Failure> {
+        let settings = &context.settings;
         if frames.iter().all(|frame| frame.file().is_none()) {
             self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
         }
+        self.input.refuse_void(&self.given, settings)?;
         if self.within.is_some() {
             self.given.refuse_void(Decider::Within, &settings.keys()).map_err(Failure::call)?;
         }
@@ -136,7 +140,7 @@ impl Arguments {
         let passed_over = self.run.passed_over(tables.as_ref(), settings);
         let is_free = tables.is_none() && frames.is_empty();
         let chosen = self.run.chosen(tables, settings)?;
-        let plan = Plan { vary: self.vary(is_free), ..self.plan_of(chosen, frames, settings)? };
+        let plan = Plan { vary: self.vary(is_free), ..self.plan_of(chosen, frames, context)? };
         // A recording is of one link.
         let reconnect = self.run.patience(settings)?.filter(|_| self.record.is_none());
         Ok((plan, RunOptions { reconnect, ..self.run.options(files, passed_over, settings)? }))
@@ -148,13 +152,15 @@ impl Arguments {
         Vary { centre: is_free && !has_centre, depth: is_free && !self.given.is_flag("bits") }
     }
 
-    fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, settings: &Settings) -> Result<Plan, Failure> {
+    fn plan_of(&self, chosen: Chosen, frames: Vec<FrameName>, context: &Context) -> Result<Plan, Failure> {
+        let settings = &context.settings;
         let (geometry, phase) = (chosen.tables.geometry(), self.run.lens.phase);
-        let how = self.input.read_options(geometry, phase);
+        let how = self.input.read_options(geometry, phase, settings);
         let frames = if frames.is_empty() {
             Builtin::ALL.into_iter().map(FrameSource::Builtin).collect()
         } else {
-            frame_sources(frames, &how, geometry).map_err(Failure::call)?
+            let tell = |path: &Path, fitting| tell_fitting(path, fitting, context.quiet);
+            frame_sources(frames, &how, geometry, tell).map_err(Failure::call)?
         };
         Ok(Plan {
             frames,

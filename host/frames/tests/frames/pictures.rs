@@ -54,7 +54,7 @@ fn hex(text: &str) -> Vec<u8> {
 }
 
 fn options(depth: BitDepth) -> ReadOptions {
-    ReadOptions { depth, phase: Phase::Grbg, raw: None }
+    ReadOptions { depth, phase: Phase::Grbg, ..ReadOptions::default() }
 }
 
 fn twelve_bits(text: &str) -> Result<Frame, DecodeError> {
@@ -161,7 +161,8 @@ fn tiffs_that_are_no_plain_picture_are_refused_with_a_remedy() {
     let remedies = [
         (2, 43, "copy or export the file again"),
         (58, 12, "save it with 8 or 16 bits"),
-        (70, 7, "save it uncompressed, or with LZW or deflate"),
+        (70, 3, "save it uncompressed, or with LZW or deflate"),
+        (70, 7, "write its raw samples as a 16-bit TIFF, as `dcraw -D -4 -T` does"),
         (82, 3, "save it as grey (black is zero) or RGB"),
         (82, 0, "save it as grey (black is zero) or RGB"),
         (106, 2, "save it as grey (black is zero) or RGB"),

@@ -5,7 +5,7 @@ use halfrow_frames::{RawGeometry, RawLayout};
 use halfrow_model::{BitDepth, Frame, FrameError, Phase};
 
 fn options(depth: BitDepth) -> ReadOptions {
-    ReadOptions { depth, phase: Phase::Rggb, raw: None }
+    ReadOptions { depth, phase: Phase::Rggb, ..ReadOptions::default() }
 }
 
 fn frame(width: usize, depth: BitDepth, samples: &[u16]) -> Frame {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use halfrow::FrameSource;
-use halfrow::frames::{self, ReadOptions};
+use halfrow::frames::{self, PictureSize, ReadOptions};
 use halfrow::model::{BitDepth, Equidistant, Frame, Geometry, Phase};
 use halfrow::optics::{self, Chosen, Optics, OpticsError, TablesBy, View};
 use halfrow::tables::TableFile;
@@ -140,7 +140,8 @@ pub(super) fn frames(
     phase: Phase,
     files: &mut Files,
 ) -> Result<Vec<FrameSource>, Fault> {
-    let how = ReadOptions { depth: geometry.depth(), phase, raw: None };
+    let size = PictureSize::Exactly(geometry.width(), geometry.height());
+    let how = ReadOptions { depth: geometry.depth(), phase, size, ..ReadOptions::default() };
     let source = |name: &Spanned<String>| match name.get_ref().strip_prefix("builtin:") {
         Some(builtin) => {
             let parsed = builtin.parse().map(FrameSource::Builtin);

@@ -52,7 +52,7 @@ pub(super) async fn difference(
 /// The frame that an attachment is, if it is one.
 fn decoded((bytes, attachment): &(Vec<u8>, Attachment)) -> Option<Frame> {
     let (KeptFrame { depth, phase, .. }, _) = KeptFrame::of(&attachment.name)?;
-    frames::decode(bytes, &ReadOptions { depth, phase, raw: None }).ok()
+    frames::decode(bytes, &ReadOptions { depth, phase, ..ReadOptions::default() }).ok()
 }
 
 fn answer(picture: Vec<u8>) -> Response {

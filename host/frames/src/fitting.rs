@@ -1,0 +1,99 @@
+//! Pictures brought to the size of a frame: cropped about their centre to its shape, then scaled.
+
+use std::fmt;
+
+use image::imageops::{self, FilterType};
+use image::{ImageBuffer, Pixel, Rgb};
+
+use super::DecodeError;
+
+/// What becomes of a picture in colour, by its size. Raw samples are never scaled.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PictureSize {
+    /// It is taken as it is.
+    #[default]
+    Any,
+    /// It must have so many columns and rows.
+    Exactly(usize, usize),
+    /// It is cropped and scaled to so many columns and rows.
+    Fitted(usize, usize),
+}
+
+impl PictureSize {
+    /// How a picture of `(width, height)` is fitted; none when it is taken as it is.
+    ///
+    /// # Errors
+    /// [`DecodeError::OtherSize`].
+    pub(super) fn fitting(self, (width, height): (usize, usize)) -> Result<Option<Fitting>, DecodeError> {
+        match self {
+            Self::Exactly(columns, rows) if (columns, rows) != (width, height) => {
+                Err(DecodeError::OtherSize { width, height, columns, rows })
+            }
+            Self::Fitted(columns, rows) if (columns, rows) != (width, height) => {
+                Ok(Fitting::new((width, height), (columns, rows)))
+            }
+            _ => Ok(None),
+        }
+    }
+}
+
+/// How a picture was brought to the size of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fitting {
+    found: (usize, usize),
+    cropped: (usize, usize),
+    wanted: (usize, usize),
+}
+
+impl Fitting {
+    /// Of a picture of the size `found` to the size `wanted`: the largest part of its shape is kept. None without pixels.
+    fn new(found: (usize, usize), wanted: (usize, usize)) -> Option<Self> {
+        if [found.0, found.1, wanted.0, wanted.1].contains(&0) {
+            return None;
+        }
+        let rounded = |product: usize, by: usize| ((product + by / 2) / by).max(1);
+        let cropped = if found.0 * wanted.1 > wanted.0 * found.1 {
+            (rounded(found.1 * wanted.0, wanted.1), found.1)
+        } else {
+            (found.0, rounded(found.0 * wanted.1, wanted.0))
+        };
+        Some(Self { found, cropped, wanted })
+    }
+
+    /// The same of the picture as it lies in its file, a quarter turned.
+    pub(super) fn turned(self) -> Self {
+        let swapped = |(width, height)| (height, width);
+        Self { found: swapped(self.found), cropped: swapped(self.cropped), wanted: swapped(self.wanted) }
+    }
+
+    /// `image` fitted. Values are scaled as they are coded.
+    pub(super) fn apply<Sample>(
+        &self,
+        image: &ImageBuffer<Rgb<Sample>, Vec<Sample>>,
+    ) -> ImageBuffer<Rgb<Sample>, Vec<Sample>>
+    where
+        Rgb<Sample>: Pixel<Subpixel = Sample>,
+        Sample: image::Primitive + 'static,
+    {
+        let side = |length| u32::try_from(length).unwrap_or(u32::MAX);
+        let margin = |found: usize, cropped: usize| side(found.saturating_sub(cropped) / 2);
+        let (left, top) = (margin(self.found.0, self.cropped.0), margin(self.found.1, self.cropped.1));
+        let part = imageops::crop_imm(image, left, top, side(self.cropped.0), side(self.cropped.1));
+        imageops::resize(&*part, side(self.wanted.0), side(self.wanted.1), FilterType::CatmullRom)
+    }
+}
+
+/// As in `4032 x 3024, cropped to 4032 x 2268 about its centre, scaled to 1920 x 1080 (Catmull-Rom)`.
+impl fmt::Display for Fitting {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { found, cropped, wanted } = self;
+        write!(f, "{} x {}", found.0, found.1)?;
+        if cropped != found {
+            write!(f, ", cropped to {} x {} about its centre", cropped.0, cropped.1)?;
+        }
+        if cropped != wanted {
+            write!(f, ", scaled to {} x {} (Catmull-Rom)", wanted.0, wanted.1)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,159 @@
+//! Photographs in the formats that cameras and phones have: JPEG, WebP, BMP, and AVIF where it is built in.
+//!
+//! They are pictures for eyes, of 8 bits a colour, and never raw samples. Each sample keeps the colour of its place and is scaled to
+//! the depth; grey is the same of all colours. Gamma and colour profiles are not applied, and alpha is ignored. The header says
+//! whether a picture is decoded at all, so that none takes more memory than [`MAX_PIXELS`] do.
+
+use std::fs::{self, File};
+use std::io::{Cursor, Read as _};
+use std::path::Path;
+
+use image::codecs::bmp::BmpDecoder;
+use image::codecs::jpeg::JpegDecoder;
+use image::codecs::webp::WebPDecoder;
+use image::metadata::Orientation;
+use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
+
+use super::preview::RgbImage;
+use super::{DecodeError, Decoded, ReadOptions, jpeg, mosaic};
+
+/// The most pixels that a photograph may have.
+pub(super) const MAX_PIXELS: u64 = 100_000_000;
+
+/// Bytes by which a format is known.
+const HEAD: u64 = 16;
+
+/// A format of photographs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Jpeg,
+    WebP,
+    Bmp,
+    #[cfg(feature = "avif")]
+    Avif,
+}
+
+impl Format {
+    /// The format that `bytes` begin with.
+    pub(super) fn of(bytes: &[u8]) -> Option<Self> {
+        match bytes {
+            _ if bytes.starts_with(jpeg::MAGIC) => Some(Self::Jpeg),
+            [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(Self::WebP),
+            [b'B', b'M', ..] => Some(Self::Bmp),
+            #[cfg(feature = "avif")]
+            [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => Some(Self::Avif),
+            _ => None,
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Jpeg => "JPEG",
+            Self::WebP => "WebP",
+            Self::Bmp => "BMP",
+            #[cfg(feature = "avif")]
+            Self::Avif => "AVIF",
+        }
+    }
+
+    /// What decodes `bytes`, which has read their header.
+    fn decoder<'a>(self, bytes: &'a [u8]) -> Result<Box<dyn ImageDecoder + 'a>, DecodeError> {
+        let input = Cursor::new(bytes);
+        let refused = |error| self.refused(&error);
+        Ok(match self {
+            Self::Jpeg => {
+                jpeg::check(bytes)?;
+                Box::new(JpegDecoder::new(input).map_err(refused)?)
+            }
+            Self::WebP => Box::new(self.still(bytes, WebPDecoder::new(input).map_err(refused)?)?),
+            Self::Bmp => Box::new(BmpDecoder::new(input).map_err(refused)?),
+            #[cfg(feature = "avif")]
+            Self::Avif => Box::new(image::codecs::avif::AvifDecoder::new(input).map_err(refused)?),
+        })
+    }
+
+    /// Refuses a WebP that moves, or that is longer than `bytes` by its own word.
+    fn still<Input: std::io::BufRead + std::io::Seek>(
+        self,
+        bytes: &[u8],
+        decoder: WebPDecoder<Input>,
+    ) -> Result<WebPDecoder<Input>, DecodeError> {
+        let length = bytes
+            .get(4..)
+            .and_then(|rest| rest.first_chunk())
+            .map_or(0, |&length| u32::from_le_bytes(length));
+        if bytes.len() as u64 <= u64::from(length) + 7 {
+            let reason = super::error::BROKEN_OFF.to_owned();
+            return Err(DecodeError::Photograph { format: self.name(), reason });
+        }
+        if decoder.has_animation() {
+            let what = "an animated WebP".to_owned();
+            return Err(DecodeError::Unsupported { what, remedy: "save each picture as a file of its own" });
+        }
+        Ok(decoder)
+    }
+
+    /// What the decoder found.
+    fn refused(self, error: &ImageError) -> DecodeError {
+        match error {
+            ImageError::Unsupported(_) => DecodeError::Unsupported {
+                what: format!("this kind of {}", self.name()),
+                remedy: "save it as a JPEG, or as a PNG of 8 bits",
+            },
+            ImageError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+                DecodeError::Photograph { format: self.name(), reason: super::error::BROKEN_OFF.to_owned() }
+            }
+            other => {
+                let reason = other.to_string().trim_end_matches('.').to_owned();
+                DecodeError::Photograph { format: self.name(), reason }
+            }
+        }
+    }
+}
+
+/// Whether the file `path` is a photograph, whose colours are coded for the screen. A pipe, which cannot be read twice, is none.
+#[must_use]
+pub fn is_photograph(path: &Path) -> bool {
+    let mut head = Vec::new();
+    let regular = fs::metadata(path).is_ok_and(|about| about.is_file());
+    let mut read = || File::open(path)?.take(HEAD).read_to_end(&mut head);
+    regular && read().is_ok() && Format::of(&head).is_some()
+}
+
+/// The frame of the photograph in `bytes`, turned as its EXIF says, mosaicked to `how.phase`.
+///
+/// # Errors
+/// [`DecodeError`] when it is damaged, of a kind that is not taken, larger than [`MAX_PIXELS`], or not of the size that `how` asks for.
+pub(super) fn decode(format: Format, bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError> {
+    let mut decoder = format.decoder(bytes)?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MAX_PIXELS {
+        return Err(DecodeError::TooManyPixels { width: width.into(), height: height.into() });
+    }
+    let orientation = decoder.orientation().map_err(|error| format.refused(&error))?;
+    let size = (width as usize, height as usize);
+    let is_turned = is_quarter_turn(orientation);
+    let fitting = how.size.fitting(if is_turned { (size.1, size.0) } else { size })?;
+    let mut image = image(decoder).map_err(|error| format.refused(&error))?;
+    if let Some(fitting) = fitting {
+        let as_it_lies = if is_turned { fitting.turned() } else { fitting };
+        image = as_it_lies.apply(&image);
+    }
+    let mut shown = DynamicImage::ImageRgb8(image);
+    shown.apply_orientation(orientation);
+    let (width, height) = (shown.width() as usize, shown.height() as usize);
+    let picture = RgbImage { width, height, data: shown.into_rgb8().into_raw() };
+    Ok(Decoded { frame: mosaic::of_rgb(&picture, how)?, fitting })
+}
+
+fn image(mut decoder: Box<dyn ImageDecoder + '_>) -> ImageResult<image::RgbImage> {
+    let mut limits = Limits::no_limits();
+    limits.max_alloc = Some(MAX_PIXELS * 4);
+    decoder.set_limits(limits)?;
+    DynamicImage::from_decoder(decoder).map(DynamicImage::into_rgb8)
+}
+
+fn is_quarter_turn(orientation: Orientation) -> bool {
+    use Orientation::{Rotate90, Rotate90FlipH, Rotate270, Rotate270FlipH};
+    matches!(orientation, Rotate90 | Rotate90FlipH | Rotate270 | Rotate270FlipH)
+}

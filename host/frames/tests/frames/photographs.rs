@@ -1,0 +1,226 @@
+//! Photographs that Pillow made and showed: `tests/photographs/make.py` says how. What it shows of each is beside it as a PNG.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use halfrow_frames::preview::RgbImage;
+use halfrow_frames::{
+    DecodeError, PictureSize, ReadError, ReadOptions, decode, is_photograph, mosaic, read, read_fitted,
+};
+use halfrow_frames::{RowReader, read_rgb};
+use halfrow_model::{BitDepth, Phase};
+use proptest::prelude::*;
+use proptest::sample::{Index, select};
+
+/// Every photograph that is read, with how far a sample may be from Pillow's: decoders of JPEG and of lossy WebP may round each
+/// step of theirs, and spread colours that were kept at half the size by filters of their own.
+const READ: [(&str, u16); 19] = [
+    ("baseline.jpg", 2),
+    ("subsampled.jpg", 5),
+    ("progressive.jpg", 2),
+    ("grey.jpg", 2),
+    ("turned2.jpg", 2),
+    ("turned3.jpg", 2),
+    ("turned4.jpg", 2),
+    ("turned5.jpg", 2),
+    ("turned6.jpg", 2),
+    ("turned7.jpg", 2),
+    ("turned8.jpg", 2),
+    ("lossy.webp", 2),
+    ("lossless.webp", 0),
+    ("turned6.webp", 0),
+    ("alpha.webp", 0),
+    ("colour.bmp", 0),
+    ("palette.bmp", 0),
+    ("grey.bmp", 0),
+    ("alpha.bmp", 0),
+];
+
+fn path(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/photographs").join(name)
+}
+
+fn bytes(name: &str) -> Vec<u8> {
+    fs::read(path(name)).unwrap()
+}
+
+fn of_eight_bits(phase: Phase) -> ReadOptions {
+    ReadOptions { depth: BitDepth::Eight, phase, ..ReadOptions::default() }
+}
+
+/// What Pillow shows, under a filter array.
+fn shown(name: &str, phase: Phase) -> (RgbImage, Vec<u16>) {
+    let image = read_rgb(&path(name)).unwrap();
+    let samples = mosaic(&image, phase).unwrap().samples().to_vec();
+    (image, samples)
+}
+
+/// The largest difference of two frames' samples.
+fn apart(found: &[u16], wanted: &[u16]) -> u16 {
+    assert_eq!(found.len(), wanted.len());
+    found.iter().zip(wanted).map(|(found, wanted)| found.abs_diff(*wanted)).max().unwrap()
+}
+
+#[test]
+fn photographs_are_what_another_program_shows() {
+    for (name, most) in READ {
+        for phase in Phase::ALL {
+            let (image, wanted) = shown(&format!("{name}.png"), phase);
+            let frame = read(&path(name), &of_eight_bits(phase)).unwrap();
+            assert_eq!((frame.width(), frame.height()), (image.width, image.height), "{name}");
+            let apart = apart(frame.samples(), &wanted);
+            assert!(apart <= most, "{name}, {phase}: {apart}");
+        }
+    }
+}
+
+/// 8 bits become 12 as v · 4095 / 255 to the nearest; of grey, too.
+#[test]
+fn a_photograph_is_scaled_to_the_depth() {
+    for name in ["lossless.webp", "grey.bmp"] {
+        let (_, shown) = shown(&format!("{name}.png"), Phase::Rggb);
+        let wanted: Vec<u16> =
+            shown.into_iter().map(|value| (f64::from(value) * 4095.0 / 255.0).round() as u16).collect();
+        let how = ReadOptions { depth: BitDepth::Twelve, phase: Phase::Rggb, ..ReadOptions::default() };
+        assert_eq!(read(&path(name), &how).unwrap().samples(), wanted, "{name}");
+    }
+}
+
+/// Turned by EXIF first, then cropped and scaled; Pillow rounds between its passes.
+#[test]
+fn fitted_pictures_are_cropped_about_their_centre_and_scaled() {
+    for (name, (width, height), said) in [
+        (
+            "large.webp",
+            (64, 48),
+            "160 x 200, cropped to 160 x 120 about its centre, scaled to 64 x 48 (Catmull-Rom)",
+        ),
+        (
+            "small.png",
+            (192, 96),
+            "160 x 100, cropped to 160 x 80 about its centre, scaled to 192 x 96 (Catmull-Rom)",
+        ),
+    ] {
+        let how = ReadOptions { size: PictureSize::Fitted(width, height), ..of_eight_bits(Phase::Grbg) };
+        let decoded = read_fitted(&path(name), &how).unwrap();
+        let stem = name.split('.').next().unwrap();
+        let (_, wanted) = shown(&format!("{stem}.fitted.png"), Phase::Grbg);
+        assert_eq!((decoded.frame.width(), decoded.frame.height()), (width, height));
+        let apart = apart(decoded.frame.samples(), &wanted);
+        assert!(apart <= 2, "{name}: {apart}");
+        assert_eq!(decoded.fitting.unwrap().to_string(), said);
+        assert_eq!(RowReader::open(&path(name), &how).unwrap().fitting(), decoded.fitting);
+    }
+}
+
+#[test]
+fn what_has_the_size_is_not_fitted_and_what_has_not_is_refused() {
+    let sized =
+        |size| read_fitted(&path("turned6.webp"), &ReadOptions { size, ..of_eight_bits(Phase::Grbg) });
+    assert_eq!(sized(PictureSize::Fitted(48, 72)).unwrap().fitting, None);
+    assert_eq!(sized(PictureSize::Exactly(48, 72)).unwrap().fitting, None);
+    let ReadError::Decode { source, .. } = sized(PictureSize::Exactly(72, 48)).unwrap_err() else { panic!() };
+    assert!(matches!(source, DecodeError::OtherSize { width: 48, height: 72, columns: 72, rows: 48 }));
+    let cropped = sized(PictureSize::Fitted(48, 40)).unwrap().fitting.unwrap();
+    assert_eq!(cropped.to_string(), "48 x 72, cropped to 48 x 40 about its centre");
+}
+
+#[test]
+fn kinds_that_are_not_taken_are_named() {
+    let refused = |bytes: &[u8]| match decode(bytes, &ReadOptions::default()).unwrap_err() {
+        DecodeError::Unsupported { what, .. } => what,
+        other => panic!("{other}"),
+    };
+    assert_eq!(refused(&bytes("cmyk.jpg")), "a CMYK JPEG");
+    assert_eq!(refused(&bytes("animated.webp")), "an animated WebP");
+    #[cfg(not(feature = "avif"))]
+    assert_eq!(refused(&bytes("picture.avif")), "an AVIF");
+    // The frame header of a baseline JPEG is ff c0, its length, its bits, its sides and its colours.
+    let file = bytes("baseline.jpg");
+    let header = file.windows(5).position(|window| window == [0xff, 0xc0, 0, 17, 8]).unwrap();
+    for (place, value, what) in [
+        (1, 0xc3, "a lossless JPEG"),
+        (1, 0xc9, "a JPEG that is coded arithmetically"),
+        (1, 0xc5, "a hierarchical JPEG"),
+        (4, 12, "a JPEG of 12 bits a sample"),
+        (9, 2, "a JPEG of 2 colours"),
+    ] {
+        let mut other = file.clone();
+        other[header + place] = value;
+        assert_eq!(refused(&other), what);
+    }
+    // A BMP's coding is at byte 30; 4 is that of a JPEG inside.
+    let mut coded = bytes("colour.bmp");
+    coded[30] = 4;
+    assert_eq!(refused(&coded), "this kind of BMP");
+}
+
+/// A header that asks for 60000 x 60000 is refused before room for it is made.
+#[test]
+fn a_header_cannot_ask_for_more_than_is_decoded() {
+    let (mut jpeg, mut bmp) = (bytes("baseline.jpg"), bytes("colour.bmp"));
+    let header = jpeg.windows(4).position(|window| window == [0xff, 0xc0, 0, 17]).unwrap();
+    jpeg[header + 5..header + 9].copy_from_slice(&[0xea, 0x60, 0xea, 0x60]);
+    bmp[18..22].copy_from_slice(&60_000_u32.to_le_bytes());
+    bmp[22..26].copy_from_slice(&60_000_u32.to_le_bytes());
+    for file in [jpeg, bmp] {
+        let error = decode(&file, &ReadOptions::default()).unwrap_err();
+        assert!(matches!(error, DecodeError::TooManyPixels { width: 60_000, height: 60_000 }), "{error}");
+        assert!(error.to_string().ends_with("above 100 megapixels; scale it down first"), "{error}");
+    }
+    // The canvas of an extended WebP has its sides less one at byte 24, in three bytes each.
+    let mut webp = bytes("turned6.webp");
+    assert_eq!(webp[12..16], *b"VP8X");
+    for side in [24, 27] {
+        webp[side..side + 3].copy_from_slice(&59_999_u32.to_le_bytes()[..3]);
+    }
+    assert!(decode(&webp, &ReadOptions::default()).is_err());
+}
+
+/// Of a BMP's last row, the padding is dispensable; of a WebP, what stands behind its picture.
+#[test]
+fn every_truncation_of_a_jpeg_is_an_error_and_none_of_another_panics() {
+    for (name, _) in READ {
+        let file = bytes(name);
+        for length in (0..file.len()).filter(|length| length % 97 == 0 || length + 4 > file.len()) {
+            let result = decode(&file[..length], &ReadOptions::default());
+            assert!(result.is_err(), "{length} of {} bytes of {name}", file.len());
+        }
+    }
+}
+
+#[test]
+fn what_cameras_put_behind_a_jpeg_is_passed_over() {
+    let mut file = bytes("baseline.jpg");
+    let alone = decode(&file, &ReadOptions::default()).unwrap();
+    file.extend_from_slice(&bytes("turned6.jpg"));
+    assert_eq!(decode(&file, &ReadOptions::default()).unwrap(), alone);
+}
+
+#[test]
+fn photographs_are_known_by_their_first_bytes() {
+    for (name, _) in READ {
+        assert!(is_photograph(&path(name)), "{name}");
+    }
+    for name in ["small.png", "make.py", "nowhere.jpg"] {
+        assert!(!is_photograph(&path(name)), "{name}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(600))]
+
+    #[test]
+    fn no_damage_makes_a_decoder_panic(
+        name in select(READ.map(|(name, _)| name).to_vec()),
+        damage in proptest::collection::vec((any::<Index>(), any::<u8>()), 1..8),
+    ) {
+        let mut file = bytes(name);
+        for (place, value) in damage {
+            let place = place.index(file.len());
+            file[place] = value;
+        }
+        let how = ReadOptions { size: PictureSize::Exactly(72, 48), ..ReadOptions::default() };
+        std::hint::black_box(decode(&file, &how).is_ok());
+    }
+}
