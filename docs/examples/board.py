@@ -178,6 +178,7 @@ REQUESTS = {0x00: (Board.hello, "<IIBBB"), 0x01: (lambda board, _: CAPABILITIES,
             0x18: (Board.configure, "<HHHHIB"), 0x20: (Board.row_in, PLACE), 0x22: (lambda board, _: None, "<")}
 
 board, server = Board(), socket.create_server(("127.0.0.1", int(sys.argv[1])))
+print(f"a board at tcp:127.0.0.1:{sys.argv[1]}", flush=True)
 while True:
     link, run = server.accept()[0], b""
     while received := link.recv(2**16):

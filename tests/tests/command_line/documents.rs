@@ -126,9 +126,11 @@ fn the_schema_refuses_a_document_with_a_key_that_it_does_not_know() {
 }
 
 #[test]
-fn the_page_of_codes_is_the_one_in_the_repository_and_no_code_stands_twice() {
+fn the_pages_of_codes_and_commands_are_those_in_the_repository_and_no_code_stands_twice() {
     let printed = halfrow(["codes"]);
     assert_eq!((printed.code, printed.stdout), (Some(0), repository("docs/CODES.md")));
+    let commands = halfrow(["commands"]);
+    assert_eq!((commands.code, commands.stdout), (Some(0), repository("docs/COMMANDS.md")));
     let codes = halfrow(["codes", "--json"]).json();
     let codes: Vec<_> =
         codes["codes"].as_array().unwrap().iter().map(|entry| entry["code"].clone()).collect();

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 19] = [
+const COMMANDS: [(&str, &str); 20] = [
     ("verify", "Judge a board"),
     ("soak", "Judge a board for hours"),
     ("correct", "Correct frames"),
@@ -22,6 +22,7 @@ const COMMANDS: [(&str, &str); 19] = [
     ("station", "Start the production station"),
     ("faults", "List the faults"),
     ("codes", "List the codes"),
+    ("commands", "Print the page of all commands"),
     ("schema", "Print the JSON Schema"),
     ("completions", "Print a completion script"),
     ("manual", "Write the manual pages"),

@@ -141,6 +141,10 @@ commands! {
     ///
     /// Prints the page docs/CODES.md.
     Codes(super::codes::Arguments), "codes";
+    /// Print the page of all commands and their options
+    ///
+    /// It is docs/COMMANDS.md.
+    Commands(super::reference::Arguments), "commands";
     /// Print the JSON Schema of what --json prints and of report.json
     Schema(super::schema::Arguments), "schema";
     /// Print a completion script for a shell

@@ -22,6 +22,7 @@ mod listing;
 mod load;
 mod optics;
 mod paper;
+mod reference;
 mod run;
 mod schema;
 mod serve;
@@ -154,7 +155,11 @@ impl Cli {
         if context.json
             && matches!(
                 self.0.command,
-                Command::Serve(_) | Command::Station(_) | Command::Completions(_) | Command::Manual(_)
+                Command::Serve(_)
+                    | Command::Station(_)
+                    | Command::Commands(_)
+                    | Command::Completions(_)
+                    | Command::Manual(_)
             )
         {
             let command = self.command_name();
@@ -177,6 +182,7 @@ impl Cli {
             Command::Station(arguments) => station::run(arguments).map(|never| match never {}),
             Command::Faults(arguments) => faults::run(arguments, &context),
             Command::Codes(arguments) => codes::run(arguments, &context),
+            Command::Commands(arguments) => reference::run(arguments, Line::<Command>::command()),
             Command::Schema(arguments) => schema::run(arguments),
             Command::Completions(arguments) => {
                 completions::complete(arguments, &mut Line::<Command>::command())

@@ -22,6 +22,7 @@ mod plan;
 mod plant;
 mod publish;
 mod rebind;
+mod reference;
 mod refusals;
 mod run;
 mod schema;
@@ -78,6 +79,7 @@ enum Command {
     Lanes(lanes::Arguments),
     LangCheck(lang_check::Arguments),
     Codes(codes::Arguments),
+    Commands(reference::Arguments),
     Schema(schema::Arguments),
     Serve(serve::Arguments),
     Demo(demo::Arguments),
@@ -156,6 +158,9 @@ impl Cli {
             Command::Lanes(arguments) => lanes::run(arguments),
             Command::LangCheck(arguments) => lang_check::run(arguments),
             Command::Codes(arguments) => codes::run(arguments),
+            Command::Commands(arguments) => {
+                reference::run(arguments, <Self as clap::CommandFactory>::command())
+            }
             Command::Schema(arguments) => schema::run(arguments),
             Command::Serve(arguments) => serve::run(arguments),
             Command::Demo(arguments) => demo::run(arguments),

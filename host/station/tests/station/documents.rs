@@ -135,9 +135,10 @@ fn a_document_with_a_key_that_the_schema_does_not_know_is_refused() {
 }
 
 #[test]
-fn schema_and_page_are_those_in_the_repository_and_no_code_stands_twice() {
+fn schema_and_pages_are_those_in_the_repository_and_no_code_stands_twice() {
     assert_eq!(did(&["schema"]).said, SCHEMA);
     assert_eq!(did(&["codes"]).said, include_str!("../../../../docs/STATION-CODES.md"));
+    assert_eq!(did(&["commands"]).said, include_str!("../../../../docs/STATION-COMMANDS.md"));
     let codes = document(&did(&["codes", "--json"]));
     let codes: Vec<_> =
         codes["codes"].as_array().unwrap().iter().map(|entry| entry["code"].as_str().unwrap()).collect();

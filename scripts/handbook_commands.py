@@ -1,0 +1,204 @@
+#!/usr/bin/env python3
+"""Runs the commands of the handbook and the README with the programs that the gate builds, and compares what they print.
+
+Commands are fences of `sh`, and indented lines that begin with a program's name. Those of a page run one after the other in a scratch
+folder of its own, with the repository's folders beside it, and must end with exit code 0. A fence's first line may say otherwise:
+    ```sh exit=1            this exit code
+    ```sh background        goes on until the page ends; the next one waits for its first line
+    ```sh not-run="REASON"  is not run, since …
+and so may a comment in front of a block, <!-- not run: REASON -->, or <!-- commands of this page are not run: REASON -->. A fence of `text`
+behind commands is what they print: … stands for anything in a line, and a line of … alone for any lines. 3001 becomes a port that is free.
+A fence of `python from=FILE` is a part of that file, line for line. What is run or not: every option that stands behind a command, in a block or in `code`, must be one of COMMANDS.md or STATION-COMMANDS.md."""
+
+import os
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
+PROGRAM = re.compile(r"(?:halfrow|halfrow-station|cargo|sudo|apt-get|createdb|systemctl|install|curl|python3|pip|git|scripts/\S+) ")
+BESIDE = ["docs", "fpga", "host", "protocol", "python", "scripts", "README.md", "Cargo.toml"]
+SECONDS = 120
+
+
+def pages():
+    """README.md, and the chapters in the order of SUMMARY.md."""
+    yield ROOT / "README.md"
+    for target in re.findall(r"\]\(([^)]+\.md)\)", (DOCS / "SUMMARY.md").read_text()):
+        yield (DOCS / target).resolve()
+
+
+class Block:
+    """Commands of a page, and what is said about them."""
+
+    def __init__(self, page, line, says, reason):
+        self.page, self.line, self.text, self.expected = page, line, [], None
+        self.exit = int((re.search(r"exit=(\d+)", says) or [0, 0])[1])
+        self.is_background = " background" in says
+        self.reason = (re.search(r'not-run="([^"]+)"', says) or [0, reason])[1]
+
+    def __str__(self):
+        return f"{self.page.relative_to(ROOT)}:{self.line}"
+
+
+def pieces(page):
+    """A page in pieces: what it is (its fence's first line, `indented`, `prose` or `comment`), the line where it begins, its lines."""
+    piece = None
+    for number, line in enumerate(page.read_text().split("\n"), 1):
+        if piece and piece[0].startswith("```"):
+            if line.startswith("```"):
+                yield piece
+                piece = None
+            else:
+                piece[2].append(line)
+            continue
+        kind = (line if line.startswith("```") else "comment" if line.startswith("<!--") else
+                "indented" if line.startswith("    ") else "prose" if line.strip() else None)
+        if piece and kind != piece[0]:
+            yield piece
+            piece = None
+        if kind:
+            piece = piece or (kind, number, [])
+            piece[2].extend([] if kind.startswith("```") else [line])
+    if piece:
+        yield piece
+
+
+def blocks(page):
+    """The blocks of commands of a page, each with what it prints where that stands behind it."""
+    last = reason = whole = None
+    for kind, line, lines in pieces(page):
+        if kind == "comment":
+            for text in lines:
+                reason = (re.match(r"<!-- not run: (.+) -->", text) or [0, reason])[1]
+                whole = (re.match(r"<!-- commands of this page are not run: (.+) -->", text) or [0, whole])[1]
+            continue
+        if kind.startswith("```text") and last:
+            last.expected = lines
+        elif kind.startswith("```sh") or kind == "indented" and PROGRAM.match(lines[0].strip() + " "):
+            last = Block(page, line, kind, reason or whole)
+            last.text = [text.removeprefix("    ") if kind == "indented" else text for text in lines]
+            yield last
+            reason = None
+            continue
+        last = reason = None
+
+
+def pattern(lines):
+    """What stands for the lines that are expected."""
+    whole = [r"(?:.*\n)*?" if line.strip() == "…" else re.escape(line.rstrip()).replace("…", ".*") + r"[ ]*\n" for line in lines]
+    return re.compile("".join(whole))
+
+
+class Scratch:
+    """A folder of its own for a page, and what goes on in it."""
+
+    def __init__(self, programs):
+        self.folder = tempfile.TemporaryDirectory(prefix="handbook-")
+        for name in BESIDE:
+            os.symlink(ROOT / name, pathlib.Path(self.folder.name) / name)
+        kept = {name: value for name, value in os.environ.items() if not name.startswith(("HALFROW_", "XDG_"))}
+        self.environment = kept | {"HOME": self.folder.name, "PATH": f"{programs}:{os.environ['PATH']}", "NO_COLOR": "1"}
+        self.background = []
+        with socket.create_server(("127.0.0.1", 0)) as free:
+            self.port = str(free.getsockname()[1])
+
+    def shell(self, text, **streams):
+        command = ["bash", "-euo", "pipefail", "-c", text.replace("3001", self.port)]
+        return subprocess.Popen(command, cwd=self.folder.name, env=self.environment, text=True, start_new_session=True, **streams)
+
+    def run(self, block):
+        """What is wrong with a block, if anything."""
+        text = "\n".join(block.text)
+        if block.is_background:
+            started = self.shell(text, stdout=subprocess.PIPE)
+            self.background.append(started)
+            return None if started.stdout.readline() else f"{block}: it ended at once"
+        started = self.shell(text, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        try:
+            said, told = started.communicate(timeout=SECONDS)
+        except subprocess.TimeoutExpired:
+            os.killpg(started.pid, signal.SIGKILL)
+            return f"{block}: it takes longer than {SECONDS} s"
+        if started.returncode != block.exit:
+            return f"{block}: ended with {started.returncode}, not {block.exit}:\n{said}{told}"
+        if block.expected is not None and not pattern(block.expected).fullmatch(said.replace(self.port, "3001")):
+            return f"{block}: prints something else than the page says:\n{said}"
+        return None
+
+    def close(self):
+        for started in self.background:
+            os.killpg(started.pid, signal.SIGKILL)
+            started.wait()
+        self.folder.cleanup()
+
+
+def options():
+    """The options of every command, by its name; those of all commands are in each."""
+    known = {}
+    for page, program in ("COMMANDS.md", "halfrow"), ("STATION-COMMANDS.md", "halfrow-station"):
+        name = program
+        for line in (DOCS / page).read_text().split("\n"):
+            name = line[3:] if line.startswith(f"## {program} ") else name
+            known.setdefault(name, {"--help", "--version"} | known.get(program, set()))
+            if row := re.match(r"\| `([^`]*)` \|", line):
+                known[name].update(re.findall(r"--[a-z0-9-]+", row[1]))
+    return known
+
+
+def unknown(page, known):
+    """What a page calls and no command has."""
+    text = page.read_text()
+    for call in re.finditer(r"(?:`|^|^ +|sudo -u halfrow )(halfrow(?:-station)?)((?: [^`\n|#;]*)?)", text, re.M):
+        program, words = call[1], call[2].split(" -- ")[0].split()
+        name, given = program, [word.split("=")[0] for word in words if re.match(r"--[a-z]", word)]
+        for word in words:
+            if f"{name} {word}" in known:
+                name = f"{name} {word}"
+        for option in given:
+            if name != program and option not in known[name]:
+                yield f"{page.relative_to(ROOT)}:{text[:call.start()].count(chr(10)) + 1}: {name} has no {option}"
+
+
+def changed(page):
+    """Fences that say which file they are from, and are not in it."""
+    for kind, line, lines in pieces(page):
+        if (source := re.match(r"```\w+ from=(\S+)", kind)) and "\n".join(lines) not in (page.parent / source[1]).read_text():
+            yield f"{page.relative_to(ROOT)}:{line}: these lines do not stand in {source[1]}"
+
+
+def check(page, programs):
+    scratch, counts = Scratch(programs), [0, 0]
+    try:
+        for block in blocks(page):
+            counts[block.reason is not None] += 1
+            if block.reason is None and (wrong := scratch.run(block)):
+                return counts, [wrong]
+    finally:
+        scratch.close()
+    return counts, []
+
+
+def main():
+    target = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    build = ["cargo", "build", "--quiet", "--workspace", "--features", "halfrow-tests/sim", "--locked", "--bin", "halfrow", "--bin",
+             "halfrow-station", "--test", "command_line"]
+    if subprocess.run(build, cwd=ROOT, check=False).returncode:
+        sys.exit("scripts/handbook: the programs could not be built")
+    known, wrong, ran, left = options(), [], 0, 0
+    for page in dict.fromkeys(pages()):
+        counts, found = check(page, (target / "debug").resolve())
+        ran, left = ran + counts[0], left + counts[1]
+        wrong += [*found, *unknown(page, known), *changed(page)]
+    print(f"{ran} blocks of commands run, {left} named as not to be run here")
+    if wrong:
+        sys.exit("\n".join(["scripts/handbook: commands that are not right", *wrong]))
+
+
+if __name__ == "__main__":
+    main()
