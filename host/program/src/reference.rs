@@ -9,8 +9,7 @@ use clap::{Arg, Command};
 pub fn page(head: &str, program: Command) -> String {
     let mut program = program.disable_help_subcommand(true);
     program.build();
-    let mut page =
-        format!("{head}\n## Every command\n\n{}", table(&program, |argument| argument.is_global_set()));
+    let mut page = format!("{head}\n## Every command\n\n{}", table(&program, Arg::is_global_set));
     for command in program.get_subcommands() {
         section(command, program.get_name(), &mut page);
     }

@@ -144,7 +144,7 @@ commands! {
     /// Print the page of all commands and their options
     ///
     /// It is docs/COMMANDS.md.
-    Commands(super::reference::Arguments), "commands";
+    Commands(super::overview::Arguments), "commands";
     /// Print the JSON Schema of what --json prints and of report.json
     Schema(super::schema::Arguments), "schema";
     /// Print a completion script for a shell

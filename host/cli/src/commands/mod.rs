@@ -21,8 +21,8 @@ mod link;
 mod listing;
 mod load;
 mod optics;
+mod overview;
 mod paper;
-mod reference;
 mod run;
 mod schema;
 mod serve;
@@ -152,16 +152,7 @@ impl Cli {
         tracing::info!("the model takes the path {path}");
         let settings_file = Settings::file(self.0.settings.as_deref());
         let context = Context { settings, settings_file, quiet: self.0.quiet, json: self.0.json };
-        if context.json
-            && matches!(
-                self.0.command,
-                Command::Serve(_)
-                    | Command::Station(_)
-                    | Command::Commands(_)
-                    | Command::Completions(_)
-                    | Command::Manual(_)
-            )
-        {
+        if context.json && !has_document(&self.0.command) {
             let command = self.command_name();
             return Err(Failure::call(CallError::NoJson { command }));
         }
@@ -182,7 +173,7 @@ impl Cli {
             Command::Station(arguments) => station::run(arguments).map(|never| match never {}),
             Command::Faults(arguments) => faults::run(arguments, &context),
             Command::Codes(arguments) => codes::run(arguments, &context),
-            Command::Commands(arguments) => reference::run(arguments, Line::<Command>::command()),
+            Command::Commands(arguments) => overview::run(arguments, Line::<Command>::command()),
             Command::Schema(arguments) => schema::run(arguments),
             Command::Completions(arguments) => {
                 completions::complete(arguments, &mut Line::<Command>::command())
@@ -192,6 +183,18 @@ impl Cli {
             }
         }
     }
+}
+
+/// Whether the command has a result that is printed as JSON.
+fn has_document(command: &Command) -> bool {
+    !matches!(
+        command,
+        Command::Serve(_)
+            | Command::Station(_)
+            | Command::Commands(_)
+            | Command::Completions(_)
+            | Command::Manual(_)
+    )
 }
 
 /// Prints what `exit` sums up. It stands if that cannot be printed, unless all that it says is that there was something to print.

@@ -17,12 +17,12 @@ mod looking;
 mod manual;
 mod notify;
 mod outbox;
+mod overview;
 mod pareto;
 mod plan;
 mod plant;
 mod publish;
 mod rebind;
-mod reference;
 mod refusals;
 mod run;
 mod schema;
@@ -79,7 +79,7 @@ enum Command {
     Lanes(lanes::Arguments),
     LangCheck(lang_check::Arguments),
     Codes(codes::Arguments),
-    Commands(reference::Arguments),
+    Commands(overview::Arguments),
     Schema(schema::Arguments),
     Serve(serve::Arguments),
     Demo(demo::Arguments),
@@ -159,7 +159,7 @@ impl Cli {
             Command::LangCheck(arguments) => lang_check::run(arguments),
             Command::Codes(arguments) => codes::run(arguments),
             Command::Commands(arguments) => {
-                reference::run(arguments, <Self as clap::CommandFactory>::command())
+                overview::run(arguments, <Self as clap::CommandFactory>::command())
             }
             Command::Schema(arguments) => schema::run(arguments),
             Command::Serve(arguments) => serve::run(arguments),
