@@ -12,6 +12,9 @@
 //! [`Core`] is the corrector alone, clock by clock, for tests (feature `builds`). [`FaultyBoard`] is a build with faults in it, of
 //! which a number chooses one (feature `library`).
 
+#[cfg(not(target_os = "linux"))]
+compile_error!("halfrow-sim is for Linux alone; docs/portable.md says what works elsewhere");
+
 mod board;
 mod byte_port;
 #[cfg(feature = "builds")]

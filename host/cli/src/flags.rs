@@ -1,7 +1,7 @@
 //! The flags that the settings have that the libraries name in words: the one place where a remedy gets its flag.
 
 /// What sentences of the libraries say, and the flag for it. None of them is part of another.
-pub const FLAGS: [(&str, &str); 20] = [
+pub const FLAGS: [(&str, &str); 19] = [
     ("allow it to be overwritten", "--overwrite"),
     ("another place for the recording", "--record"),
     ("another place for the report", "--report"),
@@ -16,7 +16,6 @@ pub const FLAGS: [(&str, &str); 20] = [
     ("Name a real board", "--board"),
     ("name the layout", "--raw"),
     ("crop and scale it", "--fit"),
-    ("Cargo's feature `avif`", "cargo run --release --features avif"),
     ("name the phase", "--phase"),
     ("the lens pitch and the optical centre", "--lens-pitch, --centre-x, --centre-y"),
     ("leave out the exact projection", "--projection"),

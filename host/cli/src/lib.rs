@@ -1,5 +1,8 @@
 //! The program `halfrow`: its commands, its settings, and what it prints.
 
+#[cfg(not(target_os = "linux"))]
+compile_error!("halfrow-cli is for Linux alone; docs/portable.md says what works elsewhere");
+
 mod beside;
 pub mod commands;
 pub mod flags;

@@ -22,7 +22,13 @@ const MOST_NAME: usize = 28;
 /// Columns of the labels on the left.
 const LABEL: usize = 9;
 
-const BOLD: Style = Style::new().bold();
+/// What stands behind a figure on its line.
+const UNITS: [&str; 17] = [
+    "%", "B", "kB", "MB", "GB", "B/s", "kB/s", "MB/s", "Hz", "kHz", "MHz", "s", "ms", "µs", "min", "h",
+    "bits",
+];
+
+pub(crate) const BOLD: Style = Style::new().bold();
 const GREEN: Style = AnsiColor::Green.on_default().bold();
 const RED: Style = AnsiColor::Red.on_default().bold();
 const YELLOW: Style = AnsiColor::Yellow.on_default().bold();
@@ -143,6 +149,11 @@ fn advice(report: &Report) -> String {
     if let Some(remedy) = wording::remedy(report) {
         push(&mut text, "do", BOLD, &remedy);
     }
+    if report.verdict != Verdict::Pass {
+        let codes = report.suspects.iter().map(|suspect| suspect.defect.tagged().0);
+        let codes = [report.finding.code()].into_iter().chain(codes).collect::<Vec<_>>();
+        push(&mut text, "explain", DIM, &format!("halfrow explain {}", codes.join(" ")));
+    }
     text
 }
 
@@ -169,7 +180,7 @@ fn push_suspect(text: &mut String, suspect: &Suspect) {
 }
 
 /// Appends `words` with a label to their left.
-fn push(text: &mut String, word: &str, style: Style, words: &str) {
+pub(crate) fn push(text: &mut String, word: &str, style: Style, words: &str) {
     push_after(text, &label(style, word), LABEL, words);
 }
 
@@ -190,20 +201,39 @@ fn push_after(text: &mut String, head: &str, indent: usize, words: &str) {
     }
 }
 
-/// The words of `text` on lines of at most `width` characters; a longer word has a line of its own.
+/// The words of `text` on lines of at most `width` characters; a longer word has a line of its own, and a figure keeps its unit.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
-    for word in text.split(' ') {
+    for word in inseparable(text) {
         match lines.last_mut() {
-            Some(line) if line.is_empty() => line.push_str(word),
+            Some(line) if line.is_empty() => line.push_str(&word),
             Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
                 line.push(' ');
-                line.push_str(word);
+                line.push_str(&word);
             }
-            _ => lines.push(word.to_owned()),
+            _ => lines.push(word),
         }
     }
     lines
+}
+
+/// The words of `text`, figures with their units and sizes (`629.6 kB`, `1920 x 1080`) as one.
+fn inseparable(text: &str) -> Vec<String> {
+    let is_figure = |word: &str| {
+        word.rsplit(' ').next().is_some_and(|last| last.ends_with(|letter: char| letter.is_ascii_digit()))
+    };
+    let is_unit =
+        |word: &str| word == "x" || UNITS.contains(&word.trim_end_matches([',', '.', ';', ':', ')']));
+    let mut words: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match words.last_mut() {
+            Some(before) if is_figure(before) && is_unit(word) || before.ends_with(" x") => {
+                *before = format!("{before} {word}");
+            }
+            _ => words.push(word.to_owned()),
+        }
+    }
+    words
 }
 
 /// The end of a name that is too long, since that is where file names differ.

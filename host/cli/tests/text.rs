@@ -73,6 +73,7 @@ suspect  row factor, row 3's factor, bit 4 (explains 100 % of the differences)
          memory that holds it.
          At the bench: Reload the bitstream and run again; if it returns, set
          the board aside: a memory or a line of its FPGA is broken.
+explain  halfrow explain samples-differ row-factor-bit-wrong
 
 FAIL: {HEADLINE}
 "
@@ -90,7 +91,7 @@ fn a_remedy_that_a_suspect_already_gives_is_not_repeated() {
 #[test]
 fn an_error_says_what_to_do() {
     let text = plain(&made::error());
-    assert!(text.ends_with("\ndo       Check cable and power.\n\nERROR: no answer within 2 s\n"), "{text}");
+    assert!(text.ends_with("\ndo       Check cable and power.\nexplain  halfrow explain no-answer\n\nERROR: no answer within 2 s\n"), "{text}");
 }
 
 #[test]
@@ -143,6 +144,27 @@ fn nothing_but_the_verdict_is_wider_than_80_columns() {
     };
     for line in plain(&report).lines().filter(|line| !line.starts_with("FAIL:")) {
         assert!(line.chars().count() <= 80, "{line}");
+    }
+}
+
+/// Wherever a line ends, a figure stands with its unit.
+#[test]
+fn no_line_ends_within_a_figure() {
+    let mut report = made::pass();
+    (report.link.bytes_in, report.link.bytes_out) = (629_600, 593_300);
+    for letters in 0..60 {
+        report.link.name = "w".repeat(letters);
+        let text = plain(&report);
+        let lines: Vec<_> = text.lines().collect();
+        for pair in lines.windows(2) {
+            let figure = pair[0].ends_with(|letter: char| letter.is_ascii_digit());
+            let unit = pair[1]
+                .split_whitespace()
+                .next()
+                .is_some_and(|word| ["kB", "x", "bits", "s"].contains(&word));
+            assert!(!(figure && unit), "{text}");
+        }
+        assert!(text.contains("629.6 kB in") && text.contains("593.3 kB out"), "{text}");
     }
 }
 

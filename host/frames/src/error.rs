@@ -157,7 +157,7 @@ pub enum DecodeError {
     /// The decoder of a photograph gave up.
     #[error("the {format} is damaged: {reason}; copy or export it again")]
     Photograph {
-        /// JPEG, WebP, BMP or AVIF.
+        /// JPEG, WebP or BMP.
         format: &'static str,
         /// What the decoder found.
         reason: String,

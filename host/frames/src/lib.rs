@@ -3,6 +3,9 @@
 //! A file's samples are taken as they are, never rescaled; only a picture in colour is brought to the size and depth asked for, as
 //! it is mosaicked. The files mostly say neither the Bayer phase nor the depth, so [`ReadOptions`] gives both.
 
+#[cfg(not(target_os = "linux"))]
+compile_error!("halfrow-frames is for Linux alone; docs/portable.md says what works elsewhere");
+
 mod builtin;
 pub mod dng;
 mod error;
@@ -113,9 +116,7 @@ fn unknown(bytes: &[u8]) -> DecodeError {
         [b'I', b'I', b'+', 0, ..] | [b'M', b'M', 0, b'+', ..] => ("a BigTIFF", "save it as a classic TIFF"),
         [b'G', b'I', b'F', b'8', ..] => ("a GIF", PICTURE),
         [0, 0, 0, 12, b'J', b'X', b'L', b' ', ..] | [0xff, 0x0a, ..] => ("a JPEG XL", PHOTOGRAPH),
-        [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => {
-            ("an AVIF", "convert it to JPEG or PNG, or build with Cargo's feature `avif`")
-        }
+        [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => ("an AVIF", PHOTOGRAPH),
         [_, _, _, _, b'f', b't', b'y', b'p', b'h' | b'm', b'e' | b'i', ..] => ("a HEIC", PHOTOGRAPH),
         _ => return DecodeError::UnknownFormat,
     };

@@ -1,4 +1,4 @@
-//! Photographs in the formats that cameras and phones have: JPEG, WebP, BMP, and AVIF where it is built in.
+//! Photographs in the formats that cameras and phones have: JPEG, WebP and BMP.
 //!
 //! They are pictures for eyes, of 8 bits a colour, and never raw samples. Each sample keeps the colour of its place and is scaled to
 //! the depth; grey is the same of all colours. Gamma and colour profiles are not applied, and alpha is ignored. The header says
@@ -29,8 +29,6 @@ pub(super) enum Format {
     Jpeg,
     WebP,
     Bmp,
-    #[cfg(feature = "avif")]
-    Avif,
 }
 
 impl Format {
@@ -40,8 +38,6 @@ impl Format {
             _ if bytes.starts_with(jpeg::MAGIC) => Some(Self::Jpeg),
             [b'R', b'I', b'F', b'F', _, _, _, _, b'W', b'E', b'B', b'P', ..] => Some(Self::WebP),
             [b'B', b'M', ..] => Some(Self::Bmp),
-            #[cfg(feature = "avif")]
-            [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => Some(Self::Avif),
             _ => None,
         }
     }
@@ -51,8 +47,6 @@ impl Format {
             Self::Jpeg => "JPEG",
             Self::WebP => "WebP",
             Self::Bmp => "BMP",
-            #[cfg(feature = "avif")]
-            Self::Avif => "AVIF",
         }
     }
 
@@ -67,8 +61,6 @@ impl Format {
             }
             Self::WebP => Box::new(self.still(bytes, WebPDecoder::new(input).map_err(refused)?)?),
             Self::Bmp => Box::new(BmpDecoder::new(input).map_err(refused)?),
-            #[cfg(feature = "avif")]
-            Self::Avif => Box::new(image::codecs::avif::AvifDecoder::new(input).map_err(refused)?),
         })
     }
 

@@ -1,6 +1,9 @@
 //! A link: a pipe that carries bytes to a board and back, with deadlines. [`open`] opens the one that a [`Target`] names, and
 //! [`discovery`] finds what could be a board.
 
+#[cfg(not(target_os = "linux"))]
+compile_error!("halfrow-link is for Linux alone; docs/portable.md says what works elsewhere");
+
 mod candidate;
 mod class;
 pub mod descriptor;

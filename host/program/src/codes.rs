@@ -17,13 +17,13 @@ codes::codes! {
     InternalError => "program-failed"
 }
 
-/// Of a call that contradicts itself or its input, in a sentence that says how.
+/// A call that contradicts itself or its input, in a sentence that says how.
 const REFUSED: &str = "call-refused";
-/// Of a command that could not be carried out, in a sentence that says why.
+/// A command that could not be carried out, in a sentence that says why.
 const FAILED: &str = "command-failed";
 /// Of what has no type of its own.
 pub const UNTYPED: [&str; 3] = [REFUSED, FAILED, codes::FOREIGN];
-/// Of command lines that cannot be read.
+/// A command line that cannot be read.
 pub const USAGE: [&str; 6] = [
     "usage-argument-unknown",
     "usage-value-wrong",

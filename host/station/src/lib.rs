@@ -17,6 +17,9 @@
     reason = "a sentence carries its code, its figures and its causes, and is made a few times a run"
 )]
 
+#[cfg(not(target_os = "linux"))]
+compile_error!("halfrow-station is for Linux alone; docs/portable.md says what works elsewhere");
+
 pub mod check;
 mod clock;
 pub mod commands;

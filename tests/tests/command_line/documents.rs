@@ -43,6 +43,7 @@ fn every_command_that_prints_a_result_prints_a_document() {
         ("link", vec!["link", "--seconds", "0.01"]),
         ("faults", vec!["faults"]),
         ("codes", vec!["codes"]),
+        ("explain", vec!["explain", "no-answer"]),
     ];
     for (command, call) in calls {
         let said = told(&folder, 0, &call);

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 use halfrow_tests::program::{Folder, halfrow};
 
 /// All commands, and how each one's help begins.
-const COMMANDS: [(&str, &str); 20] = [
+const COMMANDS: [(&str, &str); 21] = [
     ("verify", "Judge a board"),
     ("soak", "Judge a board for hours"),
     ("correct", "Correct frames"),
@@ -23,6 +23,7 @@ const COMMANDS: [(&str, &str); 20] = [
     ("faults", "List the faults"),
     ("codes", "List the codes"),
     ("commands", "Print the page of all commands"),
+    ("explain", "Say what a code means"),
     ("schema", "Print the JSON Schema"),
     ("completions", "Print a completion script"),
     ("manual", "Write the manual pages"),

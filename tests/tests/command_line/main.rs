@@ -11,6 +11,7 @@ mod bad_targets;
 mod contradictions;
 mod corrected;
 mod documents;
+mod explained;
 mod file_schemas;
 mod grids;
 mod help;

@@ -22,6 +22,9 @@ pub(super) enum CallError {
     /// A command that is not among those with a document.
     #[error("`{command}` is no command with a document of its own; name one of {known}")]
     NoDocument { command: String, known: String },
+    /// A code that nothing has.
+    #[error("there is no code `{code}`; {remedy}")]
+    CodeUnknown { code: String, remedy: String },
     /// `correct` without a board or the model.
     #[error("nobody is named to correct; give --model or --board TARGET")]
     NobodyCorrects,

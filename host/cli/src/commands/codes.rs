@@ -31,6 +31,7 @@ codes::codes! {
         Seconds [option] => "option-is-no-time",
         NoJson [command] => "command-without-json",
         NoDocument [command] => "command-without-document",
+        CodeUnknown [code] => "code-unknown",
         NobodyCorrects => "corrector-missing",
         RecordingCorrects => "recording-corrects-nothing",
         FaultWithoutEffect [target, reason] => "fault-without-effect",

@@ -145,6 +145,10 @@ commands! {
     ///
     /// It is docs/COMMANDS.md.
     Commands(super::overview::Arguments), "commands";
+    /// Say what a code means, whose fault it is, and what to do first
+    ///
+    /// Codes stand in JSON, in reports, and behind errors. An unknown one is answered with those that are like it, exit code 2.
+    Explain(super::explain::Arguments), "explain";
     /// Print the JSON Schema of what --json prints and of report.json
     Schema(super::schema::Arguments), "schema";
     /// Print a completion script for a shell

@@ -8,6 +8,7 @@ mod codes;
 mod completions;
 mod correct;
 mod document;
+mod explain;
 mod faults;
 mod files;
 mod frames;
@@ -47,7 +48,7 @@ use halfrow::run::Misfit;
 
 use line::{Command, Line};
 
-pub use document::failure;
+pub use document::{code, failure};
 
 /// What every command is given beside its own arguments.
 pub struct Context {
@@ -174,6 +175,7 @@ impl Cli {
             Command::Faults(arguments) => faults::run(arguments, &context),
             Command::Codes(arguments) => codes::run(arguments, &context),
             Command::Commands(arguments) => overview::run(arguments, Line::<Command>::command()),
+            Command::Explain(arguments) => explain::run(arguments, &context),
             Command::Schema(arguments) => schema::run(arguments),
             Command::Completions(arguments) => {
                 completions::complete(arguments, &mut Line::<Command>::command())

@@ -133,7 +133,6 @@ fn kinds_that_are_not_taken_are_named() {
     };
     assert_eq!(refused(&bytes("cmyk.jpg")), "a CMYK JPEG");
     assert_eq!(refused(&bytes("animated.webp")), "an animated WebP");
-    #[cfg(not(feature = "avif"))]
     assert_eq!(refused(&bytes("picture.avif")), "an AVIF");
     // The frame header of a baseline JPEG is ff c0, its length, its bits, its sides and its colours.
     let file = bytes("baseline.jpg");

@@ -72,7 +72,7 @@ def main():
     keep("palette.bmp", sharp.quantize(16))
     keep("grey.bmp", sharp.convert("L"))
     keep("alpha.bmp", alpha.convert("RGBA"))
-    keep("picture.avif", plain, quality=95, subsampling="4:4:4")
+    plain.save("picture.avif", quality=95)
     edged(200, 160).save("large.webp", lossless=True, exif=turned(6))
     fitted("large.webp", "large.fitted.png", (64, 48))
     edged(160, 100).save("small.png")

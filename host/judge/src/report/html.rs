@@ -18,7 +18,7 @@ const STYLE: &str = include_str!("style.css");
 /// Forbids the page to load or run anything, whatever gets into it.
 const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inline'";
 
-/// The report as a page of under 10 MB. Each frame of `evidence` has a section with pictures, which shrink, or give way
+/// The report as a page of under 2 MB for a PASS, and under 4 MB for anything else. Each frame of `evidence` has a section with pictures, which shrink, or give way
 /// from the last on, when they are too many.
 ///
 /// # Errors
@@ -74,11 +74,22 @@ fn banner(report: &Report) -> Markup {
             }
             @if report.verdict == Verdict::Pass {
                 h1 { (facts) }
-                p.facts { (started) }
             } @else {
                 h1 { (plain(&report.headline())) }
-                p.facts { (facts) " · " (started) }
+                p.facts { (facts) }
             }
+            p.facts { (unit(report)) " · " (started) }
+        }
+    }
+}
+
+/// Which board it was: its name, its serial number, and where it was reached.
+fn unit(report: &Report) -> Markup {
+    let target = plain(&report.board.target);
+    html! {
+        @match &report.board.identity {
+            Some(it) => { (plain(&it.name)) ", serial " strong { (plain(&it.serial)) } ", at " (target) },
+            None => { "a board that never said what it is, at " (target) },
         }
     }
 }

@@ -5,11 +5,25 @@ use super::{
     Finding, MadeWith, Memory, NoBurst, NotExercised, Problem, Reading, Repetition, RowSource, Rule,
     StaleFrames, Suspect,
 };
+use crate::verdict::Verdict;
 
 /// One of every finding that is no error.
 #[must_use]
 pub fn findings() -> Vec<Finding> {
-    let passed = [
+    findings_with_verdicts().into_iter().map(|(_, finding)| finding).collect()
+}
+
+/// One of every finding that is no error, with the verdict that it leads to; none of what was not done.
+#[must_use]
+pub fn findings_with_verdicts() -> Vec<(Option<Verdict>, Finding)> {
+    let with = |verdict| move |finding| (verdict, finding);
+    let of_the_board = of_the_board().into_iter().chain(on_entry_and_at_speed()).chain(on_rules());
+    let all = right().into_iter().chain(of_the_board.map(with(Some(Verdict::Fail))));
+    all.chain(unjudged().map(with(Some(Verdict::Error)))).collect()
+}
+
+fn right() -> Vec<(Option<Verdict>, Finding)> {
+    let found = [
         Finding::GoldenSamplesFound { samples: 4_147_328, path: "avx2".to_owned() },
         Finding::BoardIdentified { name: "halfrow mock".to_owned(), wire: 1, datapath: 1 },
         Finding::EchoesReturned { bytes: 8192, echoes: 5 },
@@ -40,13 +54,14 @@ pub fn findings() -> Vec<Finding> {
             reconnections: 0,
         },
     ];
-    passed
-        .into_iter()
-        .chain(of_the_board())
-        .chain(on_entry_and_at_speed())
-        .chain(on_rules())
-        .chain(unjudged())
-        .collect()
+    let is_left_out = |finding: &Finding| {
+        use Finding::{NotReached, NothingAtSpeed, PausedAtSpeed, RulesLeftOut, TablesUnused};
+        matches!(
+            finding,
+            NotReached {} | NothingAtSpeed { .. } | PausedAtSpeed { .. } | RulesLeftOut {} | TablesUnused {}
+        )
+    };
+    found.into_iter().map(|finding| ((!is_left_out(&finding)).then_some(Verdict::Pass), finding)).collect()
 }
 
 fn of_the_board() -> [Finding; 18] {

@@ -91,16 +91,17 @@ fn a_fail_shows_suspects_and_what_to_do() {
     assert!(page.contains("halfrow verify --frame 'my frames/a.pgm'"));
 }
 
-#[test]
-fn sixteen_frames_of_noise_stay_under_ten_megabytes_and_all_are_shown() {
+/// Sixteen frames of noise, which nothing compresses, of as many rows as charts can have.
+fn noise() -> (Report, Vec<Evidence>) {
     let mut state = 1_u64;
     let mut noise = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 40) as usize
     };
-    let samples: Vec<usize> = (0..3 * 640 * 360).map(|_| noise()).collect();
-    let frame =
-        |which: usize| made::sized_frame(640, 360, |row, column| samples[(which * 360 + row) * 640 + column]);
+    let samples: Vec<usize> = (0..3 * 640 * 2048).map(|_| noise()).collect();
+    let frame = |which: usize| {
+        made::sized_frame(640, 2048, |row, column| samples[(which * 2048 + row) * 640 + column])
+    };
     let (input, expected, found) = (frame(0), frame(1), frame(2));
     let (mut report, _) = made::fail();
     report.frames = (0..16).map(|number| made::equal_frame((number, "builtin:noise"))).collect();
@@ -109,10 +110,50 @@ fn sixteen_frames_of_noise_stay_under_ten_megabytes_and_all_are_shown() {
     }
     let kept =
         |index| Evidence { index, input: input.clone(), found: found.clone(), expected: expected.clone() };
-    let page = page(&report, &(0..16).map(kept).collect::<Vec<_>>());
-    assert!(page.len() < 10_000_000, "{} bytes", page.len());
+    (report, (0..16).map(kept).collect())
+}
+
+#[test]
+fn sixteen_frames_of_noise_stay_under_four_megabytes_and_all_are_shown() {
+    let (report, evidence) = noise();
+    let page = page(&report, &evidence);
+    assert!(page.len() < 4_000_000, "{} bytes", page.len());
     assert_eq!(page.matches("As it went in").count(), 32, "a caption and a description for each");
     assert!(!page.contains("left out"));
+}
+
+#[test]
+fn a_pass_stays_under_two_megabytes() {
+    let (_, mut evidence) = noise();
+    let mut report = made::pass();
+    report.frames = (0..400).map(|number| made::equal_frame((number, "builtin:noise"))).collect();
+    report.not_exercised = halfrow::result::examples::not_exercised();
+    for kept in &mut evidence {
+        kept.expected = kept.found.clone();
+    }
+    let page = page(&report, &evidence);
+    assert!(page.len() < 2_000_000, "{} bytes", page.len());
+    assert_eq!(page.matches("As it went in").count(), 32, "a caption and a description for each");
+}
+
+/// Whatever came of it, the head says which board it was, and when; what is to be done follows.
+#[test]
+fn the_head_names_board_serial_and_time() {
+    for (report, board) in [
+        (made::pass(), "mock, serial <strong>000000000000002a</strong>, at mock"),
+        (made::fail().0, "mock, serial <strong>000000000000002a</strong>, at mock"),
+        (made::error(), "a board that never said what it is, at serial:/dev/ttyUSB1"),
+    ] {
+        let page = page(&report, &[]);
+        let (head, rest) = page.split_once("</header>").unwrap();
+        assert!(head.contains(board) && head.contains(&report.run.started), "{head}");
+        let first = rest.split("<h2>").nth(1).unwrap();
+        assert_eq!(
+            first.starts_with("What to do"),
+            report.verdict != halfrow::verdict::Verdict::Pass,
+            "{first}"
+        );
+    }
 }
 
 #[test]

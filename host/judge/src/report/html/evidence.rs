@@ -8,9 +8,11 @@ use super::facts::{mark, pair};
 use crate::report::pictures::{self, BOX, Picture, Window};
 use crate::report::wording::{self, count, grouped};
 use crate::result::{Evidence, FrameReport, Report};
+use crate::verdict::Verdict;
 
-/// Bytes of all pictures together. Base 64 makes 8.8 MB of them, which leaves over 1 MB of 10 MB to text and charts.
-const MOST_BYTES: usize = 6_600_000;
+/// Bytes of all pictures together, of a PASS and of anything else. Base 64 makes 1.5 and 3.4 MB of them, which leaves half a megabyte of
+/// 2 and of 4 to text and charts.
+const MOST_BYTES: (usize, usize) = (1_100_000, 2_550_000);
 /// The widest preview of a frame that is wrong, and of one that is right, in pixels.
 const MAX_WIDTH: (usize, usize) = (960, 480);
 /// Bytes that the map and the crops of one frame stay under, even of noise.
@@ -27,7 +29,7 @@ const ZOOM: usize = 8;
 pub(super) fn sections(report: &Report, evidence: &[Evidence]) -> Result<Markup, EncodingError> {
     let known = evidence.iter().filter_map(|kept| Some((kept, report.frames.get(kept.index)?)));
     let known: Vec<_> = known.collect();
-    let mut left = MOST_BYTES;
+    let mut left = if report.verdict == Verdict::Pass { MOST_BYTES.0 } else { MOST_BYTES.1 };
     let mut sections = Vec::with_capacity(known.len());
     for (place, (kept, frame)) in known.iter().enumerate() {
         let share = left / (known.len() - place);

@@ -61,7 +61,7 @@ pub fn lookup(error: &(dyn Error + 'static)) -> Option<Coded> {
     })
 }
 
-/// The codes of what the system refuses; all have the parameter `os_error`, the system's number if there is one.
+/// What the system refuses. The parameter `os_error` is the system's number, if there is one.
 pub const IO_CODES: [&str; 9] = [
     "io-not-found",
     "io-not-permitted",

@@ -1,0 +1,87 @@
+//! `halfrow explain`, and where people meet the codes that it explains.
+
+use halfrow_tests::program::{Folder, halfrow};
+
+use crate::small;
+
+/// The explanation of each of `codes` as JSON.
+fn explained(codes: &[&str]) -> Vec<serde_json::Value> {
+    let said = halfrow(["explain", "--json"].into_iter().chain(codes.iter().copied())).json();
+    said["codes"].as_array().cloned().unwrap_or_default()
+}
+
+#[test]
+fn every_code_is_explained() {
+    let all = halfrow(["codes", "--json"]).json();
+    let codes: Vec<_> =
+        all["codes"].as_array().unwrap().iter().map(|it| it["code"].as_str().unwrap()).collect();
+    assert!(codes.len() > 400, "{}", codes.len());
+    for (code, it) in codes.iter().zip(explained(&codes)) {
+        assert_eq!(it["code"], *code);
+        assert!(it["meaning"].as_str().unwrap().ends_with('.'), "{it}");
+        assert!(
+            !it["fault"].as_str().unwrap().is_empty() && !it["where"].as_str().unwrap().is_empty(),
+            "{it}"
+        );
+    }
+}
+
+/// Verdicts and acts as runs on broken boards show them.
+#[test]
+fn an_explanation_is_that_of_the_run_that_had_the_code() {
+    let run = halfrow(small("verify", &["--json", "--board", "mock,fault=stuck-data,bit=5,value=1"])).json();
+    let finding = run["finding"]["code"].as_str().unwrap();
+    let defect = run["suspects"][0]["defect"]["code"].as_str().unwrap();
+    let told = explained(&[finding, defect, "no-answer", "input-bits"]);
+    assert_eq!((&told[0]["verdict"], &told[0]["fault"]), (&run["verdict"], &"the board's".into()));
+    assert_eq!(told[1]["of"], "defect");
+    let bench = told[1]["do"][0].as_str().unwrap().strip_prefix("At the bench: ").unwrap();
+    assert_eq!(bench, run["suspects"][0]["technician"].as_str().unwrap());
+    assert!(told[2]["fault"].as_str().unwrap().starts_with("never the board's"), "{}", told[2]);
+    assert_eq!(told[3]["verdict"], "PASS");
+}
+
+#[test]
+fn people_read_it_in_80_columns() {
+    let told = halfrow(["explain", "samples-differ", "frame-file-unreadable"]);
+    assert_eq!(told.code, Some(0), "{}", told.stderr);
+    assert!(told.stdout.lines().all(|line| line.chars().count() <= 80), "{}", told.stdout);
+    for line in ["samples-differ (finding)", "verdict  FAIL", "fault    the board's", "values   path"] {
+        assert!(told.stdout.lines().any(|it| it == line), "{line}: {}", told.stdout);
+    }
+}
+
+#[test]
+fn an_unknown_code_is_answered_with_those_that_are_like_it() {
+    for (asked, like) in [
+        ("sample-difer", "samples-differ"),
+        ("SAMPLES_DIFFER", "samples-differ"),
+        ("png-damage", "png-damaged"),
+    ] {
+        let ended = halfrow(["explain", asked]);
+        let sentence = format!("there is no code `{asked}`; try {like}");
+        assert!(ended.code == Some(2) && ended.stderr.contains(&sentence), "{}", ended.stderr);
+    }
+    let ended = halfrow(["explain", "zzz"]);
+    assert!(ended.code == Some(2) && ended.stderr.contains("`halfrow codes` lists all"), "{}", ended.stderr);
+    assert_eq!(halfrow(["explain"]).code, Some(2));
+}
+
+#[test]
+fn completions_know_the_codes() {
+    for shell in ["bash", "zsh", "fish"] {
+        assert!(halfrow(["completions", shell]).stdout.contains("line-memory-data-stuck"), "{shell}");
+    }
+    assert!(!halfrow(["explain", "--help"]).stdout.contains("line-memory-data-stuck"));
+}
+
+#[test]
+fn errors_and_reports_say_what_to_ask_for() {
+    let folder = Folder::new();
+    let ended = folder.halfrow(small("verify", &["--frame", "none.pgm"]));
+    assert!(ended.stderr.ends_with("\nsee `halfrow explain frame-file-unreadable`\n"), "{}", ended.stderr);
+    let failed = folder.halfrow(small("verify", &["--board", "mock,fault=stuck-data,bit=5,value=1"]));
+    let line = "\nexplain  halfrow explain samples-differ line-memory-data-stuck\n\nFAIL: ";
+    assert!(failed.stdout.contains(line), "{}", failed.stdout);
+    assert!(!folder.halfrow(small("verify", &[])).stdout.contains("halfrow explain"));
+}
