@@ -2,6 +2,7 @@
 
 use std::error::Error;
 
+use halfrow::optics::OpticsError;
 use halfrow::result::Problem;
 use pyo3::prelude::*;
 
@@ -19,9 +20,23 @@ pub(crate) enum Whose {
     World,
 }
 
+impl Whose {
+    /// The call's, or not.
+    pub(crate) const fn of_call(is_of_call: bool) -> Self {
+        if is_of_call { Self::Call } else { Self::World }
+    }
+}
+
 /// The exception for a call that is wrong by `error`, or names what is.
 pub(crate) fn input<E: Error + 'static>(error: E) -> PyErr {
     raised(Whose::Call, &error)
+}
+
+/// The exception for a lens, tables or a kernel that cannot be had. Those of another datapath are refused as a board of one is.
+pub(crate) fn optics(error: impl Into<OpticsError>) -> PyErr {
+    let error = error.into();
+    let is_of_call = !error.is_other_datapath() && !matches!(error, OpticsError::Damaged(_));
+    raised(Whose::of_call(is_of_call), &error)
 }
 
 /// The exception for `error`, which the call cannot help.

@@ -26,7 +26,7 @@ impl Kernel {
     #[new]
     #[pyo3(signature = (name = PathBuf::from(Interpolant::Hermite.name())))]
     fn new(name: PathBuf) -> PyResult<Self> {
-        let kernel = optics::kernel(name.as_os_str()).map_err(errors::input)?;
+        let kernel = optics::kernel(name.as_os_str()).map_err(errors::optics)?;
         Ok(Self { kernel, name: name.display().to_string() })
     }
 

@@ -132,11 +132,12 @@ impl Lens {
                 Equidistant::from_radius(radius).map_err(errors::input)?
             }
             (Some(path), None) => {
-                let optics = Optics::of_file(path, view, TablesBy::Fitting).map_err(errors::input)?;
+                let optics = Optics::of_file(path, view, TablesBy::Fitting).map_err(errors::optics)?;
                 return Ok(Self { optics, file: Some(frames::hash(path)?) });
             }
         };
-        let optics = Optics::of_equidistant(equidistant, view, TablesBy::Equation9).map_err(errors::input)?;
+        let optics =
+            Optics::of_equidistant(equidistant, view, TablesBy::Equation9).map_err(errors::optics)?;
         Ok(Self { optics, file: None })
     }
 }

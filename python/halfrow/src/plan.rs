@@ -14,6 +14,7 @@ use halfrow::run::{Circumstances, Draws, RecordedRun, RunOptions, Vary};
 use halfrow::{FrameSource, Plan};
 use pyo3::prelude::*;
 
+use crate::errors::Whose;
 use crate::kernel::KernelLike;
 use crate::tables::Tables;
 use crate::{choices, errors, frames as files};
@@ -68,7 +69,9 @@ impl Options<'_> {
                 "a recording has tables, kernel and frames of its own; leave them out beside replay:FILE",
             ));
         }
-        let (plan, options) = RecordedRun::restore(recording).map_err(errors::input)?;
+        let restored = RecordedRun::restore(recording);
+        let (plan, options) =
+            restored.map_err(|error| errors::raised(Whose::of_call(!error.is_other_datapath()), &error))?;
         Ok((plan, RunOptions { require_hardware: self.require_hardware, stop, ..options }))
     }
 

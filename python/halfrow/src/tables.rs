@@ -48,7 +48,7 @@ impl Tables {
             None => (Lens::seen(None, &View::default())?.optics, None),
         };
         optics.by = choices::tables_by(rows, projection, entries, optics.by)?;
-        let chosen = py.detach(|| optics::choose(None, optics, None)).map_err(errors::input)?;
+        let chosen = py.detach(|| optics::choose(None, optics, None)).map_err(errors::optics)?;
         let from = chosen.optics.source_of(&chosen.tables);
         let kernel = kernel.unwrap_or_else(|| KernelLike::Name(Interpolant::Hermite.name().into()));
         Self::with_kernel(chosen, &from, Some(kernel), file.into_iter().collect())
@@ -62,10 +62,10 @@ impl Tables {
     fn read(path: PathBuf, kernel: Option<KernelLike<'_>>) -> PyResult<Self> {
         let is_mem = path.extension().is_some_and(|extension| extension == "mem");
         let (file, paths) = if is_mem {
-            let (tables, kernel) = mem::read(&path).map_err(errors::input)?;
+            let (tables, kernel) = mem::read(&path).map_err(errors::optics)?;
             (TableFile { tables, kernel, about: None }, mem::paths(&path).to_vec())
         } else {
-            (TableFile::read(&path).map_err(errors::input)?, vec![path.clone()])
+            (TableFile::read(&path).map_err(errors::optics)?, vec![path.clone()])
         };
         let geometry = file.tables.geometry();
         let (width, height, depth) = (Some(geometry.width()), Some(geometry.height()), geometry.depth());
@@ -73,7 +73,7 @@ impl Tables {
         let optics = Optics::of_equidistant(Equidistant::default(), &view, TablesBy::Equation9);
         let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
         let files = paths.iter().map(|path| frames::hash(path)).collect::<PyResult<_>>()?;
-        Self::with_kernel(chosen.map_err(errors::input)?, &path.display().to_string(), kernel, files)
+        Self::with_kernel(chosen.map_err(errors::optics)?, &path.display().to_string(), kernel, files)
     }
 
     /// Writes them with their kernel to NAME.json, or to two files of memory images for NAME.mem. Files that are there are
@@ -195,7 +195,7 @@ impl Tables {
     /// Those of the paper's lens.
     pub(crate) fn of_paper() -> PyResult<Self> {
         let optics = Lens::seen(None, &View::default())?.optics;
-        let chosen = optics::choose(None, optics, None).map_err(errors::input)?;
+        let chosen = optics::choose(None, optics, None).map_err(errors::optics)?;
         Self::with_kernel(chosen, "", None, Vec::new())
     }
 

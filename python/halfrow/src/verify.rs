@@ -39,8 +39,7 @@ pub(crate) fn verify(py: Python<'_>, target: &str, options: &Bound<'_, PyAny>) -
 }
 
 fn not_opened(error: OpenError) -> PyErr {
-    let whose = if error.class() == Class::Call { Whose::Call } else { Whose::World };
-    errors::raised(whose, &error)
+    errors::raised(Whose::of_call(error.class() == Class::Call), &error)
 }
 
 /// All that a run needs.
@@ -68,8 +67,9 @@ impl Job {
             lost = link.lost();
             candidate = Candidate { link: Box::new(link), ..candidate };
         }
-        let mut finished = run::verify(&self.plan, candidate, &self.options, progress)
-            .map_err(|error| NotRun { whose: Whose::Call, error: error.into() })?;
+        let mut finished = run::verify(&self.plan, candidate, &self.options, progress).map_err(|error| {
+            NotRun { whose: Whose::of_call(!error.is_other_datapath()), error: error.into() }
+        })?;
         // A verdict that stands is not lost with its evidence, and a PASS without it is none: the report tells.
         if let Some(error) = lost.get() {
             finished.lose_recording(error);

@@ -1,12 +1,13 @@
 //! Work on a thread of its own, while the one that called listens to Python's signals and tells of progress.
 
-use std::sync::Arc;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use halfrow::progress::{Event, Progress};
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
 /// How long a signal may wait for somebody to look.
@@ -35,7 +36,7 @@ pub(crate) fn watched<T: Send + 'static>(
         let result = work(&move |event| _ = events.send(Told::Event(event)));
         _ = sender.send(Told::Result(result));
     });
-    let told = Arc::new(std::sync::Mutex::new(told));
+    let told = Mutex::new(told);
     let mut raised: Option<PyErr> = None;
     loop {
         let next = py.detach(|| {
@@ -47,16 +48,7 @@ pub(crate) fn watched<T: Send + 'static>(
                 tell(listener, &event).and_then(|()| py.check_signals())
             }
             Ok(Told::Event(_)) | Err(RecvTimeoutError::Timeout) => py.check_signals(),
-            Err(RecvTimeoutError::Disconnected) => match worker.join() {
-                Err(panic) => std::panic::resume_unwind(panic),
-                Ok(()) => {
-                    return Err(raised.unwrap_or_else(|| {
-                        pyo3::exceptions::PyRuntimeError::new_err(
-                            "the run ended without a result; report this",
-                        )
-                    }));
-                }
-            },
+            Err(RecvTimeoutError::Disconnected) => return Err(without_result(worker)),
         };
         if let Err(error) = outcome {
             if raised.is_some() {
@@ -65,6 +57,16 @@ pub(crate) fn watched<T: Send + 'static>(
             is_stopped.store(true, Ordering::Relaxed);
             raised = Some(error);
         }
+    }
+}
+
+/// Goes on with the panic of a worker that has left no result.
+fn without_result(worker: JoinHandle<()>) -> PyErr {
+    match worker.join() {
+        Err(panic) => std::panic::resume_unwind(panic),
+        Ok(()) => PyRuntimeError::new_err(
+            "the run ended without a result; this is a fault of halfrow, so report it",
+        ),
     }
 }
 

@@ -10,8 +10,11 @@ import halfrow
 def test_codes_are_those_of_the_program(tmp_path, program, opencv):
     broken = tmp_path / "broken.json"
     broken.write_text('{"datapath": 1, "width": 63}')
+    other = tmp_path / "other.json"
+    other.write_text('{"datapath": 3}')
     cases = [
         (lambda: halfrow.Tables.read(broken), ["verify", "--tables", broken], "table-file-wrong"),
+        (lambda: halfrow.Tables.read(other), ["verify", "--tables", other], "table-file-of-other-datapath"),
         (lambda: halfrow.Tables.from_lens("no.yml"), ["verify", "--lens", "no.yml"], "lens-file-unreadable"),
         (lambda: halfrow.Tables.from_lens(kernel="cubic"), ["verify", "--kernel", "cubic"], "kernel-not-found"),
         (lambda: halfrow.Lens(width=63), ["verify", "--width", "63"], "geometry-impossible"),
