@@ -1,10 +1,14 @@
 //! Cases for everything that computes as DATAPATH.md says: builds, legal tables, kernels, sizes, depths, blankings and gaps,
-//! drawn by a number, with frames that follow each other under tables of their own.
+//! drawn by a number, with frames that follow each other under tables of their own: row factors, or a grid.
 
-use halfrow_mock::{BoardFault, Depth, Node, Options, Player, RowIn, Settings, Tables};
+mod grids;
+
+use halfrow_mock::{BoardFault, Depth, GridShape, Node, Options, Player, RowIn, Settings, Tables};
 use halfrow_model::{BitDepth, Frame, Geometry, Interpolant, Kernel, Phase, RowFactor, TableSet, correct};
 
 use crate::dice::Dice;
+
+pub use grids::GridNeeds;
 
 /// What a case is drawn for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +21,8 @@ pub struct Build {
     pub least_blanking: u16,
     /// Whether the kernel may have outer taps.
     pub outer_taps: bool,
+    /// What it needs for grids, if it takes them.
+    pub grids: Option<GridNeeds>,
 }
 
 impl Build {
@@ -27,6 +33,8 @@ impl Build {
             ring: 64 << dice.below(3),
             least_blanking: dice.one_of(&[0, 1, 7]),
             outer_taps: true,
+            // Those of a mock: its rows are ready at once.
+            grids: Some(GridNeeds { entries: 2048, blanking: 0, width: 0 }),
         }
     }
 }
@@ -58,7 +66,12 @@ impl Case {
     /// Never: what is drawn is legal.
     pub fn draw(dice: &mut Dice, build: Build, frames: usize) -> Self {
         let width = draw_width(dice, build.ring.into());
-        let height = 1 + dice.below(6);
+        let mut height = 1 + dice.below(6);
+        // Each frame of a case is of one datapath or of the other, so that they change between frames.
+        let grids = build.grids.filter(|_| dice.below(3) != 0);
+        if grids.is_some() && dice.below(4) == 0 {
+            height += dice.below(30);
+        }
         let depth = dice.one_of(&BitDepth::ALL);
         let centre2 = match dice.below(8) {
             0 => dice.one_of(&[0, 2 * width - 2]),
@@ -78,11 +91,14 @@ impl Case {
             height: height as u16,
             centre2: centre2 as u16,
             depth: Depth::from_bits(depth.bits() as u8).unwrap(),
-            blanking: build.least_blanking + dice.one_of(&[0, 0, 1, 13, 900]),
+            blanking: least_blanking(build, grids, width) + dice.one_of(&[0, 0, 1, 13, 900]),
             gap_seed: dice.one_of(&[0, 1, 0x8000_0000]) ^ dice.below(2) as u32,
         };
         let mut frame = || {
-            let tables = draw_tables(dice, geometry, build.ring.into());
+            let tables = match grids.filter(|_| dice.below(3) != 0) {
+                Some(needs) => grids::draw(dice, geometry, build.ring.into(), needs),
+                None => draw_tables(dice, geometry, build.ring.into()),
+            };
             (tables, draw_kernel(dice, build.outer_taps), draw_frame(dice, width, height, depth))
         };
         Self { options, settings, frames: (0..frames).map(|_| frame()).collect() }
@@ -118,10 +134,15 @@ impl Case {
         player.configure(self.settings.clone()).unwrap();
         let mut played = Played::default();
         for (number, (set, kernel, frame)) in self.frames.iter().enumerate() {
-            tables.write_factors(0, &set.units().collect::<Vec<_>>()).unwrap();
+            let entries: Vec<_> = set.units().collect();
+            match set.shape() {
+                None => tables.write_factors(0, &entries).unwrap(),
+                Some(_) => tables.write_grid(0, &entries).unwrap(),
+            }
             let nodes: Vec<Node> = kernel.nodes().iter().map(|&node| node.into()).collect();
             tables.write_nodes(0, &nodes).unwrap();
-            tables.commit(number as u8 + 1, number as u16).unwrap();
+            let shape = set.shape().and_then(|shape| GridShape::new(shape.v() as u8, shape.k() as u8));
+            tables.commit_shape(number as u8 + 1, number as u16, shape).unwrap();
             for (row, input) in frame.rows().enumerate() {
                 let (frame_number, last) = (number as u16, row + 1 == frame.height());
                 let (row, samples) = (row as u16, input.to_vec());
@@ -143,6 +164,12 @@ impl Played {
             self.latencies.extend([out.first_latency, out.last_latency]);
         }
     }
+}
+
+/// Pixel clocks that rows of this width need between them, in a case that may have grids.
+fn least_blanking(build: Build, grids: Option<GridNeeds>, width: usize) -> u16 {
+    let of_grids = grids.filter(|needs| width < needs.width).map_or(0, |needs| needs.blanking);
+    build.least_blanking.max(of_grids)
 }
 
 /// Columns of rows that the ring holds: mostly few, so that there can be many cases, and now and then the most.

@@ -11,7 +11,13 @@ use crate::dice::Dice;
 /// What cases for this core are drawn for.
 #[must_use]
 pub fn build(core: CoreBuild) -> Build {
-    Build { latency: core.latency(), ring: core.ring(), least_blanking: 0, outer_taps: core.has_outer_taps() }
+    Build {
+        latency: core.latency(),
+        ring: core.ring(),
+        least_blanking: 0,
+        outer_taps: core.has_outer_taps(),
+        grids: None,
+    }
 }
 
 /// The core with what goes in and what came out.

@@ -7,7 +7,7 @@ use halfrow::board::{Board, NumberedFrame, OpenOptions, ReturnedRow, RowTiming, 
 use halfrow::link::Link;
 use halfrow_model::{Frame, Kernel, TableSet};
 
-use crate::cases::{Build, Case, Played};
+use crate::cases::{Build, Case, GridNeeds, Played};
 
 /// An open session in which case follows case.
 pub struct WholeBoard {
@@ -35,6 +35,11 @@ impl WholeBoard {
             ring: capabilities.ring,
             least_blanking: capabilities.least_blanking,
             outer_taps: capabilities.taps == 7,
+            grids: capabilities.grids.map(|grids| GridNeeds {
+                entries: grids.entries.into(),
+                blanking: grids.grid_blanking.into(),
+                width: grids.grid_width.into(),
+            }),
         }
     }
 

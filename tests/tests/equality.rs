@@ -8,7 +8,7 @@ use halfrow_tests::dice::Dice;
 fn model_and_mock_agree_on_every_sample_and_every_latency() {
     let cases =
         std::env::var("HALFROW_EQUALITY_CASES").ok().and_then(|text| text.parse().ok()).unwrap_or(4000);
-    let (mut samples, mut rows) = (0, 0);
+    let (mut samples, mut rows, mut grids) = (0, 0, 0);
     for seed in 0..cases {
         let mut dice = Dice::new(seed);
         let build = Build::draw(&mut dice);
@@ -17,6 +17,10 @@ fn model_and_mock_agree_on_every_sample_and_every_latency() {
         assert_eq!(played, case.expected(), "case {seed}");
         samples += played.samples.len();
         rows += played.latencies.len() / 2;
+        grids += case.frames.iter().filter(|(tables, ..)| tables.shape().is_some()).count();
     }
-    println!("model and mock: {cases} cases, {rows} rows, {samples} samples, all equal");
+    assert!(grids > cases as usize / 2, "{grids} frames behind a grid");
+    println!(
+        "model and mock: {cases} cases, {rows} rows, {samples} samples, {grids} frames behind a grid, all equal"
+    );
 }

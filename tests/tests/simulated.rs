@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 use halfrow::link::{Link, WireLink};
 use halfrow_mock::{Depth, Settings};
-use halfrow_model::{Equidistant, Frame, Geometry, Interpolant, Kernel, TableSet};
+use halfrow_model::{Camera, Equidistant, Frame, Geometry, GridShape, Interpolant, Kernel, TableSet};
 use halfrow_pipe::{Endpoint, Pipe, PipeOptions};
 use halfrow_sim::{Board, Core, CoreBuild, Front};
 use halfrow_tests::cases::{Build, Case, Played};
@@ -57,21 +57,49 @@ fn boards_agree(front: Front, cases: u64) {
     let mut verilog = WholeBoard::open(link(Board::new(front, 1)));
     let build = verilog.build();
     let (mut samples, mut rows) = (0, 0);
+    let (mut grids, mut changes) = (0, 0);
     for seed in 0..cases {
         let case = Case::draw(&mut Dice::new(seed), build, 2);
+        let has_grid: Vec<_> = case.frames.iter().map(|(tables, ..)| tables.shape().is_some()).collect();
+        grids += has_grid.iter().filter(|&&has_grid| has_grid).count();
+        changes += usize::from(has_grid[0] != has_grid[1]);
         let played = board_agrees(&mut verilog, &case, &format!("{front:?}, case {seed}"));
         samples += played.samples.len();
         rows += played.latencies.len() / 2;
     }
-    println!("model, mock and {front:?} agree: {cases} cases, {rows} rows, {samples} samples");
+    // Two frames in nine cases of twenty are behind a grid, and in three of ten the datapath changes from one to the other.
+    assert!(build.grids.is_none() || grids >= cases as usize / 2 && changes >= cases as usize / 10);
+    println!(
+        "model, mock and {front:?} agree: {cases} cases, {rows} rows, {samples} samples; {grids} frames behind a grid, and in \
+         {changes} cases another datapath from one frame to the next"
+    );
 }
 
-/// Two photographs at the paper's size, the second under other tables and another kernel.
-fn photograph_case(build: Build, first: Frame, second: Frame, geometry: Geometry) -> Case {
+/// Two tables for photographs at the paper's size: row factors, and others that reach further.
+fn row_factors(geometry: Geometry) -> [TableSet; 2] {
     let tables = TableSet::from_lens(geometry, &Equidistant::default(), None).unwrap();
     let reversed: Vec<_> = tables.units().rev().collect();
     let narrower: Vec<_> = reversed.iter().map(|units| units - units / 16).collect();
     let narrower = TableSet::from_units(geometry, &narrower).unwrap();
+    [tables, narrower]
+}
+
+/// Two grids for them, of the paper's lens and of a shorter one whose grid has another shape.
+fn grids(geometry: Geometry) -> [TableSet; 2] {
+    let middle = ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0);
+    let paper = Equidistant::default();
+    let shorter = Equidistant::from_radius(0.9 * paper.radius()).unwrap();
+    [(paper, 5, 6), (shorter, 6, 5)].map(|(lens, v, k)| {
+        let camera = Camera::new(geometry, lens.into(), middle, 180.0).unwrap();
+        let grid = camera.fitted_grid(GridShape::new(v, k).unwrap());
+        assert_eq!(grid.check_ring(geometry.width().next_power_of_two()), Ok(()));
+        grid
+    })
+}
+
+/// Two photographs, the second under other tables and another kernel.
+fn photograph_case(build: Build, frames: [Frame; 2], [tables, others]: [TableSet; 2]) -> Case {
+    let ([first, second], geometry) = (frames, *tables.geometry());
     let [hermite, keys] = [Interpolant::Hermite, Interpolant::Keys].map(Kernel::from);
     let drawn = Case::draw(&mut Dice::new(0), build, 0);
     let settings = Settings {
@@ -82,7 +110,7 @@ fn photograph_case(build: Build, first: Frame, second: Frame, geometry: Geometry
         blanking: 0,
         gap_seed: 0,
     };
-    Case { settings, frames: vec![(tables, hermite, first), (narrower, keys, second)], ..drawn }
+    Case { settings, frames: vec![(tables, hermite, first), (others, keys, second)], ..drawn }
 }
 
 fn difference(found: &Played, expected: &Played) -> String {
@@ -130,13 +158,32 @@ fn model_mock_and_verilog_agree_on_many_more_cases() {
 #[test]
 #[ignore = "minutes long; scripts/soak runs it"]
 fn model_mock_and_verilog_agree_on_photographs() {
-    let (paths, geometry) = (photographs::paths(), Geometry::default());
+    photographs_agree("row factors", &row_factors(Geometry::default()));
+}
+
+#[test]
+#[ignore = "minutes long; scripts/soak runs it"]
+fn model_mock_and_verilog_agree_on_photographs_behind_grids() {
+    photographs_agree("grids", &grids(Geometry::default()));
+}
+
+/// Two frames of the paper's size by two, the first of each pair once more in front of the second.
+#[allow(clippy::print_stdout)]
+fn photographs_agree(what: &str, tables: &[TableSet; 2]) {
+    let paths = photographs::paths();
     assert!(!paths.is_empty(), "no photographs: set HALFROW_IMAGES to a folder with PNG files");
+    let geometry = *tables[0].geometry();
     let mut verilog = WholeBoard::open(link(Board::new(Front::Bytes, 1)));
+    let mut samples = 0;
     for pair in paths.chunks(2) {
-        let [first, second] = [pair.first(), pair.last()].map(|path| filled(path.unwrap(), &geometry));
-        let case = photograph_case(verilog.build(), first, second, geometry);
-        board_agrees(&mut verilog, &case, &format!("{pair:?}"));
+        let frames = [pair.first(), pair.last()].map(|path| filled(path.unwrap(), &geometry));
+        let case = photograph_case(verilog.build(), frames, tables.clone());
+        samples += board_agrees(&mut verilog, &case, &format!("{pair:?}")).samples.len();
     }
-    println!("model, mock and Verilog agree: {} photographs of 1920 x 1080", paths.len());
+    println!(
+        "model, mock and Verilog agree by {what}: {} photographs of {} x {}, {samples} samples",
+        paths.len(),
+        geometry.width(),
+        geometry.height()
+    );
 }
