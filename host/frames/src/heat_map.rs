@@ -24,7 +24,12 @@ impl HeatMap {
     /// The picture of `rows`, all of them equally long, of amounts that are 0 or more.
     #[must_use]
     pub fn new(rows: &[Vec<f64>]) -> Self {
-        let most = rows.iter().flatten().copied().fold(0.0, f64::max);
+        Self::up_to(rows, rows.iter().flatten().copied().fold(0.0, f64::max))
+    }
+
+    /// The picture of `rows` as [`Self::new`] has them, with `most` for the brightest, as for maps of one scale.
+    #[must_use]
+    pub fn up_to(rows: &[Vec<f64>], most: f64) -> Self {
         // Where all amounts are 0 any scale will do.
         let scale = if most > 0.0 { most } else { 1.0 };
         let data = rows.iter().flatten().flat_map(|&amount| colour(amount / scale)).collect();
@@ -54,6 +59,7 @@ mod tests {
         let pixels: Vec<_> = map.image.data.chunks(3).collect();
         assert_eq!(pixels[0], [23, 23, 32]);
         assert_eq!((pixels[1], pixels[2]), (&[220, 70, 106][..], &[252, 253, 191][..]));
+        assert_eq!(HeatMap::up_to(&[vec![0.0, 2.0]], 4.0).image.data[3..], [220, 70, 106]);
         assert!(HeatMap::new(&[vec![0.0; 2]]).image.data.chunks(3).all(|pixel| pixel == [23, 23, 32]));
     }
 }

@@ -111,4 +111,18 @@ fn what_each_projection_leaves_is_told() {
     );
     assert!(told["map"]["brightest_px"].as_f64().unwrap() < 0.1, "the map is of what was asked for: {told}");
     assert_eq!(told["rows"], "exact");
+    // A frame of 192 x 48 whose circle has the radius 130 ends within 85 degrees.
+    let left = &told["residual_px"];
+    assert_eq!(
+        (&left["share_beyond_90_degrees"], &left["parts"]["exact"]["rim"]["max"]),
+        (&0.0.into(), &0.0.into())
+    );
+    // One that is as wide as the circle and as high has the rim in it.
+    let whole = ["--width", "260", "--height", "260", "--radius", "130"];
+    let told = folder.halfrow([&["lens", "--json"], &whole[..]].concat()).json();
+    let left = &told["residual_px"];
+    let rim = |by: &str| left["parts"][by]["rim"]["max"].as_f64().unwrap();
+    assert!(rim("equation-9") > 10.0 && rim("exact") > 0.05, "{told}");
+    let text = folder.halfrow([&["lens"], &whole[..]].concat()).stdout;
+    assert!(text.contains("rim max") && text.contains("level lines bend as before"), "{text}");
 }

@@ -20,7 +20,7 @@ fn without_photographs_the_remedy_is_named() {
     let remedy = "fig12 and table1 need the 24 photographs; give --images FOLDER";
     refused(&folder, &["paper", "-o", "out"], remedy);
     refused(&folder, &["paper", "table1", "-o", "out"], remedy);
-    refused(&folder, &["paper", "-o", "out"], "fig3 fig4 fig5 fig6 fig8 delay resources");
+    refused(&folder, &["paper", "-o", "out"], "fig3 fig4 fig5 fig6 fig8 verticals residuals delay resources");
     folder.write("kodim01.png", "no picture");
     refused(&folder, &["paper", "table1", "--images", ".", "-o", "out"], "photograph 1 of 24 cannot be used");
     refused(&folder, &["paper", "fig7", "-o", "out"], "[possible values: fig3, fig4,");
@@ -206,4 +206,77 @@ fn json_is_what_the_folder_holds_and_the_exit_code_stays() {
         "{}",
         refused.stdout
     );
+}
+
+/// The cells of the rows of a page's table with this head.
+fn rows_of_page(page: &str, head: &[&str]) -> Vec<Vec<String>> {
+    let cells =
+        |line: &str| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let behind = page.lines().skip_while(|line| cells(line) != head).skip(2);
+    behind.take_while(|line| line.starts_with('|')).map(cells).collect()
+}
+
+/// That docs/lenses.md has this table, its numbers to one unit of their last digit, since logarithms and sines differ by machines.
+#[track_caller]
+fn assert_on_page(table: &Value) {
+    let page = include_str!("../../../docs/lenses.md");
+    let head: Vec<_> =
+        table["columns"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
+    let (written, made) = (rows_of_page(page, &head), table["rows"].as_array().unwrap());
+    assert_eq!(written.len(), made.len(), "the table {head:?}");
+    let number = |text: &str| text.trim_end_matches(" %").parse::<f64>();
+    for (written, made) in written.iter().zip(made) {
+        for (written, made) in written.iter().zip(made.as_array().unwrap()) {
+            let made = made.as_str().map_or_else(|| made.to_string(), str::to_owned);
+            let agree = match (number(written), number(&made)) {
+                (Ok(on_page), Ok(found)) => {
+                    let decimals =
+                        written.trim_end_matches(" %").split_once('.').map_or(0, |(_, rest)| rest.len());
+                    (on_page - found).abs() < 1.01 * 0.1_f64.powi(decimals as i32)
+                }
+                _ => *written == made,
+            };
+            assert!(agree, "docs/lenses.md says {written} for {made}: {head:?}");
+        }
+    }
+}
+
+/// The bends of the fisheye picture and behind Eq. 9 were computed in NumPy, by bisecting Eq. 4 and OCamCalib's polynomial over the
+/// rows of each edge, with the same medians; Eq. 9's mean over the map, too.
+#[test]
+fn three_ways_stand_side_by_side_and_bends_are_those_of_the_projections() {
+    let folder = Folder::new();
+    let (report, _) = made(&folder, 0, &["verticals"]);
+    let [map, bends, _] = &report["items"][0]["tables"].as_array().unwrap()[..] else { panic!("{report}") };
+    let mean = |row: usize| map["rows"][row][1].as_f64().unwrap();
+    assert!((mean(0) - 2.3853).abs() < 2e-4 && mean(1) < mean(0) && mean(2) < 0.1, "{map}");
+    for (row, mean, largest) in
+        [(0, 17.329, 98.436), (1, 4.615, 25.813), (4, 18.046, 103.782), (5, 4.314, 24.320)]
+    {
+        let found = |place: usize| bends["rows"][row][place].as_f64().unwrap();
+        assert!((found(3) - mean).abs() < 0.05, "{bends}");
+        assert!((found(4) - largest).abs() < 0.25, "{bends}");
+    }
+    assert_on_page(bends);
+    let page = folder.text("out/paper.html");
+    assert!(page.contains("<div class=\"previews threes\">"), "three columns");
+    for name in ["map", "facades-paper", "facades-dsl215"] {
+        let places =
+            ["equation-9", "fitted", "exact"].map(|way| page.find(&format!("{name}-{way}.png")).unwrap());
+        assert!(places.is_sorted(), "{name}");
+        assert!(folder.names("out").contains(&format!("{name}-exact.png")), "{name}");
+    }
+    assert!(folder.text("out/verticals-edges.csv").lines().count() == 1 + 8 * 10);
+}
+
+/// What a grid by formula leaves at most was computed in Python, apart from this program: the claims.
+#[test]
+fn what_is_left_per_lens_frame_and_centre_is_what_the_page_of_lenses_says() {
+    let folder = Folder::new();
+    let (report, _) = made(&folder, 0, &["residuals"]);
+    let item = &report["items"][0];
+    assert_eq!(item["claims"].as_array().unwrap().len(), 11);
+    for table in item["tables"].as_array().unwrap() {
+        assert_on_page(table);
+    }
 }

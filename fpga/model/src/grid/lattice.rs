@@ -30,6 +30,10 @@ pub struct GridResiduals {
     pub circle: GridResidual,
     /// In its inner part: up to 85 degrees off the axis, and 0.9 of the circle's height.
     pub inner: GridResidual,
+    /// In the rest of it: the rim and what is next to the poles.
+    pub rim: GridResidual,
+    /// The share of the frame's outputs that show neither, 0 to 1: what is beyond 90 degrees, and the poles.
+    pub beyond: f64,
 }
 
 /// Where in the picture an output is.
@@ -74,20 +78,24 @@ impl Lattice {
 
     /// What `tables` leave.
     pub(super) fn residuals(&self, tables: &TableSet) -> GridResiduals {
-        let (mut circle, mut inner) = (Sum::default(), Sum::default());
+        let (mut inner, mut rim, mut beyond) = (Sum::default(), Sum::default(), 0);
         for (&row, wanted) in self.rows.iter().zip(self.wanted.chunks_exact(self.columns.len())) {
             let values = tables.values(row).unwrap_or_default();
             for (&column, &(wanted, part)) in self.columns.iter().zip(wanted) {
                 let amount = (found(&values, column) - wanted).abs();
-                if part == Part::Inner {
-                    inner.add(amount);
-                }
-                if part != Part::Outside {
-                    circle.add(amount);
+                match part {
+                    Part::Inner => inner.add(amount),
+                    Part::Rim => rim.add(amount),
+                    Part::Outside => beyond += 1,
                 }
             }
         }
-        GridResiduals { circle: circle.residual(), inner: inner.residual() }
+        GridResiduals {
+            circle: inner.and(&rim).residual(),
+            inner: inner.residual(),
+            rim: rim.residual(),
+            beyond: f64::from(beyond) / self.wanted.len().max(1) as f64,
+        }
     }
 }
 
@@ -127,6 +135,15 @@ impl Sum {
         self.sum += amount;
         self.max = self.max.max(amount);
         self.visible += usize::from(amount > VISIBLE);
+    }
+
+    fn and(&self, other: &Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            sum: self.sum + other.sum,
+            max: self.max.max(other.max),
+            visible: self.visible + other.visible,
+        }
     }
 
     fn residual(&self) -> GridResidual {

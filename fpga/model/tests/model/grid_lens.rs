@@ -1,7 +1,8 @@
 //! Grids from lenses: the projection against its inverse, what grids leave of it, and which grid is chosen.
 
 use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResiduals, TableSet, exact_inverse,
+    BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResidual, GridResiduals, TableSet,
+    exact_inverse,
 };
 use proptest::prelude::*;
 
@@ -61,12 +62,14 @@ fn what_a_source_shows_belongs_at_its_output() {
 #[test]
 fn the_golden_table_leaves_what_was_computed_elsewhere() {
     let camera = paper((1920, 1080), 1.0);
-    let GridResiduals { circle, inner } = camera.grid_residuals(&camera.grid_by_formula(shape(5, 6)), 5);
+    let GridResiduals { circle, inner, rim, beyond } =
+        camera.grid_residuals(&camera.grid_by_formula(shape(5, 6)), 5);
     assert!(
         (0.001_25..0.001_35).contains(&circle.max) && (0.000_15..0.000_25).contains(&circle.mean),
         "{circle:?}"
     );
-    assert_eq!(inner, circle);
+    // The frame ends within 85 degrees and 0.9 of the circle's height.
+    assert_eq!((inner, rim, beyond), (circle, GridResidual::default(), 0.0));
     assert!(circle.share.abs() < f64::EPSILON);
     // Eq. 9 leaves 35 columns in the corrected frame.
     let by_rows = camera.grid_residuals(&camera.equation_9(), 5);

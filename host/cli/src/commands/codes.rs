@@ -94,6 +94,8 @@ codes::codes! {
         Correct => "paper-frame-not-corrected",
         Geometry => "paper-geometry-refused",
         Lens => "paper-lens-refused",
+        Camera => "paper-camera-refused",
+        Room => "paper-grid-refused",
         Lines => "scene-lines-contradict",
         Tables => "paper-tables-refused",
         = Misfit,

@@ -139,11 +139,14 @@ impl<'a> Figures<'a> {
         let Some(first) = self.all.first() else { return Vec::new() };
         let amounts = |Spread { mean, max }: Spread| format!("{mean:9.4} {max:9.4}");
         let head = format!("error left at {} samples, in pixels", first.residuals.samples);
-        let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05")];
+        let mut lines = vec![format!("{head:<50} mean       max   inner max  above 0.05    rim max")];
         for left in &self.all {
             let name = left.by.how(left.shape);
-            let (horizontal, inner) = (amounts(left.residuals.horizontal), left.parts.inner);
-            lines.push(format!("  {name:<45} {horizontal} {:11.4} {:9.2} %", inner.max, 100.0 * inner.share));
+            let (horizontal, GridResiduals { inner, rim, .. }) =
+                (amounts(left.residuals.horizontal), left.parts);
+            let share = 100.0 * inner.share;
+            lines
+                .push(format!("  {name:<45} {horizontal} {:11.4} {share:9.2} % {:10.4}", inner.max, rim.max));
         }
         lines.push(format!(
             "  {:<45} {}",
@@ -151,12 +154,15 @@ impl<'a> Figures<'a> {
             amounts(first.residuals.vertical)
         ));
         lines.push(
-            "inner: up to 85 degrees off the axis and 0.9 of the circle's height. Rows are kept (Eq. 7): level lines bend as before.".to_owned(),
+            "inner: up to 85 degrees off the axis and 0.9 of the circle's height; rim: the rest of the circle, the poles among it."
+                .to_owned(),
         );
-        if self.optics.camera.lens().widest() > std::f64::consts::FRAC_PI_2 {
-            lines.push(
-                "What lies beyond 90 degrees is shown without being stretched, and not exactly.".to_owned(),
-            );
+        lines.push("Rows are kept (Eq. 7): level lines bend as before.".to_owned());
+        let beyond = 100.0 * first.parts.beyond;
+        if beyond > 0.0 {
+            lines.push(format!(
+                "{beyond:.1} % of the outputs show what lies beyond 90 degrees, without being stretched and not exactly."
+            ));
         }
         lines
     }
@@ -169,9 +175,13 @@ impl<'a> Figures<'a> {
             self.all.iter().map(|left| (left.by.name().to_owned(), json!(left.residuals.horizontal)));
         let part = |part: GridResidual| json!({ "mean": part.mean, "max": part.max, "share_above_0.05": part.share });
         let parts = self.all.iter().map(|left| {
-            let GridResiduals { circle, inner } = left.parts;
-            (left.by.name().to_owned(), json!({ "circle": part(circle), "inner": part(inner) }))
+            let GridResiduals { circle, inner, rim, .. } = left.parts;
+            (
+                left.by.name().to_owned(),
+                json!({ "circle": part(circle), "inner": part(inner), "rim": part(rim) }),
+            )
         });
+        let beyond = self.all.first().map(|left| left.parts.beyond);
         let shape = self.all.iter().find_map(|left| left.shape);
         json!({
             "lens": {
@@ -193,6 +203,7 @@ impl<'a> Figures<'a> {
                 "horizontal": horizontal.collect::<Map<_, _>>(),
                 "vertical": first.map(|residuals| residuals.vertical),
                 "parts": parts.collect::<Map<_, _>>(),
+                "share_beyond_90_degrees": beyond,
             },
             "map": map,
         })

@@ -1,15 +1,15 @@
 //! How straight the houses stand: the measure of what the correction is for.
 //!
 //! Every edge between two neighbouring façades is upright in the world, at one longitude θ. A fisheye bows it; corrected,
-//! it should run down one column. On the horizon both images have it at f · θ, and from there it is followed through the
-//! pixels, up and down. The scene only says where to begin and which rows show the edge, which is the same in both
-//! images, as the correction keeps the rows (Eq. 7).
+//! it should run down one column. On the horizon both images have it in the column of θ, f · θ from the centre before an
+//! equidistant lens, and from there it is followed through the pixels, up and down. The scene only says where to begin and
+//! which rows show the edge, which is the same in both images, as the correction keeps the rows (Eq. 7).
 
-use halfrow_model::{Frame, exact_inverse};
+use halfrow_model::Frame;
 use serde::{Deserialize, Serialize};
 
-use super::super::scene::Scene;
 use super::facade::MARGIN;
+use super::sight::Sight;
 use super::town::{self, Edge, ROWS, Seen};
 
 /// Columns to either side of its expected place in which an edge is looked for.
@@ -32,31 +32,63 @@ pub struct EdgeDeviation {
     pub max_px: f64,
 }
 
+/// An upright edge as it was found in a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundEdge {
+    /// Its longitude in the world in radians, positive to the right.
+    pub longitude: f64,
+    /// Rows, and the column at which each has the edge, to a fraction; from the horizon up, then from there down.
+    pub places: Vec<(usize, f64)>,
+}
+
+impl FoundEdge {
+    /// Its mean column.
+    #[must_use]
+    pub fn mean_column(&self) -> f64 {
+        mean(&self.places.iter().map(|(_, column)| *column).collect::<Vec<_>>())
+    }
+
+    /// The distances of its places from its mean column, in pixels.
+    pub fn distances(&self) -> impl Iterator<Item = f64> {
+        let middle = self.mean_column();
+        self.places.iter().map(move |(_, column)| (column - middle).abs())
+    }
+}
+
 /// How far the edges of the street's houses are from straight columns in `frame`: the street rendered for `scene`, or
 /// what became of it. An edge counts that is found in most of the rows that show it. `None` when there is no such edge,
 /// as in another picture or one that is too small.
 #[must_use]
-pub fn edge_deviation(frame: &Frame, scene: &Scene) -> Option<EdgeDeviation> {
-    let edges: Vec<Vec<f64>> = town::edges().filter_map(|edge| columns(frame, scene, &edge)).collect();
-    let distances: Vec<f64> = edges.iter().flat_map(|columns| distances_from_mean(columns)).collect();
+pub fn edge_deviation<S: Sight>(frame: &Frame, scene: &S) -> Option<EdgeDeviation> {
+    let edges = found_edges(frame, scene);
+    let distances: Vec<f64> = edges.iter().flat_map(FoundEdge::distances).collect();
     let max_px = distances.iter().copied().reduce(f64::max)?;
     Some(EdgeDeviation { edges: edges.len(), mean_px: mean(&distances), max_px })
 }
 
-/// The columns in which the rows of `frame` have the edge, if most of the rows that show it do.
-fn columns(frame: &Frame, scene: &Scene, edge: &Edge) -> Option<Vec<f64>> {
+/// The edges of the street's houses that are found in most of the rows of `frame` that show them, from the left of the street
+/// to its right; `frame` is the street rendered for `scene`, or what became of it.
+#[must_use]
+pub fn found_edges<S: Sight>(frame: &Frame, scene: &S) -> Vec<FoundEdge> {
+    let found =
+        |edge: Edge| Some(FoundEdge { longitude: edge.longitude, places: places(frame, scene, &edge)? });
+    town::edges().filter_map(found).collect()
+}
+
+/// The rows of `frame` that have the edge, each with the column, if most of the rows that show it do.
+fn places<S: Sight>(frame: &Frame, scene: &S, edge: &Edge) -> Option<Vec<(usize, f64)>> {
     let showing: Vec<usize> = (0..frame.height()).filter(|&row| shows(scene, edge, scene.y(row))).collect();
     let above = showing.partition_point(|&row| scene.y(row) < 0.0);
     let least = f64::from(frame.depth().max()) * STEP;
     let mut found = Vec::new();
     let (up, down) = showing.split_at(above);
     for rows in [&mut up.iter().rev() as &mut dyn Iterator<Item = &usize>, &mut down.iter()] {
-        let mut track = Track::from_horizon(scene, edge);
+        let mut track = Track::from_horizon(scene, edge)?;
         for &row in rows {
             let expected = track.column_at(scene.y(row));
             if let Some(column) = step_near(frame.row(row), expected, least) {
                 track.update(column);
-                found.push(column);
+                found.push((row, column));
             }
         }
     }
@@ -64,13 +96,10 @@ fn columns(frame: &Frame, scene: &Scene, edge: &Edge) -> Option<Vec<f64>> {
 }
 
 /// Whether the row at `y` shows the edge: plain wall of the one house on its left, of the other on its right.
-fn shows(scene: &Scene, edge: &Edge, y: f64) -> bool {
-    let Some((x, _)) = exact_inverse(&scene.lens, scene.lens.focal_length() * edge.longitude, y) else {
-        return false;
-    };
+fn shows<S: Sight>(scene: &S, edge: &Edge, y: f64) -> bool {
+    let Some(x) = scene.imaged(edge.longitude, y) else { return false };
     let reach = REACH as f64 + 1.0;
-    let walls =
-        [-reach, -1.0, 1.0, reach].map(|aside| wall_of(edge, town::seen(scene.lens.ray(x + aside, y))));
+    let walls = [-reach, -1.0, 1.0, reach].map(|aside| wall_of(edge, town::seen(scene.ray(x + aside, y)?)));
     let [Some(left), Some(near_left), Some(near_right), Some(right)] = walls else { return false };
     left == near_left && right == near_right && left != right
 }
@@ -99,9 +128,10 @@ impl Track {
     const ALPHA: f64 = 0.5;
     const BETA: f64 = 0.1;
 
-    /// Upright at f · θ on the horizon.
-    fn from_horizon(scene: &Scene, edge: &Edge) -> Self {
-        Self { y: 0.0, column: scene.centre_x() + scene.lens.focal_length() * edge.longitude, slope: 0.0 }
+    /// Upright at its place on the horizon, if the lens images that.
+    fn from_horizon<S: Sight>(scene: &S, edge: &Edge) -> Option<Self> {
+        let column = scene.centre_x() + scene.on_horizon(edge.longitude)?;
+        Some(Self { y: 0.0, column, slope: 0.0 })
     }
 
     /// Moves on to the row at `y`, and says where the line should be there.
@@ -132,11 +162,6 @@ fn step_near(row: &[u16], column: f64, least: f64) -> Option<f64> {
     Some(first as f64 + moment / weight)
 }
 
-fn distances_from_mean(columns: &[f64]) -> impl Iterator<Item = f64> {
-    let middle = mean(columns);
-    columns.iter().map(move |column| (column - middle).abs())
-}
-
 fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
@@ -144,6 +169,7 @@ fn mean(values: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Scene;
 
     /// A wall of 100 and one of 900: where they meet at 19.8, column 20, which begins at 19.5, has 0.3 of the first.
     #[test]
@@ -172,7 +198,7 @@ mod tests {
         let edge = Edge { row: 0, house: 0, longitude: 1.0 };
         let bent = |y: f64| 959.5 + scene.lens.focal_length() - 3e-4 * y * y;
         for direction in [-1.0, 1.0] {
-            let mut track = Track::from_horizon(&scene, &edge);
+            let mut track = Track::from_horizon(&scene, &edge).unwrap();
             for y in (1..500).map(|step| direction * f64::from(step)) {
                 let hidden = (200.0..260.0).contains(&y.abs());
                 let expected = track.column_at(y);

@@ -11,13 +11,15 @@ mod ground;
 mod light;
 mod lines;
 mod sensor;
+mod sight;
 mod sky;
 mod town;
 
-use halfrow_model::{Colour, Frame, FrameError};
+use halfrow_model::{Camera, Colour, Frame, FrameError, Phase};
 
-pub use edges::{EdgeDeviation, edge_deviation};
+pub use edges::{EdgeDeviation, FoundEdge, edge_deviation, found_edges};
 pub use lines::{SceneLine, lines};
+pub use sight::Sight;
 
 use super::scene::Scene;
 use light::Light;
@@ -35,10 +37,23 @@ const RIM: f64 = -0.052;
 /// # Errors
 /// None for a legal geometry, as the sensor saturates at the largest sample.
 pub(super) fn render(scene: &Scene) -> Result<Frame, FrameError> {
+    rendered(scene, scene)
+}
+
+/// The street as a sensor of Bayer `phase` sees it through `camera`'s own lens; the same seed gives the same noise.
+///
+/// # Errors
+/// None for a legal geometry, as the sensor saturates at the largest sample.
+pub fn seen_by(camera: &Camera, phase: Phase, seed: u64) -> Result<Frame, FrameError> {
+    rendered(&Scene { geometry: *camera.geometry(), phase, seed, ..Scene::default() }, camera)
+}
+
+/// The street on the sensor of `scene`, through the lens of `sight`.
+fn rendered<S: Sight>(scene: &Scene, sight: &S) -> Result<Frame, FrameError> {
     scene.frame_of_rows(|row, samples| {
         let mut sensor = Sensor::new(scene.seed, scene.max(), row * samples.len());
         for (column, sample) in samples.iter_mut().enumerate() {
-            let light = pixel(scene, column as f64 - scene.centre_x(), scene.y(row));
+            let light = pixel(sight, column as f64 - sight.centre_x(), sight.y(row));
             *sample = sensor.sample(match scene.phase.colour(row, column) {
                 Colour::Red => light.red,
                 Colour::Green => light.green,
@@ -50,17 +65,18 @@ pub(super) fn render(scene: &Scene) -> Result<Frame, FrameError> {
 
 /// The light of the pixel whose middle is (`x`, `y`) from the optical centre. Where the first two rays agree, two more
 /// would not tell anything else.
-fn pixel(scene: &Scene, x: f64, y: f64) -> Light {
+fn pixel<S: Sight>(sight: &S, x: f64, y: f64) -> Light {
     let [first, second, third, fourth] = RAYS.map(|(dx, dy)| (x + dx, y + dy));
-    let through = |(x, y)| through(scene, x, y);
+    let through = |(x, y)| through(sight, x, y);
     let (first, second) = (through(first), through(second));
     let half = (first + second).scaled(0.5);
     if first.differs(second) { half.mixed((through(third) + through(fourth)).scaled(0.5), 0.5) } else { half }
 }
 
 /// The light that the lens passes to one image point. It falls off a little towards the rim.
-fn through(scene: &Scene, x: f64, y: f64) -> Light {
-    let ray = scene.lens.ray(x, y);
-    let [_, _, w] = ray;
-    if w < RIM { Light::BLACK } else { town::light(ray).scaled(0.75 + 0.25 * w.max(0.0)) }
+fn through<S: Sight>(sight: &S, x: f64, y: f64) -> Light {
+    match sight.ray(x, y) {
+        Some(ray @ [.., w]) if w >= RIM => town::light(ray).scaled(0.75 + 0.25 * w.max(0.0)),
+        _ => Light::BLACK,
+    }
 }

@@ -3,7 +3,9 @@
 use std::io;
 use std::path::PathBuf;
 
-use halfrow_model::{CorrectError, FrameError, GeometryError, LensError, TableError};
+use halfrow_model::{
+    CameraError, CorrectError, FrameError, GeometryError, GridRoomError, LensError, TableError,
+};
 
 use halfrow::board::BoardError;
 use halfrow::run::Misfit;
@@ -43,6 +45,12 @@ pub enum PaperError {
     /// The paper's lens is none.
     #[error("the paper's lens is refused; this is a fault of halfrow, so report it")]
     Lens(#[from] LensError),
+    /// A lens that is compared does not stand before its frame.
+    #[error("a lens of the comparison is refused; this is a fault of halfrow, so report it")]
+    Camera(#[from] CameraError),
+    /// A grid of the comparison has no room.
+    #[error("a grid of the comparison is refused; this is a fault of halfrow, so report it")]
+    Room(#[from] GridRoomError),
     /// A projection could not be made from lines.
     #[error("no projection keeps these lines; check that none of them is given twice, in two ways")]
     Lines,

@@ -17,6 +17,10 @@ pub enum Item {
     Fig8,
     /// Details of a corrected photograph, enlarged.
     Fig12,
+    /// Eq. 9, fitted rows and the exact projection side by side, on the map of Fig. 5 and on façades.
+    Verticals,
+    /// What each of them leaves of the exact projection, per lens, frame and optical centre.
+    Residuals,
     /// PSNR of 24 photographs, in double precision, in integers and through a board.
     Table1,
     /// The delay of half a row, measured on a board.
@@ -28,7 +32,7 @@ pub enum Item {
 /// A name that is no item's.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "`{0}` is no item of the paper; it has fig3, fig4, fig5, fig6, fig8, fig12, table1, delay and resources"
+    "`{0}` is no item of the paper; it has fig3, fig4, fig5, fig6, fig8, fig12, verticals, residuals, table1, delay and resources"
 )]
 pub struct UnknownItem(pub String);
 
@@ -40,7 +44,7 @@ struct Words {
 }
 
 /// In the order of [`Item`].
-const WORDS: [Words; 9] = [
+const WORDS: [Words; 11] = [
     Words {
         name: "fig3",
         title: "Fig. 3: longitudes and latitudes",
@@ -68,6 +72,16 @@ const WORDS: [Words; 9] = [
         summary: "Details of a corrected photograph, enlarged",
     },
     Words {
+        name: "verticals",
+        title: "Beyond Fig. 5: Eq. 9, fitted rows and the exact projection side by side",
+        summary: "Eq. 9, fitted rows and the exact projection side by side, on the map of Fig. 5 and on façades",
+    },
+    Words {
+        name: "residuals",
+        title: "Beyond Fig. 5: what is left, per lens, frame and optical centre",
+        summary: "What each of them leaves of the exact projection, per lens, frame and optical centre",
+    },
+    Words {
         name: "table1",
         title: "Table 1: PSNR of the interpolations over 24 photographs",
         summary: "PSNR of 24 photographs, in double precision, in integers and through a board",
@@ -86,13 +100,15 @@ const WORDS: [Words; 9] = [
 
 impl Item {
     /// All of them, in the paper's order.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::Fig3,
         Self::Fig4,
         Self::Fig5,
         Self::Fig6,
         Self::Fig8,
         Self::Fig12,
+        Self::Verticals,
+        Self::Residuals,
         Self::Table1,
         Self::Delay,
         Self::Resources,

@@ -4,6 +4,7 @@
 //! JSON. Equations, sections, figures and tables are those of Lai et al., *Real-time distortion correction of fish-eye lens
 //! based on Bayer image signal*, Optical Review 2014.
 
+mod cameras;
 mod carroll;
 mod delay;
 mod details;
@@ -17,6 +18,7 @@ mod folder;
 mod graticule;
 mod interpolants;
 mod item;
+mod left;
 mod lines;
 mod marked;
 mod page;
@@ -25,10 +27,12 @@ mod psnr;
 mod quality;
 mod resources;
 mod scene_views;
+mod side_by_side;
 mod svg;
 mod table_1;
 mod tested_board;
 mod views;
+mod ways;
 
 pub use distortion::distorted;
 pub(crate) use distortion::distorted_by;
@@ -80,6 +84,8 @@ impl Material<'_> {
                 let board = self.board.as_mut().filter(|_| self.through_board);
                 table_1::exhibit(self.photographs, board, progress)
             }
+            Item::Verticals => side_by_side::exhibit(),
+            Item::Residuals => left::exhibit(),
             Item::Delay => {
                 let board = self.board.as_mut().ok_or(PaperError::NoBoard)?;
                 delay::exhibit(board, progress)

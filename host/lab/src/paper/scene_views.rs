@@ -40,6 +40,7 @@ pub(super) fn figure_4(marked: Option<&MarkedPhotograph>) -> Result<Exhibit, Pap
          were marked in a photograph.",
     );
     let net = Net::optimised(&subject.lines, subject.lens.focal_length())?;
+    exhibit.in_threes = true;
     let figures = [
         (View::Fisheye, "fig-4a", "Fig. 4(a): the fisheye picture, 180° across."),
         (View::Perspective, "fig-4b", "Fig. 4(b): perspective, 120° across."),

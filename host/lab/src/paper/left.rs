@@ -1,0 +1,183 @@
+//! What each way to make tables leaves of the exact projection, per lens, frame and optical centre.
+
+use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals, TableSet};
+
+use super::cameras::{self, DSL215, FISHEYE_MODEL, FULL_HD, PAPER, SENSOR};
+use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
+use super::ways::Way;
+use super::{Item, PaperError};
+
+/// Columns and rows from one output that is looked at to the next.
+const STEP: usize = 5;
+
+/// Entries of the smallest bank that a board with grids may have, and of the one for the full sensor.
+const BANK: usize = 2048;
+const LARGE_BANK: usize = 4096;
+
+/// A lens before a frame.
+struct Case {
+    lens: &'static str,
+    camera: fn() -> Result<Camera, CameraError>,
+    /// The most entries of its grid.
+    entries: usize,
+    /// The largest error in the inner picture of a grid that was made by formula, not fitted; computed apart, in Python.
+    by_formula: f64,
+}
+
+const CASES: [Case; 11] = [
+    case(PAPER, || cameras::paper(FULL_HD), BANK, 0.0013),
+    case("a lens with R = 960", || cameras::equidistant(FULL_HD, 960.0, (959.5, 539.5)), BANK, 0.0099),
+    case(PAPER, || aside(FULL_HD, (640.0, 360.0)), BANK, 0.0028),
+    case(PAPER, || aside(FULL_HD, (0.0, 0.0)), BANK, 0.064),
+    case(DSL215, || cameras::dsl215_before(FULL_HD), BANK, 0.0063),
+    case(DSL215, || cameras::dsl215_aside(FULL_HD), BANK, 0.0063),
+    case(DSL215, cameras::measured, BANK, 0.024),
+    case(FISHEYE_MODEL, cameras::fisheye_model, BANK, 0.0019),
+    case(PAPER, || cameras::paper(SENSOR), LARGE_BANK, 0.036),
+    case(PAPER, || aside(SENSOR, (900.0, 700.0)), LARGE_BANK, 0.048),
+    case(DSL215, || cameras::dsl215_before(SENSOR), LARGE_BANK, 0.09),
+];
+
+const fn case(
+    lens: &'static str,
+    camera: fn() -> Result<Camera, CameraError>,
+    entries: usize,
+    by_formula: f64,
+) -> Case {
+    Case { lens, camera, entries, by_formula }
+}
+
+/// The paper's lens with its axis at `centre`.
+fn aside(size: (usize, usize), centre: (f64, f64)) -> Result<Camera, CameraError> {
+    cameras::equidistant(size, Equidistant::default().radius(), centre)
+}
+
+/// The table, and the largest errors of the exact projection held to what was computed elsewhere.
+pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
+    let mut exhibit = Exhibit::new(Item::Residuals);
+    exhibit.remark(
+        "How many columns of the fisheye picture an output is taken from beside its place in the exact projection (Eqs. 5 to 7), \
+         at every fifth column and row. The inner picture is what is up to 85° off the axis and within 0.9 of the image circle's \
+         height; the rim is the rest of the circle, the poles among it. What is beyond 90° is shown without being stretched, and \
+         has no place in the exact projection.",
+    );
+    exhibit.remark(
+        "A grid is the best of at most 2,048 entries, which every board with datapath 2 has room for, and of 4,096 for the full \
+         sensor. It is accepted when its largest error in the inner picture is not above that of a grid by formula, which was \
+         computed elsewhere.",
+    );
+    let (mut ways, mut parts) = (Vec::new(), Vec::new());
+    for case in &CASES {
+        let left = Left::of(case)?;
+        exhibit.claims.push(claim(case, &left));
+        ways.push(left.ways());
+        parts.push(left.parts());
+    }
+    exhibit.tables.push(table(
+        "residuals",
+        "The largest error in the inner picture, in pixels.",
+        &WAYS,
+        ways,
+    ));
+    exhibit.tables.push(table(
+        "residuals-exact",
+        "What the exact projection leaves, in pixels.",
+        &PARTS,
+        parts,
+    ));
+    Ok(exhibit)
+}
+
+const WAYS: [&str; 8] =
+    ["lens", "frame", "axis at", "Eq. 9", "fitted rows", "exact projection", "v, k", "entries"];
+
+const PARTS: [&str; 10] = [
+    "lens",
+    "frame",
+    "axis at",
+    "inner mean",
+    "largest",
+    "above 0.05",
+    "rim mean",
+    "rim largest",
+    "rim above 0.05",
+    "beyond 90°",
+];
+
+/// What each way leaves of one case.
+struct Left {
+    /// Lens, frame and axis.
+    what: [String; 3],
+    equation_9: GridResiduals,
+    fitted: GridResiduals,
+    exact: GridResiduals,
+    /// v and k of the grid, and its entries.
+    shape: String,
+    entries: usize,
+}
+
+impl Left {
+    fn of(case: &Case) -> Result<Self, PaperError> {
+        let camera = (case.camera)()?;
+        let (geometry, (column, row)) = (camera.geometry(), camera.centre());
+        let left = |tables: &TableSet| camera.grid_residuals(tables, STEP);
+        let [equation_9, fitted, exact] = Way::ALL.map(|way| way.tables(&camera, case.entries));
+        let exact = exact?;
+        Ok(Self {
+            what: [
+                case.lens.to_owned(),
+                format!("{} x {}", geometry.width(), geometry.height()),
+                format!("{column:.1}, {row:.1}"),
+            ],
+            equation_9: left(&equation_9?),
+            fitted: left(&fitted?),
+            shape: exact.shape().map_or_else(String::new, |shape| format!("{}, {}", shape.v(), shape.k())),
+            entries: exact.units().len(),
+            exact: left(&exact),
+        })
+    }
+
+    fn head(&self) -> impl Iterator<Item = Cell> {
+        self.what.iter().cloned().map(Cell::Text)
+    }
+
+    fn ways(&self) -> Vec<Cell> {
+        let rest = [
+            Cell::Number(self.equation_9.inner.max, 1),
+            Cell::Number(self.fitted.inner.max, 1),
+            Cell::Number(self.exact.inner.max, 4),
+            Cell::Text(self.shape.clone()),
+            Cell::Number(self.entries as f64, 0),
+        ];
+        self.head().chain(rest).collect()
+    }
+
+    fn parts(&self) -> Vec<Cell> {
+        let amounts = |GridResidual { mean, max, share }: GridResidual| {
+            [Cell::Number(mean, 4), Cell::Number(max, 4), percent(share)]
+        };
+        let GridResiduals { inner, rim, beyond, .. } = self.exact;
+        self.head().chain(amounts(inner)).chain(amounts(rim)).chain([percent(beyond)]).collect()
+    }
+}
+
+fn percent(share: f64) -> Cell {
+    Cell::Text(format!("{:.2} %", 100.0 * share))
+}
+
+fn claim(case: &Case, left: &Left) -> Claim {
+    let [lens, frame, axis] = &left.what;
+    Claim {
+        what: format!("largest in the inner picture, {lens}, {frame}, axis at {axis}"),
+        unit: "px",
+        paper: None,
+        found: left.exact.inner.max,
+        accepted: Accepted::UpTo(case.by_formula),
+        judges_board: false,
+    }
+}
+
+fn table(name: &'static str, caption: &str, columns: &[&str], rows: Vec<Vec<Cell>>) -> Table {
+    let columns = columns.iter().map(|&name| name.to_owned()).collect();
+    Table { name, caption: caption.to_owned(), columns, rows, on_page: true }
+}
