@@ -61,6 +61,21 @@ fn the_version_names_the_commit() {
 }
 
 #[test]
+fn asked_verbosely_the_version_tells_what_the_program_was_built_from() {
+    let compiler = Command::new("rustc").arg("--version").output().unwrap().stdout;
+    let compiler = format!("compiler: {}", String::from_utf8(compiler).unwrap().trim());
+    for call in [&["--version", "--verbose"][..], &["-Vv"], &["-v", "verify", "--version"]] {
+        let told = halfrow(call.iter().copied()).stdout;
+        for line in [compiler.as_str(), "licence: MIT OR Apache-2.0", "  LGPL-2.1-or-later: libusb (C)"] {
+            assert!(told.lines().any(|told| told == line), "{call:?}: no {line} in {told}");
+        }
+        assert!(told.contains("\ncommit: ") && told.contains("\nfeatures: "), "{call:?}: {told}");
+    }
+    assert_eq!(halfrow(["--version"]).stdout.lines().count(), 1);
+    assert_eq!(halfrow(["--version", "--", "--verbose"]).stdout.lines().count(), 1);
+}
+
+#[test]
 fn a_call_without_a_command_shows_help_and_is_a_usage_error() {
     let ended = halfrow([]);
     assert_eq!(ended.code, Some(2));

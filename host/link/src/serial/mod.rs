@@ -187,7 +187,7 @@ fn failed(path: &Path, error: io::Error) -> SerialError {
 /// What to do about a port that this user may not open.
 #[must_use]
 pub(crate) fn how_to_get_access(port: &Path) -> String {
-    const RULES: &str = "install scripts/70-halfrow.rules as the README says";
+    const RULES: &str = "install scripts/70-halfrow.rules as docs/boards.md says";
     let group = fs::metadata(port).ok().filter(|port| port.mode() & 0o060 == 0o060).map(|port| port.gid());
     match group.and_then(|id| nix::unistd::Group::from_gid(id.into()).ok().flatten()) {
         Some(group) if group.gid.as_raw() != 0 => format!(

@@ -50,7 +50,7 @@ pub enum UsbError {
     },
     /// Not permitted.
     #[error(
-        "this user may not open the USB device {name}; install scripts/70-halfrow.rules as the README says, and plug the \
+        "this user may not open the USB device {name}; install scripts/70-halfrow.rules as docs/boards.md says, and plug the \
          board in again, or run as a user who may"
     )]
     NotPermitted {

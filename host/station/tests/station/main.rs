@@ -10,6 +10,7 @@ mod floor;
 mod history;
 mod jobs;
 mod lanes;
+mod manual;
 mod metrics;
 mod pages;
 mod plans;

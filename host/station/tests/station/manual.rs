@@ -1,0 +1,47 @@
+//! Man pages and completions of the station, as packages take them along.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::common::{Did, folder, program};
+
+fn did(arguments: &[&str]) -> Did {
+    Command::new(program()).args(arguments).output().unwrap().into()
+}
+
+fn text(folder: &Path, page: &str) -> String {
+    fs::read_to_string(folder.join(page)).unwrap_or_else(|error| panic!("{page}: {error}"))
+}
+
+#[test]
+fn every_command_has_a_page_which_is_not_written_over_unless_asked() {
+    let folder = folder();
+    let to = folder.path().to_str().unwrap();
+    assert_eq!(did(&["manual", to]).code, Some(0));
+    assert!(text(folder.path(), "halfrow-station.1").contains(".TH halfrow-station 1"));
+    assert!(text(folder.path(), "halfrow-station-user-add.1").contains("halfrow\\-station\\-user\\-add"));
+    assert!(!folder.path().join("halfrow-station-lane.1").exists(), "a command that is hidden has a page");
+    let help = did(&["--help"]).said;
+    let commands = help
+        .lines()
+        .skip_while(|line| *line != "Commands:")
+        .skip(1)
+        .map_while(|line| line.split_whitespace().next().filter(|name| *name != "help"));
+    for command in commands {
+        text(folder.path(), &format!("halfrow-station-{command}.1"));
+    }
+    let again = did(&["manual", to]);
+    assert!(again.code == Some(3) && again.complained.contains("exists"), "{again:?}");
+    assert_eq!(did(&["manual", to, "--overwrite"]).code, Some(0));
+}
+
+#[test]
+fn bash_takes_the_completion_script() {
+    let script = did(&["completions", "bash"]).said;
+    let read = Command::new("bash")
+        .args(["-euc", "eval \"$1\"; complete -p halfrow-station", "-", &script])
+        .output();
+    let read: Did = read.unwrap().into();
+    assert!(read.code == Some(0) && read.said.contains("halfrow-station"), "{read:?}");
+}
