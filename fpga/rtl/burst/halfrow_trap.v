@@ -23,7 +23,7 @@ module halfrow_trap #(
     output reg  [11:0] reply_length,  // bytes of the payload of the reply to TRAP
     input  wire        reply_begins,  // pulse: its first byte is wanted
     input  wire        reply_advance, // the next one is
-    output reg  [7:0]  value,         // a clock later
+    output reg  [7:0]  value,         // two clocks later
 
     input  wire        under_way,     // a burst is
     input  wire        compares,      // and its rows are compared
@@ -44,7 +44,7 @@ module halfrow_trap #(
     localparam [3:0] NONE = 4'd0;
     localparam [11:0] HEAD_BYTES = 12'd13;
     // What stands at places of the reply: `kept`, then the head, then over and over the bytes of two samples.
-    localparam [3:0] AT_KEPT = 4'd15, AT_LOW = 4'd12, AT_HIGH = 4'd14;
+    localparam [3:0] AT_KEPT = 4'd15, AT_LOW = 4'd12, AT_MIDDLE = 4'd13, AT_HIGH = 4'd14;
     // An output is written so many clocks late: the row in front has been compared before it is overwritten.
     localparam LATE = 8;
 
@@ -171,22 +171,33 @@ module halfrow_trap #(
             earlier <= read_sample[11:8];
     end
 
-    reg [7:0] of_frame, of_row, of_sample;
+    // The memory brings a sample late in the clock: all that it is chosen by stands ready by then.
+    reg [7:0] of_head, of_sample;
+    reg of_signature, of_low, of_middle, of_high;
+
+    always @(posedge clk) begin
+        case (place[3:2])
+            2'd0: of_head <= frame[{place[1:0], 3'd0} +: 8];
+            2'd1:
+            case (place[1:0])
+                2'd0: of_head <= row[7:0];
+                2'd1: of_head <= {4'd0, row[11:8]};
+                2'd2: of_head <= kept_width[7:0];
+                default: of_head <= {4'd0, kept_width[11:8]};
+            endcase
+            default: of_head <= {7'd0, told && place == AT_KEPT};
+        endcase
+        of_signature <= place[3:2] == 2'd2;
+        of_low <= place == AT_LOW;
+        of_middle <= place == AT_MIDDLE;
+        of_high <= place == AT_HIGH;
+        if (begins)
+            {of_head, of_signature, of_low, of_middle, of_high} <= {7'd0, told, 4'd0};
+    end
 
     always @* begin
-        of_frame = frame[{place[1:0], 3'd0} +: 8];
-        case (place[1:0])
-            2'd0: {of_row, of_sample} = {row[7:0], read_sample[7:0]};
-            2'd1: {of_row, of_sample} = {4'd0, row[11:8], read_sample[3:0], earlier};
-            2'd2: {of_row, of_sample} = {kept_width[7:0], read_sample[11:4]};
-            default: {of_row, of_sample} = {4'd0, kept_width[11:8], 7'd0, told};
-        endcase
-        case (place[3:2])
-            2'd0: value = of_frame;
-            2'd1: value = of_row;
-            2'd2: value = signature_byte;
-            default: value = of_sample;
-        endcase
+        of_sample = of_low ? read_sample[7:0] : of_middle ? {read_sample[3:0], earlier} : read_sample[11:4];
+        value = of_signature ? signature_byte : of_low || of_middle || of_high ? of_sample : of_head;
     end
 
     wire unused = &{1'b0, packet_length[1:0]};
