@@ -58,6 +58,15 @@ module shapes_cases #(
         end
     endtask
 
+    task write_factors(input integer count);
+        begin
+            put_span(0, 0, 0, 3, count);
+            put32(7, 32'h01000000);
+            give(TABLE_WRITE, 7 + 4 * count, session);
+            replied(TABLE_WRITE, 0);
+        end
+    endtask
+
     task one;
         begin
             w = 64 + 2 * below(below(2) ? 100 : 1265); h = 1 + below(below(2) ? 100 : 1944);
@@ -116,6 +125,14 @@ module shapes_cases #(
         commit_shape(size_of(128, 9, 3, 5), 0, 13); taken(4'd3);
         commit_shape(9, 0, 11); taken(4'd0);
         commit_shape(size_of(128, 9, 3, 5), 0, 300); taken(4'd3);
+        passed;
+        what = "row factors over a grid";
+        repeat (2) begin commit_shape(size_of(128, 9, 3, 5), 0, 13); taken(4'd3); end
+        write_grid(3, 1, 32'h01ffffff); replied(TABLE_WRITE, 0);
+        write_factors(0);
+        check(shapes === (TABLE_BANKS == 2 ? 8'h33 : 8'h03), "what writes no factor leaves the shape");
+        write_factors(1);
+        check(shapes === (TABLE_BANKS == 1 ? 8'h00 : shadow ? 8'h03 : 8'h30), "a bank with row factors has no shape");
         payload[0] = 2; put32(1, 99); give(RESET, 5, session); replied(RESET, 0);
         check(shapes === 8'd0, "a wiped bank has no shape");
         passed;

@@ -101,8 +101,8 @@ impl Tables {
         }
     }
 
-    /// Writes factors into the shadow bank, from the row `first` on: all of them or, on an error, none. It holds row factors then,
-    /// whatever it held before.
+    /// Writes factors into the shadow bank, from the row `first` on: all of them or, on an error, none. With one of them it holds
+    /// row factors, whatever it held before.
     ///
     /// # Errors
     /// If a row is not in the table, a factor is not from 1 to 2^24, or the shadow bank waits for its frame.
@@ -114,7 +114,9 @@ impl Tables {
             return Err(TableError::Factor { row: first + place, factor: factors[place] });
         }
         entries.copy_from_slice(factors);
-        self.shadow_mut().shape = None;
+        if !factors.is_empty() {
+            self.shadow_mut().shape = None;
+        }
         Ok(())
     }
 

@@ -10,6 +10,7 @@ module halfrow_generations #(
     input  wire        commit,         // pulse: the shadow bank is good
     input  wire [7:0]  new_generation, // 1 to 255 with `commit`
     input  wire [3:0]  new_shape,      // with `commit`: {k is 6, v} of fpga/DATAPATH.md
+    input  wire        factor_written, // pulse: into the shadow bank, which holds no grid from then on
     input  wire [15:0] first_frame,
     input  wire        frame_start,    // pulse: row 0 of a frame is about to enter; what it uses shows a clock later
     input  wire [15:0] frame_number,
@@ -32,8 +33,8 @@ module halfrow_generations #(
     always @(posedge clk)
         if (wipe)
             shapes <= 8'd0;
-        else if (commit)
-            shapes <= shadow_bank ? {new_shape, shapes[3:0]} : {shapes[7:4], new_shape};
+        else if (commit || factor_written)
+            shapes <= shadow_bank ? {new_shape & {4{commit}}, shapes[3:0]} : {shapes[7:4], new_shape & {4{commit}}};
 
     always @(posedge clk) begin
         if (commit) begin

@@ -165,9 +165,11 @@ module halfrow_tables #(
 
     halfrow_generations #(.TABLE_BANKS(TABLE_BANKS)) generations (
         .clk(clk), .wipe(rst || wipe), .forget(rst || forget), .commit(commit), .new_generation(new_generation),
-        .new_shape(new_grid ? {new_k[1], new_v[2:0]} : 4'd0), .first_frame(first_frame), .frame_start(frame_start),
-        .frame_number(frame_number), .known(known), .generation(generation), .active_bank(active_bank),
-        .shadow_bank(shadow_bank), .shapes(shapes), .commit_pending(commit_pending), .commit_frame(commit_frame));
+        .new_shape(new_grid ? {new_k[1], new_v[2:0]} : 4'd0),
+        .factor_written(step_write && state == WRITING && !span_grid), .first_frame(first_frame),
+        .frame_start(frame_start), .frame_number(frame_number), .known(known), .generation(generation),
+        .active_bank(active_bank), .shadow_bank(shadow_bank), .shapes(shapes), .commit_pending(commit_pending),
+        .commit_frame(commit_frame));
 
     always @(posedge clk) begin
         begin_walk <= 1'b0;

@@ -57,4 +57,10 @@ pub(crate) fn an_alternating_burst_goes_through_each_banks_own_shape(on: &dyn Bo
         (DRAWN, 0),
         "the shadow is the grid of before"
     );
+    golden_tables().upload(&mut bench);
+    assert_eq!(
+        made(bench.signed(&Burst { burst: 5, ..odd })[1]),
+        (FRAME, 0),
+        "row factors were written over the grid"
+    );
 }
