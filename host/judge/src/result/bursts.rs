@@ -1,6 +1,6 @@
 //! What findings on bursts, frames that the board makes on its own, say beside their figures.
 
-use halfrow_model::Geometry;
+use halfrow_model::TableSet;
 use serde::{Deserialize, Serialize};
 
 /// Why there was no burst.
@@ -33,12 +33,16 @@ pub struct Corner {
     pub bits: u32,
     /// C, twice the column of the centre.
     pub centre2: u32,
+    /// Whether its tables are a grid by turns with row factors, not row factors alone.
+    #[serde(default)]
+    pub grid: bool,
 }
 
-impl From<&Geometry> for Corner {
-    fn from(geometry: &Geometry) -> Self {
+impl From<&TableSet> for Corner {
+    fn from(tables: &TableSet) -> Self {
+        let geometry = tables.geometry();
         let (width, height, centre2) = (geometry.width(), geometry.height(), geometry.centre2());
-        Self { width, height, bits: geometry.depth().bits(), centre2 }
+        Self { width, height, bits: geometry.depth().bits(), centre2, grid: tables.shape().is_some() }
     }
 }
 

@@ -124,7 +124,7 @@ fn on_entry_and_at_speed() -> [Finding; 5] {
         },
         Finding::MiscountedAtSpeed { frame: 17, count: BurstCount::Rows, counted: 1079, right: 1080 },
         Finding::InCorner {
-            corner: Corner { width: 1364, height: 24, bits: 8, centre2: 1365 },
+            corner: Corner { width: 1364, height: 24, bits: 8, centre2: 1365, grid: false },
             found: Box::new(Finding::MiscountedAtSpeed {
                 frame: 1,
                 count: BurstCount::Rows,
@@ -175,6 +175,7 @@ pub fn not_exercised() -> Vec<NotExercised> {
         NotExercised::FullSpeed {},
         NotExercised::TableChangeAtSpeed {},
         NotExercised::Rules {},
+        NotExercised::Grids {},
         NotExercised::Depths { bits: vec![8, 10] },
     ]
 }

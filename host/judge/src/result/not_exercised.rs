@@ -65,6 +65,8 @@ pub enum NotExercised {
     TableChangeAtSpeed {},
     /// What the board must refuse, keep and end.
     Rules {},
+    /// Rows that a grid corrects, on a board that takes grids.
+    Grids {},
     /// Depths of the board that no frame had.
     Depths {
         /// Bits of a sample, each.

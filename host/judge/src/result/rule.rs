@@ -22,6 +22,8 @@ pub enum Rule {
     CommitCrc,
     /// A commit that names tables which are active or pending is answered, generation 0 is refused, and another is not both.
     Generation,
+    /// A commit whose grid the board cannot have is refused, and one whose grid reads back otherwise.
+    Shape,
     /// A commit takes effect with its frame, and not before.
     CommitFrame,
     /// What would touch tables of a pending commit is refused.

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use halfrow_protocol::MAX_PAYLOAD;
-use halfrow_protocol::message::{Commit, Span};
+use halfrow_protocol::message::{Commit, Grids, Span};
 use serde::{Deserialize, Serialize};
 
 use super::at_speed;
@@ -275,7 +275,13 @@ pub fn usual_capabilities(plan: &Plan, nature: BoardNature) -> Capabilities {
         clock_hz: 0,
         bursts: Some(Bursts { content: at_speed::CONTENT, records: 64, least_frame_blanking: 8, trap: true }),
         entered: true,
-        grids: None,
+        grids: Some(Grids {
+            further_datapath: 2,
+            entries: 2048,
+            ks: 1 << 5 | 1 << 6,
+            grid_blanking: 32,
+            grid_width: 192,
+        }),
         nature,
         name: String::new(),
     }

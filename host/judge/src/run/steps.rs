@@ -6,7 +6,7 @@ use std::thread;
 use super::exercised::not_exercised;
 use super::findings::{End, Findings};
 use super::golden::{self, CannotJudge};
-use super::legal::impossible;
+use super::legal::{grids, impossible};
 use super::misfit::misfit;
 use super::options::RunOptions;
 use super::parts::Part;
@@ -127,6 +127,8 @@ impl Run<'_> {
         let used: Vec<_> =
             self.generations.iter().filter_map(|generation| self.used_of(generation)).collect();
         let generations: Vec<_> = used.iter().chain(&self.findings.corners).collect();
+        let has_grid = generations.iter().any(|generation| generation.tables.shape().is_some());
+        let no_grid = board.identity.is_some() && grids(&self.board.capabilities).is_some() && !has_grid;
         self.findings.not_exercised = board
             .identity
             .as_ref()
@@ -134,6 +136,7 @@ impl Run<'_> {
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
         let untried = self.plan.soak.is_none() && self.plan.amount(Part::Rules) == 0;
         self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
+        self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
     }
 
     /// The rows of `generation` that frames were made with, if there were any.

@@ -60,9 +60,10 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
         Finding::EqualAtSpeed { frames, clock_hz, seconds, held_back, corners } => {
             equal(*frames, *clock_hz, *seconds, *held_back) + &elsewhere(*corners)
         }
-        Finding::InCorner { corner: Corner { width, height, bits, centre2 }, found } => format!(
-            "with frames of {width} x {height}, {bits} bits, centre {:.1}, drawn tables and kernels: {}",
+        Finding::InCorner { corner: Corner { width, height, bits, centre2, grid }, found } => format!(
+            "with frames of {width} x {height}, {bits} bits, centre {:.1}, drawn {} and kernels: {}",
             f64::from(*centre2) / 2.0,
+            if *grid { "grids, row factors" } else { "tables" },
             found.sentence()
         ),
         Finding::PausedAtSpeed { frames, paused } => {

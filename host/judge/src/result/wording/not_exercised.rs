@@ -33,6 +33,7 @@ pub fn not_exercised(part: &NotExercised) -> String {
             "a change of tables between two frames at the full pixel clock".to_owned()
         }
         NotExercised::Rules {} => "what the board must refuse, keep and end".to_owned(),
+        NotExercised::Grids {} => "grids, which are datapath 2".to_owned(),
         NotExercised::Depths { bits } => {
             let depths: Vec<_> = bits.iter().map(u32::to_string).collect();
             format!("samples of {} bits", depths.join(" or "))

@@ -64,6 +64,7 @@ fn meaning(rule: Rule) -> &'static str {
         Rule::Address => "entries keep to their places",
         Rule::CommitCrc => "a commit with another CRC than the tables have",
         Rule::Generation => "which generations a commit may name",
+        Rule::Shape => "a grid that the board cannot have is refused",
         Rule::CommitFrame => "a commit takes effect with its frame",
         Rule::Pending => "a commit is pending",
         Rule::Forgotten => "RESET forgets a pending commit",

@@ -1,10 +1,11 @@
 //! Settings that no plan has, each for two frames at the full pixel clock: other sizes, depths, centres, factors and kernels, so
-//! that every bit of a setting, of an address and of a weight has a turn at both levels. A burst costs a link next to nothing.
+//! that every bit of a setting, of an address and of a weight has a turn at both levels; and grids. A burst costs a link next to nothing.
 
 use halfrow_model::{Geometry, Kernel, MIN_WIDTH, NODES, RowFactor, TableSet};
 use rand_core::Rng;
 use rand_pcg::Pcg64Mcg;
 
+use super::grids::grid_corners;
 use crate::board::Capabilities;
 use crate::run::Generation;
 use crate::run::variations::Build;
@@ -13,6 +14,8 @@ use crate::run::variations::Build;
 const SAMPLES: usize = 1 << 15;
 /// The generation of the first corner's tables. The others follow; none of them is one of a plan's.
 const FIRST: u8 = 64;
+/// The generation of the first grid.
+const FIRST_OF_GRIDS: u8 = FIRST + 8;
 /// Bits of a setting, by turns 0 and 1, and the other way round.
 pub(in crate::run) const BY_TURNS: [usize; 2] = [0x5555, 0xaaaa];
 /// Shifts that make a weight of 16 bits one with any sign and size, and one with which few samples reach the end of their range.
@@ -43,7 +46,9 @@ pub(super) fn corners(capabilities: &Capabilities, seed: u64) -> Vec<Vec<Generat
         });
         tables.collect()
     };
-    sizes.into_iter().chain([tall]).enumerate().filter_map(corner).collect()
+    let mut corners: Vec<_> = sizes.into_iter().chain([tall]).enumerate().filter_map(corner).collect();
+    corners.extend(grid_corners(capabilities, FIRST_OF_GRIDS, &mut draws));
+    corners
 }
 
 /// As many low bits of `pattern` as make no more than `most`.

@@ -5,6 +5,7 @@
 
 mod burst;
 mod corners;
+mod grids;
 mod predicted;
 mod price;
 mod repeated;
@@ -127,18 +128,24 @@ impl Run<'_> {
         let capabilities = self.board.capabilities.clone();
         let corners = corners::corners(&capabilities, self.plan.seed);
         for (place, tables) in (0..).zip(&corners) {
-            let Some(geometry) = tables.first().map(|active| *active.tables.geometry()) else { continue };
+            let Some(active) = tables.first().map(|active| &active.tables) else { continue };
             let in_corner = |end| match end {
                 End::Failed { check, finding, suspects } => {
-                    let (corner, found) = (Corner::from(&geometry), Box::new(finding));
+                    let (corner, found) = (Corner::from(active), Box::new(finding));
                     End::Failed { check, finding: Finding::InCorner { corner, found }, suspects }
                 }
                 error => error,
             };
             self.upload_corner(tables).map_err(in_corner)?;
             let mode = if tables.len() > 1 { BurstMode::Alternating } else { BurstMode::Fresh };
-            let mut plan =
-                BurstPlan::new(&geometry, self.plan.seed, &capabilities, bursts, mode, FIRST_CORNER + place);
+            let mut plan = BurstPlan::new(
+                active.geometry(),
+                self.plan.seed,
+                &capabilities,
+                bursts,
+                mode,
+                FIRST_CORNER + place,
+            );
             plan.frames = 2;
             let watched = self.judge_frames(&plan, tables).map_err(in_corner)?;
             if watched.paused == 0 {
@@ -166,9 +173,12 @@ impl Run<'_> {
             let uploaded = self.board.upload(&generation.tables, &generation.kernel);
             uploaded.map_err(|error| End::board(CheckName::AtSpeed, &error))?;
             self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
-            if let Some(first_row) = generation.upper(1).filter(|_| place == 0) {
-                self.set(first_row.tables.geometry())?;
-                self.activate(&first_row)?;
+            // The entries of a grid lie otherwise in a frame of another height.
+            let rows = if generation.tables.shape().is_some() { usize::MAX } else { 1 };
+            let first_rows = generation.upper(rows.min(generation.tables.geometry().height()));
+            if let Some(first_rows) = first_rows.filter(|_| place == 0) {
+                self.set(first_rows.tables.geometry())?;
+                self.activate(&first_rows)?;
             }
         }
         tables.first().map_or(Ok(()), |active| self.set(active.tables.geometry()))

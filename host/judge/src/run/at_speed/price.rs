@@ -45,12 +45,15 @@ pub(in crate::run) fn price_of_frames(prices: &Prices<'_>, frames: u32) -> f64 {
     prices.short_request() + other_bank + watching(prices, prices.plan.tables.geometry(), frames)
 }
 
-/// All corners: tables for each bank, a row that brings the first into effect, two frames.
+/// All corners: tables for each bank, a row or with a grid a frame that brings the first into effect, two frames.
 pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
     let corner = |tables: &Vec<Generation>| {
-        let Some(geometry) = tables.first().map(|first| first.tables.geometry()) else { return 0.0 };
-        let uploads = tables.len() as f64 * (prices.short_request() + prices.upload_of(geometry.height()));
-        let activated = prices.short_request() + prices.commit() + prices.rows(1, geometry.width(), 0);
+        let Some(active) = tables.first().map(|first| &first.tables) else { return 0.0 };
+        let geometry = active.geometry();
+        let upload = |own: &Generation| prices.short_request() + prices.upload_of(own.tables.units().len());
+        let uploads = tables.iter().map(upload).sum::<f64>();
+        let rows = if active.shape().is_some() { geometry.height() } else { 1 };
+        let activated = prices.short_request() + prices.commit() + prices.rows(rows, geometry.width(), 0);
         uploads + activated + prices.short_request() + watching(prices, geometry, 2)
     };
     corners::corners(prices.capabilities, prices.plan.seed).iter().map(corner).sum()

@@ -70,6 +70,9 @@ impl Rules<'_, '_> {
             let kernel = Request::Commit(Commit { kernel_crc: right.kernel_crc ^ 1 << bit, ..right });
             self.refused(Rule::CommitCrc, &kernel, RefusalCode::TableCrc, Table::Kernel as u16)?;
         }
+        if let Some(grids) = self.known_grids() {
+            self.shapes(grids, right)?;
+        }
         self.others_refused(FIRST)
     }
 

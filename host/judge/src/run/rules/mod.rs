@@ -5,6 +5,7 @@
 mod bursts;
 mod commits;
 mod compared;
+mod grids;
 mod power_up;
 mod price;
 mod requests;

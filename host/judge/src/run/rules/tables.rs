@@ -51,13 +51,22 @@ impl Rules<'_, '_> {
     }
 
     fn entries_of(&self, table: Table) -> u16 {
-        if table == Table::Kernel { NODE_COUNT } else { self.capabilities.max_height }
+        match table {
+            Table::Kernel => NODE_COUNT,
+            Table::RowFactors => self.capabilities.max_height,
+            Table::Grid => self.known_grids().map_or(0, |grids| grids.entries),
+        }
+    }
+
+    /// Every table that the board has, by its first port.
+    fn each_table(&self) -> Vec<Table> {
+        let grid = self.known_grids().map(|_| Table::Grid);
+        [Table::RowFactors, Table::Kernel].into_iter().chain(grid).collect()
     }
 
     /// Spans past the end, of ports that are not there, into the active bank, of more than a packet holds.
     fn spans(&mut self) -> Result<(), End> {
-        for port in self.run.board.table_ports(Table::RowFactors).into_iter().filter(|port| port.port == 0) {
-            let table = port.table;
+        for table in self.each_table() {
             let entries = self.entries_of(table);
             let shadow = Span { table, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
             let ports = match table {
@@ -101,6 +110,9 @@ impl Rules<'_, '_> {
             let span = Span { count: before + 1, ..FIRST_FACTOR };
             let request = Request::TableWrite(Entries { span, bytes: &bytes });
             self.refused(Rule::Entry, &request, RefusalCode::Range, before)?;
+        }
+        if self.known_grids().is_some() {
+            self.grid_entries()?;
         }
         let outer: &[usize] = if self.capabilities.taps < 7 { &[0, NODE_BYTES - 1] } else { &[] };
         for outer in outer {

@@ -1,0 +1,62 @@
+//! Grids that must be refused, on a board that takes grids.
+
+use halfrow_model::TableSet;
+use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Shape, Span, Table};
+
+use super::{FIRST_FACTOR, Rules};
+use crate::result::Rule;
+use crate::run::findings::End;
+use crate::run::legal::grids;
+
+/// The greatest v, and places of COMMIT's fields (WIRE.md, 13).
+const GREATEST_V: u8 = 6;
+const V: u16 = 1;
+const K: u16 = 2;
+
+impl Rules<'_, '_> {
+    pub(super) fn known_grids(&self) -> Option<Grids> {
+        grids(&self.capabilities)
+    }
+
+    /// Entries of a grid of a bit too many, behind one that is right.
+    pub(super) fn grid_entries(&mut self) -> Result<(), End> {
+        let most = *TableSet::GRID_RANGE.end();
+        for wrong in (0..u32::BITS).map(|bit| 1_u32 << bit).filter(|&wrong| wrong > most) {
+            let bytes = [most, wrong].map(u32::to_le_bytes).concat();
+            let span = Span { table: Table::Grid, count: 2, ..FIRST_FACTOR };
+            let request = Request::TableWrite(Entries { span, bytes: &bytes });
+            self.refused(Rule::Entry, &request, RefusalCode::Range, 1)?;
+        }
+        Ok(())
+    }
+
+    /// `right`, which is not committed yet, with each shape that a grid cannot have, with one of more entries than there are,
+    /// and as a grid that reads back otherwise.
+    pub(super) fn shapes(&mut self, grids: Grids, right: Commit) -> Result<(), End> {
+        let of = |v, k| Commit { shape: Some(Shape { v, k }), ..right };
+        let known = (0..u8::BITS as u8).find(|&k| grids.takes(k)).unwrap_or_default();
+        let others = (0..u8::BITS).map(|bit| 1 << bit).chain([0, 4, 7]).filter(|&k| !grids.takes(k));
+        let columns = others.map(|k| (K, of(1, k)));
+        let rows = (0..u8::BITS).map(|bit| GREATEST_V | 1 << bit).filter(|&v| v > GREATEST_V);
+        let wrong: Vec<_> = rows.map(|v| (V, of(v, known))).chain(columns).collect();
+        for (field, commit) in wrong {
+            self.refused(Rule::Shape, &Request::Commit(commit), RefusalCode::Range, field)?;
+        }
+        self.refused(Rule::Shape, &Request::Commit(of(1, known)), RefusalCode::TableCrc, Table::Grid as u16)?;
+        self.too_many_entries(grids, of(1, known))
+    }
+
+    /// The finest grid of frames as high as they can be, where a bank does not hold it.
+    fn too_many_entries(&mut self, grids: Grids, finest: Commit) -> Result<(), End> {
+        let (rows, most) = (usize::from(self.capabilities.max_height), usize::from(grids.entries));
+        let Some(Shape { v, k }) = finest.shape else { return Ok(()) };
+        let columns = self.small.geometry.width().div_ceil(1 << k) + 2;
+        if columns * (((rows - 1) >> v) + 3) <= most {
+            return Ok(());
+        }
+        let height = self.height;
+        self.configure(rows)?;
+        self.refused(Rule::Shape, &Request::Commit(finest), RefusalCode::Range, K)?;
+        self.configure(height)
+    }
+}
