@@ -41,7 +41,7 @@ CLASSES = {"frames": "samples", "at-speed": "signature", "latency": "latency", "
 AT_ONCE = 2
 BOARD = "uniquify; prep -top {top}; wreduce; opt -full; opt_clean -purge; write_ilang {base}"
 # Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port. Nor is a clock that is turned.
-DRAW = "read_ilang {base}; select {modules} t:$mem* %d; mutate -list {count} -seed {seed} -ctrl fault 16 1 -o {faults}"
+DRAW = "read_ilang {base}; select -set block {modules}; select @block t:$mem* %d; mutate -list {count} -seed {seed} -ctrl fault 16 1 -o {faults}"
 WITH_FAULTS = "read_ilang {base}\n{faults}\nhierarchy -top {top}\nsplitnets\nwrite_verilog -noattr {made}\n"
 
 
@@ -55,7 +55,7 @@ def key(paths, words=""):
 
 def judging_key(count, runner):
     """A hash of all that decides what a fault is and who finds it."""
-    own = [HERE / "coverage.py", HERE / "coverage.ini", HERE / "mutants.py", HERE / "rtl.py", pathlib.Path(runner)]
+    own = [HERE / "coverage.py", HERE / "coverage.ini", HERE / "mutants.py", HERE / "rtl.py", table.PARAMETERS, pathlib.Path(runner)]
     return key([*own, *sorted(SHIM.iterdir()), *sorted(rtl.RTL.glob("**/*.v*"))], f"{count} {SEED} {SIZES}")
 
 
@@ -63,7 +63,7 @@ def board(work):
     """The board's netlist, each instance a module of its own, and the names of those."""
     base = work / "board.il"
     if not base.exists():
-        commands = rtl.read(TOP, ["NATURE=2"]) + BOARD.format(top=TOP, base=base.with_suffix(".new"))
+        commands = rtl.read(TOP, table.PARAMETERS.read_text().split()) + BOARD.format(top=TOP, base=base.with_suffix(".new"))
         mutants.run(["yosys", "-q", "-p", commands], work / "board.log")
         base.with_suffix(".new").rename(base)
     return base, re.findall(r"^module \\(\S+)", base.read_text(), re.MULTILINE)

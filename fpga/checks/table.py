@@ -8,6 +8,8 @@ import zlib
 import rtl
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+# What every simulated board is.
+PARAMETERS = ROOT / "fpga" / "sim" / "parameters.txt"
 PAGE = ROOT / "fpga" / "checks" / "coverage.md"
 FAULTS = ROOT / "host" / "judge" / "src" / "coverage" / "faults.json"
 CLASSES = ["samples", "signature", "latency", "counters", "read-back", "rules", "error", "equivalent", "left"]
@@ -31,9 +33,10 @@ What no run finds and no proof settles, by where it is, and what would find it.
 
 
 def build():
-    """What the simulated board says it was built from: the CRC-32 of the Verilog (fpga/sim/build.rs)."""
+    """What the simulated board says it was built from: the CRC-32 of the Verilog and of its parameters (fpga/sim/build.rs)."""
     check = 0
-    for path in sorted(path for path in rtl.RTL.glob("**/*") if path.suffix in (".v", ".vh")):
+    verilog = sorted(path for path in rtl.RTL.glob("**/*") if path.suffix in (".v", ".vh"))
+    for path in [*verilog, PARAMETERS]:
         check = zlib.crc32(path.read_bytes(), check)
     return f"{check:08x}"
 

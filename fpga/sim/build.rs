@@ -55,8 +55,10 @@ const BUILDS: [Model; 7] = [
     },
 ];
 
-/// What every board under simulation is and says of itself.
-const IDENTITY: [&str; 3] = ["GRID=1", "NATURE=2", "NAME=\"halfrow simulated board\""];
+/// What every board under simulation is, a parameter a line; those with faults in them are the same (fpga/checks/coverage.py).
+const PARAMETERS: &str = include_str!("parameters.txt");
+/// What it calls itself.
+const NAME: &str = "NAME=\"halfrow simulated board\"";
 
 const REMEDY: &str = "install it with `apt-get install verilator g++`, or build without `--features sim`";
 
@@ -113,7 +115,7 @@ impl Verilator {
         command.args(["--top-module", model.top.module, "--prefix", model.class]).arg("--Mdir").arg(folder);
         command.args(model.parameters.iter().map(|parameter| format!("-G{parameter}")));
         if model.top.module != CORE.module {
-            command.args(IDENTITY.map(|parameter| format!("-G{parameter}")));
+            command.args(PARAMETERS.lines().chain([NAME]).map(|parameter| format!("-G{parameter}")));
             command.arg(format!("-GBUILD=32'h{:08x}", checksum(rtl)));
         }
         command.arg(format!("-I{}", rtl.display()));
@@ -182,7 +184,7 @@ fn folders(within: &Path) -> Vec<PathBuf> {
     folders
 }
 
-/// The CRC-32 of the Verilog, by which a simulated board's build is known (fpga/checks/table.py).
+/// The CRC-32 of the Verilog and of what every board is, by which a simulated board's build is known (fpga/checks/table.py).
 fn checksum(rtl: &Path) -> u32 {
     let folders = folders(rtl);
     let files_in =
@@ -192,6 +194,7 @@ fn checksum(rtl: &Path) -> u32 {
     files.sort();
     let mut checksum = crc32fast::Hasher::new();
     files.iter().flat_map(fs::read).for_each(|text| checksum.update(&text));
+    checksum.update(PARAMETERS.as_bytes());
     checksum.finalize()
 }
 
