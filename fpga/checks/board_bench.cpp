@@ -1,8 +1,10 @@
 // Drives a whole board, as written or as synthesised, at the pins of its link: HELLO, tables, rows, and compares what comes back with
-// datapath.hpp, every sample and every latency; behind each frame a burst, if the board makes some, with its signatures. It ends at the first difference, with status 1.
+// datapath.hpp and grid.hpp, every sample and every latency; behind each frame a burst, if the board makes some, with its signatures. Every second
+// frame is corrected by a grid, if the board takes some. It ends at the first difference, with status 1.
 //   board_bench FRAMES SEED
 // Words with a + are the model's.
 #include "board_link.hpp"
+#include "grid.hpp"
 #include <algorithm>
 #include <random>
 
@@ -14,15 +16,47 @@
 #endif
 constexpr int LATENCY = TAPS == 7 ? 12 : 11, RING = 2048;
 
+// What rows are made with: a factor each, or a grid.
+struct Tables {
+    Frame frame;
+    std::vector<int64_t> steps;
+    Kernel kernel;
+    Grid grid{{0, 6}, 0, 0, {}};
+
+    bool has_grid() const { return grid.shape.v != 0; }
+    unsigned height() const { return steps.size(); }
+
+    Row outputs(int row, const Row &samples) const {
+        if (!has_grid())
+            return corrected(frame, steps[row], kernel, samples);
+        std::vector<int64_t> sources = grid.sources(frame.centre, row);
+        Row all;
+        for (int j = 0; j < frame.width; j++)
+            all.push_back(output_at(frame, position_of(sources[j]), kernel, samples, j));
+        return all;
+    }
+
+    Row burst_row(uint32_t seed, uint16_t number, int row) const { return outputs(row, content(seed, number, row, frame.width, frame.bits)); }
+
+    // Of a frame of a burst.
+    uint32_t signature_of(uint32_t seed, uint16_t number) const {
+        uint32_t all = 0;
+        for (unsigned row = 0; row < height(); row++)
+            all = crc32(all, signature(burst_row(seed, number, row)), 4);
+        return all;
+    }
+};
+
 struct Host {
     Link link;
     std::mt19937 random;
     uint16_t sequence = 0;
     uint8_t session = 0, generation = 0;
     uint32_t window = 0, have = 0;           // rows that may be sent, rows that came back
-    uint64_t outputs = 0, signatures = 0, trapped = 0;
+    uint64_t outputs = 0, signatures = 0, trapped = 0, grids = 0;
     int frame_blanking = -1;                 // the least of a burst; none if the board makes no bursts
-    bool has_trap = false;
+    bool has_trap = false, takes_grids = false;
+    int narrow_blanking = 0;                 // of a grid; all frames here are narrow
     std::deque<Bytes> rows;                  // ROW_OUT packets
 
     int draw(int count) { return random() % count; }
@@ -82,6 +116,9 @@ struct Host {
             if (list[at] == 0x10 && get(list, at + 2, 2) == 1)
                 frame_blanking = get(list, at + 6, 2), has_trap = list.at(at + 8);
         }
+        for (size_t at = 0; at < list.size(); at += 2 + list.at(at + 1))
+            if (list[at] == 0x12 && get(list, at + 2, 2) == 2)
+                takes_grids = true, narrow_blanking = list.at(at + 7);
         if (found != 2)
             fail("the capabilities are not those of this build");
     }
@@ -104,6 +141,26 @@ struct Host {
         return 1 << 24;
     }
 
+    // One whose rows lie in the frame: anywhere between 1 and a factor, and moved to where it allows.
+    Grid grid(const Frame &frame, int height) {
+        Grid drawn{{1 + draw(6), 5 + draw(2)}, frame.width, height, {}};
+        for (int tries = 0; tries < 200; tries++) {
+            int spread = 1 << (10 + draw(14));
+            drawn.entries.assign(drawn.size(), 1 << 24);
+            for (int e = drawn.rows(); e < drawn.size(); e++)
+                drawn.entries[e] -= draw(spread);
+            for (int b = 0; b < drawn.rows(); b++)
+                drawn.entries[b] += draw(8 * 8192) - 4 * 8192;
+            bool is_legal = true;
+            for (int row = 0; row < height; row++)
+                is_legal = is_legal && legal(drawn.sources(frame.centre, row), RING);
+            if (is_legal)
+                return drawn;
+        }
+        drawn.entries.assign(drawn.size(), 1 << 24);
+        return drawn;
+    }
+
     void write(int table, const Bytes &entries, int count) {
         Bytes payload;
         put(payload, table, 1);
@@ -113,26 +170,31 @@ struct Host {
         ask(0x10, payload);
     }
 
-    void configure(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel) {
+    void configure(const Tables &tables) {
         Bytes settings, factors, nodes, commit;
-        put(settings, frame.width, 2);
-        put(settings, steps.size(), 2);
-        put(settings, frame.centre, 2);
-        put(settings, LEAST_BLANKING + draw(20), 2);
+        put(settings, tables.frame.width, 2);
+        put(settings, tables.height(), 2);
+        put(settings, tables.frame.centre, 2);
+        put(settings, std::max(LEAST_BLANKING, tables.has_grid() ? narrow_blanking : 0) + draw(20), 2);
         put(settings, draw(2) ? random() : 0, 4);
-        put(settings, frame.bits, 1);
+        put(settings, tables.frame.bits, 1);
         ask(0x18, settings);
-        for (int64_t step : steps)
-            put(factors, step, 4);
-        for (const Node &node : kernel)
+        for (uint32_t entry : tables.grid.entries)
+            put(factors, entry, 4);
+        for (int64_t step : tables.steps)
+            if (!tables.has_grid())
+                put(factors, step, 4);
+        for (const Node &node : tables.kernel)
             for (int16_t weight : node)
                 put(nodes, uint16_t(weight), 2);
-        write(0, factors, steps.size());
+        write(tables.has_grid() ? 3 : 0, factors, factors.size() / 4);
         write(1, nodes, 65);
         put(commit, crc_of(factors), 4);
         put(commit, crc_of(nodes), 4);
         put(commit, generation, 2);          // the frame's number
         put(commit, generation + 1, 1);
+        if (tables.has_grid())
+            put(commit, tables.grid.shape.v | tables.grid.shape.k << 8, 2);
         ask(0x13, commit);
         generation++;
     }
@@ -150,7 +212,9 @@ struct Host {
         send(0x20, payload);
     }
 
-    void check_row(const Frame &frame, int row, int64_t step, const Kernel &kernel, const Row &samples) {
+    void check_row(const Tables &tables, int row, const Row &samples) {
+        const Frame &frame = tables.frame;
+        const Row all_due = tables.outputs(row, samples);
         while (rows.empty())
             hear();
         Bytes out = rows.front();
@@ -160,7 +224,7 @@ struct Host {
         if (get(out, 24, 2) != frame.width / 2u + LATENCY || get(out, 26, 2) != frame.width / 2u + LATENCY)
             fail("a latency that is not W/2 + L");
         for (int j = 0; j < frame.width; j++) {
-            int sample = get(out, 32 + j / 2 * 3, 3) >> 12 * (j % 2) & 0xfff, due = output(frame, step, kernel, samples, j);
+            int sample = get(out, 32 + j / 2 * 3, 3) >> 12 * (j % 2) & 0xfff, due = all_due[j];
             if (sample != due) {
                 std::printf("row %d, column %d: %d, due %d\n", row, j, sample, due);
                 fail("a sample differs");
@@ -174,11 +238,11 @@ struct Host {
     }
 
     // A record of frame n, AT-SPEED.md's Record.
-    void check_record(const Bytes &record, const Frame &frame, const std::vector<int64_t> &steps, uint32_t due) {
-        unsigned latency = frame.width / 2 + LATENCY;
+    void check_record(const Bytes &record, const Tables &tables, uint32_t due) {
+        unsigned latency = tables.frame.width / 2 + LATENCY;
         if (get(record, 0, 4) != due)
             fail("a signature differs");
-        if (get(record, 4, 4) != frame.width * steps.size() || get(record, 8, 2) != steps.size())
+        if (get(record, 4, 4) != tables.frame.width * tables.height() || get(record, 8, 2) != tables.height())
             fail("a record counts other samples or rows");
         if (get(record, 10, 2) != latency || get(record, 12, 2) != latency)
             fail("a latency of a burst is not W/2 + L");
@@ -188,7 +252,7 @@ struct Host {
     }
 
     // Fresh content has other frames each time, trapped content the same.
-    void burst(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel, uint32_t seed, uint16_t number, bool fresh) {
+    void burst(const Tables &tables, uint32_t seed, uint16_t number, bool fresh) {
         constexpr unsigned FRAMES = 3, RECORD = 18, HEAD = 10;
         Bytes start;
         put(start, 2 * generation + fresh, 4); // its name
@@ -204,61 +268,67 @@ struct Host {
             Bytes reply = ask(0x31, from);
             for (unsigned k = 0, count = reply.at(9); k < count; k++, got++) {
                 auto record = reply.begin() + HEAD + RECORD * k;
-                check_record({record, record + RECORD}, frame, steps, signature(frame, steps, kernel, seed, number + (fresh ? got : 0)));
+                check_record({record, record + RECORD}, tables, tables.signature_of(seed, number + (fresh ? got : 0)));
             }
         }
     }
 
     // A burst of which one row is expected to be another.
-    void trap(const Frame &frame, const std::vector<int64_t> &steps, const Kernel &kernel) {
+    void trap(const Tables &tables) {
+        const int width = tables.frame.width;
         uint32_t seed = random();
         uint16_t number = random();
-        unsigned wrong = draw(steps.size());
+        unsigned wrong = draw(tables.height());
         std::vector<Row> due;
         Bytes expected;
         put(expected, 0, 2);
-        put(expected, steps.size(), 2);
-        for (size_t row = 0; row < steps.size(); row++) {
-            due.push_back(corrected(frame, steps[row], kernel, content(seed, number, row, frame.width, frame.bits)));
+        put(expected, tables.height(), 2);
+        for (unsigned row = 0; row < tables.height(); row++) {
+            due.push_back(tables.burst_row(seed, number, row));
             put(expected, signature(due[row]) ^ (row == wrong ? 1u << draw(32) : 0), 4);
         }
         ask(0x32, expected);
-        burst(frame, steps, kernel, seed, number, false);
+        burst(tables, seed, number, false);
         Bytes kept = ask(0x33, {});
-        if (kept.at(0) != 1 || get(kept, 1, 4) != 0 || get(kept, 5, 2) != wrong || get(kept, 7, 2) != unsigned(frame.width)
-            || get(kept, 9, 4) != signature(due[wrong]) || kept.size() != 13u + frame.width / 2 * 3)
+        if (kept.at(0) != 1 || get(kept, 1, 4) != 0 || get(kept, 5, 2) != wrong || get(kept, 7, 2) != unsigned(width)
+            || get(kept, 9, 4) != signature(due[wrong]) || kept.size() != 13u + width / 2 * 3)
             fail("another row is trapped");
-        for (int j = 0; j < frame.width; j++)
+        for (int j = 0; j < width; j++)
             if (int(get(kept, 13 + j / 2 * 3, 3) >> 12 * (j % 2) & 0xfff) != due[wrong][j])
                 fail("a sample of the trapped row differs");
         trapped++;
     }
 
-    void play() {
+    Tables drawn_tables() {
         int width = 64 + 2 * draw(20);
-        Frame frame{width, 8 + 2 * draw(3), draw(2) ? width - 1 : draw(2 * width - 1)};
-        std::vector<int64_t> steps(3 + draw(2));
-        std::vector<Row> samples;
-        for (int64_t &factor : steps) {
-            factor = step(frame);
-            samples.emplace_back(width);
-            for (int &sample : samples.back())
-                sample = draw(1 << frame.bits);
-        }
-        Kernel weights = kernel();
-        configure(frame, steps, weights);
+        Tables tables{{width, 8 + 2 * draw(3), draw(2) ? width - 1 : draw(2 * width - 1)}, std::vector<int64_t>(3 + draw(2)), kernel()};
+        for (int64_t &factor : tables.steps)
+            factor = step(tables.frame);
+        if (takes_grids && generation % 2)
+            tables.grid = grid(tables.frame, tables.height());
+        return tables;
+    }
+
+    void play() {
+        const Tables tables = drawn_tables();
+        std::vector<Row> samples(tables.height(), Row(tables.frame.width));
+        for (Row &row : samples)
+            for (int &sample : row)
+                sample = draw(1 << tables.frame.bits);
+        configure(tables);
         uint32_t first = have;
-        for (size_t row = 0, sent = 0; row < steps.size(); row++) {
-            while (sent < steps.size() && (sent <= row || first + sent < window)) {
-                send_row(first + sent, sent, sent + 1 == steps.size(), samples[sent]);
+        for (unsigned row = 0, sent = 0; row < tables.height(); row++) {
+            while (sent < tables.height() && (sent <= row || first + sent < window)) {
+                send_row(first + sent, sent, sent + 1 == tables.height(), samples[sent]);
                 sent++;
             }
-            check_row(frame, row, steps[row], weights, samples[row]);
+            check_row(tables, row, samples[row]);
         }
+        grids += tables.has_grid();
         if (frame_blanking >= 0)
-            burst(frame, steps, weights, random(), random(), true);
+            burst(tables, random(), random(), true);
         if (has_trap)
-            trap(frame, steps, weights);
+            trap(tables);
     }
 };
 
@@ -274,7 +344,9 @@ int main(int argc, char **argv) {
     host.hello();
     for (int k = 0; k < std::atoi(argv[1]); k++)
         host.play();
-    std::printf("%d taps: %lu samples, %lu signatures and %lu trapped rows equal, %lu clocks\n", TAPS, host.outputs, host.signatures,
-                host.trapped, host.link.lines.clocks);
+    if (host.takes_grids && !host.grids)
+        fail("no frame had a grid");
+    std::printf("%d taps: %lu samples, %lu signatures and %lu trapped rows equal, %lu frames with grids, %lu clocks\n", TAPS, host.outputs,
+                host.signatures, host.trapped, host.grids, host.link.lines.clocks);
     return 0;
 }

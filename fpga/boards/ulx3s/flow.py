@@ -78,14 +78,14 @@ def read(design, work):
     """yosys commands that read a design in a work folder, for any yosys."""
     near = lambda path: os.path.relpath(path, work)
     if design.kind == "core":
-        top, file = "halfrow_core", rtl.modules()["halfrow_core"]
+        top, file, grid = "halfrow_core", rtl.modules()["halfrow_core"], "-chparam GRID 1"
     else:
-        top, file = f"ulx3s_{design.kind}", BOARD / f"ulx3s_{design.kind}.v"
+        top, file, grid = f"ulx3s_{design.kind}", BOARD / f"ulx3s_{design.kind}.v", ""
     folders = sorted({path.parent for path in rtl.modules().values()}) + [BOARD, BOARD.parent / "common"]
     includes = " ".join(f"-I{near(folder)}" for folder in (work, rtl.RTL, BOARD.parent / "common"))
     libraries = " ".join(f"-libdir {near(folder)}" for folder in folders)
     return (f"read_verilog -lib +/ecp5/cells_bb.v; verilog_defaults -add {includes}; read_verilog {near(file)}; "
-            f"hierarchy -check {libraries} -top {top} -chparam TAPS {design.taps}; rename -top top; ")
+            f"hierarchy -check {libraries} -top {top} -chparam TAPS {design.taps} {grid}; rename -top top; ")
 
 
 def synthesis(design, work):

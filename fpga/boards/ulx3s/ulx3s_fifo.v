@@ -34,6 +34,7 @@ module ulx3s_fifo #(
         .POWER_UP_WIDTH(1920),
         .POWER_UP_HEIGHT(1080),
         .TAPS(TAPS),
+        .GRID(1),
         .BUILD(`HALFROW_BUILD),
         .NAME("ULX3S FIFO")
     ) bridge (
