@@ -20,13 +20,13 @@ module halfrow_trap_bench;
     wire [3:0]  refusal;
     wire [15:0] detail;
     wire [11:0] reply_length;
-    wire [7:0]  value;
+    wire [7:0]  value, sample_value;
 
     halfrow_trap #(.MAX_HEIGHT(MAX_HEIGHT), .COLUMN_BITS(COLUMN_BITS)) dut (
         .clk(clk), .rst(rst), .ready(ready), .expect_start(expect_start), .first(first), .count(count),
         .packet_length(packet_length), .advance(advance), .packet_byte(packet_byte), .trap_start(trap_start),
         .finished(finished), .refusal(refusal), .detail(detail), .reply_length(reply_length),
-        .reply_begins(reply_begins), .reply_advance(reply_advance), .value(value), .under_way(under_way),
+        .reply_begins(reply_begins), .reply_advance(reply_advance), .value(value), .sample_value(sample_value), .under_way(under_way),
         .compares(compares), .empty(empty), .width(width), .height(height), .sample_bytes(sample_bytes),
         .given(given), .last(last), .sample(sample), .row_signature(row_signature), .frame_left(frame_left));
 
@@ -82,7 +82,7 @@ module halfrow_trap_bench;
     task next_byte(input integer place);
         begin
             repeat (3) @(negedge clk);
-            got[place] = value;
+            got[place] = value | sample_value;
             reply_advance = 1;
             @(negedge clk) reply_advance = 0;
         end

@@ -30,7 +30,7 @@ module halfrow_burst #(
     input  wire        reply_begins,  // pulse: its first byte is wanted
     input  wire        reply_advance, // the next one is
     input  wire        replying,      // it is such a reply that is under way
-    output reg  [7:0]  reply_byte,    // two clocks later, 0 unless `replying`
+    output wire [7:0]  reply_byte,    // two clocks later, 0 unless `replying`
 
     output reg         burst,         // one is under way
     output reg         bursting,      // a clock later, for what takes a row's samples from one side or the other
@@ -210,14 +210,17 @@ module halfrow_burst #(
         .value(reply_value));
 
     wire [11:0] trap_length;
-    wire [7:0] trap_value;
+    wire [7:0] trap_value, trap_sample;
+    reg [7:0] value_byte, sample_byte;
     wire [8:0] records_length = {told, 4'd0} + {3'd0, told, 1'b0} + HEAD_BYTES;
 
+    assign reply_byte = value_byte | sample_byte;
     assign reply_length = request_kind[1] ? trap_length : {3'd0, records_length};
     assign quiet = ledger_idle && (!burst || (more && !free && frames_inside == 2'd0 && late));
 
     always @(posedge clk) begin
-        reply_byte <= (request_kind[1] ? trap_value : reply_value) & {8{replying}};
+        value_byte <= (request_kind[1] ? trap_value : reply_value) & {8{replying}};
+        sample_byte <= trap_sample & {8{replying && request_kind[1]}};
         if (head_write)
             told <= kept;
     end
@@ -231,6 +234,7 @@ module halfrow_burst #(
                 .packet_byte(packet_byte), .trap_start(request_start && request_kind == KIND_TRAP[1:0]),
                 .finished(trap_done), .refusal(trap_refusal), .detail(trap_detail), .reply_length(trap_length),
                 .reply_begins(reply_begins), .reply_advance(reply_advance), .value(trap_value),
+                .sample_value(trap_sample),
                 .under_way(burst), .compares(mode == TRAPPED), .empty(drop || (starts && mode == TRAPPED)),
                 .width(width), .height(height), .sample_bytes(sample_bytes), .given(given), .last(signed_last),
                 .sample(signed_sample), .row_signature(row_signature), .frame_left(ended_leaves));
@@ -238,7 +242,7 @@ module halfrow_burst #(
             wire unused = &{1'b0, expect_first, expect_count, packet_length, width, height, sample_bytes};
 
             assign requests_ready = 1'b1;
-            assign {trap_done, advance_trap, trap_refusal, trap_detail, trap_length, trap_value} = 42'd0;
+            assign {trap_done, advance_trap, trap_refusal, trap_detail, trap_length, trap_value, trap_sample} = 50'd0;
         end
     endgenerate
 endmodule

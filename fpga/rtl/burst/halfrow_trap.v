@@ -23,7 +23,8 @@ module halfrow_trap #(
     output reg  [11:0] reply_length,  // bytes of the payload of the reply to TRAP
     input  wire        reply_begins,  // pulse: its first byte is wanted
     input  wire        reply_advance, // the next one is
-    output reg  [7:0]  value,         // two clocks later
+    output wire [7:0]  value,         // two clocks later, or 0 where it is a sample's byte,
+    output wire [7:0]  sample_value,  // which is 0 elsewhere: it comes late in the clock, out of a memory
 
     input  wire        under_way,     // a burst is
     input  wire        compares,      // and its rows are compared
@@ -171,8 +172,8 @@ module halfrow_trap #(
             earlier <= read_sample[11:8];
     end
 
-    // The memory brings a sample late in the clock: all that it is chosen by stands ready by then.
-    reg [7:0] of_head, of_sample;
+    // What a byte is chosen by stands ready when the memory brings the sample.
+    reg [7:0] of_head;
     reg of_signature, of_low, of_middle, of_high;
 
     always @(posedge clk) begin
@@ -195,10 +196,9 @@ module halfrow_trap #(
             {of_head, of_signature, of_low, of_middle, of_high} <= {7'd0, told, 4'd0};
     end
 
-    always @* begin
-        of_sample = of_low ? read_sample[7:0] : of_middle ? {read_sample[3:0], earlier} : read_sample[11:4];
-        value = of_signature ? signature_byte : of_low || of_middle || of_high ? of_sample : of_head;
-    end
+    assign value = of_signature ? signature_byte : of_head;
+    assign sample_value = (read_sample[7:0] & {8{of_low}}) | ({read_sample[3:0], earlier} & {8{of_middle}})
+        | (read_sample[11:4] & {8{of_high}});
 
     wire unused = &{1'b0, packet_length[1:0]};
 endmodule
