@@ -28,7 +28,7 @@ fn told(folder: &Folder, code: i32, arguments: &[&str]) -> Value {
 #[test]
 fn every_command_that_prints_a_result_prints_a_document() {
     let folder = Folder::new();
-    let calls: [(&str, Vec<&str>); 14] = [
+    let calls: [(&str, Vec<&str>); 15] = [
         ("verify", small("verify", &["--frame", "builtin:black"])),
         ("verify", small("verify", &["--list"])),
         ("verify", small("verify", &["--within", "2", "--board", "mock,speed=20000"])),
