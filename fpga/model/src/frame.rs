@@ -39,11 +39,13 @@ impl BitDepth {
     pub const fn max(self) -> u16 {
         (1 << self.bits()) - 1
     }
+}
 
-    /// Whether all of `samples` are at most [`Self::max`]. Quicker than to look for the first that is not.
-    pub(crate) fn holds(self, samples: &[u16]) -> bool {
-        samples.iter().fold(0, |bits, sample| bits | sample) <= self.max()
-    }
+/// The bits that are set in any of `samples`: at most a depth's largest sample if, and only if, all of them are. Takes a
+/// vector at a time of whatever size its caller is compiled for.
+#[inline(always)]
+pub(crate) fn bits_of(samples: &[u16]) -> u16 {
+    samples.iter().fold(0, |bits, sample| bits | sample)
 }
 
 /// A frame of raw samples, one colour each, `width` × `height`, row after row.
@@ -95,7 +97,8 @@ impl FrameError {
     /// Refuses the first of `samples`, in rows of `width`, that `depth` cannot hold.
     pub(crate) fn check(width: usize, depth: BitDepth, samples: &[u16]) -> Result<(), Self> {
         let rows = samples.chunks(width).enumerate();
-        let Some((row, samples)) = rows.into_iter().find(|(_, samples)| !depth.holds(samples)) else {
+        let Some((row, samples)) = rows.into_iter().find(|(_, samples)| bits_of(samples) > depth.max())
+        else {
             return Ok(());
         };
         let max = depth.max();

@@ -44,6 +44,7 @@ pub(crate) fn benchmarks() -> Result<Vec<Benchmark>, Box<dyn Error>> {
             }
         }
         let kernel = Kernel::from(Interpolant::Hermite);
+        benchmarks.push(samples(path, &one, &tables, &kernel)?);
         benchmarks.push(signer(path, &tables, &kernel)?);
         let threads = if path == ModelPath::Reference { &[][..] } else { &[1, 2] };
         for &threads in threads {
@@ -73,6 +74,24 @@ fn copy(name: &str, frames: &Arc<Vec<Frame>>) -> Benchmark {
         }
     };
     Benchmark { name: name.to_owned(), run: Box::new(run) }
+}
+
+/// The samples of a frame that no [`Frame`] has looked at.
+fn samples(
+    path: ModelPath,
+    frames: &Arc<Vec<Frame>>,
+    tables: &Arc<TableSet>,
+    kernel: &Kernel,
+) -> Result<Benchmark, Box<dyn Error>> {
+    let (mut batch, tables) = (Batch::of(frames), Arc::clone(tables));
+    let mut corrector = Corrector::new(path, kernel)?;
+    let run = move || {
+        for (frame, output) in batch.frames.iter().zip(&mut batch.outputs) {
+            let _ =
+                black_box(corrector.correct_samples(&tables, black_box(frame.samples()), black_box(output)));
+        }
+    };
+    Ok(Benchmark { name: format!("samples {path}"), run: Box::new(run) })
 }
 
 /// A frame of a burst made, corrected and signed.

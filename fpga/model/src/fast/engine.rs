@@ -9,6 +9,7 @@ use super::walk::{Curve, Line, Walk};
 #[cfg(target_arch = "x86_64")]
 use super::x86;
 use crate::corrector::{correct_row, correct_row_of_values};
+use crate::frame::bits_of;
 use crate::{Geometry, Kernel, RowFactor, RowValues};
 
 /// Rows whose outputs come from the same places, to be corrected together.
@@ -105,6 +106,17 @@ impl Engine {
             Self::Avx2(avx2, planes) => avx2.correct(planes, rows),
             #[cfg(target_arch = "x86_64")]
             Self::Avx512(avx512, nodes) => avx512.correct(nodes, rows),
+        }
+    }
+
+    /// The bits that are set in any of `samples`, which tell whether a depth can hold all of them.
+    pub(super) fn bits_of(&self, samples: &[u16]) -> u16 {
+        match self {
+            Self::Reference(_) | Self::Scalar(_) => bits_of(samples),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2(avx2, _) => avx2.bits_of(samples),
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512(avx512, _) => avx512.bits_of(samples),
         }
     }
 

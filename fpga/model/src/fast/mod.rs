@@ -123,7 +123,7 @@ impl Corrector {
     ) -> Result<(), CorrectError> {
         check_frame(tables.geometry(), frame)?;
         assert_eq!(samples.len(), frame.samples().len(), "the output has another size than the frame");
-        let _: Result<(), Infallible> = self.correct_pairs(tables, frame.samples(), samples, |_| Ok(()));
+        let _: Result<(), Infallible> = self.correct_pairs(tables, frame.samples(), samples, |_, _| Ok(()));
         Ok(())
     }
 
@@ -145,8 +145,9 @@ impl Corrector {
         let (width, depth) = (geometry.width(), geometry.depth());
         assert_eq!(samples.len(), width * geometry.height(), "the input has another size than the tables");
         assert_eq!(output.len(), samples.len(), "the output has another size than the input");
-        let checked = self
-            .correct_pairs(tables, samples, output, |row| if depth.holds(row) { Ok(()) } else { Err(()) });
+        let checked = self.correct_pairs(tables, samples, output, |engine, row| {
+            if engine.bits_of(row) <= depth.max() { Ok(()) } else { Err(()) }
+        });
         // Rows are not taken from the top, and the first such sample is to be told.
         checked.or_else(|()| FrameError::check(width, depth, samples))
     }
@@ -157,7 +158,7 @@ impl Corrector {
         tables: &TableSet,
         samples: &[u16],
         output: &mut [u16],
-        check: impl Fn(&[u16]) -> Result<(), E>,
+        check: impl Fn(&Engine, &[u16]) -> Result<(), E>,
     ) -> Result<(), E> {
         let (width, height) = (tables.geometry().width(), tables.geometry().height());
         let (upper, lower) = output.split_at_mut(height.div_ceil(2) * width);
@@ -165,7 +166,7 @@ impl Corrector {
         for (row, output) in upper.chunks_exact_mut(width).enumerate() {
             let mirrored = height - 1 - row;
             let inputs = [row, mirrored].map(|row| &samples[row * width..][..width]);
-            inputs.iter().try_for_each(|row| check(row))?;
+            inputs.iter().try_for_each(|row| check(&self.engine, row))?;
             match lower.next() {
                 None => self.correct_row_of(tables, row, inputs[0], output),
                 Some(below) => self.correct_pair(tables, [row, mirrored], inputs, [output, below]),

@@ -11,6 +11,7 @@ use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, INTERVALS, Nodes, R1, R5};
 use crate::fast::walk::{LEADS, Start, Walk, blocks, is_within_segment};
 use crate::fast::{BLOCK, Rows};
+use crate::frame;
 
 /// Columns of a vector.
 const VECTOR: usize = 16;
@@ -306,4 +307,10 @@ fn add_products(sums: &mut [__m256i; 2], weights: [__m256i; 2], values: [__m256i
     let high = |pair: [__m256i; 2]| _mm256_unpackhi_epi16(pair[0], pair[1]);
     sums[0] = _mm256_add_epi32(sums[0], _mm256_madd_epi16(low(weights), low(values)));
     sums[1] = _mm256_add_epi32(sums[1], _mm256_madd_epi16(high(weights), high(values)));
+}
+
+/// [`frame::bits_of`].
+#[target_feature(enable = "avx2")]
+pub(super) fn bits_of(samples: &[u16]) -> u16 {
+    frame::bits_of(samples)
 }

@@ -8,6 +8,7 @@ use crate::fast::located::Located;
 use crate::fast::nodes::{G0, G4, G6, Nodes, R1, R5, Tap};
 use crate::fast::walk::{LEADS, Start, Walk, blocks, is_within_segment};
 use crate::fast::{BLOCK, Rows};
+use crate::frame;
 
 /// Lanes of the odd columns.
 const ODD: u32 = 0xAAAA_AAAA;
@@ -213,4 +214,10 @@ fn add_products(sums: &mut [__m512i; 2], weights: [__m512i; 2], values: [__m512i
     let high = |pair: [__m512i; 2]| _mm512_unpackhi_epi16(pair[0], pair[1]);
     sums[0] = _mm512_add_epi32(sums[0], _mm512_madd_epi16(low(weights), low(values)));
     sums[1] = _mm512_add_epi32(sums[1], _mm512_madd_epi16(high(weights), high(values)));
+}
+
+/// [`frame::bits_of`].
+#[target_feature(enable = "avx512f,avx512bw,avx512vl")]
+pub(super) fn bits_of(samples: &[u16]) -> u16 {
+    frame::bits_of(samples)
 }

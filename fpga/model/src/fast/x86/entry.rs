@@ -42,6 +42,11 @@ impl Avx2 {
         // SAFETY: the token says that the processor has AVX2.
         unsafe { avx2::locate_block(walk, column) }
     }
+
+    pub(in crate::fast) fn bits_of(self, samples: &[u16]) -> u16 {
+        // SAFETY: the token says that the processor has AVX2.
+        unsafe { avx2::bits_of(samples) }
+    }
 }
 
 impl Avx512 {
@@ -60,6 +65,11 @@ impl Avx512 {
     pub(in crate::fast) fn locate(self, walk: impl Walk, column: usize) -> Located {
         // SAFETY: the token says that the processor has the three features.
         unsafe { avx512::locate_block(walk, column) }
+    }
+
+    pub(in crate::fast) fn bits_of(self, samples: &[u16]) -> u16 {
+        // SAFETY: the token says that the processor has the three features.
+        unsafe { avx512::bits_of(samples) }
     }
 }
 
