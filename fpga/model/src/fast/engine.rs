@@ -109,6 +109,12 @@ impl Engine {
         }
     }
 
+    /// Whether samples that no depth can hold do no harm but to the outputs, as among vectors, whose lanes wrap. Such rows are looked
+    /// at when they are corrected, which has brought them near.
+    pub(super) fn takes_any_sample(&self) -> bool {
+        !matches!(self, Self::Reference(_) | Self::Scalar(_))
+    }
+
     /// The bits that are set in any of `samples`, which tell whether a depth can hold all of them.
     pub(super) fn bits_of(&self, samples: &[u16]) -> u16 {
         match self {

@@ -128,7 +128,7 @@ impl Corrector {
     }
 
     /// Corrects the samples of a frame for which there is no [`Frame`], as those that another program holds, into `output`:
-    /// both W·H samples, row after row. Each row is looked at just before it is corrected, while it is at hand.
+    /// both W·H samples, row after row. Each row is looked at beside its correction, while it is at hand.
     ///
     /// # Errors
     /// [`FrameError::TooBright`] for the first sample that the depth cannot hold. What `output` holds is then of no use.
@@ -166,10 +166,16 @@ impl Corrector {
         for (row, output) in upper.chunks_exact_mut(width).enumerate() {
             let mirrored = height - 1 - row;
             let inputs = [row, mirrored].map(|row| &samples[row * width..][..width]);
-            inputs.iter().try_for_each(|row| check(&self.engine, row))?;
+            let is_checked_first = !self.engine.takes_any_sample();
+            if is_checked_first {
+                inputs.iter().try_for_each(|row| check(&self.engine, row))?;
+            }
             match lower.next() {
                 None => self.correct_row_of(tables, row, inputs[0], output),
                 Some(below) => self.correct_pair(tables, [row, mirrored], inputs, [output, below]),
+            }
+            if !is_checked_first {
+                inputs.iter().try_for_each(|row| check(&self.engine, row))?;
             }
         }
         Ok(())
