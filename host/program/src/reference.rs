@@ -62,7 +62,7 @@ fn row(argument: &Arg) -> String {
     if let Some(variable) = argument.get_env() {
         let _ = write!(told, " [env: {}]", variable.to_string_lossy());
     }
-    format!("| {} | {} |", names(argument), told.replace('|', "\\|"))
+    format!("| {} | {} |", names(argument).replace('|', "\\|"), told.replace('|', "\\|"))
 }
 
 /// As in `-o, --output FILE`, or `FILE...`.
