@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use clap::{Arg, Command};
+use clap::{Arg, Command, Id};
 
 /// `head`, then every command of `program` that help shows, with its usage, arguments and options.
 #[must_use]
@@ -10,14 +10,15 @@ pub fn page(head: &str, program: Command) -> String {
     let mut program = program.disable_help_subcommand(true);
     program.build();
     let mut page = format!("{head}\n## Every command\n\n{}", table(&program, Arg::is_global_set));
+    let shared: Vec<_> = program.get_arguments().map(Arg::get_id).cloned().collect();
     for command in program.get_subcommands() {
-        section(command, program.get_name(), &mut page);
+        section(command, program.get_name(), &shared, &mut page);
     }
     page
 }
 
-/// A command, then those that it has.
-fn section(command: &Command, before: &str, page: &mut String) {
+/// A command without the options that all have, then those that it has.
+fn section(command: &Command, before: &str, shared: &[Id], page: &mut String) {
     if command.is_hide_set() {
         return;
     }
@@ -27,12 +28,12 @@ fn section(command: &Command, before: &str, page: &mut String) {
     let usage = usage.trim_start_matches("Usage: ");
     // Writing to a string cannot fail.
     let _ = write!(page, "\n## {name}\n\n{about}\n\n```text\n{usage}\n```\n");
-    let table = table(command, |argument| !argument.is_global_set());
+    let table = table(command, |argument| !shared.contains(argument.get_id()));
     if !table.is_empty() {
         let _ = write!(page, "\n{table}");
     }
     for inner in command.get_subcommands() {
-        section(inner, &name, page);
+        section(inner, &name, shared, page);
     }
 }
 
