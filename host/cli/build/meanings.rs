@@ -6,7 +6,7 @@ use std::{env, fs, io};
 use crate::sources::{Sources, Type, Words};
 
 /// Where types with codes are, from the folder of this package.
-const FOLDERS: [&str; 9] = [
+const FOLDERS: [&str; 10] = [
     "src",
     "../frames/src",
     "../judge/src",
@@ -15,6 +15,7 @@ const FOLDERS: [&str; 9] = [
     "../program/src",
     "../../fpga/mock/src",
     "../../fpga/model/src",
+    "../../fpga/sim/src",
     "../../protocol",
 ];
 /// Where codes are given to them.

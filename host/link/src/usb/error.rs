@@ -1,7 +1,7 @@
 //! Why a board cannot be opened over USB.
 
 use super::find::UsbBoard;
-use super::transport::Failure;
+use super::transport::UsbFailure;
 use crate::Class;
 use crate::ftdi::list;
 use crate::serial::{Holder, by};
@@ -113,7 +113,7 @@ pub enum UsbError {
         doing: &'static str,
         /// How.
         #[source]
-        source: Failure,
+        source: UsbFailure,
     },
 }
 

@@ -4,7 +4,7 @@ use super::chip::{Channel, Chip};
 use super::eeprom::{ChannelMode, WORDS, channel_mode};
 use super::error::UsbError;
 use super::options::{Mode, UsbOptions};
-use super::transport::{Failure, Transport};
+use super::transport::{Transport, UsbFailure};
 
 const RESET: u8 = 0;
 const MODEM: u8 = 1;
@@ -87,10 +87,10 @@ impl Ftdi<'_> {
 
     /// The EEPROM's words; none when the chip refuses to read them.
     fn read_eeprom(&self) -> Result<Vec<u16>, UsbError> {
-        let words: Result<Vec<u16>, Failure> =
+        let words: Result<Vec<u16>, UsbFailure> =
             (0..WORDS).map(|address| self.transport.request_word(READ_EEPROM, 0, address)).collect();
         match words {
-            Err(Failure::Refused) => Ok(Vec::new()),
+            Err(UsbFailure::Refused) => Ok(Vec::new()),
             words => words.map_err(|source| self.failed("reading the chip's EEPROM", source)),
         }
     }
@@ -98,7 +98,7 @@ impl Ftdi<'_> {
     /// Whoever had the channel before may have left it bit-banging. A chip that has no such modes refuses.
     fn leave_special_modes(&self, index: u16) -> Result<(), UsbError> {
         match self.transport.request(BIT_MODE, 0, index) {
-            Err(Failure::Refused) if !self.chip.is_high_speed() => Ok(()),
+            Err(UsbFailure::Refused) if !self.chip.is_high_speed() => Ok(()),
             done => done.map_err(|source| self.failed("setting the bit mode", source)),
         }
     }
@@ -123,7 +123,7 @@ impl Ftdi<'_> {
         self.transport.request(request, value, index).map_err(|source| self.failed(doing, source))
     }
 
-    fn failed(&self, doing: &'static str, source: Failure) -> UsbError {
+    fn failed(&self, doing: &'static str, source: UsbFailure) -> UsbError {
         UsbError::Transfer { name: self.name.to_owned(), doing, source }
     }
 }
@@ -143,20 +143,20 @@ mod tests {
     }
 
     impl Transport for Noting {
-        fn request(&self, request: u8, value: u16, index: u16) -> Result<(), Failure> {
+        fn request(&self, request: u8, value: u16, index: u16) -> Result<(), UsbFailure> {
             self.requests.lock().unwrap().push((request, value, index));
-            if self.refused == Some(request) { Err(Failure::Refused) } else { Ok(()) }
+            if self.refused == Some(request) { Err(UsbFailure::Refused) } else { Ok(()) }
         }
 
-        fn request_word(&self, request: u8, _: u16, _: u16) -> Result<u16, Failure> {
-            if self.refused == Some(request) { Err(Failure::Refused) } else { Ok(0xffff) }
+        fn request_word(&self, request: u8, _: u16, _: u16) -> Result<u16, UsbFailure> {
+            if self.refused == Some(request) { Err(UsbFailure::Refused) } else { Ok(0xffff) }
         }
 
-        fn read(&self, _: &mut [u8], _: Duration) -> Result<usize, Failure> {
+        fn read(&self, _: &mut [u8], _: Duration) -> Result<usize, UsbFailure> {
             Ok(0)
         }
 
-        fn write(&self, bytes: &[u8], _: Duration) -> Result<usize, Failure> {
+        fn write(&self, bytes: &[u8], _: Duration) -> Result<usize, UsbFailure> {
             Ok(bytes.len())
         }
     }
@@ -199,7 +199,7 @@ mod tests {
         assert!(make_ready(&refusing(), Chip::FullSpeed, "usb").is_ok());
         assert!(matches!(
             make_ready(&refusing(), Chip::Ft2232h, "usb"),
-            Err(UsbError::Transfer { doing: "setting the bit mode", source: Failure::Refused, .. })
+            Err(UsbError::Transfer { doing: "setting the bit mode", source: UsbFailure::Refused, .. })
         ));
     }
 

@@ -37,7 +37,7 @@ use crate::{LineErrors, OpenError};
 pub use error::UsbError;
 pub use find::UsbBoard;
 pub(crate) use find::usb_boards;
-pub use transport::Failure as UsbFailure;
+pub use transport::UsbFailure;
 
 /// What an FPGA with two synchronisers gets through a FIFO that is not synchronous: some 5 MB/s; its data sheet says 8.
 const FIFO_BYTES_PER_SECOND: f64 = 5e6;

@@ -5,7 +5,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use super::transport::{Failure, Transport};
+use super::transport::{Transport, UsbFailure};
 use crate::LineErrors;
 
 /// Bytes of a read: a multiple of every packet's size, since a packet that does not fit is lost.
@@ -41,7 +41,7 @@ struct Queues {
     /// Writes in a row of which the device took nothing.
     in_vain: u32,
     errors: LineErrors,
-    failure: Option<Failure>,
+    failure: Option<UsbFailure>,
     is_over: bool,
 }
 
@@ -65,7 +65,7 @@ impl Shared {
         }
     }
 
-    fn fail(&self, failure: Failure) {
+    fn fail(&self, failure: UsbFailure) {
         let mut queues = self.queues();
         queues.failure.get_or_insert(failure);
         queues.is_over = true;
@@ -151,7 +151,7 @@ impl Pump {
         outgoing: &[u8],
         incoming: &mut Vec<u8>,
         wait: Duration,
-    ) -> Result<usize, Failure> {
+    ) -> Result<usize, UsbFailure> {
         let deadline = Instant::now() + wait.max(LOOK);
         let mut queues = self.shared.queues();
         loop {
@@ -209,21 +209,21 @@ mod tests {
     /// A device that says what is put in it, in pieces, and then fails or is silent. It takes bytes until it is `stuck`.
     #[derive(Default)]
     struct Device {
-        says: Mutex<VecDeque<Result<Vec<u8>, Failure>>>,
+        says: Mutex<VecDeque<Result<Vec<u8>, UsbFailure>>>,
         heard: Arc<Mutex<Vec<u8>>>,
         stuck: bool,
     }
 
     impl Transport for Device {
-        fn request(&self, _: u8, _: u16, _: u16) -> Result<(), Failure> {
+        fn request(&self, _: u8, _: u16, _: u16) -> Result<(), UsbFailure> {
             Ok(())
         }
 
-        fn request_word(&self, _: u8, _: u16, _: u16) -> Result<u16, Failure> {
+        fn request_word(&self, _: u8, _: u16, _: u16) -> Result<u16, UsbFailure> {
             Ok(0)
         }
 
-        fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, Failure> {
+        fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, UsbFailure> {
             let next = self.says.lock().unwrap().pop_front();
             match next {
                 Some(said) => said.map(|bytes| {
@@ -237,7 +237,7 @@ mod tests {
             }
         }
 
-        fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, Failure> {
+        fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, UsbFailure> {
             if self.stuck {
                 thread::sleep(wait);
                 return Ok(0);
@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn what_came_before_a_failure_is_handed_over_before_it() {
-        let says = [Ok(vec![1, 2]), Ok(vec![3]), Err(Failure::Gone)].into();
+        let says = [Ok(vec![1, 2]), Ok(vec![3]), Err(UsbFailure::Gone)].into();
         let pump = pump(Device { says: Mutex::new(says), ..Device::default() });
         let mut incoming = Vec::new();
         let failure = loop {
@@ -264,7 +264,7 @@ mod tests {
                 Err(failure) => break failure,
             }
         };
-        assert!(matches!(failure, Failure::Gone));
+        assert!(matches!(failure, UsbFailure::Gone));
         assert_eq!(incoming, [1, 2, 3]);
         // It stays so, and takes nothing more.
         assert!(pump.exchange(&[7], &mut incoming, LONG).is_err());

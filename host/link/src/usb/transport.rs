@@ -7,7 +7,7 @@ use rusb::{Context, DeviceHandle};
 
 /// A transfer that came to nothing.
 #[derive(Debug, Clone, thiserror::Error)]
-pub enum Failure {
+pub enum UsbFailure {
     /// The device is gone.
     #[error("the device is gone")]
     Gone,
@@ -27,27 +27,27 @@ pub(crate) trait Transport: Send + Sync {
     /// A vendor's request to the device.
     ///
     /// # Errors
-    /// [`Failure`]
-    fn request(&self, request: u8, value: u16, index: u16) -> Result<(), Failure>;
+    /// [`UsbFailure`]
+    fn request(&self, request: u8, value: u16, index: u16) -> Result<(), UsbFailure>;
 
     /// A vendor's request for two bytes, little endian.
     ///
     /// # Errors
-    /// [`Failure`]; fewer bytes are one as well.
-    fn request_word(&self, request: u8, value: u16, index: u16) -> Result<u16, Failure>;
+    /// [`UsbFailure`]; fewer bytes are one as well.
+    fn request_word(&self, request: u8, value: u16, index: u16) -> Result<u16, UsbFailure>;
 
     /// Reads a transfer that ends with a packet that is not full, or with the buffer, whose length is a multiple of 512.
     /// Nothing within `wait` is 0 bytes.
     ///
     /// # Errors
-    /// [`Failure`]
-    fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, Failure>;
+    /// [`UsbFailure`]
+    fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, UsbFailure>;
 
     /// Writes what goes out within `wait`, and returns its length.
     ///
     /// # Errors
-    /// [`Failure`]
-    fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, Failure>;
+    /// [`UsbFailure`]
+    fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, UsbFailure>;
 }
 
 /// How long the chip may take for a request; it answers within a frame.
@@ -89,24 +89,24 @@ impl Drop for Libusb {
 }
 
 impl Transport for Libusb {
-    fn request(&self, request: u8, value: u16, index: u16) -> Result<(), Failure> {
+    fn request(&self, request: u8, value: u16, index: u16) -> Result<(), UsbFailure> {
         self.handle.write_control(VENDOR_OUT, request, value, index, &[], REQUEST).map(drop).map_err(failure)
     }
 
-    fn request_word(&self, request: u8, value: u16, index: u16) -> Result<u16, Failure> {
+    fn request_word(&self, request: u8, value: u16, index: u16) -> Result<u16, UsbFailure> {
         let mut word = [0; 2];
         let read = self.handle.read_control(VENDOR_IN, request, value, index, &mut word, REQUEST);
         match read.map_err(failure)? {
             2 => Ok(u16::from_le_bytes(word)),
-            read => Err(Failure::Other(format!("{read} of 2 bytes came"))),
+            read => Err(UsbFailure::Other(format!("{read} of 2 bytes came"))),
         }
     }
 
-    fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, Failure> {
+    fn read(&self, buffer: &mut [u8], wait: Duration) -> Result<usize, UsbFailure> {
         in_time(self.handle.read_bulk(self.endpoint_in, buffer, whole_milliseconds(wait)))
     }
 
-    fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, Failure> {
+    fn write(&self, bytes: &[u8], wait: Duration) -> Result<usize, UsbFailure> {
         in_time(self.handle.write_bulk(self.endpoint_out, bytes, whole_milliseconds(wait)))
     }
 }
@@ -117,20 +117,20 @@ fn whole_milliseconds(wait: Duration) -> Duration {
 }
 
 /// What moved before the time was over counts.
-fn in_time(moved: Result<usize, rusb::Error>) -> Result<usize, Failure> {
+fn in_time(moved: Result<usize, rusb::Error>) -> Result<usize, UsbFailure> {
     match moved {
         Err(rusb::Error::Timeout | rusb::Error::Interrupted) => Ok(0),
         moved => moved.map_err(failure),
     }
 }
 
-pub(super) fn failure(error: rusb::Error) -> Failure {
+pub(super) fn failure(error: rusb::Error) -> UsbFailure {
     match error {
-        rusb::Error::NoDevice | rusb::Error::NotFound => Failure::Gone,
-        rusb::Error::Pipe => Failure::Refused,
-        rusb::Error::Timeout => Failure::Late,
+        rusb::Error::NoDevice | rusb::Error::NotFound => UsbFailure::Gone,
+        rusb::Error::Pipe => UsbFailure::Refused,
+        rusb::Error::Timeout => UsbFailure::Late,
         // A device that is pulled out in the middle of a transfer.
-        rusb::Error::Io => Failure::Gone,
-        other => Failure::Other(other.to_string()),
+        rusb::Error::Io => UsbFailure::Gone,
+        other => UsbFailure::Other(other.to_string()),
     }
 }

@@ -199,8 +199,11 @@ mod tests {
         assert_eq!(indices, [1, 1, 1, 3, 3, 3], "two frames of different names, each in three views");
         let (frame, _) = &kept[0];
         let bytes = fs::read(folder.path().join(frame.name(View::Out))).unwrap();
-        let how =
-            halfrow::frames::ReadOptions { depth: frame.depth, phase: frame.phase, ..ReadOptions::default() };
+        let how = halfrow::frames::ReadOptions {
+            depth: frame.depth,
+            phase: frame.phase,
+            ..halfrow::frames::ReadOptions::default()
+        };
         assert_eq!(halfrow::frames::decode(&bytes, &how).unwrap(), wrong(1).found);
     }
 
