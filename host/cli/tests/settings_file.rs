@@ -31,6 +31,7 @@ fn every_setting_is_read() {
         tables = "line.json"
         kernel = "keys"
         frame = ["builtin:street", "a.pgm"]
+        fit = true
         report = "out"
         overwrite = true
         timeout = 90
@@ -45,6 +46,7 @@ fn every_setting_is_read() {
         tables: Some(PathBuf::from("line.json")),
         kernel: Some("keys".to_owned()),
         frame: Some(vec!["builtin:street".to_owned(), "a.pgm".to_owned()]),
+        fit: Some(true),
         report: Some(PathBuf::from("out")),
         overwrite: Some(true),
         timeout: Some(90.0),
@@ -71,8 +73,15 @@ fn the_example_sets_nothing_until_it_is_uncommented() {
 fn the_example_uncommented_sets_everything() {
     let lines = EXAMPLE.lines().filter_map(|line| line.strip_prefix("# "));
     let text: Vec<_> = lines.filter(|line| line.contains(" = ")).collect();
-    let Settings { board, tables, kernel, frame, report, .. } = load(&text.join("\n")).unwrap();
-    assert!(board.is_some() && tables.is_some() && kernel.is_some() && frame.is_some() && report.is_some());
+    let Settings { board, tables, kernel, frame, fit, report, .. } = load(&text.join("\n")).unwrap();
+    assert!(
+        board.is_some()
+            && tables.is_some()
+            && kernel.is_some()
+            && frame.is_some()
+            && fit.is_some()
+            && report.is_some()
+    );
     let Settings { overwrite, timeout, retry_limit, reconnect, at_speed, require_hardware, seed, .. } =
         load(&text.join("\n")).unwrap();
     assert!(overwrite.is_some() && timeout.is_some() && retry_limit.is_some());
