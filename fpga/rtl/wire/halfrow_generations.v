@@ -30,11 +30,12 @@ module halfrow_generations #(
 
     wire begins = commit_pending && frame_start && frame_number == commit_frame;
 
+    wire [3:0] shadow_shape = commit ? new_shape : 4'd0;
     always @(posedge clk)
         if (wipe)
             shapes <= 8'd0;
         else if (commit || factor_written)
-            shapes <= shadow_bank ? {new_shape & {4{commit}}, shapes[3:0]} : {shapes[7:4], new_shape & {4{commit}}};
+            shapes <= shadow_bank ? {shadow_shape, shapes[3:0]} : {shapes[7:4], shadow_shape};
 
     always @(posedge clk) begin
         if (commit) begin

@@ -99,8 +99,8 @@ fn a_file_that_was_named_must_be_there() {
 
 #[test]
 fn an_unknown_key_is_named_with_its_line_and_the_keys_that_there_are() {
-    let expected = "line 3: there is no setting \"bord\"; use one of board, tables, kernel, frame, report, overwrite, \
-                    timeout, retry_limit, reconnect, at_speed, require_hardware, seed";
+    let expected = "line 3: there is no setting \"bord\"; use one of board, tables, kernel, frame, fit, report, \
+                    overwrite, timeout, retry_limit, reconnect, at_speed, require_hardware, seed";
     assert_eq!(sentence("seed = 1\n\nbord = 'mock'\nabord = 1\n"), expected);
 }
 
