@@ -38,7 +38,12 @@ pub(crate) fn read_frame<'py>(
             ));
         }
     };
-    let how = ReadOptions { depth: choices::depth(bits)?, phase: choices::phase(phase)?, raw };
+    let how = ReadOptions {
+        depth: choices::depth(bits)?,
+        phase: choices::phase(phase)?,
+        raw,
+        ..ReadOptions::default()
+    };
     let frame = py.detach(|| frames::read(&path, &how)).map_err(errors::input)?;
     array(py, frame)
 }

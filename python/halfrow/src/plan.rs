@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use halfrow::board::Stop;
 use halfrow::board::deadlines::RetryLimit;
-use halfrow::frames::{self, ReadOptions, UnknownBuiltin};
+use halfrow::frames::{self, PictureSize, ReadOptions, UnknownBuiltin};
 use halfrow::link::Recording;
 use halfrow::model::{CorrectError, Frame, Geometry, Phase};
 use halfrow::result::FileHash;
@@ -166,7 +166,9 @@ fn source(
     }
     let depth = geometry.depth();
     let (path, frame) = if let Ok(path) = given.extract::<PathBuf>() {
-        let read = frames::read(&path, &ReadOptions { depth, phase, raw: None }).map_err(errors::input)?;
+        let size = PictureSize::Exactly(geometry.width(), geometry.height());
+        let how = ReadOptions { depth, phase, size, ..ReadOptions::default() };
+        let read = frames::read(&path, &how).map_err(errors::input)?;
         files.push(files::hash(&path)?);
         (path, read)
     } else {
