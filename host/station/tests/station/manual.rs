@@ -23,13 +23,13 @@ fn every_command_has_a_page_which_is_not_written_over_unless_asked() {
     assert!(text(folder.path(), "halfrow-station-user-add.1").contains("halfrow\\-station\\-user\\-add"));
     assert!(!folder.path().join("halfrow-station-lane.1").exists(), "a command that is hidden has a page");
     let help = did(&["--help"]).said;
-    let commands = help
-        .lines()
-        .skip_while(|line| *line != "Commands:")
-        .skip(1)
-        .filter(|line| !line.starts_with("   "))
-        .map_while(|line| line.split_whitespace().next().filter(|name| *name != "help"));
-    for command in commands {
+    let listed = help.lines().skip_while(|line| *line != "Commands:").skip(1);
+    // Names stand two columns in; what is said of them goes on further in.
+    let names = listed.take_while(|line| !line.is_empty()).filter_map(|line| line.strip_prefix("  "));
+    let names: Vec<_> =
+        names.filter(|line| !line.starts_with(' ')).filter_map(|line| line.split(' ').next()).collect();
+    assert!(names.contains(&"serve") && names.contains(&"manual"), "{names:?}");
+    for command in names.iter().filter(|name| **name != "help") {
         text(folder.path(), &format!("halfrow-station-{command}.1"));
     }
     let again = did(&["manual", to]);
