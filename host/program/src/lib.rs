@@ -6,7 +6,7 @@
 //! * [`guard`]: a panic is an error with exit code 3, never 101.
 //! * [`json`]: what documents of both programs begin with, and [`codes`]: why there is no result.
 //! * [`mod@line`]: what a command line that asks for help, or is wrong, is told, and [`built`]: what `--version --verbose` tells.
-//! * [`man_pages`]: man pages and completion scripts, and [`reference`]: the page of all commands.
+//! * [`man_pages`]: man pages and completion scripts, and [`mod@reference`]: the page of all commands.
 
 pub mod built;
 pub mod codes;
