@@ -121,7 +121,7 @@ fn nobody_sends_more_than_a_form_and_nobody_holds_a_place_for_long() {
     ] {
         let text =
             format!("POST /scan HTTP/1.1\r\n{host}{lengths}\r\n0\r\n\r\nGET /smuggled HTTP/1.1\r\n\r\n");
-        let status = exchange(serving.port, text.as_bytes()).map(|answer| answer.status);
+        let status = exchange(serving.port, text.as_bytes()).ok().map(|answer| answer.status);
         assert!(status.is_none_or(|status| status == 400), "{lengths}: {status:?}");
     }
     let two_hosts = here.get("/");

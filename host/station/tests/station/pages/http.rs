@@ -1,7 +1,7 @@
 //! A client that sends just what it is told to send.
 
 use std::collections::BTreeMap;
-use std::io::{Read as _, Write as _};
+use std::io::{self, Read as _, Write as _};
 use std::net::TcpStream;
 use std::time::Duration;
 
@@ -30,8 +30,11 @@ impl Answer {
     }
 }
 
-/// What comes back for these bytes, on a connection of their own; none if the connection ends without an answer.
-pub(crate) fn exchange(port: u16, bytes: &[u8]) -> Option<Answer> {
+/// What comes back for these bytes, on a connection of their own.
+///
+/// # Errors
+/// How the connection ended, when it did without an answer.
+pub(crate) fn exchange(port: u16, bytes: &[u8]) -> io::Result<Answer> {
     let mut stream = TcpStream::connect(("127.0.0.1", port)).unwrap();
     stream.set_read_timeout(Some(HANG)).unwrap();
     // A server that has heard enough closes before it has read all.
@@ -39,10 +42,8 @@ pub(crate) fn exchange(port: u16, bytes: &[u8]) -> Option<Answer> {
     let mut head = Vec::new();
     let mut byte = [0];
     while !head.ends_with(b"\r\n\r\n") {
-        match stream.read(&mut byte) {
-            Ok(1) => head.push(byte[0]),
-            _ => return None,
-        }
+        stream.read_exact(&mut byte)?;
+        head.extend(byte);
     }
     let head = String::from_utf8(head).unwrap();
     let mut lines = head.lines();
@@ -51,7 +52,7 @@ pub(crate) fn exchange(port: u16, bytes: &[u8]) -> Option<Answer> {
     let headers: BTreeMap<String, String> =
         pairs.map(|(name, value)| (name.to_lowercase(), value.to_owned())).collect();
     let (body, is_whole) = body(&mut stream, &headers);
-    Some(Answer { status, headers, body, is_whole })
+    Ok(Answer { status, headers, body, is_whole })
 }
 
 /// What follows a head, and whether it came to its end. The head of an answer to HEAD tells of a body that does not come, and
@@ -131,7 +132,7 @@ impl Request {
             );
         }
         text += &format!("connection: close\r\n\r\n{}", self.body);
-        exchange(self.port, text.as_bytes()).unwrap_or_else(|| panic!("no answer to {self:?}"))
+        exchange(self.port, text.as_bytes()).unwrap_or_else(|error| panic!("no answer to {self:?}: {error}"))
     }
 }
 

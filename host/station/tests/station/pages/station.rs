@@ -1,6 +1,6 @@
 //! A station with its pages at work.
 
-use std::fs;
+use std::fs::{self, File};
 use std::io::{BufRead as _, BufReader, Read as _, Seek as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -125,6 +125,8 @@ pub(crate) fn command(settings: &Path) -> Command {
 /// The pages at work.
 pub(crate) struct Serving {
     child: Child,
+    /// What it says on stderr.
+    complained: File,
     pub(crate) port: u16,
 }
 
@@ -132,7 +134,7 @@ impl Serving {
     /// What `command` serves.
     pub(crate) fn of(command: &mut Command) -> Self {
         loop {
-            let mut complained = tempfile::tempfile().unwrap();
+            let complained = tempfile::tempfile().unwrap();
             let stderr = complained.try_clone().unwrap();
             let command = command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(stderr);
             let mut child = command.spawn().unwrap();
@@ -141,12 +143,10 @@ impl Serving {
             if let Some(said) = said {
                 // What else it says must not fill the pipe.
                 thread::spawn(move || lines.for_each(drop));
-                return Self { child, port: said.trim_end_matches('/').parse().unwrap() };
+                return Self { child, complained, port: said.trim_end_matches('/').parse().unwrap() };
             }
             let code = child.wait().unwrap().code();
-            let mut why = String::new();
-            complained.rewind().unwrap();
-            complained.read_to_string(&mut why).unwrap();
+            let why = whole(complained);
             // A store that this test has closed is held for a moment by what other tests are just starting.
             assert_eq!(code, Some(4), "it does not say where its pages are: {why}");
         }
@@ -190,10 +190,24 @@ impl Serving {
 }
 
 impl Drop for Serving {
+    // A test that fails shows it.
+    #[allow(clippy::print_stdout)]
     fn drop(&mut self) {
+        let ended = self.child.try_wait();
         let _ = self.child.kill();
         let _ = self.child.wait();
+        if thread::panicking() {
+            let said = self.complained.try_clone().map(whole);
+            println!("the pages at port {} had ended: {ended:?}; they said: {said:?}", self.port);
+        }
     }
+}
+
+/// All that was written into a file.
+fn whole(mut file: File) -> String {
+    let mut text = Vec::new();
+    let read = file.rewind().and_then(|()| file.read_to_end(&mut text));
+    read.map_or_else(|error| error.to_string(), |_| String::from_utf8_lossy(&text).into_owned())
 }
 
 /// What a browser knows of the station.
