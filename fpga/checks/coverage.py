@@ -42,6 +42,8 @@ AT_ONCE = 2
 BOARD = "uniquify; prep -top {top}; wreduce; opt -full; opt_clean -purge; write_ilang {base}"
 # Contents of memories are no fault of the design, and yosys 0.23 cannot put a fault into a memory's port. Nor is a clock that is turned.
 DRAW = "read_ilang {base}; select -set block {modules}; select @block t:$mem* %d; mutate -list {count} -seed {seed} -ctrl fault 16 1 -o {faults}"
+# What chooses a fault is no input of the simulated board: what hangs on it would be computed anew at each clock.
+CHOICE = 'reg [15:0] fault;\n  initial fault = $c("halfrow_fault");'
 WITH_FAULTS = "read_ilang {base}\n{faults}\nhierarchy -top {top}\nsplitnets\nwrite_verilog -noattr {made}\n"
 
 
@@ -88,6 +90,13 @@ def draw(place, base, modules, count):
     return mutants.numbered(place / "faults.txt", count)
 
 
+def choosing(text):
+    """yosys' text of the board with faults, in which the shim's number chooses one in place of a port."""
+    before, top = re.split(rf"(?=^module {TOP}\()", text, maxsplit=1, flags=re.MULTILINE)
+    top = re.sub(r",\s*fault\);", ");", top, count=1)
+    return before + re.sub(r"input \[15:0\] fault;\s*wire \[15:0\] fault;", lambda _: CHOICE, top, count=1)
+
+
 def library(place, base, faults):
     """The board with a block's faults, as a library."""
     made, library = place / "board.v", place / "board.so"
@@ -95,6 +104,7 @@ def library(place, base, faults):
         return library
     (place / "faults.ys").write_text(WITH_FAULTS.format(base=base, faults="\n".join(faults), top=TOP, made=made))
     mutants.run(["yosys", "-q", "-s", place / "faults.ys"], place / "yosys.log")
+    made.write_text(choosing(made.read_text()))
     folder = place / "translated"
     shutil.rmtree(folder, ignore_errors=True)
     mutants.run(["verilator", "--cc", "-O3", "--x-assign", "fast", "--x-initial", "unique", "-Wno-fatal", "-Wno-lint", "-Wno-UNOPTFLAT",
