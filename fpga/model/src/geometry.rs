@@ -113,11 +113,17 @@ impl Geometry {
         self.centre2
     }
 
+    /// Column and row of the frame's middle: (W − 1)/2 and (H − 1)/2.
+    #[must_use]
+    pub fn middle(&self) -> (f64, f64) {
+        ((self.width - 1) as f64 / 2.0, (self.height - 1) as f64 / 2.0)
+    }
+
     /// y of row `row`: its distance below the optical centre in rows, from `centre_y` or else from the middle
     /// (H − 1)/2.
     #[must_use]
     pub fn row_offset(&self, row: usize, centre_y: Option<f64>) -> f64 {
-        row as f64 - centre_y.unwrap_or((self.height - 1) as f64 / 2.0)
+        row as f64 - centre_y.unwrap_or(self.middle().1)
     }
 
     /// The column whose sample P(m) stands for column `column`: itself inside the row, and the row's first or last

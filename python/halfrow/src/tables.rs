@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use halfrow::model::{Equidistant, Interpolant, RowFactor};
-use halfrow::optics::{self, Chosen, Optics, TablesBy, View};
+use halfrow::model::{Interpolant, RowFactor};
+use halfrow::optics::{self, Chosen, Optics, View};
 use halfrow::result::FileHash;
 use halfrow::tables::{TableFile, datapath_of, mem};
 use numpy::{PyArray1, PyArray2};
@@ -67,10 +67,7 @@ impl Tables {
         } else {
             (TableFile::read(&path).map_err(errors::optics)?, vec![path.clone()])
         };
-        let geometry = file.tables.geometry();
-        let (width, height, depth) = (Some(geometry.width()), Some(geometry.height()), geometry.depth());
-        let view = View { width, height, depth, ..View::default() };
-        let optics = Optics::of_equidistant(Equidistant::default(), &view, TablesBy::Equation9);
+        let optics = Optics::before(file.tables.geometry());
         let chosen = optics.and_then(|optics| optics::choose(Some((&path, file)), optics, None));
         let files = paths.iter().map(|path| frames::hash(path)).collect::<PyResult<_>>()?;
         Self::with_kernel(chosen.map_err(errors::optics)?, &path.display().to_string(), kernel, files)

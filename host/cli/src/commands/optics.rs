@@ -6,10 +6,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context as _, bail};
 use clap::builder::{OsStringValueParser, TypedValueParser as _};
 use clap::{Args, ValueEnum};
-use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, CameraError, Equidistant, Geometry, GeometryError, Kernel, LensError,
-    Phase,
-};
+use halfrow_model::{BitDepth, Equidistant, Geometry, Kernel, LensError, Phase};
 
 use super::{CallError, Failure};
 use halfrow::kernels;
@@ -236,14 +233,15 @@ impl LensArguments {
             }
             _ => PAPER_SIZE,
         };
-        let geometry = self.geometry(pictures)?;
+        let view = self.view();
+        let geometry = view.geometry(pictures)?;
         let (lens, centre) = match self.lens_pitch {
-            Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, middle(&geometry)),
+            Some(pitch) => (file.lens.scaled(self.scale_from(pitch)?)?, geometry.middle()),
             None => file
                 .for_frame(geometry.width(), geometry.height())
                 .with_context(|| format!("the lens file {} does not fit", path.display()))?,
         };
-        let camera = self.camera(geometry, lens, centre)?;
+        let camera = view.camera(geometry, lens, centre)?;
         let name = format!("{} {}", file.model, path.display());
         Ok(Optics::calibrated(camera, name, self.by(Rows::Fitted))?)
     }
@@ -256,26 +254,6 @@ impl LensArguments {
             None => Ok(pitch / self.pixel_pitch()),
         }
     }
-
-    fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, GeometryError> {
-        Geometry::centred(self.width.unwrap_or(width), self.height.unwrap_or(height), self.bits)
-    }
-
-    /// The lens with its axis at `centre` unless the command line says another place.
-    fn camera(
-        &self,
-        geometry: Geometry,
-        lens: CalibratedLens,
-        centre: (f64, f64),
-    ) -> Result<Camera, CameraError> {
-        let centre = (self.centre_x.unwrap_or(centre.0), self.centre_y.unwrap_or(centre.1));
-        Camera::new(geometry, lens, centre, self.field_of_view())
-    }
-}
-
-/// Column and row of the frame's middle.
-fn middle(geometry: &Geometry) -> (f64, f64) {
-    ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0)
 }
 
 /// The help of an option that takes a kernel.

@@ -38,12 +38,19 @@ impl Default for View {
 }
 
 impl View {
-    fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, OpticsError> {
+    /// Frames of `(width, height)`, unless another size is said.
+    ///
+    /// # Errors
+    /// [`OpticsError::Geometry`] when no board takes them.
+    pub fn geometry(&self, (width, height): (usize, usize)) -> Result<Geometry, OpticsError> {
         Ok(Geometry::centred(self.width.unwrap_or(width), self.height.unwrap_or(height), self.depth)?)
     }
 
     /// The lens with its axis at `centre`, unless another place is said.
-    fn camera(
+    ///
+    /// # Errors
+    /// [`OpticsError::Camera`] when frames of `geometry` cannot have it.
+    pub fn camera(
         &self,
         geometry: Geometry,
         lens: CalibratedLens,
@@ -76,8 +83,17 @@ impl Optics {
     /// [`OpticsError`] when such frames cannot have it.
     pub fn of_equidistant(lens: Equidistant, view: &View, by: TablesBy) -> Result<Self, OpticsError> {
         let geometry = view.geometry(PAPER_SIZE)?;
-        let middle = ((geometry.width() - 1) as f64 / 2.0, (geometry.height() - 1) as f64 / 2.0);
-        let camera = view.camera(geometry, lens.into(), middle)?;
+        let camera = view.camera(geometry, lens.into(), geometry.middle())?;
         Ok(Self::equidistant(camera, lens, view.centre_y, by))
+    }
+
+    /// The paper's lens before frames of `geometry`'s size and depth, for tables that say no lens.
+    ///
+    /// # Errors
+    /// As [`Self::of_equidistant`].
+    pub fn before(geometry: &Geometry) -> Result<Self, OpticsError> {
+        let (width, height) = (Some(geometry.width()), Some(geometry.height()));
+        let view = View { width, height, depth: geometry.depth(), ..View::default() };
+        Self::of_equidistant(Equidistant::default(), &view, TablesBy::Equation9)
     }
 }

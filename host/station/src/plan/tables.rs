@@ -96,10 +96,7 @@ impl TablesText {
 
     fn of_file(&self, path: &Path, kernel: Option<&OsStr>) -> Result<Chosen, OpticsError> {
         let file = TableFile::read(path)?;
-        let geometry = file.tables.geometry();
-        let (width, height, depth) = (Some(geometry.width()), Some(geometry.height()), geometry.depth());
-        let view = View { width, height, depth, ..View::default() };
-        let optics = Optics::of_equidistant(Equidistant::default(), &view, TablesBy::Equation9)?;
+        let optics = Optics::before(file.tables.geometry())?;
         optics::choose(Some((path, file)), optics, kernel)
     }
 
