@@ -3,6 +3,8 @@
 //! Markers and their names are those of ITU-T T.81, table B.1.
 
 use super::DecodeError;
+use super::error::BROKEN_OFF;
+use super::photograph::Format;
 
 /// The first bytes of a JPEG.
 pub(super) const MAGIC: &[u8] = b"\xff\xd8\xff";
@@ -23,7 +25,7 @@ pub(super) fn check(bytes: &[u8]) -> Result<(), DecodeError> {
     let mut segments = Segments { bytes, place: 2 };
     let mut has_frame = false;
     loop {
-        let (marker, content) = segments.next().ok_or_else(broken_off)?;
+        let (marker, content) = segments.next().ok_or_else(|| damaged(BROKEN_OFF))?;
         match marker {
             END if has_frame => return Ok(()),
             END => return Err(damaged("it ends before its picture")),
@@ -54,12 +56,8 @@ fn check_frame(marker: u8, header: &[u8]) -> Result<(), DecodeError> {
     Err(DecodeError::Unsupported { what, remedy: REMEDY })
 }
 
-fn broken_off() -> DecodeError {
-    damaged(super::error::BROKEN_OFF)
-}
-
 fn damaged(reason: &str) -> DecodeError {
-    DecodeError::Photograph { format: "JPEG", reason: reason.to_owned() }
+    Format::Jpeg.damaged(reason)
 }
 
 /// The segments of a JPEG, each a marker and what its length covers.

@@ -14,6 +14,7 @@ use image::codecs::webp::WebPDecoder;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
+use super::error::BROKEN_OFF;
 use super::preview::RgbImage;
 use super::{DecodeError, Decoded, ReadOptions, jpeg, mosaic};
 
@@ -75,8 +76,7 @@ impl Format {
             .and_then(|rest| rest.first_chunk())
             .map_or(0, |&length| u32::from_le_bytes(length));
         if bytes.len() as u64 <= u64::from(length) + 7 {
-            let reason = super::error::BROKEN_OFF.to_owned();
-            return Err(DecodeError::Photograph { format: self.name(), reason });
+            return Err(self.damaged(BROKEN_OFF));
         }
         if decoder.has_animation() {
             let what = "an animated WebP".to_owned();
@@ -93,13 +93,15 @@ impl Format {
                 remedy: "save it as a JPEG, or as a PNG of 8 bits",
             },
             ImageError::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
-                DecodeError::Photograph { format: self.name(), reason: super::error::BROKEN_OFF.to_owned() }
+                self.damaged(BROKEN_OFF)
             }
-            other => {
-                let reason = other.to_string().trim_end_matches('.').to_owned();
-                DecodeError::Photograph { format: self.name(), reason }
-            }
+            other => self.damaged(other.to_string().trim_end_matches('.')),
         }
+    }
+
+    /// The refusal of a picture that its decoder cannot make anything of.
+    pub(super) fn damaged(self, reason: &str) -> DecodeError {
+        DecodeError::Photograph { format: self.name(), reason: reason.to_owned() }
     }
 }
 
