@@ -1,15 +1,15 @@
 //! Grids that must be refused, on a board that takes grids.
 
-use halfrow_model::TableSet;
+use halfrow_model::{GridShape, TableSet};
 use halfrow_protocol::message::{Commit, Entries, Grids, RefusalCode, Request, Shape, Span, Table};
 
 use super::{FIRST_FACTOR, Rules};
 use crate::result::Rule;
 use crate::run::findings::End;
 use crate::run::legal::grids;
+use crate::run::parts::of_height;
 
-/// The greatest v, and places of COMMIT's fields (WIRE.md, 13).
-const GREATEST_V: u8 = 6;
+/// Places of COMMIT's fields (WIRE.md, 13).
 const V: u16 = 1;
 const K: u16 = 2;
 
@@ -37,7 +37,8 @@ impl Rules<'_, '_> {
         let known = (0..u8::BITS as u8).find(|&k| grids.takes(k)).unwrap_or_default();
         let others = (0..u8::BITS).map(|bit| 1 << bit).chain([0, 4, 7]).filter(|&k| !grids.takes(k));
         let columns = others.map(|k| (K, of(1, k)));
-        let rows = (0..u8::BITS).map(|bit| GREATEST_V | 1 << bit).filter(|&v| v > GREATEST_V);
+        let greatest = *GridShape::V.end() as u8;
+        let rows = (0..u8::BITS).map(|bit| greatest | 1 << bit).filter(|&v| v > greatest);
         let wrong: Vec<_> = rows.map(|v| (V, of(v, known))).chain(columns).collect();
         for (field, commit) in wrong {
             self.refused(Rule::Shape, &Request::Commit(commit), RefusalCode::Range, field)?;
@@ -48,10 +49,10 @@ impl Rules<'_, '_> {
 
     /// The finest grid of frames as high as they can be, where a bank does not hold it.
     fn too_many_entries(&mut self, grids: Grids, finest: Commit) -> Result<(), End> {
-        let (rows, most) = (usize::from(self.capabilities.max_height), usize::from(grids.entries));
-        let Some(Shape { v, k }) = finest.shape else { return Ok(()) };
-        let columns = self.small.geometry.width().div_ceil(1 << k) + 2;
-        if columns * (((rows - 1) >> v) + 3) <= most {
+        let rows = self.capabilities.max_height.into();
+        let shape = finest.shape.and_then(|Shape { v, k }| GridShape::new(v.into(), k.into()).ok());
+        let entries = shape.map(|shape| shape.entries(&of_height(&self.small.geometry, rows)));
+        if entries.is_none_or(|entries| entries <= grids.entries.into()) {
             return Ok(());
         }
         let height = self.height;
