@@ -68,10 +68,9 @@ impl SettingsFile {
         path::absolute(&self.settings).map_err(Failure::call)
     }
 
-    /// What they say to whoever needs no lanes: a plant has none, nor has a station that takes jobs alone.
+    /// [`load_plant`] of them.
     pub(super) fn load_plant(&self) -> Result<Settings, Failure> {
-        let path = self.path()?;
-        Settings::load_plant(&path).map_err(Failure::call)
+        load_plant(&self.settings)
     }
 }
 
@@ -79,6 +78,12 @@ impl SettingsFile {
 pub(super) fn settings(path: &Path) -> Result<Settings, Failure> {
     let path = path::absolute(path).map_err(Failure::call)?;
     Settings::load(&path).map_err(Failure::call)
+}
+
+/// What the file `path` says to whoever needs no lanes: a plant has none, nor has a station that takes jobs alone.
+pub(super) fn load_plant(path: &Path) -> Result<Settings, Failure> {
+    let path = path::absolute(path).map_err(Failure::call)?;
+    Settings::load_plant(&path).map_err(Failure::call)
 }
 
 /// The last signal, which ends what is under way.

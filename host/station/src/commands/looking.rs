@@ -1,6 +1,6 @@
 //! What the commands that look at results have in common.
 
-use std::path::{Path, PathBuf, absolute};
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
@@ -10,13 +10,13 @@ use jiff::civil::Date;
 use jiff::{Timestamp, tz::TimeZone};
 use serde::Serialize;
 
+use super::beginning::load_plant;
 use super::plant::plant;
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::history::Period;
 use crate::history::runs::Filter;
 use crate::history::yields::Wanted;
-use crate::settings::Settings;
 use crate::store::{Folder, Plant, Snapshot};
 
 /// Where the station's results are.
@@ -49,8 +49,7 @@ impl Results {
     /// The results at this moment.
     pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
         if let Some(path) = &self.plant {
-            let settings = Settings::load_plant(&absolute(path).map_err(Failure::call)?);
-            let address = plant(&settings.map_err(Failure::call)?)?.address()?;
+            let address = plant(&load_plant(path)?)?.address()?;
             return Ok(Snapshot::of_plant(Plant::connect(&address)?)?);
         }
         let data = self.data.as_deref().unwrap_or(Path::new("."));
