@@ -12,7 +12,7 @@ use crate::{arrays, choices, errors};
 
 /// Reads the frame in the file `path`: uint16 of shape (height, width), each sample 0 to 2^bits − 1.
 ///
-/// The bytes tell the format: PGM, PNG, TIFF, DNG. Samples are taken as they are, never rescaled; a colour picture is
+/// The bytes tell the format: PGM, PNG, TIFF, DNG, JPEG, WebP, BMP. Samples are taken as they are, never rescaled; a colour picture is
 /// mosaicked in `phase`. `raw` (u8, u16le, mipi10, mipi12) is the layout of a file without a header, which then needs `width`
 /// and `height`. Raises InputError when the file cannot be read or holds no such frame.
 #[pyfunction]
