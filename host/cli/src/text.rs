@@ -62,6 +62,9 @@ fn head(report: &Report) -> String {
     let tables = &report.tables;
     let size = format!("{}, {} x {}, {} bits", tables.source, tables.width, tables.height, tables.bits);
     push(&mut text, "tables", Style::new(), &size);
+    if let Some(operator) = &report.run.operator {
+        push(&mut text, "operator", Style::new(), operator);
+    }
     text
 }
 

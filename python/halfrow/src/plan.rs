@@ -145,7 +145,7 @@ impl Options<'_> {
             take_over: self.take_over,
             require_hardware: self.require_hardware,
             keep_equal: self.report.is_some(),
-            circumstances: Circumstances { arguments, files, draws: Draws::draw() },
+            circumstances: Circumstances { arguments, files, draws: Draws::draw(), operator: None },
             ..RunOptions::default()
         })
     }

@@ -1,8 +1,13 @@
 //! What `verify` prints, and where.
 
-use std::process::Stdio;
+use std::fs::File;
+use std::io::Read as _;
+use std::process::{Command, Stdio};
 
 use halfrow_tests::program::{Folder, command, finish, halfrow};
+
+use nix::fcntl::OFlag;
+use nix::pty::{grantpt, posix_openpt, ptsname_r, unlockpt};
 
 use crate::{refused, small};
 
@@ -10,11 +15,11 @@ const ESCAPE: char = '\u{1b}';
 
 #[test]
 fn json_begins_with_schema_command_verdict_exit_code_and_kind_of_board() {
-    let ended = halfrow(small("verify", &["--json"]));
+    let ended = halfrow(small("verify", &["--json", "--operator", "Ada Weber"]));
     let beginning = "{\n  \"schema\": 1,\n  \"command\": \"verify\",\n  \"verdict\": \"PASS\",\n  \"exit_code\": 0,\n  \"board\": {\n    \"kind\": \"mock\",";
     assert!(ended.stdout.starts_with(beginning), "{}", ended.stdout);
     assert_eq!((ended.code, ended.stderr.as_str()), (Some(0), ""));
-    assert!(ended.json().is_object());
+    assert_eq!(ended.json()["run"]["operator"], "Ada Weber");
 }
 
 #[test]
@@ -59,6 +64,50 @@ fn colours_are_for_terminals_and_for_those_who_ask() {
     assert!(!plain.stdout.contains(ESCAPE) && !plain.stderr.contains(ESCAPE));
     assert!(forced.stdout.contains(ESCAPE));
     assert!(!refused.stdout.contains(ESCAPE) && !refused.stderr.contains(ESCAPE));
+}
+
+/// What `command` sends a terminal of so many columns.
+fn on_terminal(columns: &str, command: &mut Command) -> String {
+    let mut master = posix_openpt(OFlag::O_RDWR | OFlag::O_NOCTTY).unwrap();
+    grantpt(&master).unwrap();
+    unlockpt(&master).unwrap();
+    let path = ptsname_r(&master).unwrap();
+    assert!(Command::new("stty").args(["-F", &path, "cols", columns]).status().unwrap().success());
+    let terminal = File::options().write(true).open(&path).unwrap();
+    let mut child = command.stdout(terminal).stderr(Stdio::null()).spawn().unwrap();
+    command.stdout(Stdio::null());
+    let mut sent = Vec::new();
+    // It ends with an error once nobody has the terminal open.
+    let _ = master.read_to_end(&mut sent);
+    assert!(child.wait().unwrap().success());
+    String::from_utf8(sent).unwrap().replace("\r\n", "\n")
+}
+
+/// What a reader sees of it.
+fn without_colours(text: &str) -> String {
+    let mut parts = text.split("\u{1b}[");
+    let first = parts.next().unwrap().to_owned();
+    parts.map(|part| part.split_once('m').unwrap().1).fold(first, |seen, part| seen + part)
+}
+
+/// Sentences are no easier to read the longer their lines are: a wide terminal shows what a narrow one does, and no line is broken twice.
+#[test]
+fn a_terminal_shows_the_text_in_colours_and_within_80_columns_however_wide_it_is() {
+    let arguments = small("verify", &["--operator", "Ada Weber"]);
+    let narrow = on_terminal("80", &mut command(arguments.clone()));
+    let wide = on_terminal("200", &mut command(arguments.clone()));
+    let plain = on_terminal("200", command(arguments).env("NO_COLOR", "1"));
+    let seen = without_colours(&narrow);
+    // The verdict is one line, for whoever looks for it.
+    let (text, verdict) = seen.trim_end().rsplit_once('\n').unwrap();
+    assert!(text.lines().all(|line| line.chars().count() <= 80), "{seen}");
+    assert!(verdict.starts_with("PASS (mock board") && seen.contains("\noperator Ada Weber\n"), "{seen}");
+    // Times may differ; a layout does not.
+    let shape = |text: &str| -> Vec<_> {
+        text.lines().map(|line| line.split(' ').next().map(str::to_owned)).collect()
+    };
+    assert!(narrow.contains(ESCAPE) && shape(&narrow) == shape(&wide), "{narrow}\n{wide}");
+    assert!(!plain.contains(ESCAPE), "{plain}");
 }
 
 #[test]

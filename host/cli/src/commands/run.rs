@@ -33,6 +33,9 @@ pub(super) struct RunArguments {
     /// Write a report (JSON, JUnit, HTML) into this folder
     #[arg(long, value_name = "FOLDER", env = "HALFROW_REPORT")]
     report: Option<PathBuf>,
+    /// Who tests, for the report
+    #[arg(long, value_name = "NAME", env = "HALFROW_OPERATOR")]
+    operator: Option<String>,
     /// Go on when the board goes away and comes back within so many seconds [30 if no number is given]
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, require_equals = true, default_missing_value = "30")]
     #[arg(env = "HALFROW_RECONNECT")]
@@ -101,6 +104,11 @@ impl RunArguments {
         self.seed.or(settings.seed).unwrap_or(1)
     }
 
+    /// Who tests; none if nobody is named.
+    pub(super) fn operator(&self) -> Option<String> {
+        self.operator.clone().filter(|name| !name.trim().is_empty())
+    }
+
     /// How long a board may stay away; none if nothing is said of it.
     pub(super) fn patience(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
         seconds("--reconnect", self.reconnect.or(settings.reconnect))
@@ -118,6 +126,7 @@ impl RunArguments {
             arguments: std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect(),
             files: told.map(|path| file_hash(path)).collect::<Result<_, _>>().map_err(Failure::call)?,
             draws: run::Draws::draw(),
+            operator: self.operator(),
         };
         Ok(RunOptions {
             timeout: self.board.timeout(settings)?,

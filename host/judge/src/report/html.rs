@@ -65,7 +65,7 @@ pub fn document(title: &str, body: &Markup) -> Markup {
 
 /// The verdict and what it rests on: for PASS the figures say it all, for the others the headline comes first.
 fn banner(report: &Report) -> Markup {
-    let (facts, started) = (wording::facts(report), plain(&report.run.started));
+    let facts = wording::facts(report);
     html! {
         header.(report.verdict.to_string().to_lowercase()) {
             div {
@@ -78,7 +78,10 @@ fn banner(report: &Report) -> Markup {
                 h1 { (plain(&report.headline())) }
                 p.facts { (facts) }
             }
-            p.facts { (unit(report)) " · " (started) }
+            p.facts {
+                (unit(report)) " · " (plain(&report.run.started))
+                @if let Some(operator) = &report.run.operator { " · tested by " (plain(operator)) }
+            }
         }
     }
 }

@@ -68,6 +68,7 @@ fn properties(report: &Report) -> Vec<(&'static str, String)> {
         ("halfrow.commit", report.run.commit.clone()),
         ("seed", report.run.seed.to_string()),
     ];
+    list.extend(report.run.operator.clone().map(|name| ("operator", name)));
     list.extend(wording::not_exercised(report).map(|parts| ("not_exercised", parts)));
     list.extend(wording::coverage(report).map(|share| ("coverage", share)));
     if let Some(identity) = &report.board.identity {

@@ -265,6 +265,9 @@ pub struct RunReport {
     pub seconds: f64,
     /// The host it ran on.
     pub host: String,
+    /// Who tested, if anybody was named.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub operator: Option<String>,
     /// Files that were read, with their SHA-256.
     pub files: Vec<FileHash>,
 }

@@ -75,6 +75,7 @@ fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunRep
         ended: format!("{ended:.0}"),
         seconds: ended.duration_since(started).as_secs_f64(),
         host: host_name(),
+        operator: circumstances.operator.clone(),
         files: circumstances.files.clone(),
     }
 }

@@ -67,6 +67,8 @@ pub struct Circumstances {
     pub files: Vec<FileHash>,
     /// Numbers drawn for this run; a replay has those of the recorded one.
     pub draws: Draws,
+    /// Who tests, if anybody is named.
+    pub operator: Option<String>,
 }
 
 /// Numbers that a run draws at random.

@@ -137,7 +137,11 @@ impl RecordedRun {
             retry_limit: RetryLimit { fixed: run.retries, share: run.retry_share },
             take_over: run.take_over,
             keep_equal: true,
-            circumstances: Circumstances { arguments: run.arguments, files: Vec::new(), draws: run.draws },
+            circumstances: Circumstances {
+                arguments: run.arguments,
+                draws: run.draws,
+                ..Circumstances::default()
+            },
             ..RunOptions::default()
         };
         Ok((plan, options))

@@ -138,7 +138,7 @@ fn a_pass_stays_under_two_megabytes() {
 
 /// Whatever came of it, the head says which board it was, and when; what is to be done follows.
 #[test]
-fn the_head_names_board_serial_and_time() {
+fn the_head_names_board_serial_time_and_operator() {
     for (report, board) in [
         (made::pass(), "mock, serial <strong>000000000000002a</strong>, at mock"),
         (made::fail().0, "mock, serial <strong>000000000000002a</strong>, at mock"),
@@ -146,7 +146,8 @@ fn the_head_names_board_serial_and_time() {
     ] {
         let page = page(&report, &[]);
         let (head, rest) = page.split_once("</header>").unwrap();
-        assert!(head.contains(board) && head.contains(&report.run.started), "{head}");
+        let when_and_who = format!("{} · tested by Ada Weber", report.run.started);
+        assert!(head.contains(board) && head.contains(&when_and_who), "{head}");
         let first = rest.split("<h2>").nth(1).unwrap();
         assert_eq!(
             first.starts_with("What to do"),

@@ -256,6 +256,7 @@ fn run() -> RunReport {
         ended: "2026-11-21T02:03:06Z".to_owned(),
         seconds: 1.94,
         host: "bench-3".to_owned(),
+        operator: Some("Ada Weber".to_owned()),
         files: Vec::new(),
     }
 }

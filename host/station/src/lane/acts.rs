@@ -212,6 +212,8 @@ impl Common<'_> {
             arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
             files: self.plan.files.clone(),
             draws: Draws::draw(),
+            // The record has them.
+            operator: None,
         };
         let options = RunOptions {
             timeout: Some(within),
