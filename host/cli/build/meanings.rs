@@ -6,13 +6,14 @@ use std::{env, fs, io};
 use crate::sources::{Sources, Type, Words};
 
 /// Where types with codes are, from the folder of this package.
-const FOLDERS: [&str; 10] = [
+const FOLDERS: [&str; 11] = [
     "src",
     "../frames/src",
     "../judge/src",
     "../lab/src",
     "../link/src",
     "../program/src",
+    "../station/src",
     "../../fpga/mock/src",
     "../../fpga/model/src",
     "../../fpga/sim/src",
@@ -25,27 +26,38 @@ const CODES: [&str; 4] = [
     "../judge/src/result/codes/links.rs",
     "../program/src/codes.rs",
 ];
+/// Where those of `halfrow-station` are, of which this program only tells.
+const CODES_OF_STATION: [&str; 2] =
+    ["../station/src/commands/codes.rs", "../station/src/commands/refusals.rs"];
 /// Types whose codes are their variants' names.
 const BY_NAME: [&str; 3] = ["Finding", "Defect", "NotExercised"];
 
-/// Writes `meanings.rs`: each code with its meaning, and the message of its error, or nothing.
+/// Writes `meanings.rs`: each code with its meaning, and the message of its error, or nothing; and `codes_of_station.rs`: each code of
+/// `halfrow-station`'s own with the names of its parameters.
 pub(crate) fn write() -> io::Result<()> {
     let mut sources = Sources::default();
     for folder in FOLDERS {
         sources.read(Path::new(folder))?;
     }
-    let mut meanings: Vec<(String, Words)> = Vec::new();
+    // What is said of a type is nearer to its code than what is said of a list.
+    let of_constants = sources.constants.iter().filter(|(text, _)| text.contains('-') && !text.contains(' '));
+    let mut meanings: Vec<_> = of_constants
+        .map(|(code, comment)| (code.clone(), Words { comment: comment.clone(), ..Words::default() }))
+        .collect();
     for found in sources.types.iter().filter(|found| BY_NAME.contains(&found.name.as_str())) {
         meanings.extend(found.variants.iter().map(|(name, words)| (kebab(name), words.clone())));
     }
     for file in CODES {
         given(&fs::read_to_string(file)?, &sources.types, &mut meanings);
     }
-    let of_constants = sources.constants.iter().filter(|(text, _)| text.contains('-') && !text.contains(' '));
-    meanings.extend(
-        of_constants
-            .map(|(code, comment)| (code.clone(), Words { comment: comment.clone(), ..Words::default() })),
-    );
+    let mut of_station = Vec::new();
+    for file in CODES_OF_STATION {
+        let text = fs::read_to_string(file)?;
+        given(&text, &sources.types, &mut meanings);
+        of_station.extend(
+            text.lines().filter_map(coded).map(|(code, names)| format!("    ({code:?}, &{names:?}),\n")),
+        );
+    }
     let lines: Vec<_> = meanings
         .iter()
         .map(|(code, Words { comment, message })| {
@@ -53,7 +65,16 @@ pub(crate) fn write() -> io::Result<()> {
         })
         .collect();
     let folder = env::var("OUT_DIR").map_err(io::Error::other)?;
+    fs::write(Path::new(&folder).join("codes_of_station.rs"), format!("&[\n{}]\n", of_station.concat()))?;
     fs::write(Path::new(&folder).join("meanings.rs"), format!("&[\n{}]\n", lines.concat()))
+}
+
+/// The code that a line of a list gives, with the names of its parameters.
+fn coded(line: &str) -> Option<(&str, Vec<&str>)> {
+    let (variant, rest) = line.split_once("=> \"")?;
+    let names =
+        variant.split_once('[').and_then(|(_, rest)| rest.split_once(']')).map_or("", |(names, _)| names);
+    Some((rest.split('"').next()?, names.split(", ").filter(|name| !name.is_empty()).collect()))
 }
 
 /// Adds the meanings of the codes that the list `text` gives.
@@ -64,10 +85,7 @@ fn given(text: &str, types: &[Type], meanings: &mut Vec<(String, Words)>) {
         let name = |line: &str| -> String {
             line.trim().chars().take_while(|letter| letter.is_alphanumeric()).collect()
         };
-        let coded: Vec<_> = part
-            .lines()
-            .filter_map(|line| Some((name(line), line.split("=> \"").nth(1)?.split('"').next()?)))
-            .collect();
+        let coded: Vec<_> = part.lines().filter_map(|line| Some((name(line), coded(line)?.0))).collect();
         let head = part.lines().find(|line| line.starts_with("    ") && line.ends_with('{')).map(name);
         match head {
             Some(head) => {

@@ -59,6 +59,12 @@ pub fn problem(
     Problem { code: if exit == Exit::Usage { REFUSED } else { FAILED }.to_owned(), ..problem }
 }
 
+/// The code of `problem`; none when it has no type of its own, and so nothing more to be said of it.
+#[must_use]
+pub fn explained(problem: Problem) -> Option<String> {
+    Some(problem.code).filter(|code| !UNTYPED.contains(&code.as_str()))
+}
+
 /// The code of a command line that cannot be read.
 pub(crate) fn of_usage(kind: ErrorKind) -> &'static str {
     USAGE[match kind {

@@ -162,6 +162,7 @@ pub enum Saying {
     OtherSerial { serial: String, scanned: String },
     #[error("{serial} is device {device}; the board in the lane is device {found}")]
     OtherDevice { serial: String, device: String, found: String },
+    /// What was measured is beyond a limit of the plan.
     #[error("{sentence}")]
     BeyondLimit {
         sentence: String,
@@ -171,6 +172,7 @@ pub enum Saying {
         low: Option<f64>,
         high: Option<f64>,
     },
+    /// What the plan has a limit for was not measured.
     #[error("{sentence}")]
     NotMeasured { sentence: String, name: String, unit: String, low: Option<f64>, high: Option<f64> },
     #[error("{passed} of {planned} steps passed, and of the others nothing is known")]

@@ -46,11 +46,10 @@ pub fn failure(command: &str, failure: &Failure) -> String {
     json::without_result(command, *exit, exit.verdict(), &named(codes::problem(*exit, error)))
 }
 
-/// The code of what a command failed by; none when it has no type of its own, and so nothing more to be said of it.
+/// The code of what a command failed by, if `explain` has more to say of it.
 #[must_use]
 pub fn code(failure: &Failure) -> Option<String> {
-    let code = codes::problem(failure.exit, &failure.error).code;
-    (!halfrow_program::codes::UNTYPED.contains(&code.as_str())).then_some(code)
+    halfrow_program::codes::explained(codes::problem(failure.exit, &failure.error))
 }
 
 /// A problem with the flags of the settings that its words name.

@@ -17,6 +17,9 @@ use halfrow::verdict::Verdict;
 /// Each code with its meaning and its error's message, from the comments of the sources.
 const MEANINGS: &[(&str, &str, &str)] = include!(concat!(env!("OUT_DIR"), "/meanings.rs"));
 
+/// The codes of `halfrow-station`'s own errors, each with the names of its parameters.
+const CODES_OF_STATION: &[(&str, &[&str])] = include!(concat!(env!("OUT_DIR"), "/codes_of_station.rs"));
+
 /// How like a code must be to what was asked for, 0 to 1, to be named in its place.
 const LIKENESS: f64 = 0.8;
 /// Codes that are named at most.
@@ -24,7 +27,7 @@ const MOST_LIKE: usize = 5;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The codes, as `halfrow codes` lists them
+    /// The codes, as `halfrow codes` and `halfrow-station codes` list them
     #[arg(required = true, value_name = "CODE", value_parser = Code, hide_possible_values = true)]
     codes: Vec<String>,
 }
@@ -56,7 +59,7 @@ impl TypedValueParser for Code {
 #[derive(Clone, Debug, Default, Serialize)]
 struct Explanation {
     code: String,
-    /// finding, defect, not-exercised or error.
+    /// finding, defect, not-exercised, error or station-error.
     of: String,
     meaning: String,
     /// A sentence with it, or with what stands for its parameters in capitals.
@@ -104,16 +107,18 @@ fn unknown(code: &str, known: &BTreeMap<String, Explanation>) -> CallError {
 
 /// Every code with what is said of it.
 fn known() -> BTreeMap<String, Explanation> {
-    let mut known: BTreeMap<_, _> =
-        codes::all().iter().map(of_entry).map(|it| (it.code.clone(), it)).collect();
+    let of_station = CODES_OF_STATION
+        .iter()
+        .map(|(code, names)| json!({ "of": "station-error", "code": code, "parameters": names }));
+    let mut known: BTreeMap<_, _> = of_station
+        .chain(codes::all())
+        .map(|entry| of_entry(&entry))
+        .map(|it| (it.code.clone(), it))
+        .collect();
     let mut add =
         |code: &str, change: &dyn Fn(&mut Explanation)| known.get_mut(code).into_iter().for_each(change);
     for &(code, meaning, message) in MEANINGS {
-        add(code, &|it| {
-            it.meaning = meaning.to_owned();
-            it.sentence = named_places(message);
-            it.acts = it.sentence.rsplit_once("; ").map(|(_, act)| act.to_owned()).into_iter().collect();
-        });
+        add(code, &|it| it.say(meaning, message));
     }
     for (verdict, finding) in examples::findings_with_verdicts() {
         add(&finding.code(), &|it| {
@@ -152,6 +157,11 @@ fn of_entry(entry: &Value) -> Explanation {
             Some(Verdict::Pass),
             "nobody's: the frames of the run leave it open; stream others, or all built-in ones",
             "`not_exercised` of a result",
+        ),
+        Some("station-error") => (
+            None,
+            "never the board's result: the station's, its settings', its plant's or the call's",
+            "what `halfrow-station` answers with `--json`, and what `check` finds",
         ),
         _ => (
             None,
@@ -195,7 +205,25 @@ fn named_places(message: &str) -> String {
     text
 }
 
+/// With a capital and a full stop.
+fn as_sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
 impl Explanation {
+    /// Takes what the sources say. Where there is no comment the message is one, and tells of no act.
+    fn say(&mut self, meaning: &str, message: &str) {
+        let sentence = named_places(message);
+        if meaning.is_empty() {
+            self.meaning = as_sentence(&sentence);
+            return;
+        }
+        self.meaning = meaning.to_owned();
+        self.acts = sentence.rsplit_once("; ").map(|(_, act)| act.to_owned()).into_iter().collect();
+        self.sentence = sentence;
+    }
+
     fn text(&self) -> String {
         let kind = self.of.replace('-', " ");
         let mut text = format!("{BOLD}{}{BOLD:#} ({kind})\n", self.code);

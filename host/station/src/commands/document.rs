@@ -25,3 +25,9 @@ pub fn failure(command: &str, failure: &Failure) -> String {
     let Failure { exit, error } = failure;
     json::without_result(command, *exit, None, &codes::problem(*exit, error))
 }
+
+/// The code of what a command failed by, if `halfrow explain` has more to say of it.
+#[must_use]
+pub fn code(failure: &Failure) -> Option<String> {
+    halfrow_program::codes::explained(codes::problem(failure.exit, &failure.error))
+}

@@ -38,7 +38,7 @@ mod yields;
 
 use clap::{ArgAction, Parser, Subcommand};
 
-pub use document::failure;
+pub use document::{code, failure};
 
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
