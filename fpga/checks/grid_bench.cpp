@@ -2,10 +2,13 @@
 // without a grid with datapath.hpp and grid.hpp, to the bit and the clock. It ends at the first difference, with status 1.
 //   random N SEED   N cases: shapes, grids, widths, depths, centres, kernels, blankings, gaps, both datapaths from row to row
 //   hostile N SEED  the same behind grids that are not legal, rows too short and too long, resets in mid row
+//   frame FILE      all rows of a frame behind the grid that `halfrow tables` wrote into FILE, without a pause between them
 // Words with a + are the model's.
 #include "core_driver.hpp"
 #include "grid.hpp"
+#include <fstream>
 #include <map>
+#include <numeric>
 
 // What the build advertises (halfrow_board.vh).
 constexpr int GRID_WIDTH = 144, GRID_BLANKING = 32;
@@ -192,12 +195,55 @@ static void cases(Bench &bench, int count, bool hostile) {
     }
 }
 
+static Grid grid_of(Bench &bench, const char *path) {
+    std::ifstream file(path);
+    std::string head;
+    Grid grid{};
+    int bits = 0, centre = 0;
+    std::getline(file, head);
+    std::getline(file, head);
+    if (std::sscanf(head.c_str(), "// datapath=2 width=%d height=%d bits=%d centre2=%d v=%d k=%d", &grid.width, &grid.height, &bits,
+                    &centre, &grid.shape.v, &grid.shape.k) != 6)
+        bench.fail("what the file of a grid begins with");
+    for (uint32_t entry; file >> std::hex >> entry;)
+        grid.entries.push_back(entry);
+    if (int(grid.entries.size()) != grid.size() || grid.size() > ENTRIES)
+        bench.fail("how many entries the file of a grid has");
+    bench.configure({grid.width, bits, centre});
+    return grid;
+}
+
+static void whole_frame(Bench &bench, const char *path) {
+    bench.reset();
+    Tables tables[2];
+    std::vector<int> rows;
+    for (int bank = 0; bank < TABLE_BANKS; bank++) {
+        tables[bank].grid = grid_of(bench, path);
+        tables[bank].kernel = kernel_of(Interpolant::hermite);
+        rows.resize(tables[bank].grid.height);
+        std::iota(rows.begin(), rows.end(), 0);
+        write_tables(bench, bank, tables[bank], rows);
+    }
+    for (int row : rows)
+        if (!legal(tables[0].grid.sources(bench.frame.centre, row), RING))
+            bench.fail("a row of the grid is not legal");
+    bench.core.last_row = tables[0].grid.height - 1;
+    bench.gaps = 0;
+    play(bench, tables, rows, 0);
+    if (bench.shorts || bench.longs || bench.unprepared)
+        bench.fail("a row of the frame is flagged");
+}
+
 int main(int argc, char **argv) {
     Verilated::commandArgs(argc, argv);
     Bench bench;
     bench.patience = 100;
     golden(bench);
-    for (int k = 1; k + 2 < argc; k += 3) {
+    for (int k = 1; k + 1 < argc; k += 3) {
+        if (std::strcmp(argv[k], "frame") == 0) {
+            whole_frame(bench, argv[k-- + 1]);
+            continue;
+        }
         bench.random.seed(std::atoi(argv[k + 2]));
         cases(bench, std::atoi(argv[k + 1]), std::strcmp(argv[k], "hostile") == 0);
     }
