@@ -46,9 +46,7 @@ pub(in crate::store) fn entered(
     if enter(to, record, hash, unit, counts)? == 0 {
         return Ok(false);
     }
-    // What came first to the plant need not have come about first.
-    to.execute(sql::PLAN_EARLIER, values![record.run.started_ms, &record.plan.sha256])?;
-    to.execute(sql::UNIT_EARLIER, values![record.run.started_ms, unit])?;
+    rows::began_at(to, record.run.started_ms, &record.plan.sha256, unit)?;
     rows::parts(to, record)?;
     count(to, record, unit, counts)?;
     Ok(true)

@@ -53,6 +53,16 @@ fn a_backup_is_of_its_moment_while_runs_go_on() {
     assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1, "nothing else is left there");
 }
 
+/// Lanes begin runs at once, and the store takes one behind the other.
+#[test]
+fn runs_are_sound_that_are_entered_in_another_order_than_they_began_in() {
+    let mut made = Made::new();
+    for (serial, lane, started_ms) in [("S1", "1", BEGIN_MS + 1), ("S2", "2", BEGIN_MS)] {
+        made.run(&Run { lane: lane.to_owned(), started_ms, ..Run::of(serial, End::Pass) });
+    }
+    assert_eq!(sound(&made.folder()), [2, 0, 2, 0]);
+}
+
 #[test]
 fn a_restored_folder_is_the_one_that_was_saved() {
     let made = made();
