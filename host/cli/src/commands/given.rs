@@ -182,7 +182,8 @@ mod tests {
     /// A new option has to be put on one side or the other.
     #[test]
     fn every_option_of_verify_is_void_or_does_something_beside_a_recording() {
-        let stand = ["board", "report", "record", "overwrite", "require_hardware", "list", "timeout"];
+        let stand =
+            ["board", "report", "record", "operator", "overwrite", "require_hardware", "list", "timeout"];
         let mut decided: Vec<&str> = Decider::Recording.voids();
         decided.extend(stand);
         decided.sort_unstable();
