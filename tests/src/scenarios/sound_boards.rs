@@ -29,6 +29,11 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("the smallest frame", "", &[W, "64", H, "1"]),
     passes("the widest frame", ",max-width=2592", &[W, "2592", H, "8", R, "4"]),
     passes("the highest frame", "", &[W, "64", H, "2048", R, "1030"]),
+    passes(
+        "the full sensor behind a grid of 4,096 entries",
+        ",max-width=2592,ring=4096,entries=4096",
+        SENSOR,
+    ),
     passes("a ring that just holds a row", ",max-width=128,ring=128", &[W, "128", H, "72", R, "73.78"]),
     passes("blank clocks between rows", ",least-blanking=7", &[W, "128", H, "72", R, "73.78"]),
     passes("the longest pipeline", ",latency=32", &[W, "64", H, "72", R, "40"]),
@@ -48,6 +53,8 @@ pub const SOUND_BOARDS: &[Scenario] = &[
     passes("another seed", "", &[W, "128", H, "16", "--seed", "18446744073709551615"]),
 ];
 
+const SENSOR: &[&str] =
+    &[W, "2592", H, "1944", "--projection", "exact", "--entries", "4096", "--frame", "builtin:street"];
 const W: &str = "--width";
 const H: &str = "--height";
 const R: &str = "--radius";
