@@ -175,7 +175,8 @@ def changed(page):
 def check(page, programs):
     scratch, counts = Scratch(programs), [0, 0]
     try:
-        for block in blocks(page):
+        # What a block prints stands behind it, so all of a page is read first.
+        for block in list(blocks(page)):
             counts[block.reason is not None] += 1
             if block.reason is None and (wrong := scratch.run(block)):
                 return counts, [wrong]
