@@ -38,19 +38,10 @@ pub(super) fn unit(to: &mut dyn Database, run: &RunHead, plan: &PlanRecord) -> R
     to.execute(sql::ADD_PLAN, values![sha256, name, version, product, text, *started_ms])?;
     to.execute(sql::ADD_UNIT, values![&run.unit_id, product, serial, *started_ms])?;
     let unit: String = to.one(sql::UNIT_OF, values![product, serial], |row| row.get(0))?;
-    began_at(to, *started_ms, sha256, &unit)?;
+    // The run that is entered first need not have begun first.
+    to.execute(sql::PLAN_EARLIER, values![*started_ms, sha256])?;
+    to.execute(sql::UNIT_EARLIER, values![*started_ms, &unit])?;
     Ok(unit)
-}
-
-/// Has the plan used, and the unit seen, by the time at which a run began: the run that is entered first need not have begun first.
-pub(super) fn began_at(
-    to: &mut dyn Database,
-    started_ms: i64,
-    plan: &str,
-    unit: &str,
-) -> Result<(), DatabaseError> {
-    to.execute(sql::PLAN_EARLIER, values![started_ms, plan])?;
-    to.execute(sql::UNIT_EARLIER, values![started_ms, unit]).map(drop)
 }
 
 /// The end of a run with all that belongs to it. Returns the number of runs that it ended: none, and then nothing is

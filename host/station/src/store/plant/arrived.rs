@@ -46,7 +46,6 @@ pub(in crate::store) fn entered(
     if enter(to, record, hash, unit, counts)? == 0 {
         return Ok(false);
     }
-    rows::began_at(to, record.run.started_ms, &record.plan.sha256, unit)?;
     rows::parts(to, record)?;
     count(to, record, unit, counts)?;
     Ok(true)
