@@ -181,6 +181,11 @@ static void disturb(Bench &bench) {
         bench.reset();
 }
 
+static void expect_no_flag(Bench &bench) {
+    if (bench.shorts || bench.longs || bench.unprepared)
+        bench.fail("a good row is flagged");
+}
+
 static void cases(Bench &bench, int count, bool hostile) {
     for (int k = 0; k < count; k++) {
         bench.reset();
@@ -190,8 +195,7 @@ static void cases(Bench &bench, int count, bool hostile) {
             disturb(bench);
         bench.shorts = bench.longs = bench.unprepared = 0;
         one_case(bench, hostile ? 9 : 0);
-        if (bench.shorts || bench.longs || bench.unprepared)
-            bench.fail("a good row is flagged");
+        expect_no_flag(bench);
     }
 }
 
@@ -215,23 +219,22 @@ static Grid grid_of(Bench &bench, const char *path) {
 
 static void whole_frame(Bench &bench, const char *path) {
     bench.reset();
+    const Grid grid = grid_of(bench, path);
+    std::vector<int> rows(grid.height);
+    std::iota(rows.begin(), rows.end(), 0);
+    for (int row : rows)
+        if (!legal(grid.sources(bench.frame.centre, row), RING))
+            bench.fail("a row of the grid is not legal");
     Tables tables[2];
-    std::vector<int> rows;
     for (int bank = 0; bank < TABLE_BANKS; bank++) {
-        tables[bank].grid = grid_of(bench, path);
+        tables[bank].grid = grid;
         tables[bank].kernel = kernel_of(Interpolant::hermite);
-        rows.resize(tables[bank].grid.height);
-        std::iota(rows.begin(), rows.end(), 0);
         write_tables(bench, bank, tables[bank], rows);
     }
-    for (int row : rows)
-        if (!legal(tables[0].grid.sources(bench.frame.centre, row), RING))
-            bench.fail("a row of the grid is not legal");
-    bench.core.last_row = tables[0].grid.height - 1;
+    bench.core.last_row = grid.height - 1;
     bench.gaps = 0;
     play(bench, tables, rows, 0);
-    if (bench.shorts || bench.longs || bench.unprepared)
-        bench.fail("a row of the frame is flagged");
+    expect_no_flag(bench);
 }
 
 int main(int argc, char **argv) {
@@ -239,13 +242,18 @@ int main(int argc, char **argv) {
     Bench bench;
     bench.patience = 100;
     golden(bench);
-    for (int k = 1; k + 1 < argc; k += 3) {
+    int k = 1;
+    while (k + 1 < argc && argv[k][0] != '+') {
         if (std::strcmp(argv[k], "frame") == 0) {
-            whole_frame(bench, argv[k-- + 1]);
+            whole_frame(bench, argv[k + 1]);
+            k += 2;
             continue;
         }
+        if (k + 2 >= argc)
+            bench.fail("a word of the call");
         bench.random.seed(std::atoi(argv[k + 2]));
         cases(bench, std::atoi(argv[k + 1]), std::strcmp(argv[k], "hostile") == 0);
+        k += 3;
     }
     std::printf("%d taps, %d banks, both datapaths: %lu outputs equal\n", TAPS, TABLE_BANKS, bench.outputs);
     return 0;
