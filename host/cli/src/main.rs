@@ -38,9 +38,7 @@ fn program() -> Exit {
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
     let Failure { exit, error } = failure;
     console::error(&flags::named(&format!("{error:#}")));
-    if let Some(code) = commands::code(failure) {
-        console::diagnose(&format_args!("see `halfrow explain {code}`"));
-    }
+    console::refer(commands::code(failure).as_deref());
     if let Some(command) = as_json_of {
         console::tell(&commands::failure(command, failure));
     }

@@ -55,6 +55,13 @@ pub fn error(what: &dyn Display) {
     diagnose(&format_args!("error: {what}"));
 }
 
+/// Says on stderr where more is said of the code of what went wrong, if it has one.
+pub fn refer(code: Option<&str>) {
+    if let Some(code) = code {
+        diagnose(&format_args!("see `halfrow explain {code}`"));
+    }
+}
+
 /// Asks on stderr for something that is typed behind it. Whoever types blind knows what is asked.
 pub fn ask(what: &str) {
     diagnose_raw(&format!("{what}: "));

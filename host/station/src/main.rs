@@ -29,9 +29,7 @@ fn program() -> Exit {
 /// Says why there is no result: on stderr for people, and as JSON on stdout where that was asked for.
 fn explain(failure: &Failure, as_json_of: Option<&str>) -> Exit {
     console::error(&format_args!("{:#}", failure.error));
-    if let Some(code) = commands::code(failure) {
-        console::diagnose(&format_args!("see `halfrow explain {code}`"));
-    }
+    console::refer(commands::code(failure).as_deref());
     if let Some(command) = as_json_of {
         console::tell(&commands::failure(command, failure));
     }
