@@ -71,7 +71,7 @@ def pieces(page):
 
 def blocks(page):
     """The blocks of commands of a page, each with what it prints where that stands behind it."""
-    last = reason = whole = None
+    found, last, reason, whole = [], None, None, None
     for kind, line, lines in pieces(page):
         if kind == "comment":
             for text in lines:
@@ -83,10 +83,11 @@ def blocks(page):
         elif kind.startswith("```sh") or kind == "indented" and PROGRAM.match(lines[0].strip() + " "):
             last = Block(page, line, kind, reason or whole)
             last.text = [text.removeprefix("    ") if kind == "indented" else text for text in lines]
-            yield last
+            found.append(last)
             reason = None
             continue
         last = reason = None
+    return found
 
 
 def pattern(lines):
@@ -175,8 +176,7 @@ def changed(page):
 def check(page, programs):
     scratch, counts = Scratch(programs), [0, 0]
     try:
-        # What a block prints stands behind it, so all of a page is read first.
-        for block in list(blocks(page)):
+        for block in blocks(page):
             counts[block.reason is not None] += 1
             if block.reason is None and (wrong := scratch.run(block)):
                 return counts, [wrong]
