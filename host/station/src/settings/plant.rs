@@ -14,6 +14,8 @@ use crate::web::{SecretError, secret};
 const PASSWORD: &str = "HALFROW_PLANT_PASSWORD";
 /// How many entries may be unsent until lanes take nothing more.
 const MOST_UNSENT: u32 = 10_000;
+/// How full the disk may be, in per cent, while entries are unsent.
+const MOST_FILLED: u8 = 95;
 
 /// `[plant]`
 #[derive(Clone, Debug)]
@@ -25,6 +27,8 @@ pub struct PlantSettings {
     pub is_green_at_plant: bool,
     /// How many entries may be unsent until lanes take nothing more.
     pub most_unsent: u32,
+    /// How full the disk may be, in per cent (1 to 100), until lanes take nothing more while entries are unsent.
+    pub most_filled: u8,
     /// The keys of those whose plans are taken.
     pub trusts: Vec<PublicKey>,
 }
@@ -49,7 +53,8 @@ impl PlantSettings {
             password_file: path(&text.password_file),
             ca: path(&text.ca),
             is_green_at_plant: text.green == GreenText::Plant,
-            most_unsent: most(text.most_unsent.as_ref())?,
+            most_unsent: most_unsent(text.most_unsent.as_ref())?,
+            most_filled: most_filled(text.most_filled.as_ref())?,
             trusts: text.trusts.iter().map(trusted).collect::<Result<_, _>>()?,
         };
         // A password is read when it is needed; all else is looked at when the station starts.
@@ -75,7 +80,7 @@ fn trusted(text: &Spanned<String>) -> Result<PublicKey, Fault> {
     PublicKey::parse(text.get_ref()).map_err(|error| Fault::input(text.span().start, "a key", error))
 }
 
-fn most(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
+fn most_unsent(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
     let Some(text) = text else { return Ok(MOST_UNSENT) };
     match *text.get_ref() {
         0 => Err(Fault::wrong(
@@ -84,5 +89,17 @@ fn most(text: Option<&Spanned<u32>>) -> Result<u32, Fault> {
             "give 1 or more".to_owned(),
         )),
         most => Ok(most),
+    }
+}
+
+fn most_filled(text: Option<&Spanned<u8>>) -> Result<u8, Fault> {
+    let Some(text) = text else { return Ok(MOST_FILLED) };
+    match *text.get_ref() {
+        most @ 1..=100 => Ok(most),
+        most => Err(Fault::wrong(
+            text.span().start,
+            format!("a disk cannot be full to {most} %"),
+            "give 1 to 100".to_owned(),
+        )),
     }
 }

@@ -92,6 +92,7 @@ pub(super) struct PlantText {
     #[serde(default)]
     pub(super) green: GreenText,
     pub(super) most_unsent: Option<Spanned<u32>>,
+    pub(super) most_filled: Option<Spanned<u8>>,
     #[serde(default)]
     pub(super) trusts: Vec<Spanned<String>>,
 }

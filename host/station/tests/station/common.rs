@@ -46,6 +46,11 @@ pub(crate) fn folder() -> TempDir {
     tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap()
 }
 
+/// `[plant]` of a station whose results go to `url`, however full the disk is that the tests have.
+pub(crate) fn plant_settings(url: &str) -> String {
+    format!("[plant]\nurl = \"{url}\"\nmost_filled = 100\n")
+}
+
 /// Serial numbers whose check digits publishers computed: ISBNs of printed books, The C Programming Language and TeX:
 /// The Program among them.
 pub(crate) const SERIALS: [&str; 4] = ["CA0131103628", "CA0201134373", "CA080442957X", "CA0306406152"];

@@ -25,6 +25,7 @@ url = "postgres://halfrow@localhost/plant"
 password_file = "plant.password"
 green = "plant"
 most_unsent = 500
+most_filled = 90
 [[lane]]
 name = "1"
 board = "usb:1-2.3"
@@ -68,7 +69,7 @@ fn every_key_means_what_it_says() {
     assert_eq!(settings.scanner.label("]C1CAT1!"), Some("CAT1"));
     assert_eq!(settings.scanner.label("]C1CAT1"), None);
     let plant = settings.plant.as_ref().unwrap();
-    assert_eq!((plant.is_green_at_plant, plant.most_unsent), (true, 500));
+    assert_eq!((plant.is_green_at_plant, plant.most_unsent, plant.most_filled), (true, 500, 90));
     let names: Vec<_> = settings.plans.iter().map(|file| file.plan.product.as_str()).collect();
     assert_eq!(names, ["CAM-T", "CAM-B"]);
     let [first, second] = settings.lanes.as_slice() else { panic!("{settings:?}") };
@@ -90,8 +91,8 @@ const WRONG: &[(&str, &str, &str)] = &[
     ("silence = 30.0", "silence = 0.0", "station.toml:6: 0 s is no such time; give 0.1 to 86400 seconds"),
     ("silence = 30.0", "silense = 30.0", "station.toml:6: unknown field `silense`"),
     ("memory = 512", "memory = 1", "station.toml:7: 1 MiB are no memory for a lane; give 64 to 1048576 MiB"),
-    ("name = \"1\"", "name = \"1 2\"", "station.toml:17: `1 2` is no name for a lane; write 1 to 16 letters"),
-    ("name = \"1\"", "name = \"left\"", "station.toml:22: two lanes are called left; give each"),
+    ("name = \"1\"", "name = \"1 2\"", "station.toml:18: `1 2` is no name for a lane; write 1 to 16 letters"),
+    ("name = \"1\"", "name = \"left\"", "station.toml:23: two lanes are called left; give each"),
     (
         "localhost/plant",
         "localhost",
@@ -113,34 +114,39 @@ const WRONG: &[(&str, &str, &str)] = &[
         "most_unsent = 0",
         "station.toml:15: with none unsent no lane could judge; give 1 or more",
     ),
-    ("usb:1-2.3", "labgrid", "station.toml:18: `labgrid` names no place of labgrid's; write labgrid:PLACE"),
+    (
+        "most_filled = 90",
+        "most_filled = 101",
+        "station.toml:16: a disk cannot be full to 101 %; give 1 to 100",
+    ),
+    ("usb:1-2.3", "labgrid", "station.toml:19: `labgrid` names no place of labgrid's; write labgrid:PLACE"),
     (
         "usb:1-2.3",
         "labgrid:a,baud=9600",
-        "station.toml:18: `labgrid:a,baud=9600` names no place of labgrid's",
+        "station.toml:19: `labgrid:a,baud=9600` names no place of labgrid's",
     ),
-    ("[[on-error]]", "[labgrid]\ndeadline = 0.0\n[[on-error]]", "station.toml:29: 0 s is no such time"),
-    ("[[on-error]]", "[labgrid]\nprogram = \"\"\n[[on-error]]", "station.toml:29: there is nothing here"),
-    ("[[on-error]]", "[labgrid]\nplace = \"a\"\n[[on-error]]", "station.toml:29: unknown field `place`"),
-    ("usb:1-2.3", "usb", "station.toml:18: `usb` is whichever board is plugged in; write usb:"),
-    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:18: `serial:/dev/ttyUSB0` is another board when"),
-    ("usb:1-2.3", "usv:1-2.3", "station.toml:18: `usv` is no kind of board; write one as `halfrow boards`"),
-    ("usb:1-2.3", "", "station.toml:18: the board cannot be used: an empty target names no board"),
-    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:23: lane 1 has the board"),
-    ("[\"b.toml\"]", "[]", "station.toml:24: lane left has no plan; name the file of one"),
+    ("[[on-error]]", "[labgrid]\ndeadline = 0.0\n[[on-error]]", "station.toml:30: 0 s is no such time"),
+    ("[[on-error]]", "[labgrid]\nprogram = \"\"\n[[on-error]]", "station.toml:30: there is nothing here"),
+    ("[[on-error]]", "[labgrid]\nplace = \"a\"\n[[on-error]]", "station.toml:30: unknown field `place`"),
+    ("usb:1-2.3", "usb", "station.toml:19: `usb` is whichever board is plugged in; write usb:"),
+    ("usb:1-2.3", "serial:/dev/ttyUSB0", "station.toml:19: `serial:/dev/ttyUSB0` is another board when"),
+    ("usb:1-2.3", "usv:1-2.3", "station.toml:19: `usv` is no kind of board; write one as `halfrow boards`"),
+    ("usb:1-2.3", "", "station.toml:19: the board cannot be used: an empty target names no board"),
+    ("\"mock,serial=1\"", "\"usb:1-2.3,speed=high\"", "station.toml:24: lane 1 has the board"),
+    ("[\"b.toml\"]", "[]", "station.toml:25: lane left has no plan; name the file of one"),
     (
         "[\"b.toml\"]",
         "[\"c.toml\"]",
-        "station.toml:24: the plan c.toml cannot be used: c.toml cannot be read",
+        "station.toml:25: the plan c.toml cannot be used: c.toml cannot be read",
     ),
     (
         "[\"scan\", \"button\"]",
         "[]",
-        "station.toml:20: nothing starts this lane; name scan, button or presence",
+        "station.toml:21: nothing starts this lane; name scan, button or presence",
     ),
-    ("{lane}", "{line}", "station.toml:27: nothing is known that is called {line}; write one of {lane}"),
+    ("{lane}", "{line}", "station.toml:28: nothing is known that is called {line}; write one of {lane}"),
     ("./print", "./brint", "there is no program"),
-    ("deadline = 2.5", "deadline = -1.0", "station.toml:30: -1 s is no such time"),
+    ("deadline = 2.5", "deadline = -1.0", "station.toml:31: -1 s is no such time"),
 ];
 
 #[test]
@@ -161,6 +167,6 @@ fn a_board_that_labgrid_lends_is_named_by_its_place() {
     let error = load(&lent.replace("mock,serial=1", "labgrid:cam-1")).unwrap_err();
     assert_eq!(
         error,
-        "station.toml:23: lane 1 has the board `labgrid:cam-1` already; give each lane a board of its own"
+        "station.toml:24: lane 1 has the board `labgrid:cam-1` already; give each lane a board of its own"
     );
 }

@@ -69,7 +69,7 @@ pub(crate) fn run_out(server: &Server) {
 /// The settings of a worker of this name in `folder`.
 fn settings(server: &Server, folder: &Path, name: &str) -> std::path::PathBuf {
     std::fs::write(folder.join("plan.toml"), PLAN).unwrap();
-    let plant = format!("[plant]\nurl = \"{}\"\n", server.url());
+    let plant = crate::common::plant_settings(&server.url());
     let text = format!(
         "schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n{plant}[work]\nplans = [\"plan.toml\"]\n"
     );

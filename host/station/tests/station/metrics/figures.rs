@@ -140,8 +140,8 @@ fn a_store_that_cannot_be_read_is_said_to_be() {
 
 #[test]
 fn a_plant_that_is_away_is_behind_and_says_for_how_long() {
-    let plant = "[web]\nlisten = \"127.0.0.1:0\"\n[plant]\nurl = \"postgres://nobody@127.0.0.1:1/plant\"";
-    let station = Station::with(1, plant);
+    let plant = common::plant_settings("postgres://nobody@127.0.0.1:1/plant");
+    let station = Station::with(1, &format!("[web]\nlisten = \"127.0.0.1:0\"\n{plant}"));
     let serving = station.serve();
     let none = Figures::of(&serving);
     for name in ["entries", "dead_letters", "oldest_seconds"] {

@@ -12,6 +12,7 @@ use tempfile::TempDir;
 
 use super::figures::{in_state, once, scan};
 use super::rules::example;
+use crate::common::plant_settings;
 use crate::pages::http::{Request, escaped};
 use crate::pages::station::{SERIALS, Serving, Station};
 use crate::plant::pages::served;
@@ -158,7 +159,7 @@ fn judged(serving: &Serving) {
 fn every_query_of_the_dashboards_and_of_the_alerts_is_answered() {
     let server = Server::prepared();
     let (_folder, plant) = served(&server);
-    let web = format!("[web]\nlisten = \"127.0.0.1:0\"\n[plant]\nurl = \"{}\"", server.url());
+    let web = format!("[web]\nlisten = \"127.0.0.1:0\"\n{}", plant_settings(&server.url()));
     let station = Station::with(2, &web).where_instead(
         "station.toml",
         "mock,serial=2",

@@ -95,7 +95,7 @@ fn station(server: &Server, more: &str) -> TempDir {
     let folder = crate::common::folder();
     fs::write(folder.path().join("plan.toml"), PLAN).unwrap();
     let url = server.url().replace("postgres@", "halfrow@");
-    let plant = format!("[plant]\nurl = \"{url}\"\n{more}\n");
+    let plant = format!("{}{more}\n", crate::common::plant_settings(&url));
     let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
     let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{plant}{lane}");
     fs::write(folder.path().join("station.toml"), text).unwrap();

@@ -25,7 +25,7 @@ pub(crate) fn served(server: &Server) -> (tempfile::TempDir, Serving) {
 /// Settings of the plant's pages in this folder, with `more` of `[web]` and behind it.
 pub(crate) fn settings(server: &Server, folder: &Path, more: &str) -> PathBuf {
     let web = format!("[web]\nlisten = \"127.0.0.1:0\"\n{more}\n");
-    let plant = format!("[plant]\nurl = \"{}\"\n", server.url());
+    let plant = crate::common::plant_settings(&server.url());
     let text = format!("schema = 1\n[station]\nname = \"north\"\ndata = \"data\"\n{web}{plant}");
     let settings = folder.join("plant.toml");
     fs::write(&settings, text).unwrap();

@@ -8,7 +8,7 @@ use halfrow_station::settings::Settings;
 use tempfile::TempDir;
 
 use super::server::Server;
-use crate::common::{Did, PLAN, program};
+use crate::common::{Did, PLAN, plant_settings, program};
 
 /// A picture of eight rows that a plan names.
 fn picture(level: u8) -> Vec<u8> {
@@ -33,7 +33,7 @@ impl Published {
         assert!(trusted.starts_with("ed25519:"), "{trusted}");
         let made = Self { trusted, ..made };
         made.plan("1", 1);
-        let plant = format!("[plant]\nurl = \"{}\"\ntrusts = [\"{}\"]\n", made.server.url(), made.trusted);
+        let plant = format!("{}trusts = [\"{}\"]\n", plant_settings(&made.server.url()), made.trusted);
         let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plant:CAM-T/quick\"]\n";
         let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \"data\"\n{plant}{lane}");
         fs::write(made.path("station.toml"), text).unwrap();

@@ -18,7 +18,7 @@ use crate::history::released::history;
 fn did(folder: &Path, server: &Server, arguments: &[&str]) -> Did {
     fs::write(folder.join("plan.toml"), PLAN).unwrap();
     let lane = "[[lane]]\nname = \"1\"\nboard = \"mock\"\nplans = [\"plan.toml\"]\n";
-    let plant = format!("[plant]\nurl = \"{}\"\n", server.url());
+    let plant = crate::common::plant_settings(&server.url());
     let text = format!("schema = 1\n[station]\nname = \"12\"\ndata = \".\"\n{plant}{lane}");
     fs::write(folder.join("station.toml"), text).unwrap();
     let mut command = Command::new(program());

@@ -4,6 +4,7 @@ use std::fs;
 use std::time::Duration;
 
 use super::server::Server;
+use crate::common::plant_settings;
 use crate::lanes::floor::{SERIALS, Station};
 
 /// A station of this name whose settings have this under `[plant]`.
@@ -11,7 +12,7 @@ fn station(server: &Server, name: &str, more: &str) -> Station {
     let station = Station::with(&["mock"], "");
     let path = station.path("station.toml");
     let text = fs::read_to_string(&path).unwrap();
-    let plant = format!("[plant]\nurl = \"{}\"\n{more}\n[[lane]]", server.url());
+    let plant = format!("{}{more}\n[[lane]]", plant_settings(&server.url()));
     let text = text.replacen("[[lane]]", &plant, 1).replace("name = \"12\"", &format!("name = \"{name}\""));
     fs::write(path, text).unwrap();
     station
@@ -71,6 +72,32 @@ fn no_more_is_judged_than_may_be_unsent() {
         std::thread::sleep(Duration::from_millis(50));
     }
     running.scan(SERIALS[2]);
+    running.state("1", "PASS");
+    assert_eq!(running.end().0, Some(0));
+}
+
+#[test]
+fn nothing_is_judged_beside_unsent_results_on_a_full_disk() {
+    let mut server = Server::prepared();
+    server.kill();
+    let station = station(&server, "12", "");
+    let path = station.path("station.toml");
+    // Any disk that has the program on it is as full.
+    let text = fs::read_to_string(&path).unwrap().replace("most_filled = 100", "most_filled = 1");
+    fs::write(path, text).unwrap();
+    let mut running = station.start();
+    running.scan(SERIALS[0]);
+    running.state("1", "PASS");
+    running.scan(SERIALS[1]);
+    let (is_taken, said) = running.answer(SERIALS[1]);
+    assert!(!is_taken && said.starts_with("the disk is full to "), "{said}");
+    assert_eq!(station.query("SELECT count(*) FROM run"), ["1"]);
+    // Nothing waits any more.
+    server.again();
+    while station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL") != ["0"] {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    running.scan(SERIALS[1]);
     running.state("1", "PASS");
     assert_eq!(running.end().0, Some(0));
 }

@@ -7,6 +7,7 @@ use std::sync::OnceLock;
 use tempfile::TempDir;
 
 use super::{Trial, lock};
+use crate::common::plant_settings;
 use crate::plant::link::certificates_for;
 use crate::plant::server::Server;
 
@@ -53,8 +54,8 @@ impl Network {
         let ca: PathBuf = folder.join("ca.pem");
         std::fs::copy(AUTHORITY.get().unwrap().path().join("ca.pem"), &ca).unwrap();
         format!(
-            "url = \"postgres://postgres@{}:{port}/plant\"\nca = \"{}\"\n",
-            near(self.number),
+            "{}ca = \"{}\"\n",
+            plant_settings(&format!("postgres://postgres@{}:{port}/plant", near(self.number))),
             ca.display()
         )
     }

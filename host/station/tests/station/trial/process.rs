@@ -32,7 +32,7 @@ pub(super) fn work(trial: &Trial, number: u32, network: Option<Network>) -> Temp
     let folder = common::folder();
     let plant = match &network {
         Some(network) => network.settings(trial, folder.path()),
-        None => format!("url = \"{}\"\n", trial.url()),
+        None => common::plant_settings(&trial.url()),
     };
     // Every second one judges two boards at once.
     settings(folder.path(), &format!("station {number}"), &plant, 1 + number % 2);
@@ -58,7 +58,7 @@ pub(super) fn work(trial: &Trial, number: u32, network: Option<Network>) -> Temp
 fn settings(folder: &Path, name: &str, plant: &str, at_once: u32) {
     fs::write(folder.join("plan.toml"), PLAN).unwrap();
     let station = format!("schema = 1\n[station]\nname = \"{name}\"\ndata = \"data\"\n");
-    let text = format!("{station}[plant]\n{plant}[work]\nplans = [\"plan.toml\"]\nat_once = {at_once}\n");
+    let text = format!("{station}{plant}[work]\nplans = [\"plan.toml\"]\nat_once = {at_once}\n");
     fs::write(folder.join("station.toml"), text).unwrap();
 }
 
