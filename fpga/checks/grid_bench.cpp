@@ -68,8 +68,9 @@ static Grid draw_entries(Bench &bench, Grid grid) {
 
 static Grid draw_grid(Bench &bench, const std::vector<int> &rows, int height) {
     Grid grid{{1 + bench.draw(6), 5 + bench.draw(2)}, bench.frame.width, height, {}};
+    // The coarsest rows need wider segments where the frame is as large.
     while (grid.size() > ENTRIES)
-        grid.shape.v++;
+        (grid.shape.v < 6 ? grid.shape.v : grid.shape.k)++;
     for (int tries = 0; tries < 200; tries++) {
         Grid drawn = draw_entries(bench, grid);
         bool is_legal = true;
