@@ -36,6 +36,15 @@ def unlisted(cases):
             yield f"{module}: {'its parameters' if names else 'it has none'}"
 
 
+def undeclared():
+    """Parameters of the builds that faults are put into, which their modules have not."""
+    builds = configparser.ConfigParser(interpolation=None)
+    builds.read(HERE / "mutation.ini")
+    for module in builds.sections():
+        given = (word.split("=")[0] for word in builds[module].get("parameters", "").split())
+        yield from (f"mutation.ini: {module}: {name}" for name in sorted(set(given) - set(declared(rtl.modules()[module]))))
+
+
 def wrapper(module, values):
     return f"module elaborated;\n    {module} #({', '.join(f'.{name}({value})' for name, value in values)}) dut ();\nendmodule\n"
 
@@ -81,7 +90,7 @@ def main():
     cases = configparser.ConfigParser(interpolation=None, comment_prefixes=(";",), inline_comment_prefixes=None)
     cases.optionxform = str
     cases.read(HERE / "parameters.ini")
-    missing = list(unlisted(cases))
+    missing = [*unlisted(cases), *undeclared()]
     if missing:
         sys.exit("parameters: parameters.ini and fpga/rtl do not agree on\n  " + "\n  ".join(missing))
     words = sys.argv[1:]
