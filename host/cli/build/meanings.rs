@@ -29,8 +29,8 @@ const CODES: [&str; 4] = [
 /// Where those of `halfrow-station` are, of which this program only tells.
 const CODES_OF_STATION: [&str; 2] =
     ["../station/src/commands/codes.rs", "../station/src/commands/refusals.rs"];
-/// Types whose codes are their variants' names.
-const BY_NAME: [&str; 3] = ["Finding", "Defect", "NotExercised"];
+/// Types whose words in a report are their variants' names, and then those whose codes are: where both have one, the code's meaning stands.
+const BY_NAME: [&str; 5] = ["Verdict", "CheckName", "Finding", "Defect", "NotExercised"];
 
 /// Writes `meanings.rs`: each code with its meaning, and the message of its error, or nothing; and `codes_of_station.rs`: each code of
 /// `halfrow-station`'s own with the names of its parameters.
@@ -44,7 +44,8 @@ pub(crate) fn write() -> io::Result<()> {
     let mut meanings: Vec<_> = of_constants
         .map(|(code, comment)| (code.clone(), Words { comment: comment.clone(), ..Words::default() }))
         .collect();
-    for found in sources.types.iter().filter(|found| BY_NAME.contains(&found.name.as_str())) {
+    for found in BY_NAME.iter().flat_map(|name| sources.types.iter().filter(move |found| found.name == *name))
+    {
         meanings.extend(found.variants.iter().map(|(name, words)| (kebab(name), words.clone())));
     }
     for file in CODES {

@@ -153,8 +153,13 @@ fn advice(report: &Report) -> String {
         push(&mut text, "do", BOLD, &remedy);
     }
     if report.verdict != Verdict::Pass {
-        let codes = report.suspects.iter().map(|suspect| suspect.defect.tagged().0);
-        let codes = [report.finding.code()].into_iter().chain(codes).collect::<Vec<_>>();
+        let mut codes = vec![report.finding.code()];
+        for suspect in &report.suspects {
+            let code = suspect.defect.tagged().0;
+            if !codes.contains(&code) {
+                codes.push(code);
+            }
+        }
         push(&mut text, "explain", DIM, &format!("halfrow explain {}", codes.join(" ")));
     }
     text
@@ -178,8 +183,8 @@ fn push_suspect(text: &mut String, suspect: &Suspect) {
     let who = format!("{}, {}{share}", suspect.part(), suspect.place());
     push(text, "suspect", BOLD, &who);
     push(text, "", BOLD, &suspect.evidence());
-    push(text, "", BOLD, &format!("Next: {}", suspect.designer()));
     push(text, "", BOLD, &format!("At the bench: {}", suspect.technician()));
+    push(text, "", BOLD, &format!("Next: {}", suspect.designer()));
 }
 
 /// Appends `words` with a label to their left.

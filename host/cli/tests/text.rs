@@ -69,10 +69,10 @@ fn a_fail_names_the_suspect_and_the_next_step_before_the_verdict() {
 suspect  row factor, row 3's factor, bit 4 (explains 100 % of the differences)
          reading 16000016 for 16000000 gives all 5 differing samples examined,
          to the bit, and changes no other
-         Next: Check entry 3 of the row table as the datapath reads it, and the
-         memory that holds it.
          At the bench: Reload the bitstream and run again; if it returns, set
          the board aside: a memory or a line of its FPGA is broken.
+         Next: Check entry 3 of the row table as the datapath reads it, and the
+         memory that holds it.
 explain  halfrow explain samples-differ row-factor-bit-wrong
 
 FAIL: {HEADLINE}

@@ -15,7 +15,7 @@ pub enum InputError {
         /// The system's reason.
         source: io::Error,
     },
-    /// It says what it cannot say.
+    /// It says what it cannot say; the message names the line, and ends in what to do.
     #[error("{}:{line}: {what}; {remedy}", path.display())]
     Wrong {
         /// The file.

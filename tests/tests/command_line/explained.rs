@@ -45,6 +45,26 @@ fn an_explanation_is_that_of_the_run_that_had_the_code() {
     assert_eq!(told[3]["verdict"], "PASS");
 }
 
+/// The other words of a report, each as the list of its kind has it.
+#[test]
+fn verdicts_checks_and_faults_are_explained_too() {
+    let run = halfrow(small("verify", &["--json"])).json();
+    let checks: Vec<_> =
+        run["checks"].as_array().unwrap().iter().map(|it| it["name"].as_str().unwrap()).collect();
+    let faults = halfrow(["faults", "--json"]).json();
+    let faults: Vec<_> =
+        faults["faults"].as_array().unwrap().iter().map(|it| it["name"].as_str().unwrap()).collect();
+    for (of, words) in [("verdict", vec!["PASS", "FAIL", "ERROR"]), ("check", checks), ("fault", faults)] {
+        for it in explained(&words) {
+            // A code may be called alike: the fault `tap-offset` as its defect, the check `rules` as what may be left out.
+            let is_code = matches!(it["code"].as_str(), Some("tap-offset" | "rules"));
+            assert!(it["of"] == of || is_code, "{it}");
+            assert!(it["meaning"].as_str().unwrap().ends_with('.'), "{it}");
+        }
+    }
+    assert_eq!(explained(&["fail"])[0]["code"], "FAIL");
+}
+
 #[test]
 fn people_read_it_in_80_columns() {
     let told = halfrow(["explain", "samples-differ", "frame-file-unreadable"]);

@@ -1,0 +1,210 @@
+//! What is known of every code, and of the other words of a report.
+
+use std::collections::BTreeMap;
+
+use halfrow::result::{CheckName, examples};
+use halfrow::verdict::Verdict;
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use crate::commands::codes;
+
+/// Each code with its meaning and its error's message, from the comments of the sources.
+pub(super) const MEANINGS: &[(&str, &str, &str)] = include!(concat!(env!("OUT_DIR"), "/meanings.rs"));
+
+/// The codes of `halfrow-station`'s own errors, each with the names of its parameters.
+const CODES_OF_STATION: &[(&str, &[&str])] = include!(concat!(env!("OUT_DIR"), "/codes_of_station.rs"));
+
+/// What is to be said of a code.
+#[derive(Clone, Debug, Default, Serialize)]
+pub(super) struct Explanation {
+    pub(super) code: String,
+    /// finding, defect, not-exercised, error, station-error, verdict, check or fault.
+    pub(super) of: String,
+    pub(super) meaning: String,
+    /// A sentence with it, or with what stands for its parameters in capitals.
+    pub(super) sentence: String,
+    /// The verdict that it leads to; none when that is another's matter.
+    pub(super) verdict: Option<Verdict>,
+    pub(super) fault: &'static str,
+    #[serde(rename = "do")]
+    pub(super) acts: Vec<String>,
+    pub(super) parameters: Vec<String>,
+    #[serde(rename = "where")]
+    pub(super) place: &'static str,
+}
+
+/// Every code, and every other word of a report, with what is said of it.
+pub(super) fn known() -> BTreeMap<String, Explanation> {
+    let of_station = CODES_OF_STATION
+        .iter()
+        .map(|(code, names)| json!({ "of": "station-error", "code": code, "parameters": names }));
+    let mut known: BTreeMap<_, _> = of_station
+        .chain(codes::all())
+        .map(|entry| of_entry(&entry))
+        // Of two that are called alike a code comes last, and stays.
+        .fold(words(), |mut known, it| {
+            known.insert(it.code.clone(), it);
+            known
+        });
+    let mut add =
+        |code: &str, change: &dyn Fn(&mut Explanation)| known.get_mut(code).into_iter().for_each(change);
+    for &(code, meaning, message) in MEANINGS {
+        add(code, &|it| it.say(meaning, message));
+    }
+    for (verdict, finding) in examples::findings_with_verdicts() {
+        add(&finding.code(), &|it| {
+            it.sentence = finding.sentence();
+            it.acts = finding.remedy().into_iter().collect();
+            (it.verdict, it.fault) = (verdict, fault(verdict));
+        });
+    }
+    for suspect in examples::suspects() {
+        add(&suspect.defect.tagged().0, &|it| {
+            it.sentence = format!("{}: {}", suspect.place(), suspect.evidence());
+            it.acts = vec![
+                format!("At the bench: {}", suspect.technician()),
+                format!("Next, in this example: {}", suspect.designer()),
+            ];
+        });
+    }
+    for part in examples::not_exercised() {
+        add(&part.tagged().0, &|it| it.sentence = part.words());
+    }
+    known
+}
+
+/// The words of a report that are no codes: verdicts, checks, and the faults that a mock board can have.
+fn words() -> BTreeMap<String, Explanation> {
+    let meaning = |name: &str| MEANINGS.iter().find(|(known, ..)| *known == name).map_or("", |(_, it, _)| it);
+    let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| Explanation {
+        code: verdict.to_string(),
+        of: "verdict".to_owned(),
+        meaning: meaning(&verdict.to_string().to_lowercase()).to_owned(),
+        verdict: Some(verdict),
+        fault: fault(Some(verdict)),
+        place: "`verdict` of a result",
+        ..Explanation::default()
+    });
+    let checks = CheckName::ALL.map(|check| Explanation {
+        code: check.to_string(),
+        of: "check".to_owned(),
+        fault: "as the finding beside it says, which has a code of its own",
+        place: "`name` of each of a result's `checks`",
+        ..Explanation::default()
+    });
+    let faults = halfrow_mock::catalogue().map(|it| Explanation {
+        code: it.name.to_owned(),
+        of: "fault".to_owned(),
+        meaning: as_sentence(&it.summary()),
+        fault: "the mock board's, when it is asked for one: `--board mock,fault=NAME`",
+        parameters: it.parameters.iter().map(|parameter| parameter.key.to_owned()).collect(),
+        place: "what `halfrow faults --json` lists",
+        ..Explanation::default()
+    });
+    faults.chain(checks).chain(verdicts).map(|it| (it.code.clone(), it)).collect()
+}
+
+/// What is known of a code by its kind alone.
+fn of_entry(entry: &Value) -> Explanation {
+    let text = |key: &str| entry[key].as_str().unwrap_or_default().to_owned();
+    let parameters = entry["parameters"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    let (verdict, fault, place) = match entry["of"].as_str() {
+        Some("finding") => (None, fault(None), "`finding` of a result, and of each of its `checks`"),
+        Some("defect") => (
+            Some(Verdict::Fail),
+            fault(Some(Verdict::Fail)),
+            "`suspects` of a result, and `suspect` of its finding",
+        ),
+        Some("not-exercised") => (
+            Some(Verdict::Pass),
+            "nobody's: the frames of the run leave it open; stream others, or all built-in ones",
+            "`not_exercised` of a result",
+        ),
+        Some("station-error") => (
+            None,
+            "never the board's result: the station's, its settings', its plant's or the call's",
+            "what `halfrow-station` answers with `--json`, and what `check` finds",
+        ),
+        _ => (
+            None,
+            "never the board's result: no verdict and exit code 2 where the call or a file is wrong, else ERROR (link, \
+             station, time)",
+            "`error` of a result and its `causes`; `finding`, where it ends a run",
+        ),
+    };
+    Explanation {
+        code: text("code"),
+        of: text("of"),
+        parameters: parameters.map(str::to_owned).collect(),
+        verdict,
+        fault,
+        place,
+        ..Explanation::default()
+    }
+}
+
+/// Whose fault it is, by the verdict.
+fn fault(verdict: Option<Verdict>) -> &'static str {
+    match verdict {
+        Some(Verdict::Pass) => "nobody's: it is as it must be",
+        Some(Verdict::Fail) => "the board's",
+        Some(Verdict::Error) => "the link's, the station's or the call's: the board was not judged by it",
+        None => "nobody's: it says what was not done",
+    }
+}
+
+/// A message with the names of what is filled in in capitals.
+fn named_places(message: &str) -> String {
+    let mut parts = message.split('{');
+    let mut text = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (name, rest) = part.split_once('}').unwrap_or(("", part));
+        let name = name.split(':').next().unwrap_or_default();
+        let is_name = name.starts_with(|letter: char| letter.is_ascii_lowercase());
+        text += &if is_name { name.to_uppercase() } else { "…".to_owned() };
+        text += rest;
+    }
+    text
+}
+
+/// With a capital and a full stop.
+fn as_sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}
+
+impl Explanation {
+    /// Takes what the sources say. Where there is no comment the message is one, and tells of no act.
+    fn say(&mut self, meaning: &str, message: &str) {
+        let sentence = named_places(message);
+        if meaning.is_empty() {
+            self.meaning = as_sentence(&sentence);
+            return;
+        }
+        self.meaning = meaning.to_owned();
+        // An act that is filled in when it happens cannot be told before.
+        let act = sentence.rsplit_once("; ").map(|(_, act)| act.to_owned());
+        self.acts = act.filter(|act| act.contains(char::is_lowercase)).into_iter().collect();
+        self.sentence = sentence;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_code_has_a_meaning_from_the_comments_of_the_sources() {
+        for (code, it) in known() {
+            assert!(it.meaning.ends_with('.'), "{code}: {it:?}");
+            assert!(!it.meaning.contains("[`"), "{code}: {it:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_filled_in_is_named() {
+        let said = named_places("{} is {width} x {height:>4}, above {MAX_SIDE}; crop it");
+        assert_eq!(said, "… is WIDTH x HEIGHT, above …; crop it");
+    }
+}
