@@ -152,14 +152,8 @@ fn advice(report: &Report) -> String {
     if let Some(remedy) = wording::remedy(report) {
         push(&mut text, "do", BOLD, &remedy);
     }
-    if report.verdict != Verdict::Pass {
-        let mut codes = vec![report.finding.code()];
-        for suspect in &report.suspects {
-            let code = suspect.defect.tagged().0;
-            if !codes.contains(&code) {
-                codes.push(code);
-            }
-        }
+    let codes = wording::codes(report);
+    if !codes.is_empty() {
         push(&mut text, "explain", DIM, &format!("halfrow explain {}", codes.join(" ")));
     }
     text

@@ -99,8 +99,8 @@ fn unit(report: &Report) -> Markup {
 
 /// What is suspected and what to do about it.
 fn next(report: &Report) -> Markup {
-    let remedy = wording::remedy(report);
-    if report.suspects.is_empty() && remedy.is_none() {
+    let (remedy, codes) = (wording::remedy(report), wording::codes(report));
+    if codes.is_empty() {
         return Markup::default();
     }
     html! {
@@ -108,6 +108,7 @@ fn next(report: &Report) -> Markup {
             h2 { "What to do" }
             @if let Some(remedy) = remedy { p.remedy { (plain(&remedy)) } }
             @if !report.suspects.is_empty() { ol.suspects { @for it in &report.suspects { (suspect(it)) } } }
+            p.explain { "More of it: " code { "halfrow explain " (codes.join(" ")) } }
         }
     }
 }
@@ -120,8 +121,8 @@ pub(super) fn suspect(suspect: &Suspect) -> Markup {
                 @if let Some(share) = wording::share(suspect) { span.share { " " (share) } }
             }
             p { (plain(&suspect.evidence())) }
-            p { strong { "Next: " } (plain(&suspect.designer())) }
             p { strong { "At the bench: " } (plain(&suspect.technician())) }
+            p { strong { "Next: " } (plain(&suspect.designer())) }
         }
     }
 }

@@ -28,6 +28,22 @@ pub const fn mark(outcome: Outcome) -> &'static str {
     }
 }
 
+/// The codes that `halfrow explain` has more of: the finding's and those of the suspects, each once; none of a PASS.
+#[must_use]
+pub fn codes(report: &Report) -> Vec<String> {
+    if report.verdict == Verdict::Pass {
+        return Vec::new();
+    }
+    let mut codes = vec![report.finding.code()];
+    for suspect in &report.suspects {
+        let (code, _) = suspect.defect.tagged();
+        if !codes.contains(&code) {
+            codes.push(code);
+        }
+    }
+    codes
+}
+
 /// What a board's kind is called.
 #[must_use]
 pub const fn kind(kind: BoardKind) -> &'static str {

@@ -59,7 +59,7 @@ impl Fixture {
 }
 
 fn target(fault: &str) -> String {
-    let build = "mock,pace=real,speed=200000";
+    let build = "mock,pace=real,speed=1000000";
     if fault.is_empty() { build.to_owned() } else { format!("{build},{fault}") }
 }
 

@@ -21,8 +21,8 @@ pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
         let (part, place) = (suspect.part(), suspect.place());
         [
             format!("{part}, {place}: {}", suspect.evidence()),
-            format!("Next: {}", suspect.designer()),
             format!("At the bench: {}", suspect.technician()),
+            format!("Next: {}", suspect.designer()),
         ]
     };
     let lines = report.suspects.iter().flat_map(said).chain(remedy(report));
