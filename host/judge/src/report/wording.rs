@@ -14,7 +14,7 @@ use crate::verdict::Verdict;
 
 pub use coverage::coverage;
 pub(super) use summary::advice;
-pub use summary::summary;
+pub use summary::{codes, summary};
 pub use within::within;
 
 /// What a check's outcome is called. The loud ones are those to act on.
@@ -26,22 +26,6 @@ pub const fn mark(outcome: Outcome) -> &'static str {
         Outcome::Error => "ERROR",
         Outcome::Skipped => "skipped",
     }
-}
-
-/// The codes that `halfrow explain` has more of: the finding's and those of the suspects, each once; none of a PASS.
-#[must_use]
-pub fn codes(report: &Report) -> Vec<String> {
-    if report.verdict == Verdict::Pass {
-        return Vec::new();
-    }
-    let mut codes = vec![report.finding.code()];
-    for suspect in &report.suspects {
-        let (code, _) = suspect.defect.tagged();
-        if !codes.contains(&code) {
-            codes.push(code);
-        }
-    }
-    codes
 }
 
 /// What a board's kind is called.

@@ -2,6 +2,7 @@
 
 use super::{mark, not_exercised, plain, remedy, verdict_line};
 use crate::result::{Report, Suspect};
+use crate::verdict::Verdict;
 
 /// The verdict with every check and what to do, a line each: for views without a table.
 #[must_use]
@@ -27,4 +28,20 @@ pub(in crate::report) fn advice(report: &Report) -> Vec<String> {
     };
     let lines = report.suspects.iter().flat_map(said).chain(remedy(report));
     lines.map(|line| plain(&line).into_owned()).collect()
+}
+
+/// The codes that `halfrow explain` has more of: the finding's and those of the suspects, each once; none of a PASS.
+#[must_use]
+pub fn codes(report: &Report) -> Vec<String> {
+    if report.verdict == Verdict::Pass {
+        return Vec::new();
+    }
+    let mut codes = vec![report.finding.code()];
+    for suspect in &report.suspects {
+        let (code, _) = suspect.defect.tagged();
+        if !codes.contains(&code) {
+            codes.push(code);
+        }
+    }
+    codes
 }
