@@ -18,6 +18,13 @@ fn station(server: &Server, name: &str, more: &str) -> Station {
     station
 }
 
+/// Waits until the station has nothing more to send.
+fn await_sent(station: &Station) {
+    while station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL") != ["0"] {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
 #[test]
 fn a_plant_that_is_away_holds_up_only_lines_that_want_it_so() {
     let mut server = Server::prepared();
@@ -68,9 +75,7 @@ fn no_more_is_judged_than_may_be_unsent() {
         std::thread::sleep(Duration::from_millis(50));
     }
     // The station knows a moment later.
-    while station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL") != ["0"] {
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    await_sent(&station);
     running.scan(SERIALS[2]);
     running.state("1", "PASS");
     assert_eq!(running.end().0, Some(0));
@@ -94,9 +99,7 @@ fn nothing_is_judged_beside_unsent_results_on_a_full_disk() {
     assert_eq!(station.query("SELECT count(*) FROM run"), ["1"]);
     // Nothing waits any more.
     server.again();
-    while station.query("SELECT count(*) FROM outbox WHERE done_ms IS NULL") != ["0"] {
-        std::thread::sleep(Duration::from_millis(50));
-    }
+    await_sent(&station);
     running.scan(SERIALS[1]);
     running.state("1", "PASS");
     assert_eq!(running.end().0, Some(0));
