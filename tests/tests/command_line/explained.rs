@@ -63,6 +63,8 @@ fn verdicts_checks_and_faults_are_explained_too() {
         }
     }
     assert_eq!(explained(&["fail"])[0]["code"], "FAIL");
+    let told = &explained(&["stuck-data"])[0]["meaning"];
+    assert_eq!(told, "A data line of the line memory is stuck (bit=5, value=1).");
 }
 
 #[test]

@@ -42,11 +42,8 @@ pub(super) fn known() -> BTreeMap<String, Explanation> {
     let mut known: BTreeMap<_, _> = of_station
         .chain(codes::all())
         .map(|entry| of_entry(&entry))
-        // Of two that are called alike a code comes last, and stays.
-        .fold(words(), |mut known, it| {
-            known.insert(it.code.clone(), it);
-            known
-        });
+        .map(|it| (it.code.clone(), it))
+        .collect();
     let mut add =
         |code: &str, change: &dyn Fn(&mut Explanation)| known.get_mut(code).into_iter().for_each(change);
     for &(code, meaning, message) in MEANINGS {
@@ -71,11 +68,15 @@ pub(super) fn known() -> BTreeMap<String, Explanation> {
     for part in examples::not_exercised() {
         add(&part.tagged().0, &|it| it.sentence = part.words());
     }
+    // Of two that are called alike the code stays.
+    for it in words() {
+        known.entry(it.code.clone()).or_insert(it);
+    }
     known
 }
 
 /// The words of a report that are no codes: verdicts, checks, and the faults that a mock board can have.
-fn words() -> BTreeMap<String, Explanation> {
+fn words() -> impl Iterator<Item = Explanation> {
     let meaning = |name: &str| MEANINGS.iter().find(|(known, ..)| *known == name).map_or("", |(_, it, _)| it);
     let verdicts = [Verdict::Pass, Verdict::Fail, Verdict::Error].map(|verdict| Explanation {
         code: verdict.to_string(),
@@ -89,6 +90,7 @@ fn words() -> BTreeMap<String, Explanation> {
     let checks = CheckName::ALL.map(|check| Explanation {
         code: check.to_string(),
         of: "check".to_owned(),
+        meaning: meaning(check.name()).to_owned(),
         fault: "as the finding beside it says, which has a code of its own",
         place: "`name` of each of a result's `checks`",
         ..Explanation::default()
@@ -102,7 +104,7 @@ fn words() -> BTreeMap<String, Explanation> {
         place: "what `halfrow faults --json` lists",
         ..Explanation::default()
     });
-    faults.chain(checks).chain(verdicts).map(|it| (it.code.clone(), it)).collect()
+    faults.chain(checks).chain(verdicts)
 }
 
 /// What is known of a code by its kind alone.
