@@ -1,6 +1,7 @@
 //! The packet: header, payload, CRC-32; and how one is put on the wire.
 
 use alloc::vec::Vec;
+use core::fmt;
 
 use crate::{MAX_PACKET, MAX_PAYLOAD, VERSION, cobs};
 
@@ -86,6 +87,32 @@ impl Kind {
     #[must_use]
     pub const fn code(self) -> u8 {
         self as u8
+    }
+}
+
+/// As WIRE.md writes it: `ROW_IN`.
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Hello => "HELLO",
+            Self::Capabilities => "CAPABILITIES",
+            Self::Status => "STATUS",
+            Self::Reset => "RESET",
+            Self::Echo => "ECHO",
+            Self::TableWrite => "TABLE_WRITE",
+            Self::TableRead => "TABLE_READ",
+            Self::TableCrc => "TABLE_CRC",
+            Self::Commit => "COMMIT",
+            Self::Configure => "CONFIGURE",
+            Self::RowIn => "ROW_IN",
+            Self::RowOut => "ROW_OUT",
+            Self::RowAck => "ROW_ACK",
+            Self::Burst => "BURST",
+            Self::Records => "RECORDS",
+            Self::Expect => "EXPECT",
+            Self::Trap => "TRAP",
+            Self::Refusal => "REFUSAL",
+        })
     }
 }
 

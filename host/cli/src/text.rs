@@ -54,7 +54,11 @@ fn head(report: &Report) -> String {
         None => "it never said what it is".to_owned(),
         Some(it) => format!(
             "{}, serial {}, build {}, datapath {}, protocol {}",
-            it.name, it.serial, it.build, it.datapath, it.protocol
+            wording::board_name(&it.name),
+            it.serial,
+            it.build,
+            it.datapath,
+            it.protocol
         ),
     };
     let board = format!("{} at {}: {board}", wording::kind(report.board.kind), report.board.target);

@@ -16,7 +16,8 @@ fn plain(report: &Report) -> String {
 }
 
 /// The result of [`made::fail`].
-const HEADLINE: &str = "5 of 2076160 samples differ, in 1 of 2 frames; the suspect is row 3's factor, bit 4";
+const HEADLINE: &str =
+    "5 of 2,076,160 samples differ, in 1 of 2 frames; the suspect is row 3's factor, bit 4";
 
 fn last_line(text: &str) -> &str {
     text.trim_end().lines().last().unwrap()
@@ -97,7 +98,7 @@ fn an_error_says_what_to_do() {
 #[test]
 fn every_check_has_a_line_with_its_mark_and_the_headline_is_said_once() {
     let text = plain(&made::fail().0);
-    let lines = "ok       judge     this computer finds all 4147328 golden samples (scalar)\n\
+    let lines = "ok       judge     this computer finds all 4,147,328 golden samples (scalar)\n\
                  FAIL     frames    see below\n\
                  skipped  counters  not reached\n";
     assert!(text.contains(lines), "{text}");

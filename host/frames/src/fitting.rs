@@ -83,13 +83,14 @@ impl Fitting {
     }
 }
 
-/// As in `4032 x 3024, cropped to 4032 x 2268 about its centre, scaled to 1920 x 1080 (Catmull-Rom)`.
+/// As in `4032 x 3024, cropped to 4032 x 2268 about its centre, 75 % of it, scaled to 1920 x 1080 (Catmull-Rom)`.
 impl fmt::Display for Fitting {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { found, cropped, wanted } = self;
         write!(f, "{} x {}", found.0, found.1)?;
         if cropped != found {
-            write!(f, ", cropped to {} x {} about its centre", cropped.0, cropped.1)?;
+            let kept = 100 * cropped.0 * cropped.1 / (found.0 * found.1);
+            write!(f, ", cropped to {} x {} about its centre, {kept} % of it", cropped.0, cropped.1)?;
         }
         if cropped != wanted {
             write!(f, ", scaled to {} x {} (Catmull-Rom)", wanted.0, wanted.1)?;

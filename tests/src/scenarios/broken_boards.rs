@@ -55,7 +55,7 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("a bit that flips when warm", ",fault=warm-bit,row=1,bit=11", "in row 1 first"),
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
-    fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse Commit"),
+    fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
     expect("ERROR", 6, "another datapath", ",fault=wrong-datapath", &[], "this program judges datapath 1"),
 ];
 

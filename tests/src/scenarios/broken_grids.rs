@@ -47,7 +47,7 @@ pub const BROKEN_GRIDS: &[Scenario] = &[
     fails(
         "a commit of a grid that is not checked",
         ",fault=unchecked-commit",
-        "the board must refuse Commit",
+        "the board must refuse COMMIT",
     ),
     fails("a row that changes on its way to a grid", ",fault=spoilt-row", "not computed wrongly"),
     fails(

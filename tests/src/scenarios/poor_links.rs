@@ -40,18 +40,18 @@ const POOR: &[&str] =
 
 /// Links over which nothing can be judged.
 pub const HOPELESS_LINKS: &[Scenario] = &[
-    stops("no byte gets through", ",fault=drop,rate=1", "no answer to Hello in 6 tries"),
-    stops("no answer gets through", ",fault=drop,rate=1,toward=host", "no answer to Hello in 6 tries"),
-    stops("bits that flip all the time", ",fault=flip,rate=1e-2", "no answer to Echo in 8 tries")
+    stops("no byte gets through", ",fault=drop,rate=1", "no answer to HELLO in 6 tries"),
+    stops("no answer gets through", ",fault=drop,rate=1,toward=host", "no answer to HELLO in 6 tries"),
+    stops("bits that flip all the time", ",fault=flip,rate=1e-2", "no answer to ECHO in 8 tries")
         .or_when_late(POOR),
-    stops("bits that flip far too often", ",fault=flip,rate=1e-3,seed=1", "no answer to Echo in 8 tries")
+    stops("bits that flip far too often", ",fault=flip,rate=1e-3,seed=1", "no answer to ECHO in 8 tries")
         .or_when_late(POOR),
-    stops("bytes that get lost far too often", ",fault=drop,rate=1e-3", "no answer to Echo in 8 tries")
+    stops("bytes that get lost far too often", ",fault=drop,rate=1e-3", "no answer to ECHO in 8 tries")
         .or_when_late(POOR),
     stops(
         "bytes that come twice far too often",
         ",fault=duplicate,rate=1e-3",
-        "no answer to Echo in 8 tries",
+        "no answer to ECHO in 8 tries",
     )
     .or_when_late(POOR),
     stops(
@@ -63,7 +63,7 @@ pub const HOPELESS_LINKS: &[Scenario] = &[
     stops(
         "a cable that was never plugged in",
         ",fault=disconnect,byte=0",
-        "the link broke while waiting for the answer to Hello",
+        "the link broke while waiting for the answer to HELLO",
     ),
     stops("a cable that was pulled", ",fault=disconnect,packet=90", "the link broke while waiting for row")
         .or_when_late(&["the link broke while waiting for the answer"]),

@@ -32,8 +32,7 @@ fn folder() -> Folder {
     folder
 }
 
-const FITTED: &str =
-    "fitted turned6.jpg: 48 x 72, cropped to 48 x 6 about its centre, scaled to 128 x 16 (Catmull-Rom)\n";
+const FITTED: &str = "fitted turned6.jpg: 48 x 72, cropped to 48 x 6 about its centre, 8 % of it, scaled to 128 x 16 (Catmull-Rom)\n";
 
 #[test]
 fn another_size_is_refused_with_both_sizes_and_the_flag() {

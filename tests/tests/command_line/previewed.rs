@@ -26,7 +26,8 @@ fn preview(more: &[&str]) -> RgbImage {
     assert_eq!(ended.code, Some(0), "{}", ended.stderr);
     assert_eq!(
         ended.stdout,
-        "wrote out.pgm, corrected by the model, not judged\nwrote look.png, a preview\n"
+        "wrote out.pgm, corrected by the model, not judged\nwrote look.png, a preview\n\
+         tables: equidistant lens, R = 1106.697 pixels (Eq. 9), hermite kernel\n"
     );
     assert_eq!(folder.read("out.pgm"), edge());
     halfrow::frames::read_rgb(&folder.path().join("look.png")).unwrap()

@@ -1,8 +1,11 @@
 //! What `verify` prints, and where.
 
 use std::fs::File;
-use std::io::Read as _;
+use std::io::{Read as _, Write as _};
+use std::net::TcpListener;
 use std::process::{Command, Stdio};
+use std::thread;
+use std::time::Duration;
 
 use halfrow_tests::program::{Folder, command, finish, halfrow};
 
@@ -249,6 +252,45 @@ fn a_board_that_falls_silent_behind_a_noisy_link_is_not_the_suspect() {
     }
 }
 
+/// Another device at the port, or another rate: bytes come, and they are no packets.
+#[test]
+fn bytes_that_are_no_packets_are_told_from_silence() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    thread::spawn(move || {
+        let (mut peer, _) = listener.accept().unwrap();
+        while peer.write_all(b"login: ").is_ok() {
+            thread::sleep(Duration::from_millis(50));
+        }
+    });
+    let ended = halfrow(small("verify", &["--board", &target]));
+    assert_eq!(ended.code, Some(3));
+    let last = ended.stdout.lines().last().unwrap();
+    assert!(last.contains(" bytes came, no packet among them; check that the target's rate"), "{last}");
+}
+
+/// An earlier PASS must not lie where the report of this run belongs.
+#[test]
+fn a_board_that_cannot_be_opened_has_a_report_too() {
+    let folder = Folder::new();
+    let into = ["--report", "out", "--overwrite"];
+    assert_eq!(folder.halfrow(small("verify", &into)).code, Some(0));
+    for command in ["verify", "soak"] {
+        let absent = [&into[..], &["--board", "serial:/dev/no-such-port"]].concat();
+        let absent = if command == "soak" { [&absent[..], &["--frames", "1"]].concat() } else { absent };
+        let ended = folder.halfrow(small(command, &absent));
+        assert_eq!((ended.code, ended.stdout.as_str()), (Some(3), ""), "{}", ended.stderr);
+        let report: serde_json::Value = serde_json::from_slice(&folder.read("out/report.json")).unwrap();
+        assert_eq!(report["verdict"], "ERROR");
+        assert!(ended.stderr.contains(report["error"]["message"].as_str().unwrap()), "{report}");
+        assert!(folder.text("out/report.xml").contains("errors=\"2\""));
+    }
+    // A call that is wrong is no run.
+    let wrong = folder.halfrow(small("verify", &["--report", "new", "--board", "serial"]));
+    assert_eq!(wrong.code, Some(2));
+    assert!(!folder.path().join("new").exists());
+}
+
 /// What a mock board is too small for, a larger one is not.
 #[test]
 fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
@@ -257,7 +299,7 @@ fn a_mock_that_is_too_small_is_told_how_it_is_made_larger() {
     refused(
         &Folder::new(),
         &call("mock").collect::<Vec<_>>(),
-        "or a mock that takes these: mock,max-width=2592",
+        "or the built-in mock that takes these: mock,max-width=2592",
     );
     assert_eq!(halfrow(call("mock,max-width=2592")).code, Some(0));
     let high = ["verify", "-q", "--board", "mock,max-height=8", "--width", "64", "--height", "9"];

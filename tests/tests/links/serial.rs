@@ -108,7 +108,7 @@ fn a_peer_that_takes_nothing_holds_nobody_up() {
     });
     assert!((1000..1_000_000).contains(&taken), "{taken}");
     let silent = verify(&target, &[]);
-    ends(&silent, 3, "no answer to Hello in 6 tries");
+    ends(&silent, 3, "no answer to HELLO in 6 tries");
 }
 
 #[test]

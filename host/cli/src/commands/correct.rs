@@ -74,6 +74,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     }
     let inputs = FrameName::all(&arguments.inputs).map_err(Failure::call)?;
     arguments.refuse_void(&inputs, settings)?;
+    let places = Places::of(&inputs, &arguments.wanted()).map_err(Failure::call)?;
     let kernel = arguments.kernel.as_deref().or(settings.kernel.as_deref().map(OsStr::new));
     let files = Files::new(arguments.overwrite)
         .reads(&context.settings_file)
@@ -91,7 +92,6 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         chosen,
     };
     job.check(context.quiet).map_err(Failure::call)?;
-    let places = Places::of(&job.inputs, &arguments.wanted()).map_err(Failure::call)?;
     let files = places.add_to(files.reads(job.inputs.iter().filter_map(FrameName::file)));
     files.check().map_err(Failure::call)?;
     let watched = progress::for_stderr(context.quiet || context.json);
@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         job.by_board(&places, context, watched.as_ref()).map(Some)
     };
     watched.done();
-    report(context.json, board?, &places)
+    report(context.json, board?, &places, &job.chosen.source)
 }
 
 /// What is to be corrected, and how.
@@ -151,13 +151,14 @@ impl Arguments {
     }
 }
 
-/// Says what was written, and by whom it was corrected: a board, or else the model.
-fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Exit, Failure> {
+/// Says what was written, by whom it was corrected, a board or else the model, and by which tables.
+fn report(as_json: bool, board: Option<BoardKind>, places: &Places, tables: &str) -> Result<Exit, Failure> {
     if as_json {
         let kind = board.map_or_else(|| "model".to_owned(), |kind| kind.to_string());
         let [outputs, previews] = [&places.frames, &places.previews]
             .map(|paths| paths.iter().map(|path| path.display().to_string()).collect::<Vec<_>>());
-        let rest = json!({ "corrected_by": kind, "outputs": outputs, "previews": previews });
+        let rest =
+            json!({ "corrected_by": kind, "tables": tables, "outputs": outputs, "previews": previews });
         tell_result("correct", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
@@ -168,5 +169,6 @@ fn report(as_json: bool, board: Option<BoardKind>, places: &Places) -> Result<Ex
     for path in &places.previews {
         console::tell(&format!("wrote {}, a preview", path.display()));
     }
+    console::tell(&format!("tables: {tables}"));
     Ok(Exit::Pass)
 }

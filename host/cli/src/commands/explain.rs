@@ -1,6 +1,6 @@
 //! `halfrow explain`
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use clap::builder::{PossibleValue, StringValueParser, TypedValueParser};
 use clap::{Arg, Args, Command};
@@ -44,8 +44,9 @@ impl TypedValueParser for Code {
 
     fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
         let known = known();
-        let codes = MEANINGS.iter().map(|&(code, ..)| code).filter(move |&code| known.contains_key(code));
-        Some(Box::new(codes.map(PossibleValue::new)))
+        let codes: BTreeSet<_> =
+            MEANINGS.iter().map(|&(code, ..)| code).filter(|&code| known.contains_key(code)).collect();
+        Some(Box::new(codes.into_iter().map(PossibleValue::new)))
     }
 }
 

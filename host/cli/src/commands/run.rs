@@ -17,10 +17,11 @@ use super::{CallError, Context, Failure};
 use crate::exit::Exit;
 use crate::settings::Settings;
 use crate::{console, flags, json, text};
-use halfrow::link::RecordingFile;
+use halfrow::link::{Class, OpenError, RecordingFile};
 use halfrow::optics::Chosen;
 use halfrow::report::ReportFolder;
-use halfrow::run::{self, Circumstances, Finished, Lack, RunOptions};
+use halfrow::run::{self, Circumstances, Finished, Lack, Plan, RunOptions};
+use halfrow::target::Target;
 
 #[derive(Debug, Args)]
 pub(super) struct RunArguments {
@@ -199,6 +200,22 @@ pub(super) fn conclude(
         console::tell(text::render(report).trim_end());
     }
     Ok(report.cause.into())
+}
+
+/// Writes the report of a run whose board cannot be opened, so that nobody takes an earlier one for its own; and hands the failure on.
+pub(super) fn not_opened(
+    failure: Failure,
+    (plan, options): (&Plan, &RunOptions),
+    target: &Target,
+    folder: Option<ReportFolder>,
+) -> Failure {
+    let error = failure.error.downcast_ref::<OpenError>().filter(|error| error.class() != Class::Call);
+    if let (Some(error), Some(folder)) = (error, folder)
+        && let Err(lack) = run::not_opened(plan, target, error, options).commit(folder)
+    {
+        tell(&lack);
+    }
+    failure
 }
 
 /// Says what a verdict that stands lacks.

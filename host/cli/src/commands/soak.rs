@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::given::Given;
-use super::run::{RunArguments, conclude};
+use super::run::{RunArguments, conclude, not_opened};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
@@ -62,7 +62,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let (plan, options) = arguments.plan(&files, settings)?;
     run.board.check_fault(settings, &plan)?;
     let outputs = run.outputs(files, None, context)?;
-    let candidate = run.board.candidate(settings)?;
+    let candidate = match run.board.candidate(settings) {
+        Ok(candidate) => candidate,
+        Err(failure) => {
+            return Err(not_opened(failure, (&plan, &options), &run.board.target(settings)?, outputs.report));
+        }
+    };
     let watched = progress::for_stderr(context.quiet || context.json);
     let finished = run::verify(&plan, candidate, &options, watched.as_ref())?;
     conclude(finished, outputs.report, context)

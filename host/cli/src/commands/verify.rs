@@ -8,7 +8,7 @@ use clap::Args;
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
 use super::listing;
-use super::run::{RunArguments, conclude, seconds, tell};
+use super::run::{RunArguments, conclude, not_opened, seconds, tell};
 use super::{Context, Failure};
 use crate::exit::Exit;
 use crate::progress;
@@ -73,7 +73,12 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return listing::list(&plan, &target, context.json);
     }
     let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;
-    let mut candidate = board.candidate_of(settings, recording)?;
+    let mut candidate = match board.candidate_of(settings, recording) {
+        Ok(candidate) => candidate,
+        Err(failure) => {
+            return Err(not_opened(failure, (&plan, &options), &board.target(settings)?, outputs.report));
+        }
+    };
     let mut lost = Lost::default();
     if let Some(file) = outputs.recording {
         let run = RecordedRun::of(&plan, &options);

@@ -93,12 +93,12 @@ fn fitted_pictures_are_cropped_about_their_centre_and_scaled() {
         (
             "large.webp",
             (64, 48),
-            "160 x 200, cropped to 160 x 120 about its centre, scaled to 64 x 48 (Catmull-Rom)",
+            "160 x 200, cropped to 160 x 120 about its centre, 60 % of it, scaled to 64 x 48 (Catmull-Rom)",
         ),
         (
             "small.png",
             (192, 96),
-            "160 x 100, cropped to 160 x 80 about its centre, scaled to 192 x 96 (Catmull-Rom)",
+            "160 x 100, cropped to 160 x 80 about its centre, 80 % of it, scaled to 192 x 96 (Catmull-Rom)",
         ),
     ] {
         let how = ReadOptions { size: PictureSize::Fitted(width, height), ..of_eight_bits(Phase::Grbg) };
@@ -122,7 +122,7 @@ fn what_has_the_size_is_not_fitted_and_what_has_not_is_refused() {
     let ReadError::Decode { source, .. } = sized(PictureSize::Exactly(72, 48)).unwrap_err() else { panic!() };
     assert!(matches!(source, DecodeError::OtherSize { width: 48, height: 72, columns: 72, rows: 48 }));
     let cropped = sized(PictureSize::Fitted(48, 40)).unwrap().fitting.unwrap();
-    assert_eq!(cropped.to_string(), "48 x 72, cropped to 48 x 40 about its centre");
+    assert_eq!(cropped.to_string(), "48 x 72, cropped to 48 x 40 about its centre, 55 % of it");
 }
 
 #[test]

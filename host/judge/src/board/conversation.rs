@@ -8,7 +8,7 @@ use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
-use super::{BoardError, Stop};
+use super::{BoardError, Heard, Stop};
 use crate::link::{LineErrors, Link, LinkError, Severed};
 
 /// The most that an exchange counts as a wait that moved something, and so did not wait to the end: all the rest may be that
@@ -310,7 +310,7 @@ impl Conversation {
         let mut attempt = 0;
         while attempt < attempts {
             if attempt > 0 {
-                tracing::info!("{kind:?} was not answered; asking again");
+                tracing::info!("{kind} was not answered; asking again");
                 self.repeated_changes += u64::from(self.asked.asked_again());
                 self.count_retry()?;
             }
@@ -333,8 +333,9 @@ impl Conversation {
             }
             attempt += 1;
         }
-        let (answered, damaged) = (self.tally.packets_in > 0, self.tally.damaged_in);
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), answered, damaged })
+        let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, .. } = self.tally;
+        let heard = Heard { bytes, packets, damaged };
+        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), heard })
     }
 
     /// Moves bytes once, and returns the answer if it is among them.
@@ -346,7 +347,7 @@ impl Conversation {
         accept: impl Fn(&Packet<'_>) -> bool,
     ) -> Result<Option<Kept>, BoardError> {
         let (mut answer, mut rows) = (None, 0);
-        let doing = || format!("waiting for the answer to {kind:?}");
+        let doing = || format!("waiting for the answer to {kind}");
         self.exchange(wait, doing, |packet| {
             let header = packet.header;
             // Rows are numbered by the board.

@@ -6,6 +6,7 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Malformed, Refusal, RowPlace};
 
 use crate::link::LinkError;
+use crate::report::wording::count;
 use crate::verdict::{Cause, StoppedBy};
 
 /// Why a board could not be driven.
@@ -22,9 +23,9 @@ pub enum BoardError {
     },
     /// Nobody answered.
     #[error(
-        "no answer to {kind:?} in {attempts} tries ({:.1} s){}",
+        "no answer to {kind} in {attempts} tries ({:.1} s){}",
         waited.as_secs_f64(),
-        suspect(*.answered, *.damaged)
+        suspect(*.heard)
     )]
     NoAnswer {
         /// The request.
@@ -33,10 +34,8 @@ pub enum BoardError {
         attempts: u32,
         /// Time in all.
         waited: Duration,
-        /// Whether the board had answered before.
-        answered: bool,
-        /// Packets that came damaged.
-        damaged: u64,
+        /// What had come by then.
+        heard: Heard,
     },
     /// Somebody answered, but not as a halfrow board.
     #[error("what answers is no halfrow board; check the target and what is loaded into the FPGA")]
@@ -67,7 +66,7 @@ pub enum BoardError {
     )]
     SessionLost,
     /// The board refused.
-    #[error("the board refused {kind:?}: {code} (detail {detail}); see protocol/WIRE.md, section 6", kind = .kind, code = .refusal.code, detail = .refusal.detail)]
+    #[error("the board refused {kind}: {code} (detail {detail}); see protocol/WIRE.md, section 6", kind = .kind, code = .refusal.code, detail = .refusal.detail)]
     Refused {
         /// The request.
         kind: Kind,
@@ -75,7 +74,7 @@ pub enum BoardError {
         refusal: Refusal,
     },
     /// The board's answer does not parse, although its CRC is right.
-    #[error("the board's answer to {kind:?} makes no sense; its bitstream and this halfrow do not match")]
+    #[error("the board's answer to {kind} makes no sense; its bitstream and this halfrow do not match")]
     Malformed {
         /// The request.
         kind: Kind,
@@ -84,7 +83,7 @@ pub enum BoardError {
         source: Malformed,
     },
     /// The answer has another kind than the request.
-    #[error("the board answered {kind:?} with something else; its bitstream and this halfrow do not match")]
+    #[error("the board answered {kind} with something else; its bitstream and this halfrow do not match")]
     Unexpected {
         /// The request.
         kind: Kind,
@@ -130,21 +129,37 @@ pub enum BoardError {
     Stopped(StoppedBy),
 }
 
+/// What came over a link since it was opened.
+#[derive(Clone, Copy, Debug)]
+pub struct Heard {
+    /// Bytes, whatever they were.
+    pub bytes: u64,
+    /// Whole packets.
+    pub packets: u64,
+    /// Packets that came damaged, since the board was greeted.
+    pub damaged: u64,
+}
+
 /// Who is to blame for silence: the board if nothing was ever heard of it, and the way to it otherwise.
-fn suspect(answered: bool, damaged: u64) -> String {
-    let packets = if damaged == 1 { "packet" } else { "packets" };
-    match (answered, damaged) {
-        (false, 0) => {
+fn suspect(heard: Heard) -> String {
+    match heard {
+        Heard { bytes: 0, .. } => {
             "; check that the board is powered and loaded, and that the target's rate is the board's".into()
         }
-        (_, 0) => {
+        Heard { packets: 0, damaged: 0, bytes } => format!(
+            ", though {} came, no packet among them; check that the target's rate is the board's, and that a halfrow \
+             board is what is at this port",
+            count(bytes, "byte")
+        ),
+        Heard { damaged: 0, .. } => {
             ", though the board had answered before; check the cable, its connectors and the rate, and that \
                    the board still has power"
                 .into()
         }
-        _ => format!(
-            ", and {damaged} {packets} came damaged: the link loses what is sent over it; check the cable, its \
-             connectors and the rate"
+        Heard { damaged, .. } => format!(
+            ", and {} came damaged: the link loses what is sent over it; check the cable, its \
+             connectors and the rate",
+            count(damaged, "packet")
         ),
     }
 }

@@ -26,7 +26,7 @@ use crate::link::Link;
 pub(crate) use bursts::{Fetched, Trapped};
 pub(crate) use conduct::Misconduct;
 pub use conversation::Tally;
-pub use error::BoardError;
+pub use error::{BoardError, Heard};
 pub use rows::{NumberedFrame, ReturnedRow, RowTraffic};
 pub(crate) use rows::{Unjudged, Unreturned};
 pub(crate) use said::Said;

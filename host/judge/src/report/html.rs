@@ -91,7 +91,7 @@ fn unit(report: &Report) -> Markup {
     let target = plain(&report.board.target);
     html! {
         @match &report.board.identity {
-            Some(it) => { (plain(&it.name)) ", serial " strong { (plain(&it.serial)) } ", at " (target) },
+            Some(it) => { (wording::board_name(&it.name)) ", serial " strong { (plain(&it.serial)) } ", at " (target) },
             None => { "a board that never said what it is, at " (target) },
         }
     }

@@ -96,7 +96,12 @@ fn frame_case(report: &Report, frame: &FrameReport) -> TestCase {
     let comparison = &frame.comparison;
     let message = match comparison.differences {
         0 => format!("{} of {} rows came back", frame.rows, comparison.by_row.len()),
-        some => format!("{some} of {} samples differ", comparison.samples),
+        some => format!(
+            "{} of {} {}",
+            wording::grouped(some),
+            wording::count(comparison.samples, "sample"),
+            wording::differ(some)
+        ),
     };
     let first = comparison.first.map_or_else(String::new, |first| {
         format!(

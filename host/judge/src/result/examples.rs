@@ -104,7 +104,7 @@ fn of_the_board() -> [Finding; 18] {
 fn on_rules() -> [Finding; 1] {
     [Finding::RuleBroken {
         rule: Rule::CommitCrc,
-        request: "Commit".to_owned(),
+        request: "COMMIT".to_owned(),
         right: Answer::Refused { code: 9, detail: 1 },
         found: Answer::Replied { payload: "55".to_owned() },
     }]
@@ -136,7 +136,7 @@ fn on_entry_and_at_speed() -> [Finding; 5] {
 }
 
 fn unjudged() -> [Finding; 11] {
-    let reason = Problem::new("no-answer", "no answer to Echo in 8 tries; check that the board is powered");
+    let reason = Problem::new("no-answer", "no answer to ECHO in 8 tries; check that the board is powered");
     [
         Finding::RowLostOnce { row: 3, frame: 2 },
         Finding::RowLostAmongOthers { row: 3, frame: 2 },

@@ -5,12 +5,13 @@ use std::time::{Duration, Instant};
 
 use super::judge::Seen;
 use super::plan::Generation;
-use super::{Candidate, Misfit, RunOptions};
+use super::{Misfit, RunOptions};
 use crate::board::{Board, BoardError, Status, Tally};
 use crate::result::{
     BoardReport, Check, CheckName, Finding, Identity, LinkReport, NotExercised, Outcome, Problem, SoakReport,
     Suspect, WithinReport,
 };
+use crate::target::BoardKind;
 use crate::verdict::Cause;
 
 /// Why a run ended before its last step, or with a board that is wrong.
@@ -96,14 +97,10 @@ pub(super) struct Findings {
 }
 
 impl Findings {
-    pub(super) fn new(options: &RunOptions, candidate: &Candidate) -> Self {
-        let link = LinkReport {
-            name: candidate.link.name(),
-            retry_limit: options.retry_limit.of(0),
-            ..LinkReport::default()
-        };
+    pub(super) fn new(options: &RunOptions, target: &str, kind: BoardKind, link: String) -> Self {
+        let link = LinkReport { name: link, retry_limit: options.retry_limit.of(0), ..LinkReport::default() };
         Self {
-            board: BoardReport { kind: candidate.kind, target: candidate.target.clone(), identity: None },
+            board: BoardReport { kind, target: target.to_owned(), identity: None },
             checks: Vec::new(),
             spent: BTreeMap::new(),
             since: Instant::now(),

@@ -95,7 +95,7 @@ pub fn misfit(tables: &TableSet, kernel: &Kernel, capabilities: &Capabilities) -
     if width > most_width || height > most_height {
         let mut remedy = "use smaller frames and tables".to_owned();
         if capabilities.nature == BoardNature::Mock {
-            remedy = format!("{remedy}, or a mock that takes these: mock,max-width={width}");
+            remedy = format!("{remedy}, or the built-in mock that takes these: mock,max-width={width}");
             if height > most_height {
                 remedy = format!("{remedy},max-height={height}");
             }

@@ -35,9 +35,11 @@ mod within;
 use tracing::error_span;
 
 use crate::board::OpenOptions;
-use crate::link::{Candidate, Link};
+use crate::link::{Candidate, Class, Link, OpenError, kinds};
 use crate::progress::{Progress, Step};
-use crate::result::FileHash;
+use crate::result::{CheckName, FileHash, Problem};
+use crate::target::{BoardKind, Target};
+use crate::verdict::Cause;
 
 use findings::{End, Findings};
 use reconnect::WayBack;
@@ -107,6 +109,17 @@ pub fn verify(
     span.in_scope(|| judge(plan, candidate, options, progress))
 }
 
+/// The report of a run by `plan` that never began, since the board of `target` cannot be opened.
+#[must_use]
+pub fn not_opened(plan: &Plan, target: &Target, error: &OpenError, options: &RunOptions) -> Finished {
+    let name = target.to_string();
+    let kind = kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board);
+    let findings = Findings::new(options, &name, kind, name.clone());
+    let cause = if error.class() == Class::Busy { Cause::Busy } else { Cause::Station };
+    let end = End::error(CheckName::Identity, cause, Problem::of(error));
+    conclude::conclude(plan, findings, Some(end), options, jiff::Timestamp::now())
+}
+
 fn judge(
     plan: &Plan,
     candidate: Candidate,
@@ -115,7 +128,7 @@ fn judge(
 ) -> Result<Finished, Misfit> {
     plan.check_length()?;
     let started = jiff::Timestamp::now();
-    let mut findings = Findings::new(options, &candidate);
+    let mut findings = Findings::new(options, &candidate.target, candidate.kind, candidate.link.name());
     let way_back =
         WayBack { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
     let end = run(plan, candidate.link, options, way_back, progress, &mut findings).err();

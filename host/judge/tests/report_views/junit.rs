@@ -60,7 +60,7 @@ fn a_wrong_frame_is_a_failure_and_what_was_not_reached_is_skipped() {
     let wrong = case(&suite, "halfrow.frame", wrong);
     let TestCaseStatus::NonSuccess { kind, message, description, .. } = &wrong.status else { panic!() };
     assert_eq!(*kind, NonSuccessKind::Failure);
-    assert_eq!(message.as_ref().unwrap().as_str(), "5 of 2560 samples differ");
+    assert_eq!(message.as_ref().unwrap().as_str(), "5 of 2,560 samples differ");
     let first = "First at row 3, column 0: expected 193, found 209; largest difference 16.";
     assert_eq!(description.as_ref().unwrap().as_str(), first);
     assert!(matches!(case(&suite, "halfrow.check", "counters").status, TestCaseStatus::Skipped { .. }));

@@ -83,6 +83,7 @@ codes::codes! {
     StoreError {
         InUse [folder] => "store-in-use",
         Folder [folder] => "store-folder-unusable",
+        NoResults [folder] => "store-without-results",
         Database [path, doing] => "database-refuses",
         Plant [plant, doing] => "plant-refuses",
         NoRecord [plant, sha256] => "plant-without-record",

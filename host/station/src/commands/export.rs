@@ -109,7 +109,7 @@ impl From<ExportError> for Failure {
     }
 }
 
-fn unwritten(error: WriteAsideError) -> Failure {
+pub(super) fn unwritten(error: WriteAsideError) -> Failure {
     match error {
         WriteAsideError::Exists { .. } => Failure::call(error),
         error => Failure::error(error),

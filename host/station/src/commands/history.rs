@@ -5,7 +5,10 @@ use clap::Args;
 use super::Failure;
 use super::looking::{Filtered, Results, either, table, time};
 use crate::exit::Exit;
-use crate::history::runs::{MOST, Page, Place, page};
+use crate::history::runs::{MOST, Page, Place, RunLine, page};
+
+/// Characters of a result.
+const MOST_RESULT: usize = 80;
 
 /// List runs, the newest first
 #[derive(Debug, Args)]
@@ -31,6 +34,16 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     either(&page, arguments.json, text)
 }
 
+/// Why the run was no PASS, as long as a line has room for it.
+fn why(run: &RunLine) -> String {
+    let headline = run.headline.as_deref().filter(|_| run.verdict.as_deref() != Some("PASS"));
+    let headline = headline.unwrap_or_default();
+    match headline.char_indices().nth(MOST_RESULT) {
+        Some((end, _)) => format!("{}…", &headline[..end]),
+        None => headline.to_owned(),
+    }
+}
+
 fn text(page: &Page) -> String {
     let rows = page.runs.iter().map(|run| {
         let verdict = run.verdict.clone().unwrap_or_else(|| "open".to_owned());
@@ -43,9 +56,10 @@ fn text(page: &Page) -> String {
             run.lane.clone(),
             run.operator.clone(),
             run.id.clone(),
+            why(run),
         ]
     });
-    let header = ["began", "serial", "verdict", "plan", "lane", "operator", "run"];
+    let header = ["began", "serial", "verdict", "plan", "lane", "operator", "run", "result"];
     let mut text = table(&header, &[], rows);
     if let Some(next) = &page.next {
         text.push_str(&format!("\nmore: --after {next}"));

@@ -6,6 +6,7 @@ mod check;
 pub(crate) mod codes;
 mod demo;
 mod document;
+mod evidence;
 mod export;
 mod history;
 mod job;
@@ -66,6 +67,7 @@ enum Command {
     Pareto(pareto::Arguments),
     Waive(waive::Arguments),
     Export(export::Arguments),
+    Evidence(evidence::Arguments),
     Backup(kept::Backup),
     Restore(kept::Restore),
     Prune(kept::Prune),
@@ -145,6 +147,7 @@ impl Cli {
             Command::Pareto(arguments) => pareto::run(arguments),
             Command::Waive(arguments) => waive::run(arguments),
             Command::Export(arguments) => export::run(arguments),
+            Command::Evidence(arguments) => evidence::run(arguments),
             Command::Backup(arguments) => kept::backup(arguments),
             Command::Restore(arguments) => kept::restore(arguments),
             Command::Prune(arguments) => kept::prune(arguments),

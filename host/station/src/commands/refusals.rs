@@ -3,6 +3,7 @@
 use halfrow::result::codes;
 
 use super::board::{NoBoard, NoBoardKind, NoKind};
+use super::evidence::{EvidenceGone, NoSuchRun};
 use super::job::{NoJob, NoWord};
 use super::lanes::EngineEnded;
 use super::outbox::{NoSink, NotDead, SinkInUse};
@@ -43,4 +44,8 @@ codes::codes! {
     SinkInUse [sink] => "sink-in-use"
     ;
     NoStation [station] => "plant-without-station"
+    ;
+    NoSuchRun [run] => "run-unknown"
+    ;
+    EvidenceGone [names, run] => "evidence-gone"
 }

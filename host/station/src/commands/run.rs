@@ -18,13 +18,9 @@ use crate::exit::Exit;
 use crate::labgrid::LaneBoard;
 use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
 use crate::plan::{Bad, Plan, mock};
-use crate::record::Record;
+use crate::record::{Record, StepOutcome};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::store::{AgainError, Folder, SharedStore};
-
-/// What a run says that is no production.
-const NO_PRODUCTION: &str = "it counts as no production: its plan takes any kind of board, or the unit checks shifts, or \
-                             this shift is not checked yet";
 
 /// Judge one board by a plan, and save the result
 ///
@@ -119,7 +115,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     let saved = ended?;
     let exit = exit(&saved);
-    console::tell(&if arguments.json { document(&saved, &recovered, exit)? } else { text(&saved) });
+    console::tell(&if arguments.json { document(&saved, &recovered, exit)? } else { text(&saved, &plan) });
     Ok(exit)
 }
 
@@ -220,23 +216,39 @@ fn document(saved: &Saved, recovered: &[Saved], exit: Exit) -> Result<String, Fa
     document::text("run", exit, Some(ended.verdict), rest)
 }
 
-fn text(saved: &Saved) -> String {
+fn text(saved: &Saved, plan: &Plan) -> String {
     let Saved { record, stored, .. } = saved;
     let ended = &record.conclusion;
     let mut lines = vec![format!("{} {}: {}", ended.verdict, record.run.serial, ended.headline)];
     lines.extend(ended.remedy.iter().filter(|_| ended.verdict != Verdict::Pass).cloned());
-    if let Some(identity) = record.steps.first().filter(|step| step.kind == "identity") {
+    let identity =
+        record.steps.first().filter(|step| step.kind == "identity" && step.outcome == StepOutcome::Passed);
+    if let Some(identity) = identity {
         lines.push(format!("board     {}", identity.detail));
     }
     if record.marginal {
         lines.push("marginal  a step needed more than one try".to_owned());
     }
     if !record.production {
-        lines.push(NO_PRODUCTION.to_owned());
+        lines.push(format!("it counts as no production: {}", why_no_production(plan, &record.run.serial)));
     }
-    lines.push(format!("run       {}, the unit's judgement {}", record.run.id, stored.nth));
+    let judgement = match ended.verdict {
+        Verdict::Error => "which is no judgement of the unit".to_owned(),
+        _ => format!("the unit's judgement {}", stored.nth),
+    };
+    lines.push(format!("run       {}, {judgement}", record.run.id));
     lines.push(format!("record    {}", stored.record_sha256));
     lines.join("\n")
+}
+
+fn why_no_production(plan: &Plan, serial: &str) -> &'static str {
+    if !plan.require_hardware {
+        "its plan takes any kind of board"
+    } else if plan.is_reference(serial) {
+        "the unit checks shifts"
+    } else {
+        "this shift is not checked yet"
+    }
 }
 
 /// The exit code of what was read back.

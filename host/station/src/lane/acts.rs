@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Class, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
-use halfrow::result::{BoardReport, Identity, Problem};
+use halfrow::result::{BoardReport, Identity, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
 use halfrow::verdict::{Cause, StoppedBy, Verdict};
@@ -237,7 +237,7 @@ impl Common<'_> {
         }
         let measured = judged(Maker::Verify, &of_verify(&report, begun.elapsed()), self.limits);
         let result = Try {
-            remedy: report.remedy(),
+            remedy: at_the_bench(&report),
             suspects: report.suspects.iter().map(suspect).collect(),
             board: seen,
             evidence: serde_json::to_value(&report).ok(),
@@ -295,7 +295,13 @@ fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
     }
 }
 
-fn suspect(suspect: &halfrow::result::Suspect) -> SuspectRecord {
+/// What the operator does: what the likeliest suspect asks of a technician, or else what the finding asks for.
+fn at_the_bench(report: &Report) -> Option<String> {
+    let suspect = report.suspects.first().filter(|_| report.verdict == Verdict::Fail);
+    suspect.map(Suspect::technician).or_else(|| report.remedy())
+}
+
+fn suspect(suspect: &Suspect) -> SuspectRecord {
     SuspectRecord {
         part: suspect.part().to_owned(),
         place: suspect.place(),

@@ -24,6 +24,12 @@ pub enum StoreError {
         /// The system's reason.
         source: io::Error,
     },
+    /// No station has written anything there.
+    #[error("{} has no station's results; name the folder that a station writes to", folder.display())]
+    NoResults {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// The database refuses.
     #[error("the database {} refuses {doing}; check that its folder is writable and has space", path.display())]
     Database {

@@ -105,7 +105,7 @@ fn what_check_finds_has_codes() {
     let nowhere = document(&did(&["check", "--json", "--data", "/nowhere"]));
     assert_eq!(
         (&nowhere["error"]["code"], &nowhere["command"]),
-        (&"database-refuses".into(), &"check".into())
+        (&"store-without-results".into(), &"check".into())
     );
 }
 

@@ -2,8 +2,8 @@
 
 use super::places::list;
 use super::{LOGIC, TIMING, Words, place};
-use crate::report::wording::{count, grouped, hertz, span};
-use crate::result::{BurstCount, Corner, Finding, NoBurst, Repetition};
+use crate::report::wording::{count, differ, grouped, hertz, span};
+use crate::result::{BurstCount, Corner, Defect, Finding, NoBurst, Repetition};
 
 pub(super) fn changed_on_entry(rows: usize, first: usize, frame: u16) -> Words {
     let others = if rows > 1 { format!(", the first of {rows}") } else { String::new() };
@@ -36,13 +36,10 @@ pub(super) fn only_at_speed(row: Option<usize>, samples: usize, bits: &[u32]) ->
     let numbers = list(&bits.iter().map(|&bit| bit as usize).collect::<Vec<_>>());
     let (place, seen) = match row {
         None => (at(""), String::new()),
-        Some(row) => {
-            let differ = if samples == 1 { "one sample".to_owned() } else { format!("{samples} samples") };
-            (
-                at(&format!(", seen in bit{ending} {numbers} of the corrected samples")),
-                format!("; row {row} was kept, in which {differ} differ"),
-            )
-        }
+        Some(row) => (
+            at(&format!(", seen in bit{ending} {numbers} of the corrected samples")),
+            format!("; row {row} was kept, in which {} {}", count(samples, "sample"), differ(samples)),
+        ),
     };
     Words {
         part: "timing",
@@ -66,21 +63,13 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
             if *grid { "grids, row factors" } else { "tables" },
             found.sentence()
         ),
-        Finding::PausedAtSpeed { frames, paused } => {
-            format!("{frames} frames, every sample equal, but not at speed: {paused} of them had pauses")
-        }
+        Finding::PausedAtSpeed { frames, paused } => format!(
+            "{}, every sample equal, but not at speed: {paused} of them had pauses",
+            count(*frames, "frame")
+        ),
         Finding::NothingAtSpeed { reason } => format!("nothing was tested at speed: {}", because(*reason)),
         Finding::DiffersAtSpeed { wrong, frames, first, repetition, suspect } => {
-            let suspicion = suspect
-                .as_ref()
-                .map_or_else(String::new, |suspect| format!("; the suspect is {}", place(suspect)));
-            format!(
-                "{} of {} frames differ at speed, the first is frame {}{}{suspicion}",
-                grouped(*wrong),
-                grouped(*frames),
-                grouped(*first),
-                shown(*repetition)
-            )
+            differs((*wrong, *frames), *first, *repetition, suspect.as_deref())
         }
         Finding::MiscountedAtSpeed { frame, count, counted, right } => {
             format!(
@@ -96,6 +85,24 @@ pub(super) fn sentence(finding: &Finding) -> Option<String> {
         }
         _ => return None,
     })
+}
+
+fn differs(
+    (wrong, frames): (u32, u32),
+    first: u32,
+    repetition: Repetition,
+    suspect: Option<&Defect>,
+) -> String {
+    let suspicion =
+        suspect.map_or_else(String::new, |suspect| format!("; the suspect is {}", place(suspect)));
+    format!(
+        "{} of {} {} at speed, the first is frame {}{}{suspicion}",
+        grouped(wrong),
+        count(frames, "frame"),
+        differ(wrong),
+        grouped(first),
+        shown(repetition)
+    )
 }
 
 /// What to do about such a finding, or about rows that entered the core changed.
@@ -150,7 +157,9 @@ fn shown(repetition: Repetition) -> String {
     match repetition {
         Repetition::NotNeeded {} => String::new(),
         Repetition::NoTrap {} => ", of which the board keeps no row".to_owned(),
-        Repetition::AllRight { frames } => format!("; made again by itself, it was right {frames} times"),
+        Repetition::AllRight { frames } => {
+            format!("; made again by itself, it was right {}", count(frames, "time"))
+        }
         Repetition::Trapped { frames, row } => {
             format!("; made again, it differed at try {frames}, in row {row} first")
         }

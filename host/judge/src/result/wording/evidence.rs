@@ -1,6 +1,7 @@
 //! Why a defect is suspected.
 
 use super::words;
+use crate::report::wording::{count, grouped};
 use crate::result::{Account, Defect};
 
 /// What speaks for a defect, in one sentence without a full stop.
@@ -8,7 +9,7 @@ use crate::result::{Account, Defect};
 pub fn evidence(defect: &Defect, account: &Account) -> String {
     match defect {
         Defect::TableLengthWrong { uploaded, read, .. } => {
-            return format!("{uploaded} entries were uploaded and {read} came back");
+            return format!("{} entries were uploaded and {} came back", grouped(*uploaded), grouped(*read));
         }
         Defect::TableWordWrong { uploaded, read, wrong, .. }
         | Defect::GridEntryReadsWrong { uploaded, read, wrong, .. } => {
@@ -26,10 +27,12 @@ pub fn evidence(defect: &Defect, account: &Account) -> String {
         Account::Words { wrong, explained, others } => {
             let unsure =
                 if others > 0 { "; other lines would read alike, so this is not certain" } else { "" };
-            format!("{defect} gives {explained} of the {wrong} wrong words, and changes no other{unsure}")
+            let wrong = count(wrong, "wrong word");
+            format!("{defect} gives {} of the {wrong}, and changes no other{unsure}", grouped(explained))
         }
         Account::Signatures { wrong, explained } => {
-            format!("{defect} gives the signatures of {explained} of the {wrong} wrong frames examined")
+            let wrong = count(wrong, "wrong frame");
+            format!("{defect} gives the signatures of {} of the {wrong} examined", grouped(explained))
         }
         Account::Nothing => defect,
     }
@@ -39,7 +42,7 @@ fn word(read: i64, uploaded: i64, wrong: usize) -> String {
     let first = if wrong == 1 {
         String::new()
     } else {
-        format!("; it is the first of {wrong} wrong words, which no single line explains")
+        format!("; it is the first of {} wrong words, which no single line explains", grouped(wrong))
     };
     format!("{read} was read where {uploaded} was uploaded{first}")
 }
@@ -50,13 +53,17 @@ fn samples(differing: usize, explained: usize, contradicted: usize, others: usiz
         let rest = match contradicted {
             0 => String::new(),
             1 => ", but would change one that is right".to_owned(),
-            more => format!(", but would change {more} that are right"),
+            more => format!(", but would change {} that are right", grouped(more)),
         };
-        return format!("gives {explained} of the {differing} differing samples examined{rest}");
+        let differing = count(differing, "differing sample");
+        return format!("gives {} of the {differing} examined{rest}", grouped(explained));
     }
     let all = match differing {
         1 => "gives the one differing sample examined, and changes no other".to_owned(),
-        _ => format!("gives all {differing} differing samples examined, to the bit, and changes no other"),
+        more => {
+            let all = grouped(more);
+            format!("gives all {all} differing samples examined, to the bit, and changes no other")
+        }
     };
     match others {
         0 => all,

@@ -1,6 +1,7 @@
 //! What a finding says, and what it asks for.
 
 use super::{at_speed, designer, evidence, place, rules};
+use crate::report::wording::{board_name, count, differ, grouped};
 use crate::result::{Account, BoardKind, Defect, Doubt, Finding};
 
 /// A finding in one sentence, without a full stop.
@@ -8,19 +9,24 @@ use crate::result::{Account, BoardKind, Defect, Doubt, Finding};
 pub fn sentence(finding: &Finding) -> String {
     match finding {
         Finding::GoldenSamplesFound { samples, path } => {
-            format!("this computer finds all {samples} golden samples ({path})")
+            format!("this computer finds all {} golden samples ({path})", grouped(*samples))
         }
         Finding::BoardIdentified { name, wire, datapath } => {
-            format!("{name}, wire {wire}, datapath {datapath}")
+            format!("{}, wire {wire}, datapath {datapath}", board_name(name))
         }
         Finding::EchoesReturned { bytes, echoes } => {
-            format!("{bytes} bytes in {echoes} echoes came back as they went")
+            format!("{} in {} echoes came back as they went", count(*bytes, "byte"), grouped(*echoes))
         }
         Finding::TablesUploaded { rows, nodes, generation } => {
-            format!("{rows} row factors and {nodes} kernel nodes, as generation {generation}")
+            let nodes = count(*nodes, "kernel node");
+            format!("{} table entries and {nodes}, as generation {generation}", grouped(*rows))
         }
-        Finding::TablesReadBack { ports } => format!("{ports} datapath ports read what was uploaded"),
-        Finding::FramesEqual { frames, samples } => format!("{frames} frames, {samples} samples, all equal"),
+        Finding::TablesReadBack { ports } => {
+            format!("{} read what was uploaded", count(*ports, "datapath port"))
+        }
+        Finding::FramesEqual { frames, samples } => {
+            format!("{}, {}, all equal", count(*frames, "frame"), count(*samples, "sample"))
+        }
         Finding::LatencyRight { clocks } => {
             format!("every row takes {clocks} pixel clocks, first and last sample")
         }
@@ -55,17 +61,19 @@ fn all_right(
         times => format!("; the board went away and came back, {times} x"),
     };
     format!(
-        "{frames} frames, {samples} samples, all equal to the reference; every row takes {latency} pixel \
-         clocks{untested}{away}"
+        "{}, {}, all equal to the reference; every row takes {latency} pixel clocks{untested}{away}",
+        count(frames, "frame"),
+        count(samples, "sample")
     )
 }
 
 fn counters_right(rows: usize, damaged: u32) -> String {
     let unseen = match damaged {
         0 => String::new(),
-        _ => format!("; it counts {damaged} damaged packets, and nothing had to be sent again"),
+        _ => format!("; it counts {}, and nothing had to be sent again", count(damaged, "damaged packet")),
     };
-    format!("{rows} rows in, {rows} rows out{unseen}")
+    let rows = count(rows, "row");
+    format!("{rows} in, {rows} out{unseen}")
 }
 
 /// What is wrong with a board.
@@ -87,13 +95,7 @@ fn of_board(finding: &Finding) -> String {
         }
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
         Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect } => {
-            let suspicion = match suspect {
-                Some(suspect) => format!("the suspect is {}", place(suspect)),
-                None => "no single defect that is known explains them".to_owned(),
-            };
-            format!(
-                "{differences} of {samples} samples differ, in {differing_frames} of {frames} frames; {suspicion}"
-            )
+            samples_differ((*differences, *samples), (*differing_frames, *frames), suspect.as_deref())
         }
         Finding::CounterWrong { counter, counted, right } => {
             format!("the board counts {counted} {}, and it is {right}", counter.words())
@@ -110,6 +112,25 @@ fn of_board(finding: &Finding) -> String {
     }
 }
 
+/// How many samples and frames differ, of how many.
+fn samples_differ(
+    (differences, samples): (usize, usize),
+    (differing_frames, frames): (usize, usize),
+    suspect: Option<&Defect>,
+) -> String {
+    let suspicion = match suspect {
+        Some(suspect) => format!("the suspect is {}", place(suspect)),
+        None => "no single defect that is known explains them".to_owned(),
+    };
+    format!(
+        "{} of {} {}, in {differing_frames} of {}; {suspicion}",
+        grouped(differences),
+        count(samples, "sample"),
+        differ(differences),
+        count(frames, "frame")
+    )
+}
+
 fn table(defect: &Defect, account: &Account) -> String {
     format!("{}: {}", place(defect), evidence(defect, account))
 }
@@ -122,16 +143,19 @@ fn of_rows(finding: &Finding) -> String {
              for it"
         ),
         Finding::RowsEnteredChanged { rows, row, frame } => format!(
-            "{rows} rows were changed on their way into the core, not computed wrongly: the board's own CRC of what entered \
-             is not that of what was sent, first for row {row} of frame {frame}"
+            "{} changed on the way into the core, not computed wrongly: the board's own CRC of what entered is not that \
+             of what was sent, first for row {row} of frame {frame}",
+            count(*rows, "row")
         ),
         Finding::EntryMiscounted { rows, row, frame } => format!(
-            "{rows} rows came out right, and the board's CRC of what entered the core is not that of what was sent, first \
-             for row {row} of frame {frame}"
+            "{} came out right, and the board's CRC of what entered the core is not that of what was sent, first for row \
+             {row} of frame {frame}",
+            count(*rows, "row")
         ),
         Finding::LatencyWrong { rows, row, frame, first, last, claimed } => format!(
-            "{rows} rows have another latency than the board claims: row {row} of frame {frame} took {first} pixel clocks \
-             from first in to first out and {last} from last in to last out; the board claims {claimed}"
+            "{} with another latency than the board claims: row {row} of frame {frame} took {first} pixel clocks from first in \
+             to first out and {last} from last in to last out; the board claims {claimed}",
+            count(*rows, "row")
         ),
         Finding::RowMisplaced { row, frame } => format!(
             "the board returned row {row} of frame {frame} under a place that was never sent; its bitstream and this halfrow \
@@ -200,10 +224,10 @@ fn perhaps_of_link(finding: &Finding) -> String {
 pub(crate) fn because(doubt: Doubt) -> String {
     match doubt {
         Doubt::RequestsTwice { requests } => {
-            format!("{requests} requests that change the board may have come to it twice")
+            format!("{} to change the board may have come to it twice", count(requests, "request"))
         }
         Doubt::PacketsMiscounted { counted, sent } => {
-            format!("the board counts {counted} packets, and {sent} were sent to it")
+            format!("the board counts {}, and {} were sent to it", count(counted, "packet"), grouped(sent))
         }
     }
 }

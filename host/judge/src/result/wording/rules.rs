@@ -49,9 +49,14 @@ fn did(found: &Answer) -> String {
 /// The reason's name in WIRE.md, section 6.
 fn reason(code: u8) -> String {
     let Some(reason) = RefusalCode::from_code(code) else { return format!("code {code}") };
-    let letters = format!("{reason:?}");
-    let words = letters.split_inclusive(char::is_uppercase).map(str::to_lowercase);
-    words.collect()
+    let mut words = String::new();
+    for letter in format!("{reason:?}").chars() {
+        if letter.is_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.extend(letter.to_lowercase());
+    }
+    words
 }
 
 fn meaning(rule: Rule) -> &'static str {

@@ -181,7 +181,7 @@ fn of_board(error: BoardError) -> End {
 }
 
 fn broken(rule: Rule, kind: Kind, right: Answer, found: Answer) -> End {
-    let request = format!("{kind:?}");
+    let request = kind.to_string();
     End::failed(CheckName::Rules, Finding::RuleBroken { rule, request, right, found })
 }
 

@@ -133,10 +133,13 @@ pub(super) fn waiver(visit: &Visit, waiver: &Waiver) -> Markup {
     }
 }
 
-/// The parts that are suspected, each with what a technician does about it.
+/// The parts that are suspected, each with what a technician does about it where the run's own remedy does not say it.
 fn suspects(visit: &Visit, run: &UnitRun, record: Option<&Record>) -> Markup {
-    let advice =
-        |place: usize| record.and_then(|record| record.suspects.get(place)).map(|one| &one.technician);
+    let advice = |place: usize| {
+        let record = record?;
+        let advice = &record.suspects.get(place)?.technician;
+        Some(advice).filter(|&advice| record.conclusion.remedy.as_ref() != Some(advice))
+    };
     let defects = record.map(defects).unwrap_or_default();
     html! {
         @for (place, one) in run.suspects.iter().enumerate() {

@@ -157,3 +157,28 @@ fn openhtf_writes_the_same_of_the_record_that_it_makes_of_ours() {
     fs::write(first, text.replacen("x <= 1004.0", "x <= 1003.0", 1)).unwrap();
     assert!(!read().status.success(), "the control");
 }
+
+#[test]
+fn evidence_is_copied_out_under_its_names() {
+    let mut made = Made::new();
+    made.run(&Run { evidence: vec!["in", "out"], ..Run::of("S1", End::Fail(&["memory"])) });
+    let page = page(&made.now(), &Filter::default(), None, 1).unwrap();
+    let (run, place) = (&page.runs[0].id, tempfile::tempdir().unwrap());
+    let to = place.path().join("kept");
+    let copied = |run: &str| did(&made, &["evidence", run, "--to", to.to_str().unwrap()]);
+    assert_eq!(copied(run).0, 0);
+    assert_eq!(
+        ["in", "out"].map(|name| fs::read(to.join(format!("{name}.txt"))).unwrap()),
+        [&b"in"[..], b"out"]
+    );
+    let (code, _, complained) = copied(run);
+    assert!(code == 2 && complained.contains("exists"), "{complained}");
+    fs::remove_dir_all(&to).unwrap();
+    let gone = made.folder().blobs().path(&halfrow::result::sha256([b"in"]));
+    fs::remove_file(gone).unwrap();
+    let (code, _, complained) = copied(run);
+    assert!(code == 3 && complained.contains("in.txt of the run"), "{complained}");
+    assert_eq!(files(&to), [to.join("out.txt")]);
+    let (code, _, complained) = copied("0");
+    assert!(code == 2 && complained.contains("there is no run 0 here"), "{complained}");
+}

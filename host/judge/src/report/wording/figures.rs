@@ -1,0 +1,97 @@
+//! Numbers as people read them.
+
+/// `1 frame`, `16 frames`, `17,280 rows`.
+#[must_use]
+pub fn count(number: impl Copy + ToString, what: &str) -> String {
+    let number = grouped(number);
+    let ending = if number == "1" { "" } else { "s" };
+    format!("{number} {what}{ending}")
+}
+
+/// The verb behind a count of things.
+pub(crate) fn differ(number: impl Copy + ToString) -> &'static str {
+    if number.to_string() == "1" { "differs" } else { "differ" }
+}
+
+/// A number with a comma before every third digit from the right.
+#[must_use]
+pub fn grouped(number: impl Copy + ToString) -> String {
+    let digits = number.to_string();
+    let mut text = String::with_capacity(digits.len() * 4 / 3);
+    for (place, digit) in digits.char_indices() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// Bytes in the largest decimal unit that leaves a whole digit.
+#[must_use]
+pub fn bytes(number: u64) -> String {
+    match number {
+        0..1_000 => format!("{number} B"),
+        1_000..1_000_000 => format!("{:.1} kB", number as f64 / 1e3),
+        1_000_000..1_000_000_000 => format!("{:.1} MB", number as f64 / 1e6),
+        _ => format!("{:.1} GB", number as f64 / 1e9),
+    }
+}
+
+/// A share of 0 to 1 in percent; only the whole is called 100 %.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    match share * 100.0 {
+        all if all >= 100.0 => "100 %".to_owned(),
+        none if none <= 0.0 => "0 %".to_owned(),
+        most if most > 99.9 => "99.9 %".to_owned(),
+        least if least < 0.1 => "under 0.1 %".to_owned(),
+        some => format!("{some:.1} %"),
+    }
+}
+
+/// A frequency in the largest unit that leaves a whole digit: `96.0 MHz`.
+#[must_use]
+pub fn hertz(frequency: u32) -> String {
+    match frequency {
+        0..1_000 => format!("{frequency} Hz"),
+        1_000..1_000_000 => format!("{:.1} kHz", f64::from(frequency) / 1e3),
+        _ => format!("{:.1} MHz", f64::from(frequency) / 1e6),
+    }
+}
+
+/// A time in the two largest units that it has: `3.0 s`, `13 min 20 s`, `6 h 48 min`.
+#[must_use]
+pub fn span(seconds: f64) -> String {
+    // A time that is no number is none.
+    let whole = seconds.round().max(0.0) as u64;
+    match whole {
+        0..60 if seconds < 1.0 => format!("{:.1} ms", seconds.max(0.0) * 1e3),
+        0..60 => format!("{seconds:.1} s"),
+        60..3600 => format!("{} min {} s", whole / 60, whole % 60),
+        _ => format!("{} h {} min", grouped(whole / 3600), whole % 3600 / 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_third_digit_is_set_off() {
+        let numbers = [0, 12, 999, 1_000, 33_177_600].map(grouped);
+        assert_eq!(numbers, ["0", "12", "999", "1,000", "33,177,600"]);
+    }
+
+    #[test]
+    fn a_time_is_told_in_two_units() {
+        let spans = [0.0216, 3.0, 800.0, 24_480.0, 4_000_000.0].map(span);
+        assert_eq!(spans, ["21.6 ms", "3.0 s", "13 min 20 s", "6 h 48 min", "1,111 h 6 min"]);
+    }
+
+    #[test]
+    fn a_share_short_of_the_whole_is_never_called_the_whole() {
+        let shares = [0.0, 0.000_01, 0.5, 0.999_99, 1.0].map(percent);
+        assert_eq!(shares, ["0 %", "under 0.1 %", "50.0 %", "99.9 %", "100 %"]);
+    }
+}

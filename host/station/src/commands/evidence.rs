@@ -1,0 +1,77 @@
+//! `halfrow-station evidence`
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use halfrow::frames::written_aside::write_aside;
+
+use super::export::unwritten;
+use super::looking::Data;
+use super::{Failure, print};
+use crate::exit::Exit;
+use crate::history::unit::run_of;
+use crate::record::Attachment;
+use crate::store::{Snapshot, StoreError};
+
+/// Copy the evidence of a run into a folder
+///
+/// Frames as PNGs of their very samples, and what else was kept of it, under the names that the run's page has. Nothing is
+/// overwritten. A plant leaves evidence with the station that took it, so it is asked for there.
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The run, as `halfrow-station history` names it
+    run: String,
+    #[command(flatten)]
+    data: Data,
+    /// The folder, which is made if it is not there
+    #[arg(long, value_name = "FOLDER")]
+    to: PathBuf,
+}
+
+/// A run of which nothing is known here.
+#[derive(Debug, thiserror::Error)]
+#[error("there is no run {run} here; `halfrow-station history` lists the runs")]
+pub(super) struct NoSuchRun {
+    pub(super) run: String,
+}
+
+/// Evidence that a run has had.
+#[derive(Debug, thiserror::Error)]
+#[error("{names} of the run {run} is not here any more; a copy of the station's folder may have it")]
+pub(super) struct EvidenceGone {
+    pub(super) names: String,
+    pub(super) run: String,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    let Arguments { run, data, to } = arguments;
+    let snapshot = Snapshot::take(&data.folder())?;
+    let Some(found) = run_of(&snapshot, run)? else {
+        return Err(Failure::call(NoSuchRun { run: run.clone() }));
+    };
+    fs::create_dir_all(to).map_err(Failure::error)?;
+    let mut gone = Vec::new();
+    for one in &found.attachments {
+        let bytes = match snapshot.evidence(&one.sha256) {
+            Err(StoreError::Blob(error)) if error.is_gone() => None,
+            bytes => bytes?,
+        };
+        let Some(bytes) = bytes else {
+            gone.push(one.name.as_str());
+            continue;
+        };
+        write_aside(&to.join(file_name(one)), false, |file| file.write_all(&bytes)).map_err(unwritten)?;
+    }
+    if !gone.is_empty() {
+        return Err(Failure::error(EvidenceGone { names: gone.join(", "), run: run.clone() }));
+    }
+    print(&format!("{} files of evidence are in {}", found.attachments.len(), to.display()))
+}
+
+/// Its name, which may not lead out of the folder.
+fn file_name(one: &Attachment) -> &str {
+    let is_plain = Path::new(&one.name).file_name() == Some(OsStr::new(&one.name));
+    if is_plain { &one.name } else { &one.sha256 }
+}
