@@ -6,4 +6,4 @@ FROM run
 JOIN unit ON unit.id = run.unit_id
 JOIN plan ON plan.sha256 = run.plan_sha256
 WHERE {of} = $1
-ORDER BY run.started_ms DESC, run.id DESC;
+ORDER BY run.id DESC;

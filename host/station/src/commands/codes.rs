@@ -233,7 +233,6 @@ codes::codes! {
         NoReason => "rebind-without-reason",
         NoDevice [device] => "device-malformed",
         UnderTest [serial] => "unit-under-test",
-        = NoRandomness,
         = Store,
     }
     NoWaiver {

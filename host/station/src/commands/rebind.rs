@@ -59,7 +59,7 @@ impl From<RebindError> for Failure {
     fn from(error: RebindError) -> Self {
         match error {
             RebindError::Store(error) => error.into(),
-            RebindError::NoRandomness(_) | RebindError::UnderTest { .. } => Self::error(error),
+            RebindError::UnderTest { .. } => Self::error(error),
             RebindError::Unknown { .. }
             | RebindError::Several { .. }
             | RebindError::NoReason

@@ -131,7 +131,8 @@ pub enum RunError {
 pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Result<Saved, RunError> {
     let Order { plan, .. } = order;
     let started_ms = clock::now_ms();
-    let id = ids::new(started_ms)?;
+    let not_begun = |error| RunError::NotBegun(Box::new(error));
+    let id = store.with(|store| store.new_id(started_ms)).map_err(not_begun)?;
     let Subject { serial, selected, target } = Subject::of(order, ids::seed(id))?;
     let head = RunHead {
         id: id.to_string(),
@@ -148,8 +149,7 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
         job: order.job.cloned(),
     };
     let planned = plan_record(plan);
-    let begun = store.with(|store| store.begin(head, &planned));
-    let head = begun.map_err(|error| RunError::NotBegun(Box::new(error)))?;
+    let head = store.with(|store| store.begin(head, &planned)).map_err(not_begun)?;
     watch.hear(Stage::Begun(&head));
     let begun = Instant::now();
     let spool = store.with(|store| store.folder().spool(&head.id));

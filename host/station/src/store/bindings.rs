@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 use super::audit::Line;
 use super::database::{Database, DatabaseError, Row, values};
 use super::{Store, StoreError, statements as sql};
+use crate::clock;
 use crate::record::RunHead;
 use crate::said::{Said, Saying};
-use crate::{clock, ids};
 
 /// Why a run binds.
 pub(super) const BY_RUN: &str = "first judgement";
@@ -102,7 +102,7 @@ impl Store {
         }
         let at_ms = clock::now_ms();
         let rebinding = Rebinding {
-            id: ids::new(at_ms)?.to_string(),
+            id: self.new_id(at_ms)?.to_string(),
             at_ms,
             operator: change.operator.to_owned(),
             unit_id,
@@ -186,9 +186,6 @@ pub enum RebindError {
         /// The serial number.
         serial: String,
     },
-    /// There is no id for it.
-    #[error(transparent)]
-    NoRandomness(#[from] ids::NoRandomness),
     /// The store.
     #[error(transparent)]
     Store(#[from] StoreError),

@@ -35,6 +35,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use rusqlite::{Connection, OpenFlags};
+use uuid::Uuid;
 
 pub use again::AgainError;
 pub use bindings::{Admission, Change, RebindError, Rebinding, is_device};
@@ -54,8 +55,8 @@ pub use snapshot::{Rebuilt, Snapshot, TABLES};
 pub use table::{Key, Row, Rows};
 pub use waivers::{NoWaiver, Waiver};
 
-use crate::clock;
 use crate::record::{Blobs, PlanRecord, Record, RunHead};
+use crate::{clock, ids};
 
 /// How long a reader waits for a writer.
 const PATIENCE: Duration = Duration::from_secs(10);
@@ -224,6 +225,21 @@ impl Store {
     #[must_use]
     pub fn folder(&self) -> &Folder {
         &self.folder
+    }
+
+    /// An id of the moment `now_ms`, behind those of all runs and acts that are here: their order is that in which they were begun,
+    /// though the clock was set back between two.
+    ///
+    /// # Errors
+    /// [`StoreError`] when the database cannot be read, or there is no randomness.
+    pub fn new_id(&mut self, now_ms: i64) -> Result<Uuid, StoreError> {
+        let newest: Option<String> = self
+            .read("to tell its newest run", |from| from.one(statements::NEWEST_ID, &[], |row| row.get(0)))?;
+        let id = ids::new(now_ms)?;
+        match newest {
+            Some(newest) if newest > id.to_string() => Ok(ids::new(ids::made_ms(&newest) + 1)?),
+            _ => Ok(id),
+        }
     }
 
     /// Enters an open run. Only then may its board be touched. Returns its head with the unit's id and the fence.

@@ -61,6 +61,7 @@ pub(super) const AUDIT_OF_ACT: &str = include_str!("../../sql/audit-of-act.sql")
 pub(super) const LAST_JUDGEMENT: &str = include_str!("../../sql/last-judgement.sql");
 pub(super) const PASSED: &str = include_str!("../../sql/passed.sql");
 pub(super) const OPEN_RUN_OF_UNIT: &str = include_str!("../../sql/open-run-of-unit.sql");
+pub(super) const NEWEST_ID: &str = include_str!("../../sql/newest-id.sql");
 pub(super) const ADD_TO_OUTBOX: &str = include_str!("../../sql/add-to-outbox.sql");
 pub(super) const ALL_TO_OUTBOX: &str = include_str!("../../sql/all-to-outbox.sql");
 pub(super) const OUTBOX_DUE: &str = include_str!("../../sql/outbox-due.sql");
@@ -191,6 +192,7 @@ mod tests {
         OPEN_RUN_OF_UNIT,
         PASSED,
         LAST_JUDGEMENT,
+        NEWEST_ID,
         ADD_TO_OUTBOX,
         ALL_TO_OUTBOX,
         OUTBOX_DUE,

@@ -101,7 +101,7 @@ pub(super) async fn rebind(
         Err(RebindError::Unknown { .. }) => StatusCode::NOT_FOUND,
         Err(RebindError::NoReason | RebindError::NoDevice { .. }) => StatusCode::BAD_REQUEST,
         Err(RebindError::Several { .. } | RebindError::UnderTest { .. }) => StatusCode::CONFLICT,
-        Err(RebindError::NoRandomness(_) | RebindError::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
+        Err(RebindError::Store(_)) => StatusCode::SERVICE_UNAVAILABLE,
     };
     let refused = bound.err().map(|error| Refused::new(&visit, status, &Said::of(&error)));
     unit::shown(app, visit, Asked::of_serial(&serial), refused).await

@@ -1,6 +1,7 @@
 //! What is counted when a run ends: brought up to date where the database is older, and checked against the records.
 
 use halfrow_station::check::check;
+use halfrow_station::history::unit::units;
 use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use rusqlite::Connection;
 
@@ -22,6 +23,27 @@ fn a_database_is_brought_up_to_date_with_a_copy_beside_it_by_who_writes_alone() 
     let version: i64 = copy.query_row("SELECT max(n) FROM schema_version", [], |row| row.get(0)).unwrap();
     assert_eq!(version, 1);
     assert!(!kept.path().join("station.before-2.partial").exists());
+}
+
+/// Ids are of moments, and tell in which order runs were begun.
+#[test]
+fn a_clock_that_is_set_back_puts_no_run_in_front_of_an_earlier_one() {
+    let back = Run { started_ms: BEGIN_MS - HOUR_MS, ..Run::of("S1", End::Fail(&["memory"])) };
+    let last = |made: &Made| units(&made.now(), "S1").unwrap()[0].runs[0].line.verdict.clone();
+    let faults = |made: &Made| check(&made.folder()).unwrap().faults.len();
+    let mut by_clock = Made::new();
+    by_clock.run(&Run::of("S1", End::Pass));
+    by_clock.run(&back);
+    assert!(last(&by_clock).as_deref() == Some("PASS") && faults(&by_clock) > 0);
+    let mut made = Made::new();
+    let first = made.run(&Run::of("S1", End::Pass));
+    let id = made.store.new_id(back.started_ms).unwrap().to_string();
+    assert!(id > first, "{id}");
+    made.run_as(id, &back);
+    assert_eq!((last(&made).as_deref(), faults(&made)), (Some("FAIL"), 0));
+    // A clock that goes on is what it was.
+    let later = made.store.new_id(BEGIN_MS + HOUR_MS).unwrap().to_string();
+    assert_eq!(later[..13], super::made::id(BEGIN_MS + HOUR_MS, 0)[..13]);
 }
 
 /// What is counted when a run ends follows from the records like all else.

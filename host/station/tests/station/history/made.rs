@@ -125,6 +125,13 @@ impl Made {
         id
     }
 
+    /// Enters a run of this id.
+    pub(crate) fn run_as(&mut self, id: String, run: &Run) {
+        let plan = plan(run.plan);
+        let head = self.store.begin(RunHead { id, ..self.head(run) }, &plan).unwrap();
+        self.finish(run, head, plan);
+    }
+
     /// Begins a run.
     pub(crate) fn begin(&mut self, run: &Run) -> (RunHead, PlanRecord) {
         self.entered += 1;
