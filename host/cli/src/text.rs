@@ -6,7 +6,8 @@ use anstyle::{AnsiColor, Style};
 use comfy_table::{CellAlignment, Table, presets};
 
 use halfrow::report::wording::{self, grouped, mark, plain};
-use halfrow::result::{Outcome, Report, SoakReport, Suspect};
+use halfrow::result::{FrameReport, FrameTiming, Outcome, Report, SoakReport, Suspect};
+use halfrow::run::DECOY;
 use halfrow::verdict::Verdict;
 
 use crate::flags;
@@ -18,7 +19,7 @@ const MOST_FRAMES: usize = 20;
 /// Differences of a soak.
 const MOST_DIFFERENCES: usize = 10;
 /// Characters of a frame's name.
-const MOST_NAME: usize = 28;
+const MOST_NAME: usize = 30;
 /// Columns of the labels on the left.
 const LABEL: usize = 9;
 
@@ -57,7 +58,7 @@ fn head(report: &Report) -> String {
             wording::board_name(&it.name),
             it.serial,
             it.build,
-            it.datapath,
+            it.datapaths(),
             it.protocol
         ),
     };
@@ -88,13 +89,13 @@ fn checks(report: &Report) -> String {
 fn frames(report: &Report) -> String {
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
-    table.set_header(["frame", "name", "rows", "differences", "first at", "largest"]);
+    table.set_header(["frame", "name", "rows", "differences", "row, column", "largest"]);
     let (listed, left_out) = wording::worth_listing(report, MOST_FRAMES);
     for frame in listed {
         let comparison = &frame.comparison;
         table.add_row([
             frame.number.to_string(),
-            shortened(&wording::frame_name(frame)),
+            shortened(&frame_label(frame)),
             grouped(frame.rows),
             wording::differences(report, frame),
             comparison.first.map_or_else(String::new, |first| format!("{}, {}", first.row, first.column)),
@@ -109,6 +110,18 @@ fn frames(report: &Report) -> String {
         let _ = writeln!(text, "{DIM}   … and {}{DIM:#}", wording::count(left_out, "more frame"));
     }
     text
+}
+
+/// A frame's name, and by what else it is told from another of the name.
+fn frame_label(frame: &FrameReport) -> String {
+    let decoy = (frame.generation == DECOY).then_some("decoy tables");
+    let timing = match frame.timing {
+        FrameTiming::LeastBlanking { .. } => None,
+        FrameTiming::Blanking { .. } => Some("sensor blanking"),
+        FrameTiming::Gaps { .. } => Some("gaps"),
+    };
+    let name = wording::frame_name(frame);
+    std::iter::once(&*name).chain(decoy).chain(timing).collect::<Vec<_>>().join(", ")
 }
 
 /// What a soak judged, and when something differed.

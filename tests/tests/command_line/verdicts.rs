@@ -193,7 +193,7 @@ fn a_run_ends_at_its_time_limit() {
     let ended = halfrow(arguments);
     assert_eq!(ended.code, Some(3));
     let headline = ended.json()["headline"].as_str().unwrap().to_owned();
-    assert!(headline.contains("the run took longer than the 20 s of its time limit"), "{headline}");
+    assert!(headline.contains("the run took longer than the 20.0 s of its time limit"), "{headline}");
 }
 
 #[test]
@@ -227,7 +227,7 @@ fn the_time_limit_is_also_this_computer_s() {
     for ended in [mock, replay] {
         assert_eq!(ended.code, Some(3), "{}", ended.stdout);
         assert!(
-            ended.stdout.contains("the run took longer than the 0 s of its time limit"),
+            ended.stdout.contains("the run took longer than the 0.0 ms of its time limit"),
             "{}",
             ended.stdout
         );

@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     // Verdicts alone are written in capitals.
     let of = |code: &String| known.get(code).or_else(|| known.get(&code.to_uppercase()));
     let found = arguments.codes.iter().map(|code| of(code).cloned().ok_or_else(|| unknown(code, &known)));
-    let found = found.collect::<Result<Vec<_>, _>>().map_err(Failure::call)?;
+    let found = found.collect::<Result<Vec<_>, _>>().map_err(Failure::call)?.concat();
     if context.json {
         print_result("explain", Exit::Pass, None, json!({ "codes": found }))?;
     } else {
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 }
 
 /// Names the codes that are most like one that is none.
-fn unknown(code: &str, known: &BTreeMap<String, Explanation>) -> CallError {
+fn unknown(code: &str, known: &BTreeMap<String, Vec<Explanation>>) -> CallError {
     let wanted = code.to_lowercase().replace(['_', ' '], "-");
     let likeness = |known: &str| match known.contains(&wanted) {
         true => 1.0,

@@ -136,10 +136,10 @@ impl Arguments {
         if frames.iter().all(|frame| frame.file().is_none()) {
             self.given.refuse_void(Decider::NoFrameFile, &[]).map_err(Failure::call)?;
         }
-        self.input.refuse_void(&self.given, settings)?;
         if self.within.is_some() {
             self.given.refuse_void(Decider::Within, &settings.keys()).map_err(Failure::call)?;
         }
+        self.input.refuse_void(&self.given, settings)?;
         // Each is read more than once, since its hash is reported.
         files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
         let tables = self.run.table_file(&self.given, settings)?;

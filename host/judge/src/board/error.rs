@@ -6,7 +6,7 @@ use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Malformed, Refusal, RowPlace};
 
 use crate::link::LinkError;
-use crate::report::wording::count;
+use crate::report::wording::{count, span};
 use crate::verdict::{Cause, StoppedBy};
 
 /// Why a board could not be driven.
@@ -119,7 +119,7 @@ pub enum BoardError {
         place: RowPlace,
     },
     /// The run's own time limit.
-    #[error("the run took longer than the {:.0} s of its time limit; give it more, or use a faster link", limit.as_secs_f64())]
+    #[error("the run took longer than the {} of its time limit; give it more, or use a faster link", span(limit.as_secs_f64()))]
     Timeout {
         /// The limit.
         limit: Duration,

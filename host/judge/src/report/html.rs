@@ -99,7 +99,9 @@ fn unit(report: &Report) -> Markup {
 
 /// What is suspected and what to do about it.
 fn next(report: &Report) -> Markup {
-    let (remedy, codes) = (wording::remedy(report), wording::codes(report));
+    // The headline may say it, and stands apart here.
+    let remedy = wording::remedy(report).or_else(|| report.remedy().filter(|_| report.suspects.is_empty()));
+    let codes = wording::codes(report);
     if codes.is_empty() {
         return Markup::default();
     }

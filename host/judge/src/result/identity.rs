@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::board::{Bursts, Capabilities, Welcome};
+use crate::run::grids;
 
 /// What a board says of itself.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -45,6 +46,20 @@ pub struct Identity {
     /// Whether each row comes back with the CRC-32 of what entered the core.
     #[serde(default)]
     pub entered: bool,
+    /// The grids of datapath 2 that it takes; none if it takes one factor a row alone.
+    #[serde(default)]
+    pub grids: Option<GridsReport>,
+}
+
+/// The grids that a board takes (DATAPATH.md, datapath 2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct GridsReport {
+    /// T: entries of a bank.
+    pub entries: u16,
+    /// Fewest pixel clocks between rows of a grid that are narrower than `width`.
+    pub least_blanking: u8,
+    /// Columns from which on rows of a grid need no more blanking than others.
+    pub width: u16,
 }
 
 /// What a board makes on its own at the full pixel clock (AT-SPEED.md).
@@ -73,6 +88,16 @@ impl BurstsReport {
     }
 }
 
+impl GridsReport {
+    /// For people.
+    fn text(&self) -> String {
+        format!(
+            "at most {} entries; {} pixel clocks between rows of less than {} columns",
+            self.entries, self.least_blanking, self.width
+        )
+    }
+}
+
 impl Identity {
     /// From the board's answers.
     #[must_use]
@@ -97,7 +122,19 @@ impl Identity {
             clock_hz: capabilities.clock_hz,
             bursts: capabilities.bursts.map(BurstsReport::of),
             entered: capabilities.entered,
+            grids: grids(capabilities).map(|of| GridsReport {
+                entries: of.entries,
+                least_blanking: of.grid_blanking,
+                width: of.grid_width,
+            }),
         }
+    }
+
+    /// The datapaths that it has: `1`, `1 and 2`.
+    #[must_use]
+    pub fn datapaths(&self) -> String {
+        let further = if self.grids.is_some() { " and 2" } else { "" };
+        format!("{}{further}", self.datapath)
     }
 
     /// For people: name and value, line by line.
@@ -113,7 +150,8 @@ impl Identity {
             ("serial", self.serial.clone()),
             ("build", self.build.clone()),
             ("wire version", self.protocol.to_string()),
-            ("datapath", self.datapath.to_string()),
+            ("datapath", self.datapaths()),
+            ("grids", self.grids.map_or_else(|| "none".to_owned(), |grids| grids.text())),
             ("frame at most", format!("{} x {}", self.max_width, self.max_height)),
             ("depths", format!("{} bits", depths.join(", "))),
             ("taps", self.taps.to_string()),
@@ -124,7 +162,7 @@ impl Identity {
             ("row banks", format!("{} in, {} out", self.row_banks_in, self.row_banks_out)),
             ("pixel clock", clock),
             ("frames at speed", self.bursts.map_or_else(|| "none".to_owned(), |bursts| bursts.text())),
-            ("what entered", if self.entered { "signed" } else { "not signed" }.to_owned()),
+            ("rows that enter", if self.entered { "signed" } else { "not signed" }.to_owned()),
         ]
     }
 }

@@ -214,6 +214,7 @@ mod tests {
             clock_hz: 0,
             bursts: None,
             entered: false,
+            grids: None,
         }
     }
 

@@ -28,7 +28,7 @@ const LEAST_ENTRIES: u16 = 2048;
 const OF_GRIDS: u16 = 2;
 
 /// The grids that a board takes; none of a datapath that is not known.
-pub(super) fn grids(board: &Capabilities) -> Option<Grids> {
+pub(crate) fn grids(board: &Capabilities) -> Option<Grids> {
     board.grids.filter(|grids| grids.further_datapath == OF_GRIDS)
 }
 

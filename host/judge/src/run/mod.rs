@@ -48,6 +48,7 @@ use steps::{MAX_LATENCY, Run};
 pub(crate) use at_speed::FEW as FEW_AT_SPEED;
 pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
 pub(crate) use golden::{CannotJudge, GoldenError};
+pub(crate) use legal::grids;
 pub use misfit::{Misfit, misfit};
 pub use options::RunOptions;
 pub use parts::{Part, Selection};

@@ -74,7 +74,10 @@ impl Run<'_> {
             let last = self.stream_all(&schedule, &frames)?;
             self.conclude(last)?;
             match self.plan.soak {
-                Some(length) => self.soak(length, last)?,
+                Some(length) => {
+                    self.soak(length, last)?;
+                    self.leave_out_rules();
+                }
                 None => {
                     self.at_speed(last)?;
                     self.rules(last)?;
@@ -134,7 +137,7 @@ impl Run<'_> {
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
-        let untried = self.plan.soak.is_none() && self.plan.amount(Part::Rules) == 0;
+        let untried = self.plan.soak.is_some() || self.plan.amount(Part::Rules) == 0;
         self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
         self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
     }

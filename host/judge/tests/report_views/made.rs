@@ -206,6 +206,7 @@ fn board() -> BoardReport {
         clock_hz: 0,
         bursts: Some(BurstsReport { content: 1, records: 64, least_frame_blanking: 0, trap: true }),
         entered: true,
+        grids: None,
     };
     BoardReport { kind: BoardKind::Mock, target: "mock,fault=flip".to_owned(), identity: Some(identity) }
 }

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use halfrow::frames::written_aside::write_aside;
+use halfrow::report::wording::count;
 
 use super::export::unwritten;
 use super::looking::Data;
@@ -51,7 +52,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Some(found) = run_of(&snapshot, run)? else {
         return Err(Failure::call(NoSuchRun { run: run.clone() }));
     };
-    fs::create_dir_all(to).map_err(Failure::error)?;
+    if !found.attachments.is_empty() {
+        fs::create_dir_all(to).map_err(Failure::error)?;
+    }
     let mut gone = Vec::new();
     for one in &found.attachments {
         let bytes = match snapshot.evidence(&one.sha256) {
@@ -67,7 +70,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     if !gone.is_empty() {
         return Err(Failure::error(EvidenceGone { names: gone.join(", "), run: run.clone() }));
     }
-    print(&format!("{} files of evidence are in {}", found.attachments.len(), to.display()))
+    if found.attachments.is_empty() {
+        return print("no evidence was kept of this run; of one that passes none is");
+    }
+    let files = count(found.attachments.len(), "file");
+    print(&format!("{files} of evidence in {}", to.display()))
 }
 
 /// Its name, which may not lead out of the folder.

@@ -60,6 +60,9 @@ fn text(page: &Page) -> String {
         ]
     });
     let header = ["began", "serial", "verdict", "plan", "lane", "operator", "run", "result"];
+    if page.runs.is_empty() {
+        return "no runs".to_owned();
+    }
     let mut text = table(&header, &[], rows);
     if let Some(next) = &page.next {
         text.push_str(&format!("\nmore: --after {next}"));

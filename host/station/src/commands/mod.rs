@@ -184,7 +184,11 @@ impl From<Unprinted> for Failure {
 
 impl From<StoreError> for Failure {
     fn from(error: StoreError) -> Self {
-        let exit = if matches!(error, StoreError::InUse { .. }) { Exit::Busy } else { Exit::Error };
+        let exit = match error {
+            StoreError::InUse { .. } => Exit::Busy,
+            StoreError::NoResults { .. } => Exit::Usage,
+            _ => Exit::Error,
+        };
         Self { exit, error: error.into() }
     }
 }

@@ -1,6 +1,7 @@
 //! `halfrow-station pareto`
 
 use clap::{Args, ValueEnum};
+use halfrow::report::wording::count;
 
 use super::Failure;
 use super::looking::{Counted, Results, either, table};
@@ -46,7 +47,9 @@ fn text(Pareto { failed, units, bars }: &Pareto) -> String {
         vec![name.to_owned(), bar.runs.count.to_string(), bar.runs.text(), bar.units.to_string()]
     });
     format!(
-        "{failed} runs of {units} units failed\n{}",
-        table(&["", "runs", "share", "units"], &[1, 3], rows)
+        "{} of {} failed\n{}",
+        count(*failed, "run"),
+        count(*units, "unit"),
+        table(&["cause", "runs", "share", "units"], &[1, 3], rows)
     )
 }

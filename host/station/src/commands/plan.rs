@@ -95,7 +95,7 @@ fn head(plan: &Plan) -> String {
 
 fn variant(name: &str, selected: &Selected) -> String {
     let title =
-        if name.is_empty() { "any variant without a name".to_owned() } else { format!("variant {name}") };
+        if name.is_empty() { "no variant that is named".to_owned() } else { format!("variant {name}") };
     let steps = selected.steps.iter().zip(1..).map(|(step, seq)| format!("  {seq} {}", told(step)));
     let limits = selected.limits.iter().map(|limit| format!("  limit {}", bounds(limit)));
     std::iter::once(title).chain(steps).chain(limits).collect::<Vec<_>>().join("\n")
@@ -116,7 +116,10 @@ fn told(step: &Step) -> String {
                 Some(time) => format!(", {} s at full speed", time.as_secs_f64()),
             };
             let frames = names.join(", ");
-            format!("{} x {frames}{at_speed}, by {}, seed {seed}", judging.repeat, judging.chosen.source)
+            format!(
+                "{} x {frames}, and what every run streams beside them{at_speed}, by {}, seed {seed}",
+                judging.repeat, judging.chosen.source
+            )
         }
     };
     let tries =

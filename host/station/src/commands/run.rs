@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use clap::Args;
 use halfrow::Verdict;
+use halfrow::link::{OpenError, kinds};
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 use serde_json::json;
@@ -126,6 +127,7 @@ impl Arguments {
         match (&self.serial, &self.board) {
             (Some(serial), Some(board)) => {
                 plan.select(serial).map_err(Failure::call)?;
+                kinds::of(board).ok_or_else(|| Failure::call(OpenError::UnknownKind(board.kind.clone())))?;
                 Ok((serial.clone(), board.clone()))
             }
             _ if is_checked_by_mock => {
@@ -220,7 +222,12 @@ fn text(saved: &Saved, plan: &Plan) -> String {
     let Saved { record, stored, .. } = saved;
     let ended = &record.conclusion;
     let mut lines = vec![format!("{} {}: {}", ended.verdict, record.run.serial, ended.headline)];
-    lines.extend(ended.remedy.iter().filter(|_| ended.verdict != Verdict::Pass).cloned());
+    let is_said = |remedy: &&String| {
+        ended.headline.to_lowercase().contains(&remedy.to_lowercase().trim_end_matches('.').to_owned())
+    };
+    lines.extend(
+        ended.remedy.iter().filter(|remedy| ended.verdict != Verdict::Pass && !is_said(remedy)).cloned(),
+    );
     let identity =
         record.steps.first().filter(|step| step.kind == "identity" && step.outcome == StepOutcome::Passed);
     if let Some(identity) = identity {

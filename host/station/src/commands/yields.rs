@@ -59,7 +59,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 }
 
 fn text(Yields { lines, flips }: &Yields) -> String {
-    let header = ["plan", "units", "first pass", "in the end", "waived", "runs", "errors", "crashes"];
+    let header = ["units of", "judged", "first pass", "in the end", "waived", "runs", "errors", "crashes"];
     let mut text = table(&header, &[1, 4, 5, 7], lines.iter().map(row));
     if !flips.is_empty() {
         text.push_str("\n\nfirst FAIL, in the end PASS\n");

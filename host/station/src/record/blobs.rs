@@ -23,7 +23,7 @@ pub enum BlobError {
     #[error(transparent)]
     Write(#[from] WriteAsideError),
     /// The file cannot be read.
-    #[error("{} cannot be read; restore it from a copy, or from the plant", path.display())]
+    #[error("{} cannot be read; put the file of that name from a copy of the station's folder there", path.display())]
     Read {
         /// The file.
         path: PathBuf,
@@ -31,7 +31,11 @@ pub enum BlobError {
         source: io::Error,
     },
     /// The file is not what its name says.
-    #[error("{} holds other bytes than its name says, whose hash is {found}; restore it from a copy", path.display())]
+    #[error(
+        "{} holds other bytes than its name says, whose hash is {found}; put the file of that name from a copy of the station's \
+         folder there",
+        path.display()
+    )]
     Damaged {
         /// The file.
         path: PathBuf,

@@ -11,7 +11,7 @@ use crate::run::NoRandomness;
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// Another program has the folder.
-    #[error("another halfrow-station works in {}; wait until it is done, or name another folder", folder.display())]
+    #[error("another halfrow-station works in {}; wait until it is done, name another folder, or use the page of the one that serves it", folder.display())]
     InUse {
         /// The folder.
         folder: PathBuf,

@@ -37,7 +37,9 @@ const AT_THE_DISK: usize = 8;
 #[derive(Debug, thiserror::Error)]
 pub enum ServeError {
     /// The address is not free.
-    #[error("nothing can be served at {address}; end what is there, or take another `listen`")]
+    #[error(
+        "nothing can be served at {address}; end what is there, or take another port, by `listen` in the settings or by --port"
+    )]
     Address {
         /// The address.
         address: SocketAddr,

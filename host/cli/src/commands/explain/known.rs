@@ -35,7 +35,7 @@ pub(super) struct Explanation {
 }
 
 /// Every code, and every other word of a report, with what is said of it.
-pub(super) fn known() -> BTreeMap<String, Explanation> {
+pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     let of_station = CODES_OF_STATION
         .iter()
         .map(|(code, names)| json!({ "of": "station-error", "code": code, "parameters": names }));
@@ -68,11 +68,12 @@ pub(super) fn known() -> BTreeMap<String, Explanation> {
     for part in examples::not_exercised() {
         add(&part.tagged().0, &|it| it.sentence = part.words());
     }
-    // Of two that are called alike the code stays.
-    for it in words() {
-        known.entry(it.code.clone()).or_insert(it);
+    // A code may be called as a check is, or as a fault.
+    let mut all: BTreeMap<String, Vec<Explanation>> = BTreeMap::new();
+    for it in known.into_values().chain(words()) {
+        all.entry(it.code.clone()).or_default().push(it);
     }
-    known
+    all
 }
 
 /// The words of a report that are no codes: verdicts, checks, and the faults that a mock board can have.
@@ -198,7 +199,9 @@ mod tests {
 
     #[test]
     fn every_code_has_a_meaning_from_the_comments_of_the_sources() {
-        for (code, it) in known() {
+        for (code, it) in
+            known().into_iter().flat_map(|(code, all)| all.into_iter().map(move |it| (code.clone(), it)))
+        {
             assert!(it.meaning.ends_with('.'), "{code}: {it:?}");
             assert!(!it.meaning.contains("[`"), "{code}: {it:?}");
         }

@@ -66,6 +66,7 @@ pub fn span(seconds: f64) -> String {
     // A time that is no number is none.
     let whole = seconds.round().max(0.0) as u64;
     match whole {
+        0..60 if seconds > 0.0 && seconds < 1e-3 => format!("{:.1} µs", seconds * 1e6),
         0..60 if seconds < 1.0 => format!("{:.1} ms", seconds.max(0.0) * 1e3),
         0..60 => format!("{seconds:.1} s"),
         60..3600 => format!("{} min {} s", whole / 60, whole % 60),
@@ -85,8 +86,8 @@ mod tests {
 
     #[test]
     fn a_time_is_told_in_two_units() {
-        let spans = [0.0216, 3.0, 800.0, 24_480.0, 4_000_000.0].map(span);
-        assert_eq!(spans, ["21.6 ms", "3.0 s", "13 min 20 s", "6 h 48 min", "1,111 h 6 min"]);
+        let spans = [0.000_032, 0.0216, 3.0, 800.0, 24_480.0, 4_000_000.0].map(span);
+        assert_eq!(spans, ["32.0 µs", "21.6 ms", "3.0 s", "13 min 20 s", "6 h 48 min", "1,111 h 6 min"]);
     }
 
     #[test]

@@ -37,10 +37,15 @@ const TOLD: usize = 32;
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
 
 impl Run<'_> {
+    /// Says that this run does not try the rules.
+    pub(super) fn leave_out_rules(&mut self) {
+        self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
+    }
+
     /// Tries the rules, with the board back behind `last` if it goes away meanwhile.
     pub(super) fn rules(&mut self, last: Option<&Segment>) -> Result<(), End> {
         if self.plan.amount(Part::Rules) == 0 {
-            self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
+            self.leave_out_rules();
             return Ok(());
         }
         self.progress.step(Step::Rules);
