@@ -5,11 +5,13 @@
 // Here alone.
 #![allow(clippy::disallowed_methods)]
 
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::io::{self, IsTerminal as _, Write};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use anstream::AutoStream;
+use halfrow::report::wording::plain;
 
 /// A result that stdout did not take.
 #[derive(Debug, thiserror::Error)]
@@ -30,6 +32,7 @@ pub fn print(text: &str) -> Result<(), Unprinted> {
 /// As [`print()`].
 pub(crate) fn print_raw(text: &str) -> Result<(), Unprinted> {
     let mut stdout = io::stdout().lock();
+    let text = if stdout.is_terminal() { harmless(text) } else { text.into() };
     // Put together first: the stripping of colours would write every piece of text by itself.
     let mut bytes = AutoStream::new(Vec::new(), AutoStream::choice(&stdout));
     let styled = bytes.write_all(text.as_bytes());
@@ -67,15 +70,41 @@ pub fn ask(what: &str) {
     diagnose_raw(&format!("{what}: "));
 }
 
-/// Writes a line to stderr, if that takes it.
+/// Writes a line to stderr, if that takes it, with what a terminal would obey spelt out.
 pub fn diagnose(what: &dyn Display) {
-    diagnose_raw(&format!("{what}\n"));
+    let lines: Vec<_> = what.to_string().split('\n').map(|line| plain(line).into_owned()).collect();
+    diagnose_raw(&format!("{}\n", lines.join("\n")));
 }
 
 /// [`diagnose`] without a line's end of its own.
 pub(crate) fn diagnose_raw(text: &str) {
     // Nobody is left to be told that this cannot be told.
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
+}
+
+/// What a terminal may obey is ends of lines, tabs and colours; what else it would is spelt out.
+fn harmless(text: &str) -> Cow<'_, str> {
+    let colours = |text: &str| {
+        let digits = text
+            .strip_prefix("\u{1b}[")?
+            .trim_start_matches(|letter: char| letter.is_ascii_digit() || letter == ';');
+        digits.strip_prefix('m').map(|rest| text.len() - rest.len())
+    };
+    let obeyed = |letter: char| letter.is_control() && !matches!(letter, '\n' | '\t');
+    let mut shown = String::new();
+    let mut rest = text;
+    while let Some(place) = rest.find(obeyed) {
+        let (before, behind) = rest.split_at(place);
+        shown.push_str(before);
+        let length = behind.chars().next().map_or(0, char::len_utf8);
+        let kept = colours(behind);
+        match kept {
+            Some(length) => shown.push_str(&behind[..length]),
+            None => shown.push_str(&plain(&behind[..length])),
+        }
+        rest = &behind[kept.unwrap_or(length)..];
+    }
+    if shown.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(shown + rest) }
 }
 
 /// Whether somebody watches stderr.
@@ -96,5 +125,17 @@ impl Write for Log {
 
     fn flush(&mut self) -> io::Result<()> {
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_terminal_is_told_colours_and_nothing_else_to_do() {
+        let title = "\u{1b}[1mPASS\u{1b}[0m\n\u{1b}]0;x\u{7}a\u{9b}2Jb\u{1b}[2Jc\td";
+        assert_eq!(harmless(title), "\u{1b}[1mPASS\u{1b}[0m\n\\u{1b}]0;x\\u{7}a\\u{9b}2Jb\\u{1b}[2Jc\td");
+        assert!(matches!(harmless("façade\n"), Cow::Borrowed(_)));
     }
 }

@@ -110,6 +110,7 @@ impl ReportFolder {
     /// [`ReportError`] when the folder above does not exist or is not writable, when there is something at `path` that
     /// is no earlier report or, without `overwrite`, anything, or when another run is about to put a report there.
     pub fn prepare(path: &Path, overwrite: bool) -> Result<Self, ReportError> {
+        let path = &named(path);
         check(path, overwrite)?;
         let claim = if overwrite { None } else { Some(claim(path)?) };
         // Whoever had the claim before may have put a report in place.
@@ -123,6 +124,12 @@ impl ReportFolder {
     #[must_use]
     pub fn with_json(self, view: JsonView) -> Self {
         Self { json: view, ..self }
+    }
+
+    /// The folder, if an earlier report is in it.
+    #[must_use]
+    pub fn earlier(&self) -> Option<&Path> {
+        self.path.join(JSON).exists().then_some(&self.path)
     }
 
     /// Writes the report and puts it in its place. When that fails, an earlier report stays as it was.
@@ -157,11 +164,17 @@ fn claim(path: &Path) -> Result<Claim, ReportError> {
     })
 }
 
+/// The path without a slash at its end, behind which a link would not be seen.
+fn named(path: &Path) -> PathBuf {
+    path.components().collect()
+}
+
 /// Whether a report may go to `path` as things are.
 ///
 /// # Errors
 /// [`ReportError`] when `path` names no folder of its own, or when something is there that may not be replaced.
 pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
+    let path = &named(path);
     if path.file_name().is_none() {
         return Err(ReportError::Name { path: path.to_owned() });
     }

@@ -290,7 +290,11 @@ pub fn board_name(name: &str) -> Cow<'_, str> {
 /// obey some.
 #[must_use]
 pub fn plain(text: &str) -> Cow<'_, str> {
-    let unfit = |letter: char| letter.is_control() || matches!(letter, '\u{fffe}' | '\u{ffff}');
+    // What turns the direction of text round makes it another one.
+    let unfit = |letter: char| {
+        letter.is_control()
+            || matches!(letter, '\u{fffe}' | '\u{ffff}' | '\u{2028}' | '\u{2029}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+    };
     if !text.contains(unfit) {
         return Cow::Borrowed(text);
     }
@@ -306,6 +310,7 @@ mod tests {
     #[test]
     fn a_terminal_never_sees_a_control_character() {
         assert_eq!(plain("a\u{1b}[2Jb\u{9b}\n"), "a\\u{1b}[2Jb\\u{9b}\\n");
+        assert_eq!(plain("\u{202e}evil"), "\\u{202e}evil");
         assert!(matches!(plain("façade.pgm"), Cow::Borrowed(_)));
     }
 }

@@ -1,6 +1,7 @@
 //! The last word on a run: its verdict, once what was asked for is written.
 
 use std::error::Error;
+use std::path::Path;
 
 use crate::report::{ReportError, ReportFolder};
 use crate::result::{Evidence, Problem, Report};
@@ -26,6 +27,7 @@ impl Finished {
     /// # Errors
     /// [`Lack`], when it cannot be written: the report is lost then, as by [`Self::lose`].
     pub fn commit(&mut self, folder: ReportFolder) -> Result<(), Lack> {
+        let earlier = folder.earlier().map(Path::to_path_buf);
         let Err(error) = folder.commit(&self.report, &self.evidence) else { return Ok(()) };
         let remedy = match error {
             ReportError::Exists { .. } => {
@@ -33,7 +35,10 @@ impl Finished {
             }
             _ => "Free some space or choose another place for the report, then run again.",
         };
-        let what = Problem::new(REPORT_LOST, "the report could not be written");
+        let left = earlier.map_or_else(String::new, |path| {
+            format!(", and {} still holds that of an earlier run", path.display())
+        });
+        let what = Problem::new(REPORT_LOST, format!("the report could not be written{left}"));
         Err(self.lose(Problem { causes: Problem::of(&error).chain(), ..what }, remedy))
     }
 

@@ -29,7 +29,9 @@ pub enum Fault {
         source: RecordError,
     },
     /// A record does not fit the records before it.
-    #[error("the record of run {run} does not fit those before it: {source}")]
+    #[error(
+        "the record of run {run} does not fit those before it, as where one of them cannot be read; mend that one first, and check again"
+    )]
     Contradiction {
         /// The run.
         run: String,

@@ -84,6 +84,7 @@ codes::codes! {
         InUse [folder] => "store-in-use",
         Folder [folder] => "store-folder-unusable",
         NoResults [folder] => "store-without-results",
+        DatabaseGone [folder] => "store-without-database",
         Database [path, doing] => "database-refuses",
         Plant [plant, doing] => "plant-refuses",
         NoRecord [plant, sha256] => "plant-without-record",

@@ -8,7 +8,7 @@ use clap::Args;
 use halfrow::frames::written_aside::write_aside;
 use halfrow::report::wording::count;
 
-use super::export::unwritten;
+use super::export::{NoFolder, unwritten};
 use super::looking::Data;
 use super::{Failure, print};
 use crate::exit::Exit;
@@ -18,8 +18,8 @@ use crate::store::{Snapshot, StoreError};
 
 /// Copy the evidence of a run into a folder
 ///
-/// Frames as PNGs of their very samples, and what else was kept of it, under the names that the run's page has. Nothing is
-/// overwritten. A plant leaves evidence with the station that took it, so it is asked for there.
+/// Frames as PNGs of their very samples, and what else was kept of it, under the names that the run's page has. Nothing else that
+/// is there is overwritten. A plant leaves evidence with the station that took it, so it is asked for there.
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The run, as `halfrow-station history` names it
@@ -38,10 +38,12 @@ pub(super) struct NoSuchRun {
     pub(super) run: String,
 }
 
-/// Evidence that a run has had.
+/// Evidence that a run has had; the rest is copied.
 #[derive(Debug, thiserror::Error)]
-#[error("{names} of the run {run} is not here any more; a copy of the station's folder may have it")]
-pub(super) struct EvidenceGone {
+#[error(
+    "{names} of the run {run}: gone or damaged; `halfrow-station check` says which, and a copy of the station's folder may have it"
+)]
+pub(super) struct EvidenceLost {
     pub(super) names: String,
     pub(super) run: String,
 }
@@ -53,28 +55,32 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         return Err(Failure::call(NoSuchRun { run: run.clone() }));
     };
     if !found.attachments.is_empty() {
-        fs::create_dir_all(to).map_err(Failure::error)?;
+        fs::create_dir_all(to).map_err(|source| Failure::call(NoFolder { path: to.clone(), source }))?;
     }
-    let mut gone = Vec::new();
+    let mut lost = Vec::new();
     for one in &found.attachments {
-        let bytes = match snapshot.evidence(&one.sha256) {
-            Err(StoreError::Blob(error)) if error.is_gone() => None,
-            bytes => bytes?,
-        };
-        let Some(bytes) = bytes else {
-            gone.push(one.name.as_str());
-            continue;
-        };
-        write_aside(&to.join(file_name(one)), false, |file| file.write_all(&bytes)).map_err(unwritten)?;
+        match snapshot.evidence(&one.sha256) {
+            Ok(bytes) => copied(&to.join(file_name(one)), &bytes.unwrap_or_default())?,
+            Err(StoreError::Blob(_)) => lost.push(one.name.as_str()),
+            Err(error) => return Err(error.into()),
+        }
     }
-    if !gone.is_empty() {
-        return Err(Failure::error(EvidenceGone { names: gone.join(", "), run: run.clone() }));
+    if !lost.is_empty() {
+        return Err(Failure::error(EvidenceLost { names: lost.join(", "), run: run.clone() }));
     }
     if found.attachments.is_empty() {
         return print("no evidence was kept of this run; of one that passes none is");
     }
     let files = count(found.attachments.len(), "file");
     print(&format!("{files} of evidence in {}", to.display()))
+}
+
+/// Writes a file, unless it is there already.
+fn copied(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+    if fs::read(path).is_ok_and(|there| there == bytes) {
+        return Ok(());
+    }
+    write_aside(path, false, |file| file.write_all(bytes)).map_err(unwritten)
 }
 
 /// Its name, which may not lead out of the folder.

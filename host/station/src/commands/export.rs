@@ -1,7 +1,7 @@
 //! `halfrow-station export`
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use clap::Args;
 use halfrow::frames::written_aside::{Aside, WriteAsideError, write_aside};
@@ -68,7 +68,7 @@ fn all(of: &Snapshot, filter: &Filter, format: Format, to: &Path) -> Result<Exit
         table.end().put_in_place().map_err(unwritten)?;
         count
     } else {
-        fs::create_dir_all(to).map_err(Failure::error)?;
+        fs::create_dir_all(to).map_err(|source| Failure::call(NoFolder { path: to.to_owned(), source }))?;
         each(of, filter, |run, hash| {
             let bytes = export::run(of, hash, format)?;
             let path = to.join(format!("{run}{}", format.ending()));
@@ -109,9 +109,24 @@ impl From<ExportError> for Failure {
     }
 }
 
+/// A folder that cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[error("{} cannot be a folder for the files; name another place", path.display())]
+pub(super) struct NoFolder {
+    pub(super) path: PathBuf,
+    pub(super) source: io::Error,
+}
+
+/// A file where another was to be written.
+#[derive(Debug, thiserror::Error)]
+#[error("{} exists, and nothing is overwritten; name another place", path.display())]
+pub(super) struct Taken {
+    pub(super) path: PathBuf,
+}
+
 pub(super) fn unwritten(error: WriteAsideError) -> Failure {
     match error {
-        WriteAsideError::Exists { .. } => Failure::call(error),
+        WriteAsideError::Exists { path } => Failure::call(Taken { path }),
         error => Failure::error(error),
     }
 }

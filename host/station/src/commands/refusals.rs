@@ -3,7 +3,8 @@
 use halfrow::result::codes;
 
 use super::board::{NoBoard, NoBoardKind, NoKind};
-use super::evidence::{EvidenceGone, NoSuchRun};
+use super::evidence::{EvidenceLost, NoSuchRun};
+use super::export::{NoFolder, Taken};
 use super::job::{NoJob, NoWord};
 use super::lanes::EngineEnded;
 use super::outbox::{NoSink, NotDead, SinkInUse};
@@ -47,5 +48,9 @@ codes::codes! {
     ;
     NoSuchRun [run] => "run-unknown"
     ;
-    EvidenceGone [names, run] => "evidence-gone"
+    EvidenceLost [names, run] => "evidence-lost"
+    ;
+    NoFolder [path] => "output-folder-unusable"
+    ;
+    Taken [path] => "output-taken"
 }

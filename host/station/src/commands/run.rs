@@ -21,6 +21,7 @@ use crate::lane::{MEMORIES_MIB, MEMORY_MIB, Message};
 use crate::plan::{Bad, Plan, mock};
 use crate::record::{Record, StepOutcome};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
+use crate::settings::{LANE_NAME, is_lane_name};
 use crate::store::{AgainError, Folder, SharedStore};
 
 /// Judge one board by a plan, and save the result
@@ -46,7 +47,7 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with_all = ["serial", "board"])]
     mock: bool,
     /// The lane that the board is in
-    #[arg(long, default_value = "1")]
+    #[arg(long, default_value = "1", value_parser = lane)]
     lane: String,
     /// Who tests
     #[arg(long, value_name = "NAME", env = "USER", default_value = "unknown")]
@@ -73,6 +74,10 @@ pub(super) struct Arguments {
 fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.parse().ok().filter(|seconds| (0.1..=86_400.0).contains(seconds));
     seconds.map(Duration::from_secs_f64).ok_or_else(|| "give a number of seconds, 0.1 to 86400".to_owned())
+}
+
+fn lane(text: &str) -> Result<String, String> {
+    if is_lane_name(text) { Ok(text.to_owned()) } else { Err(format!("give {LANE_NAME}")) }
 }
 
 fn memory(text: &str) -> Result<u64, String> {

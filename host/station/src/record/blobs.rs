@@ -65,6 +65,14 @@ impl Blobs {
         Self { folder }
     }
 
+    /// Whether there is any evidence.
+    #[must_use]
+    pub fn has_any(&self) -> bool {
+        let is_used =
+            |folder: fs::DirEntry| fs::read_dir(folder.path()).is_ok_and(|mut files| files.next().is_some());
+        fs::read_dir(&self.folder).into_iter().flatten().flatten().any(is_used)
+    }
+
     /// Where the evidence of this hash is, if it is there.
     #[must_use]
     pub fn path(&self, hash: &str) -> PathBuf {

@@ -13,6 +13,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use halfrow::target::BoardKind;
 use halfrow::verdict::StoppedBy;
 
 pub use crate::ids::NoRandomness;
@@ -295,6 +296,9 @@ fn record(
     let reached = steps.last().map_or(0, |step| step.seq);
     let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
     steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
+    let board = steps.iter().find_map(|step| step.board.clone());
+    // What never said what it is may be a product.
+    let is_hardware = board.as_ref().is_none_or(|board| board.kind == BoardKind::Hardware.to_string());
     Record {
         schema: SCHEMA,
         run,
@@ -302,9 +306,9 @@ fn record(
         seconds: Some(seconds),
         conclusion,
         plan,
-        production: order.counts,
+        production: order.counts && is_hardware,
         marginal: steps.iter().any(|step| step.attempt > 1),
-        board: steps.iter().find_map(|step| step.board.clone()),
+        board,
         device,
         suspects: steps
             .iter()

@@ -15,7 +15,7 @@ use std::time::Duration;
 use halfrow::Verdict;
 
 pub use plant::{PlantSettings, PlantSettingsError};
-pub(crate) use read::is_word;
+pub(crate) use read::{LANE_NAME, is_lane_name, is_word};
 pub use sink::{Destination, Login, SinkAddress, SinkSettings};
 
 use crate::floor::{Floor, Place, Rule, Starts};

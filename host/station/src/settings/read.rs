@@ -34,6 +34,8 @@ const MOST_HOURS: f64 = 720.0;
 const MOST_SECONDS: f64 = 86_400.0;
 /// The most characters of a lane's name, which stands on a barcode and is read from afar.
 const MOST_NAME: usize = 16;
+/// What such a name is made of.
+pub(crate) const LANE_NAME: &str = "1 to 16 letters, digits and hyphens, which a barcode has room for";
 /// The most jobs that are judged at once, each by a process of its own.
 const MOST_AT_ONCE: u32 = 64;
 
@@ -214,14 +216,17 @@ fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Ve
     Ok(lanes)
 }
 
+/// Whether a lane may be called so.
+pub(crate) fn is_lane_name(name: &str) -> bool {
+    (1..=MOST_NAME).contains(&name.len())
+        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-')
+}
+
 fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneSettings, Fault> {
     let name = text.name.get_ref();
-    let is_name = (1..=MOST_NAME).contains(&name.len())
-        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
-    if !is_name {
+    if !is_lane_name(name) {
         let what = format!("`{name}` is no name for a lane");
-        let remedy =
-            format!("write 1 to {MOST_NAME} letters, digits and hyphens, which a barcode has room for");
+        let remedy = format!("write {LANE_NAME}");
         return Err(Fault::wrong(text.name.span().start, what, remedy));
     }
     let board = lender.board(text)?;

@@ -30,6 +30,15 @@ pub enum StoreError {
         /// The folder.
         folder: PathBuf,
     },
+    /// There is evidence, and no database.
+    #[error(
+        "{} has evidence of earlier runs and no station.db; restore the folder from a copy, or name another folder",
+        folder.display()
+    )]
+    DatabaseGone {
+        /// The folder.
+        folder: PathBuf,
+    },
     /// The database refuses.
     #[error("the database {} refuses {doing}; check that its folder is writable and has space", path.display())]
     Database {

@@ -82,6 +82,12 @@ impl Folder {
         self.0.join("station.db")
     }
 
+    /// Whether there is evidence, and no database that says whose: nothing may begin anew beside it.
+    fn lost_database(&self) -> bool {
+        let is_empty = fs::metadata(self.database()).map_or(true, |found| found.len() == 0);
+        is_empty && self.blobs().has_any()
+    }
+
     /// The evidence.
     #[must_use]
     pub fn blobs(&self) -> Blobs {
@@ -180,6 +186,9 @@ impl Store {
             fs::create_dir_all(folder.0.join(place)).map_err(|source| folder.refused(source))?;
         }
         let lock = folder.lock()?;
+        if folder.lost_database() {
+            return Err(StoreError::DatabaseGone { folder: folder.0.clone() });
+        }
         let path = folder.database();
         let refused = |doing| {
             move |source: rusqlite::Error| StoreError::Database {

@@ -50,6 +50,9 @@ impl Snapshot {
     /// # Errors
     /// [`StoreError`] when the database is not there or cannot be read.
     pub fn take(folder: &Folder) -> Result<Self, StoreError> {
+        if folder.lost_database() {
+            return Err(StoreError::DatabaseGone { folder: folder.0.clone() });
+        }
         if folder.database().try_exists().is_ok_and(|is_there| !is_there) {
             return Err(StoreError::NoResults { folder: folder.0.clone() });
         }

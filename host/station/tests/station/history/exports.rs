@@ -171,8 +171,12 @@ fn evidence_is_copied_out_under_its_names() {
         ["in", "out"].map(|name| fs::read(to.join(format!("{name}.txt"))).unwrap()),
         [&b"in"[..], b"out"]
     );
+    // What is there already is as good, and what is otherwise is left alone.
+    assert_eq!(copied(run).0, 0);
+    fs::write(to.join("in.txt"), "mine").unwrap();
     let (code, _, complained) = copied(run);
-    assert!(code == 2 && complained.contains("exists"), "{complained}");
+    assert!(code == 2 && complained.contains("exists, and nothing is overwritten"), "{complained}");
+    assert_eq!(fs::read(to.join("in.txt")).unwrap(), b"mine");
     fs::remove_dir_all(&to).unwrap();
     let gone = made.folder().blobs().path(&halfrow::result::sha256([b"in"]));
     fs::remove_file(gone).unwrap();

@@ -5,7 +5,7 @@ use std::fs;
 use halfrow_station::check::{Checked, check};
 use halfrow_station::history::runs::{Filter, Page, page};
 use halfrow_station::kept::{Copied, CopyError, Pruned, backup, prune, restore};
-use halfrow_station::store::{Folder, Snapshot};
+use halfrow_station::store::{Folder, Snapshot, Store, StoreError};
 use tempfile::TempDir;
 
 use super::commands::did;
@@ -73,7 +73,7 @@ fn a_restored_folder_is_the_one_that_was_saved() {
     assert_eq!(sound(&Folder::new(&again)), [3, 1, 7, 0]);
     assert_eq!(runs(&Folder::new(&again)), runs(&made.folder()));
     // The folder can be worked in: the open run is closed and another one begun.
-    let mut store = halfrow_station::store::Store::open(&Folder::new(&again)).unwrap();
+    let mut store = Store::open(&Folder::new(&again)).unwrap();
     assert_eq!(halfrow_station::run::recover(&mut store).unwrap().len(), 1);
 }
 
@@ -175,4 +175,26 @@ fn the_commands_say_what_they_did() {
     let (code, said, _) = did(&restored, &["check"]);
     assert_eq!(code, 0, "{said}");
     assert_eq!(did(&made, &["prune", "--older-than", "1"]).0, 4, "this test writes");
+}
+
+/// The records and what was decided by them would be gone without a word.
+#[test]
+fn nothing_begins_anew_beside_the_evidence_of_earlier_runs() {
+    let mut made = Made::new();
+    let folder = made.folder();
+    made.run(&Run::of("S1", End::Pass));
+    let kept = made.closed();
+    for file in ["station.db", "station.db-wal", "station.db-shm"] {
+        let _ = fs::remove_file(kept.path().join(file));
+    }
+    let refused = |folder: &Folder| {
+        let opened = [Store::open(folder).map(drop), check(folder).map(drop)];
+        opened.map(|opened| matches!(opened, Err(StoreError::DatabaseGone { .. })))
+    };
+    assert_eq!(refused(&folder), [true, true]);
+    fs::write(folder.database(), "").unwrap();
+    assert_eq!(refused(&folder), [true, true]);
+    // Without evidence there is nothing to lose.
+    fs::remove_dir_all(kept.path().join("blobs")).unwrap();
+    assert_eq!(refused(&folder), [false, false]);
 }
