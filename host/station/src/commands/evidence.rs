@@ -54,9 +54,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let Some(found) = run_of(&snapshot, run)? else {
         return Err(Failure::call(NoSuchRun { run: run.clone() }));
     };
-    if !found.attachments.is_empty() {
-        fs::create_dir_all(to).map_err(|source| Failure::call(NoFolder { path: to.clone(), source }))?;
+    if found.attachments.is_empty() {
+        return print("no evidence was kept of this run; of one that passes none is");
     }
+    fs::create_dir_all(to).map_err(|source| Failure::call(NoFolder { path: to.clone(), source }))?;
     let mut lost = Vec::new();
     for one in &found.attachments {
         match snapshot.evidence(&one.sha256) {
@@ -67,9 +68,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     }
     if !lost.is_empty() {
         return Err(Failure::error(EvidenceLost { names: lost.join(", "), run: run.clone() }));
-    }
-    if found.attachments.is_empty() {
-        return print("no evidence was kept of this run; of one that passes none is");
     }
     let files = count(found.attachments.len(), "file");
     print(&format!("{files} of evidence in {}", to.display()))

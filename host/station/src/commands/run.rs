@@ -242,7 +242,7 @@ fn text(saved: &Saved, plan: &Plan) -> String {
         lines.push("marginal  a step needed more than one try".to_owned());
     }
     if !record.production {
-        lines.push(format!("it counts as no production: {}", why_no_production(plan, &record.run.serial)));
+        lines.push(format!("it counts as no production: {}", why_no_production(plan, record)));
     }
     let judgement = match ended.verdict {
         Verdict::Error => "which is no judgement of the unit".to_owned(),
@@ -253,10 +253,12 @@ fn text(saved: &Saved, plan: &Plan) -> String {
     lines.join("\n")
 }
 
-fn why_no_production(plan: &Plan, serial: &str) -> &'static str {
+fn why_no_production(plan: &Plan, record: &Record) -> &'static str {
     if !plan.require_hardware {
         "its plan takes any kind of board"
-    } else if plan.is_reference(serial) {
+    } else if record.board.as_ref().is_some_and(|board| !board.is_hardware()) {
+        "the board is no hardware"
+    } else if plan.is_reference(&record.run.serial) {
         "the unit checks shifts"
     } else {
         "this shift is not checked yet"

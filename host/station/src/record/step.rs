@@ -1,6 +1,7 @@
 //! What a step of a run came to.
 
 use halfrow::result::codes;
+use halfrow::target::BoardKind;
 use halfrow::verdict::{Cause, StoppedBy};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -176,6 +177,14 @@ pub struct BoardSeen {
     pub device: Option<String>,
     /// The commit of its build, in hexadecimal.
     pub build: String,
+}
+
+impl BoardSeen {
+    /// Whether it is a product's hardware, and no board that a program makes.
+    #[must_use]
+    pub fn is_hardware(&self) -> bool {
+        self.kind == BoardKind::Hardware.to_string()
+    }
 }
 
 /// What the store knows of a device under the serial number that was scanned.

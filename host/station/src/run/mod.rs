@@ -13,7 +13,6 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use halfrow::target::BoardKind;
 use halfrow::verdict::StoppedBy;
 
 pub use crate::ids::NoRandomness;
@@ -298,7 +297,7 @@ fn record(
     steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
     let board = steps.iter().find_map(|step| step.board.clone());
     // What never said what it is may be a product.
-    let is_hardware = board.as_ref().is_none_or(|board| board.kind == BoardKind::Hardware.to_string());
+    let is_hardware = board.as_ref().is_none_or(BoardSeen::is_hardware);
     Record {
         schema: SCHEMA,
         run,
