@@ -143,7 +143,7 @@ mod tests {
     use super::super::database::Engine;
     use super::*;
 
-    const ALL: [&str; 125] = [
+    const ALL: [&str; 126] = [
         ADD_PLAN,
         ADD_UNIT,
         UNIT_OF,
