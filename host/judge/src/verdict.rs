@@ -4,6 +4,8 @@ use std::fmt;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
+use crate::link::Class;
+
 /// The judgement on a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "UPPERCASE")]
@@ -56,6 +58,16 @@ pub enum StoppedBy {
     Disconnection,
     /// The program that calls this library.
     Caller,
+}
+
+/// Why a run ends whose board cannot be opened.
+impl From<Class> for Cause {
+    fn from(class: Class) -> Self {
+        match class {
+            Class::Call | Class::Station => Self::Station,
+            Class::Busy => Self::Busy,
+        }
+    }
 }
 
 impl Cause {

@@ -66,10 +66,15 @@ pub fn verdict_line(report: &Report) -> String {
 /// What to do, unless a suspect or the headline already says so.
 #[must_use]
 pub fn remedy(report: &Report) -> Option<String> {
-    let headline = report.headline().to_lowercase();
-    let in_headline = |remedy: &str| headline.contains(remedy.trim_end_matches('.').to_lowercase().as_str());
+    let headline = report.headline();
     let said = |remedy: &String| report.suspects.iter().any(|suspect| suspect.designer() == *remedy);
-    report.remedy().filter(|remedy| !said(remedy) && !in_headline(remedy))
+    report.remedy().filter(|remedy| !said(remedy) && !says(&headline, remedy))
+}
+
+/// Whether a headline says already what to do.
+#[must_use]
+pub fn says(headline: &str, remedy: &str) -> bool {
+    headline.to_lowercase().contains(remedy.trim_end_matches('.').to_lowercase().as_str())
 }
 
 /// A frame's name, with what is set otherwise for it, and how much of it was streamed where that is not all.

@@ -35,11 +35,10 @@ mod within;
 use tracing::error_span;
 
 use crate::board::OpenOptions;
-use crate::link::{Candidate, Class, Link, OpenError, kinds};
+use crate::link::{Candidate, Link, OpenError, kinds};
 use crate::progress::{Progress, Step};
 use crate::result::{CheckName, FileHash, Problem};
 use crate::target::{BoardKind, Target};
-use crate::verdict::Cause;
 
 use findings::{End, Findings};
 use reconnect::WayBack;
@@ -116,8 +115,7 @@ pub fn not_opened(plan: &Plan, target: &Target, error: &OpenError, options: &Run
     let name = target.to_string();
     let kind = kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board);
     let findings = Findings::new(options, &name, kind, name.clone());
-    let cause = if error.class() == Class::Busy { Cause::Busy } else { Cause::Station };
-    let end = End::error(CheckName::Identity, cause, Problem::of(error));
+    let end = End::error(CheckName::Identity, error.class().into(), Problem::of(error));
     conclude::conclude(plan, findings, Some(end), options, jiff::Timestamp::now())
 }
 

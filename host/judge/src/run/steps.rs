@@ -9,7 +9,6 @@ use super::golden::{self, CannotJudge};
 use super::legal::{grids, impossible};
 use super::misfit::misfit;
 use super::options::RunOptions;
-use super::parts::Part;
 use super::patterns::patterns;
 use super::plan::{Generation, Plan, Segment};
 use super::prepared::{self, PrepareError, Prepared};
@@ -74,15 +73,10 @@ impl Run<'_> {
             let last = self.stream_all(&schedule, &frames)?;
             self.conclude(last)?;
             match self.plan.soak {
-                Some(length) => {
-                    self.soak(length, last)?;
-                    self.leave_out_rules();
-                }
-                None => {
-                    self.at_speed(last)?;
-                    self.rules(last)?;
-                }
+                Some(length) => self.soak(length, last)?,
+                None => self.at_speed(last)?,
             }
+            self.rules(last)?;
             self.note_not_exercised();
             Ok(())
         })
@@ -137,7 +131,7 @@ impl Run<'_> {
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
-        let untried = self.plan.soak.is_some() || self.plan.amount(Part::Rules) == 0;
+        let untried = !self.tries_rules();
         self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
         self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
     }

@@ -7,6 +7,7 @@ use std::time::Duration;
 use clap::Args;
 use halfrow::Verdict;
 use halfrow::link::{OpenError, kinds};
+use halfrow::report::wording::says;
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
 use serde_json::json;
@@ -227,12 +228,8 @@ fn text(saved: &Saved, plan: &Plan) -> String {
     let Saved { record, stored, .. } = saved;
     let ended = &record.conclusion;
     let mut lines = vec![format!("{} {}: {}", ended.verdict, record.run.serial, ended.headline)];
-    let is_said = |remedy: &&String| {
-        ended.headline.to_lowercase().contains(&remedy.to_lowercase().trim_end_matches('.').to_owned())
-    };
-    lines.extend(
-        ended.remedy.iter().filter(|remedy| ended.verdict != Verdict::Pass && !is_said(remedy)).cloned(),
-    );
+    let is_new = |remedy: &&String| ended.verdict != Verdict::Pass && !says(&ended.headline, remedy);
+    lines.extend(ended.remedy.iter().filter(is_new).cloned());
     let identity =
         record.steps.first().filter(|step| step.kind == "identity" && step.outcome == StepOutcome::Passed);
     if let Some(identity) = identity {

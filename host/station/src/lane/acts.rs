@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use halfrow::board::{Board, OpenOptions, Stop};
-use halfrow::link::{self, Candidate, Class, OpenError};
+use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
 use halfrow::result::{BoardReport, Identity, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
@@ -258,13 +258,7 @@ impl Common<'_> {
     }
 
     fn candidate(&self) -> Result<Candidate, Box<Try>> {
-        link::open(self.target).map_err(|error: OpenError| {
-            let cause = match error.class() {
-                Class::Call | Class::Station => Cause::Station,
-                Class::Busy => Cause::Busy,
-            };
-            Box::new(Try::error(cause, &error))
-        })
+        link::open(self.target).map_err(|error: OpenError| Box::new(Try::error(error.class().into(), &error)))
     }
 
     fn open(&self, within: Duration) -> Result<(Board, BoardKind), Box<Try>> {

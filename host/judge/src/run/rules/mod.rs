@@ -37,15 +37,15 @@ const TOLD: usize = 32;
 const FIRST_FACTOR: Span = Span { table: Table::RowFactors, bank: Bank::Shadow, port: 0, first: 0, count: 1 };
 
 impl Run<'_> {
-    /// Says that this run does not try the rules.
-    pub(super) fn leave_out_rules(&mut self) {
-        self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
+    /// Whether this run tries the rules; a soak never does.
+    pub(super) fn tries_rules(&self) -> bool {
+        self.plan.soak.is_none() && self.plan.amount(Part::Rules) > 0
     }
 
     /// Tries the rules, with the board back behind `last` if it goes away meanwhile.
     pub(super) fn rules(&mut self, last: Option<&Segment>) -> Result<(), End> {
-        if self.plan.amount(Part::Rules) == 0 {
-            self.leave_out_rules();
+        if !self.tries_rules() {
+            self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
             return Ok(());
         }
         self.progress.step(Step::Rules);
