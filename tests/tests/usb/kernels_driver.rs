@@ -14,9 +14,9 @@ fn target(board: &Plugged) -> String {
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn every_fortieth_of_the_small_scenarios() {
+fn every_eightieth_of_the_small_scenarios() {
     let mut surprises = Vec::new();
-    for scenario in all().filter(is_quick).step_by(40) {
+    for scenario in all().filter(is_quick).step_by(80) {
         let board = plug(scenario.options);
         surprises.extend(scenario.judge(&target(&board), "mock behind ftdi_sio: ", true).err());
     }

@@ -5,15 +5,15 @@ use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_quick, of_boards, plug, run_al
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn every_fortieth_of_the_small_ones_behind_an_ft2232h() {
+fn every_eightieth_of_the_small_ones_behind_an_ft2232h() {
     // Those between the ones that are judged behind the kernel's own driver.
-    let quick = all().filter(is_quick).skip(20);
-    run_all(quick.step_by(40), "usb", true, plug);
+    let quick = all().filter(is_quick).skip(40);
+    run_all(quick.step_by(80), "usb", true, plug);
 }
 
 #[test]
 #[ignore = "needs scripts/in-linux"]
-fn every_fortieth_of_the_small_ones_behind_qemu_s_chip() {
+fn every_eightieth_of_the_small_ones_behind_qemu_s_chip() {
     let quick = of_boards().filter(is_quick);
-    run_all(quick.step_by(40), QEMU_CHIP, true, QemuBoard::new);
+    run_all(quick.step_by(80), QEMU_CHIP, true, QemuBoard::new);
 }

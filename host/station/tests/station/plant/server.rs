@@ -4,6 +4,7 @@ use std::fs;
 use std::net::TcpListener;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -28,19 +29,10 @@ impl Server {
     pub(crate) fn start() -> Self {
         let folder = tempfile::tempdir().unwrap();
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        if is_root() {
-            let given = Command::new("chown").arg(USER).arg(folder.path()).status().unwrap();
-            assert!(given.success(), "there is no user {USER}");
-        }
+        give_to_server(folder.path());
         let mut server = Self { folder, port, listen: "127.0.0.1", process: None };
-        let data = server.data();
-        let made = as_server("initdb")
-            .arg("--pgdata")
-            .arg(&data)
-            .args(["--auth=trust", "--username=postgres", "--encoding=UTF8", "--locale=C", "--no-sync"])
-            .output()
-            .unwrap();
-        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+        let copied = Command::new("cp").arg("--archive").arg(cluster()).arg(server.data()).status().unwrap();
+        assert!(copied.success(), "{} cannot be copied", cluster().display());
         server.again();
         server.client("postgres").batch_execute("CREATE DATABASE plant").unwrap();
         server
@@ -121,9 +113,7 @@ impl Server {
 
     fn owned(&self, name: &str, mode: &str) {
         let path = self.data().join(name);
-        if is_root() {
-            assert!(Command::new("chown").arg(USER).arg(&path).status().unwrap().success());
-        }
+        give_to_server(&path);
         assert!(Command::new("chmod").arg(mode).arg(&path).status().unwrap().success());
     }
 
@@ -184,6 +174,47 @@ pub(crate) fn rows(client: &mut Client, text: &str) -> Vec<Vec<String>> {
 
 /// Whom Debian's package makes for the server, which refuses to run as root.
 const USER: &str = "postgres";
+
+/// A cluster that has never run, which every server starts with a copy of: making one takes longer than most of the tests.
+fn cluster() -> &'static Path {
+    static MADE: OnceLock<PathBuf> = OnceLock::new();
+    MADE.get_or_init(|| {
+        let version = Command::new(program_path("postgres")).arg("--version").output().expect("PostgreSQL is not here");
+        let version = String::from_utf8(version.stdout).unwrap().replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+        let cluster = Path::new(env!("CARGO_TARGET_TMPDIR")).join(version);
+        if !cluster.exists() {
+            let made = made_cluster();
+            let aside = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
+            let copied = Command::new("cp").arg("--archive").arg(made.path()).arg(aside.path().join("data")).status();
+            assert!(copied.unwrap().success());
+            // Another process may have been sooner.
+            let renamed = fs::rename(aside.path().join("data"), &cluster);
+            assert!(renamed.is_ok() || cluster.exists(), "{renamed:?}");
+        }
+        cluster
+    })
+}
+
+/// Made where the server's user may go.
+fn made_cluster() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    give_to_server(folder.path());
+    let made = as_server("initdb")
+        .arg("--pgdata")
+        .arg(folder.path())
+        .args(["--auth=trust", "--username=postgres", "--encoding=UTF8", "--locale=C", "--no-sync"])
+        .output()
+        .unwrap();
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    folder
+}
+
+fn give_to_server(path: &Path) {
+    if is_root() {
+        let given = Command::new("chown").arg(USER).arg(path).status().unwrap();
+        assert!(given.success(), "there is no user {USER}");
+    }
+}
 
 fn is_root() -> bool {
     Command::new("id").arg("-u").output().unwrap().stdout == b"0\n"
