@@ -179,13 +179,16 @@ const USER: &str = "postgres";
 fn cluster() -> &'static Path {
     static MADE: OnceLock<PathBuf> = OnceLock::new();
     MADE.get_or_init(|| {
-        let version = Command::new(program_path("postgres")).arg("--version").output().expect("PostgreSQL is not here");
-        let version = String::from_utf8(version.stdout).unwrap().replace(|c: char| !c.is_ascii_alphanumeric(), "_");
+        let version =
+            Command::new(program_path("postgres")).arg("--version").output().expect("PostgreSQL is not here");
+        let version =
+            String::from_utf8(version.stdout).unwrap().replace(|c: char| !c.is_ascii_alphanumeric(), "_");
         let cluster = Path::new(env!("CARGO_TARGET_TMPDIR")).join(version);
         if !cluster.exists() {
             let made = made_cluster();
             let aside = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
-            let copied = Command::new("cp").arg("--archive").arg(made.path()).arg(aside.path().join("data")).status();
+            let copied =
+                Command::new("cp").arg("--archive").arg(made.path()).arg(aside.path().join("data")).status();
             assert!(copied.unwrap().success());
             // Another process may have been sooner.
             let renamed = fs::rename(aside.path().join("data"), &cluster);
