@@ -217,7 +217,7 @@ endtask
 
 task resets;
     begin
-        asks = $test$plusargs("all") || $test$plusargs("fault") ? 100 : 30;
+        asks = $test$plusargs("all") || $test$plusargs("fault") ? 100 : 12;
         for (n = 0; n < asks; n = n + 1) begin
             settle;
             drop(n * 50, n % 3 == 0);
@@ -268,7 +268,7 @@ task lossy_host;
     begin
         configure(64, 5, 3, 4242);
         drop(1000, 1);
-        asks = $test$plusargs("all") ? 3000 : 1000;
+        asks = $test$plusargs("all") ? 3000 : $test$plusargs("fault") ? 1000 : 400;
         for (n = 0; n < asks; n = n + 1) begin
             ready_percent = n / 100 % 2 ? 100 : 20;
             // A host that loses what comes back does not acknowledge it, and asks again.
@@ -294,11 +294,12 @@ task lossy_host;
     end
 endtask
 
-// A row is dropped at each byte of its packet; other rows with its place in the banks follow at once, in another width
+// A row is dropped at each byte of its packet, or at every other one; other rows with its place in the banks follow at once, in another width
 // and generation.
 task dropped_while_sent;
     begin
-        for (n = 0; n < 30; n = n + 1) begin
+        asks = $test$plusargs("all") || $test$plusargs("fault") ? 1 : 2;
+        for (n = 0; n < 30; n = n + asks) begin
             configure(64, 1, 0, 0);
             ready_percent = 100;
             drop(n * 64, 0);

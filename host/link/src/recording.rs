@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{LineErrors, Link, LinkError};
 use halfrow_frames::written_aside::{Aside, Unfinished, WriteAsideError};
+use halfrow_frames::{ReadError, check_regular};
 
 const MAGIC: &[u8] = b"halfrow recording 1\n";
 
@@ -26,6 +27,9 @@ pub enum RecordingError {
     /// It cannot be created.
     #[error(transparent)]
     Create(#[from] WriteAsideError),
+    /// It is a pipe, which may never begin, or a device, which may never end.
+    #[error(transparent)]
+    NotRegular(#[from] ReadError),
     /// It cannot be read.
     #[error("the recording {path} cannot be read; check the path in replay:FILE")]
     Read {
@@ -209,6 +213,7 @@ impl Recording {
     /// # Errors
     /// [`RecordingError`] when it cannot be read or is something else.
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
+        check_regular(path)?;
         let bytes =
             std::fs::read(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
         Self::parse(path, bytes).ok_or_else(|| RecordingError::Foreign(path.to_owned()))

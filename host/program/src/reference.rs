@@ -52,7 +52,8 @@ fn row(argument: &Arg) -> String {
     let mut told = help.split_whitespace().collect::<Vec<_>>().join(" ").replace('<', "&lt;");
     let choices: Vec<_> =
         argument.get_possible_values().iter().map(|choice| choice.get_name().to_owned()).collect();
-    if argument.get_action().takes_values() && !choices.is_empty() {
+    let has_choices = !choices.is_empty() && !argument.is_hide_possible_values_set();
+    if argument.get_action().takes_values() && has_choices {
         let _ = write!(told, " [possible values: {}]", choices.join(", "));
     }
     let defaults = argument.get_default_values();

@@ -67,6 +67,7 @@ fn verdicts_checks_and_faults_are_explained_too() {
         assert!(own.iter().all(|it| it["meaning"].as_str().unwrap().ends_with('.')), "{own:?}");
     }
     assert_eq!(explained(&["fail"])[0]["code"], "FAIL");
+    assert_eq!(explained(&["NO-ANSWER"])[0]["code"], "no-answer");
     let told = &explained(&["stuck-data"])[0]["meaning"];
     assert_eq!(told, "A data line of the line memory is stuck (bit=5, value=1).");
 }

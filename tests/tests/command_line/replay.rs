@@ -136,6 +136,8 @@ fn what_is_no_recording_is_refused() {
     refused(&folder, &replay("replay:missing.rec"), "the recording missing.rec cannot be read");
     refused(&folder, &replay("replay:notes.txt"), "notes.txt is no recording of this version");
     refused(&folder, &replay("replay:head.rec"), "the head of the recording head.rec is damaged");
+    // It would be read until the memory is full.
+    refused(&folder, &replay("replay:/dev/zero"), "/dev/zero is a pipe or a device");
     refused(&folder, &replay("replay"), "write replay:FILE");
     assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
     refused(&folder, &replay("replay:run.rec,speed=1"), "takes no option");

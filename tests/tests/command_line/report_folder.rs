@@ -104,6 +104,17 @@ fn a_report_that_finds_no_space_leaves_none_and_is_no_pass() {
     assert_eq!(folder.names("."), [""; 0]);
 }
 
+#[cfg(unix)]
+#[test]
+fn a_fail_without_its_report_says_so_to_people_and_to_programs() {
+    let folder = Folder::new();
+    let call = ["--json", "--report", "out", "--board", "mock,fault=stuck-data"];
+    let ended = folder.halfrow_on_a_full_disk(8, small("verify", &call));
+    assert_eq!((ended.code, &ended.json()["verdict"]), (Some(1), &"FAIL".into()), "{}", ended.stderr);
+    assert_eq!(ended.json()["lacks"][0]["code"], "report-lost");
+    assert!(ended.stderr.contains("the report could not be written"), "{}", ended.stderr);
+}
+
 #[test]
 fn a_call_that_fits_no_board_leaves_no_report() {
     let folder = Folder::new();

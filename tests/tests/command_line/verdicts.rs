@@ -196,6 +196,16 @@ fn a_run_ends_at_its_time_limit() {
     assert!(headline.contains("the run took longer than the 20.0 s of its time limit"), "{headline}");
 }
 
+/// It is not the link's pace that more time would help.
+#[test]
+fn a_run_whose_board_is_silent_when_its_time_ends_says_so() {
+    let board = "mock,fault=stall,packet=300,seconds=60";
+    let ended = halfrow(small("verify", &["--json", "--board", board, "--timeout", "2"]));
+    assert_eq!(ended.code, Some(3));
+    let headline = ended.json()["headline"].as_str().unwrap().to_owned();
+    assert!(headline.contains("of its time limit, and no packet came in the last"), "{headline}");
+}
+
 #[test]
 fn a_stricter_limit_on_retries_makes_a_link_too_poor() {
     let board = "mock,fault=truncate,rate=0.05,seed=1";

@@ -59,6 +59,19 @@ fn a_server_that_hangs_up_is_an_error() {
 }
 
 #[test]
+fn a_line_that_echoes_is_no_board_with_a_wrong_bitstream() {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let target = format!("tcp:{}", listener.local_addr().unwrap());
+    let server = std::thread::spawn(move || {
+        let mut host = listener.accept().unwrap().0;
+        let mut back = host.try_clone().unwrap();
+        std::io::copy(&mut host, &mut back)
+    });
+    ends(&verify(&target, &[]), 3, "the line sends back what is sent to it");
+    server.join().unwrap().unwrap();
+}
+
+#[test]
 fn a_server_that_speaks_in_words_is_quoted() {
     for (words, code, sentence) in [
         ("Device open failure: Value or file not found\r\n", 3, "plug the board in at the far end"),

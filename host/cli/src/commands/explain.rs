@@ -52,8 +52,10 @@ impl TypedValueParser for Code {
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let known = known();
-    // Verdicts alone are written in capitals.
-    let of = |code: &String| known.get(code).or_else(|| known.get(&code.to_uppercase()));
+    // Verdicts are written in capitals, and all others in small letters.
+    let of = |code: &String| {
+        [code.clone(), code.to_uppercase(), code.to_lowercase()].iter().find_map(|it| known.get(it))
+    };
     let found = arguments.codes.iter().map(|code| of(code).cloned().ok_or_else(|| unknown(code, &known)));
     let found = found.collect::<Result<Vec<_>, _>>().map_err(Failure::call)?.concat();
     if context.json {

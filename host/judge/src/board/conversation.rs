@@ -93,6 +93,8 @@ pub(super) struct Conversation {
     asked: LastAsked,
     /// The longest that an answer was held back that had been asked for again.
     slowest: Duration,
+    /// When the last packet came in.
+    heard_at: Duration,
     stop: Stop,
 }
 
@@ -117,6 +119,7 @@ impl Conversation {
             unwanted: 0,
             asked: LastAsked::default(),
             slowest: Duration::ZERO,
+            heard_at: Duration::ZERO,
             stop,
         }
     }
@@ -259,16 +262,15 @@ impl Conversation {
         doing: impl FnOnce() -> String,
         mut take: impl FnMut(&Packet<'_>),
     ) -> Result<(), BoardError> {
-        self.stop.check(self.link.now())?;
+        self.stop.check(self.now(), self.since(self.heard_at))?;
         let moved = self.move_bytes(wait);
         moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         let now = self.link.now();
-        let mut strays = Vec::new();
-        let mut bytes = self.incoming.as_slice();
+        let (mut strays, mut bytes) = (Vec::new(), self.incoming.as_slice());
         while let Some(packet) = self.decoder.next(&mut bytes) {
             match packet {
                 Ok(packet) if packet.header.session == self.session || self.session == 0 => {
-                    self.tally.packets_in += 1;
+                    (self.heard_at, self.tally.packets_in) = (now, self.tally.packets_in + 1);
                     if self.session != 0 {
                         self.credit = self.credit.max(packet.header.window);
                         self.conduct.packet(&packet, self.rows_sent);

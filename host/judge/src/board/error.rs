@@ -40,6 +40,12 @@ pub enum BoardError {
     /// Somebody answered, but not as a halfrow board.
     #[error("what answers is no halfrow board; check the target and what is loaded into the FPGA")]
     NotABoard,
+    /// What was sent came back as it was.
+    #[error(
+        "the line sends back what is sent to it, and no board answers; look for a loopback plug, for TX and RX that \
+         touch, and for a port that echoes"
+    )]
+    Echoed,
     /// No common version of the wire.
     #[error(
         "the board speaks version {board} of the wire and this program version {ours}; load a matching bitstream or \
@@ -119,10 +125,12 @@ pub enum BoardError {
         place: RowPlace,
     },
     /// The run's own time limit.
-    #[error("the run took longer than the {} of its time limit; give it more, or use a faster link", span(limit.as_secs_f64()))]
+    #[error("the run took longer than the {} of its time limit{}", span(limit.as_secs_f64()), slow_or_silent(*silent))]
     Timeout {
         /// The limit.
         limit: Duration,
+        /// How long no packet had come by then.
+        silent: Duration,
     },
     /// Somebody ended the run.
     #[error("{0}; nothing is wrong with the board as far as it was tested")]
@@ -162,6 +170,20 @@ fn suspect(heard: Heard) -> String {
             count(damaged, "packet")
         ),
     }
+}
+
+/// From which silence on a run is not merely slow.
+const SILENT: Duration = Duration::from_secs(1);
+
+/// What a run wants that did not end in time.
+fn slow_or_silent(silent: Duration) -> String {
+    if silent < SILENT {
+        return "; give it more, or use a faster link".to_owned();
+    }
+    let silent = span(silent.as_secs_f64());
+    format!(
+        ", and no packet came in the last {silent} of it; check that the board still has power, the cable and its connectors"
+    )
 }
 
 impl BoardError {

@@ -313,10 +313,16 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         take_over: options.take_over,
     };
     conversation.queue_zeros(2);
-    let answer = conversation.ask(&Asking::Request(&Request::Hello(hello)), Step::Hello, |packet| {
+    let request = Request::Hello(hello);
+    let answer = conversation.ask(&Asking::Request(&request), Step::Hello, |packet| {
         // A stale reply has another nonce; anything else that carries our number is for us.
         !matches!(Reply::read(packet), Ok(Reply::Hello(welcome)) if welcome.nonce != hello.nonce)
     })?;
+    let mut sent = Vec::new();
+    request.write(&mut sent);
+    if answer.packet().payload == sent {
+        return Err(BoardError::Echoed);
+    }
     take_reply(Kind::Hello, &answer, |reply| match reply {
         Reply::Hello(welcome) => Some(welcome),
         _ => None,

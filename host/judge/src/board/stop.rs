@@ -45,15 +45,16 @@ impl Stop {
         Self { spent, ..self.clone() }
     }
 
-    pub(crate) fn check(&self, now: Duration) -> Result<(), BoardError> {
+    /// Whether to go on at `now`, when nothing has come for `silent`.
+    pub(crate) fn check(&self, now: Duration, silent: Duration) -> Result<(), BoardError> {
         if let Some(by) = self.asked.as_ref().and_then(|asked| asked()) {
             return Err(BoardError::Stopped(by));
         }
         if let Some((_, limit)) = self.wall.filter(|(begun, limit)| begun.elapsed() > *limit) {
-            return Err(BoardError::Timeout { limit });
+            return Err(BoardError::Timeout { limit, silent });
         }
         match self.limit {
-            Some(limit) if self.spent + now > limit => Err(BoardError::Timeout { limit }),
+            Some(limit) if self.spent + now > limit => Err(BoardError::Timeout { limit, silent }),
             _ => Ok(()),
         }
     }

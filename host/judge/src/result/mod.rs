@@ -102,6 +102,9 @@ pub struct Report {
     /// What share of the Verilog's faults the run finds, under PASS; none when that was not measured.
     #[serde(default)]
     pub coverage: Option<CoverageReport>,
+    /// What was asked for and could not be written, under a verdict that stands without it.
+    #[serde(default)]
+    pub lacks: Vec<Problem>,
     /// The link.
     pub link: LinkReport,
     /// What was uploaded.
@@ -162,6 +165,8 @@ struct Rest<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     within: Option<&'a WithinReport>,
     coverage: Option<CoverageReport>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    lacks: &'a [Problem],
     link: &'a LinkReport,
     tables: &'a TablesReport,
     run: &'a RunReport,
@@ -184,6 +189,7 @@ impl<'a> From<&'a Report> for Rest<'a> {
             soak: report.soak.as_ref(),
             within: report.within.as_ref(),
             coverage: report.coverage,
+            lacks: &report.lacks,
             link: &report.link,
             tables: &report.tables,
             run: &report.run,

@@ -51,6 +51,7 @@ pub(super) fn conclude(
         coverage,
         soak: findings.soak.or_else(|| plan.soak.map(SoakReport::new)),
         evidence: evidence_report,
+        lacks: Vec::new(),
         link: link(findings.link, &findings.tally),
         tables: tables(plan),
         run: run(plan, &options.circumstances, started),

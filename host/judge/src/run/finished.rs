@@ -57,6 +57,7 @@ impl Finished {
         let report = &mut self.report;
         let what = Box::new(Problem { remedy: Some(remedy.to_owned()), ..what });
         if report.verdict != Verdict::Pass {
+            report.lacks.push(Problem::clone(&what));
             return Lack { what, is_told: false };
         }
         report.finding = Problem::clone(&what).into();

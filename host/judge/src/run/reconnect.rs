@@ -55,7 +55,7 @@ impl WayBack {
         let left = Instant::now();
         loop {
             let spent = findings.earlier.seconds + left.elapsed();
-            self.options.stop.check(spent).map_err(|error| End::board(*check, &error))?;
+            self.options.stop.check(spent, left.elapsed()).map_err(|error| End::board(*check, &error))?;
             if let Some(board) = self.try_open(spent, findings.link.reconnections.len()) {
                 let away = left.elapsed();
                 findings.earlier.seconds += away;

@@ -36,6 +36,7 @@ pub(crate) fn pass() -> Report {
         soak: None,
         within: None,
         coverage: None,
+        lacks: Vec::new(),
         street: Some(StreetReport { before: edges(41.237, 118.5), after: edges(0.214, 0.71) }),
         evidence: EvidenceReport::default(),
         link: link(),

@@ -86,6 +86,7 @@ codes::codes! {
         NoResults [folder] => "store-without-results",
         DatabaseGone [folder] => "store-without-database",
         Database [path, doing] => "database-refuses",
+        Damaged [path] => "database-unreadable",
         Plant [plant, doing] => "plant-refuses",
         NoRecord [plant, sha256] => "plant-without-record",
         NoLog [path, mode] => "database-without-log",

@@ -49,6 +49,18 @@ pub enum StoreError {
         /// Why.
         source: DatabaseError,
     },
+    /// The file is no database, or one that is damaged.
+    #[error(
+        "the database {} is damaged, or no database at all; lay it aside, look at the disk, and restore the folder \
+         from a copy",
+        path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What SQLite found.
+        source: DatabaseError,
+    },
     /// The plant's database refuses.
     #[error(
         "the plant {plant} refuses {doing}; look whether it is there and whom it lets in, and ask whoever keeps it"
@@ -141,10 +153,20 @@ pub enum StoreError {
 }
 
 impl StoreError {
+    /// What the database in the file `path` does not do.
+    pub(super) fn of_file(path: &Path, doing: &'static str, source: impl Into<DatabaseError>) -> Self {
+        let (path, source) = (path.to_owned(), source.into());
+        if source.is_damage() {
+            Self::Damaged { path, source }
+        } else {
+            Self::Database { path, doing, source }
+        }
+    }
+
     /// What an engine at `place`, a file or an address, does not do.
     pub(super) fn refused(engine: Engine, place: &Path, doing: &'static str, source: DatabaseError) -> Self {
         match engine {
-            Engine::Sqlite => Self::Database { path: place.to_owned(), doing, source },
+            Engine::Sqlite => Self::of_file(place, doing, source),
             Engine::Postgres => Self::Plant { plant: place.display().to_string(), doing, source },
         }
     }

@@ -72,9 +72,9 @@ fn copy(database: &mut dyn Database, path: &Path, version: i64) -> Result<(), St
         Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(refused(error)),
         _ => {}
     }
-    database.execute("VACUUM INTO $1", values![&*aside.to_string_lossy()]).map_err(|source| {
-        StoreError::Database { path: path.to_owned(), doing: "a copy before a new version", source }
-    })?;
+    database
+        .execute("VACUUM INTO $1", values![&*aside.to_string_lossy()])
+        .map_err(|source| StoreError::of_file(path, "a copy before a new version", source))?;
     File::open(&aside).and_then(|file| file.sync_all()).map_err(refused)?;
     fs::rename(&aside, &whole).map_err(refused)
 }

@@ -132,11 +132,7 @@ impl Folder {
             reader.busy_timeout(PATIENCE)?;
             Ok(Box::new(Sqlite::new(reader)) as Box<dyn Database>)
         };
-        open().map_err(|source: DatabaseError| StoreError::Database {
-            path: path.clone(),
-            doing: "to be read",
-            source,
-        })
+        open().map_err(|source: DatabaseError| StoreError::of_file(&path, "to be read", source))
     }
 }
 
@@ -191,11 +187,8 @@ impl Store {
         }
         let path = folder.database();
         let refused = |doing| {
-            move |source: rusqlite::Error| StoreError::Database {
-                path: folder.database(),
-                doing,
-                source: source.into(),
-            }
+            let path = path.clone();
+            move |source: rusqlite::Error| StoreError::of_file(&path, doing, source)
         };
         let writer = Connection::open(&path).map_err(refused("to be opened"))?;
         writer.busy_timeout(PATIENCE).map_err(refused("to wait"))?;
@@ -312,7 +305,7 @@ impl Store {
         read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
         let path = self.folder.database();
-        read(&mut *self.writer).map_err(|source| StoreError::Database { path, doing, source })
+        read(&mut *self.writer).map_err(|source| StoreError::of_file(&path, doing, source))
     }
 
     /// What `change` returns once all that it did is on the disk.
@@ -346,7 +339,7 @@ impl Folder {
         read: impl FnOnce(&mut dyn Database) -> Result<T, DatabaseError>,
     ) -> Result<T, StoreError> {
         let path = self.database();
-        read(&mut *self.reader()?).map_err(|source| StoreError::Database { path, doing, source })
+        read(&mut *self.reader()?).map_err(|source| StoreError::of_file(&path, doing, source))
     }
 }
 

@@ -52,11 +52,9 @@ impl Folder {
                 Ok(Judged { verdict: row.get(0)?, started_ms: row.get(1)?, target: row.get(2)? })
             };
             let last = reader.first(sql::LAST_JUDGEMENT, of, judged);
-            let last = last.map_err(|source| StoreError::Database {
-                path: self.database(),
-                doing: "to tell who checked a shift",
-                source,
-            })?;
+            let refused =
+                |source| StoreError::of_file(&self.database(), "to tell who checked a shift", source);
+            let last = last.map_err(refused)?;
             if let Some(Judged { started_ms, .. }) = &last {
                 until_ms = until_ms.min(started_ms.saturating_add(lasts));
             }

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::LoadError;
 use crate::commands::CallError;
+use halfrow::frames::check_regular;
 use halfrow::result::sha256;
 
 /// How a bitstream was made. Keys that it does not know may come.
@@ -43,6 +44,7 @@ pub(super) fn place(bitstream: &Path) -> PathBuf {
 /// # Errors
 /// When the bitstream or its record cannot be read, or the one is not what the other tells of.
 pub(super) fn read(bitstream: &Path) -> Result<Option<Record>, anyhow::Error> {
+    check_regular(bitstream)?;
     let bytes =
         fs::read(bitstream).map_err(|source| CallError::Unreadable { path: bitstream.to_owned(), source })?;
     let path = place(bitstream);

@@ -20,6 +20,7 @@ codes! {
         Link [doing] => "link-broke",
         NoAnswer [kind, attempts, waited] => "no-answer",
         NotABoard => "not-a-board",
+        Echoed => "line-echoes",
         Version [board, ours] => "wire-version-unknown",
         Held [seconds] => "board-held",
         SessionLost => "session-lost",
@@ -29,7 +30,7 @@ codes! {
         TooPoor [retries, packets, limit] => "link-too-poor",
         RowMissing [place, attempts] => "row-missing",
         WrongPlace [place] => "row-place-unknown",
-        Timeout [limit] => "run-too-long",
+        Timeout [limit, silent] => "run-too-long",
         Stopped (by) => "stopped-by-signal",
     }
     LinkError {
@@ -99,6 +100,7 @@ codes! {
         Read [path] => "recording-unreadable",
         Foreign (path) => "recording-is-none",
         Head [path] => "recording-head-damaged",
+        = NotRegular,
         = Create,
     }
     RestoreError {

@@ -6,6 +6,8 @@ mod value;
 
 use std::fmt::Debug;
 
+use rusqlite::ErrorCode;
+
 pub(crate) use self::postgres::Postgres;
 pub(crate) use sqlite::Sqlite;
 pub(crate) use value::{FromValue, Value, values};
@@ -41,6 +43,13 @@ pub enum DatabaseError {
 }
 
 impl DatabaseError {
+    /// Whether the file itself is not what it should be.
+    pub(crate) fn is_damage(&self) -> bool {
+        use rusqlite::Error::{SqlInputError, SqliteFailure};
+        let Self::Sqlite(SqliteFailure(error, _) | SqlInputError { error, .. }) = self else { return false };
+        matches!(error.code, ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase)
+    }
+
     /// Whether the engine is not there, or not for now, rather than that it does not do this one thing.
     pub(crate) fn is_away(&self) -> bool {
         let Self::Postgres(error) = self else { return false };

@@ -177,6 +177,31 @@ fn the_commands_say_what_they_did() {
     assert_eq!(did(&made, &["prune", "--older-than", "1"]).0, 4, "this test writes");
 }
 
+#[test]
+fn a_file_that_is_no_database_is_told_from_a_disk_that_is_full_or_locked() {
+    let mut made = Made::new();
+    let folder = made.folder();
+    made.run(&Run::of("S1", End::Pass));
+    let kept = made.closed();
+    for file in ["station.db-wal", "station.db-shm"] {
+        let _ = fs::remove_file(kept.path().join(file));
+    }
+    let whole = fs::read(folder.database()).unwrap();
+    let refused =
+        || [Store::open(&folder).map(drop), check(&folder).map(drop)].map(|opened| opened.unwrap_err());
+    for damaged in [b"another file of this name ".repeat(40), [&[0; 512], &whole[512..]].concat()] {
+        fs::write(folder.database(), damaged).unwrap();
+        for error in refused() {
+            assert!(matches!(error, StoreError::Damaged { .. }), "{error:?}");
+        }
+    }
+    fs::remove_file(folder.database()).unwrap();
+    fs::create_dir(folder.database()).unwrap();
+    for error in refused() {
+        assert!(matches!(error, StoreError::Database { .. }), "{error}");
+    }
+}
+
 /// The records and what was decided by them would be gone without a word.
 #[test]
 fn nothing_begins_anew_beside_the_evidence_of_earlier_runs() {

@@ -179,8 +179,7 @@ const USER: &str = "postgres";
 fn cluster() -> &'static Path {
     static MADE: OnceLock<PathBuf> = OnceLock::new();
     MADE.get_or_init(|| {
-        let version =
-            Command::new(program_path("postgres")).arg("--version").output().expect("PostgreSQL is not here");
+        let version = Command::new(program_path("postgres")).arg("--version").output().unwrap();
         let version =
             String::from_utf8(version.stdout).unwrap().replace(|c: char| !c.is_ascii_alphanumeric(), "_");
         let cluster = Path::new(env!("CARGO_TARGET_TMPDIR")).join(version);
