@@ -131,13 +131,13 @@ impl Frame {
 
     /// A frame of the same size, depth and phase, for samples that are known to fit.
     pub(crate) fn with_samples(&self, samples: Vec<u16>) -> Self {
-        debug_assert_eq!(samples.len(), self.samples.len());
+        assert_eq!(samples.len(), self.samples.len());
         Self { samples, ..*self }
     }
 
     /// A frame of `geometry`, for samples that are known to fit.
     pub(crate) fn of_geometry(geometry: &Geometry, phase: Phase, samples: Vec<u16>) -> Self {
-        debug_assert_eq!(samples.len(), geometry.width() * geometry.height());
+        assert_eq!(samples.len(), geometry.width() * geometry.height());
         Self { width: geometry.width(), depth: geometry.depth(), phase, samples }
     }
 

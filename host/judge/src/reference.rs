@@ -1,6 +1,6 @@
 //! The reference model as this process runs it: by one path for all frames, which the golden values hold to account.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
 use halfrow_model::{CorrectError, Corrector, Frame, Kernel, ModelPath, TableSet, UnavailablePath};
 
@@ -23,10 +23,26 @@ pub fn path() -> ModelPath {
     *CHOSEN.get_or_init(ModelPath::best)
 }
 
+/// Kernels whose correctors are kept: those of a run's own tables and of its decoys, and as many of another run beside it.
+const KEPT: usize = 4;
+
+/// The correctors that were asked for last, the newest first. What a path makes of a kernel takes plain Rust as long as
+/// correcting three quarters of a million samples, and a run corrects many small frames.
+static MADE: Mutex<Vec<(Kernel, Corrector)>> = Mutex::new(Vec::new());
+
 /// A corrector of the process's path.
 #[must_use]
 pub fn corrector(kernel: &Kernel) -> Corrector {
-    Corrector::new(path(), kernel).unwrap_or_else(|_| Corrector::oracle(kernel))
+    let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    match made.iter().position(|(of, _)| of == kernel) {
+        Some(place) => made[..=place].rotate_right(1),
+        None => {
+            let corrector = Corrector::new(path(), kernel).unwrap_or_else(|_| Corrector::oracle(kernel));
+            made.insert(0, (kernel.clone(), corrector));
+            made.truncate(KEPT);
+        }
+    }
+    made[0].1.clone()
 }
 
 /// The corrected frame: what a board must return.
@@ -35,4 +51,35 @@ pub fn corrector(kernel: &Kernel) -> Corrector {
 /// [`CorrectError`] when the frame has another size or depth than the tables are for.
 pub fn correct(tables: &TableSet, kernel: &Kernel, frame: &Frame) -> Result<Frame, CorrectError> {
     corrector(kernel).correct(tables, frame)
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Geometry, Interpolant, RowFactor};
+
+    use super::*;
+
+    #[test]
+    fn each_kernel_is_corrected_by_its_own_corrector_however_many_there_are() {
+        let geometry = Geometry::new(64, 1, BitDepth::Twelve, 63).unwrap();
+        let row_factor = RowFactor::new(14_648_488).unwrap();
+        let row: Vec<u16> = (0..64).map(|column| column * 1021 % 4096).collect();
+        let corrected = |mut corrector: Corrector| {
+            let mut output = vec![0; 64];
+            corrector.correct_row(&geometry, row_factor, &row, &mut output);
+            output
+        };
+        // More than are kept, so that some go and come again.
+        let kernels: Vec<_> = (0..KEPT as i16 + 2)
+            .map(|change| {
+                let mut nodes = Kernel::from(Interpolant::Hermite).nodes().to_vec();
+                nodes.iter_mut().for_each(|node| node[1] += 16 * change);
+                Kernel::from_nodes(nodes).unwrap()
+            })
+            .collect();
+        for kernel in kernels.iter().chain(&kernels[..2]).chain(&kernels) {
+            assert_eq!(corrected(corrector(kernel)), corrected(Corrector::oracle(kernel)));
+        }
+        assert_ne!(corrected(corrector(&kernels[0])), corrected(corrector(&kernels[1])));
+    }
 }

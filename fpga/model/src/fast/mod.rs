@@ -18,6 +18,7 @@ mod walk;
 mod x86;
 
 use std::convert::Infallible;
+use std::sync::Arc;
 
 pub use path::{ModelPath, UnavailablePath, UnknownPath};
 pub use signer::Signer;
@@ -38,14 +39,20 @@ const BLOCK: usize = 32;
 /// Corrects rows and frames with one kernel by one [`ModelPath`].
 ///
 /// It may be used for any number of rows, frames and geometries, and allocates nothing for them but when a row is wider
-/// than all before. Several threads take one each.
+/// than all before. Several threads take one each: a clone shares what was made of the kernel.
 pub struct Corrector {
     path: ModelPath,
-    engine: Engine,
+    engine: Arc<Engine>,
     /// Of the two rows that are corrected together.
     ends: [Ends; 2],
     /// Of the grid's row that is corrected.
     values: RowValues,
+}
+
+impl Clone for Corrector {
+    fn clone(&self) -> Self {
+        Self::of(self.path, Arc::clone(&self.engine))
+    }
 }
 
 impl Corrector {
@@ -55,14 +62,17 @@ impl Corrector {
     /// [`UnavailablePath`] when this processor cannot take `path`.
     pub fn new(path: ModelPath, kernel: &Kernel) -> Result<Self, UnavailablePath> {
         let engine = Engine::new(path, kernel).ok_or(UnavailablePath(path))?;
-        Ok(Self { path, engine, ends: Default::default(), values: RowValues::default() })
+        Ok(Self::of(path, Arc::new(engine)))
     }
 
     /// A corrector that is the oracle, which every processor can run.
     #[must_use]
     pub fn oracle(kernel: &Kernel) -> Self {
-        let engine = Engine::Reference(Box::new(kernel.clone()));
-        Self { path: ModelPath::Reference, engine, ends: Default::default(), values: RowValues::default() }
+        Self::of(ModelPath::Reference, Arc::new(Engine::Reference(Box::new(kernel.clone()))))
+    }
+
+    fn of(path: ModelPath, engine: Arc<Engine>) -> Self {
+        Self { path, engine, ends: Default::default(), values: RowValues::default() }
     }
 
     /// The path that it takes.
@@ -250,7 +260,7 @@ impl Corrector {
         (bases, distances): (&mut [i16], &mut [u16]),
     ) {
         for column in blocks(geometry.width(), BLOCK) {
-            let located = match self.engine {
+            let located = match *self.engine {
                 Engine::Reference(_) => Located::by_oracle(column, &oracle),
                 _ => self.engine.locate(walk, column),
             };
