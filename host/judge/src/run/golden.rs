@@ -4,6 +4,7 @@ use halfrow_model::{
     BitDepth, CorrectError, Equidistant, Frame, Geometry, Interpolant, Kernel, Phase, TableSet,
 };
 
+use super::prepared::little_endian;
 use crate::compare::{Comparison, Difference};
 use crate::reference::correct;
 
@@ -132,8 +133,7 @@ fn judge_frame(
     expected: u32,
 ) -> Result<usize, GoldenError> {
     let corrected = correct(tables, &Kernel::from(interpolant), frame)?;
-    let bytes: Vec<u8> = corrected.samples().iter().flat_map(|sample| sample.to_le_bytes()).collect();
-    match crc32fast::hash(&bytes) {
+    match crc32fast::hash(&little_endian(corrected.samples())) {
         crc if crc == expected => Ok(corrected.samples().len()),
         found => Err(GoldenError::Frame { interpolant, expected, found }),
     }

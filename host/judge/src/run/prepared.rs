@@ -89,6 +89,7 @@ impl Prepared {
     }
 }
 
-fn little_endian(row: &[u16]) -> Vec<u8> {
-    row.iter().flat_map(|sample| sample.to_le_bytes()).collect()
+/// The samples as bytes, the lower ones first.
+pub(super) fn little_endian(samples: &[u16]) -> Vec<u8> {
+    samples.iter().map(|sample| sample.to_le_bytes()).collect::<Vec<_>>().into_flattened()
 }
