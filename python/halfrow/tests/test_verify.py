@@ -188,7 +188,9 @@ def test_several_boards_are_judged_at_once(small):
 
 PROGRAM = textwrap.dedent(
     """
-    import sys, halfrow
+    import signal, sys, halfrow
+    # Shells have what they start in the background ignore it.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     tables = halfrow.Tables.from_lens(halfrow.Lens("equidistant:80", width=128, height=32))
     def told(kind, words, rows):
         if words:
