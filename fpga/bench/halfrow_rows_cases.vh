@@ -294,12 +294,11 @@ task lossy_host;
     end
 endtask
 
-// A row is dropped at each byte of its packet, or at every other one; other rows with its place in the banks follow at once, in another width
-// and generation.
+// A row is dropped at each byte of its packet, or at every other one; other rows with its place in the banks follow at once,
+// in another width and generation.
 task dropped_while_sent;
     begin
-        asks = $test$plusargs("all") || $test$plusargs("fault") ? 1 : 2;
-        for (n = 0; n < 30; n = n + asks) begin
+        for (n = 0; n < 30; n = n + ($test$plusargs("all") || $test$plusargs("fault") ? 1 : 2)) begin
             configure(64, 1, 0, 0);
             ready_percent = 100;
             drop(n * 64, 0);

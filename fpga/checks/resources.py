@@ -79,8 +79,8 @@ def main():
     work = pathlib.Path(sys.argv[1])
     work.mkdir(parents=True, exist_ok=True)
     builds = budget.sections()
-    which = sys.argv[2] if len(sys.argv) > 2 else "cores and designs"
-    names = LARGEST if which == "largest" else [name for name in builds if which == "tops" or not budget.top_of(builds[name])]
+    which = sys.argv[2:]
+    names = LARGEST if which == ["largest"] else [name for name in builds if which == ["tops"] or not budget.top_of(builds[name])]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         modules = list(pool.map(lambda name: synthesise(work, name, builds[name]), names))
     print("XC6SLX25: 15,032 LUTs, 30,064 registers, 52 block RAMs, 38 DSP48A1. yosys gives no slices.\n")

@@ -1,7 +1,6 @@
 #!/usr/bin/env python3
 """Synthesises tops for an ECP5 with the yosys that is on the path, prints what they take of an LFE5U-25F, and fails beyond
-budget.ini. It is what can be seen of a bitstream without placing it.
-    resources.py [KIND...]     uart, fifo; both if none is named"""
+budget.ini. It is what can be seen of a bitstream without placing it."""
 import collections
 import concurrent.futures
 import configparser
@@ -36,7 +35,7 @@ def counted(cells):
 def main():
     budget = configparser.ConfigParser()
     budget.read(flow.BOARD / "budget.ini")
-    kinds = sys.argv[1:] or budget.sections()
+    kinds = budget.sections()
     with concurrent.futures.ThreadPoolExecutor(2) as pool:
         found = {kind: counted(cells) for kind, cells in zip(kinds, pool.map(synthesised, kinds))}
     exceeded = []

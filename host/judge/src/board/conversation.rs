@@ -266,11 +266,13 @@ impl Conversation {
         let moved = self.move_bytes(wait);
         moved.map_err(|source| BoardError::Link { doing: doing(), source: Box::new(source) })?;
         let now = self.link.now();
-        let (mut strays, mut bytes) = (Vec::new(), self.incoming.as_slice());
+        let mut strays = Vec::new();
+        let mut bytes = self.incoming.as_slice();
         while let Some(packet) = self.decoder.next(&mut bytes) {
             match packet {
                 Ok(packet) if packet.header.session == self.session || self.session == 0 => {
-                    (self.heard_at, self.tally.packets_in) = (now, self.tally.packets_in + 1);
+                    self.heard_at = now;
+                    self.tally.packets_in += 1;
                     if self.session != 0 {
                         self.credit = self.credit.max(packet.header.window);
                         self.conduct.packet(&packet, self.rows_sent);
@@ -335,9 +337,7 @@ impl Conversation {
             }
             attempt += 1;
         }
-        let Tally { bytes_in: bytes, packets_in: packets, damaged_in: damaged, .. } = self.tally;
-        let heard = Heard { bytes, packets, damaged };
-        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), heard })
+        Err(BoardError::NoAnswer { kind, attempts, waited: self.since(begun), heard: Heard::of(&self.tally) })
     }
 
     /// Moves bytes once, and returns the answer if it is among them.

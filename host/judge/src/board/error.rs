@@ -5,6 +5,7 @@ use std::time::Duration;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{Malformed, Refusal, RowPlace};
 
+use super::Tally;
 use crate::link::LinkError;
 use crate::report::wording::{count, span};
 use crate::verdict::{Cause, StoppedBy};
@@ -146,6 +147,12 @@ pub struct Heard {
     pub packets: u64,
     /// Packets that came damaged, since the board was greeted.
     pub damaged: u64,
+}
+
+impl Heard {
+    pub(super) fn of(tally: &Tally) -> Self {
+        Self { bytes: tally.bytes_in, packets: tally.packets_in, damaged: tally.damaged_in }
+    }
 }
 
 /// Who is to blame for silence: the board if nothing was ever heard of it, and the way to it otherwise.

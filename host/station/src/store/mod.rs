@@ -186,10 +186,8 @@ impl Store {
             return Err(StoreError::DatabaseGone { folder: folder.0.clone() });
         }
         let path = folder.database();
-        let refused = |doing| {
-            let path = path.clone();
-            move |source: rusqlite::Error| StoreError::of_file(&path, doing, source)
-        };
+        let place = &path;
+        let refused = |doing| move |source: rusqlite::Error| StoreError::of_file(place, doing, source);
         let writer = Connection::open(&path).map_err(refused("to be opened"))?;
         writer.busy_timeout(PATIENCE).map_err(refused("to wait"))?;
         let mode: String = writer

@@ -177,15 +177,21 @@ fn the_commands_say_what_they_did() {
     assert_eq!(did(&made, &["prune", "--older-than", "1"]).0, 4, "this test writes");
 }
 
-#[test]
-fn a_file_that_is_no_database_is_told_from_a_disk_that_is_full_or_locked() {
+/// What is left of a station that judged one unit when these of its files are gone.
+fn kept_without(files: &[&str]) -> (TempDir, Folder) {
     let mut made = Made::new();
     let folder = made.folder();
     made.run(&Run::of("S1", End::Pass));
     let kept = made.closed();
-    for file in ["station.db-wal", "station.db-shm"] {
+    for file in files {
         let _ = fs::remove_file(kept.path().join(file));
     }
+    (kept, folder)
+}
+
+#[test]
+fn a_file_that_is_no_database_is_told_from_a_disk_that_is_full_or_locked() {
+    let (_kept, folder) = kept_without(&["station.db-wal", "station.db-shm"]);
     let whole = fs::read(folder.database()).unwrap();
     let refused =
         || [Store::open(&folder).map(drop), check(&folder).map(drop)].map(|opened| opened.unwrap_err());
@@ -205,13 +211,7 @@ fn a_file_that_is_no_database_is_told_from_a_disk_that_is_full_or_locked() {
 /// The records and what was decided by them would be gone without a word.
 #[test]
 fn nothing_begins_anew_beside_the_evidence_of_earlier_runs() {
-    let mut made = Made::new();
-    let folder = made.folder();
-    made.run(&Run::of("S1", End::Pass));
-    let kept = made.closed();
-    for file in ["station.db", "station.db-wal", "station.db-shm"] {
-        let _ = fs::remove_file(kept.path().join(file));
-    }
+    let (kept, folder) = kept_without(&["station.db", "station.db-wal", "station.db-shm"]);
     let refused = |folder: &Folder| {
         let opened = [Store::open(folder).map(drop), check(folder).map(drop)];
         opened.map(|opened| matches!(opened, Err(StoreError::DatabaseGone { .. })))

@@ -31,8 +31,7 @@ impl Server {
         let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
         give_to_server(folder.path());
         let mut server = Self { folder, port, listen: "127.0.0.1", process: None };
-        let copied = Command::new("cp").arg("--archive").arg(cluster()).arg(server.data()).status().unwrap();
-        assert!(copied.success(), "{} cannot be copied", cluster().display());
+        copy(cluster(), &server.data());
         server.again();
         server.client("postgres").batch_execute("CREATE DATABASE plant").unwrap();
         server
@@ -186,11 +185,10 @@ fn cluster() -> &'static Path {
         if !cluster.exists() {
             let made = made_cluster();
             let aside = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap();
-            let copied =
-                Command::new("cp").arg("--archive").arg(made.path()).arg(aside.path().join("data")).status();
-            assert!(copied.unwrap().success());
+            let whole = aside.path().join("data");
+            copy(made.path(), &whole);
             // Another process may have been sooner.
-            let renamed = fs::rename(aside.path().join("data"), &cluster);
+            let renamed = fs::rename(whole, &cluster);
             assert!(renamed.is_ok() || cluster.exists(), "{renamed:?}");
         }
         cluster
@@ -209,6 +207,12 @@ fn made_cluster() -> TempDir {
         .unwrap();
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
     folder
+}
+
+/// With its owners, since a server takes no cluster of somebody else.
+fn copy(cluster: &Path, to: &Path) {
+    let copied = Command::new("cp").arg("--archive").arg(cluster).arg(to).status().unwrap();
+    assert!(copied.success(), "{} cannot be copied", cluster.display());
 }
 
 fn give_to_server(path: &Path) {
