@@ -37,7 +37,7 @@ impl Picture {
         let fitting = how.size.fitting((width, height))?;
         let (width, channels, samples) = match fitting {
             None => (width, channels, samples),
-            Some(fitting) => fitted(&fitting, (width, height), channels, &samples),
+            Some(fitting) => fitted(&fitting, (width, height), channels, &samples, full),
         };
         let mosaic = mosaicked(&samples, channels, width.max(1), how.phase);
         let samples = mosaic.map(|sample| scaled(sample, full, how.depth)).collect();
@@ -75,18 +75,21 @@ pub(super) fn of_rgb(image: &RgbImage, how: &ReadOptions) -> Result<Frame, Frame
     Frame::new(image.width, how.depth, how.phase, samples)
 }
 
-/// The colours of a picture of `size`, fitted: its new width, channels and samples.
+/// The colours of a picture of `size` and of samples up to `full`, fitted: its new width, channels and samples.
 fn fitted(
     fitting: &Fitting,
     size: (usize, usize),
     channels: usize,
     samples: &[u16],
+    full: u16,
 ) -> (usize, usize, Vec<u16>) {
     let side = |length| u32::try_from(length).unwrap_or(u32::MAX);
     let colours = samples.chunks_exact(channels).flat_map(|pixel| &pixel[..3]).copied().collect();
     let image = ImageBuffer::from_raw(side(size.0), side(size.1), colours).unwrap_or_default();
     let fitted = fitting.apply(&image);
-    (fitted.width() as usize, 3, fitted.into_raw())
+    // Catmull-Rom overshoots at edges, and keeps within what a `u16` holds alone.
+    let within = |sample: u16| sample.min(full);
+    (fitted.width() as usize, 3, fitted.into_raw().into_iter().map(within).collect())
 }
 
 /// The sample of each place's own colour, from three or more channels a pixel.

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use halfrow_frames::preview::RgbImage;
+use halfrow_frames::preview::{RgbImage, encode_png_rgb};
 use halfrow_frames::{
     DecodeError, PictureSize, ReadError, ReadOptions, decode, is_photograph, mosaic, read, read_fitted,
 };
@@ -110,6 +110,28 @@ fn fitted_pictures_are_cropped_about_their_centre_and_scaled() {
         assert!(apart <= 2, "{name}: {apart}");
         assert_eq!(decoded.fitting.unwrap().to_string(), said);
         assert_eq!(RowReader::open(&path(name), &how).unwrap().fitting(), decoded.fitting);
+    }
+}
+
+/// A bright window in a dark wall: what cubic scaling adds at its edges is beyond white, of whatever kind the file is.
+#[test]
+fn scaling_does_not_overshoot_white() {
+    let (width, height) = (96, 64);
+    let is_window = |place: usize| (30..60).contains(&(place % width)) && (20..40).contains(&(place / width));
+    let data = (0..width * height).flat_map(|place| [if is_window(place) { 255 } else { 20 }; 3]).collect();
+    let picture = RgbImage { width, height, data };
+    let mut png = Vec::new();
+    encode_png_rgb(&picture, &mut png).unwrap();
+    // A BMP of its rows from the last one, after 54 bytes of heads.
+    let mut bmp =
+        [&b"BM"[..], &[0; 8], &[54, 0, 0, 0, 40, 0, 0, 0, 96, 0, 0, 0, 64, 0, 0, 0, 1, 0, 24, 0], &[0; 24]]
+            .concat();
+    bmp.extend(picture.data.chunks_exact(3 * width).rev().flatten());
+    for size in [(160, 106), (64, 42)] {
+        let how = ReadOptions { size: PictureSize::Fitted(size.0, size.1), ..of_eight_bits(Phase::Grbg) };
+        let [png, bmp] = [&png, &bmp].map(|file| decode(file, &how).unwrap());
+        assert_eq!(png.samples().iter().max(), Some(&255));
+        assert_eq!(png, bmp, "{size:?}");
     }
 }
 
