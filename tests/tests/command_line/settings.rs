@@ -61,6 +61,13 @@ fn a_station_that_requires_hardware_judges_nothing_else() {
     assert_eq!(run(&folder, "require_hardware = false\n", None, &[]).code, Some(0));
     assert_eq!(run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "true")), &[]).code, Some(5));
     assert_eq!(run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "0")), &[]).code, Some(0));
+    let (required, no) = ("require_hardware = true\n", Some(("HALFROW_REQUIRE_HARDWARE", "no")));
+    assert_eq!(run(&folder, required, no, &[]).code, Some(0));
+    assert_eq!(run(&folder, required, no, &["--require-hardware"]).code, Some(5));
+    assert_eq!(run(&folder, required, None, &["--require-hardware=no"]).code, Some(0));
+    let unclear = run(&folder, "", Some(("HALFROW_REQUIRE_HARDWARE", "maybe")), &[]);
+    assert_eq!(unclear.code, Some(2));
+    assert!(unclear.stderr.contains("say yes or no"), "{}", unclear.stderr);
 }
 
 #[test]

@@ -137,6 +137,15 @@ impl Given {
     }
 }
 
+/// What an option that the environment and the settings may give, too, says; empty as a variable is no.
+pub(super) fn yes_or_no(text: &str) -> Result<bool, String> {
+    match text.to_ascii_lowercase().as_str() {
+        "1" | "yes" | "y" | "true" | "t" | "on" => Ok(true),
+        "" | "0" | "no" | "n" | "false" | "f" | "off" => Ok(false),
+        _ => Err("say yes or no".to_owned()),
+    }
+}
+
 /// An option as the command line has it.
 pub(super) fn written(id: &str) -> String {
     format!("--{}", id.replace('_', "-"))

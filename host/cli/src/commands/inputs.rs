@@ -5,13 +5,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::given::{Decider, Given};
+use super::given::{Decider, Given, yes_or_no};
 use super::{CallError, Failure};
 use crate::console;
 use crate::settings::Settings;
 use anyhow::ensure;
 use clap::Args;
-use clap::builder::FalseyValueParser;
 use halfrow_model::{Frame, Geometry, MAX_HEIGHT, MAX_WIDTH, MIN_WIDTH, Phase};
 
 use halfrow::frames::{
@@ -28,8 +27,9 @@ pub(super) struct InputArguments {
     #[arg(long, value_name = "LAYOUT")]
     raw: Option<RawLayout>,
     /// Crop pictures in colour about their centre, and scale them, to the tables' size
-    #[arg(long, env = "HALFROW_FIT", value_parser = FalseyValueParser::new())]
-    fit: bool,
+    #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
+    #[arg(env = "HALFROW_FIT", value_parser = yes_or_no)]
+    fit: Option<bool>,
 }
 
 impl InputArguments {
@@ -45,7 +45,7 @@ impl InputArguments {
     pub(super) fn read_options(&self, geometry: &Geometry, phase: Phase, settings: &Settings) -> ReadOptions {
         let (width, height) = (geometry.width(), geometry.height());
         let raw = self.raw.map(|layout| RawGeometry { width, height, layout });
-        let size = match self.fit || settings.fit == Some(true) {
+        let size = match self.fit.or(settings.fit).unwrap_or(false) {
             true => PictureSize::Fitted(width, height),
             false => PictureSize::Exactly(width, height),
         };

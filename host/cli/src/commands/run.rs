@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
-use clap::builder::FalseyValueParser;
 
 use super::board::BoardArguments;
 use super::files::Files;
-use super::given::Given;
+use super::given::{Given, yes_or_no};
 use super::inputs::file_hash;
 use super::optics::{self, LensArguments};
 use super::table_file::{NamedTables, TableArgument};
@@ -42,11 +41,13 @@ pub(super) struct RunArguments {
     #[arg(env = "HALFROW_RECONNECT")]
     reconnect: Option<f64>,
     /// Replace what an earlier run has written
-    #[arg(long, env = "HALFROW_OVERWRITE", value_parser = FalseyValueParser::new())]
-    overwrite: bool,
+    #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
+    #[arg(env = "HALFROW_OVERWRITE", value_parser = yes_or_no)]
+    overwrite: Option<bool>,
     /// Refuse to judge anything but hardware
-    #[arg(long, env = "HALFROW_REQUIRE_HARDWARE", value_parser = FalseyValueParser::new())]
-    require_hardware: bool,
+    #[arg(long, value_name = "YES|NO", num_args = 0..=1, require_equals = true, default_missing_value = "yes")]
+    #[arg(env = "HALFROW_REQUIRE_HARDWARE", value_parser = yes_or_no)]
+    require_hardware: Option<bool>,
     /// Seed of noise, gaps, link test and what the board makes on its own
     #[arg(long, value_name = "SEED", env = "HALFROW_SEED")]
     seed: Option<u64>,
@@ -143,7 +144,7 @@ impl RunArguments {
     }
 
     pub(super) fn requires_hardware(&self, settings: &Settings) -> bool {
-        self.require_hardware || settings.require_hardware.unwrap_or(false)
+        self.require_hardware.or(settings.require_hardware).unwrap_or(false)
     }
 
     fn report_path<'a>(&'a self, settings: &'a Settings) -> Option<&'a Path> {
@@ -158,7 +159,7 @@ impl RunArguments {
         context: &Context,
     ) -> Result<Outputs, Failure> {
         let settings = &context.settings;
-        let overwrite = self.overwrite || settings.overwrite.unwrap_or(false);
+        let overwrite = self.overwrite.or(settings.overwrite).unwrap_or(false);
         let report = self.report_path(settings);
         Files::new(overwrite)
             .reads(&context.settings_file)
