@@ -71,7 +71,9 @@ pub(super) struct EngineEnded;
 fn scans() -> io::Result<Receiver<(u64, String)>> {
     let (sender, scans) = mpsc::channel();
     thread::Builder::new().name("scans".to_owned()).spawn(move || {
-        let lines = io::stdin().lock().lines().map_while(Result::ok);
+        // What is no UTF-8 is refused as a label that nobody prints.
+        let text = |line: Vec<u8>| String::from_utf8_lossy(&line).trim_end_matches('\r').to_owned();
+        let lines = io::stdin().lock().split(b'\n').map_while(Result::ok).map(text);
         // Nobody takes scans any more when the station closes.
         (1..).zip(lines).take_while(|scan| sender.send(scan.clone()).is_ok()).for_each(drop);
     })?;

@@ -5,7 +5,7 @@ use rand::{RngExt as _, rng};
 /// The first wait, in milliseconds.
 const FIRST_MS: i64 = 1_000;
 /// The longest.
-const LONGEST_MS: i64 = 300_000;
+pub(super) const LONGEST_MS: i64 = 300_000;
 
 /// How long it is waited behind so many tries in vain and one more, in milliseconds: twice as long each time, and for each
 /// station a little other, so that they do not all come at once when a plant is there again.

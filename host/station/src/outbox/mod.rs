@@ -80,7 +80,7 @@ pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreErr
     let folder = store.with(|store| store.folder().clone());
     let mut round = Round::default();
     let mut tried = Vec::new();
-    for entry in folder.due(sink.name(), clock::now_ms())? {
+    for entry in folder.due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)? {
         let taken = match folder.parcel(&entry) {
             Ok(parcel) => sink.take(&parcel),
             Err(error) => Err(Undelivered::NotNow(Said::of(&error))),

@@ -260,17 +260,20 @@ fn seed(text: Option<&Spanned<SeedText>>) -> Result<Seed, Fault> {
 
 /// Seconds of the board's own frames, which may be none.
 fn at_speed(text: &Spanned<f64>) -> Result<Duration, Fault> {
-    if *text.get_ref() == 0.0 { Ok(Duration::ZERO) } else { some_seconds(text, MOST_SECONDS) }
+    match *text.get_ref() {
+        0.0 => Ok(Duration::ZERO),
+        _ => some_seconds(text, MOST_SECONDS, "0, or "),
+    }
 }
 
 fn seconds(text: Option<&Spanned<f64>>, otherwise: Duration, most: f64) -> Result<Duration, Fault> {
-    text.map_or(Ok(otherwise), |text| some_seconds(text, most))
+    text.map_or(Ok(otherwise), |text| some_seconds(text, most, ""))
 }
 
-fn some_seconds(text: &Spanned<f64>, most: f64) -> Result<Duration, Fault> {
+fn some_seconds(text: &Spanned<f64>, most: f64, or: &str) -> Result<Duration, Fault> {
     let seconds = *text.get_ref();
     if !(0.001..=most).contains(&seconds) {
-        let remedy = format!("write a number of seconds, 0.001 to {most}");
+        let remedy = format!("write a number of seconds, {or}0.001 to {most}");
         return Err(Fault::wrong(
             text.span().start,
             format!("{seconds} seconds are none that a step can take"),

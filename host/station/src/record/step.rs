@@ -307,12 +307,15 @@ impl Measured {
     /// It in one sentence.
     #[must_use]
     pub fn sentence(&self) -> String {
-        let side = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {bound}"));
+        // To the millionth, with a unit where it has one.
+        let told = |value: f64| (value * 1e6).round() / 1e6;
+        let side = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {}", told(bound)));
         let sides = [side("at least", self.low), side("at most", self.high)];
         let limit = sides.into_iter().flatten().collect::<Vec<_>>().join(" and ");
-        let Self { name, unit, .. } = self;
+        let name = &self.name;
+        let unit = if self.unit == "1" { String::new() } else { format!(" {}", self.unit) };
         match self.value {
-            Some(value) => format!("{name} is {value} {unit}, and {limit} is right"),
+            Some(value) => format!("{name} is {}{unit}, and {limit} is right", told(value)),
             None => format!("{name} could not be measured, and {limit} is asked for"),
         }
     }

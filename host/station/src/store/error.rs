@@ -110,7 +110,7 @@ pub enum StoreError {
     /// It is of an older program, and whoever only looks changes nothing.
     #[error(
         "the database {} has version {found} and this program reads {known}; start the station on it once, which \
-         brings it up to date and keeps a copy",
+         brings it up to date and keeps a copy, or a plant's by `halfrow-station plant prepare`",
         path.display()
     )]
     Older {

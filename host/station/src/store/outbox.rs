@@ -252,13 +252,15 @@ impl Snapshot {
 }
 
 impl Folder {
-    /// The first entries that are due for `sink` at `now_ms`, in the order in which they came about.
+    /// The first entries that are due for `sink` at `now_ms`, in the order in which they came about; also those that would wait for
+    /// longer than `longest_ms`, since the clock was set back.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn due(&self, sink: &str, now_ms: i64) -> Result<Vec<Entry>, StoreError> {
+    pub fn due(&self, sink: &str, now_ms: i64, longest_ms: i64) -> Result<Vec<Entry>, StoreError> {
+        let latest_ms = now_ms.saturating_add(longest_ms);
         self.read("to tell what is to be sent", |from| {
-            from.all(sql::OUTBOX_DUE, values![sink, now_ms], |row| entry(row, 0))
+            from.all(sql::OUTBOX_DUE, values![sink, now_ms, latest_ms], |row| entry(row, 0))
         })
     }
 

@@ -33,6 +33,10 @@ struct Judged {
     target: String,
 }
 
+/// How far behind now a judgement may be dated, in milliseconds, as by a clock that was set right a little. What is dated further
+/// was judged nobody knows when.
+const ASTRAY_MS: i64 = 300_000;
+
 impl Folder {
     /// What this lane of this station still owes to the shift at `now_ms` before boards are judged by `plan`: that the
     /// last judgement of the good unit is PASS, and that of what is known to be bad FAIL. An ERROR checks nothing.
@@ -54,7 +58,8 @@ impl Folder {
             let last = reader.first(sql::LAST_JUDGEMENT, of, judged);
             let refused =
                 |source| StoreError::of_file(&self.database(), "to tell who checked a shift", source);
-            let last = last.map_err(refused)?;
+            let last =
+                last.map_err(refused)?.filter(|last| last.started_ms <= now_ms.saturating_add(ASTRAY_MS));
             if let Some(Judged { started_ms, .. }) = &last {
                 until_ms = until_ms.min(started_ms.saturating_add(lasts));
             }

@@ -93,6 +93,11 @@ impl Running {
         writeln!(self.stdin.as_mut().unwrap(), "{text}").unwrap();
     }
 
+    /// Scans what need not be text.
+    pub(crate) fn scan_bytes(&mut self, bytes: &[u8]) {
+        self.stdin.as_mut().unwrap().write_all(&[bytes, b"\n"].concat()).unwrap();
+    }
+
     /// Scans the lane's barcode and the serial number.
     pub(crate) fn test(&mut self, lane: &str, serial: &str) {
         self.scan(&format!("HR:LANE:{lane}"));

@@ -22,6 +22,18 @@ fn a_scan_that_is_refused_begins_nothing() {
     assert_eq!(station.query("SELECT id FROM run"), Vec::<String>::new());
 }
 
+/// As a scanner sends whose bytes are another alphabet's, or a line that is disturbed.
+#[test]
+fn a_scan_that_is_no_text_is_refused_and_the_next_one_is_taken() {
+    let station = Station::with(&["mock"], "");
+    let mut running = station.start();
+    running.scan_bytes(b"CA01\xff31103628");
+    assert!(!running.answer("CA01\u{fffd}31103628").0);
+    running.test("1", SERIALS[0]);
+    running.state("1", "PASS");
+    assert_eq!(running.end().0, Some(0));
+}
+
 /// The two classes of mis-scan that no check digit finds: each board under the other's number.
 #[test]
 fn boards_that_were_exchanged_are_refused_before_a_frame_is_sent() {

@@ -244,6 +244,25 @@ fn a_checked_lane_asks_its_store_behind_its_runs_alone() {
     assert!(blind.is_empty(), "{blind:?}");
 }
 
+/// Under a clock that was wrong, or is now.
+#[test]
+fn what_is_dated_tomorrow_checks_no_shift() {
+    let station = Station::with(&["mock"], "");
+    fs::write(station.path("plan.toml"), with_mock()).unwrap();
+    let mut running = station.start();
+    good_passes(&mut running, "1");
+    mock_fails(&mut running, "1");
+    running.end();
+    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
+    database.execute("UPDATE run SET started_ms = started_ms + 86400000", []).unwrap();
+    drop(database);
+    let mut running = station.start();
+    running.test("1", SERIALS[2]);
+    let (is_taken, said) = running.answer(SERIALS[2]);
+    assert!(!is_taken && said.contains("good unit"), "{said}");
+    running.end();
+}
+
 #[test]
 fn a_lane_is_out_as_soon_as_the_hours_of_its_shift_end() {
     let station = Station::with(&["mock"], "");

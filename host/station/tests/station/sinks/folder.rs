@@ -54,6 +54,19 @@ fn each_run_is_a_file_with_the_bytes_that_are_exported_and_a_waiver_is_one_too()
     }
 }
 
+/// The clock was wrong by a day when it was tried in vain.
+#[test]
+fn what_waits_for_a_time_of_a_wrong_clock_is_sent_all_the_same() {
+    let (folder, sink) = station("record");
+    assert!(send(folder.path(), &sink).said.starts_with("0 sent, 1 not"));
+    fs::create_dir(folder.path().join("share")).unwrap();
+    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
+    database.execute("UPDATE outbox SET next_ms = next_ms + 86400000 WHERE attempts > 0", []).unwrap();
+    drop(database);
+    let sent = send(folder.path(), &sink);
+    assert!(sent.said.starts_with("10 sent, 0 not"), "{sent:?}");
+}
+
 #[test]
 fn a_folder_that_is_away_is_waited_for_and_another_file_is_never_written_over() {
     let (folder, sink) = station("record");
