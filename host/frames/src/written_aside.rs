@@ -164,17 +164,26 @@ impl Aside {
         };
         match placed {
             Ok(()) => synced(&path).map_err(|source| Unfinished { kept: None, source }),
-            Err((source, file)) => {
-                let kept = keep(file).and_then(|kept| Some(path.with_file_name(kept.file_name()?)));
-                Err(Unfinished { kept, source })
-            }
+            Err((source, file)) => Err(unfinished(file, &path, source)),
         }
+    }
+
+    /// Keeps what there is under a name that nothing else has, since writing on failed with `source`.
+    #[must_use]
+    pub fn keep_unfinished(self, source: io::Error) -> Unfinished {
+        let source = WriteAsideError::Io { path: self.path.clone(), source };
+        unfinished(self.out.into_parts().0, &self.path, source)
     }
 
     fn whole(&mut self) -> Result<(), WriteAsideError> {
         let written = self.out.flush().and_then(|()| self.out.get_ref().as_file().sync_all());
         written.map_err(|source| WriteAsideError::Io { path: self.path.clone(), source })
     }
+}
+
+fn unfinished(file: NamedTempFile, path: &Path, source: WriteAsideError) -> Unfinished {
+    let kept = keep(file).and_then(|kept| Some(path.with_file_name(kept.file_name()?)));
+    Unfinished { kept, source }
 }
 
 impl Write for Aside {

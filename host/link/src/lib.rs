@@ -160,6 +160,17 @@ pub enum LinkError {
         /// The first byte that differs, counted from the beginning.
         byte: u64,
     },
+    /// There is no more in a recording, and the run would go on.
+    #[error(
+        "{link} ends at {:.3} s, where the run that made it was interrupted or had no more to do; record a whole run with \
+         this program", at.as_secs_f64()
+    )]
+    RecordingEnds {
+        /// The recording.
+        link: String,
+        /// When, on the link's clock.
+        at: Duration,
+    },
     /// The recording could not be written.
     #[error("the recording could not be written; free some space or choose another place for the recording")]
     Record(#[source] std::io::Error),

@@ -114,7 +114,7 @@ pub struct Recorder {
     lost: Lost,
 }
 
-/// Why a recording could not be finished, once its recorder is gone; empty when it is whole.
+/// Why a recording could not be written or finished, once its recorder is gone; empty when it is whole.
 pub type Lost = Arc<OnceLock<Unfinished>>;
 
 impl Recorder {
@@ -170,8 +170,12 @@ impl Link for Recorder {
         let taken = self.link.exchange(outgoing, incoming, wait)?;
         let exchange =
             Exchange { at: self.link.now(), taken: &outgoing[..taken], received: &incoming[before..] };
-        if let Some(file) = &mut self.file {
-            exchange.write(&mut file.0).map_err(LinkError::Record)?;
+        if let Some(mut file) = self.file.take() {
+            match exchange.write(&mut file.0) {
+                Ok(()) => self.file = Some(file),
+                // The board is judged all the same.
+                Err(source) => drop(self.lost.set(file.0.keep_unfinished(source))),
+            }
         }
         Ok(taken)
     }
@@ -265,6 +269,11 @@ impl Recording {
     pub fn sent(&self) -> impl Iterator<Item = &[u8]> {
         let mut place = self.start;
         std::iter::from_fn(move || self.next(&mut place)).map(|exchange| exchange.taken)
+    }
+
+    /// How many bytes the host sent in the exchanges from `place` on.
+    pub(super) fn sent_from(&self, mut place: usize) -> usize {
+        std::iter::from_fn(|| self.next(&mut place).map(|exchange| exchange.taken.len())).sum()
     }
 
     /// Where the first exchange is, for [`Self::next`].

@@ -125,6 +125,7 @@ fn a_recording_that_breaks_off_is_judged_as_far_as_it_goes() {
     let ended = folder.halfrow(["verify", "--json", "--board", "replay:half.rec"]);
     assert_eq!((ended.code, &ended.json()["verdict"]), (Some(3), &"ERROR".into()));
     assert!(ended.json()["headline"].as_str().unwrap().starts_with("the link broke"), "{}", ended.stdout);
+    assert!(ended.stdout.contains("where the run that made it was interrupted"), "{}", ended.stdout);
 }
 
 #[test]
@@ -171,6 +172,19 @@ fn a_recording_that_finds_no_space_is_no_pass_even_if_only_its_end_is_missing() 
         assert_ne!(said["verdict"], "PASS", "{blocks} blocks");
         assert!(!folder.names(".").contains(&"run.rec".to_owned()));
     }
+}
+
+/// Whoever has no space for what a run says has a board to be judged all the same.
+#[cfg(unix)]
+#[test]
+fn a_wrong_board_is_wrong_on_a_full_disk_too() {
+    let folder = Folder::new();
+    let call = small("verify", &["--json", "--board", "mock,fault=stuck-data,bit=7", "--record", "run.rec"]);
+    let ended = folder.halfrow_on_a_full_disk(8, call);
+    assert_eq!(ended.code, Some(1), "{}", ended.stderr);
+    assert_eq!(ended.json()["lacks"][0]["code"], "recording-lost");
+    assert_eq!(ended.json()["suspects"][0]["defect"]["parameters"]["bit"], 7);
+    assert!(ended.stderr.contains("the recording could not be written"), "{}", ended.stderr);
 }
 
 #[test]

@@ -44,6 +44,7 @@ fn an_interrupted_run_leaves_a_whole_report_that_says_so_and_a_recording() {
         assert!(folder.text("out/report.html").trim_end().ends_with("</html>"));
         let again = folder.halfrow(["verify", "--board", "replay:run.rec"]);
         assert_eq!(again.code, Some(3), "{}", again.stdout);
+        assert!(again.stdout.contains("where the run that made it was interrupted"), "{}", again.stdout);
     }
 }
 

@@ -196,6 +196,24 @@ fn a_run_ends_at_its_time_limit() {
     assert!(headline.contains("the run took longer than the 20.0 s of its time limit"), "{headline}");
 }
 
+/// Nothing is said of a defect, since what the board holds was not read back.
+#[test]
+fn what_differed_until_a_run_broke_off_is_told() {
+    let board = "mock,fault=stuck-data,bit=7,speed=100000";
+    let ended = halfrow(small("verify", &["--json", "--board", board, "--repeat", "40", "--timeout", "3"]));
+    assert_eq!(ended.code, Some(3));
+    let (said, headline) = (ended.json(), ended.json()["headline"].as_str().unwrap().to_owned());
+    let frames = said["frames"].as_array().unwrap();
+    let wrong = frames.iter().filter(|frame| frame["comparison"]["differences"].as_u64() > Some(0)).count();
+    assert!(wrong > 10, "{wrong}");
+    let told = format!(
+        "in {wrong} of {} frames, and the run broke off before that was looked into: the run took longer",
+        frames.len()
+    );
+    assert!(headline.contains(&told), "{headline}");
+    assert_eq!(said["error"]["code"], "run-too-long");
+}
+
 /// It is not the link's pace that more time would help.
 #[test]
 fn a_run_whose_board_is_silent_when_its_time_ends_says_so() {

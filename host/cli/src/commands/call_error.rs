@@ -14,7 +14,7 @@ pub(super) enum CallError {
     #[error("{option} {reason}")]
     VoidOption { option: String, reason: &'static str },
     /// A number of seconds that is none.
-    #[error("{option} takes a number of seconds, 0 or more")]
+    #[error("{option} takes a number of seconds, from 0 to 10^19")]
     Seconds { option: &'static str },
     /// A command that prints nothing that could be JSON.
     #[error("`halfrow {command}` has no result in JSON; leave --json out")]

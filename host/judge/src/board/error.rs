@@ -134,7 +134,7 @@ pub enum BoardError {
         silent: Duration,
     },
     /// Somebody ended the run.
-    #[error("{0}; nothing is wrong with the board as far as it was tested")]
+    #[error("{0}; the board is not judged")]
     Stopped(StoppedBy),
 }
 

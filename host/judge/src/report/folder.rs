@@ -185,10 +185,10 @@ pub fn check(path: &Path, overwrite: bool) -> Result<(), ReportError> {
             let to = fs::read_link(path).unwrap_or_default();
             Err(ReportError::Link { path: path.to_owned(), to })
         }
-        Ok(_) if !overwrite => Err(ReportError::Exists { path: path.to_owned() }),
         Ok(_) => match foreign(path) {
-            None => Ok(()),
             Some(why) => Err(ReportError::NotAReport { path: path.to_owned(), why }),
+            None if overwrite => Ok(()),
+            None => Err(ReportError::Exists { path: path.to_owned() }),
         },
     }
 }

@@ -68,7 +68,7 @@ impl Run<'_> {
         if let Some(finding) = &seen.wrong_generation {
             return Err(End::failed(CheckName::Frames, finding.clone()));
         }
-        let differing = seen.frames.iter().filter(|frame| frame.comparison.differences > 0).count();
+        let differing = seen.differing_frames();
         let (samples, frames) = (seen.samples(), seen.frames.len());
         if let Some(WrongEntry { rows, row, frame }) = seen.wrong_entry {
             return Err(changed_on_entry(rows, row, frame, differing > 0));

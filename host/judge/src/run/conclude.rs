@@ -9,8 +9,8 @@ use crate::board::Tally;
 use crate::coverage::Faults;
 use crate::frames::street;
 use crate::result::{
-    Check, CheckName, CoverageReport, Finding, LinkReport, Outcome, Report, RunReport, Schema, SoakReport,
-    StreetReport, Suspect, TablesReport,
+    Check, CheckName, CoverageReport, Finding, LinkReport, Outcome, Problem, Report, RunReport, Schema,
+    SoakReport, StreetReport, Suspect, TablesReport, wording,
 };
 use crate::verdict::Cause;
 
@@ -106,8 +106,25 @@ fn ending(findings: &mut Findings, end: Option<End>) -> Ending {
         }
         None => Ending { cause: Cause::Equal, finding: pass(findings), suspects: Vec::new() },
         Some(End::Failed { finding, suspects, .. }) => Ending { cause: Cause::Different, finding, suspects },
-        Some(End::Error { cause, finding, .. }) => Ending { cause, finding, suspects: Vec::new() },
+        Some(End::Error { cause, finding, .. }) => {
+            Ending { cause, finding: broken_off(finding, &findings.seen), suspects: Vec::new() }
+        }
     }
+}
+
+/// Why the run broke off, behind what nobody looked into then.
+fn broken_off(why: Finding, seen: &Seen) -> Finding {
+    let (differing, differences) = (seen.differing_frames(), seen.differences());
+    let Finding::Problem(problem) = why else { return why };
+    if differing == 0 {
+        return Finding::Problem(problem);
+    }
+    let message = format!(
+        "{}, and the run broke off before that was looked into: {}",
+        wording::samples_differ((differences, seen.samples()), (differing, seen.frames.len())),
+        problem.message
+    );
+    Finding::Problem(Box::new(Problem { message, ..*problem }))
 }
 
 fn pass(findings: &Findings) -> Finding {

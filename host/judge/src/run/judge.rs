@@ -67,6 +67,10 @@ impl Seen {
         self.frames.iter().map(|frame| frame.comparison.differences).sum()
     }
 
+    pub(super) fn differing_frames(&self) -> usize {
+        self.frames.iter().filter(|frame| frame.comparison.differences > 0).count()
+    }
+
     pub(super) fn samples(&self) -> usize {
         self.frames.iter().map(|frame| frame.comparison.samples).sum()
     }

@@ -41,6 +41,7 @@ codes! {
         NoBoardThere [link, text] => "link-without-board",
         Failed [link, at] => "link-failed",
         OtherConversation [byte] => "recording-of-other-run",
+        RecordingEnds [link, at] => "recording-ends",
         Record => "recording-not-written",
     }
     OpenError {

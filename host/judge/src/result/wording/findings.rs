@@ -95,7 +95,11 @@ fn of_board(finding: &Finding) -> String {
         }
         Finding::TablesChanged { found } => format!("the tables changed during the run: {}", sentence(found)),
         Finding::SamplesDiffer { differences, samples, differing_frames, frames, suspect } => {
-            samples_differ((*differences, *samples), (*differing_frames, *frames), suspect.as_deref())
+            let differ = samples_differ((*differences, *samples), (*differing_frames, *frames));
+            match suspect {
+                Some(suspect) => format!("{differ}; the suspect is {}", place(suspect)),
+                None => format!("{differ}; no single defect that is known explains them"),
+            }
         }
         Finding::CounterWrong { counter, counted, right } => {
             format!("the board counts {counted} {}, and it is {right}", counter.words())
@@ -113,17 +117,12 @@ fn of_board(finding: &Finding) -> String {
 }
 
 /// How many samples and frames differ, of how many.
-fn samples_differ(
+pub(crate) fn samples_differ(
     (differences, samples): (usize, usize),
     (differing_frames, frames): (usize, usize),
-    suspect: Option<&Defect>,
 ) -> String {
-    let suspicion = match suspect {
-        Some(suspect) => format!("the suspect is {}", place(suspect)),
-        None => "no single defect that is known explains them".to_owned(),
-    };
     format!(
-        "{} of {} {}, in {differing_frames} of {}; {suspicion}",
+        "{} of {} {}, in {differing_frames} of {}",
         grouped(differences),
         count(samples, "sample"),
         differ(differences),

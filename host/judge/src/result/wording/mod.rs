@@ -14,6 +14,7 @@ use super::{Defect, Memory};
 
 pub use evidence::evidence;
 pub(super) use findings::because;
+pub(crate) use findings::samples_differ;
 pub use findings::{remedy, sentence};
 pub use not_exercised::not_exercised;
 
