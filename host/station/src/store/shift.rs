@@ -33,8 +33,8 @@ struct Judged {
     target: String,
 }
 
-/// How far behind now a judgement may be dated, in milliseconds, as by a clock that was set right a little. What is dated further
-/// was judged nobody knows when.
+/// How far in the future a judgement may be dated, in milliseconds, as by a clock that was set right a little. When one was made that is
+/// dated further, nobody knows.
 const ASTRAY_MS: i64 = 300_000;
 
 impl Folder {
