@@ -76,7 +76,8 @@ fn a_waiver_waits_for_its_run() {
     let mut made = history();
     made.store.sends_to(vec!["plant".to_owned()]).unwrap();
     let database = rusqlite::Connection::open(made.folder().database()).unwrap();
-    let later = "UPDATE outbox SET next_ms = 9000000000000 WHERE subject = (SELECT run_id FROM waiver)";
+    let later =
+        "UPDATE outbox SET next_ms = (unixepoch() + 240) * 1000 WHERE subject = (SELECT run_id FROM waiver)";
     assert_eq!(database.execute(later, []).unwrap(), 1);
     let (made, _) = send(made, server.address());
     let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
