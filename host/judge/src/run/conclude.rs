@@ -119,11 +119,8 @@ fn broken_off(why: Finding, seen: &Seen) -> Finding {
     if differing == 0 {
         return Finding::Problem(problem);
     }
-    let message = format!(
-        "{}, and the run broke off before that was looked into: {}",
-        wording::samples_differ((differences, seen.samples()), (differing, seen.frames.len())),
-        problem.message
-    );
+    let (samples, frames) = ((differences, seen.samples()), (differing, seen.frames.len()));
+    let message = wording::broken_off(samples, frames, &problem.message);
     Finding::Problem(Box::new(Problem { message, ..*problem }))
 }
 

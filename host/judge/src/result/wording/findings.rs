@@ -117,7 +117,7 @@ fn of_board(finding: &Finding) -> String {
 }
 
 /// How many samples and frames differ, of how many.
-pub(crate) fn samples_differ(
+fn samples_differ(
     (differences, samples): (usize, usize),
     (differing_frames, frames): (usize, usize),
 ) -> String {
@@ -128,6 +128,11 @@ pub(crate) fn samples_differ(
         differ(differences),
         count(frames, "frame")
     )
+}
+
+/// That so many of the samples and frames differ, and `why` a run broke off behind them.
+pub(crate) fn broken_off(samples: (usize, usize), frames: (usize, usize), why: &str) -> String {
+    format!("{}, and the run broke off before that was looked into: {why}", samples_differ(samples, frames))
 }
 
 fn table(defect: &Defect, account: &Account) -> String {

@@ -14,7 +14,7 @@ use super::{Defect, Memory};
 
 pub use evidence::evidence;
 pub(super) use findings::because;
-pub(crate) use findings::samples_differ;
+pub(crate) use findings::broken_off;
 pub use findings::{remedy, sentence};
 pub use not_exercised::not_exercised;
 
