@@ -244,9 +244,8 @@ fn a_checked_lane_asks_its_store_behind_its_runs_alone() {
     assert!(blind.is_empty(), "{blind:?}");
 }
 
-/// Under a clock that was wrong, or is now.
-#[test]
-fn what_is_dated_tomorrow_checks_no_shift() {
+/// A station whose lane was checked, as far as its database says at `started_ms`, an expression of SQL.
+fn checked_at(started_ms: &str) -> Station {
     let station = Station::with(&["mock"], "");
     fs::write(station.path("plan.toml"), with_mock()).unwrap();
     let mut running = station.start();
@@ -254,8 +253,14 @@ fn what_is_dated_tomorrow_checks_no_shift() {
     mock_fails(&mut running, "1");
     running.end();
     let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
-    database.execute("UPDATE run SET started_ms = started_ms + 86400000", []).unwrap();
-    drop(database);
+    database.execute(&format!("UPDATE run SET started_ms = {started_ms}"), []).unwrap();
+    station
+}
+
+/// Under a clock that was wrong, or is now.
+#[test]
+fn what_is_dated_tomorrow_checks_no_shift() {
+    let station = checked_at("started_ms + 86400000");
     let mut running = station.start();
     running.test("1", SERIALS[2]);
     let (is_taken, said) = running.answer(SERIALS[2]);
@@ -265,17 +270,8 @@ fn what_is_dated_tomorrow_checks_no_shift() {
 
 #[test]
 fn a_lane_is_out_as_soon_as_the_hours_of_its_shift_end() {
-    let station = Station::with(&["mock"], "");
-    fs::write(station.path("plan.toml"), with_mock()).unwrap();
-    let mut running = station.start();
-    good_passes(&mut running, "1");
-    mock_fails(&mut running, "1");
-    running.end();
     // Eight hours have gone by but for some seconds.
-    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
-    let almost = "UPDATE run SET started_ms = (unixepoch() - 8 * 3600 + 6) * 1000";
-    database.execute(almost, []).unwrap();
-    drop(database);
+    let station = checked_at("(unixepoch() - 8 * 3600 + 6) * 1000");
     let mut running = station.start();
     let out = running.state("1", "OUT");
     assert!(out["note"].as_str().unwrap().contains("the good unit"), "{out}");
