@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use halfrow_model::{Colour, Frame};
+use halfrow_model::{Colour, Frame, Phase};
 use png::{BitDepth, ColorType, EncodingError};
 
 /// A picture of 8 bits in red, green and blue, coded for the screen.
@@ -27,14 +27,13 @@ pub fn demosaic(frame: &Frame) -> RgbImage {
 /// up, and no more.
 #[must_use]
 pub fn demosaic_coded(frame: &Frame) -> RgbImage {
-    let (width, height) = (frame.width(), frame.height());
     let full = u32::from(frame.depth().max());
-    let places = (0..height).flat_map(|row| (0..width).map(move |column| (row, column)));
-    let data = places
-        .flat_map(|(row, column)| pixel(frame, row, column))
+    let data = (0..frame.height())
+        .flat_map(|row| pixels(frame, row))
+        .flatten()
         .map(|sample| u8::try_from((u32::from(sample) * 255 + full / 2) / full).unwrap_or(u8::MAX))
         .collect();
-    RgbImage { width, height, data }
+    RgbImage { width: frame.width(), height: frame.height(), data }
 }
 
 /// [`demosaic`], at most `max_width` pixels wide: squares of pixels become their mean, taken in linear light.
@@ -48,10 +47,9 @@ pub fn thumbnail(frame: &Frame, max_width: usize) -> RgbImage {
     for top in (0..frame.height()).step_by(side) {
         line.fill(Mean::default());
         for row in top..(top + side).min(frame.height()) {
-            for column in 0..frame.width() {
-                let place = column / side * 3;
-                for (mean, sample) in line[place..].iter_mut().zip(pixel(frame, row, column)) {
-                    mean.add(sample);
+            for (means, square) in line.chunks_exact_mut(3).zip(pixels(frame, row).chunks(side)) {
+                for pixel in square {
+                    means.iter_mut().zip(pixel).for_each(|(mean, &sample)| mean.add(sample));
                 }
             }
         }
@@ -81,22 +79,86 @@ pub fn encode_png_grey(
     super::png::write(out, (width, height), (ColorType::Grayscale, BitDepth::Eight), data)
 }
 
+/// Red, green and blue of all places in `row`.
+fn pixels(frame: &Frame, row: usize) -> Vec<[u16; 3]> {
+    let last = frame.width() - 1;
+    let edge = |column| pixel(frame, row, column);
+    if row == 0 || row == frame.height() - 1 {
+        return (0..=last).map(edge).collect();
+    }
+    let mut pixels = Vec::with_capacity(frame.width());
+    pixels.push(edge(0));
+    let [above, here, below] = [row - 1, row, row + 1].map(|row| frame.row(row).windows(3));
+    let sites = [1, 2].map(|column| Site::at(frame.phase(), row, column)).into_iter().cycle();
+    pixels.extend(above.zip(here).zip(below).zip(sites).map(|(around, site)| site.pixel(around)));
+    pixels.push(edge(last));
+    pixels
+}
+
+/// [`pixel`] where all eight neighbours are there, which takes the most of a frame and so must be quick.
+#[derive(Clone, Copy)]
+enum Site {
+    /// Green, with this channel beside it and that one above and below.
+    Green { beside: usize, above: usize },
+    /// Red or blue, with this channel at the corners.
+    Other { corners: usize },
+}
+
+impl Site {
+    fn at(phase: Phase, row: usize, column: usize) -> Self {
+        match channel(phase, row, column) {
+            GREEN => Self::Green {
+                beside: channel(phase, row, column + 1),
+                above: channel(phase, row + 1, column),
+            },
+            _ => Self::Other { corners: channel(phase, row + 1, column + 1) },
+        }
+    }
+
+    /// Of three samples each of the row above, of this one, and of the one below.
+    fn pixel(self, ((above, here), below): ((&[u16], &[u16]), &[u16])) -> [u16; 3] {
+        let sample = |row: &[u16], column: usize| u32::from(row[column]);
+        let beside = sample(here, 0) + sample(here, 2);
+        let upright = sample(above, 1) + sample(below, 1);
+        let mut pixel = [here[1]; 3];
+        match self {
+            Self::Green { beside: left_and_right, above: up_and_down } => {
+                pixel[left_and_right] = Mean { sum: beside, count: 2 }.rounded();
+                pixel[up_and_down] = Mean { sum: upright, count: 2 }.rounded();
+            }
+            Self::Other { corners } => {
+                let sum = sample(above, 0) + sample(above, 2) + sample(below, 0) + sample(below, 2);
+                pixel[GREEN] = Mean { sum: beside + upright, count: 4 }.rounded();
+                pixel[corners] = Mean { sum, count: 4 }.rounded();
+            }
+        }
+        pixel
+    }
+}
+
+/// Where green stands in a pixel.
+const GREEN: usize = 1;
+
+/// Where the colour of a place stands in a pixel.
+fn channel(phase: Phase, row: usize, column: usize) -> usize {
+    match phase.colour(row, column) {
+        Colour::Red => 0,
+        Colour::Green => GREEN,
+        Colour::Blue => 2,
+    }
+}
+
 /// Red, green and blue at `row` and `column`: the sample itself for its own colour, and for the others the mean of those
 /// of its eight neighbours that have the colour.
 fn pixel(frame: &Frame, row: usize, column: usize) -> [u16; 3] {
-    let channel = |row, column| match frame.phase().colour(row, column) {
-        Colour::Red => 0,
-        Colour::Green => 1,
-        Colour::Blue => 2,
-    };
     let mut means = [Mean::default(); 3];
     let first = column.saturating_sub(1);
     for y in row.saturating_sub(1)..=(row + 1).min(frame.height() - 1) {
         for (x, &sample) in frame.row(y).iter().enumerate().skip(first).take(column + 2 - first) {
-            means[channel(y, x)].add(sample);
+            means[channel(frame.phase(), y, x)].add(sample);
         }
     }
-    let own = channel(row, column);
+    let own = channel(frame.phase(), row, column);
     means[own] = Mean { sum: frame.row(row)[column].into(), count: 1 };
     means.map(Mean::rounded)
 }

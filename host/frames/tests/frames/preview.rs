@@ -2,7 +2,10 @@
 
 use halfrow_frames::preview::{demosaic, demosaic_coded, encode_png_grey, encode_png_rgb, thumbnail};
 use halfrow_frames::{Builtin, Scene};
-use halfrow_model::{BitDepth, Frame, Geometry, Phase};
+use halfrow_model::{BitDepth, Colour, Frame, Geometry, Phase};
+use proptest::collection::vec;
+use proptest::prelude::*;
+use proptest::sample::select;
 
 fn frame(width: usize, phase: Phase, samples: &[u16]) -> Frame {
     Frame::new(width, BitDepth::Eight, phase, samples.to_vec()).unwrap()
@@ -52,6 +55,41 @@ fn a_missing_colour_is_the_mean_of_its_neighbours() {
     assert_eq!(pixel(0, 0), [coded(255), coded(35), coded(10)]);
     // At the green place of a red row: reds 255 and 60, 157.5 rounds up; blues 30 and 250.
     assert_eq!(pixel(1, 2), [coded(158), coded(51), coded(140)]);
+}
+
+/// By the definition, place after place: the colour of a place repeats every two rows and columns.
+fn mean_of_neighbours(frame: &Frame, (row, column): (usize, usize), wanted: Colour) -> u8 {
+    let colour = |row, column| frame.phase().colour(row, column);
+    if colour(row, column) == wanted {
+        return frame.row(row)[column] as u8;
+    }
+    let near = |place: usize, end: usize| (0..end).filter(move |other| place.abs_diff(*other) <= 1);
+    let samples: Vec<u32> = near(row, frame.height())
+        .flat_map(|y| near(column, frame.width()).map(move |x| (y, x)))
+        .filter(|&(y, x)| colour(y, x) == wanted)
+        .map(|(y, x)| frame.row(y)[x].into())
+        .collect();
+    let mean = f64::from(samples.iter().sum::<u32>()) / samples.len().max(1) as f64;
+    (mean + 0.5) as u8
+}
+
+proptest! {
+    #[test]
+    fn every_place_of_every_frame_has_the_means_of_its_neighbours(
+        (width, samples) in (1_usize..5, 1_usize..6).prop_flat_map(|(pairs, height)| {
+            (Just(2 * pairs), vec(0_u16..256, 2 * pairs * height))
+        }),
+        phase in select(&Phase::ALL),
+    ) {
+        let frame = frame(width, phase, &samples);
+        let image = demosaic_coded(&frame);
+        let places = (0..frame.height()).flat_map(|row| (0..width).map(move |column| (row, column)));
+        let colours = [Colour::Red, Colour::Green, Colour::Blue];
+        let expected: Vec<u8> = places
+            .flat_map(|place| colours.map(|colour| mean_of_neighbours(&frame, place, colour)))
+            .collect();
+        prop_assert_eq!(image.data, expected);
+    }
 }
 
 #[test]

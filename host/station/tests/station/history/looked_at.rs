@@ -235,7 +235,7 @@ fn judge(folder: &Path, board: &str, serial: &str) -> Option<i32> {
     std::fs::write(&plan, served::plan()).unwrap();
     let arguments = ["run", "--serial", serial, "--board", board, "--operator", "weber"];
     let mut run = Command::new(program());
-    run.args(arguments).arg("--data").arg(folder).arg("--plan").arg(plan);
+    run.args(arguments).arg("--data").arg(folder).arg("--any-disk").arg("--plan").arg(plan);
     run.output().unwrap().status.code()
 }
 

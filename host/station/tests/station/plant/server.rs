@@ -61,6 +61,9 @@ impl Server {
             &format!("listen_addresses={}", self.listen),
             "-c",
             "fsync=off",
+            // Goes with the folder, however the server ends.
+            "-c",
+            "dynamic_shared_memory_type=mmap",
             "-c",
             "max_connections=400",
         ]);
