@@ -2,8 +2,7 @@
 """Synthesises the builds of budget.ini with yosys for the Spartan-6 LX25, prints what each takes in percent of it, how much logic
 stands between its registers and how many pins the busiest clock enables and resets of a board's top lead to, and fails where budget.ini is
 exceeded. `halfrow paper` reads WORK/report.json.
-    resources.py WORK [tops|largest]     WORK: a directory for logs and netlists; tops: the boards' tops, too, which takes two minutes;
-                                         largest: the largest core and the largest design alone"""
+    resources.py WORK [tops]     WORK: a directory for logs and netlists; tops: the boards' tops, too, which takes two minutes"""
 
 import concurrent.futures
 import itertools
@@ -19,7 +18,6 @@ import netlist
 import rtl
 import tops
 
-LARGEST = ["core, 7 taps, 2 banks, grids", "whole design, FIFO front end, trap, grids"]
 LX25 = {"luts": 15032, "registers": 30064, "block_rams": 52, "dsps": 38}
 
 
@@ -79,8 +77,8 @@ def main():
     work = pathlib.Path(sys.argv[1])
     work.mkdir(parents=True, exist_ok=True)
     builds = budget.sections()
-    which = sys.argv[2:]
-    names = LARGEST if which == ["largest"] else [name for name in builds if which == ["tops"] or not budget.top_of(builds[name])]
+    with_tops = sys.argv[2:] == ["tops"]
+    names = [name for name in builds if with_tops or not budget.top_of(builds[name])]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         modules = list(pool.map(lambda name: synthesise(work, name, builds[name]), names))
     print("XC6SLX25: 15,032 LUTs, 30,064 registers, 52 block RAMs, 38 DSP48A1. yosys gives no slices.\n")
