@@ -206,6 +206,8 @@ fn made_cluster() -> TempDir {
         .arg("--pgdata")
         .arg(folder.path())
         .args(["--auth=trust", "--username=postgres", "--encoding=UTF8", "--locale=C", "--no-sync"])
+        // In megabytes: one segment is copied with each cluster.
+        .arg("--wal-segsize=1")
         .output()
         .unwrap();
     assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
