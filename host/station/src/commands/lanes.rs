@@ -51,8 +51,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         }
         match scans.recv_timeout(LOOK) {
             Ok((number, line)) => engine.scan(number, &line, &arguments.operator),
-            Err(RecvTimeoutError::Timeout) if engine.is_well() => {}
-            Err(RecvTimeoutError::Timeout) => return Err(Failure::error(EngineEnded)),
+            Err(RecvTimeoutError::Timeout) if engine.has_ended() => return Err(Failure::error(EngineEnded)),
+            Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => break None,
         }
     };

@@ -148,6 +148,13 @@ impl Engine {
         board.worked.is_some_and(|worked| worked.elapsed() < SILENT)
     }
 
+    /// Whether its thread has ended, which it does unasked only by a fault. It may live and be silent, as while a disk is slow.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        let thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner);
+        thread.as_ref().is_none_or(JoinHandle::is_finished)
+    }
+
     /// The store, for what is neither a scan nor a run.
     #[must_use]
     pub fn store(&self) -> SharedStore {

@@ -1,14 +1,15 @@
 //! Every way in which runs in several lanes end.
 
-use std::io::Read as _;
+use std::io::{ErrorKind, Read as _};
 use std::net::TcpListener;
 use std::thread;
+use std::time::{Duration, Instant};
 
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use serde_json::Value;
 
-use super::floor::{Running, SERIALS, Station};
+use super::floor::{HANG, Running, SERIALS, Station};
 
 /// A board that takes the connection and says nothing.
 pub(crate) fn silent_board() -> (TcpListener, String) {
@@ -19,7 +20,15 @@ pub(crate) fn silent_board() -> (TcpListener, String) {
 
 /// Waits until the lane has connected, and keeps the connection.
 pub(crate) fn connected(listener: &TcpListener) {
-    let (mut connection, _) = listener.accept().unwrap();
+    listener.set_nonblocking(true).unwrap();
+    let until = Instant::now() + HANG;
+    let mut connection = loop {
+        match listener.accept() {
+            Ok((connection, _)) => break connection,
+            Err(error) => assert!(error.kind() == ErrorKind::WouldBlock && Instant::now() < until, "{error}"),
+        }
+        thread::sleep(Duration::from_millis(20));
+    };
     assert_eq!(connection.read(&mut [0]).unwrap(), 1, "it greets");
     thread::spawn(move || while connection.read(&mut [0; 64]).is_ok_and(|read| read > 0) {});
 }
@@ -116,6 +125,21 @@ fn a_signal_ends_all_runs_in_order() {
     assert_eq!(running.end().0, Some(143));
     assert_eq!(station.query("SELECT verdict || ' ' || cause FROM run"), ["ERROR station"]);
     station.assert_well();
+}
+
+/// As a computer does that has much else to do, or that was laid to sleep.
+#[test]
+fn a_station_that_is_kept_waiting_for_seconds_goes_on_working() {
+    let station = Station::with(&["mock,serial=1"], "");
+    let mut running = station.start();
+    running.state("1", "READY");
+    let process = Pid::from_raw(running.id() as i32);
+    kill(process, Signal::SIGSTOP).unwrap();
+    thread::sleep(Duration::from_secs(6));
+    kill(process, Signal::SIGCONT).unwrap();
+    thread::sleep(Duration::from_millis(500));
+    test_again(&mut running);
+    assert_eq!(running.end().0, Some(0));
 }
 
 /// The evidence of a run cannot be laid down, and then it can: the program goes on all the time.
