@@ -99,14 +99,22 @@ fn mosaicked<Sample: Copy + Into<u16>>(
     width: usize,
     phase: Phase,
 ) -> impl Iterator<Item = u16> {
-    samples.chunks_exact(channels).enumerate().map(move |(place, pixel)| {
-        let channel = match phase.colour(place / width, place % width) {
-            Colour::Red => 0,
-            Colour::Green => 1,
-            Colour::Blue => 2,
-        };
-        pixel[channel].into()
-    })
+    samples
+        .chunks_exact(channels)
+        .enumerate()
+        .map(move |(place, pixel)| pixel[channel(phase, place / width, place % width)].into())
+}
+
+/// Where green stands in a pixel.
+pub(super) const GREEN: usize = 1;
+
+/// Where the colour of a place stands in a pixel of red, green and blue.
+pub(super) fn channel(phase: Phase, row: usize, column: usize) -> usize {
+    match phase.colour(row, column) {
+        Colour::Red => 0,
+        Colour::Green => GREEN,
+        Colour::Blue => 2,
+    }
 }
 
 /// `sample · (2^B − 1) / full`, rounded half up.

@@ -2,8 +2,10 @@
 
 use std::io::Write;
 
-use halfrow_model::{Colour, Frame, Phase};
+use halfrow_model::{Frame, Phase};
 use png::{BitDepth, ColorType, EncodingError};
+
+use crate::mosaic::{GREEN, channel};
 
 /// A picture of 8 bits in red, green and blue, coded for the screen.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -133,18 +135,6 @@ impl Site {
             }
         }
         pixel
-    }
-}
-
-/// Where green stands in a pixel.
-const GREEN: usize = 1;
-
-/// Where the colour of a place stands in a pixel.
-fn channel(phase: Phase, row: usize, column: usize) -> usize {
-    match phase.colour(row, column) {
-        Colour::Red => 0,
-        Colour::Green => GREEN,
-        Colour::Blue => 2,
     }
 }
 
