@@ -63,7 +63,7 @@ impl fmt::Display for Surprise {
 }
 
 /// The paper's lens on fewer pixels.
-const SMALLER: &[&str] = &["--width", "128", "--height", "72", "--radius", "73.78"];
+pub(crate) const SMALLER: &[&str] = &["--width", "128", "--height", "72", "--radius", "73.78"];
 
 /// Whether the clock of the board that `target` names is a virtual one, so that nobody is ever late.
 fn is_on_a_virtual_clock(target: &str) -> bool {
@@ -96,12 +96,18 @@ impl Scenario {
         Self { on, ..self }
     }
 
+    /// Whether it is about fewer pixels than the paper's.
+    #[must_use]
+    pub fn is_small(&self) -> bool {
+        self.arguments.contains(&"--width")
+    }
+
     /// Runs it on `board`, a target, and returns the report as JSON.
     ///
     /// # Errors
     /// [`Surprise`] when it comes to anything else than it should.
     pub fn run(&self, board: &str) -> Result<Value, Box<Surprise>> {
-        self.judge(&format!("{board}{}", self.options), board, kind(board) == "sim")
+        self.judge(&format!("{board}{}", self.options), board)
     }
 
     /// Runs it on the mock board behind a pseudo-terminal.
@@ -110,15 +116,15 @@ impl Scenario {
     /// As [`Self::run`].
     pub fn run_on_a_serial_port(&self) -> Result<Value, Box<Surprise>> {
         let served = Served::on_a_serial_port(&format!("mock{}", self.options));
-        self.judge(&served.target(), "mock behind a serial port: ", false)
+        self.judge(&served.target(), "mock behind a serial port: ")
     }
 
-    /// Judges `target`, which leads to `board` with the scenario's options, with fewer pixels if that is `smaller`.
+    /// Judges `target`, which leads to `board` with the scenario's options.
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn judge(&self, target: &str, board: &str, smaller: bool) -> Result<Value, Box<Surprise>> {
-        let smaller = if smaller && !self.arguments.contains(&"--width") { SMALLER } else { &[] };
+    pub fn judge(&self, target: &str, board: &str) -> Result<Value, Box<Surprise>> {
+        let smaller = if kind(target) == "sim" && !self.is_small() { SMALLER } else { &[] };
         let arguments = self.arguments.iter().chain(smaller).copied();
         let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
         let said = ended.json();

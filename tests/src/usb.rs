@@ -20,19 +20,6 @@ use crate::scenarios::{BROKEN_BOARDS, MISFITS, SOUND_BOARDS};
 
 pub use qemu::{QEMU_CHIP, QemuBoard, QemuChipOut};
 
-/// What cannot be seen in fewer pixels than the paper's.
-const FULL_SIZE: &[&str] = &[
-    "the paper's system",
-    "the paper's system with seven taps",
-    "the highest address line",
-    "a pipeline that is too long",
-    "a false claim of latency",
-    "the last row lost",
-    "a table that drifts at the very end",
-    "a row factor in the only bank",
-    "a frame wider than the board",
-];
-
 /// What takes ten seconds and more.
 const SLOW: &[&str] = &["the highest frame", "a serial line", "a distant board"];
 
@@ -156,25 +143,19 @@ pub fn sentence(ended: &Ended) -> String {
     said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned)
 }
 
-/// Whether a scenario comes out the same in 128 x 72 pixels.
-#[must_use]
-pub fn is_small(scenario: &&Scenario) -> bool {
-    !FULL_SIZE.contains(&scenario.name)
-}
-
 /// Those that say something about a board, and are small: QEMU's chip stays plugged in whatever becomes of the link behind it.
 pub fn of_boards() -> impl Iterator<Item = &'static Scenario> {
-    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(is_small)
+    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(|scenario| scenario.is_small())
 }
 
-/// Whether it also takes a few seconds only.
+/// Whether a scenario takes a few seconds only.
 #[must_use]
 pub fn is_quick(scenario: &&Scenario) -> bool {
-    is_small(scenario) && !SLOW.contains(&scenario.name)
+    scenario.is_small() && !SLOW.contains(&scenario.name)
 }
 
-/// Runs each of `scenarios` on a board of its own, which `plug` makes of its options and `target` names, with fewer pixels if
-/// that is `smaller`, and prints how long each took.
+/// Runs each of `scenarios` on a board of its own, which `plug` makes of its options and `target` names, and prints how
+/// long each took.
 ///
 /// # Panics
 /// When one of them comes to anything else than it should.
@@ -182,14 +163,13 @@ pub fn is_quick(scenario: &&Scenario) -> bool {
 pub fn run_all<'a, B>(
     scenarios: impl IntoIterator<Item = &'a Scenario>,
     target: &str,
-    smaller: bool,
     plug: impl Fn(&str) -> B,
 ) {
     let mut surprises = Vec::new();
     for scenario in scenarios {
         let begun = Instant::now();
         let _board = plug(scenario.options);
-        surprises.extend(scenario.judge(target, &format!("mock behind {target}: "), smaller).err());
+        surprises.extend(scenario.judge(target, &format!("mock behind {target}: ")).err());
         println!("{:6.1} s  {}", begun.elapsed().as_secs_f64(), scenario.name);
     }
     let surprises: Vec<_> = surprises.iter().map(ToString::to_string).collect();

@@ -1,15 +1,19 @@
 //! Broken boards: every fault of the board is found, and its part named.
 
 use super::expect;
-use crate::scenario::Scenario;
+use crate::scenario::{SMALLER, Scenario};
 
-/// Every fault of the board that the mock has, with the built-in frames at the paper's size; and some once more where
-/// they are harder to see.
+/// Every fault of the board that the mock has, with the built-in frames; and some once more where they are harder to see, at the
+/// paper's size where fewer pixels have no such place. `scripts/soak campaign` draws faults at the paper's size.
 pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("a data line", ",fault=stuck-data", "data bit 5, stuck at 1"),
     fails("the highest data line", ",fault=stuck-data,bit=11,value=0", "data bit 11, stuck at 0"),
     fails("an address line", ",fault=stuck-address", "line memory, address bit 3"),
-    fails("the highest address line", ",fault=stuck-address,bit=10,value=1", "line memory, address bit 10"),
+    fails_at_full_size(
+        "the highest address line",
+        ",fault=stuck-address,bit=10,value=1",
+        "line memory, address bit 10",
+    ),
     fails("a row factor", ",fault=row-factor", "row 3's factor, bit 18"),
     fails("a row factor that reads back right", ",fault=row-factor,hidden=true", "row 3's factor, bit 18"),
     fails("a kernel word", ",fault=kernel-word", "kernel node 16, weight g4, bit 12"),
@@ -25,10 +29,10 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("a tap that copies another", ",fault=dead-tap,tap=1,reads=5", "tap R1, reading R5"),
     fails("an outer tap that hermite does not use", ",fault=dead-tap,tap=0", "tap G0, stuck at 0"),
     fails("the other outer tap", ",fault=dead-tap,tap=6,reads=5", "tap G6, reading R5"),
-    fails("a pipeline that is too long", ",fault=late", "took 973 pixel clocks"),
-    fails("a false claim of latency", ",fault=wrong-latency-claim", "the board claims 973"),
+    fails_at_full_size("a pipeline that is too long", ",fault=late", "took 973 pixel clocks"),
+    fails_at_full_size("a false claim of latency", ",fault=wrong-latency-claim", "the board claims 973"),
     fails("a lost row", ",fault=lost-row", "row 3 of frame 0 went into the board and never came out"),
-    fails("the last row lost", ",fault=lost-row,row=1079", "row 1079 of frame 0"),
+    fails_at_full_size("the last row lost", ",fault=lost-row,row=1079", "row 1079 of frame 0"),
     fails("stale tables", ",fault=stale-table", "names the tables of generation 0"),
     fails("stale tables under a new name", ",fault=stale-table-hidden", "the choice of the table bank"),
     fails(
@@ -36,12 +40,12 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
         ",fault=drifting-table",
         "the tables changed during the run: row 3's factor, bit 18",
     ),
-    fails(
+    fails_at_full_size(
         "a table that drifts at the very end",
         ",fault=drifting-table,after=15119,row=1079,bit=0",
         "the tables changed during the run: row 1079's factor, bit 0",
     ),
-    fails(
+    fails_at_full_size(
         "a row factor in the only bank",
         ",table-banks=1,fault=row-factor,row=1079,bit=0,hidden=true",
         "row 1079's factor, bit 0",
@@ -56,9 +60,20 @@ pub const BROKEN_BOARDS: &[Scenario] = &[
     fails("tables that change late", ",fault=late-swap", "the change of table banks between two frames"),
     fails("a pause that is not counted", ",fault=hidden-pause", "pixel clocks of most latency"),
     fails("a commit that is not checked", ",fault=unchecked-commit", "the board must refuse COMMIT"),
-    expect("ERROR", 6, "another datapath", ",fault=wrong-datapath", &[], "this program judges datapath 1"),
+    expect(
+        "ERROR",
+        6,
+        "another datapath",
+        ",fault=wrong-datapath",
+        SMALLER,
+        "this program judges datapath 1",
+    ),
 ];
 
 const fn fails(name: &'static str, options: &'static str, sentence: &'static str) -> Scenario {
+    expect("FAIL", 1, name, options, SMALLER, sentence)
+}
+
+const fn fails_at_full_size(name: &'static str, options: &'static str, sentence: &'static str) -> Scenario {
     expect("FAIL", 1, name, options, &[], sentence)
 }

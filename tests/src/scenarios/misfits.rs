@@ -1,7 +1,7 @@
 //! Calls that fit no board, or not this one: refused before anything is written, with no verdict.
 
 use super::expect;
-use crate::scenario::Scenario;
+use crate::scenario::{SMALLER, Scenario};
 
 /// Frames, tables and targets that do not go together.
 pub const MISFITS: &[Scenario] = &[
@@ -12,11 +12,11 @@ pub const MISFITS: &[Scenario] = &[
         &["--width", "64", "--height", "65"],
         "64 x 65 do not fit",
     ),
-    refused("a depth that the board lacks", ",depths=8+10", &[], "the board has no 12-bit samples"),
+    refused("a depth that the board lacks", ",depths=8+10", SMALLER, "the board has no 12-bit samples"),
     refused(
         "a kernel of seven taps on five",
         ",taps=five",
-        &["--kernel", "keys"],
+        &["--width", "128", "--height", "72", "--radius", "73.78", "--kernel", "keys"],
         "the kernel needs seven taps",
     ),
 ];

@@ -18,7 +18,7 @@ fn every_eightieth_of_the_small_scenarios() {
     let mut surprises = Vec::new();
     for scenario in all().filter(is_quick).step_by(80) {
         let board = plug(scenario.options);
-        surprises.extend(scenario.judge(&target(&board), "mock behind ftdi_sio: ", true).err());
+        surprises.extend(scenario.judge(&target(&board), "mock behind ftdi_sio: ").err());
     }
     let surprises: Vec<_> = surprises.iter().map(ToString::to_string).collect();
     assert!(surprises.is_empty(), "{}", surprises.join("\n"));

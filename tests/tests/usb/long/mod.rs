@@ -4,20 +4,18 @@
 mod speed;
 
 use halfrow_tests::scenarios::all;
-use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, is_small, of_boards, plug, run_all};
+use halfrow_tests::usb::{QEMU_CHIP, QemuBoard, of_boards, plug, run_all};
 
 use crate::unplugged;
 
 const PARTS: usize = 4;
 
-/// The scenarios behind an FT2232H whose number is `part` among all that fewer pixels suit, or that they do not.
 fn behind_an_ft2232h(part: usize) {
-    run_all(all().filter(is_small).skip(part).step_by(PARTS), "usb", true, plug);
-    run_all(all().filter(|scenario| !is_small(scenario)).skip(part).step_by(PARTS), "usb", false, plug);
+    run_all(all().skip(part).step_by(PARTS), "usb", plug);
 }
 
 fn behind_qemu_s_chip(part: usize) {
-    run_all(of_boards().skip(part).step_by(PARTS), QEMU_CHIP, true, QemuBoard::new);
+    run_all(of_boards().skip(part).step_by(PARTS), QEMU_CHIP, QemuBoard::new);
 }
 
 macro_rules! parts {
