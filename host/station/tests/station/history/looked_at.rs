@@ -10,7 +10,7 @@ use halfrow_station::record::{Record, RunCause};
 use super::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use super::served::{self, Served};
 use super::yields::{CASES, enter};
-use crate::common::program;
+use crate::common::{self, program};
 
 /// Sixty runs of seven units in four lanes by two operators, an hour after one another.
 fn many() -> (Served, Vec<(String, Run)>) {
@@ -251,7 +251,7 @@ fn samples(served: &Served, run: &str, name: &str, record: &Record) -> (Vec<u16>
 
 #[test]
 fn a_fail_keeps_the_frames_that_are_wrong_and_shows_them() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = common::folder();
     assert_eq!(judge(folder.path(), "mock,fault=stuck-data,bit=7", "CAT00001"), Some(1));
     assert_eq!(judge(folder.path(), "mock", "CAT00002"), Some(0));
     let served = Served::of(Made::at(folder));
