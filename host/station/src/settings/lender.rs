@@ -2,7 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use halfrow::target::Target;
+use halfrow::link::{self, kinds};
+use halfrow::target::{BoardKind, Target};
 
 use super::read::{not_empty, seconds};
 use super::stable;
@@ -40,15 +41,19 @@ impl Lender {
         if board.kind == KIND {
             return self.place(board, text);
         }
-        if halfrow::link::kinds::of(&board).is_none() {
+        let Some(kind) = kinds::of(&board) else {
             let what = format!("`{}` is no kind of board", board.kind);
             let remedy = format!("write one as `halfrow boards` lists them, or {KIND}:PLACE");
             return Err(Fault::wrong(at, what, remedy));
+        };
+        if let Some((what, remedy)) = stable::refused(&board) {
+            return Err(Fault::wrong(at, what, remedy));
         }
-        match stable::refused(&board) {
-            Some((what, remedy)) => Err(Fault::wrong(at, what, remedy)),
-            None => Ok(LaneBoard::Own(board)),
+        // It is there before any lane is, and opening it changes nothing.
+        if kind.board == BoardKind::Mock {
+            link::open(&board).map_err(|error| Fault::input(at, "the board", error))?;
         }
+        Ok(LaneBoard::Own(board))
     }
 
     fn place(&self, board: Target, text: &LaneText) -> Result<LaneBoard, Fault> {

@@ -67,6 +67,11 @@ fn a_record_is_exported_as_its_very_bytes() {
     let id = files[0].file_stem().unwrap().to_str().unwrap();
     let (code, said, _) = did(&made, &["export", id]);
     assert_eq!((code, said.as_bytes()), (0, fs::read(&files[0]).unwrap().as_slice()));
+    for filter in [["--verdict", "pass"], ["--until", "2020-01-01"]] {
+        let (code, _, complained) = did(&made, &[["export", id], filter].concat());
+        assert_eq!(code, 2);
+        assert!(complained.contains("cannot be used with"), "{complained}");
+    }
 }
 
 #[test]
