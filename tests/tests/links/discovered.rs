@@ -45,6 +45,9 @@ fn what_is_no_board_is_told_from_what_is_not_there() {
     assert_eq!((&missing["access"], &missing["answer"]), (&json!({ "state": "missing" }), &Value::Null));
     let refused = look_at("tcp:127.0.0.1:1", &["--ask"]);
     assert_eq!(refused["answer"]["state"], "failed");
+    // Nobody has looked whether it is free.
+    let asked = halfrow(["boards", "--ask", "tcp:127.0.0.1:1"]).stdout;
+    assert!(asked.contains("    cannot be asked: "), "{asked}");
     let text = halfrow(["boards", "serial:/dev/ttyUSB99"]).stdout;
     assert!(text.contains("is not there; check that the board is plugged in"), "{text}");
 }

@@ -111,7 +111,10 @@ fn state(device: &Found) -> String {
         Some(Answer::Foreign { reason }) => return format!("something else answers: {reason}"),
         Some(Answer::Silent) => return "nothing answers".to_owned(),
         Some(Answer::Busy) => return "busy: it is open elsewhere".to_owned(),
-        Some(Answer::Failed { reason }) => return format!("free, but cannot be asked: {reason}"),
+        Some(Answer::Failed { reason }) => {
+            let free = if device.access == Access::Free { "free, but " } else { "" };
+            return format!("{free}cannot be asked: {reason}");
+        }
         None => {}
     }
     match &device.access {
