@@ -96,9 +96,9 @@ impl Scenario {
         Self { on, ..self }
     }
 
-    /// Whether it is about fewer pixels than the paper's.
+    /// Whether it says how large its frames are, and is not at the paper's size.
     #[must_use]
-    pub fn is_small(&self) -> bool {
+    pub fn has_own_size(&self) -> bool {
         self.arguments.contains(&"--width")
     }
 
@@ -124,7 +124,7 @@ impl Scenario {
     /// # Errors
     /// As [`Self::run`].
     pub fn judge(&self, target: &str, board: &str) -> Result<Value, Box<Surprise>> {
-        let smaller = if kind(target) == "sim" && !self.is_small() { SMALLER } else { &[] };
+        let smaller = if kind(target) == "sim" && !self.has_own_size() { SMALLER } else { &[] };
         let arguments = self.arguments.iter().chain(smaller).copied();
         let ended = halfrow(["verify", "--json", "--board", target].into_iter().chain(arguments));
         let said = ended.json();

@@ -143,15 +143,15 @@ pub fn sentence(ended: &Ended) -> String {
     said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned)
 }
 
-/// Those that say something about a board, and are small: QEMU's chip stays plugged in whatever becomes of the link behind it.
+/// Those that say something about a board, and are not at the paper's size: QEMU's chip stays plugged in whatever becomes of the link behind it.
 pub fn of_boards() -> impl Iterator<Item = &'static Scenario> {
-    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(|scenario| scenario.is_small())
+    [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(|scenario| scenario.has_own_size())
 }
 
 /// Whether a scenario takes a few seconds only.
 #[must_use]
 pub fn is_quick(scenario: &&Scenario) -> bool {
-    scenario.is_small() && !SLOW.contains(&scenario.name)
+    scenario.has_own_size() && !SLOW.contains(&scenario.name)
 }
 
 /// Runs each of `scenarios` on a board of its own, which `plug` makes of its options and `target` names, and prints how

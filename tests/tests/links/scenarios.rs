@@ -8,7 +8,7 @@ use halfrow_tests::served::Served;
 
 /// All but those at full size, which would move the same bytes for much longer.
 fn small(scenarios: &'static [Scenario]) -> Vec<&'static Scenario> {
-    scenarios.iter().filter(|scenario| scenario.is_small()).collect()
+    scenarios.iter().filter(|scenario| scenario.has_own_size()).collect()
 }
 
 #[test]
