@@ -168,9 +168,10 @@ pub fn run_each(scenarios: &[&Scenario], board: &str) -> Vec<Value> {
 /// Runs `scenarios` on mock boards behind serial ports of their own, and returns their reports.
 ///
 /// # Panics
-/// When any of them comes to anything else than it should.
+/// When any of them comes to anything else than it should, or there is none.
 #[must_use]
 pub fn run_all_on_serial_ports(scenarios: &[&Scenario]) -> Vec<Value> {
+    assert!(!scenarios.is_empty(), "no scenario would pass for all of them");
     no_surprise(parallel::map(scenarios, |scenario| scenario.run_on_a_serial_port()))
 }
 
