@@ -22,7 +22,7 @@ use crate::store::Snapshot;
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
     /// The run, as `halfrow-station history` names it [default: all that the filters leave]
-    #[arg(conflicts_with_all = ["serial", "verdict", "plan", "lane", "operator", "Range"])]
+    #[arg(conflicts_with_all = Filtered::GROUPS)]
     run: Option<String>,
     #[command(flatten)]
     results: Results,

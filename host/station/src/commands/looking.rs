@@ -96,9 +96,9 @@ impl Counted {
     }
 }
 
-/// Which runs are meant.
+/// Which runs are meant, by what they say of themselves.
 #[derive(Debug, Args)]
-pub(super) struct Filtered {
+struct Said {
     /// Of the units of this serial number
     #[arg(long)]
     serial: Option<String>,
@@ -114,20 +114,31 @@ pub(super) struct Filtered {
     /// By this operator
     #[arg(long, value_name = "NAME")]
     operator: Option<String>,
+}
+
+/// Which runs are meant.
+#[derive(Debug, Args)]
+pub(super) struct Filtered {
+    #[command(flatten)]
+    said: Said,
     #[command(flatten)]
     range: Range,
 }
 
 impl Filtered {
+    /// The groups of its arguments, for what goes with none of them: Clap's group of a structure has nothing that is flattened into it.
+    pub(super) const GROUPS: [&str; 2] = ["Said", "Range"];
+
     /// As a filter.
     pub(super) fn filter(&self) -> Filter {
+        let Said { serial, verdict, plan, lane, operator } = &self.said;
         Filter {
-            serial: self.serial.clone(),
-            verdict: self.verdict.map(Into::into),
-            plan: self.plan.clone(),
+            serial: serial.clone(),
+            verdict: verdict.map(Into::into),
+            plan: plan.clone(),
             station: None,
-            lane: self.lane.clone(),
-            operator: self.operator.clone(),
+            lane: lane.clone(),
+            operator: operator.clone(),
             period: self.range.period(),
         }
     }
