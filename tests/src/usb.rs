@@ -143,7 +143,8 @@ pub fn sentence(ended: &Ended) -> String {
     said["headline"].as_str().map_or_else(|| error_sentence(&said), str::to_owned)
 }
 
-/// Those that say something about a board, and are not at the paper's size: QEMU's chip stays plugged in whatever becomes of the link behind it.
+/// Those that say something about a board, and are not at the paper's size: QEMU's chip stays plugged in whatever becomes of the
+/// link behind it.
 pub fn of_boards() -> impl Iterator<Item = &'static Scenario> {
     [SOUND_BOARDS, BROKEN_BOARDS, MISFITS].into_iter().flatten().filter(|scenario| scenario.has_own_size())
 }
@@ -158,13 +159,15 @@ pub fn is_quick(scenario: &&Scenario) -> bool {
 /// long each took.
 ///
 /// # Panics
-/// When one of them comes to anything else than it should.
+/// When one of them comes to anything else than it should, or there is none.
 #[allow(clippy::print_stdout)]
 pub fn run_all<'a, B>(
     scenarios: impl IntoIterator<Item = &'a Scenario>,
     target: &str,
     plug: impl Fn(&str) -> B,
 ) {
+    let mut scenarios = scenarios.into_iter().peekable();
+    assert!(scenarios.peek().is_some(), "no scenario would pass for all of them");
     let mut surprises = Vec::new();
     for scenario in scenarios {
         let begun = Instant::now();
