@@ -163,16 +163,17 @@ pub fn is_quick(scenario: &&Scenario) -> bool {
 #[allow(clippy::print_stdout)]
 pub fn run_all<'a, B>(
     scenarios: impl IntoIterator<Item = &'a Scenario>,
-    target: &str,
     plug: impl Fn(&str) -> B,
+    target: impl Fn(&B) -> String,
 ) {
     let mut scenarios = scenarios.into_iter().peekable();
     assert!(scenarios.peek().is_some(), "no scenario would pass for all of them");
     let mut surprises = Vec::new();
     for scenario in scenarios {
         let begun = Instant::now();
-        let _board = plug(scenario.options);
-        surprises.extend(scenario.judge(target, &format!("mock behind {target}: ")).err());
+        let board = plug(scenario.options);
+        let target = target(&board);
+        surprises.extend(scenario.judge(&target, &format!("mock behind {target}: ")).err());
         println!("{:6.1} s  {}", begun.elapsed().as_secs_f64(), scenario.name);
     }
     let surprises: Vec<_> = surprises.iter().map(ToString::to_string).collect();

@@ -7,7 +7,7 @@ use halfrow::compare::{Comparison, Difference};
 use halfrow::result::{BoardKind, Defect, FrameReport, MadeWith, Problem, Report, StaleFrames, Variation};
 use halfrow::verdict::Verdict;
 
-#[path = "../../judge/tests/report_views/made.rs"]
+#[path = "../../../tests/tests/report_views/made.rs"]
 mod made;
 
 /// The text as a pipe gets it.

@@ -2,7 +2,7 @@
 
 use halfrow_ft2232h::Plugged;
 use halfrow_tests::scenarios::all;
-use halfrow_tests::usb::{chip, is_quick, sentence, serial_port, uart, verify};
+use halfrow_tests::usb::{chip, is_quick, run_all, sentence, serial_port, uart, verify};
 
 fn plug(options: &str) -> Plugged {
     Plugged::new(chip(uart(), options), 0).unwrap()
@@ -15,13 +15,7 @@ fn target(board: &Plugged) -> String {
 #[test]
 #[ignore = "needs scripts/in-linux"]
 fn every_eightieth_of_the_small_scenarios() {
-    let mut surprises = Vec::new();
-    for scenario in all().filter(is_quick).step_by(80) {
-        let board = plug(scenario.options);
-        surprises.extend(scenario.judge(&target(&board), "mock behind ftdi_sio: ").err());
-    }
-    let surprises: Vec<_> = surprises.iter().map(ToString::to_string).collect();
-    assert!(surprises.is_empty(), "{}", surprises.join("\n"));
+    run_all(all().filter(is_quick).step_by(80), plug, target);
 }
 
 #[test]

@@ -11,11 +11,11 @@ use crate::unplugged;
 const PARTS: usize = 4;
 
 fn behind_an_ft2232h(part: usize) {
-    run_all(all().skip(part).step_by(PARTS), "usb", plug);
+    run_all(all().skip(part).step_by(PARTS), plug, |_| "usb".to_owned());
 }
 
 fn behind_qemu_s_chip(part: usize) {
-    run_all(of_boards().skip(part).step_by(PARTS), QEMU_CHIP, QemuBoard::new);
+    run_all(of_boards().skip(part).step_by(PARTS), QemuBoard::new, |_| QEMU_CHIP.to_owned());
 }
 
 macro_rules! parts {

@@ -103,7 +103,7 @@ fn nothing_is_overwritten_by_an_export() {
 fn every_document_is_one_that_jenkins_takes() {
     let made = made();
     let (_kept, to) = exported(&made, "junit");
-    let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/../judge/tests/report_views/junit.xsd");
+    let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/tests/report_views/junit.xsd");
     let lint = |document: &str| {
         let mut lint = Command::new("xmllint")
             .args(["--noout", "--nonet", "--schema", schema, "-"])

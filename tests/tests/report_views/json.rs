@@ -13,7 +13,7 @@ fn json(report: &Report) -> Value {
 /// A report that is equal to the other when it is read back.
 #[track_caller]
 fn assert_same_when_read_back(report: &Report) {
-    // From the text by way of values: a second way to read a report would be compiled for half a minute.
+    // From the text by way of values: a second way to read a report would take long to compile.
     let again: Report = serde_json::from_value(json(report)).unwrap();
     assert_eq!(again, *report);
 }
