@@ -97,7 +97,8 @@ impl Lens {
         self.optics.camera.lens().column(degrees.to_radians())
     }
 
-    /// The built-in frame `name`, one of `halfrow.BUILTIN_FRAMES`, as this lens sees it: uint16 of shape (height, width).
+    /// The built-in frame `name`, one of `halfrow.BUILTIN_FRAMES`, as an equidistant lens of this R sees it: uint16 of shape
+    /// (height, width).
     ///
     /// `phase` is grbg, rggb, bggr or gbrg; `seed` is that of noise.
     #[pyo3(signature = (name, *, phase = "grbg", seed = 1))]
