@@ -5,8 +5,9 @@
 
 use std::io;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, LazyLock};
+use std::sync::{Arc, LazyLock, mpsc};
 use std::thread;
+use std::time::Duration;
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
@@ -14,6 +15,9 @@ use signal_hook::iterator::Signals;
 use crate::console;
 use crate::exit::Exit;
 use halfrow_frames::written_aside;
+
+/// How long the last words may take.
+const TOLD: Duration = Duration::from_millis(300);
 
 /// Holds the exit code of the first signal, and 0 before.
 static FIRST: LazyLock<Arc<AtomicUsize>> = LazyLock::new(Arc::default);
@@ -57,8 +61,20 @@ fn receive(exit: Exit) {
         return;
     }
     written_aside::abandon_all();
-    console::error(&"stopped by a signal; what was not whole yet is gone");
+    tell("stopped by a signal; what was not whole yet is gone");
     signal_hook::low_level::exit(exit.code().into());
+}
+
+/// Says it on stderr, where somebody reads that: the rest of the program may wait there for ever.
+fn tell(said: &'static str) {
+    let (done, is_done) = mpsc::channel();
+    let teller = thread::Builder::new().spawn(move || {
+        console::error(&said);
+        let _ = done.send(());
+    });
+    if teller.is_ok() {
+        let _ = is_done.recv_timeout(TOLD);
+    }
 }
 
 /// Whether whoever started the program wants it not to hear this signal, as far as the system tells.

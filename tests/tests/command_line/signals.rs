@@ -1,8 +1,15 @@
 //! Ctrl-C, SIGTERM and SIGHUP: a command ends soon, says so, and leaves nothing half done.
 
-use std::fs::OpenOptions;
+use std::fs::{OpenOptions, read_to_string};
+use std::io::{PipeReader, PipeWriter, Write as _};
+use std::os::fd::AsRawFd as _;
+use std::process::Stdio;
 
+use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Ended, Folder, Running};
+use nix::fcntl::{FcntlArg, OFlag, fcntl};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 
 use crate::running::{SLOW, started, stop_amid, streaming, until_there_is};
 use crate::small;
@@ -129,4 +136,37 @@ fn a_second_signal_ends_at_once_what_the_first_could_not() {
     let ended = running.end();
     assert!([Some(130), Some(143)].contains(&ended.code), "{ended:?}");
     assert_eq!(folder.names("out"), [""; 0]);
+}
+
+/// Its log waits for somebody to read it.
+#[test]
+fn a_second_signal_ends_what_waits_to_say_something() {
+    let folder = Folder::new();
+    let (_unread, full) = full_pipe();
+    let mut command =
+        folder.by_shell("exec env --default-signal=INT,TERM,HUP \"$@\"", ["verify", "-vv", "--board", SLOW]);
+    let mut child = command.stderr(full).stdout(Stdio::null()).spawn().unwrap();
+    let status = format!("/proc/{}/status", child.id());
+    wait_until("the program to hear signals", || {
+        let status = read_to_string(&status).unwrap();
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim();
+        u64::from_str_radix(caught, 16).unwrap() >> (Signal::SIGTERM as i32 - 1) & 1 == 1
+    });
+    wait_until("the program to end", || {
+        kill(Pid::from_raw(child.id().cast_signed()), Signal::SIGTERM).unwrap();
+        child.try_wait().unwrap().is_some()
+    });
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
+
+/// A pipe that takes nothing more, since nobody reads it: its two ends.
+fn full_pipe() -> (PipeReader, PipeWriter) {
+    let (unread, mut full) = std::io::pipe().unwrap();
+    let descriptor = full.as_raw_fd();
+    let set = |flags| fcntl(descriptor, FcntlArg::F_SETFL(flags)).unwrap();
+    set(OFlag::O_NONBLOCK);
+    while full.write(&[b'.'; 1000]).is_ok() {}
+    while full.write(b".").is_ok() {}
+    set(OFlag::empty());
+    (unread, full)
 }
