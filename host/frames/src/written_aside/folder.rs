@@ -11,8 +11,8 @@ use super::{folder_of, rename};
 
 /// How often a place is looked at again that changes between two looks.
 const LOOKS: usize = 100;
-/// What was in the place is called so while it is out of the way, where folders cannot be swapped.
-const EARLIER: &str = "earlier";
+/// The end of the name of what was in the place while it is out of the way, where folders cannot be swapped.
+const EARLIER: &str = ".earlier";
 
 /// A folder with a name of ours beside the place that it is for. It goes, with all that is in it, if it is not put
 /// there.
@@ -111,16 +111,20 @@ impl AsideFolder {
 
     /// Swaps in three steps. What is moved out of the way comes back when ours is not taken.
     fn exchange(&self) -> io::Result<()> {
-        let away =
-            tempfile::Builder::new().prefix(".halfrow-away-").tempdir_in(folder_of(&self.target))?.keep();
-        fs::rename(&self.target, away.join(EARLIER))?;
+        let earlier = self.move_away()?;
         if let Err(refused) = rename::to_new(self.path(), &self.target) {
             // When even that fails it stays where it is, never to be removed.
-            rename::to_new(&away.join(EARLIER), &self.target)?;
-            fs::remove_dir(&away)?;
+            rename::to_new(&earlier, &self.target)?;
             return Err(refused);
         }
-        fs::remove_dir_all(&away)
+        fs::remove_dir_all(&earlier)
+    }
+
+    /// Renames what is in the place to NAME.earlier beside it, where it is found if this run is killed then.
+    fn move_away(&self) -> io::Result<PathBuf> {
+        let mut name = self.target.file_name().unwrap_or_default().to_owned();
+        name.push(EARLIER);
+        under_way::to_free_name(&self.target, &name)
     }
 
     fn done(self) -> Result<(), Misplaced> {
@@ -195,6 +199,12 @@ mod tests {
         second.exchange().unwrap();
         second.done().unwrap();
         assert_eq!((text(&target), entries(station.path())), ("second".to_owned(), 1));
+        let killed = aside(&target, "killed");
+        let earlier = killed.move_away().unwrap();
+        drop(killed);
+        under_way::clean(station.path());
+        assert_eq!((text(&earlier), entries(station.path())), ("second".to_owned(), 1));
+        fs::rename(earlier, &target).unwrap();
         let third = aside(&target, "third");
         fs::remove_dir_all(third.path()).unwrap();
         assert_eq!(third.exchange().unwrap_err().kind(), io::ErrorKind::NotFound);

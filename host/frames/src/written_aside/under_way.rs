@@ -183,7 +183,11 @@ fn is_worth_keeping(path: &Path) -> bool {
 /// Gives a stream that ended early its name for good, NAME.partial, or with a number if that is taken.
 pub(super) fn kept(path: &Path) -> io::Result<PathBuf> {
     let name = path.file_name().unwrap_or_default().as_bytes();
-    let name = OsStr::from_bytes(name.get(PREFIX.len() + DRAWN + 1..).unwrap_or(name));
+    to_free_name(path, OsStr::from_bytes(name.get(PREFIX.len() + DRAWN + 1..).unwrap_or(name)))
+}
+
+/// Renames `path` to `name` beside it, or with a number if that is taken.
+pub(super) fn to_free_name(path: &Path, name: &OsStr) -> io::Result<PathBuf> {
     for number in 1..1000 {
         let mut name = name.to_owned();
         if number > 1 {
