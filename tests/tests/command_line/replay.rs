@@ -144,6 +144,17 @@ fn what_is_no_recording_is_refused() {
     refused(&folder, &replay("replay:run.rec,speed=1"), "takes no option");
 }
 
+/// Its frames would fill the memory before any of them was asked for.
+#[test]
+fn a_recording_of_more_frames_than_a_run_may_have_is_refused() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    let recording = String::from_utf8_lossy(&folder.read("run.rec")).into_owned();
+    assert!(recording.contains("\"repeat\":1"));
+    folder.write("many.rec", recording.replacen("\"repeat\":1", "\"repeat\":4294967295", 1));
+    refused(&folder, &["verify", "--board", "replay:many.rec"], "frames");
+}
+
 #[test]
 fn a_recording_that_is_there_is_kept() {
     let folder = Folder::new();

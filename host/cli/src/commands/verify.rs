@@ -120,8 +120,8 @@ impl Arguments {
             }
             None => self.plan(frames, files, context)?,
         };
-        self.run.board.check_fault(settings, &plan)?;
         plan.check_length().map_err(Failure::call)?;
+        self.run.board.check_fault(settings, &plan)?;
         Ok((plan, options))
     }
 
