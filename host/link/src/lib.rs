@@ -100,7 +100,7 @@ pub enum LinkError {
         at: Duration,
     },
     /// A board in this process has failed.
-    #[error("{board} stopped at {:.3} s", at.as_secs_f64())]
+    #[error("{board} stopped at {:.3} s; run again, and report it if it stops once more", at.as_secs_f64())]
     Stopped {
         /// Which board.
         board: &'static str,

@@ -53,7 +53,7 @@ pub enum ServeError {
     #[error("{0} is there already; remove it, or choose another name with --link")]
     Exists(std::path::PathBuf),
     /// The board is gone.
-    #[error("the board that was served is gone")]
+    #[error("the board that was served is gone; check its cable and power, then serve it again")]
     Board(#[source] LinkError),
 }
 

@@ -81,7 +81,7 @@ pub enum BoardError {
         refusal: Refusal,
     },
     /// The board's answer does not parse, although its CRC is right.
-    #[error("the board's answer to {kind} makes no sense; its bitstream and this halfrow do not match")]
+    #[error("the board's answer to {kind} makes no sense; load a bitstream that this halfrow is made for")]
     Malformed {
         /// The request.
         kind: Kind,
@@ -90,7 +90,7 @@ pub enum BoardError {
         source: Malformed,
     },
     /// The answer has another kind than the request.
-    #[error("the board answered {kind} with something else; its bitstream and this halfrow do not match")]
+    #[error("the board answered {kind} with something else; load a bitstream that this halfrow is made for")]
     Unexpected {
         /// The request.
         kind: Kind,
@@ -109,7 +109,10 @@ pub enum BoardError {
         limit: u64,
     },
     /// A row did not come back.
-    #[error("row {row} of frame {frame} did not come back in {attempts} tries", row = .place.row, frame = .place.frame)]
+    #[error(
+        "row {row} of frame {frame} did not come back in {attempts} tries; let `halfrow verify` tell whether the board or \
+         the link loses it", row = .place.row, frame = .place.frame
+    )]
     RowMissing {
         /// The row.
         place: RowPlace,
@@ -118,8 +121,8 @@ pub enum BoardError {
     },
     /// A row came back under another name.
     #[error(
-        "the board returned row {row} of frame {frame} under a place that was never sent; its bitstream and this \
-         halfrow do not match", row = .place.row, frame = .place.frame
+        "the board returned row {row} of frame {frame} under a place that was never sent; load a bitstream that this \
+         halfrow is made for", row = .place.row, frame = .place.frame
     )]
     WrongPlace {
         /// The place that the board named.

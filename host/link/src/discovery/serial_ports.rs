@@ -15,7 +15,7 @@ const NAMES: [&str; 2] = ["/dev/serial/by-id", "/dev/serial/by-path"];
 /// The serial ports of this computer.
 pub(crate) fn find() -> Vec<Found> {
     // Without this folder serialport's list panics.
-    if cfg!(target_os = "linux") && !Path::new("/sys/class/tty").is_dir() {
+    if !Path::new("/sys/class/tty").is_dir() {
         return Vec::new();
     }
     let ports = serialport::available_ports().unwrap_or_else(|error| {
