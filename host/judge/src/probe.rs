@@ -20,9 +20,7 @@ pub fn probe(target: &Target) -> Answer {
     match Board::open(candidate.link, &options) {
         Ok(mut board) => {
             let (name, datapath) = (board.capabilities.name.clone(), board.capabilities.datapath);
-            if let Err(error) = board.close() {
-                tracing::info!("the session was not closed: {error}");
-            }
+            board.close();
             Answer::Board { name, datapath }
         }
         Err((BoardError::Held { .. }, _)) => Answer::Held,

@@ -3,6 +3,17 @@
 use halfrow_tests::program::halfrow;
 use serde_json::json;
 
+/// The reply to its closing RESET among them: a session that is lost is closed.
+#[test]
+fn a_board_is_told_of_whatever_reply_is_lost() {
+    for packet in 1..10 {
+        let board = format!("mock,fault=drop,packet={packet},toward=host");
+        let told = halfrow(["info", "--board", &board]);
+        assert_eq!(told.code, Some(0), "packet {packet}: {told:?}");
+        assert!(told.stdout.contains("pixel clock"), "packet {packet}: {told:?}");
+    }
+}
+
 #[test]
 fn a_board_says_what_it_makes_at_full_speed() {
     let said = |board| halfrow(["info", "--board", board]).stdout;

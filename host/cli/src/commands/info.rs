@@ -20,8 +20,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let candidate = arguments.board.candidate(&context.settings)?;
     let options = arguments.board.open_options(&context.settings, None)?;
     let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
-    let status = board.status(false)?;
-    board.close()?;
+    let status = board.status(false);
+    board.close();
+    let status = status?;
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);
     let report = BoardReport { kind, target: candidate.target, identity: Some(identity) };

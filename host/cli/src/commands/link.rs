@@ -37,9 +37,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let tested = link_test::run(&mut board, arguments.seconds, arguments.seed);
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);
-    if let Err(error) = board.close() {
-        tracing::debug!("the session was not closed: {error}");
-    }
+    board.close();
     let figures = tested.map_err(|error| match error {
         LinkTestError::Board(error) => error.into(),
         error @ LinkTestError::NoFrame(_) => Failure::error(error),

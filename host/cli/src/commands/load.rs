@@ -169,9 +169,7 @@ fn greet(target: &Target) -> Result<BoardReport, (Failure, bool)> {
     })?;
     let identity = Identity::of(&board.welcome, &board.capabilities);
     let kind = candidate.kind.confirmed_by(board.capabilities.nature);
-    if let Err(error) = board.close() {
-        tracing::debug!("the session was not closed: {error}");
-    }
+    board.close();
     Ok(BoardReport { kind, target: candidate.target, identity: Some(identity) })
 }
 

@@ -82,11 +82,23 @@ impl Board {
         })
     }
 
-    /// Lets `time` pass on the link's clock, or less when something comes.
+    /// Lets `time` pass on the link's clock, or less where that stands still.
     ///
     /// # Errors
     /// [`BoardError`] when the link breaks, or the run was stopped.
     pub(crate) fn idle(&mut self, time: Duration) -> Result<(), BoardError> {
-        self.conversation.exchange(time, || "waiting for frames that the board makes".to_owned(), |_| {})
+        let mut left = time;
+        while !left.is_zero() {
+            // A link may end a wait early.
+            let (begun, bytes) = (self.now(), self.tally().bytes_in);
+            let doing = || "waiting for frames that the board makes".to_owned();
+            self.conversation.exchange(left, doing, |_| {})?;
+            let passed = self.conversation.since(begun);
+            if passed.is_zero() && self.tally().bytes_in == bytes {
+                break;
+            }
+            left = left.saturating_sub(passed);
+        }
+        Ok(())
     }
 }

@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{RefusalCode, Reply, Request, RowIn, RowPlace};
+use halfrow_protocol::message::{Reply, Request, RowIn, RowPlace};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet};
 
+use super::answer::{Kept, take_reply};
 use super::asked::{Asking, LastAsked, Stray};
 use super::conduct::Conduct;
 use super::deadlines::{RetryLimit, Step};
@@ -14,6 +15,9 @@ use crate::link::{LineErrors, Link, LinkError, Severed};
 /// The most that an exchange counts as a wait that moved something, and so did not wait to the end: all the rest may be that
 /// the host was kept from running, and then there is more to be read.
 const BRIEF: Duration = Duration::from_millis(50);
+
+/// The most input banks that a board can have: so far its window may be ahead of the rows that it was given.
+const MOST_BANKS: u32 = u8::MAX as u32;
 
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -52,18 +56,6 @@ impl std::ops::AddAssign for Tally {
     }
 }
 
-/// A packet that was kept.
-pub(super) struct Kept {
-    header: Header,
-    payload: Vec<u8>,
-}
-
-impl Kept {
-    pub(super) fn packet(&self) -> Packet<'_> {
-        Packet { header: self.header, payload: &self.payload }
-    }
-}
-
 pub(super) struct Conversation {
     link: Box<dyn Link>,
     encoder: Encoder,
@@ -73,8 +65,8 @@ pub(super) struct Conversation {
     sequence: u16,
     /// 0 until a board has answered HELLO.
     pub(super) session: u8,
-    /// The row sequence number before which rows may be sent.
-    pub(super) credit: u32,
+    /// The board's, the greatest of all packets.
+    window: u32,
     /// The row sequence number before which every row has come back.
     pub(super) acknowledged: u32,
     pub(super) tally: Tally,
@@ -108,7 +100,7 @@ impl Conversation {
             incoming: Vec::new(),
             sequence: 0,
             session: 0,
-            credit: 0,
+            window: 0,
             acknowledged: 0,
             tally: Tally::default(),
             limit,
@@ -126,10 +118,15 @@ impl Conversation {
 
     /// Forgets the session, and what belongs to it.
     pub(super) fn leave_session(&mut self) {
-        (self.session, self.credit, self.acknowledged, self.rows_sent, self.unwanted) = (0, 0, 0, 0, 0);
+        (self.session, self.window, self.acknowledged, self.rows_sent, self.unwanted) = (0, 0, 0, 0, 0);
         self.conduct = Conduct::default();
         self.asked = LastAsked::default();
         self.repeated_changes = 0;
+    }
+
+    /// The row sequence number before which rows may be sent: the board's window, as far as it can be true.
+    pub(super) fn credit(&self) -> u32 {
+        self.window.min(self.rows_sent.max(self.acknowledged).saturating_add(MOST_BANKS))
     }
 
     /// Closes the link and forgets what it did.
@@ -274,7 +271,7 @@ impl Conversation {
                     self.heard_at = now;
                     self.tally.packets_in += 1;
                     if self.session != 0 {
-                        self.credit = self.credit.max(packet.header.window);
+                        self.window = self.window.max(packet.header.window);
                         self.conduct.packet(&packet, self.rows_sent);
                         if let Some(stray) = self.asked.answered(&packet, now) {
                             strays.push(stray);
@@ -382,18 +379,5 @@ impl Conversation {
     ) -> Result<T, BoardError> {
         let answer = self.ask(&Asking::Request(request), step, |_| true)?;
         take_reply(request.kind(), &answer, take)
-    }
-}
-
-/// The expected part of a reply, or the error that stands in its place.
-pub(super) fn take_reply<T>(
-    kind: Kind,
-    answer: &Kept,
-    take: impl FnOnce(Reply<'_>) -> Option<T>,
-) -> Result<T, BoardError> {
-    match Reply::read(&answer.packet()).map_err(|source| BoardError::Malformed { kind, source })? {
-        Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
-        Reply::Refusal(refusal) => Err(BoardError::Refused { kind, refusal }),
-        reply => take(reply).ok_or(BoardError::Unexpected { kind }),
     }
 }

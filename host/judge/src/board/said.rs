@@ -3,8 +3,8 @@
 use halfrow_protocol::message::{Burst, Refusal, RefusalCode, Reply, Request, Reset, ResetLevel, RowPlace};
 use halfrow_protocol::{Kind, Packet, samples};
 
+use super::answer::take_reply;
 use super::asked::Asking;
-use super::conversation::take_reply;
 use super::deadlines::Step;
 use super::{Board, BoardError, RowTraffic, rows};
 
@@ -80,7 +80,7 @@ impl Board {
     /// The row sequence number before which rows may be sent, as far as the board has said.
     #[must_use]
     pub(crate) fn credit(&self) -> u32 {
-        self.conversation.credit
+        self.conversation.credit()
     }
 
     /// Drops the rows inside the board, which then waits for row sequence number `next_row`, one that was not sent yet.

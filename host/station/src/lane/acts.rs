@@ -120,7 +120,7 @@ impl Common<'_> {
             Err(result) => return *result,
         };
         let identity = Identity::of(&board.welcome, &board.capabilities);
-        close(&mut board);
+        board.close();
         let seen = seen(kind, &identity);
         let result = self.not_allowed(kind, &seen).unwrap_or_else(|| self.ruled(&seen));
         Try { board: Some(seen), ..result }
@@ -175,7 +175,7 @@ impl Common<'_> {
             return exchanged;
         }
         let tested = link_test::run(&mut board, each, self.seed);
-        close(&mut board);
+        board.close();
         let figures = match tested {
             Ok(figures) => figures,
             Err(error) => {
@@ -270,12 +270,6 @@ impl Common<'_> {
             .map_err(|(error, _)| Box::new(Try::error(error.cause(), &error)))?;
         let kind = candidate.kind.confirmed_by(board.capabilities.nature);
         Ok((board, kind))
-    }
-}
-
-fn close(board: &mut Board) {
-    if let Err(error) = board.close() {
-        tracing::debug!("the session was not closed: {error}");
     }
 }
 

@@ -108,9 +108,8 @@ impl<'a> Stream<'a> {
     }
 
     fn run(&mut self) -> Result<(), BoardError> {
-        self.fetch();
         self.go_on();
-        while self.arrivals.flow.is_continue() && !self.is_complete() {
+        while self.arrivals.flow.is_continue() && self.has_more() {
             self.fill();
             self.receive()?;
             if self.overdue() {
@@ -128,8 +127,12 @@ impl<'a> Stream<'a> {
         self.missing_since = self.progress_at;
     }
 
-    fn is_complete(&self) -> bool {
-        self.exhausted && self.missing() == self.arrivals.in_flight.end()
+    /// Whether a row has still to come back; what the last frame was is known only when another is fetched.
+    fn has_more(&mut self) -> bool {
+        if self.missing() == self.arrivals.in_flight.end() && !self.exhausted {
+            self.fetch();
+        }
+        self.missing() != self.arrivals.in_flight.end()
     }
 
     /// The oldest row that has not come back.
@@ -146,7 +149,7 @@ impl<'a> Stream<'a> {
 
     /// Queues rows as far as credit and queue allow, or an acknowledgement when there is none to send.
     fn fill(&mut self) {
-        while self.conversation.queued() < QUEUE && self.sent < self.conversation.credit {
+        while self.conversation.queued() < QUEUE && self.sent < self.conversation.credit() {
             if self.sent == self.arrivals.in_flight.end() {
                 if !self.exhausted {
                     self.fetch();
@@ -196,6 +199,8 @@ impl<'a> Stream<'a> {
             self.conversation.took(self.attempts - 1, took);
             self.late.came(missing, self.attempts - 1, took);
             self.attempts = 1;
+            // One that is asked for again is sent without credit, and may come back all the same.
+            self.sent = self.sent.max(self.missing());
             self.go_on();
         }
         for row in std::mem::take(&mut self.arrivals.copies) {

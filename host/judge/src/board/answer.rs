@@ -1,0 +1,31 @@
+//! An answer that was waited for, and what it says.
+
+use halfrow_protocol::message::{RefusalCode, Reply};
+use halfrow_protocol::{Header, Kind, Packet};
+
+use super::BoardError;
+
+/// A packet that was kept.
+pub(super) struct Kept {
+    pub(super) header: Header,
+    pub(super) payload: Vec<u8>,
+}
+
+impl Kept {
+    pub(super) fn packet(&self) -> Packet<'_> {
+        Packet { header: self.header, payload: &self.payload }
+    }
+}
+
+/// The expected part of a reply, or the error that stands in its place.
+pub(super) fn take_reply<T>(
+    kind: Kind,
+    answer: &Kept,
+    take: impl FnOnce(Reply<'_>) -> Option<T>,
+) -> Result<T, BoardError> {
+    match Reply::read(&answer.packet()).map_err(|source| BoardError::Malformed { kind, source })? {
+        Reply::Refusal(refusal) if refusal.code == RefusalCode::Session => Err(BoardError::SessionLost),
+        Reply::Refusal(refusal) => Err(BoardError::Refused { kind, refusal }),
+        reply => take(reply).ok_or(BoardError::Unexpected { kind }),
+    }
+}
