@@ -1,11 +1,17 @@
 //! What boards do over rows that no link can do, and what links do that is no fault of a board.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use halfrow::result::{CheckName, Report};
+use halfrow::run::{Plan, Vary};
 use halfrow::verdict::Verdict;
+use halfrow_mock::Options;
+use halfrow_model::{BitDepth, Geometry};
 use halfrow_protocol::message::{RowOut, RowPlace};
-use halfrow_protocol::{Kind, Reply};
-use halfrow_tests::altered::{Passing, Toward, judge, judge_each};
-use halfrow_tests::system::{System, failed_check};
+use halfrow_protocol::{Kind, Reply, samples};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge, judge_each};
+use halfrow_tests::system::{System, failed_check, judge_by_plan};
 
 #[track_caller]
 fn fails(report: &Report, check: CheckName, sentence: &str) {
@@ -206,4 +212,115 @@ fn the_verilog_counts_what_the_host_sees() {
     for board in ["sim", "sim,fault=lose,rate=0.02,seed=3", "sim,fault=stall,every=12000,seconds=3"] {
         passes(&System::TINY.judge_at(board));
     }
+}
+
+/// Every answer to a read-back in turn is wrong, once: those between frames with other settings, and the last.
+#[test]
+fn a_board_that_reads_back_wrong_once_fails_whenever_that_is() {
+    let plan = System { height: 16, ..System::TINY }.plan().varying(Vary { centre: true, depth: true });
+    let judged = |which: usize| {
+        let answers = Arc::new(AtomicUsize::new(0));
+        let seen = Arc::clone(&answers);
+        let alter = move |toward, packet: Passing| match packet.reply() {
+            Some(Reply::TableCrc(crc))
+                if toward == Toward::Host && seen.fetch_add(1, Ordering::Relaxed) == which =>
+            {
+                vec![packet.saying(&Reply::TableCrc(crc ^ 1))]
+            }
+            _ => vec![packet],
+        };
+        let report = judge_by_plan(&plan, Altered::new(&Options::default(), alter).candidate());
+        (report, answers.load(Ordering::Relaxed))
+    };
+    let (sound, answers) = judged(usize::MAX);
+    passes(&sound);
+    assert!(answers > 10, "{answers}");
+    for which in 0..answers {
+        let (report, _) = judged(which);
+        assert_eq!(report.verdict, Verdict::Fail, "answer {which} of {answers}: {}", report.headline());
+    }
+}
+
+/// Where it stands between two frames, all rows have come back that the host may send.
+#[test]
+fn a_window_that_stands_still_ends_the_run() {
+    let system = System { height: 16, ..System::TINY };
+    for most in [0, 15, 16, 17, 32, 48] {
+        let report = judge_each(&system, move |toward, mut packet| {
+            if toward == Toward::Host {
+                packet.header.window = packet.header.window.min(most);
+            }
+            packet
+        });
+        assert_eq!(report.verdict, Verdict::Error, "{most}: {}", report.headline());
+    }
+}
+
+#[test]
+fn a_window_beyond_every_row_does_no_harm() {
+    for which in (0..400).step_by(5) {
+        let mut seen = 0;
+        let report = judge_each(&System::TINY, move |toward, mut packet| {
+            seen += usize::from(toward == Toward::Host);
+            if toward == Toward::Host && seen == which + 1 {
+                packet.header.window = u32::MAX;
+            }
+            packet
+        });
+        assert_ne!(report.verdict, Verdict::Fail, "packet {which}: {}", report.headline());
+    }
+}
+
+/// Whether the link delivered a request twice is known by STATUS alone.
+#[test]
+fn what_is_wrong_is_no_fail_while_the_board_does_not_tell_what_came_to_it() {
+    // With a wrong row, and no answer to STATUS from the answer number `until` on.
+    let judged = |until: usize| {
+        let answers = Arc::new(AtomicUsize::new(0));
+        let seen = Arc::clone(&answers);
+        let report = judge(&System::TINY, move |toward, packet| {
+            if toward == Toward::Host && packet.is(Kind::Status) {
+                let is_answered = seen.fetch_add(1, Ordering::Relaxed) < until;
+                return if is_answered { vec![packet] } else { Vec::new() };
+            }
+            match place(&packet) {
+                Some(place) if toward == Toward::Host && place.row_sequence == 5 => {
+                    let number = packet.header.sequence;
+                    vec![changed(&packet, number, |_, packed| packed[0] ^= 1)]
+                }
+                _ => vec![packet],
+            }
+        });
+        (report, answers.load(Ordering::Relaxed))
+    };
+    let (report, answers) = judged(usize::MAX);
+    assert_eq!(report.verdict, Verdict::Fail, "{}", report.headline());
+    let (report, _) = judged(answers - 1);
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+}
+
+#[test]
+fn samples_that_the_depth_cannot_hold_are_kept_and_explained() {
+    let plan = Plan { fail_fast: false, ..System { height: 16, ..System::TINY }.plan() };
+    let own = plan.tables.geometry();
+    let geometry = Geometry::new(own.width(), own.height(), BitDepth::Eight, own.centre2()).unwrap();
+    let tables = plan.tables.with_geometry(geometry).unwrap();
+    let alter = move |_, packet: Passing| match place(&packet) {
+        Some(place) => {
+            let number = packet.header.sequence;
+            vec![changed(&packet, number, |_, packed| {
+                let mut row = vec![0; place.width.into()];
+                samples::unpack(packed, &mut row);
+                row.iter_mut().for_each(|sample| *sample |= 1 << 9);
+                packed.clear();
+                samples::pack(&row, packed);
+            })]
+        }
+        None => vec![packet],
+    };
+    let candidate = Altered::new(&Options::default(), alter).candidate();
+    let report = judge_by_plan(&Plan { tables, ..plan }, candidate);
+    fails(&report, CheckName::Frames, "differ");
+    assert!(report.evidence.kept > 0);
+    assert!(!report.suspects.is_empty(), "{}", report.headline());
 }

@@ -20,6 +20,8 @@ pub enum Doubt {
         /// What was sent.
         sent: u64,
     },
+    /// The board does not tell how many packets came to it.
+    PacketsUncounted {},
 }
 
 impl Doubt {

@@ -7,9 +7,10 @@ use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Instant;
 
-use halfrow_model::{Frame, row_signature};
+use halfrow_model::{BitDepth, Frame, row_signature};
 
 use super::exercised::SampleLevels;
+use super::findings::End;
 use super::kept::Kept;
 use super::prepared::{PrepareError, Prepared};
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -32,6 +33,16 @@ pub(super) struct Seen {
     pub(super) wrong_entry: Option<WrongEntry>,
     /// The first row whose gaps are not those of the seed.
     pub(super) wrong_pauses: Option<Finding>,
+    /// That tables had changed before others were to be put in their place.
+    pub(super) changed_tables: Option<End>,
+}
+
+/// The samples that came back in place of `expected` as a frame, of the greatest depth where the frame's own cannot hold what a board
+/// has made of them.
+pub(super) fn as_found(expected: &Frame, samples: Vec<u16>) -> Option<Frame> {
+    let is_held = |&depth: &BitDepth| samples.iter().all(|&sample| sample <= depth.max());
+    let depth = [expected.depth(), BitDepth::Twelve].into_iter().find(is_held)?;
+    Frame::new(expected.width(), depth, expected.phase(), samples).ok()
 }
 
 /// Rows that entered the core otherwise than they were sent, by the board's own CRC.
@@ -220,9 +231,7 @@ impl<'a> Judge<'a> {
         let (differs, height) = (comparison.differences > 0, expected.height());
         let (is_street, budget) = (name == STREET, self.manner.evidence_bytes);
         let is_wanted = differs || self.manner.keep_equal || is_street;
-        if is_wanted
-            && let Ok(found) = Frame::new(expected.width(), expected.depth(), expected.phase(), found)
-        {
+        if is_wanted && let Some(found) = as_found(&expected, found) {
             let index = self.seen.frames.len();
             let (input, expected) = ((*input).clone(), (*expected).clone());
             self.seen.evidence.offer(Evidence { index, input, found, expected }, is_street, budget);

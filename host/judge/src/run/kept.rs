@@ -48,12 +48,13 @@ impl Kept {
         !differs(kept) && self.pinned != Some(kept.index)
     }
 
-    /// The comparison without its counts by row and column where these say nothing, since all `is_whole` frame is equal, or
-    /// where `budget` has no room for them.
+    /// The comparison of a frame; of one that came back whole without its counts by row and column where these say nothing, since all
+    /// is equal, or where `budget` has no room for them. How many there are tells of any other how many rows are missing.
     pub(super) fn shorten(&mut self, comparison: Comparison, is_whole: bool, budget: usize) -> Comparison {
         let bytes = size_of_val(&*comparison.by_row) + size_of_val(&*comparison.by_column);
-        let says_nothing = comparison.differences == 0 && is_whole;
-        if says_nothing || self.bytes_of_counts + bytes > budget / SHARE_OF_COUNTS {
+        let says_nothing = comparison.differences == 0;
+        let is_too_much = self.bytes_of_counts + bytes > budget / SHARE_OF_COUNTS;
+        if is_whole && (says_nothing || is_too_much) {
             return Comparison { by_row: Vec::new(), by_column: Vec::new(), ..comparison };
         }
         self.bytes_of_counts += bytes;

@@ -60,7 +60,7 @@ impl Run<'_> {
         if repeated > 0 {
             return Some(Doubt::RequestsTwice { requests: repeated });
         }
-        let status = self.board.status(false).ok()?;
+        let Ok(status) = self.board.status(false) else { return Some(Doubt::PacketsUncounted {}) };
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
         let counters_alone = check == CheckName::Counters;
         let is_doubtful = counted > sent || counters_alone && counted != sent;

@@ -92,8 +92,11 @@ impl Run<'_> {
         self.progress.rows_expected(rows.sum::<usize>() as u64);
         let mut last = None;
         for segment in schedule {
-            // Tables that have changed are not replaced, since they are read back behind the last frame.
-            if segment.is_varied() && matches!(self.tables_after(), Err(End::Failed { .. })) {
+            // Tables that have changed are not replaced: they are the last that are judged.
+            if segment.is_varied()
+                && let Err(changed @ End::Failed { .. }) = self.tables_after()
+            {
+                self.findings.seen.changed_tables = Some(changed);
                 return Ok(last);
             }
             last = Some(segment);

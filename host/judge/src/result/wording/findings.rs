@@ -233,6 +233,7 @@ pub(crate) fn because(doubt: Doubt) -> String {
         Doubt::PacketsMiscounted { counted, sent } => {
             format!("the board counts {}, and {} were sent to it", count(counted, "packet"), grouped(sent))
         }
+        Doubt::PacketsUncounted {} => "the board does not tell how many packets came to it".to_owned(),
     }
 }
 

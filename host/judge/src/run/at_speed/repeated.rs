@@ -3,7 +3,7 @@
 use std::iter;
 use std::slice;
 
-use halfrow_model::{Content, Frame, row_signature};
+use halfrow_model::{Content, row_signature};
 use halfrow_protocol::message::BurstMode;
 
 use super::burst::BurstPlan;
@@ -20,6 +20,7 @@ use crate::result::{
     Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Repetition, Suspect,
 };
 use crate::run::findings::End;
+use crate::run::judge::as_found;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
 
@@ -144,7 +145,7 @@ impl Run<'_> {
         let expected = correct(&generation.tables, &generation.kernel, &input).ok()?;
         let mut found = expected.samples().to_vec();
         found[row * own.width()..].copy_from_slice(samples);
-        let found = Frame::new(own.width(), own.depth(), self.plan.phase, found).ok()?;
+        let found = as_found(&expected, found)?;
         let comparison = Comparison::of_frames(&expected, &found);
         let differing = comparison.differences;
         if differing == 0 {

@@ -134,11 +134,15 @@ impl Rules<'_, '_> {
         frames: u32,
         is_so: impl Fn(&Fetched) -> bool,
     ) -> Result<Fetched, End> {
-        let (mut idle, mut passed) = (self.time_of(frames), Duration::ZERO);
-        while passed < PATIENCE {
+        let time = self.time_of(frames);
+        let (mut idle, mut passed) = (time, Duration::ZERO);
+        loop {
             let fetched = self.run.board.records(burst.burst, from).map_err(of_board)?;
             if is_so(&fetched) {
                 return Ok(fetched);
+            }
+            if passed >= time + PATIENCE {
+                break;
             }
             self.run.board.idle(idle).map_err(of_board)?;
             (passed, idle) = (passed + idle, 2 * idle);
