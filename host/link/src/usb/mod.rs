@@ -45,6 +45,9 @@ const FIFO_BYTES_PER_SECOND: f64 = 5e6;
 /// Bits of a byte on a line: a start bit, eight, a stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
 
+/// The longest wait, so that whoever was asked to stop looks at that.
+const HEED: Duration = Duration::from_millis(100);
+
 /// A pipe through a channel of a chip.
 pub(crate) struct UsbLink {
     pump: Pump,
@@ -124,7 +127,6 @@ fn held(port: &Path) -> Option<Vec<Holder>> {
 }
 
 /// Whether another user's program, which cannot be seen, has said that it wants the port for itself.
-#[cfg(target_os = "linux")]
 fn is_locked(port: &Path) -> bool {
     use std::io::ErrorKind::ResourceBusy;
     use std::os::unix::fs::OpenOptionsExt as _;
@@ -139,11 +141,6 @@ fn is_locked(port: &Path) -> bool {
     }
 }
 
-#[cfg(not(target_os = "linux"))]
-fn is_locked(_port: &Path) -> bool {
-    false
-}
-
 impl Link for UsbLink {
     fn exchange(
         &mut self,
@@ -151,7 +148,8 @@ impl Link for UsbLink {
         incoming: &mut Vec<u8>,
         wait: Duration,
     ) -> Result<usize, LinkError> {
-        self.pump.exchange(outgoing, incoming, wait).map_err(|failure| match failure {
+        // A signal does not end a wait for the pump's threads.
+        self.pump.exchange(outgoing, incoming, wait.min(HEED)).map_err(|failure| match failure {
             UsbFailure::Gone => LinkError::Unplugged { link: self.name(), at: self.now() },
             other => {
                 LinkError::Failed { link: self.name(), at: self.now(), source: std::io::Error::other(other) }
