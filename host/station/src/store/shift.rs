@@ -2,7 +2,7 @@
 
 use halfrow::Verdict;
 
-use super::database::{Row, values};
+use super::database::{DatabaseError, Row, values};
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::mock::BARCODE;
 use crate::plan::{Bad, Plan, Shift};
@@ -28,6 +28,7 @@ pub struct Checked {
 
 /// The last judgement of a unit.
 struct Judged {
+    run: String,
     verdict: String,
     started_ms: i64,
     target: String,
@@ -39,7 +40,7 @@ const ASTRAY_MS: i64 = 300_000;
 
 impl Folder {
     /// What this lane of this station still owes to the shift at `now_ms` before boards are judged by `plan`: that the
-    /// last judgement of the good unit is PASS, and that of what is known to be bad FAIL. An ERROR checks nothing.
+    /// last judgement of the good unit is PASS, and that of what is known to be bad FAIL, which came behind it. An ERROR checks nothing.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
@@ -47,29 +48,33 @@ impl Folder {
         let mut until_ms = i64::MAX;
         let Some(shift) = &plan.shift else { return Ok(Checked { owed: None, until_ms }) };
         let lasts = i64::try_from(shift.lasts.as_millis()).unwrap_or(i64::MAX);
-        let mut reader = self.reader()?;
         let units = [(shift.good.clone(), Verdict::Pass), (shift.bad.serial(lane), Verdict::Fail)];
+        let mut before = String::new();
         for (serial, expected) in units {
             let since = now_ms.saturating_sub(lasts);
             let of = values![station, lane, &plan.sha256, &plan.product, &serial, since];
-            let judged = |row: &Row<'_>| {
-                Ok(Judged { verdict: row.get(0)?, started_ms: row.get(1)?, target: row.get(2)? })
-            };
-            let last = reader.first(sql::LAST_JUDGEMENT, of, judged);
-            let refused =
-                |source| StoreError::of_file(&self.database(), "to tell who checked a shift", source);
             let last =
-                last.map_err(refused)?.filter(|last| last.started_ms <= now_ms.saturating_add(ASTRAY_MS));
+                self.read("to tell who checked a shift", |from| from.first(sql::LAST_JUDGEMENT, of, judged))?;
+            let last = last.filter(|last| last.started_ms <= now_ms.saturating_add(ASTRAY_MS));
+            // Behind a repair the good unit passes again, and what failed in front of that says nothing of the lane as it is now.
+            let last = last.filter(|last| last.verdict != expected.to_string() || last.run > before);
             if let Some(Judged { started_ms, .. }) = &last {
                 until_ms = until_ms.min(started_ms.saturating_add(lasts));
             }
-            if last.as_ref().is_none_or(|last| last.verdict != expected.to_string()) {
-                let why = why(shift, expected, last);
-                return Ok(Checked { owed: Some(Owed { serial, why }), until_ms });
+            match last {
+                Some(last) if last.verdict == expected.to_string() => before = last.run,
+                last => {
+                    let why = why(shift, expected, last);
+                    return Ok(Checked { owed: Some(Owed { serial, why }), until_ms });
+                }
             }
         }
         Ok(Checked { owed: None, until_ms })
     }
+}
+
+fn judged(row: &Row<'_>) -> Result<Judged, DatabaseError> {
+    Ok(Judged { run: row.get(0)?, verdict: row.get(1)?, started_ms: row.get(2)?, target: row.get(3)? })
 }
 
 /// Why a lane waits for what is to come to `expected`, and came to something else or to nothing.

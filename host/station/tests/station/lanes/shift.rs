@@ -156,11 +156,15 @@ fn the_mock_with_a_drawn_fault_may_be_what_is_known_to_be_bad() {
     station.assert_well();
 }
 
-/// `run` judges the mock in lane 1.
-fn run_mock(station: &Station) -> Did {
+/// `run` judges this in lane 1.
+fn run(station: &Station, what: &[&str]) -> Did {
     let mut call = Command::new(program());
-    let call = call.args(["run", "--mock", "--station", "12", "--data"]).arg(station.path("data"));
+    let call = call.arg("run").args(what).args(["--station", "12", "--data"]).arg(station.path("data"));
     call.arg("--plan").arg(station.path("plan.toml")).output().unwrap().into()
+}
+
+fn run_mock(station: &Station) -> Did {
+    run(station, &["--mock"])
 }
 
 /// Of this plan's frames no draw is known to go unfound, so the verdict is changed by a hand that is not the program's.
@@ -255,6 +259,28 @@ fn checked_at(started_ms: &str) -> Station {
     let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
     database.execute(&format!("UPDATE run SET started_ms = {started_ms}"), []).unwrap();
     station
+}
+
+#[test]
+fn what_failed_before_the_good_unit_passed_checks_no_shift() {
+    let station = checked_at("started_ms");
+    // The fixture breaks, and is repaired.
+    for (board, code) in [("mock,fault=stuck-data", 1), ("mock", 0)] {
+        let did = run(&station, &["--board", board, "--serial", SERIALS[0]]);
+        assert_eq!(did.code, Some(code), "{did:?}");
+    }
+    let mut running = station.start();
+    running.test("1", SERIALS[2]);
+    let (is_taken, said) = running.answer(SERIALS[2]);
+    assert!(
+        !is_taken && said.contains("the mock board with a drawn fault is to come to FAIL first"),
+        "{said}"
+    );
+    mock_fails(&mut running, "1");
+    running.test("1", SERIALS[2]);
+    running.state("1", "PASS");
+    running.end();
+    station.assert_well();
 }
 
 /// Under a clock that was wrong, or is now.
