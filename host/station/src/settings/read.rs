@@ -152,7 +152,8 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
         return Ok(address);
     }
     let what = "others can reach these pages, and nobody logs in";
-    Err(Fault::wrong(place, what, "write [access] with users, or listen on 127.0.0.1"))
+    let remedy = "write [access] with users, or listen on 127.0.0.1 without `public` and `hosts`";
+    Err(Fault::wrong(place, what, remedy))
 }
 
 fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {

@@ -2,6 +2,8 @@
 
 use std::net::SocketAddr;
 
+use crate::trust::is_near;
+
 /// An address of the pages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Address {
@@ -59,10 +61,11 @@ impl Address {
         self
     }
 
-    /// Whether nobody outside this computer gets here.
+    /// Whether nobody outside this computer gets here. A name that is not its own is that of a proxy, through which others come.
     #[must_use]
     pub fn is_private(&self) -> bool {
-        self.listen.ip().is_loopback() && !self.is_https
+        let is_here = |host: &String| is_near(without_port(host));
+        self.listen.ip().is_loopback() && !self.is_https && self.hosts.iter().all(is_here)
     }
 
     /// Whether what browsers send goes through TLS.
@@ -83,5 +86,38 @@ impl Address {
             .strip_prefix(scheme)
             .and_then(|rest| rest.strip_prefix("://"))
             .is_some_and(|rest| rest.eq_ignore_ascii_case(host))
+    }
+}
+
+/// The name or address in a value of the header `Host`.
+fn without_port(host: &str) -> &str {
+    // An address of IPv6 has its colons between brackets.
+    let is_whole = |name: &str| name.ends_with(']') || !name.contains(':');
+    let is_port = |port: &str| port.bytes().all(|digit| digit.is_ascii_digit());
+    let parted = host.rsplit_once(':').filter(|(name, port)| is_whole(name) && is_port(port));
+    parted.map_or(host, |(name, _)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_names_of_this_computer_are_private() {
+        let is_private = |listen: &str, public: Option<&str>, host: &str| {
+            let hosts = [host.to_owned()].into_iter().filter(|host| !host.is_empty());
+            Address::new(listen, public, &hosts.collect::<Vec<_>>()).unwrap().is_private()
+        };
+        let here = "127.0.0.1:8612";
+        for near in ["", "localhost", "localhost:80", "127.0.0.2:80", "[::1]:80", "[::1]"] {
+            assert!(is_private(here, None, near), "{near}");
+        }
+        for far in ["station12", "station12:8612", "10.0.0.12", "localhost.example:80", "::1:80"] {
+            assert!(!is_private(here, None, far), "{far}");
+        }
+        assert!(is_private("[::1]:8612", Some("http://localhost:80"), ""));
+        assert!(!is_private(here, Some("http://station12"), ""));
+        assert!(!is_private(here, Some("https://station12.example"), ""));
+        assert!(!is_private("10.0.0.12:8612", None, ""));
     }
 }

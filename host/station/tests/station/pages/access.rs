@@ -12,8 +12,12 @@ fn what_others_can_reach_needs_people() {
     let open = Station::with(1, "[web]\nlisten = \"0.0.0.0:0\"");
     let said = open.refused();
     assert!(said.contains("station.toml:6:") && said.contains("nobody logs in"), "{said}");
-    let proxied = Station::with(1, "[web]\npublic = \"https://station12.example\"");
-    assert!(proxied.refused().contains("nobody logs in"));
+    for proxied in
+        ["public = \"https://station12.example\"", "public = \"http://station12\"", "hosts = [\"station12\"]"]
+    {
+        let said = Station::with(1, &format!("[web]\n{proxied}")).refused();
+        assert!(said.contains("nobody logs in"), "{proxied}: {said}");
+    }
     let people = Station::public(1);
     fs::set_permissions(people.path("users.toml"), fs::Permissions::from_mode(0o644)).unwrap();
     assert!(people.refused().contains("chmod 600"));
