@@ -1,6 +1,6 @@
 //! The station's key, under which badges are kept and forms are marked.
 
-use std::fs::{self, File};
+use std::fs::{self, File, Permissions};
 use std::io::{self, Write as _};
 use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
@@ -11,6 +11,9 @@ use rand::rngs::SysRng;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::Sha256;
+use tempfile::Builder;
+
+use crate::disk::synced;
 
 /// Bytes of a key, and of what is drawn for a session.
 const BYTES: usize = 32;
@@ -96,11 +99,17 @@ impl Key {
     }
 }
 
-/// Makes a file that was not there, of one line, which nobody else may read.
+/// Makes a file that was not there, of one line, which nobody else may read: whole, or not at all.
 pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
-    let mut file = File::options().write(true).create_new(true).mode(0o600).open(path)?;
-    writeln!(file, "{line}")?;
-    file.sync_all()
+    let mut aside = Builder::new().permissions(Permissions::from_mode(0o600)).tempfile_in(folder_of(path))?;
+    writeln!(aside, "{line}")?;
+    aside.as_file().sync_all()?;
+    aside.persist_noclobber(path)?;
+    synced(folder_of(path))
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// The text of a file that nobody else may read.
@@ -122,7 +131,8 @@ pub(crate) fn keep(path: &Path, text: &str, lasts: bool) -> Result<(), SecretErr
         if lasts {
             file.sync_all()?;
         }
-        fs::rename(&aside, path)
+        fs::rename(&aside, path)?;
+        if lasts { synced(folder_of(path)) } else { Ok(()) }
     };
     write().map_err(|source| SecretError::File { path: path.to_owned(), source })
 }
@@ -187,9 +197,9 @@ mod tests {
         let drawn = Key::load(&path).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
         assert_eq!(Key::load(&path).unwrap().0, drawn.0);
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o640)).unwrap();
         assert!(matches!(Key::load(&path), Err(SecretError::Open { .. })));
-        fs::set_permissions(&path, fs::Permissions::from_mode(0o600)).unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o600)).unwrap();
         fs::write(&path, "12").unwrap();
         assert!(matches!(Key::load(&path), Err(SecretError::Wrong { .. })));
     }

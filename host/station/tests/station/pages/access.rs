@@ -2,8 +2,9 @@
 
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
+use std::process::Command;
 
-use crate::common::Did;
+use crate::common::{Did, program};
 use crate::pages::http::{Request, exchange};
 use crate::pages::station::{PUBLIC, SERIALS, Station};
 
@@ -23,6 +24,18 @@ fn what_others_can_reach_needs_people() {
     assert!(people.refused().contains("chmod 600"));
     fs::remove_file(people.path("users.toml")).unwrap();
     assert!(people.refused().contains("users.toml cannot be read"));
+}
+
+/// Nothing can be written, as on a disk that is full.
+#[test]
+fn a_key_that_cannot_be_written_is_drawn_when_it_can() {
+    let station = Station::with(1, "[access]\nusers = \"users.toml\"");
+    let mut full = Command::new("sh");
+    full.args(["-c", "trap '' XFSZ; ulimit -f 0; echo A-0017 | \"$0\" user add Weber --settings \"$1\""]);
+    let refused: Did = full.arg(program()).arg(station.path("station.toml")).output().unwrap().into();
+    assert!(refused.code == Some(2) && refused.complained.contains("station.key"), "{refused:?}");
+    let added: Did = station.user(&["add", "Weber"], "A-0017\n").into();
+    assert_eq!(added.code, Some(0), "{added:?}");
 }
 
 #[test]
