@@ -1,6 +1,9 @@
 //! What `halfrow-station plan` does with plans that the plant publishes.
 
 use std::path::{self, Path, PathBuf};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
 
 use clap::Args;
 use serde::Serialize;
@@ -12,14 +15,18 @@ use super::why::Why;
 use super::{Failure, print};
 use crate::console;
 use crate::exit::Exit;
+use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::published::{
-    Bundle, BundleError, FetchError, Fetched, Kept, SigningError, SigningKey, Statement, fetch,
+    Bundle, BundleError, FetchError, Fetched, Kept, Offer, SigningError, SigningKey, Statement, offered,
 };
 use crate::said::Said;
 use crate::settings::{Published, Settings};
 use crate::store::{Plant, PlantAddress, PlantPool, publications};
+
+/// How long the plant may take to say what holds when a station begins its work that has all plans already.
+const IN_TIME: Duration = Duration::from_secs(20);
 
 /// Publish a plan with its files at the plant: every station that names it takes it when it starts next
 #[derive(Debug, Args)]
@@ -176,9 +183,9 @@ fn text(found: &[Holds]) -> String {
 pub(super) fn fetch_all(settings: &SettingsFile) -> Result<Exit, Failure> {
     let published = published(settings)?;
     let mut said = Vec::new();
-    for fetched in fetched(&published)? {
-        let Fetched { statement: Statement { version, number, .. }, is_new } = &fetched?;
-        said.push(format!("{version}, number {number}{}", if *is_new { ", is new" } else { "" }));
+    for fetched in fetched(&Kept::of(&published.data), offers(&published))? {
+        let Fetched { statement: Statement { version, number, .. }, is_new } = fetched?;
+        said.push(format!("{version}, number {number}{}", if is_new { ", is new" } else { "" }));
     }
     let named = published.plans.iter().zip(said).map(|(plan, said)| format!("{plan} {said}"));
     print(&named.collect::<Vec<_>>().join("\n"))
@@ -193,25 +200,53 @@ pub(super) fn fetch_at_start(path: &Path) -> Result<(), Failure> {
     }
     let kept = Kept::of(&published.data);
     let has_all = published.plans.iter().all(|plan| kept.statement(plan, published.trusts()).is_some());
-    let failed = match fetched(&published) {
-        Ok(all) => all.into_iter().find_map(Result::err).map(Failure::from),
-        Err(failure) => Some(failure),
+    if !has_all {
+        return all_fetched(&kept, offers(&published));
+    }
+    let Some(offers) = offers_in_time(published) else {
+        let seconds = IN_TIME.as_secs();
+        console::error(&format_args!(
+            "the plans stay as they are: the plant did not answer within {seconds} s"
+        ));
+        return Ok(());
     };
-    match failed {
-        Some(failure) if has_all => {
-            console::error(&format_args!("the plans stay as they are: {}", Said::of(&*failure.error)));
-            Ok(())
-        }
-        Some(failure) => Err(failure),
-        None => Ok(()),
+    if let Err(failure) = all_fetched(&kept, offers) {
+        console::error(&format_args!("the plans stay as they are: {}", Said::of(&*failure.error)));
+    }
+    Ok(())
+}
+
+/// What the plant says of each plan.
+type Offers = Result<Vec<Result<Offer, FetchError>>, Failure>;
+
+fn offers(published: &Published) -> Offers {
+    let mut at = Plant::connect(&address(published)?)?;
+    let (kept, trusted) = (Kept::of(&published.data), published.trusts());
+    Ok(published.plans.iter().map(|plan| offered(&mut at, &kept, plan, trusted)).collect())
+}
+
+/// The same within [`IN_TIME`]: a plant may take a connection and say nothing for ever. Who asks it is left behind then, and keeps nothing.
+fn offers_in_time(published: Published) -> Option<Offers> {
+    let (answer, answered) = mpsc::channel();
+    let ask = move || {
+        let offers = guarded(|| offers(&published)).map_err(Failure::error).flatten();
+        // Nobody may wait for it any more.
+        let _ = answer.send(offers);
+    };
+    match thread::Builder::new().name("plans".to_owned()).spawn(ask) {
+        Ok(_) => answered.recv_timeout(IN_TIME).ok(),
+        Err(error) => Some(Err(Failure::error(error))),
     }
 }
 
-/// What became of each plan.
-fn fetched(published: &Published) -> Result<Vec<Result<Fetched, FetchError>>, Failure> {
-    let mut at = Plant::connect(&address(published)?)?;
-    let (kept, trusted) = (Kept::of(&published.data), published.trusts());
-    Ok(published.plans.iter().map(|plan| fetch(&mut at, &kept, plan, trusted)).collect())
+/// Keeps every plan that can be kept; what became of each.
+fn fetched(kept: &Kept, offers: Offers) -> Result<Vec<Result<Fetched, FetchError>>, Failure> {
+    Ok(offers?.into_iter().map(|offer| offer?.keep(kept)).collect())
+}
+
+/// The same; the first error, if there is one.
+fn all_fetched(kept: &Kept, offers: Offers) -> Result<(), Failure> {
+    fetched(kept, offers)?.into_iter().try_for_each(|fetched| Ok(fetched.map(drop)?))
 }
 
 fn connected(settings: &SettingsFile) -> Result<Plant, Failure> {

@@ -63,16 +63,26 @@ pub struct Fetched {
     pub is_new: bool,
 }
 
-/// Fetches what holds for `plan`, if it is newer than what is kept and signed by somebody of `trusted`.
+/// What a plant says of a plan, signed by somebody who is trusted, and no less than what is kept.
+#[derive(Debug)]
+pub struct Offer {
+    signed: Signed,
+    statement: Statement,
+    /// The text of its bundle, unless it is kept just so.
+    bundle: Option<String>,
+    is_new: bool,
+}
+
+/// Asks the plant what holds for `plan`, and for the plan itself unless it is kept as it was published. Nothing is kept yet.
 ///
 /// # Errors
-/// [`FetchError`]; what is kept stays as it was.
-pub fn fetch(
+/// [`FetchError`]
+pub fn offered(
     plant: &mut Plant,
     kept: &Kept,
     plan: &PlanName,
     trusted: &[PublicKey],
-) -> Result<Fetched, FetchError> {
+) -> Result<Offer, FetchError> {
     let name = || plan.to_string();
     let Some((statement, signature)) = plant.publication(plan)? else {
         return Err(FetchError::None { plan: name() });
@@ -81,21 +91,32 @@ pub fn fetch(
     let statement = signed.by(trusted).filter(|statement| statement.plan() == *plan);
     let statement = statement.ok_or_else(|| FetchError::Untrusted { plan: name() })?;
     // One that nobody trusts any more holds nothing back.
-    if let Some(ours) = kept.statement(plan, trusted) {
-        if ours == statement && kept.file(&ours).is_file() {
-            return Ok(Fetched { statement, is_new: false });
-        }
-        if statement.number < ours.number || (statement.number == ours.number && statement != ours) {
-            return Err(FetchError::Older { plan: name(), number: statement.number, kept: ours.number });
-        }
+    let ours = kept.statement(plan, trusted);
+    let is_new = ours.as_ref() != Some(&statement);
+    if let Some(ours) = ours.filter(|ours| is_new && statement.number <= ours.number) {
+        return Err(FetchError::Older { plan: name(), number: statement.number, kept: ours.number });
     }
-    let text = plant.bundle(&statement.sha256)?;
-    let file = Bundle::unpack(&text, &statement.sha256, kept.folder())?;
-    let read = Plan::load(&file).map_err(|source| FetchError::Plan { plan: name(), source })?;
-    let says = (read.product.as_str(), read.name.as_str(), read.version.as_str());
-    if says != (statement.product.as_str(), statement.name.as_str(), statement.version.as_str()) {
-        return Err(FetchError::Untrusted { plan: name() });
+    let is_whole = !is_new && kept.file(&statement).is_file();
+    let bundle = if is_whole { None } else { Some(plant.bundle(&statement.sha256)?) };
+    Ok(Offer { signed, statement, bundle, is_new })
+}
+
+impl Offer {
+    /// Keeps it from now on.
+    ///
+    /// # Errors
+    /// [`FetchError`]; what is kept stays as it was.
+    pub fn keep(self, kept: &Kept) -> Result<Fetched, FetchError> {
+        let Self { signed, statement, bundle, is_new } = self;
+        let Some(text) = bundle else { return Ok(Fetched { statement, is_new }) };
+        let plan = statement.plan();
+        let file = Bundle::unpack(&text, &statement.sha256, kept.folder())?;
+        let read = Plan::load(&file).map_err(|source| FetchError::Plan { plan: plan.to_string(), source })?;
+        let says = (read.product.as_str(), read.name.as_str(), read.version.as_str());
+        if says != (statement.product.as_str(), statement.name.as_str(), statement.version.as_str()) {
+            return Err(FetchError::Untrusted { plan: plan.to_string() });
+        }
+        kept.keep(&plan, &signed)?;
+        Ok(Fetched { statement, is_new })
     }
-    kept.keep(plan, &signed)?;
-    Ok(Fetched { statement, is_new: true })
 }

@@ -1,6 +1,7 @@
 //! Plans that the plant publishes: only what an engineer signed is taken, and never less than a station had.
 
 use std::fs;
+use std::net::TcpListener;
 use std::path::PathBuf;
 use std::process::Command;
 
@@ -201,6 +202,23 @@ fn a_station_starts_with_what_it_has_when_the_plant_is_away() {
     made.server.kill();
     let with = lanes(&made);
     assert!(with.code == Some(0) && with.complained.contains("the plans stay as they are"), "{with:?}");
+}
+
+/// It takes connections, and says nothing for ever.
+#[test]
+fn a_station_starts_with_what_it_has_when_the_plant_does_not_answer() {
+    let made = Published::new();
+    made.publish("engel.key");
+    made.fetch();
+    let mute = TcpListener::bind("127.0.0.1:0").unwrap();
+    let settings = fs::read_to_string(made.path("station.toml")).unwrap();
+    let url = format!("postgres://halfrow@{}/plant", mute.local_addr().unwrap());
+    fs::write(made.path("station.toml"), settings.replace(&made.server.url(), &url)).unwrap();
+    let started = made.did(&["lanes", "--any-disk"]);
+    assert!(
+        started.code == Some(0) && started.complained.contains("the plant did not answer"),
+        "{started:?}"
+    );
 }
 
 #[test]
