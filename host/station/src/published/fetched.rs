@@ -96,7 +96,7 @@ pub fn offered(
     if let Some(ours) = ours.filter(|ours| is_new && statement.number <= ours.number) {
         return Err(FetchError::Older { plan: name(), number: statement.number, kept: ours.number });
     }
-    let is_whole = !is_new && kept.file(&statement).is_file();
+    let is_whole = !is_new && kept.is_whole(&statement);
     let bundle = if is_whole { None } else { Some(plant.bundle(&statement.sha256)?) };
     Ok(Offer { signed, statement, bundle, is_new })
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::bundle::PLAN;
 use super::{BundleError, PublicKey, Statement};
 use crate::history::PlanName;
+use crate::plan::Plan;
 
 /// A folder of plans: each by its hash, and for each name what holds.
 #[derive(Clone, Debug)]
@@ -52,6 +53,11 @@ impl Kept {
     #[must_use]
     pub fn file(&self, statement: &Statement) -> PathBuf {
         self.folder.join(&statement.sha256).join(PLAN)
+    }
+
+    /// Whether the plan is here with every file that it names, as it was published.
+    pub(super) fn is_whole(&self, statement: &Statement) -> bool {
+        Plan::load(&self.file(statement)).is_ok_and(|plan| plan.sha256 == statement.sha256)
     }
 
     fn signed(&self, plan: &PlanName) -> Option<Signed> {

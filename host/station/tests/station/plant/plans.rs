@@ -179,7 +179,11 @@ fn what_was_kept_is_looked_at_again_whenever_it_is_used() {
     fs::write(&file, text.replace("timeout = 60", "timeout = 61")).unwrap();
     let changed = Settings::load(&settings).unwrap_err().to_string();
     assert!(changed.contains("is not as it was published"), "{changed}");
-    fs::write(&file, text).unwrap();
+    assert_eq!(made.fetch().said, "CAM-T/quick 1, number 1\n");
+    assert_eq!(fs::read_to_string(&file).unwrap(), text, "it is whole again");
+    fs::remove_file(file.parent().unwrap().join("frames/a.pgm")).unwrap();
+    made.fetch();
+    assert_eq!(made.held(), ("1".to_owned(), 1));
     // A key that is not trusted any more.
     let mut other = fs::read_to_string(&settings).unwrap();
     let key = made.did(&["plan", "key", &made.path("other.key")]).said.trim().to_owned();
