@@ -132,16 +132,24 @@ pub(super) fn waiver(to: &mut dyn Database, id: &str, waiver: &Waiver) -> Result
 }
 
 /// A line of the audit. One about a unit is about the plant's unit of that serial number; what it bound is bound here, too.
-pub(super) fn audit(to: &mut dyn Database, line: &AuditLine) -> Result<(), DatabaseError> {
+/// Returns whether it was entered: not while the plant does not have its unit, which comes with a run.
+pub(super) fn audit(to: &mut dyn Database, line: &AuditLine) -> Result<bool, DatabaseError> {
     let AuditLine { id, at_ms, operator, act, subject, detail, unit } = line;
     let unit: Option<String> = match unit {
-        Some([product, serial]) => to.first(sql::UNIT_OF, values![product, serial], |row| row.get(0))?,
+        Some([product, serial]) => {
+            let found = to.first(sql::UNIT_OF, values![product, serial], |row| row.get(0))?;
+            if found.is_none() {
+                return Ok(false);
+            }
+            found
+        }
         None => None,
     };
     let subject = unit.as_ref().unwrap_or(subject);
     let added = to.execute(sql::ADD_AUDIT_UNLESS, values![id, *at_ms, operator, act, subject, detail])?;
-    let Some(unit_id) = unit.filter(|_| added == 1 && act == REBIND) else { return Ok(()) };
+    let Some(unit_id) = unit.filter(|_| added == 1 && act == REBIND) else { return Ok(true) };
     let Detail { device, reason } = serde_json::from_str(detail)?;
     let (id, operator) = (id.clone(), operator.clone());
-    bindings::rebind(to, &Rebinding { id, at_ms: *at_ms, operator, unit_id, device, reason })
+    bindings::rebind(to, &Rebinding { id, at_ms: *at_ms, operator, unit_id, device, reason })?;
+    Ok(true)
 }

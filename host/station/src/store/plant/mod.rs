@@ -46,7 +46,7 @@ pub enum PlantError {
     /// What it belongs to is not there yet.
     #[error("the plant does not have the run {run} yet, which comes first; it is tried again")]
     NotYet {
-        /// The run.
+        /// The run, by its id, or of which unit.
         run: String,
     },
     /// What was sent is not there when it is looked for.
@@ -165,9 +165,12 @@ impl Plant {
                 self.has(sql::WAIVER_BY_ID, id)
             }
             Parcel::Audit(line) => {
-                self.carry_out("a line of the audit", |database| {
+                let is_entered = self.carry_out("a line of the audit", |database| {
                     database.transaction(|to| arrived::audit(to, line))
                 })?;
+                if let Some([product, serial]) = line.unit.as_ref().filter(|_| !is_entered) {
+                    return Err(PlantError::NotYet { run: format!("of {product} {serial}") });
+                }
                 self.has(sql::AUDIT_BY_ID, &line.id)
             }
         }

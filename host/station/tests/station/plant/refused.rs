@@ -90,6 +90,26 @@ fn a_waiver_waits_for_its_run() {
 }
 
 #[test]
+fn a_rebinding_waits_for_the_runs_of_its_unit() {
+    let server = Server::prepared();
+    let mut made = history();
+    made.store.sends_to(vec!["plant".to_owned()]).unwrap();
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let later = "UPDATE outbox SET next_ms = (unixepoch() + 240) * 1000 WHERE subject IN
+        (SELECT run.id FROM run JOIN audit ON audit.subject = run.unit_id WHERE act = 'rebind')";
+    let behind = database.execute(later, []).unwrap();
+    assert!(behind > 0);
+    let (made, _) = send(made, server.address());
+    let [unsent] = &made.now().unsent().unwrap()[..] else { panic!("all was sent") };
+    assert_eq!((unsent.entries as usize, unsent.dead), (behind + 1, 0), "{unsent:?}");
+    assert!(unsent.said.as_ref().unwrap().contains("the run of CAM-T S2 yet"), "{unsent:?}");
+    due(&made);
+    let (made, rest) = send(made, server.address());
+    assert_eq!((rest.sent, rest.failed), (behind + 1, 0));
+    is_as(&server, &made);
+}
+
+#[test]
 fn tables_that_are_not_there_or_of_another_version_are_no_plant() {
     let server = Server::start();
     let refused = |server: &Server| Plant::connect(&server.address()).unwrap_err();
