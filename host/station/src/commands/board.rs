@@ -139,11 +139,11 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             either(&found, *json, |found| text(found))
         }
         What::Out(Change { name, why: Why { reason, operator } }) => {
-            let out = Plant::connect(&address)?.take_out(name, Some(reason), operator)?;
+            let out = Plant::connect(&address)?.take_out(name, reason, operator)?;
             changed(out, name, "out")
         }
-        What::In(Change { name, why: Why { operator, .. } }) => {
-            changed(Plant::connect(&address)?.take_out(name, None, operator)?, name, "in")
+        What::In(Change { name, why: Why { reason, operator } }) => {
+            changed(Plant::connect(&address)?.put_in(name, reason, operator)?, name, "in")
         }
         What::Unshare(Change { name, why: Why { reason, operator } }) => {
             changed(Plant::connect(&address)?.unshare(name, operator, reason)?, name, "unshared")

@@ -113,15 +113,23 @@ impl Plant {
         })
     }
 
-    /// Nobody gets the board of this name any more, for this reason; whoever has it loses it. Without one it is given out again.
-    /// Returns whether there is one.
+    /// Nobody gets the board of this name any more, for this reason; whoever has it loses it. Returns whether there is one.
     ///
     /// # Errors
     /// As [`Self::share`].
-    pub fn take_out(&mut self, name: &str, why: Option<&str>, operator: &str) -> Result<bool, StoreError> {
-        let act = if why.is_some() { "board out" } else { "board in" };
-        self.audited(operator, act, name, why.unwrap_or_default(), |to| {
-            to.execute(sql::BOARD_OUT, values![why, name])
+    pub fn take_out(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
+        self.audited(operator, "board out", name, reason, |to| {
+            to.execute(sql::BOARD_OUT, values![reason, name])
+        })
+    }
+
+    /// The board of this name is given out again, for this reason. Returns whether there is one.
+    ///
+    /// # Errors
+    /// As [`Self::share`].
+    pub fn put_in(&mut self, name: &str, reason: &str, operator: &str) -> Result<bool, StoreError> {
+        self.audited(operator, "board in", name, reason, |to| {
+            to.execute(sql::BOARD_OUT, values![None::<&str>, name])
         })
     }
 

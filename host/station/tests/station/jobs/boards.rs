@@ -47,13 +47,15 @@ fn a_board_that_was_taken_over_or_out_is_held_no_more() {
     run_out(&server);
     let Turn::Held(second) = plant.wait(&waiter("second")).unwrap() else { panic!("it is free again") };
     assert!(!plant.renew(&first).unwrap() && plant.renew(&second).unwrap());
-    assert!(plant.take_out("shelf-0", Some("it smells"), "engel").unwrap());
+    assert!(plant.take_out("shelf-0", "it smells", "engel").unwrap());
     assert!(!plant.renew(&second).unwrap());
     plant.give_back(&second).unwrap();
     assert_eq!(plant.wait(&waiter("third")).unwrap(), Turn::Never);
-    assert!(plant.take_out("shelf-0", None, "engel").unwrap());
+    assert!(plant.put_in("shelf-0", "it was cleaned", "engel").unwrap());
     assert!(matches!(plant.wait(&waiter("third")).unwrap(), Turn::Held(_)));
-    assert!(!plant.take_out("shelf-9", None, "engel").unwrap());
+    assert!(!plant.put_in("shelf-9", "it was cleaned", "engel").unwrap());
+    let told = server.rows("SELECT act, detail FROM audit WHERE act LIKE 'board %' ORDER BY id");
+    assert_eq!(told, [["board out", "it smells"], ["board in", "it was cleaned"]]);
 }
 
 /// `halfrow-station board hold mock`
@@ -108,7 +110,7 @@ fn a_board_is_held_until_stdin_ends_and_the_next_one_gets_it() {
     let mut client = server.client("plant");
     assert_eq!(client.execute("UPDATE board SET until_ms = 0", &[]).unwrap(), 1);
     assert_eq!(third.tells("held")["fence"], 3);
-    assert!(plant.take_out("shelf-0", Some("it smells"), "engel").unwrap());
+    assert!(plant.take_out("shelf-0", "it smells", "engel").unwrap());
     // It is looked every ten seconds.
     assert!(third.tells("lost")["said"].as_str().unwrap().contains("not ours any more"));
     assert_eq!(third.process.wait().unwrap().code(), Some(3));

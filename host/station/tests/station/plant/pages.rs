@@ -139,7 +139,7 @@ fn the_jobs_and_the_boards_that_are_shared_are_on_a_page_of_their_own() {
     plant.add_jobs(&job(&plan, &wanted), 101).unwrap();
     plant.add_jobs(&job(&plan, &Wanted::Serial("CAT00007".to_owned())), 1).unwrap();
     plant.claim(&worker("north")).unwrap().unwrap();
-    plant.take_out("shelf-2", Some("it smells"), "engel").unwrap();
+    plant.take_out("shelf-2", "it smells", "engel").unwrap();
     plant.wait(&Waiter::new("ulx3s", "weber at 13", "13").unwrap()).unwrap();
     let page = text(&browser, "/jobs");
     for expected in
