@@ -77,15 +77,15 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 
 fn release(folder: &Folder, id: Option<&str>, sink: Option<&str>, why: &Why) -> Result<Exit, Failure> {
     let mut store = Store::open_existing(folder)?;
+    let Why { reason, operator } = why;
     let (released, what) = match (id, sink) {
-        (Some(id), _) => (store.release(id)?, id),
-        (None, Some(sink)) => (store.release_all(sink)?, sink),
+        (Some(id), _) => (store.release(id, operator, reason)?, id),
+        (None, Some(sink)) => (store.release_all(sink, operator, reason)?, sink),
         (None, None) => (0, ""),
     };
     if released == 0 {
         return Err(Failure::call(NotDead { what: what.to_owned() }));
     }
-    store.note(&why.operator, "release", what, &why.reason)?;
     print(&format!("{released} of {what} are tried again"))
 }
 
@@ -94,8 +94,7 @@ fn forget(settings: &Settings, folder: &Folder, sink: &str, why: &Why) -> Result
         return Err(Failure::call(SinkInUse { sink: sink.to_owned() }));
     }
     let mut store = Store::open_existing(folder)?;
-    let forgotten = store.forget_sink(sink)?;
-    store.note(&why.operator, "forget-sink", sink, &why.reason)?;
+    let forgotten = store.forget_sink(sink, &why.operator, &why.reason)?;
     print(&format!("{forgotten} of {sink} are forgotten"))
 }
 

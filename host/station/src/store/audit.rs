@@ -33,11 +33,25 @@ impl Store {
     /// # Errors
     /// [`StoreError`] when the database does not take it.
     pub fn note(&mut self, operator: &str, act: &str, subject: &str, detail: &str) -> Result<(), StoreError> {
+        self.audited("an audit", [operator, act, subject, detail], |_| Ok(1)).map(drop)
+    }
+
+    /// Carries out what changes rows or none, and enters it in the audit if it did: who, what, with what, and how. Returns how many it changed.
+    pub(super) fn audited(
+        &mut self,
+        doing: &'static str,
+        [operator, act, subject, detail]: [&str; 4],
+        change: impl FnOnce(&mut dyn Database) -> Result<u64, DatabaseError>,
+    ) -> Result<u64, StoreError> {
         let at_ms = clock::now_ms();
         let id = ids::new(at_ms)?.to_string();
         let sinks = Arc::clone(&self.sinks);
-        self.change("an audit", |to| {
-            Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &sinks)
+        self.change(doing, |to| {
+            let changed = change(to)?;
+            if changed > 0 {
+                Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &sinks)?;
+            }
+            Ok(changed)
         })
     }
 }

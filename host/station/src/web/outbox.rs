@@ -83,8 +83,8 @@ async fn release(
     Path(id): Path<String>,
     Form(Release { reason }): Form<Release>,
 ) -> Result<Response, Trouble> {
-    app.audit(&visit, "release", &id, &reason).await?;
-    let released = app.change(&visit, move |store| store.release(&id)).await?;
+    let operator = visit.name().to_owned();
+    let released = app.change(&visit, move |store| store.release(&id, &operator, &reason)).await?;
     released.map_err(|error| Trouble::store(&visit, error))?;
     Ok(Redirect::to("/outbox").into_response())
 }

@@ -74,6 +74,10 @@ impl From<Output> for Did {
     }
 }
 
+/// Has the database take nothing more into the audit.
+pub(crate) const NO_AUDIT: &str =
+    "CREATE TRIGGER full BEFORE INSERT ON audit BEGIN SELECT RAISE(FAIL, 'the disk is full'); END";
+
 /// What `check` says of this folder.
 pub(crate) fn check(data: &Path) -> Did {
     Command::new(program()).arg("check").arg("--data").arg(data).output().unwrap().into()

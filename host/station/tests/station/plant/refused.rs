@@ -10,7 +10,7 @@ use super::cut::due;
 use super::sent::send;
 use super::server::Server;
 use super::tables::is_as;
-use crate::common::{Did, PLAN, program, query};
+use crate::common::{Did, NO_AUDIT, PLAN, program, query};
 use crate::history::made::{BEGIN_MS, End, HOUR_MS, Made, Run};
 use crate::history::released::history;
 
@@ -57,6 +57,11 @@ fn a_run_that_the_plant_has_with_another_record_is_an_alarm_and_waits_for_a_pers
     assert_eq!(busy.code, Some(4), "{busy:?}");
     let (folder, store) = made.parts();
     drop(store);
+    // What cannot stand in the audit is not released.
+    database.execute_batch(NO_AUDIT).unwrap();
+    let unnoted = did(folder.path(), &server, &release);
+    assert_eq!(unnoted.code, Some(3), "{unnoted:?}");
+    database.execute_batch("DROP TRIGGER full").unwrap();
     let released = did(folder.path(), &server, &release);
     assert_eq!((released.code, released.complained.as_str()), (Some(0), ""), "{released:?}");
     let again = did(folder.path(), &server, &release);

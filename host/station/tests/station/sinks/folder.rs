@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::{did, due, send};
-use crate::common::query;
+use crate::common::{NO_AUDIT, query};
 use crate::history::made::Made;
 use crate::history::released::history;
 
@@ -110,6 +110,12 @@ fn a_sink_that_is_no_more_is_forgotten_when_the_settings_do_not_name_it() {
         refused.code == Some(2) && refused.complained.contains("take it out of them first"),
         "{refused:?}"
     );
+    // What cannot stand in the audit is not forgotten.
+    let database = rusqlite::Connection::open(folder.path().join("station.db")).unwrap();
+    database.execute_batch(NO_AUDIT).unwrap();
+    assert_eq!(did(folder.path(), "", &forget).code, Some(3));
+    database.execute_batch("DROP TRIGGER full").unwrap();
+    drop(database);
     let forgotten = did(folder.path(), "", &forget);
     assert_eq!((forgotten.code, forgotten.said.as_str()), (Some(0), "10 of share are forgotten\n"));
     assert_eq!(did(folder.path(), "", &["outbox", "list"]).said, "nothing is left to be sent\n");
