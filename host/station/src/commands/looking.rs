@@ -6,17 +6,16 @@ use clap::{Args, ValueEnum};
 use comfy_table::{CellAlignment, Table, presets};
 use halfrow::Verdict;
 use halfrow::report::wording::plain;
-use jiff::civil::Date;
-use jiff::{Timestamp, tz::TimeZone};
+use jiff::Timestamp;
 use serde::Serialize;
 
 use super::beginning::load_plant;
 use super::plant::plant;
 use super::{Failure, print};
 use crate::exit::Exit;
-use crate::history::Period;
 use crate::history::runs::Filter;
 use crate::history::yields::Wanted;
+use crate::history::{Period, moment};
 use crate::store::{Folder, Plant, Snapshot};
 
 /// Where the station's results are.
@@ -61,10 +60,10 @@ impl Results {
 #[derive(Clone, Copy, Debug, Args)]
 struct Range {
     /// Runs that began at this moment or later: 2026-11-22, which begins at midnight UTC, or 2026-11-22T06:00:00+01:00
-    #[arg(long, value_name = "TIME", value_parser = moment)]
+    #[arg(long, value_name = "TIME", value_parser = from)]
     from: Option<i64>,
-    /// Runs that began before this moment
-    #[arg(long, value_name = "TIME", value_parser = moment)]
+    /// Runs that began before this moment, or no later than on this day
+    #[arg(long, value_name = "TIME", value_parser = until)]
     until: Option<i64>,
 }
 
@@ -165,12 +164,19 @@ impl From<Word> for Verdict {
     }
 }
 
-/// Milliseconds since 1970 of a date or a moment.
-fn moment(text: &str) -> Result<i64, String> {
-    let midnight = |date: Date| date.to_zoned(TimeZone::UTC).map(|zoned| zoned.timestamp());
-    let moment = text.parse::<Timestamp>().or_else(|_| text.parse::<Date>().and_then(midnight));
-    let moment = moment.map(Timestamp::as_millisecond).ok().filter(|ms| *ms >= 0);
-    moment.ok_or_else(|| "give a date as 2026-11-22, or a moment as 2026-11-22T06:00:00Z".to_owned())
+/// The first moment that is meant, in milliseconds since 1970.
+fn from(text: &str) -> Result<i64, String> {
+    given(text, 0)
+}
+
+/// The first moment after all that is meant; a day is meant to its end.
+fn until(text: &str) -> Result<i64, String> {
+    given(text, 1)
+}
+
+fn given(text: &str, days: i64) -> Result<i64, String> {
+    let wrong = || "give a date as 2026-11-22, or a moment as 2026-11-22T06:00:00Z".to_owned();
+    moment(text, days).ok_or_else(wrong)
 }
 
 /// A moment for people: to the second, UTC.

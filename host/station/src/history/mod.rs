@@ -28,6 +28,8 @@ pub mod yields;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
+use jiff::civil::Date;
+use jiff::{Timestamp, ToSpan as _, tz::TimeZone};
 use serde::Serialize;
 
 use crate::plan::Plan;
@@ -52,6 +54,15 @@ impl Period {
     fn holds(self, ms: i64) -> bool {
         (self.from_ms..self.until_ms).contains(&ms)
     }
+}
+
+/// Milliseconds since 1970 of a moment, or of the midnight UTC that begins the day so many after a date.
+pub(crate) fn moment(text: &str, days: i64) -> Option<i64> {
+    let midnight = |date: Date| date.checked_add(days.days()).and_then(|date| date.to_zoned(TimeZone::UTC));
+    // A time without its offset is no moment, and must not be taken for its date.
+    let date = || Date::strptime("%Y-%m-%d", text).and_then(midnight).map(|zoned| zoned.timestamp());
+    let moment = text.parse::<Timestamp>().or_else(|_| date());
+    moment.map(Timestamp::as_millisecond).ok().filter(|ms| *ms >= 0)
 }
 
 /// What is compared: a product under plans of one name, whatever their version.
@@ -96,4 +107,20 @@ fn plans_named(of: &Snapshot, name: &str) -> Result<Vec<String>, StoreError> {
 /// A number of things, which is not negative.
 fn count(row: &Found<'_>, column: usize) -> Result<u64, DatabaseError> {
     row.get::<i64>(column).map(i64::unsigned_abs)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_last_day_is_among_what_is_wanted_and_a_moment_is_the_first_after() {
+        // 22 November 2026, midnight UTC.
+        let day = 1_795_305_600_000;
+        assert_eq!((moment("2026-11-22", 0), moment("2026-11-22", 1)), (Some(day), Some(day + 86_400_000)));
+        assert_eq!(moment("2026-11-22T01:00:00+01:00", 1), Some(day));
+        for wrong in ["", "yesterday", "2026-13-01", "1969-01-01", "2026-11-22T06:00:00"] {
+            assert_eq!(moment(wrong, 0), None, "{wrong}");
+        }
+    }
 }

@@ -2,13 +2,11 @@
 
 use form_urlencoded::Serializer;
 use halfrow::Verdict;
-use jiff::civil::Date;
-use jiff::{Timestamp, ToSpan as _, tz::TimeZone};
 use serde::Deserialize;
 
-use crate::history::Period;
 use crate::history::runs::{Filter, Place};
 use crate::history::yields::Wanted;
+use crate::history::{Period, moment};
 use crate::web::trouble::Trouble;
 use crate::web::visit::Visit;
 
@@ -146,28 +144,9 @@ fn some(text: &str) -> Option<String> {
     Some(text.trim().to_owned()).filter(|text| !text.is_empty())
 }
 
-/// Milliseconds since 1970 of a moment, or of the midnight UTC that begins the day so many after a date.
-fn moment(text: &str, days: i64) -> Option<i64> {
-    let midnight = |date: Date| date.checked_add(days.days()).and_then(|date| date.to_zoned(TimeZone::UTC));
-    let date = || text.parse::<Date>().and_then(midnight).map(|zoned| zoned.timestamp());
-    let moment = text.parse::<Timestamp>().or_else(|_| date());
-    moment.map(Timestamp::as_millisecond).ok().filter(|ms| *ms >= 0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_last_day_is_among_what_is_wanted_and_a_moment_is_the_first_after() {
-        // 22 November 2026, midnight UTC.
-        let day = 1_795_305_600_000;
-        assert_eq!((moment("2026-11-22", 0), moment("2026-11-22", 1)), (Some(day), Some(day + 86_400_000)));
-        assert_eq!(moment("2026-11-22T01:00:00+01:00", 1), Some(day));
-        for wrong in ["", "yesterday", "2026-13-01", "1969-01-01"] {
-            assert_eq!(moment(wrong, 0), None, "{wrong}");
-        }
-    }
 
     #[test]
     fn an_address_asks_for_what_was_asked_for() {
