@@ -8,11 +8,8 @@ use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use super::{PlanName, count, plans};
+use super::{DAY_MS, PlanName, count, plans};
 use crate::store::{DatabaseError, Snapshot, StoreError, statements, values};
-
-/// Milliseconds of a day.
-const DAY_MS: i64 = 86_400_000;
 
 /// The longest rest between two counts.
 const LONGEST: Duration = Duration::from_secs(60);

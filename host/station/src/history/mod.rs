@@ -35,6 +35,9 @@ use serde::Serialize;
 use crate::plan::Plan;
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements};
 
+/// Milliseconds of a day.
+const DAY_MS: i64 = 86_400_000;
+
 /// From when until when runs began, in milliseconds since 1970, UTC.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Period {

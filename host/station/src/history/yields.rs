@@ -18,11 +18,8 @@ use serde::Serialize;
 
 use super::control::{Limits, limits};
 use super::rate::Rate;
-use super::{Period, PlanName, count, plans};
+use super::{DAY_MS, Period, PlanName, count, plans};
 use crate::store::{DatabaseError, Found, Snapshot, StoreError, statements, values};
-
-/// Milliseconds of a day.
-const DAY_MS: i64 = 86_400_000;
 
 /// What the lines of a yield are about, beside product and plan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,7 +48,7 @@ pub struct Wanted {
 }
 
 impl Wanted {
-    fn is_wanted(&self, cell: &Cell) -> bool {
+    fn is_wanted(&self, cell: &DayCell) -> bool {
         self.plan.as_ref().is_none_or(|plan| *plan == cell.plan.plan)
             && self.lane.as_ref().is_none_or(|lane| *lane == cell.lane)
     }
@@ -153,7 +150,7 @@ pub fn yields(of: &Snapshot, wanted: &Wanted, by: By) -> Result<Yields, StoreErr
 
 /// What is counted together.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Cell {
+struct DayCell {
     plan: PlanName,
     station: String,
     lane: String,
@@ -203,7 +200,7 @@ fn cells(
     of: &Snapshot,
     wanted: &Wanted,
     plans: &BTreeMap<String, PlanName>,
-) -> Result<BTreeMap<Cell, Counts>, StoreError> {
+) -> Result<BTreeMap<DayCell, Counts>, StoreError> {
     let (days, rest) = in_days(wanted.period);
     let mut parts = vec![(statements::YIELD_DAYS, [days.start, days.end])];
     parts.extend(rest.map(|part| (statements::YIELD_HOURS, [part.from_ms, part.until_ms])));
@@ -213,7 +210,7 @@ fn cells(
             of.rows("to be counted", text, values![from, until], counted)?
         {
             let Some(plan) = plans.get(&plan).cloned() else { continue };
-            let cell = Cell { plan, station, lane, day };
+            let cell = DayCell { plan, station, lane, day };
             if wanted.is_wanted(&cell) {
                 cells.entry(cell).or_default().add(&counts);
             }
@@ -246,7 +243,7 @@ fn counted(row: &Found<'_>) -> Result<(String, String, String, i64, Counts), Dat
 
 /// A unit that was judged more than once.
 struct Again {
-    cell: Cell,
+    cell: DayCell,
     unit: String,
     first: String,
     first_ms: i64,
@@ -281,7 +278,7 @@ fn again(of: &Snapshot, plans: &BTreeMap<String, PlanName>) -> Result<Vec<Again>
     let rows = of.rows("to tell what was judged again", statements::RETESTS, &[], |row| {
         let (hash, first_ms): (String, i64) = (row.get(1)?, row.get(6)?);
         let plan = plans.get(&hash).cloned().ok_or(DatabaseError::Dangling { what: "a plan" })?;
-        let cell = Cell { plan, station: row.get(2)?, lane: row.get(3)?, day: first_ms / DAY_MS };
+        let cell = DayCell { plan, station: row.get(2)?, lane: row.get(3)?, day: first_ms / DAY_MS };
         Ok(Again {
             cell,
             unit: row.get(0)?,
@@ -306,11 +303,11 @@ fn serial_of(of: &Snapshot, unit: &str) -> Result<String, StoreError> {
 fn waived(
     of: &Snapshot,
     plans: &BTreeMap<String, PlanName>,
-) -> Result<BTreeMap<String, (Cell, i64, bool)>, StoreError> {
+) -> Result<BTreeMap<String, (DayCell, i64, bool)>, StoreError> {
     let rows = of.rows("to tell its waivers", statements::WAIVED, &[], |row| {
         let (hash, started_ms): (String, i64) = (row.get(1)?, row.get(4)?);
         let plan = plans.get(&hash).cloned().ok_or(DatabaseError::Dangling { what: "a plan" })?;
-        let cell = Cell { plan, station: row.get(2)?, lane: row.get(3)?, day: started_ms / DAY_MS };
+        let cell = DayCell { plan, station: row.get(2)?, lane: row.get(3)?, day: started_ms / DAY_MS };
         Ok((row.get(0)?, (cell, started_ms, row.get(5)?)))
     })?;
     Ok(rows.into_iter().collect())
@@ -320,7 +317,7 @@ fn waived(
 type Place = (Option<i64>, Option<String>, Option<String>);
 
 /// The cells put together.
-fn lines(cells: &BTreeMap<Cell, Counts>, by: By) -> Vec<Yield> {
+fn lines(cells: &BTreeMap<DayCell, Counts>, by: By) -> Vec<Yield> {
     let mut groups = BTreeMap::<(PlanName, Place), Counts>::new();
     for (cell, counts) in cells {
         groups.entry((cell.plan.clone(), place(cell, by))).or_default().add(counts);
@@ -337,7 +334,7 @@ fn lines(cells: &BTreeMap<Cell, Counts>, by: By) -> Vec<Yield> {
     lines
 }
 
-fn place(cell: &Cell, by: By) -> Place {
+fn place(cell: &DayCell, by: By) -> Place {
     match by {
         By::Plan => (None, None, None),
         By::Day => (Some(cell.day), None, None),
