@@ -66,7 +66,6 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
 fn word(scope: Scope) -> &'static str {
     match scope {
         Scope::Read => "read",
-        Scope::Jobs => "jobs",
     }
 }
 

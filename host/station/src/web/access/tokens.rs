@@ -15,9 +15,6 @@ const TOKEN: &str = "token";
 pub enum Scope {
     /// Every page that somebody who is logged in may see, and no act.
     Read,
-    /// Nothing yet: the files of a station that takes jobs have it.
-    #[value(skip)]
-    Jobs,
 }
 
 /// A token, as the file has it.
@@ -101,7 +98,9 @@ impl Tokens {
     /// The name of this token, if it may read.
     pub(crate) fn reader(&self, key: &Key, token: &str) -> Option<&str> {
         let known = self.token.iter().find(|known| key.is_mark(TOKEN, token, &known.mark))?;
-        (known.scope == Scope::Read).then_some(known.name.as_str())
+        match known.scope {
+            Scope::Read => Some(&known.name),
+        }
     }
 }
 
@@ -130,18 +129,5 @@ mod tests {
         }
         tokens.remove("mes").unwrap();
         assert_eq!((tokens.reader(&key, &mes), tokens.reader(&key, &other)), (None, Some("other")));
-    }
-
-    /// What a station that takes jobs will write.
-    #[test]
-    fn a_token_for_jobs_is_read_and_reads_nothing() {
-        let folder = tempfile::tempdir().unwrap();
-        let key = Key::load(&folder.path().join("station.key")).unwrap();
-        let path = folder.path().join("tokens.toml");
-        let mark = key.mark(TOKEN, "t");
-        key::keep(&path, &format!("[[token]]\nname = \"line\"\nscope = \"jobs\"\nmark = \"{mark}\"\n"), true)
-            .unwrap();
-        let tokens = Tokens::load_or_none(&path).unwrap();
-        assert_eq!(tokens.reader(&key, "t"), None);
     }
 }
