@@ -197,7 +197,6 @@ impl Floor {
         }
         let serial = self.pending(now)?.to_owned();
         let answer = self.give(lane, &serial).ok()?;
-        self.pending = None;
         // Plugging it in is what starts some lanes.
         answer.effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
     }
@@ -230,6 +229,8 @@ impl Floor {
         self.refuse_elsewhere(lane, &accepted)?;
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
         self.armed = None;
+        // Its board is found: the next one that is plugged in is another.
+        self.pending.take_if(|(waits, _)| waits == serial);
         let (serial, name) = (serial.to_owned(), self.name(lane).to_owned());
         let said = match effect {
             Some(_) => Saying::Tested { serial, lane: name },

@@ -188,6 +188,24 @@ fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
     assert_eq!(words(&floor), [Word::Ready, Word::Running]);
 }
 
+/// Whoever waited for the plug says which lane it is after all.
+#[test]
+fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
+    let mut floor = floor(&[SCAN, SCAN], true);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), at(0)).unwrap();
+    floor.scan("HR:LANE:1", at(1)).unwrap();
+    assert_eq!(floor.scan(&serial(1), at(2)).unwrap().lane, Some(0));
+    assert_eq!(floor.pending(at(2)), Some(serial(0).as_str()), "another one waits still");
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+    floor.scan("HR:LANE:1", at(4)).unwrap();
+    assert_eq!(floor.scan(&serial(0), at(5)).unwrap().lane, Some(0));
+    assert_eq!(floor.pending(at(5)), None);
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(6));
+    assert_eq!(floor.happened(1, Event::Present(true), at(7)), None);
+    assert_eq!(words(&floor), [Word::Pass, Word::Ready]);
+}
+
 #[test]
 fn a_number_waits_a_minute_for_its_board() {
     for (seconds, word) in [(60, Word::Running), (61, Word::Ready)] {
