@@ -64,25 +64,16 @@ pub(super) fn begin(
     let shared = Arc::clone(shared);
     thread::Builder::new().name(format!("run in lane {lane}")).spawn(move || {
         let run = || carried_out(&shared, lane, &accepted, &operator, stop);
-        let (event, is_stuck) = guarded(run).unwrap_or_else(|fault| (unsaved(&fault), false));
+        let event = guarded(run).unwrap_or_else(|fault| unsaved(&fault));
         shared.tell(lane, Heard::Happened(event));
-        if is_stuck {
-            shared.tell(lane, Heard::Happened(Event::Stuck));
-        }
     })
 }
 
-/// What came of the run, and whether its process is still there.
-fn carried_out(
-    shared: &Shared,
-    lane: usize,
-    accepted: &Accepted,
-    operator: &str,
-    stop: StopAsked,
-) -> (Event, bool) {
+/// What came of the run.
+fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, operator: &str, stop: StopAsked) -> Event {
     let Settings { name, lanes, plans, silence, memory_mib, .. } = &shared.settings;
     let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
-        return (Event::NotBegun { why: Saying::NoLaneOrPlan.into() }, false);
+        return Event::NotBegun { why: Saying::NoLaneOrPlan.into() };
     };
     let order = Order {
         plan: &file.plan,
@@ -103,11 +94,10 @@ fn carried_out(
     match run::run(&shared.store, &order, &mut watched) {
         Ok(saved) => {
             watched.saved(&saved, &file.plan);
-            let is_stuck = saved.is_stuck;
-            (at_plant(shared, saved, PLANT), is_stuck)
+            at_plant(shared, saved, PLANT)
         }
-        Err(error @ RunError::Unsaved { .. }) => (unsaved(&error), false),
-        Err(error) => (Event::NotBegun { why: Said::of(&error) }, false),
+        Err(error @ RunError::Unsaved { .. }) => unsaved(&error),
+        Err(error) => Event::NotBegun { why: Said::of(&error) },
     }
 }
 
@@ -217,10 +207,14 @@ impl Watch for Watched<'_> {
                 self.run.clone_from(&run.id);
                 Heard::Happened(Event::Begun { run: run.id.clone() })
             }
-            Stage::Saving { was_killed } => {
+            Stage::Saving { was_killed, is_stuck } => {
                 self.ended = Some(Instant::now());
                 if was_killed {
                     self.shared.figures.killed(self.name());
+                }
+                if is_stuck {
+                    // Whatever comes of the result.
+                    self.shared.tell(self.lane, Heard::Happened(Event::Stuck));
                 }
                 Heard::Happened(Event::Saving)
             }

@@ -34,14 +34,25 @@ pub struct Lane {
     shown: Option<Shown>,
     note: Option<Said>,
     owes: Option<Owes>,
+    /// Whether a process of it cannot be killed.
+    is_stuck: bool,
 }
 
 impl Lane {
     /// A lane without a board.
     #[must_use]
     pub fn new(name: impl Into<String>, starts: Starts) -> Self {
-        let (is_present, waiting, shown, note, owes) = (false, None, None, None, None);
-        Self { name: name.into(), starts, phase: Phase::Idle, is_present, waiting, shown, note, owes }
+        Self {
+            name: name.into(),
+            starts,
+            phase: Phase::Idle,
+            is_present: false,
+            waiting: None,
+            shown: None,
+            note: None,
+            owes: None,
+            is_stuck: false,
+        }
     }
 
     /// Its name.
@@ -233,6 +244,8 @@ impl Lane {
         if !matches!(self.phase, Phase::Out { .. }) {
             return Err(Refusal::InService { lane: self.name.clone() });
         }
+        // Whoever puts it back has seen to it.
+        self.is_stuck = false;
         self.phase = if self.shown.is_some() { Phase::Ended } else { Phase::Idle };
         Ok(None)
     }
@@ -260,10 +273,16 @@ impl Lane {
                 let effect = run.clone().map(|run| Effect::Recover { run });
                 (Phase::Unsaved { of, run, why }, effect)
             }
-            (Phase::Ended, Event::Stuck) => (Phase::Out { why: Saying::Unkillable.into() }, None),
+            (phase, Event::Stuck) => {
+                self.is_stuck = true;
+                (phase, None)
+            }
             (phase, _) => (phase, None),
         };
-        self.phase = phase;
+        // Its result is seen to first.
+        let is_settled = matches!(phase, Phase::Idle | Phase::Ended);
+        self.phase =
+            if is_settled && self.is_stuck { Phase::Out { why: Saying::Unkillable.into() } } else { phase };
         effect
     }
 }

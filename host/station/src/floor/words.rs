@@ -144,7 +144,7 @@ pub enum Event {
         /// Why.
         why: Said,
     },
-    /// Its process cannot be killed, and may still have the board.
+    /// Its process cannot be killed, and may still have the board: it is out of service as soon as its result is settled.
     Stuck,
     /// What it is to do before its production counts, if anything.
     Owes(Option<Owes>),

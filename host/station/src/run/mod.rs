@@ -74,8 +74,6 @@ pub struct Saved {
     pub stored: Stored,
     /// When that was, in milliseconds since 1970, UTC.
     pub saved_ms: i64,
-    /// Whether the lane's process could not be killed: it may still have the board.
-    pub is_stuck: bool,
 }
 
 /// Who watches a run.
@@ -97,6 +95,8 @@ pub enum Stage<'a> {
     Saving {
         /// Whether the lane's process had to be killed, since it was silent or took too long.
         was_killed: bool,
+        /// Whether it could not even be killed: it may still have the board.
+        is_stuck: bool,
     },
 }
 
@@ -158,10 +158,9 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let heard = lent::supervised(order, job, &spool, patience(order, &selected), &mut attending);
     let (device, is_stuck) = (attending.device, matches!(heard.end, End::Stuck(_)));
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
-    attending.watch.hear(Stage::Saving { was_killed });
+    attending.watch.hear(Stage::Saving { was_killed, is_stuck });
     let record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
-    let saved = store.with(|store| save(store, record, &spool, selected.steps.len() as u32))?;
-    Ok(Saved { is_stuck, ..saved })
+    store.with(|store| save(store, record, &spool, selected.steps.len() as u32))
 }
 
 /// What is judged.
@@ -340,7 +339,7 @@ fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Resu
     {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());
     }
-    Ok(Saved { record, stored, saved_ms, is_stuck: false })
+    Ok(Saved { record, stored, saved_ms })
 }
 
 /// What a lane wrote down, as evidence.

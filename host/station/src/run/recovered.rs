@@ -42,7 +42,7 @@ pub fn recover_run(store: &mut Store, run: &str) -> Result<Saved, RunError> {
         return closed(store, open, |tries| Saying::SavedTooLate { tries });
     }
     let (stored, record) = store.saved(run).map_err(unsaved)?;
-    Ok(Saved { record, stored, saved_ms: clock::now_ms(), is_stuck: false })
+    Ok(Saved { record, stored, saved_ms: clock::now_ms() })
 }
 
 /// Removes what runs left that ended between their result and their last act, and what is a day old and no row names.

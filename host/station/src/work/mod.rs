@@ -26,6 +26,8 @@ use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Claim, PlantLink, SharedStore, StoreError, Worker};
 
+/// Who acts, to records and to the plant's audit.
+const OPERATOR: &str = "job";
 /// How often it is asked for a job while there is none, in milliseconds.
 const IDLE_MS: u64 = 1_000;
 /// And while the plant is away.
@@ -137,7 +139,12 @@ impl Work<'_> {
         heard: &mut dyn FnMut(Stage<'_>),
     ) -> Result<Judged, WorkError> {
         let holding = Holding::begin(self.plant.clone(), Held::Job(claim.clone()));
-        let saved = match self.run(&claim, &holding, stop, heard) {
+        let mut watched = Watched { holding: &holding, stop, heard, is_stuck: false };
+        let ended = self.run(&claim, &mut watched);
+        if watched.is_stuck {
+            self.take_out(&claim.lease.board, stop);
+        }
+        let saved = match ended {
             Ok(saved) => saved,
             Err(error) => {
                 let said = Said::of(&error).to_string();
@@ -157,13 +164,23 @@ impl Work<'_> {
         Ok(Judged { claim, is_sent, counts, saved })
     }
 
-    fn run(
-        &self,
-        claim: &Claim,
-        holding: &Holding,
-        stop: &dyn Fn() -> Option<StoppedBy>,
-        heard: &mut dyn FnMut(Stage<'_>),
-    ) -> Result<Saved, WorkError> {
+    /// Has nobody get a board any more that a process may still have which cannot be killed. The board is held until the plant
+    /// knows.
+    fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
+        let station = &self.worker.station;
+        let why = format!(
+            "a process of station {station} may still have it, and cannot be killed; restart that computer first"
+        );
+        while let Err(error) = self.plant.ask(|plant| plant.take_out(board, Some(&why), OPERATOR)) {
+            tracing::warn!("the board {board} cannot be taken out yet ({why}): {}", Said::of(&error));
+            if stop().is_some() {
+                return;
+            }
+            sleep_unless(Duration::from_millis(AWAY_MS), &|| stop().is_some());
+        }
+    }
+
+    fn run(&self, claim: &Claim, watched: &mut Watched<'_>) -> Result<Saved, WorkError> {
         let target: Target = claim.lease.target.parse().map_err(|source| WorkError::Target {
             board: claim.lease.board.clone(),
             target: claim.lease.target.clone(),
@@ -183,14 +200,14 @@ impl Work<'_> {
             board: &board,
             station: &self.worker.station,
             lane: &claim.lease.board,
-            operator: "job",
+            operator: OPERATOR,
             program: &self.program,
             counts: plan.counts(claim.serial()),
             job: Some(&job),
             silence: *silence,
             memory_mib: *memory_mib,
         };
-        Ok(run::run(&self.store, &order, &mut Watched { holding, stop, heard })?)
+        Ok(run::run(&self.store, &order, watched)?)
     }
 
     fn is_sent(&self, run: &str) -> Result<bool, StoreError> {
@@ -216,6 +233,8 @@ struct Watched<'a> {
     holding: &'a Holding,
     stop: &'a dyn Fn() -> Option<StoppedBy>,
     heard: &'a mut dyn FnMut(Stage<'_>),
+    /// Whether its lane's process could not be killed.
+    is_stuck: bool,
 }
 
 impl Watch for Watched<'_> {
@@ -224,6 +243,7 @@ impl Watch for Watched<'_> {
     }
 
     fn hear(&mut self, stage: Stage<'_>) {
+        self.is_stuck |= matches!(stage, Stage::Saving { is_stuck: true, .. });
         (self.heard)(stage);
     }
 }

@@ -123,6 +123,33 @@ fn a_lane_whose_process_cannot_be_killed_is_out() {
     assert_eq!(words(&floor), [Word::Error]);
 }
 
+/// It is known before its result is, which may wait for the disk or for the plant.
+#[test]
+fn a_lane_whose_process_cannot_be_killed_is_out_whatever_comes_of_its_result() {
+    let unsaved = || Event::Unsaved { why: Said::of(&std::io::Error::other("full")) };
+    let settled: [&[Event]; 2] = [&[], &[unsaved(), unsaved()]];
+    for before in settled {
+        let mut floor = floor(&[SCAN], false);
+        plug(&mut floor, 0);
+        floor.scan(&serial(0), at(0)).unwrap();
+        floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
+        floor.happened(0, Event::Stuck, at(0));
+        assert_eq!(words(&floor), [Word::Running], "until it is settled");
+        floor.happened(0, Event::Saving, at(0));
+        for event in before {
+            floor.happened(0, event.clone(), at(0));
+            assert_eq!(words(&floor), [Word::Unsaved]);
+        }
+        let hooks = floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
+        assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Error))));
+        assert_eq!(words(&floor), [Word::Out], "{before:?}");
+        floor.scan("HR:IN", at(0)).unwrap();
+        floor.scan(&serial(1), at(0)).unwrap();
+        floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(0));
+        assert_eq!(words(&floor), [Word::Pass], "whoever put it back has seen to it");
+    }
+}
+
 #[test]
 fn a_lane_starts_as_its_settings_say() {
     let mut button = floor(&[BUTTON], false);

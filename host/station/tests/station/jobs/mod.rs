@@ -3,6 +3,7 @@
 mod boards;
 pub(crate) mod claims;
 mod rate;
+mod stuck;
 mod work;
 
 use std::path::Path;

@@ -21,7 +21,7 @@ pub(crate) fn plan() -> String {
 }
 
 /// How long something is waited for that must come: it ends hangs alone.
-pub(super) const HANG: Duration = Duration::from_secs(120);
+pub(crate) const HANG: Duration = Duration::from_secs(120);
 
 /// A folder with settings.
 pub(crate) struct Station {

@@ -8,3 +8,4 @@ mod hooks;
 mod labgrid;
 mod refused;
 mod shift;
+pub(crate) mod stuck;

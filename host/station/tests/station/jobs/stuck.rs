@@ -1,0 +1,42 @@
+//! A board that a process may have still when its run is over.
+
+use std::time::Instant;
+
+use halfrow::verdict::StoppedBy;
+use halfrow_station::settings::Settings;
+use halfrow_station::store::{Folder, PlantLink, SharedStore, Store};
+use halfrow_station::work::Work;
+
+use super::{any, job, plan, settings, shared, worker};
+use crate::lanes::floor::HANG;
+use crate::lanes::stuck::Stuck;
+
+#[test]
+fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 2).unwrap();
+    let folder = crate::common::folder();
+    let path = settings(&server, folder.path(), "12");
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 1")).unwrap();
+    let settings = Settings::load_plant(&path).unwrap();
+    let stuck = Stuck::in_folder(folder.path());
+    let store = Store::open(&Folder::new(&settings.data)).unwrap();
+    let work = Work {
+        plant: PlantLink::new(settings.plant.as_ref().unwrap().address().unwrap()),
+        store: SharedStore::new(store),
+        program: stuck.program.clone(),
+        worker: worker("12"),
+        settings: &settings,
+    };
+    let claim = work.claim().unwrap().unwrap();
+    // Nothing is sent on here, so it waits until the board is lost.
+    let begun = Instant::now();
+    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
+    let judged = work.judge(claim, &stop, &mut |_| ()).unwrap();
+    assert!(judged.saved.record.conclusion.headline.contains("could not even be killed"), "{judged:?}");
+    let out = server.rows("SELECT out FROM board").concat();
+    assert!(out[0].contains("a process of station 12 may still have it"), "{out:?}");
+    assert_eq!(work.claim().unwrap(), None);
+}

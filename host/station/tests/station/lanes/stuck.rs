@@ -1,0 +1,80 @@
+//! A lane whose process cannot be killed.
+
+use std::fs;
+use std::os::unix::fs::PermissionsExt as _;
+use std::path::{Path, PathBuf};
+
+use halfrow_station::engine::{Engine, LaneState, News};
+use halfrow_station::floor::Word;
+use halfrow_station::settings::Settings;
+use halfrow_station::store::{Folder, Store};
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+
+use super::floor::{HANG, SERIALS, Station};
+
+/// A program whose lanes say nothing, and leave the group of processes that is killed then.
+pub(crate) struct Stuck {
+    pub(crate) program: PathBuf,
+    ids: PathBuf,
+}
+
+impl Stuck {
+    pub(crate) fn in_folder(folder: &Path) -> Self {
+        let [program, ids] = ["stuck", "stuck.ids"].map(|name| folder.join(name));
+        let noted = format!("open(my $ids, '>>', '{}'); print $ids \"$$\\n\"; close($ids);", ids.display());
+        let script = format!("#!/usr/bin/perl\n{noted}\nsetpgrp(0, getpgrp(getppid()));\nsleep(600);\n");
+        fs::write(&program, script).unwrap();
+        fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
+        Self { program, ids }
+    }
+}
+
+impl Drop for Stuck {
+    fn drop(&mut self) {
+        for id in fs::read_to_string(&self.ids).unwrap_or_default().lines() {
+            let _ = kill(Pid::from_raw(id.parse().unwrap()), Signal::SIGKILL);
+        }
+    }
+}
+
+/// Its result cannot be saved either; when that is put right, the lane is out of service all the same.
+#[test]
+fn a_lane_whose_process_cannot_be_killed_is_out_though_its_result_was_not_saved() {
+    let station = Station::with(&["mock"], "");
+    let path = station.path("station.toml");
+    let text = fs::read_to_string(&path).unwrap();
+    fs::write(&path, text.replace("silence = 5", "silence = 1")).unwrap();
+    let stuck = Stuck::in_folder(&station.path(""));
+    let settings = Settings::load(&path).unwrap();
+    let store = Store::open(&Folder::new(&settings.data)).unwrap();
+    let database = rusqlite::Connection::open(station.path("data/station.db")).unwrap();
+    let full = "CREATE TRIGGER full BEFORE UPDATE ON run BEGIN SELECT RAISE(ABORT, 'full'); END";
+    database.execute_batch(full).unwrap();
+    let engine = Engine::start(settings, store, stuck.program.clone()).unwrap();
+    let news = engine.listen();
+    let state = |word| {
+        let is = |news: &News| matches!(news, News::Lane(LaneState { state, .. }) if *state == word);
+        loop {
+            let news = news.recv_timeout(HANG).unwrap();
+            if is(&news) {
+                break news;
+            }
+        }
+    };
+    state(Word::Ready);
+    engine.label(1, Some(0), SERIALS[0], "weber");
+    state(Word::Unsaved);
+    database.execute_batch("DROP TRIGGER full").unwrap();
+    let settled = news.iter().find_map(|news| match news {
+        News::Lane(lane) if lane.state != Word::Unsaved => Some(lane),
+        _ => None,
+    });
+    let settled = settled.unwrap();
+    assert_eq!(settled.state, Word::Out, "{settled:?}");
+    assert!(settled.note.unwrap().to_string().contains("cannot be killed"));
+    assert_eq!(settled.shown.unwrap().verdict, halfrow::Verdict::Error);
+    engine.close(None);
+    drop(engine);
+    station.assert_well();
+}
