@@ -17,6 +17,7 @@ use crate::console;
 use crate::exit::Exit;
 use crate::guard::guarded;
 use crate::outbox::Outbox;
+use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Worker};
 use crate::work::{Judged, Work, WorkError};
@@ -113,10 +114,13 @@ fn one_by_one(
                 print(&if arguments.json { document(&judged) } else { text(&judged) })?;
             }
             Err(error @ WorkError::Store(_)) => return Err(Failure::error(error)),
+            // It would be asked again for ever.
+            Err(error) if arguments.once && error.is_of_store() => return Err(Failure::error(error)),
             // The next one may come to something.
             Err(error) => {
-                let error = anyhow::Error::from(error).context(format!("the job {job} came to no run"));
-                console::error(&format_args!("{error:#}"));
+                let said = Said::of(&error);
+                console::error(&format_args!("the job {job} came to no run: {said}"));
+                work.settle(&error, next_stop);
             }
         }
     }

@@ -21,7 +21,7 @@ pub use held::{Held, Holding, Lost};
 use crate::labgrid::LaneBoard;
 use crate::outbox::PlantSink;
 use crate::record::JobClaim;
-use crate::run::{self, Order, RunError, Saved, Stage, Watch};
+use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
 use crate::store::{Claim, PlantLink, SharedStore, StoreError, Worker};
@@ -30,7 +30,7 @@ use crate::store::{Claim, PlantLink, SharedStore, StoreError, Worker};
 const OPERATOR: &str = "job";
 /// How often it is asked for a job while there is none, in milliseconds.
 const IDLE_MS: u64 = 1_000;
-/// And while the plant is away.
+/// And while the plant is away, or the station's own store is not well.
 const AWAY_MS: u64 = 5_000;
 /// How often it is looked whether the plant has a run.
 const LOOK: Duration = Duration::from_millis(50);
@@ -62,6 +62,19 @@ pub enum WorkError {
         /// Why that is none.
         source: TargetError,
     },
+}
+
+impl WorkError {
+    /// Whether the board was not touched, for a reason that is the station's and not the job's.
+    const fn is_not_begun(&self) -> bool {
+        matches!(self, Self::Run(RunError::NotBegun(_) | RunError::NoRandomness(_)))
+    }
+
+    /// Whether the station's own store is not well, so that another job would come to no more.
+    #[must_use]
+    pub const fn is_of_store(&self) -> bool {
+        self.is_not_begun() || matches!(self, Self::Run(RunError::Unsaved { .. }))
+    }
 }
 
 /// What became of a job.
@@ -115,9 +128,7 @@ impl Work<'_> {
                 }
                 found => return found,
             };
-            // Stations that were started together do not ask together.
-            let wait = rng().random_range(about_ms / 2..about_ms * 3 / 2);
-            sleep_unless(Duration::from_millis(wait), &|| stop().is_some());
+            rest(about_ms, stop);
         }
         Ok(None)
     }
@@ -146,6 +157,10 @@ impl Work<'_> {
         }
         let saved = match ended {
             Ok(saved) => saved,
+            Err(error) if error.is_not_begun() => {
+                self.decline(&claim);
+                return Err(error);
+            }
             Err(error) => {
                 let said = Said::of(&error).to_string();
                 let back = self.plant.ask(|plant| plant.fail(&claim, &said));
@@ -164,6 +179,23 @@ impl Work<'_> {
         Ok(Judged { claim, is_sent, counts, saved })
     }
 
+    /// Waits until another job may come to more than that which ended with `error`: what could not be saved is closed first, since
+    /// nothing else is begun on its board before.
+    pub fn settle(&self, error: &WorkError, stop: &dyn Fn() -> Option<StoppedBy>) {
+        if !error.is_of_store() {
+            return;
+        }
+        rest(AWAY_MS, stop);
+        let WorkError::Run(RunError::Unsaved { run, .. }) = error else { return };
+        while stop().is_none() {
+            match self.store.with(|store| recover_run(store, run)) {
+                Ok(_) => return,
+                Err(error) => tracing::warn!("no job is taken meanwhile: {}", Said::of(&error)),
+            }
+            rest(AWAY_MS, stop);
+        }
+    }
+
     /// Has nobody get a board any more that a process may still have which cannot be killed. The board is held until the plant
     /// knows.
     fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
@@ -176,7 +208,7 @@ impl Work<'_> {
             if stop().is_some() {
                 return;
             }
-            sleep_unless(Duration::from_millis(AWAY_MS), &|| stop().is_some());
+            rest(AWAY_MS, stop);
         }
     }
 
@@ -219,6 +251,12 @@ impl Work<'_> {
         let counted = self.plant.ask(|plant| plant.run_of_job(&claim.job)).ok()?;
         Some(counted.is_none_or(|counted| counted == run))
     }
+}
+
+/// Waits for about so long, or until `stop` says so: stations that were started together do not ask together.
+fn rest(about_ms: u64, stop: &dyn Fn() -> Option<StoppedBy>) {
+    let wait = rng().random_range(about_ms / 2..about_ms * 3 / 2);
+    sleep_unless(Duration::from_millis(wait), &|| stop().is_some());
 }
 
 /// Says that a job which could not be given `back` is free later.

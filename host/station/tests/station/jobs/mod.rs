@@ -2,6 +2,7 @@
 
 mod boards;
 pub(crate) mod claims;
+mod disk;
 mod rate;
 mod stuck;
 mod work;

@@ -1,0 +1,120 @@
+//! Stations that take jobs while their own disk takes nothing.
+
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
+use tempfile::TempDir;
+
+use super::{any, job, plan, settings, shared};
+use crate::common::{Did, folder, program, query};
+use crate::lanes::floor::HANG;
+use crate::plant::server::Server;
+
+/// A station in a folder of its own, whose database can be made to refuse.
+struct Station {
+    folder: TempDir,
+}
+
+impl Station {
+    fn new(server: &Server) -> Self {
+        let station = Self { folder: folder() };
+        settings(server, station.folder.path(), "12");
+        let did = Did::from(station.work(&["--once"]).output().unwrap());
+        assert_eq!(did.code, Some(0), "there is nothing to do yet: {did:?}");
+        station
+    }
+
+    fn work(&self, more: &[&str]) -> Command {
+        let mut command = Command::new(program());
+        command.arg("work").args(more).arg("--settings").arg(self.folder.path().join("station.toml"));
+        command.stdout(Stdio::null());
+        command
+    }
+
+    /// Its database refuses this, as on a full disk.
+    fn refuses(&self, what: &str) {
+        self.change(&format!(
+            "CREATE TRIGGER full BEFORE {what} ON run BEGIN SELECT RAISE(ABORT, 'full'); END"
+        ));
+    }
+
+    fn is_well_again(&self) {
+        self.change("DROP TRIGGER full");
+    }
+
+    fn change(&self, text: &str) {
+        let database = rusqlite::Connection::open(self.folder.path().join("data/station.db")).unwrap();
+        database.busy_timeout(HANG).unwrap();
+        database.execute_batch(text).unwrap();
+    }
+}
+
+/// `halfrow-station work`
+struct Worker(Child);
+
+impl Worker {
+    fn end(mut self) {
+        kill(Pid::from_raw(self.0.id() as i32), Signal::SIGTERM).unwrap();
+        assert_eq!(self.0.wait().unwrap().code(), Some(143));
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+/// Waits until the plant has rows for this.
+fn await_rows(server: &Server, text: &str) -> Vec<Vec<String>> {
+    let until = Instant::now() + HANG;
+    loop {
+        let rows = server.rows(text);
+        if !rows.is_empty() {
+            return rows;
+        }
+        assert!(Instant::now() < until, "{:?}", server.rows("SELECT * FROM job"));
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+#[test]
+fn a_job_that_a_full_disk_kept_from_beginning_costs_no_attempt() {
+    let (server, mut plant) = shared(1);
+    let station = Station::new(&server);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    station.refuses("INSERT");
+    let did = Did::from(station.work(&["--once"]).output().unwrap());
+    assert!(did.code == Some(3) && did.complained.contains("the board not touched"), "{did:?}");
+    assert_eq!(server.rows("SELECT state, attempts, fence FROM job"), [["waiting", "0", "1"]]);
+    assert_eq!(server.rows("SELECT count(*) FROM board WHERE holder IS NOT NULL"), [["0"]]);
+    let worker = Worker(station.work(&[]).spawn().unwrap());
+    await_rows(&server, "SELECT 1 FROM job WHERE fence >= 3");
+    station.is_well_again();
+    let ended = await_rows(&server, "SELECT state, attempts FROM job WHERE state IN ('done', 'dead')");
+    assert_eq!(ended, [["done", "1"]]);
+    worker.end();
+}
+
+/// Its run stays open until then, and nothing else is begun on its board.
+#[test]
+fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
+    let (server, mut plant) = shared(1);
+    let station = Station::new(&server);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    station.refuses("UPDATE");
+    let worker = Worker(station.work(&[]).spawn().unwrap());
+    await_rows(&server, "SELECT 1 FROM job WHERE attempts = 1 AND state = 'waiting'");
+    station.is_well_again();
+    let ended = await_rows(&server, "SELECT state, attempts FROM job WHERE state IN ('done', 'dead')");
+    assert_eq!(ended, [["done", "2"]]);
+    worker.end();
+    let verdicts = query(&station.folder.path().join("data"), "SELECT verdict FROM run ORDER BY id");
+    assert_eq!(verdicts, ["ERROR", "PASS"]);
+}
