@@ -35,8 +35,6 @@ pub(super) struct AtWork {
     /// The last moment, in milliseconds since 1970, at which it is known what each lane owes its shift; none where that
     /// could not be told.
     known_until: Vec<Option<i64>>,
-    /// Who scanned last.
-    operator: String,
     threads: Vec<JoinHandle<()>>,
     begun: Instant,
 }
@@ -52,7 +50,6 @@ impl AtWork {
             stops: vec![StopAsked::default(); lanes],
             asked: vec![None; lanes],
             known_until: vec![None; lanes],
-            operator: String::new(),
             threads: Vec::new(),
             begun: Instant::now(),
         }
@@ -72,9 +69,9 @@ impl AtWork {
             self.check_due();
             match input {
                 Input::Scan { .. } | Input::Label { .. } | Input::Act { .. } if is_closing => {}
-                Input::Scan { number, text, operator } => self.scan(number, text, operator),
-                Input::Label { number, lane, label, operator } => self.label(number, lane, label, operator),
-                Input::Act { number, lane, act, operator } => self.act(number, lane, act, operator),
+                Input::Scan { number, text, operator } => self.scan(number, text, &operator),
+                Input::Label { number, lane, label, operator } => self.label(number, lane, label, &operator),
+                Input::Act { number, lane, act, operator } => self.act(number, lane, act, &operator),
                 Input::Heard { lane, heard } => self.heard(lane, heard),
                 Input::Close(by) => {
                     is_closing = true;
@@ -166,29 +163,26 @@ impl AtWork {
         }
     }
 
-    fn scan(&mut self, number: u64, text: String, operator: String) {
+    fn scan(&mut self, number: u64, text: String, operator: &str) {
         let now = self.now();
-        self.operator = operator;
         let answer = match self.shared.settings.scanner.label(&text) {
-            Some(label) => self.floor.scan(label, now),
+            Some(label) => self.floor.scan(label, operator, now),
             None => Err(ScanError::Incomplete),
         };
         self.answer(number, text, answer);
     }
 
-    fn label(&mut self, number: u64, lane: Option<usize>, label: String, operator: String) {
+    fn label(&mut self, number: u64, lane: Option<usize>, label: String, operator: &str) {
         let now = self.now();
-        self.operator = operator;
         let answer = match lane {
-            Some(lane) => self.floor.scan_for(lane, &label, now),
-            None => self.floor.scan(&label, now),
+            Some(lane) => self.floor.scan_for(lane, &label, operator, now),
+            None => self.floor.scan(&label, operator, now),
         };
         self.answer(number, label, answer);
     }
 
-    fn act(&mut self, number: u64, lane: usize, act: Act, operator: String) {
-        self.operator = operator;
-        let answer = self.floor.act(lane, act);
+    fn act(&mut self, number: u64, lane: usize, act: Act, operator: &str) {
+        let answer = self.floor.act(lane, act, operator);
         self.answer(number, act.barcode(), answer);
     }
 
@@ -286,7 +280,7 @@ impl AtWork {
         if let Some(place) = self.stops.get_mut(lane) {
             *place = Arc::clone(&stop);
         }
-        bay::begin(&self.shared, lane, accepted, self.operator.clone(), stop)
+        bay::begin(&self.shared, lane, accepted, stop)
     }
 
     fn stop(&mut self, lane: usize, by: Option<StoppedBy>) {

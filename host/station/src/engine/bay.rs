@@ -58,19 +58,18 @@ pub(super) fn begin(
     shared: &Arc<Shared>,
     lane: usize,
     accepted: Accepted,
-    operator: String,
     stop: StopAsked,
 ) -> std::io::Result<JoinHandle<()>> {
     let shared = Arc::clone(shared);
     thread::Builder::new().name(format!("run in lane {lane}")).spawn(move || {
-        let run = || carried_out(&shared, lane, &accepted, &operator, stop);
+        let run = || carried_out(&shared, lane, &accepted, stop);
         let event = guarded(run).unwrap_or_else(|fault| unsaved(&fault));
         shared.tell(lane, Heard::Happened(event));
     })
 }
 
 /// What came of the run.
-fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, operator: &str, stop: StopAsked) -> Event {
+fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAsked) -> Event {
     let Settings { name, lanes, plans, silence, memory_mib, .. } = &shared.settings;
     let (Some(of), Some(file)) = (lanes.get(lane), plans.get(accepted.plan)) else {
         return Event::NotBegun { why: Saying::NoLaneOrPlan.into() };
@@ -82,7 +81,7 @@ fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, operator: &str
         board: &of.board,
         station: name,
         lane: &of.name,
-        operator,
+        operator: &accepted.operator,
         program: &shared.program,
         // A lane that owes its shift a check takes no other board.
         counts: file.plan.counts(&accepted.serial),

@@ -150,7 +150,7 @@ impl Lane {
         match event {
             Event::Present(is_present) => Ok(self.present(is_present)),
             Event::Given(accepted) => self.given(accepted),
-            Event::Start => self.start(),
+            Event::Start { operator } => self.start(operator),
             Event::Abort => self.abort(),
             Event::Out { why } => self.free().map(|()| {
                 self.waiting = None;
@@ -219,7 +219,7 @@ impl Lane {
         Ok(None)
     }
 
-    fn start(&mut self) -> Result<Option<Effect>, Refusal> {
+    fn start(&mut self, operator: String) -> Result<Option<Effect>, Refusal> {
         self.free()?;
         let lane = self.name.clone();
         if !self.starts.button {
@@ -229,7 +229,7 @@ impl Lane {
             return Err(Refusal::NoBoard { lane });
         }
         let waiting = self.waiting.take().ok_or(Refusal::NoSerial { lane })?;
-        Ok(Some(self.begin(waiting)))
+        Ok(Some(self.begin(Accepted { operator, ..waiting })))
     }
 
     fn abort(&mut self) -> Result<Option<Effect>, Refusal> {

@@ -112,8 +112,16 @@ pub struct Floor {
     rules: Vec<Rule>,
     scan_then_plug: bool,
     armed: Option<usize>,
-    /// A serial number that waits for a lane, and since when.
-    pending: Option<(String, Duration)>,
+    pending: Option<Pending>,
+}
+
+/// A serial number that waits for a lane.
+#[derive(Clone, Debug)]
+struct Pending {
+    serial: String,
+    /// Who scanned it.
+    operator: String,
+    since: Duration,
 }
 
 impl Floor {
@@ -134,50 +142,59 @@ impl Floor {
     /// The serial number that waits for a lane at the time `now`.
     #[must_use]
     pub fn pending(&self, now: Duration) -> Option<&str> {
-        let fresh = self.pending.as_ref().filter(|(_, since)| now.saturating_sub(*since) <= WAIT);
-        fresh.map(|(serial, _)| serial.as_str())
+        self.fresh(now).map(|pending| pending.serial.as_str())
     }
 
-    /// Takes what was scanned at the time `now`, by any clock that only goes on.
+    fn fresh(&self, now: Duration) -> Option<&Pending> {
+        self.pending.as_ref().filter(|pending| now.saturating_sub(pending.since) <= WAIT)
+    }
+
+    /// Takes what `operator` scanned at the time `now`, by any clock that only goes on.
     ///
     /// # Errors
     /// [`ScanError`] when it is refused; nothing has changed then.
-    pub fn scan(&mut self, text: &str, now: Duration) -> Result<Answer, ScanError> {
+    pub fn scan(&mut self, text: &str, operator: &str, now: Duration) -> Result<Answer, ScanError> {
         match Scan::read(text)? {
             Scan::Lane(name) => {
                 let lane = self.named(&name)?;
                 self.armed = Some(lane);
                 Ok(Answer { lane: Some(lane), effect: None, said: Saying::Armed { lane: name }.into() })
             }
-            Scan::Act(act) => self.act(self.meant()?, act),
-            Scan::Mock => self.mock(self.meant()?),
+            Scan::Act(act) => self.act(self.meant()?, act, operator),
+            Scan::Mock => self.mock(self.meant()?, operator),
             Scan::Serial(serial) => match self.meant() {
-                Ok(lane) => self.give(lane, &serial),
-                Err(_) if self.scan_then_plug => self.keep(serial, now),
+                Ok(lane) => self.give(lane, &serial, operator),
+                Err(_) if self.scan_then_plug => self.keep(serial, operator, now),
                 Err(error) => Err(error),
             },
         }
     }
 
-    /// Takes what was scanned for this lane, whichever barcode somebody else scanned before.
+    /// Takes what `operator` scanned for this lane, whichever barcode somebody else scanned before.
     ///
     /// # Errors
     /// As [`Self::scan`].
-    pub fn scan_for(&mut self, lane: usize, text: &str, now: Duration) -> Result<Answer, ScanError> {
+    pub fn scan_for(
+        &mut self,
+        lane: usize,
+        text: &str,
+        operator: &str,
+        now: Duration,
+    ) -> Result<Answer, ScanError> {
         let others = self.armed.replace(lane);
-        let answer = self.scan(text, now);
+        let answer = self.scan(text, operator, now);
         self.armed = others;
         answer
     }
 
-    /// Does with a lane what a barcode or a button says.
+    /// Does with a lane what a barcode or a button says that `operator` scanned or pressed.
     ///
     /// # Errors
     /// [`ScanError::Lane`] when it cannot be done now.
-    pub fn act(&mut self, lane: usize, act: Act) -> Result<Answer, ScanError> {
+    pub fn act(&mut self, lane: usize, act: Act, operator: &str) -> Result<Answer, ScanError> {
         let name = self.name(lane).to_owned();
         let (event, said) = match act {
-            Act::Start => (Event::Start, Saying::Starts { lane: name }),
+            Act::Start => (Event::Start { operator: operator.to_owned() }, Saying::Starts { lane: name }),
             Act::Abort => (Event::Abort, Saying::ToldToEnd { lane: name }),
             Act::Out => (Event::Out { why: Saying::OutByPerson.into() }, Saying::TakenOut { lane: name }),
             Act::In => (Event::In, Saying::PutBack { lane: name }),
@@ -195,8 +212,8 @@ impl Floor {
         if effect.is_some() || !came {
             return effect;
         }
-        let serial = self.pending(now)?.to_owned();
-        let answer = self.give(lane, &serial).ok()?;
+        let Pending { serial, operator, .. } = self.fresh(now)?.clone();
+        let answer = self.give(lane, &serial, &operator).ok()?;
         // Plugging it in is what starts some lanes.
         answer.effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
     }
@@ -223,14 +240,15 @@ impl Floor {
         self.lanes.get_mut(lane).ok_or(ScanError::WhichLane { lanes })
     }
 
-    /// Gives a lane the serial number.
-    fn give(&mut self, lane: usize, serial: &str) -> Result<Answer, ScanError> {
-        let accepted = self.read(self.plans_of.get(lane).map_or(&[], Vec::as_slice), serial)?;
+    /// Gives a lane the serial number that `operator` scanned.
+    fn give(&mut self, lane: usize, serial: &str, operator: &str) -> Result<Answer, ScanError> {
+        let plans = self.plans_of.get(lane).map_or(&[][..], Vec::as_slice);
+        let accepted = self.read(plans, serial, operator)?;
         self.refuse_elsewhere(lane, &accepted)?;
         let effect = self.lane(lane)?.take(Event::Given(accepted))?;
         self.armed = None;
         // Its board is found: the next one that is plugged in is another.
-        self.pending.take_if(|(waits, _)| waits == serial);
+        self.pending.take_if(|pending| pending.serial == serial);
         let (serial, name) = (serial.to_owned(), self.name(lane).to_owned());
         let said = match effect {
             Some(_) => Saying::Tested { serial, lane: name },
@@ -240,30 +258,31 @@ impl Floor {
     }
 
     /// Has a lane judge the mock board that it owes its shift.
-    fn mock(&mut self, lane: usize) -> Result<Answer, ScanError> {
+    fn mock(&mut self, lane: usize, operator: &str) -> Result<Answer, ScanError> {
         let (plan, serial) = self.lane(lane)?.owed_mock()?;
         let product = self.rules.get(plan).map_or_else(String::new, |rule| rule.product.clone());
-        let effect = self.lane(lane)?.take(Event::Given(Accepted { plan, product, serial }))?;
+        let accepted = Accepted { plan, product, serial, operator: operator.to_owned() };
+        let effect = self.lane(lane)?.take(Event::Given(accepted))?;
         self.armed = None;
         let said = Saying::MockJudged { lane: self.name(lane).to_owned() };
         Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }
 
     /// Keeps the serial number for the next lane into which a board is plugged.
-    fn keep(&mut self, serial: String, now: Duration) -> Result<Answer, ScanError> {
+    fn keep(&mut self, serial: String, operator: &str, now: Duration) -> Result<Answer, ScanError> {
         let all: Vec<usize> = (0..self.rules.len()).collect();
-        let accepted = self.read(&all, &serial)?;
+        let accepted = self.read(&all, &serial, operator)?;
         self.refuse_elsewhere(usize::MAX, &accepted)?;
         let said = match self.pending(now).map(str::to_owned) {
             Some(other) => Saying::WaitsInstead { serial: serial.clone(), other },
             None => Saying::WaitsForPlug { serial: serial.clone() },
         };
-        self.pending = Some((serial, now));
+        self.pending = Some(Pending { serial, operator: operator.to_owned(), since: now });
         Ok(Answer { lane: None, effect: None, said: said.into() })
     }
 
     /// The one of these plans that takes the serial number.
-    fn read(&self, plans: &[usize], serial: &str) -> Result<Accepted, ScanError> {
+    fn read(&self, plans: &[usize], serial: &str, operator: &str) -> Result<Accepted, ScanError> {
         let (mut accepted, mut refused) = (None::<Accepted>, None);
         for (plan, rule) in plans.iter().filter_map(|&plan| Some((plan, self.rules.get(plan)?))) {
             match (rule.serial.read(serial), &accepted) {
@@ -272,7 +291,8 @@ impl Floor {
                     return Err(ScanError::Ambiguous { serial: serial.to_owned(), first, second });
                 }
                 (Ok(read), None) => {
-                    accepted = Some(Accepted { plan, product: rule.product.clone(), serial: read.text });
+                    let (product, operator) = (rule.product.clone(), operator.to_owned());
+                    accepted = Some(Accepted { plan, product, serial: read.text, operator });
                 }
                 // A wrong check digit says more than a pattern of another product.
                 (Err(error @ SerialError::CheckDigit { .. }), _) => refused = Some(error),

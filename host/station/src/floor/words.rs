@@ -25,6 +25,8 @@ pub struct Accepted {
     pub product: String,
     /// The serial number.
     pub serial: String,
+    /// Who scanned it, or started its run by the button: the record names them.
+    pub operator: String,
 }
 
 /// A verdict that is saved, and may be shown. There is none without the hash of its record.
@@ -115,7 +117,10 @@ pub enum Event {
     /// A serial number for it.
     Given(Accepted),
     /// The button.
-    Start,
+    Start {
+        /// Who pressed it.
+        operator: String,
+    },
     /// Somebody wants the run to end, or the serial number to be forgotten.
     Abort,
     /// Somebody takes it out of service.

@@ -14,6 +14,9 @@ const SCAN: Starts = Starts { scan: true, button: false, presence: false };
 const BUTTON: Starts = Starts { scan: false, button: true, presence: false };
 const PLUG: Starts = Starts { scan: false, button: false, presence: true };
 
+/// Who scans.
+const WEBER: &str = "weber";
+
 /// The rule of a product whose serial numbers guard themselves as ISBN-10 do.
 fn rule(product: &str, letters: &str) -> Rule {
     let plan = guarded_plan(product, letters);
@@ -56,14 +59,14 @@ fn plug(floor: &mut Floor, lane: usize) -> Option<Effect> {
 fn a_run_goes_from_the_scan_to_a_verdict_that_stays() {
     let mut floor = floor(&[SCAN], false);
     assert_eq!(words(&floor), [Word::Empty]);
-    assert!(matches!(floor.scan(&serial(0), at(0)), Err(ScanError::Lane(_))), "there is no board");
+    assert!(matches!(floor.scan(&serial(0), WEBER, at(0)), Err(ScanError::Lane(_))), "there is no board");
     assert_eq!(plug(&mut floor, 0), None);
     assert_eq!(words(&floor), [Word::Ready]);
-    let begun = floor.scan(&serial(0), at(0)).unwrap();
+    let begun = floor.scan(&serial(0), WEBER, at(0)).unwrap();
     let Some(Effect::Begin(accepted)) = begun.effect else { panic!("{begun:?}") };
     assert_eq!((accepted.plan, accepted.product.as_str(), accepted.serial), (0, "CAM-A", serial(0)));
     assert_eq!(words(&floor), [Word::Running]);
-    assert!(floor.scan(&serial(1), at(0)).unwrap_err().to_string().contains("is testing"), "busy");
+    assert!(floor.scan(&serial(1), WEBER, at(0)).unwrap_err().to_string().contains("is testing"), "busy");
     floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
     assert_eq!(floor.lanes()[0].run(), Some("r"));
     floor.happened(0, Event::Saving, at(0));
@@ -73,7 +76,7 @@ fn a_run_goes_from_the_scan_to_a_verdict_that_stays() {
     floor.happened(0, Event::Present(false), at(0));
     assert_eq!(words(&floor), [Word::Pass], "it stays until the next serial number");
     plug(&mut floor, 0);
-    floor.scan(&serial(1), at(0)).unwrap();
+    floor.scan(&serial(1), WEBER, at(0)).unwrap();
     assert_eq!((words(&floor), floor.lanes()[0].shown()), (vec![Word::Running], None));
 }
 
@@ -84,7 +87,7 @@ fn every_verdict_has_its_word() {
     {
         let mut floor = floor(&[SCAN], false);
         plug(&mut floor, 0);
-        floor.scan(&serial(0), at(0)).unwrap();
+        floor.scan(&serial(0), WEBER, at(0)).unwrap();
         floor.happened(0, Event::Ended(shown(verdict)), at(0));
         assert_eq!(words(&floor), [word]);
     }
@@ -94,17 +97,17 @@ fn every_verdict_has_its_word() {
 fn what_is_not_saved_blocks_its_lane_until_it_is_known() {
     let mut floor = floor(&[SCAN, SCAN], false);
     plug(&mut floor, 0);
-    floor.scan("HR:LANE:1", at(0)).unwrap();
-    floor.scan(&serial(0), at(0)).unwrap();
+    floor.scan("HR:LANE:1", WEBER, at(0)).unwrap();
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
     floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
     floor.happened(0, Event::Saving, at(0));
     let full = || Event::Unsaved { why: Said::of(&std::io::Error::other("full")) };
     let recover = Some(Effect::Recover { run: "r".to_owned() });
     assert_eq!(floor.happened(0, full(), at(0)), recover);
     assert_eq!((words(&floor)[0], floor.lanes()[0].shown()), (Word::Unsaved, None));
-    floor.scan("HR:LANE:1", at(0)).unwrap();
-    assert!(floor.scan(&serial(1), at(0)).unwrap_err().to_string().contains("is not saved"));
-    assert!(floor.scan("HR:OUT", at(0)).is_err());
+    floor.scan("HR:LANE:1", WEBER, at(0)).unwrap();
+    assert!(floor.scan(&serial(1), WEBER, at(0)).unwrap_err().to_string().contains("is not saved"));
+    assert!(floor.scan("HR:OUT", WEBER, at(0)).is_err());
     assert_eq!(floor.happened(0, full(), at(0)), recover, "it is tried again");
     floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
     assert_eq!(words(&floor)[0], Word::Error);
@@ -114,12 +117,12 @@ fn what_is_not_saved_blocks_its_lane_until_it_is_known() {
 fn a_lane_whose_process_cannot_be_killed_is_out() {
     let mut floor = floor(&[SCAN], false);
     plug(&mut floor, 0);
-    floor.scan(&serial(0), at(0)).unwrap();
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
     floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
     floor.happened(0, Event::Stuck, at(0));
     assert_eq!(words(&floor), [Word::Out]);
-    assert!(floor.scan(&serial(1), at(0)).unwrap_err().to_string().contains("restart the computer"));
-    floor.scan("HR:IN", at(0)).unwrap();
+    assert!(floor.scan(&serial(1), WEBER, at(0)).unwrap_err().to_string().contains("restart the computer"));
+    floor.scan("HR:IN", WEBER, at(0)).unwrap();
     assert_eq!(words(&floor), [Word::Error]);
 }
 
@@ -131,7 +134,7 @@ fn a_lane_whose_process_cannot_be_killed_is_out_whatever_comes_of_its_result() {
     for before in settled {
         let mut floor = floor(&[SCAN], false);
         plug(&mut floor, 0);
-        floor.scan(&serial(0), at(0)).unwrap();
+        floor.scan(&serial(0), WEBER, at(0)).unwrap();
         floor.happened(0, Event::Begun { run: "r".to_owned() }, at(0));
         floor.happened(0, Event::Stuck, at(0));
         assert_eq!(words(&floor), [Word::Running], "until it is settled");
@@ -143,8 +146,8 @@ fn a_lane_whose_process_cannot_be_killed_is_out_whatever_comes_of_its_result() {
         let hooks = floor.happened(0, Event::Ended(shown(Verdict::Error)), at(0));
         assert_eq!(hooks, Some(Effect::Hooks(shown(Verdict::Error))));
         assert_eq!(words(&floor), [Word::Out], "{before:?}");
-        floor.scan("HR:IN", at(0)).unwrap();
-        floor.scan(&serial(1), at(0)).unwrap();
+        floor.scan("HR:IN", WEBER, at(0)).unwrap();
+        floor.scan(&serial(1), WEBER, at(0)).unwrap();
         floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(0));
         assert_eq!(words(&floor), [Word::Pass], "whoever put it back has seen to it");
     }
@@ -154,34 +157,59 @@ fn a_lane_whose_process_cannot_be_killed_is_out_whatever_comes_of_its_result() {
 fn a_lane_starts_as_its_settings_say() {
     let mut button = floor(&[BUTTON], false);
     plug(&mut button, 0);
-    assert!(button.scan("HR:START", at(0)).is_err(), "no serial number");
-    assert_eq!(button.scan(&serial(0), at(0)).unwrap().effect, None);
+    assert!(button.scan("HR:START", WEBER, at(0)).is_err(), "no serial number");
+    assert_eq!(button.scan(&serial(0), WEBER, at(0)).unwrap().effect, None);
     assert_eq!(words(&button), [Word::Waiting]);
-    assert!(matches!(button.scan("HR:START", at(0)).unwrap().effect, Some(Effect::Begin(_))));
+    assert!(matches!(button.scan("HR:START", WEBER, at(0)).unwrap().effect, Some(Effect::Begin(_))));
     let mut gone = floor(&[BUTTON], false);
     plug(&mut gone, 0);
-    gone.scan(&serial(0), at(0)).unwrap();
+    gone.scan(&serial(0), WEBER, at(0)).unwrap();
     gone.happened(0, Event::Present(false), at(0));
     assert_eq!(words(&gone), [Word::Empty], "the number goes with its board");
     let mut plugged = floor(&[PLUG], false);
-    assert_eq!(plugged.scan(&serial(0), at(0)).unwrap().effect, None);
+    assert_eq!(plugged.scan(&serial(0), WEBER, at(0)).unwrap().effect, None);
     assert_eq!(words(&plugged), [Word::Waiting]);
-    assert!(plugged.scan("HR:START", at(0)).is_err(), "it has no button");
+    assert!(plugged.scan("HR:START", WEBER, at(0)).is_err(), "it has no button");
     assert!(matches!(plug(&mut plugged, 0), Some(Effect::Begin(_))));
+}
+
+fn begun_by(effect: Option<Effect>) -> String {
+    match effect {
+        Some(Effect::Begin(accepted)) => accepted.operator,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_run_is_that_of_whoever_scanned_its_number_or_pressed_its_button() {
+    let mut plugged = floor(&[PLUG, SCAN], false);
+    plugged.scan_for(0, &serial(0), WEBER, at(0)).unwrap();
+    plug(&mut plugged, 1);
+    assert_eq!(begun_by(plugged.scan_for(1, &serial(1), "braun", at(1)).unwrap().effect), "braun");
+    assert_eq!(begun_by(plug(&mut plugged, 0)), WEBER);
+    let mut first = floor(&[SCAN, SCAN], true);
+    plug(&mut first, 1);
+    first.scan(&serial(0), WEBER, at(0)).unwrap();
+    assert_eq!(begun_by(first.scan_for(1, &serial(1), "braun", at(1)).unwrap().effect), "braun");
+    assert_eq!(begun_by(plug(&mut first, 0)), WEBER);
+    let mut button = floor(&[BUTTON], false);
+    plug(&mut button, 0);
+    button.scan(&serial(0), WEBER, at(0)).unwrap();
+    assert_eq!(begun_by(button.act(0, Act::Start, "braun").unwrap().effect), "braun");
 }
 
 #[test]
 fn a_run_is_stopped_and_a_waiting_number_forgotten() {
     let mut floor = floor(&[Starts { button: true, ..SCAN }], false);
-    assert!(floor.scan("HR:ABORT", at(0)).is_err(), "nothing is under way");
+    assert!(floor.scan("HR:ABORT", WEBER, at(0)).is_err(), "nothing is under way");
     plug(&mut floor, 0);
-    floor.scan(&serial(0), at(0)).unwrap();
-    assert_eq!(floor.act(0, Act::Abort).unwrap().effect, Some(Effect::Stop));
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    assert_eq!(floor.act(0, Act::Abort, WEBER).unwrap().effect, Some(Effect::Stop));
     assert_eq!(words(&floor), [Word::Running], "until it has ended");
     let mut waits = self::floor(&[BUTTON], false);
     plug(&mut waits, 0);
-    waits.scan(&serial(0), at(0)).unwrap();
-    waits.scan("HR:ABORT", at(0)).unwrap();
+    waits.scan(&serial(0), WEBER, at(0)).unwrap();
+    waits.scan("HR:ABORT", WEBER, at(0)).unwrap();
     assert_eq!(words(&waits), [Word::Ready]);
 }
 
@@ -189,26 +217,26 @@ fn a_run_is_stopped_and_a_waiting_number_forgotten() {
 fn a_scan_goes_to_the_lane_that_was_scanned_and_never_to_a_guess() {
     let mut floor = floor(&[SCAN, SCAN, SCAN], false);
     (0..3).for_each(|lane| assert_eq!(plug(&mut floor, lane), None));
-    assert_eq!(floor.scan(&serial(0), at(0)), Err(ScanError::WhichLane { lanes: 3 }));
-    assert!(matches!(floor.scan("HR:LANE:4", at(0)), Err(ScanError::NoLane { .. })));
-    floor.scan("HR:LANE:2", at(0)).unwrap();
-    assert_eq!(floor.scan(&serial(0), at(0)).unwrap().lane, Some(1));
+    assert_eq!(floor.scan(&serial(0), WEBER, at(0)), Err(ScanError::WhichLane { lanes: 3 }));
+    assert!(matches!(floor.scan("HR:LANE:4", WEBER, at(0)), Err(ScanError::NoLane { .. })));
+    floor.scan("HR:LANE:2", WEBER, at(0)).unwrap();
+    assert_eq!(floor.scan(&serial(0), WEBER, at(0)).unwrap().lane, Some(1));
     assert_eq!(words(&floor), [Word::Ready, Word::Running, Word::Ready]);
-    assert_eq!(floor.scan(&serial(1), at(0)), Err(ScanError::WhichLane { lanes: 3 }), "once");
-    floor.scan("HR:LANE:3", at(0)).unwrap();
-    let elsewhere = floor.scan(&serial(0), at(0)).unwrap_err();
+    assert_eq!(floor.scan(&serial(1), WEBER, at(0)), Err(ScanError::WhichLane { lanes: 3 }), "once");
+    floor.scan("HR:LANE:3", WEBER, at(0)).unwrap();
+    let elsewhere = floor.scan(&serial(0), WEBER, at(0)).unwrap_err();
     assert_eq!(elsewhere, ScanError::Elsewhere { serial: serial(0), lane: "2".to_owned() });
     // A misread label uses up nothing.
-    assert!(floor.scan("CA0131103629", at(0)).is_err());
-    assert_eq!(floor.scan(&serial(1), at(0)).unwrap().lane, Some(2));
+    assert!(floor.scan("CA0131103629", WEBER, at(0)).is_err());
+    assert_eq!(floor.scan(&serial(1), WEBER, at(0)).unwrap().lane, Some(2));
 }
 
 #[test]
 fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
     let mut floor = floor(&[PLUG, PLUG], true);
     plug(&mut floor, 0);
-    floor.scan(&serial(0), at(10)).unwrap();
-    let instead = floor.scan(&serial(1), at(20)).unwrap();
+    floor.scan(&serial(0), WEBER, at(10)).unwrap();
+    let instead = floor.scan(&serial(1), WEBER, at(20)).unwrap();
     assert!(instead.said.to_string().ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
     let effect = floor.happened(1, Event::Present(true), at(80));
     assert!(matches!(effect, Some(Effect::Begin(accepted)) if accepted.serial == serial(1)));
@@ -220,13 +248,13 @@ fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
 fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
     let mut floor = floor(&[SCAN, SCAN], true);
     plug(&mut floor, 0);
-    floor.scan(&serial(0), at(0)).unwrap();
-    floor.scan("HR:LANE:1", at(1)).unwrap();
-    assert_eq!(floor.scan(&serial(1), at(2)).unwrap().lane, Some(0));
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    floor.scan("HR:LANE:1", WEBER, at(1)).unwrap();
+    assert_eq!(floor.scan(&serial(1), WEBER, at(2)).unwrap().lane, Some(0));
     assert_eq!(floor.pending(at(2)), Some(serial(0).as_str()), "another one waits still");
     floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
-    floor.scan("HR:LANE:1", at(4)).unwrap();
-    assert_eq!(floor.scan(&serial(0), at(5)).unwrap().lane, Some(0));
+    floor.scan("HR:LANE:1", WEBER, at(4)).unwrap();
+    assert_eq!(floor.scan(&serial(0), WEBER, at(5)).unwrap().lane, Some(0));
     assert_eq!(floor.pending(at(5)), None);
     floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(6));
     assert_eq!(floor.happened(1, Event::Present(true), at(7)), None);
@@ -237,7 +265,7 @@ fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
 fn a_number_waits_a_minute_for_its_board() {
     for (seconds, word) in [(60, Word::Running), (61, Word::Ready)] {
         let mut floor = floor(&[SCAN, SCAN], true);
-        floor.scan(&serial(0), at(0)).unwrap();
+        floor.scan(&serial(0), WEBER, at(0)).unwrap();
         floor.happened(0, Event::Present(true), at(seconds));
         assert_eq!(words(&floor)[0], word);
     }
@@ -247,7 +275,7 @@ fn a_number_waits_a_minute_for_its_board() {
 fn a_board_that_was_there_already_takes_no_number() {
     let mut floor = floor(&[SCAN, SCAN], true);
     plug(&mut floor, 0);
-    floor.scan(&serial(0), at(0)).unwrap();
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
     assert_eq!(plug(&mut floor, 0), None);
     assert_eq!(words(&floor), [Word::Ready, Word::Empty]);
 }
@@ -256,12 +284,12 @@ fn a_board_that_was_there_already_takes_no_number() {
 fn a_product_chooses_its_plan() {
     let mut floor = floor(&[SCAN], false);
     plug(&mut floor, 0);
-    let begun = floor.scan(&SERIALS[0].replace("CA", "CB"), at(0)).unwrap();
+    let begun = floor.scan(&SERIALS[0].replace("CA", "CB"), WEBER, at(0)).unwrap();
     assert!(matches!(begun.effect, Some(Effect::Begin(accepted)) if accepted.plan == 1));
     let place = Place { name: "1".to_owned(), starts: SCAN, plans: vec![0, 1] };
     let mut both = Floor::new(vec![place], vec![rule("CAM-A", "CA"), rule("CAM-B", "C[AB]")], false);
     plug(&mut both, 0);
-    assert!(matches!(both.scan(&serial(0), at(0)), Err(ScanError::Ambiguous { .. })));
+    assert!(matches!(both.scan(&serial(0), WEBER, at(0)), Err(ScanError::Ambiguous { .. })));
 }
 
 /// Misread labels of twelve kinds, made of a right one; another board's label is refused where its number is known
@@ -296,30 +324,30 @@ fn misread(right: &str, other: &str, place: usize) -> Vec<(&'static str, String)
 fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
     let mut floor = floor(&[BUTTON], false);
     plug(&mut floor, 0);
-    floor.scan(&serial(0), at(0)).unwrap();
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
     let owes =
         Owes { plan: 0, serial: Some(serial(1)), why: Said::of(&std::io::Error::other("the shift is over")) };
     floor.happened(0, Event::Owes(Some(owes)), at(1));
     assert_eq!(words(&floor), [Word::Out]);
-    assert!(floor.act(0, Act::Start).is_err());
+    assert!(floor.act(0, Act::Start, WEBER).is_err());
     assert_eq!(floor.happened(0, Event::Present(true), at(1)), None);
-    floor.scan(&serial(1), at(2)).unwrap();
-    let begun = floor.act(0, Act::Start).unwrap().effect;
+    floor.scan(&serial(1), WEBER, at(2)).unwrap();
+    let begun = floor.act(0, Act::Start, WEBER).unwrap().effect;
     assert!(matches!(begun, Some(Effect::Begin(of)) if of.serial == serial(1)), "what is owed may wait");
 }
 
 #[test]
 fn the_mock_is_judged_where_it_is_owed_without_a_board_and_nowhere_else() {
     let mut floor = floor(&[SCAN, BUTTON], false);
-    assert!(floor.scan("HR:MOCK", at(0)).is_err(), "no lane is named");
-    assert!(floor.scan_for(0, "HR:MOCK", at(0)).unwrap_err().to_string().contains("no mock board"));
-    assert!(floor.scan_for(0, "HR:MOCK:1", at(0)).is_err(), "its serial number is no barcode");
+    assert!(floor.scan("HR:MOCK", WEBER, at(0)).is_err(), "no lane is named");
+    assert!(floor.scan_for(0, "HR:MOCK", WEBER, at(0)).unwrap_err().to_string().contains("no mock board"));
+    assert!(floor.scan_for(0, "HR:MOCK:1", WEBER, at(0)).is_err(), "its serial number is no barcode");
     for lane in 0..2 {
         let serial = Some(format!("HR:MOCK:{}", lane + 1));
         let owes =
             Owes { plan: 1, serial: serial.clone(), why: Said::of(&std::io::Error::other("the mock first")) };
         floor.happened(lane, Event::Owes(Some(owes)), at(0));
-        let begun = floor.scan_for(lane, "HR:MOCK", at(0)).unwrap().effect;
+        let begun = floor.scan_for(lane, "HR:MOCK", WEBER, at(0)).unwrap().effect;
         let Some(Effect::Begin(of)) = begun else { panic!("{begun:?}") };
         assert_eq!((of.plan, of.product.as_str(), Some(of.serial)), (1, "CAM-B", serial));
     }
@@ -335,12 +363,12 @@ fn misreads(times: usize) {
             plug(&mut floor, 0);
             // Two neighbours that are alike are exchanged by nobody.
             if wrong != right {
-                let error = floor.scan(&wrong, at(0));
+                let error = floor.scan(&wrong, WEBER, at(0));
                 assert!(matches!(error, Err(ScanError::Serial(_))), "{class}: {wrong:?}: {error:?}");
                 assert_eq!(words(&floor), [Word::Ready], "{class}");
                 refused += 1;
             }
-            assert!(floor.scan(&right, at(0)).unwrap().effect.is_some(), "{right}");
+            assert!(floor.scan(&right, WEBER, at(0)).unwrap().effect.is_some(), "{right}");
             taken += 1;
         }
     }

@@ -6,6 +6,7 @@ mod flat;
 pub(crate) mod floor;
 mod hooks;
 mod labgrid;
+mod operators;
 mod refused;
 mod shift;
 pub(crate) mod stuck;

@@ -1,0 +1,42 @@
+//! Several people at the pages of one station.
+
+use std::fs;
+
+use halfrow_station::engine::{Engine, LaneState, News};
+use halfrow_station::floor::Word;
+use halfrow_station::settings::Settings;
+use halfrow_station::store::{Folder, Store};
+
+use super::floor::{HANG, SERIALS, Station};
+use crate::common::program;
+
+/// Weber's board is plugged in when Braun has scanned another one.
+#[test]
+fn the_record_names_whoever_scanned_the_board_and_not_whoever_scanned_last() {
+    let station = Station::with(&["mock"], "");
+    let port = station.path("port");
+    let plugged = format!(
+        "[[lane]]\nname = \"2\"\nboard = \"serial:{}\"\nplans = [\"plan.toml\"]\nstart = [\"presence\"]\n",
+        port.display()
+    );
+    let path = station.path("station.toml");
+    let settings = fs::read_to_string(&path).unwrap();
+    fs::write(&path, settings + &plugged).unwrap();
+    let settings = Settings::load(&path).unwrap();
+    let store = Store::open(&Folder::new(&settings.data)).unwrap();
+    let engine = Engine::start(settings, store, program().to_owned()).unwrap();
+    let news = engine.listen();
+    let state = |of: &str, word| {
+        let is = |news: &News| matches!(news, News::Lane(LaneState { lane, state, .. }) if lane == of && *state == word);
+        while !is(&news.recv_timeout(HANG).unwrap()) {}
+    };
+    state("1", Word::Ready);
+    engine.label(1, Some(1), SERIALS[0], "weber");
+    engine.label(2, Some(0), SERIALS[1], "braun");
+    state("1", Word::Pass);
+    fs::write(&port, "").unwrap();
+    // The file is no port.
+    state("2", Word::Error);
+    engine.close(None);
+    assert_eq!(station.query("SELECT operator_id FROM run ORDER BY lane"), ["braun", "weber"]);
+}
