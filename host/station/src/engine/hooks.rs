@@ -1,6 +1,6 @@
 //! Programs that are told of a saved verdict: lamps, label printers, relays. What they do changes no verdict.
 
-use std::io::Read as _;
+use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
@@ -26,7 +26,7 @@ pub enum HookError {
         /// The program.
         program: String,
         /// The system's reason.
-        source: std::io::Error,
+        source: io::Error,
     },
     /// It failed.
     #[error("the hook {program} failed ({status}): {said}; look at what it drives")]
@@ -63,11 +63,7 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
         .spawn()
         .map_err(|source| HookError::Start { program: program(), source })?;
     let complaints = child.stderr.take();
-    let heard = thread::spawn(move || {
-        let mut said = Vec::new();
-        let read = complaints.map(|pipe| pipe.take(MOST_SAID).read_to_end(&mut said));
-        read.and_then(Result::ok).map(|_| said).unwrap_or_default()
-    });
+    let heard = thread::spawn(move || complaints.map(beginning).unwrap_or_default());
     match waited(&mut child, hook.deadline) {
         None => {
             kill(&child);
@@ -83,6 +79,15 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
             Err(HookError::Failed { program: program(), status, said })
         }
     }
+}
+
+/// The beginning of what a hook complains of. All of it is read: a hook to which nobody listens dies before its work is done.
+fn beginning(mut complaints: impl Read) -> Vec<u8> {
+    let mut said = Vec::new();
+    let read = complaints.by_ref().take(MOST_SAID).read_to_end(&mut said);
+    // What there is no more to be heard of has been said.
+    let _ = read.and_then(|_| io::copy(&mut complaints, &mut io::sink()));
+    said
 }
 
 /// An argument with what its braces stand for.

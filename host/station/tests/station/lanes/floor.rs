@@ -49,7 +49,12 @@ impl Station {
 
     /// The station at work.
     pub(crate) fn start(&self) -> Running {
-        let mut child = Command::new(common::program())
+        self.started(Command::new(common::program()))
+    }
+
+    /// The station at work by this call of its program.
+    pub(crate) fn started(&self, mut program: Command) -> Running {
+        let mut child = program
             .args(["lanes", "--operator", "weber", "--settings"])
             .arg(self.path("station.toml"))
             .stdin(Stdio::piped())

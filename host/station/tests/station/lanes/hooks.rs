@@ -1,5 +1,7 @@
 //! Lamps, printers and relays.
 
+use std::process::Command;
+
 use super::floor::{SERIALS, Station};
 
 /// A hook that writes down what it was told, and fails if the record is not there by then.
@@ -56,4 +58,24 @@ program = "no-such-program"
     let last = heard.iter().rfind(|news| news["news"] == "lane").unwrap();
     assert_eq!(last["state"], "PASS");
     assert_eq!(station.query("SELECT verdict FROM run"), ["PASS"]);
+}
+
+/// A label printer that talks is let finish.
+#[test]
+fn a_hook_that_complains_at_length_does_its_work_and_is_heard_from_its_beginning() {
+    let settings = r#"
+[[on-pass]]
+program = "sh"
+arguments = ["-c", "echo no paper >&2; yes | head -c 300000 >&2 || exit 4; echo printed > done; exit 3"]
+"#;
+    let station = Station::with(&["mock"], settings);
+    let mut program = Command::new(crate::common::program());
+    program.current_dir(station.path(""));
+    let mut running = station.started(program);
+    running.scan(SERIALS[0]);
+    let news = running.wait("what the hook says", |news| news["news"] == "hook");
+    let said = news["said"].as_str().unwrap();
+    assert!(said.contains("(exit status: 3): no paper y y") && said.len() < 2000, "{said}");
+    assert_eq!(std::fs::read_to_string(station.path("done")).unwrap(), "printed\n");
+    running.end();
 }
