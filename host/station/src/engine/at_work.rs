@@ -13,7 +13,7 @@ use super::news::{LaneState, News};
 use super::unsent;
 use super::{Board, Heard, Input};
 use crate::clock;
-use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Word};
+use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Shown, Word};
 use crate::labgrid;
 use crate::presence::{Presence, USB};
 use crate::said::{Said, Saying};
@@ -35,6 +35,8 @@ pub(super) struct AtWork {
     /// The last moment, in milliseconds since 1970, at which it is known what each lane owes its shift; none where that
     /// could not be told.
     known_until: Vec<Option<i64>>,
+    /// The run of each lane that no thread could be had for to save it.
+    unrecovered: Vec<Option<String>>,
     threads: Vec<JoinHandle<()>>,
     begun: Instant,
 }
@@ -50,6 +52,7 @@ impl AtWork {
             stops: vec![StopAsked::default(); lanes],
             asked: vec![None; lanes],
             known_until: vec![None; lanes],
+            unrecovered: vec![None; lanes],
             threads: Vec::new(),
             begun: Instant::now(),
         }
@@ -106,9 +109,13 @@ impl AtWork {
         self.begun.elapsed()
     }
 
-    /// Looks which boards are there.
+    /// Looks which boards are there, and tries again what there was no thread for.
     fn look(&mut self) {
         self.check_due();
+        for lane in 0..self.unrecovered.len() {
+            let run = self.unrecovered.get_mut(lane).and_then(Option::take);
+            self.effect(lane, run.map(|run| Effect::Recover { run }));
+        }
         let now = self.now();
         for lane in 0..self.presence.len() {
             let Some(settings) = self.shared.settings.lanes.get(lane) else { continue };
@@ -258,20 +265,34 @@ impl AtWork {
 
     /// Does what is to be done. The state is told before: a lamp says nothing that the screen does not.
     fn effect(&mut self, lane: usize, effect: Option<Effect>) {
-        let started = match effect {
-            None => return,
-            Some(Effect::Stop) => return self.stop(lane, Some(StoppedBy::Person)),
-            Some(Effect::Begin(accepted)) => self.begin(lane, accepted),
-            Some(Effect::Recover { run }) => bay::recover(&self.shared, lane, run),
-            Some(Effect::Hooks(shown)) => bay::hook(&self.shared, lane, shown),
+        let Some(effect) = effect else { return };
+        let started = match effect.clone() {
+            Effect::Stop => return self.stop(lane, Some(StoppedBy::Person)),
+            Effect::Hooks(shown) if !self.shared.has_hook(shown.verdict) => return,
+            Effect::Begin(accepted) => self.begin(lane, accepted),
+            Effect::Recover { run } => bay::recover(&self.shared, lane, run),
+            Effect::Hooks(shown) => bay::hook(&self.shared, lane, shown),
         };
         self.threads.retain(|thread| !thread.is_finished());
         match started {
             Ok(thread) => self.threads.push(thread),
-            Err(error) => {
-                let why = Saying::NoThread { error: error.to_string() }.into();
-                self.happened(lane, Event::NotBegun { why });
+            Err(error) => self.without_thread(lane, effect, &error),
+        }
+    }
+
+    /// What becomes of that which the system has no thread for.
+    fn without_thread(&mut self, lane: usize, effect: Effect, error: &std::io::Error) {
+        let why = Said::from(Saying::NoThread { error: error.to_string() });
+        match effect {
+            Effect::Begin(_) => self.happened(lane, Event::NotBegun { why }),
+            Effect::Recover { run } => {
+                tracing::warn!("the run {run} is not saved yet: {why}");
+                if let Some(unrecovered) = self.unrecovered.get_mut(lane) {
+                    *unrecovered = Some(run);
+                }
             }
+            Effect::Hooks(Shown { run, .. }) => self.heard(lane, Heard::Hook { run, said: why }),
+            Effect::Stop => {}
         }
     }
 

@@ -8,6 +8,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
+use halfrow::Verdict;
 use halfrow::verdict::StoppedBy;
 
 use super::figures::Counter;
@@ -44,6 +45,11 @@ pub(super) struct Shared {
 }
 
 impl Shared {
+    /// Whether anything is started for such a verdict.
+    pub(super) fn has_hook(&self, verdict: Verdict) -> bool {
+        self.settings.hooks.iter().any(|hook| hook.on == verdict)
+    }
+
     fn tell(&self, lane: usize, heard: Heard) {
         // An engine that has ended has seen all runs end before.
         let _ = self.inbox.send(Input::Heard { lane, heard });

@@ -10,3 +10,4 @@ mod operators;
 mod refused;
 mod shift;
 pub(crate) mod stuck;
+mod threads;
