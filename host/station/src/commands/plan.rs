@@ -73,7 +73,7 @@ fn head(plan: &Plan) -> String {
         format!("builds    {}", builds.join(", ")),
     ];
     lines.extend(plan.files.iter().map(|file| format!("file      {} {}", file.path, file.sha256)));
-    if let Some(Shift { good, bad, lasts }) = &plan.shift {
+    if let Some(Shift { good, bad, lasts }) = &plan.production.shift {
         let hours = lasts.as_secs_f64() / 3600.0;
         let bad = match bad {
             Bad::Unit(serial) => serial.as_str(),
@@ -87,7 +87,7 @@ fn head(plan: &Plan) -> String {
             .push("again     a unit that passed is tested when somebody says that it is meant".to_owned()),
         Again::Refuse => lines.push("again     a unit that passed is refused".to_owned()),
     }
-    if !plan.require_hardware {
+    if !plan.production.require_hardware {
         lines.push("any kind of board is judged, so no run counts as production".to_owned());
     }
     lines.join("\n")

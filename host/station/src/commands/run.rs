@@ -23,7 +23,7 @@ use crate::plan::{Bad, Plan, mock};
 use crate::record::{Record, StepOutcome};
 use crate::run::{self, Order, RunError, Saved, Stage, Watch};
 use crate::settings::{LANE_NAME, is_lane_name};
-use crate::store::{AgainError, Folder, SharedStore};
+use crate::store::{AgainError, Folder, InLane, SharedStore};
 
 /// Judge one board by a plan, and save the result
 ///
@@ -97,7 +97,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
     let recovered = recovered(&mut store)?;
     let station = arguments.station.clone().unwrap_or_else(this_computer);
     refused_again(store.folder(), &plan, &serial, arguments)?;
-    let owed = store.folder().owed(&station, &arguments.lane, &plan, clock::now_ms())?.owed;
+    let place = InLane::of(&station, &arguments.lane, &plan);
+    let counts = store.folder().counts(&place, &serial, clock::now_ms())?;
     let order = Order {
         plan: &plan,
         plan_file: &plan_file,
@@ -107,7 +108,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
         lane: &arguments.lane,
         operator: &arguments.operator,
         program: &program,
-        counts: plan.counts(&serial) && owed.is_none(),
+        counts,
         job: None,
         silence: arguments.silence,
         memory_mib: arguments.memory,
@@ -129,7 +130,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
 impl Arguments {
     /// The serial number and the board, which the plan takes, or those of the mock.
     fn subject(&self, plan: &Plan) -> Result<(String, Target), Failure> {
-        let is_checked_by_mock = plan.shift.as_ref().is_some_and(|shift| shift.bad == Bad::Mock);
+        let is_checked_by_mock = plan.production.shift.as_ref().is_some_and(|shift| shift.bad == Bad::Mock);
         match (&self.serial, &self.board) {
             (Some(serial), Some(board)) => {
                 plan.select(serial).map_err(Failure::call)?;
@@ -251,11 +252,11 @@ fn text(saved: &Saved, plan: &Plan) -> String {
 }
 
 fn why_no_production(plan: &Plan, record: &Record) -> &'static str {
-    if !plan.require_hardware {
+    if !plan.production.require_hardware {
         "its plan takes any kind of board"
     } else if record.board.as_ref().is_some_and(|board| !board.is_hardware()) {
         "the board is no hardware"
-    } else if plan.is_reference(&record.run.serial) {
+    } else if plan.production.is_reference(&record.run.serial) {
         "the unit checks shifts"
     } else {
         "this shift is not checked yet"

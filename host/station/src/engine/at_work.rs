@@ -18,7 +18,7 @@ use crate::labgrid;
 use crate::presence::{Presence, USB};
 use crate::said::{Said, Saying};
 use crate::settings::{PlanFile, Settings};
-use crate::store::{AgainError, Folder, Owed};
+use crate::store::{AgainError, Folder, InLane, Owed};
 
 /// How often boards are looked for.
 const LOOK: Duration = Duration::from_millis(500);
@@ -135,7 +135,7 @@ impl AtWork {
         let Some(lane) = lanes.get(lane) else { return (None, Some(until_ms)) };
         for &plan in &lane.plans {
             let Some(PlanFile { plan: of, .. }) = plans.get(plan) else { continue };
-            match Folder::new(data).owed(name, &lane.name, of, clock::now_ms()) {
+            match Folder::new(data).owed(&InLane::of(name, &lane.name, of), clock::now_ms()) {
                 Ok(checked) => {
                     until_ms = until_ms.min(checked.until_ms);
                     if let Some(Owed { serial, why }) = checked.owed {

@@ -90,7 +90,7 @@ fn carried_out(shared: &Shared, lane: usize, accepted: &Accepted, stop: StopAske
         operator: &accepted.operator,
         program: &shared.program,
         // A lane that owes its shift a check takes no other board.
-        counts: file.plan.counts(&accepted.serial),
+        counts: file.plan.production.counts(&accepted.serial),
         job: None,
         silence: *silence,
         memory_mib: *memory_mib,

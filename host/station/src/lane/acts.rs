@@ -131,8 +131,8 @@ impl Common<'_> {
         if self.is_mock {
             return None;
         }
-        let Plan { require_hardware, builds, device, .. } = self.plan;
-        if *require_hardware && kind != BoardKind::Hardware {
+        let Plan { production, builds, device, .. } = self.plan;
+        if production.require_hardware && kind != BoardKind::Hardware {
             Some(Try::refused(Saying::HardwareAlone { kind: kind.to_string() }, "Check the lane's target."))
         } else if !builds.contains(&seen.build) {
             let (build, builds) = (seen.build.clone(), builds.join(", "));
@@ -218,7 +218,7 @@ impl Common<'_> {
         let options = RunOptions {
             timeout: Some(within),
             stop: self.stop.clone().within(Some(within)),
-            require_hardware: self.plan.require_hardware && !self.is_mock,
+            require_hardware: self.plan.production.require_hardware && !self.is_mock,
             circumstances,
             ..RunOptions::default()
         };

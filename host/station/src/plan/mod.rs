@@ -12,6 +12,7 @@ pub mod check_digit;
 mod files;
 pub mod limits;
 pub mod mock;
+mod production;
 mod read;
 pub mod serial;
 mod tables;
@@ -30,6 +31,7 @@ use halfrow::result::FileHash;
 use crate::input_error::InputError;
 pub(crate) use files::plan_hash;
 use limits::Limit;
+pub use production::{Bad, Production, Shift};
 use serial::{Serial, SerialError, SerialRule};
 
 /// The version of the plan's own format.
@@ -78,53 +80,20 @@ pub struct Plan {
     pub product: String,
     /// Which serial numbers they have.
     pub serial: SerialRule,
-    /// Refuse anything but hardware.
-    pub require_hardware: bool,
+    /// Which of its runs count as production.
+    pub production: Production,
     /// The builds of the board that may be judged, as the first eight hexadecimal digits of their commits.
     pub builds: Vec<String>,
     /// Whether a board must say which device it is.
     pub device: DeviceRule,
     /// Whether a unit is tested again that passed.
     pub again: Again,
-    /// The units that check every lane in each shift; none if production counts without.
-    pub shift: Option<Shift>,
     /// The files that it names, in order.
     pub files: Vec<FileHash>,
     /// What is done with boards of no named variant.
     base: Selected,
     /// And with those of each variant, by its name.
     variants: Vec<(String, Selected)>,
-}
-
-/// How a lane is checked before its production counts.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shift {
-    /// The serial number of a unit that must pass.
-    pub good: String,
-    /// What must fail.
-    pub bad: Bad,
-    /// How long the two count.
-    pub lasts: Duration,
-}
-
-/// What is known to be bad.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Bad {
-    /// The unit of this serial number.
-    Unit(String),
-    /// The [`mock`] board, with a fault that is drawn for every run.
-    Mock,
-}
-
-impl Bad {
-    /// The serial number that its runs in this lane have.
-    #[must_use]
-    pub fn serial(&self, lane: &str) -> String {
-        match self {
-            Self::Unit(serial) => serial.clone(),
-            Self::Mock => mock::serial(lane),
-        }
-    }
 }
 
 /// What is done with one board.
@@ -229,20 +198,6 @@ impl Plan {
         let serial = self.serial.read(scanned)?;
         let selected = self.variant(&serial.variant);
         Ok((serial, selected))
-    }
-
-    /// Whether the unit of this serial number checks shifts, and is no product.
-    #[must_use]
-    pub fn is_reference(&self, serial: &str) -> bool {
-        let is_bad = |bad: &Bad| matches!(bad, Bad::Unit(bad) if bad == serial);
-        let checks = |shift: &Shift| shift.good == serial || is_bad(&shift.bad);
-        mock::is_mock(serial) || self.shift.as_ref().is_some_and(checks)
-    }
-
-    /// Whether a run of this serial number can count as production.
-    #[must_use]
-    pub fn counts(&self, serial: &str) -> bool {
-        self.require_hardware && !self.is_reference(serial)
     }
 
     /// What is done with boards of this variant.

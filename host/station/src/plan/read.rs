@@ -11,9 +11,10 @@ use super::mock::BARCODE;
 use super::serial::SerialRule;
 use super::tables;
 use super::text::{
-    BoardText, LimitText, LimitsText, PlanText, SeedText, ShiftText, StepKindText, StepText, TablesText,
+    BoardText, LimitText, LimitsText, PlanText, SeedText, SerialText, ShiftText, StepKindText, StepText,
+    TablesText,
 };
-use super::{Act, Bad, Judging, Plan, SCHEMA, Seed, Selected, Shift, Step};
+use super::{Act, Bad, Judging, Plan, Production, SCHEMA, Seed, Selected, Shift, Step};
 use crate::input_error::Fault;
 
 /// Where all keys are listed.
@@ -36,11 +37,9 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
     let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
     check_schema(&read)?;
     let [name, version, product] = [&read.plan.name, &read.plan.version, &read.plan.product].map(not_empty);
-    let serial = SerialRule::new(read.serial.pattern.get_ref(), read.serial.check);
-    let serial =
-        serial.map_err(|(what, remedy)| Fault::wrong(read.serial.pattern.span().start, what, remedy))?;
+    let serial = serial(&read)?;
     let builds = builds(&read.board)?;
-    let shift = read.shift.as_ref().map(|text| shift(text, &serial)).transpose()?;
+    let production = production(&read, &serial)?;
     let mut files = Files::beside(path);
     let base = selected(&read, &read.tables, &LimitsText::new(), &mut files)?;
     let variants = variants(&read, &serial, &mut files)?;
@@ -52,15 +51,32 @@ pub(super) fn plan(path: &Path, text: &str) -> Result<Plan, Fault> {
         version: version?,
         product: product?,
         serial,
-        require_hardware: read.board.require_hardware,
+        production,
         builds,
         device: read.board.device,
         again: read.board.again,
-        shift,
         files,
         base,
         variants,
     })
+}
+
+/// What the plan of `text` demands of production, whatever became of its files.
+pub(super) fn production_of(text: &str) -> Result<Production, Fault> {
+    let read: PlanText = toml::from_str(text).map_err(|error| Fault::of_toml(&error, KEYS))?;
+    check_schema(&read)?;
+    production(&read, &serial(&read)?)
+}
+
+fn production(read: &PlanText, rule: &SerialRule) -> Result<Production, Fault> {
+    let shift = read.shift.as_ref().map(|text| shift(text, rule)).transpose()?;
+    Ok(Production { require_hardware: read.board.require_hardware, shift })
+}
+
+fn serial(read: &PlanText) -> Result<SerialRule, Fault> {
+    let SerialText { pattern, check } = &read.serial;
+    let rule = SerialRule::new(pattern.get_ref(), *check);
+    rule.map_err(|(what, remedy)| Fault::wrong(pattern.span().start, what, remedy))
 }
 
 fn check_schema(read: &PlanText) -> Result<(), Fault> {

@@ -42,7 +42,7 @@ impl Folder {
         serial: &str,
         how: &'static str,
     ) -> Result<Option<AgainError>, StoreError> {
-        if plan.again == Again::Allow || plan.is_reference(serial) {
+        if plan.again == Again::Allow || plan.production.is_reference(serial) {
             return Ok(None);
         }
         let last: Option<(String, i64)> = self.read("to tell whether a unit passed", |from| {

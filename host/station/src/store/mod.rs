@@ -50,7 +50,7 @@ pub use plant::{
     publications, waiters,
 };
 pub use shared::SharedStore;
-pub use shift::{Checked, Owed};
+pub use shift::{Checked, InLane, Owed};
 pub use snapshot::{Rebuilt, Snapshot, TABLES};
 pub use table::{Key, Row, Rows};
 pub use waivers::{NoWaiver, Waiver};

@@ -5,8 +5,32 @@ use halfrow::Verdict;
 use super::database::{DatabaseError, Row, values};
 use super::{Folder, StoreError, statements as sql};
 use crate::plan::mock::BARCODE;
-use crate::plan::{Bad, Plan, Shift};
+use crate::plan::{Bad, Plan, Production, Shift};
 use crate::said::{Said, Saying};
+
+/// A plan in a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct InLane<'a> {
+    /// The station.
+    pub station: &'a str,
+    /// The lane.
+    pub lane: &'a str,
+    /// The plan's hash.
+    pub plan_sha256: &'a str,
+    /// Its product.
+    pub product: &'a str,
+    /// What it demands of production.
+    pub production: &'a Production,
+}
+
+impl<'a> InLane<'a> {
+    /// This plan in this lane of this station.
+    #[must_use]
+    pub fn of(station: &'a str, lane: &'a str, plan: &'a Plan) -> Self {
+        let Plan { sha256, product, production, .. } = plan;
+        Self { station, lane, plan_sha256: sha256, product, production }
+    }
+}
 
 /// What a lane is to do before its production counts.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,20 +63,30 @@ struct Judged {
 const ASTRAY_MS: i64 = 300_000;
 
 impl Folder {
-    /// What this lane of this station still owes to the shift at `now_ms` before boards are judged by `plan`: that the
-    /// last judgement of the good unit is PASS, and that of what is known to be bad FAIL, which came behind it. An ERROR checks nothing.
+    /// Whether a run of this serial number that begins at `now_ms` can count as production: it is of a product, and its lane was
+    /// checked in this shift.
+    ///
+    /// # Errors
+    /// As [`Self::owed`].
+    pub fn counts(&self, place: &InLane<'_>, serial: &str, now_ms: i64) -> Result<bool, StoreError> {
+        Ok(place.production.counts(serial) && self.owed(place, now_ms)?.owed.is_none())
+    }
+
+    /// What a lane still owes to the shift at `now_ms` before boards are judged by its plan: that the last judgement of the good
+    /// unit is PASS, and that of what is known to be bad FAIL, which came behind it. An ERROR checks nothing.
     ///
     /// # Errors
     /// [`StoreError`] when the database cannot be read.
-    pub fn owed(&self, station: &str, lane: &str, plan: &Plan, now_ms: i64) -> Result<Checked, StoreError> {
+    pub fn owed(&self, place: &InLane<'_>, now_ms: i64) -> Result<Checked, StoreError> {
+        let InLane { station, lane, plan_sha256, product, production } = *place;
         let mut until_ms = i64::MAX;
-        let Some(shift) = &plan.shift else { return Ok(Checked { owed: None, until_ms }) };
+        let Some(shift) = &production.shift else { return Ok(Checked { owed: None, until_ms }) };
         let lasts = i64::try_from(shift.lasts.as_millis()).unwrap_or(i64::MAX);
         let units = [(shift.good.clone(), Verdict::Pass), (shift.bad.serial(lane), Verdict::Fail)];
         let mut before = String::new();
         for (serial, expected) in units {
             let since = now_ms.saturating_sub(lasts);
-            let of = values![station, lane, &plan.sha256, &plan.product, &serial, since];
+            let of = values![station, lane, plan_sha256, product, &serial, since];
             let last =
                 self.read("to tell who checked a shift", |from| from.first(sql::LAST_JUDGEMENT, of, judged))?;
             let last = last.filter(|last| last.started_ms <= now_ms.saturating_add(ASTRAY_MS));

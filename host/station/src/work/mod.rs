@@ -18,13 +18,14 @@ use rand::{RngExt as _, rng};
 
 pub use held::{Held, Holding, Lost};
 
+use crate::clock;
 use crate::labgrid::LaneBoard;
 use crate::outbox::PlantSink;
 use crate::record::JobClaim;
 use crate::run::{self, Order, RunError, Saved, Stage, Watch, recover_run};
 use crate::said::Said;
 use crate::settings::{PlanFile, Settings};
-use crate::store::{Claim, PlantLink, SharedStore, StoreError, Worker};
+use crate::store::{Claim, InLane, PlantLink, SharedStore, StoreError, Worker};
 
 /// Who acts, to records and to the plant's audit.
 const OPERATOR: &str = "job";
@@ -224,17 +225,21 @@ impl Work<'_> {
         let Some(PlanFile { path, plan }) = file else {
             return Err(WorkError::NoPlan { job: claim.job.clone(), sha256: claim.plan_sha256.clone() });
         };
+        let (station, lane) = (&self.worker.station, &claim.lease.board);
+        let counts = self.store.with(|store| {
+            store.folder().counts(&InLane::of(station, lane, plan), claim.serial(), clock::now_ms())
+        });
         let job = JobClaim { id: claim.job.clone(), fence: claim.fence };
         let order = Order {
             plan,
             plan_file: path,
             serial: claim.serial(),
             board: &board,
-            station: &self.worker.station,
-            lane: &claim.lease.board,
+            station,
+            lane,
             operator: OPERATOR,
             program: &self.program,
-            counts: plan.counts(claim.serial()),
+            counts: counts.map_err(|error| RunError::NotBegun(Box::new(error)))?,
             job: Some(&job),
             silence: *silence,
             memory_mib: *memory_mib,

@@ -4,13 +4,18 @@ mod boards;
 pub(crate) mod claims;
 mod disk;
 mod rate;
+mod shift;
 mod stuck;
 mod work;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use halfrow_station::plan::Plan;
-use halfrow_station::store::{NewJob, Plant, SharedBoard, Wanted, Worker};
+use halfrow_station::settings::Settings;
+use halfrow_station::store::{
+    Folder, NewJob, Plant, PlantLink, SharedBoard, SharedStore, Store, Wanted, Worker,
+};
+use halfrow_station::work::Work;
 
 use crate::common::PLAN;
 use crate::plant::server::Server;
@@ -69,7 +74,7 @@ pub(crate) fn run_out(server: &Server) {
 }
 
 /// The settings of a worker of this name in `folder`.
-fn settings(server: &Server, folder: &Path, name: &str) -> std::path::PathBuf {
+fn settings(server: &Server, folder: &Path, name: &str) -> PathBuf {
     std::fs::write(folder.join("plan.toml"), PLAN).unwrap();
     let plant = crate::common::plant_settings(&server.url());
     let text = format!(
@@ -78,4 +83,16 @@ fn settings(server: &Server, folder: &Path, name: &str) -> std::path::PathBuf {
     let path = folder.join("station.toml");
     std::fs::write(&path, text).unwrap();
     path
+}
+
+/// The station of these settings, whose lanes are of `program`. Nothing that it keeps is sent on.
+fn at_work(settings: &Settings, program: PathBuf) -> Work<'_> {
+    let plans = settings.plans.iter().map(|file| file.plan.sha256.clone()).collect();
+    Work {
+        plant: PlantLink::new(settings.plant.as_ref().unwrap().address().unwrap()),
+        store: SharedStore::new(Store::open(&Folder::new(&settings.data)).unwrap()),
+        program,
+        worker: Worker { plans, ..worker(&settings.name) },
+        settings,
+    }
 }

@@ -4,10 +4,8 @@ use std::time::Instant;
 
 use halfrow::verdict::StoppedBy;
 use halfrow_station::settings::Settings;
-use halfrow_station::store::{Folder, PlantLink, SharedStore, Store};
-use halfrow_station::work::Work;
 
-use super::{any, job, plan, settings, shared, worker};
+use super::{any, at_work, job, plan, settings, shared};
 use crate::lanes::floor::HANG;
 use crate::lanes::stuck::Stuck;
 
@@ -22,14 +20,7 @@ fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
     std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 1")).unwrap();
     let settings = Settings::load_plant(&path).unwrap();
     let stuck = Stuck::in_folder(folder.path());
-    let store = Store::open(&Folder::new(&settings.data)).unwrap();
-    let work = Work {
-        plant: PlantLink::new(settings.plant.as_ref().unwrap().address().unwrap()),
-        store: SharedStore::new(store),
-        program: stuck.program.clone(),
-        worker: worker("12"),
-        settings: &settings,
-    };
+    let work = at_work(&settings, stuck.program.clone());
     let claim = work.claim().unwrap().unwrap();
     // Nothing is sent on here, so it waits until the board is lost.
     let begun = Instant::now();

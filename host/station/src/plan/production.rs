@@ -1,0 +1,69 @@
+//! Which runs of a plan count as production.
+
+use std::time::Duration;
+
+use super::mock;
+use super::read;
+
+/// What a plan demands of a run that counts as production.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Production {
+    /// Refuse anything but hardware.
+    pub require_hardware: bool,
+    /// The units that check every lane in each shift; none if production counts without.
+    pub shift: Option<Shift>,
+}
+
+/// How a lane is checked before its production counts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shift {
+    /// The serial number of a unit that must pass.
+    pub good: String,
+    /// What must fail.
+    pub bad: Bad,
+    /// How long the two count.
+    pub lasts: Duration,
+}
+
+/// What is known to be bad.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Bad {
+    /// The unit of this serial number.
+    Unit(String),
+    /// The [`mock`] board, with a fault that is drawn for every run.
+    Mock,
+}
+
+impl Bad {
+    /// The serial number that its runs in this lane have.
+    #[must_use]
+    pub fn serial(&self, lane: &str) -> String {
+        match self {
+            Self::Unit(serial) => serial.clone(),
+            Self::Mock => mock::serial(lane),
+        }
+    }
+}
+
+impl Production {
+    /// What the text of a plan that was read whole once demands; nothing if this program cannot read it. The files that it names
+    /// may be others by now.
+    #[must_use]
+    pub fn of_text(text: &str) -> Option<Self> {
+        read::production_of(text).ok()
+    }
+
+    /// Whether the unit of this serial number checks shifts, and is no product.
+    #[must_use]
+    pub fn is_reference(&self, serial: &str) -> bool {
+        let is_bad = |bad: &Bad| matches!(bad, Bad::Unit(bad) if bad == serial);
+        let checks = |shift: &Shift| shift.good == serial || is_bad(&shift.bad);
+        mock::is_mock(serial) || self.shift.as_ref().is_some_and(checks)
+    }
+
+    /// Whether a run of this serial number can count, in a lane that was checked.
+    #[must_use]
+    pub fn counts(&self, serial: &str) -> bool {
+        self.require_hardware && !self.is_reference(serial)
+    }
+}
