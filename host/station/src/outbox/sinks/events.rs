@@ -11,7 +11,6 @@ use serde::Serialize;
 use super::{SinkError, SinkSettingsError};
 use crate::clock;
 use crate::outbox::{Sink, Undelivered};
-use crate::plan::mock::is_mock;
 use crate::record::Record;
 use crate::settings::{Login, SinkAddress};
 use crate::store::{Parcel, Waiver};
@@ -54,12 +53,12 @@ struct RunEvent<'a> {
     headline: &'a str,
     started_ms: i64,
     ended_ms: i64,
-    /// Whether it counts: the board is no mock.
+    /// Whether it counts as production.
     production: bool,
 }
 
 impl<'a> RunEvent<'a> {
-    fn of(Record { run, plan, conclusion, ended_ms, .. }: &'a Record) -> Self {
+    fn of(Record { run, plan, conclusion, ended_ms, production, .. }: &'a Record) -> Self {
         Self {
             schema: SCHEMA,
             run: &run.id,
@@ -74,7 +73,7 @@ impl<'a> RunEvent<'a> {
             headline: &conclusion.headline,
             started_ms: run.started_ms,
             ended_ms: *ended_ms,
-            production: !is_mock(&run.serial),
+            production: *production,
         }
     }
 }

@@ -47,6 +47,8 @@ pub(crate) struct Run {
     pub(crate) job: Option<JobClaim>,
     /// What was seen of the board's device, and its number; nobody looked if it is none.
     pub(crate) device: Option<(DeviceSeen, &'static str)>,
+    /// Whether it counts as production.
+    pub(crate) production: bool,
 }
 
 impl Run {
@@ -64,6 +66,7 @@ impl Run {
             evidence: Vec::new(),
             job: None,
             device: None,
+            production: true,
         }
     }
 }
@@ -220,7 +223,7 @@ fn record(run: RunHead, plan: PlanRecord, made: &Run) -> Record {
             finding: None,
         },
         plan,
-        production: true,
+        production: made.production,
         marginal: false,
         device: made.device.map_or(DeviceSeen::NotChecked, |(seen, _)| seen),
         board,

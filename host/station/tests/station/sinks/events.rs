@@ -117,7 +117,8 @@ fn station() -> TempDir {
     let mut made = Made::new();
     let minute_ago = now_ms() - 60_000;
     made.run(&Run { started_ms: minute_ago - 7_200_000, ..Run::of("OLD", End::Pass) });
-    let failed = made.run(&Run { started_ms: minute_ago, ..Run::of("NEW", End::Fail(&["clock"])) });
+    let failed =
+        made.run(&Run { started_ms: minute_ago, production: false, ..Run::of("NEW", End::Fail(&["clock"])) });
     made.store.waive(&failed, "engel", "seen").unwrap();
     made.closed()
 }
@@ -143,6 +144,7 @@ fn what_has_just_happened_is_told_and_what_is_old_is_not() {
         assert_eq!(run, "factory/halfrow/12/1/run");
         let expected = [("serial", "NEW"), ("verdict", "FAIL"), ("station", "station 7"), ("plan", "final")];
         assert!(expected.iter().all(|(key, value)| told[key] == *value), "{told}");
+        assert_eq!(told["production"], false, "as the record says: {told}");
         assert_eq!(waiver, "factory/halfrow/12/waiver");
         assert_eq!((&waived["run"], &waived["reason"]), (&told["run"], &"seen".into()));
     }
