@@ -7,10 +7,12 @@ use crate::clock;
 use crate::kept::{Spool, spools};
 use crate::lane::Message;
 use crate::lane::supervisor::{EVENTS, kill_left_behind};
-use crate::plan::mock::is_mock;
-use crate::record::{Conclusion, DeviceSeen, PlanRecord, Record, RunCause, SCHEMA, StepRecord};
+use crate::plan::Production;
+use crate::record::{
+    BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
+};
 use crate::said::Saying;
-use crate::store::{OpenRun, Store};
+use crate::store::{InLane, OpenRun, Store, StoreError};
 
 use super::{RunError, Saved, save};
 
@@ -68,15 +70,19 @@ fn closed(store: &mut Store, open: OpenRun, why: impl Fn(usize) -> Saying) -> Re
     kill_left_behind(&spool);
     let steps = told(&spool);
     let why = why(steps.len());
+    let board = steps.iter().find_map(|step| step.board.clone());
+    let counted = counts(store, &run, &plan_sha256, &text);
+    let unsaved = |source| RunError::Unsaved { run: run.id.clone(), source: Box::new(source) };
+    let counts = counted.map_err(unsaved)?;
     let record = Record {
         schema: SCHEMA,
         ended_ms: clock::now_ms().max(run.started_ms),
         seconds: None,
         conclusion: Conclusion::error(RunCause::Crash, why),
-        production: takes_hardware_alone(&text) && !is_mock(&run.serial),
+        production: counts && board.as_ref().is_none_or(BoardSeen::is_hardware),
         plan: PlanRecord { sha256: plan_sha256, name, version, text, files: None },
         marginal: steps.iter().any(|step| step.attempt > 1),
-        board: steps.iter().find_map(|step| step.board.clone()),
+        board,
         device: DeviceSeen::NotChecked,
         suspects: Vec::new(),
         steps,
@@ -88,11 +94,12 @@ fn closed(store: &mut Store, open: OpenRun, why: impl Fn(usize) -> Saying) -> Re
     save(store, record, &spool, 0)
 }
 
-/// What the plan's text says of hardware. The plan was read whole when the run began; its files may be others by now.
-fn takes_hardware_alone(text: &str) -> bool {
-    let plan: toml::Table = text.parse().unwrap_or_default();
-    let required = plan.get("board").and_then(|board| board.get("require_hardware"));
-    required.and_then(toml::Value::as_bool).unwrap_or(false)
+/// Whether the run could count as production when it began.
+fn counts(store: &Store, run: &RunHead, plan_sha256: &str, text: &str) -> Result<bool, StoreError> {
+    let RunHead { station, lane, product, serial, started_ms, .. } = run;
+    let Some(production) = Production::of_text(text) else { return Ok(false) };
+    let place = InLane { station, lane, plan_sha256, product, production: &production };
+    store.folder().counts(&place, serial, *started_ms)
 }
 
 /// The steps that the lane told of, as far as they were written down.

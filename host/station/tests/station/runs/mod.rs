@@ -9,5 +9,6 @@ mod identity;
 mod killed;
 mod killed_lane;
 mod limited;
+mod recovered;
 mod saved;
 mod unsaved;
