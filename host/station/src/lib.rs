@@ -28,6 +28,7 @@ pub mod disk;
 pub mod engine;
 pub mod export;
 pub mod floor;
+mod group;
 pub mod history;
 mod ids;
 pub mod input_error;

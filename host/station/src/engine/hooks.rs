@@ -2,18 +2,14 @@
 
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::thread;
-use std::time::{Duration, Instant};
-
-use nix::sys::signal::{Signal, killpg};
-use nix::unistd::Pid;
+use std::time::Duration;
 
 use crate::floor::Shown;
+use crate::group::{kill, waited};
 use crate::settings::{Hook, WORDS};
 
-/// How often a hook is looked at.
-const LOOK: Duration = Duration::from_millis(10);
 /// The most that is kept of what a hook complains of, in bytes.
 const MOST_SAID: u64 = 1000;
 
@@ -66,14 +62,14 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
     let heard = thread::spawn(move || complaints.map(beginning).unwrap_or_default());
     match waited(&mut child, hook.deadline) {
         None => {
-            kill(&child);
+            kill(child.id());
             let _ = child.wait();
             Err(HookError::Late { program: program(), deadline: hook.deadline })
         }
         Some(status) if status.success() => Ok(()),
         Some(status) => {
             // What it left behind may hold the pipe open.
-            kill(&child);
+            kill(child.id());
             let said = heard.join().unwrap_or_default();
             let said = String::from_utf8_lossy(&said).split_whitespace().collect::<Vec<_>>().join(" ");
             Err(HookError::Failed { program: program(), status, said })
@@ -113,27 +109,10 @@ fn first_word<'a>(text: &'a str, values: &[&'a str; 6]) -> Option<(&'a str, &'a 
     places.min_by_key(|(before, ..)| before.len())
 }
 
-fn waited(child: &mut Child, deadline: Duration) -> Option<ExitStatus> {
-    let begun = Instant::now();
-    loop {
-        match child.try_wait() {
-            Ok(Some(status)) => return Some(status),
-            _ if begun.elapsed() > deadline => return None,
-            _ => thread::sleep(LOOK),
-        }
-    }
-}
-
-/// Kills what the hook has started, too.
-fn kill(child: &Child) {
-    if let Ok(group) = i32::try_from(child.id()) {
-        // Nothing is left to be killed when all have ended.
-        let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::time::Instant;
+
     use halfrow::Verdict;
 
     use super::*;
@@ -193,7 +172,7 @@ mod tests {
         let killed = Instant::now();
         while is_alive() {
             assert!(killed.elapsed() < Duration::from_secs(60), "it outlives its hook");
-            thread::sleep(LOOK);
+            thread::sleep(Duration::from_millis(10));
         }
     }
 }

@@ -9,13 +9,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use halfrow::target::Target;
-use nix::sys::signal::{Signal, killpg};
-use nix::unistd::Pid;
 
 use super::error::{Answer, Port};
 use super::{LabgridError, Place};
+use crate::group::{self, waited};
 
-/// How often it is looked whether anybody wants the run to end, or the process has ended.
+/// How often it is looked whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// A place that is ours.
@@ -173,30 +172,19 @@ impl Holder {
 
     /// Waits for the end of the process, which has no stdin any more.
     fn left(mut self, place: &str, deadline: Duration) {
-        let begun = Instant::now();
-        while begun.elapsed() <= deadline {
-            match self.child.try_wait() {
-                Ok(None) => thread::sleep(LOOK),
-                Ok(Some(status)) => {
-                    if !status.success() {
-                        tracing::debug!("what held {place} ended with {status}");
-                    }
-                    return;
-                }
-                Err(_) => break,
-            }
+        let Some(status) = waited(&mut self.child, deadline) else {
+            tracing::warn!(
+                "labgrid did not take {place} back in time; the lane's next run does it, or `labgrid-client -p {place} release`"
+            );
+            return self.kill();
+        };
+        if !status.success() {
+            tracing::debug!("what held {place} ended with {status}");
         }
-        tracing::warn!(
-            "labgrid did not take {place} back in time; the lane's next run does it, or `labgrid-client -p {place} release`"
-        );
-        self.kill();
     }
 
     fn kill(&mut self) {
-        if let Ok(group) = i32::try_from(self.child.id()) {
-            // Nothing is left to be killed when all have ended.
-            let _ = killpg(Pid::from_raw(group), Signal::SIGKILL);
-        }
+        group::kill(self.child.id());
         let _ = self.child.wait();
     }
 }

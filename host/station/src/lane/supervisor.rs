@@ -11,10 +11,9 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
-use nix::sys::signal::{Signal, killpg};
-use nix::unistd::Pid;
 
 use super::{Control, Job, Message, Ruling};
+use crate::group::{kill, waited};
 use crate::record::{BoardSeen, StepRecord};
 use crate::said::{Said, Saying};
 
@@ -203,10 +202,10 @@ impl Lane {
     fn end(mut self, end: End) -> End {
         drop(self.stdin.take());
         let is_over = matches!(end, End::Done | End::Refused(_) | End::Died(_));
-        let mut status = if is_over { waited(&mut self.child) } else { None };
+        let mut status = if is_over { waited(&mut self.child, GRACE) } else { None };
         if status.is_none() {
             kill(self.child.id());
-            status = waited(&mut self.child);
+            status = waited(&mut self.child, GRACE);
         }
         match (end, status) {
             (End::Killed(why), None) => End::Stuck(Saying::LaneStuck { why }.into()),
@@ -228,26 +227,6 @@ fn impatient(patience: Patience, begun: Instant, last: Instant, asked: Option<In
     }
     let is_deaf = asked.is_some_and(|asked| asked.elapsed() > GRACE);
     is_deaf.then(|| Saying::LaneDeaf { seconds: seconds(GRACE) }.into())
-}
-
-/// How a process ended, if it does within [`GRACE`].
-fn waited(child: &mut Child) -> Option<std::process::ExitStatus> {
-    let begun = Instant::now();
-    loop {
-        match child.try_wait() {
-            Ok(Some(status)) => return Some(status),
-            _ if begun.elapsed() > GRACE => return None,
-            _ => thread::sleep(Duration::from_millis(2)),
-        }
-    }
-}
-
-fn kill(group: u32) {
-    if let Ok(group) = i32::try_from(group)
-        && let Err(error) = killpg(Pid::from_raw(group), Signal::SIGKILL)
-    {
-        tracing::debug!("the lane's processes {group} were not killed: {error}");
-    }
 }
 
 /// Kills the lane of a run whose station ended before it, if it is still there: by its id and by when it began, since

@@ -1,0 +1,34 @@
+//! Processes that lead a group of their own, so that what they have started is killed with them.
+
+use std::process::{Child, ExitStatus};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use nix::sys::signal::{Signal, killpg};
+use nix::unistd::Pid;
+
+/// How soon it is looked at first whether a process has ended, and how long no look waits longer.
+const FIRST: Duration = Duration::from_millis(1);
+const LONGEST: Duration = Duration::from_millis(10);
+
+/// How a process ended, if it does within `limit`.
+pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
+    let (begun, mut look) = (Instant::now(), FIRST);
+    loop {
+        match child.try_wait() {
+            Ok(Some(status)) => return Some(status),
+            _ if begun.elapsed() > limit => return None,
+            _ => thread::sleep(look),
+        }
+        look = LONGEST.min(2 * look);
+    }
+}
+
+/// Kills the group of the process `leader`, of which none need be left.
+pub(crate) fn kill(leader: u32) {
+    if let Ok(group) = i32::try_from(leader)
+        && let Err(error) = killpg(Pid::from_raw(group), Signal::SIGKILL)
+    {
+        tracing::debug!("the processes {group} were not killed: {error}");
+    }
+}
