@@ -204,7 +204,7 @@ impl Work<'_> {
         let why = format!(
             "a process of station {station} may still have it, and cannot be killed; restart that computer first"
         );
-        while let Err(error) = self.plant.ask(|plant| plant.take_out(board, Some(&why), OPERATOR)) {
+        while let Err(error) = self.plant.ask(|plant| plant.take_out(board, &why, OPERATOR)) {
             tracing::warn!("the board {board} cannot be taken out yet ({why}): {}", Said::of(&error));
             if stop().is_some() {
                 return;
