@@ -158,6 +158,13 @@ fn what_differed_is_no_error_for_being_interrupted() {
     assert!(soak(&report).wrong > 0);
 }
 
+/// The stop comes before it is looked at whether the link may have brought it about.
+#[test]
+fn what_differed_in_the_burst_that_is_interrupted_is_no_error_either() {
+    let report = stopped_at("mock,pixel-clock=10000,fault=slow-path,one-in=2", 1);
+    assert_eq!(failed_check(&report), Some(CheckName::AtSpeed), "{}", report.headline());
+}
+
 #[test]
 fn without_bursts_nothing_is_judged() {
     let report = soaked("mock,bursts=no", frames(10));

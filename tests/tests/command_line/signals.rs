@@ -3,7 +3,7 @@
 use std::fs::{OpenOptions, read_to_string};
 use std::io::{PipeReader, PipeWriter, Write as _};
 use std::os::fd::AsRawFd as _;
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 
 use halfrow_tests::patience::wait_until;
 use halfrow_tests::program::{Ended, Folder, Running};
@@ -145,18 +145,28 @@ fn a_second_signal_ends_what_waits_to_say_something() {
     let (_unread, full) = full_pipe();
     let mut command =
         folder.by_shell("exec env --default-signal=INT,TERM,HUP \"$@\"", ["verify", "-vv", "--board", SLOW]);
-    let mut child = command.stderr(full).stdout(Stdio::null()).spawn().unwrap();
-    let status = format!("/proc/{}/status", child.id());
+    let mut waiting = Waiting(command.stderr(full).stdout(Stdio::null()).spawn().unwrap());
+    let status = format!("/proc/{}/status", waiting.0.id());
     wait_until("the program to hear signals", || {
         let status = read_to_string(&status).unwrap();
         let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim();
         u64::from_str_radix(caught, 16).unwrap() >> (Signal::SIGTERM as i32 - 1) & 1 == 1
     });
     wait_until("the program to end", || {
-        kill(Pid::from_raw(child.id().cast_signed()), Signal::SIGTERM).unwrap();
-        child.try_wait().unwrap().is_some()
+        kill(Pid::from_raw(waiting.0.id().cast_signed()), Signal::SIGTERM).unwrap();
+        waiting.0.try_wait().unwrap().is_some()
     });
-    assert_eq!(child.wait().unwrap().code(), Some(143));
+    assert_eq!(waiting.0.wait().unwrap().code(), Some(143));
+}
+
+/// A program that may wait for ever, which is killed when this is dropped.
+struct Waiting(Child);
+
+impl Drop for Waiting {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
 }
 
 /// A pipe that takes nothing more, since nobody reads it: its two ends.

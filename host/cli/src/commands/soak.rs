@@ -57,10 +57,10 @@ impl Length {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let settings = &context.settings;
     let run = &arguments.run;
-    // Whoever waits for a board of a pool has no run yet that a signal could end in order.
-    run.board.target(settings)?;
     let files = run.input_files(settings);
     files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
+    // Whoever waits for a board of a pool has no run yet that a signal could end in order.
+    run.board.target(settings)?;
     let (plan, options) = arguments.plan(&files, settings)?;
     run.board.check_fault(settings, &plan)?;
     let outputs = run.outputs(files, None, context)?;

@@ -1,5 +1,6 @@
 //! A folder that is written aside.
 
+use std::ffi::{OsStr, OsString};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -122,9 +123,8 @@ impl AsideFolder {
 
     /// Renames what is in the place to NAME.earlier beside it, where it is found if this run is killed then.
     fn move_away(&self) -> io::Result<PathBuf> {
-        let mut name = self.target.file_name().unwrap_or_default().to_owned();
-        name.push(EARLIER);
-        under_way::to_free_name(&self.target, &name)
+        let name = under_way::shortened(self.target.file_name().unwrap_or_default());
+        under_way::to_free_name(&self.target, &[name, OsStr::new(EARLIER)].into_iter().collect::<OsString>())
     }
 
     fn done(self) -> Result<(), Misplaced> {

@@ -133,10 +133,14 @@ fn is_ours(made: &File, path: &Path) -> bool {
 
 /// The file that claims `target`.
 pub(super) fn claim_on(target: &Path) -> PathBuf {
-    let name = target.file_name().unwrap_or_default();
-    let name = OsStr::from_bytes(&name.as_bytes()[..name.len().min(LONGEST)]);
+    let name = shortened(target.file_name().unwrap_or_default());
     let parts = [OsStr::new(PREFIX), name, OsStr::new(CLAIM)];
     super::folder_of(target).join(parts.into_iter().collect::<OsString>())
+}
+
+/// The beginning of a name, to which something may be added.
+pub(super) fn shortened(name: &OsStr) -> &OsStr {
+    OsStr::from_bytes(&name.as_bytes()[..name.len().min(LONGEST)])
 }
 
 /// Clears `folder` of what runs that were killed left in it. Of streams that are worth keeping, what there is goes by a

@@ -16,8 +16,8 @@ use crate::link::{LineErrors, Link, LinkError, Severed};
 /// the host was kept from running, and then there is more to be read.
 const BRIEF: Duration = Duration::from_millis(50);
 
-/// The most input banks that a board can have: so far its window may be ahead of the rows that it was given.
-const MOST_BANKS: u32 = u8::MAX as u32;
+/// How far a board's window can be ahead of the rows that came back: the most banks each way, and two rows in the core.
+const MOST_AHEAD: u32 = 2 * u8::MAX as u32 + 2;
 
 /// What a link did.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -126,7 +126,7 @@ impl Conversation {
 
     /// The row sequence number before which rows may be sent: the board's window, as far as it can be true.
     pub(super) fn credit(&self) -> u32 {
-        self.window.min(self.rows_sent.max(self.acknowledged).saturating_add(MOST_BANKS))
+        self.window.min(self.acknowledged.saturating_add(MOST_AHEAD))
     }
 
     /// Closes the link and forgets what it did.

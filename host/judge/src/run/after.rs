@@ -12,8 +12,7 @@ impl Run<'_> {
     /// Judges what was seen, the tables and the counters. The first that is wrong ends the run; what else is wrong
     /// stands among the checks.
     pub(super) fn judge(&mut self) -> Result<(), End> {
-        // Tables that read back right for once are no better for it.
-        let after = self.findings.seen.changed_tables.clone().map_or_else(|| self.tables_after(), Err);
+        let after = self.tables_after();
         self.findings.lap(CheckName::TablesAfter);
         let status = self.board.status(false).map_err(|error| End::board(CheckName::Counters, &error))?;
         self.findings.note_status(&status);
@@ -47,8 +46,18 @@ impl Run<'_> {
     }
 
     /// The tables of the last frame must still be what was uploaded; a run that ends with its first frame does not come to
-    /// those that are judged.
+    /// those that are judged. Tables that read back right for once are no better for it.
     pub(super) fn tables_after(&mut self) -> Result<Finding, End> {
+        if let Some(changed) = &self.findings.seen.changed_tables {
+            return Err(changed.clone());
+        }
+        let after = self.read_back_after();
+        self.findings.seen.changed_tables =
+            after.clone().err().filter(|end| matches!(end, End::Failed { .. }));
+        after
+    }
+
+    fn read_back_after(&mut self) -> Result<Finding, End> {
         let last = self.findings.seen.frames.last().map_or(DECOY, |frame| frame.generation);
         let last = self.generations.iter().find(|generation| generation.number == last).cloned();
         let Some(last) = last.filter(|generation| generation.number != DECOY) else {

@@ -6,10 +6,7 @@ use std::collections::BTreeSet;
 use halfrow_model::{Frame, NODES, RowFactor, Source, TableSet};
 
 use super::plan::Generation;
-use crate::result::{Identity, NotExercised};
-
-/// The taps in the order of their columns.
-const TAPS: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
+use crate::result::{Identity, NotExercised, TAPS};
 
 /// The levels that bits have had.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -33,7 +33,7 @@ pub(super) struct Seen {
     pub(super) wrong_entry: Option<WrongEntry>,
     /// The first row whose gaps are not those of the seed.
     pub(super) wrong_pauses: Option<Finding>,
-    /// That tables had changed before others were to be put in their place.
+    /// That tables had changed when they were read back.
     pub(super) changed_tables: Option<End>,
 }
 

@@ -6,7 +6,7 @@
 use super::findings::End;
 use super::judge::Seen;
 use super::steps::Run;
-use crate::board::OpenOptions;
+use crate::board::{BoardError, OpenOptions};
 use crate::progress::Step;
 use crate::result::{CheckName, Doubt, Finding};
 use crate::verdict::Cause;
@@ -60,7 +60,14 @@ impl Run<'_> {
         if repeated > 0 {
             return Some(Doubt::RequestsTwice { requests: repeated });
         }
-        let Ok(status) = self.board.status(false) else { return Some(Doubt::PacketsUncounted {}) };
+        let status = match self.board.status(false) {
+            Ok(status) => status,
+            Err(BoardError::NoAnswer { .. } | BoardError::TooPoor { .. }) => {
+                return Some(Doubt::PacketsUncounted {});
+            }
+            // A run that is stopped, or whose board is gone, has seen what it has seen.
+            Err(_) => return None,
+        };
         let (counted, sent) = (u64::from(status.packets), self.board.packets_since_clear());
         let counters_alone = check == CheckName::Counters;
         let is_doubtful = counted > sent || counters_alone && counted != sent;

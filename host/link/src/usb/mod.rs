@@ -45,8 +45,8 @@ const FIFO_BYTES_PER_SECOND: f64 = 5e6;
 /// Bits of a byte on a line: a start bit, eight, a stop bit.
 const BITS_PER_BYTE: f64 = 10.0;
 
-/// The longest wait, so that whoever was asked to stop looks at that.
-const HEED: Duration = Duration::from_millis(100);
+/// The longest wait, so that whoever was asked to stop looks at that. A run's waits for a board that makes frames are no longer.
+const HEED: Duration = Duration::from_millis(250);
 
 /// A pipe through a channel of a chip.
 pub(crate) struct UsbLink {

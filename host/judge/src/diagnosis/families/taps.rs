@@ -3,10 +3,7 @@
 use crate::diagnosis::datapath::{DeadTap, Wiring};
 use crate::diagnosis::hypothesis::Hypothesis;
 use crate::diagnosis::witnesses::Witnesses;
-use crate::result::Defect;
-
-/// The taps in their order.
-const TAPS: [&str; 7] = ["G0", "R1", "G2", "R3", "G4", "R5", "G6"];
+use crate::result::{Defect, TAPS};
 
 /// Offsets of the window, dead taps, and a base of the wrong colour.
 pub(super) fn propose<'a>(_: &Witnesses<'a>) -> Vec<Hypothesis<'a>> {

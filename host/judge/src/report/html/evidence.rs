@@ -1,5 +1,8 @@
 //! The sections with pictures: how a frame went in, what came out, and where it is wrong.
 
+use std::borrow::Cow;
+
+use halfrow_model::Frame;
 use maud::{Markup, html};
 use png::EncodingError;
 
@@ -53,7 +56,7 @@ fn section(
     let left = most_bytes.saturating_sub(used);
     let width = if differs { MAX_WIDTH.0 } else { MAX_WIDTH.1 };
     let input = pictures::preview(&kept.input, width, left / 2)?;
-    let found = pictures::preview(&kept.found, width, left - input.as_ref().map_or(0, Picture::len))?;
+    let found = pictures::preview(&as_bright(kept), width, left - input.as_ref().map_or(0, Picture::len))?;
     let used = used + [&input, &found].into_iter().flatten().map(Picture::len).sum::<usize>();
     let markup = html! {
         section.frame {
@@ -70,6 +73,16 @@ fn section(
         }
     };
     Ok((markup, used))
+}
+
+/// What came out, with the white of what should have; what lies beyond its depth is white.
+fn as_bright(kept: &Evidence) -> Cow<'_, Frame> {
+    let Evidence { found, expected, .. } = kept;
+    let white = expected.depth().max();
+    let samples = || found.samples().iter().map(|&sample| sample.min(white)).collect();
+    let clipped = (found.depth() != expected.depth())
+        .then(|| Frame::new(expected.width(), expected.depth(), expected.phase(), samples()));
+    clipped.and_then(Result::ok).map_or(Cow::Borrowed(found), Cow::Owned)
 }
 
 fn came_out(frame: &FrameReport) -> String {

@@ -22,6 +22,8 @@ const TAKEN: [u32; 4] = [5, 1, 9, 4];
 const FEW: u32 = 2;
 /// How long a burst may take beside the time that its frames take on the board's clock.
 const PATIENCE: Duration = Duration::from_secs(5);
+/// The longest time between two looks at it: no link ends a shorter wait early.
+const LONGEST_IDLE: Duration = Duration::from_millis(250);
 /// Bytes that go to the board between the beginning of a burst and its end, so that it is cut at another place each time.
 const BYTES_TO_CUT: [usize; 8] = [0, 5, 11, 40, 77, 130, 211, 400];
 /// Bytes of RECORDS' reply in front of the records, and some of those of a record (AT-SPEED.md).
@@ -135,7 +137,7 @@ impl Rules<'_, '_> {
         is_so: impl Fn(&Fetched) -> bool,
     ) -> Result<Fetched, End> {
         let time = self.time_of(frames);
-        let (mut idle, mut passed) = (time, Duration::ZERO);
+        let (mut idle, mut passed) = (time.min(LONGEST_IDLE), Duration::ZERO);
         loop {
             let fetched = self.run.board.records(burst.burst, from).map_err(of_board)?;
             if is_so(&fetched) {
@@ -145,7 +147,7 @@ impl Rules<'_, '_> {
                 break;
             }
             self.run.board.idle(idle).map_err(of_board)?;
-            (passed, idle) = (passed + idle, 2 * idle);
+            (passed, idle) = (passed + idle, (2 * idle).min(LONGEST_IDLE));
         }
         let (right, found) = (Answer::Replied { payload: String::new() }, Answer::Nothing {});
         Err(super::broken(Rule::Ended, Kind::Records, right, found))
