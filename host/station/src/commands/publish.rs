@@ -1,7 +1,7 @@
 //! What `halfrow-station plan` does with plans that the plant publishes.
 
 use std::path::{self, Path, PathBuf};
-use std::sync::mpsc;
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 use std::time::Duration;
 
@@ -234,7 +234,10 @@ fn offers_in_time(published: Published) -> Option<Offers> {
         let _ = answer.send(offers);
     };
     match thread::Builder::new().name("plans".to_owned()).spawn(ask) {
-        Ok(_) => answered.recv_timeout(IN_TIME).ok(),
+        Ok(_) => match answered.recv_timeout(IN_TIME) {
+            Err(RecvTimeoutError::Timeout) => None,
+            answer => Some(answer.map_err(Failure::error).flatten()),
+        },
         Err(error) => Some(Err(Failure::error(error))),
     }
 }

@@ -59,7 +59,12 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
         .spawn()
         .map_err(|source| HookError::Start { program: program(), source })?;
     let complaints = child.stderr.take();
-    let heard = thread::spawn(move || complaints.map(beginning).unwrap_or_default());
+    let hear = move || complaints.map(beginning).unwrap_or_default();
+    let heard = thread::Builder::new().spawn(hear).map_err(|source| {
+        kill(child.id());
+        let _ = child.wait();
+        HookError::Start { program: program(), source }
+    })?;
     match waited(&mut child, hook.deadline) {
         None => {
             kill(child.id());

@@ -33,6 +33,8 @@ const OPERATOR: &str = "job";
 const IDLE_MS: u64 = 1_000;
 /// And while the plant is away, or the station's own store is not well.
 const AWAY_MS: u64 = 5_000;
+/// How often the plant is told that a board is out, until it hears it.
+const TRIES_OUT: u32 = 40;
 /// How often it is looked whether the plant has a run.
 const LOOK: Duration = Duration::from_millis(50);
 
@@ -198,18 +200,21 @@ impl Work<'_> {
     }
 
     /// Has nobody get a board any more that a process may still have which cannot be killed. The board is held until the plant
-    /// knows.
+    /// knows, or has been away for some minutes; a program that is to end tries for a moment.
     fn take_out(&self, board: &str, stop: &dyn Fn() -> Option<StoppedBy>) {
         let station = &self.worker.station;
         let why = format!(
             "a process of station {station} may still have it, and cannot be killed; restart that computer first"
         );
-        while let Err(error) = self.plant.ask(|plant| plant.take_out(board, &why, OPERATOR)) {
-            tracing::warn!("the board {board} cannot be taken out yet ({why}): {}", Said::of(&error));
-            if stop().is_some() {
-                return;
+        for _ in 0..TRIES_OUT {
+            match self.plant.ask(|plant| plant.take_out(board, &why, OPERATOR)) {
+                Ok(_) => return,
+                Err(error) => {
+                    tracing::warn!("the board {board} is not out yet ({why}): {}", Said::of(&error));
+                }
             }
             rest(AWAY_MS, stop);
+            thread::sleep(LOOK);
         }
     }
 

@@ -5,7 +5,7 @@ use axum::extract::{Path, State};
 use axum::http::header::{CACHE_CONTROL, CONTENT_TYPE};
 use axum::response::{IntoResponse as _, Response};
 use halfrow::frames::{self, ReadOptions};
-use halfrow::model::Frame;
+use halfrow::model::{BitDepth, Frame};
 use halfrow::report::pictures;
 use maud::{Markup, html};
 use serde_json::Value;
@@ -52,7 +52,10 @@ pub(super) async fn difference(
 /// The frame that an attachment is, if it is one.
 fn decoded((bytes, attachment): &(Vec<u8>, Attachment)) -> Option<Frame> {
     let (KeptFrame { depth, phase, .. }, _) = KeptFrame::of(&attachment.name)?;
-    frames::decode(bytes, &ReadOptions { depth, phase, ..ReadOptions::default() }).ok()
+    // A broken board may have made more of it than the depth holds.
+    [depth, BitDepth::Twelve]
+        .into_iter()
+        .find_map(|depth| frames::decode(bytes, &ReadOptions { depth, phase, ..ReadOptions::default() }).ok())
 }
 
 fn answer(picture: Vec<u8>) -> Response {

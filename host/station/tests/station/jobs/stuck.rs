@@ -17,7 +17,7 @@ fn a_board_whose_lane_cannot_be_killed_is_taken_out_and_not_given_back() {
     let folder = crate::common::folder();
     let path = settings(&server, folder.path(), "12");
     let text = std::fs::read_to_string(&path).unwrap();
-    std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 1")).unwrap();
+    std::fs::write(&path, text.replace("[station]", "[station]\nsilence = 5")).unwrap();
     let settings = Settings::load_plant(&path).unwrap();
     let stuck = Stuck::in_folder(folder.path());
     let work = at_work(&settings, stuck.program.clone());

@@ -32,6 +32,13 @@ fn hooks_that_no_thread_is_there_for_are_told_as_hooks_that_failed() {
     assert!(news["said"].as_str().unwrap().contains("no thread for it"), "{news}");
     running.end();
     assert_eq!(station.query("SELECT count(*) FROM run WHERE verdict = 'PASS'"), ["3"]);
+    assert_one_failed(&station);
+}
+
+/// What strace did is what the station met.
+fn assert_one_failed(station: &Station) {
+    let calls = std::fs::read_to_string(station.path("calls")).unwrap();
+    assert_eq!(calls.matches("(INJECTED)").count(), 1, "{calls}");
 }
 
 #[test]
@@ -46,7 +53,6 @@ fn what_is_not_saved_is_tried_again_though_there_was_no_thread_for_it_once() {
     database.execute_batch("DROP TRIGGER full").unwrap();
     running.state("1", "ERROR");
     running.end();
-    let calls = std::fs::read_to_string(station.path("calls")).unwrap();
-    assert_eq!(calls.matches("(INJECTED)").count(), 1, "{calls}");
+    assert_one_failed(&station);
     station.assert_well();
 }
