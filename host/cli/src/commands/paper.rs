@@ -58,17 +58,7 @@ fn item_parser() -> impl TypedValueParser<Value = Item> {
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
     let begun = Instant::now();
     let items = arguments.items();
-    if !items.iter().any(|item| item.goes_through_boards()) {
-        arguments.given.refuse_void(Decider::NoBoardItem, &context.settings.keys()).map_err(Failure::call)?;
-    }
-    Files::new(arguments.overwrite)
-        .reads(&context.settings_file)
-        .reads([&arguments.synthesis])
-        .reads(&arguments.photograph)
-        .reads(&arguments.lines)
-        .writes_into("--output", Folder::fixed_files(&arguments.output))
-        .check()
-        .map_err(Failure::call)?;
+    arguments.check(&items, context).map_err(Failure::call)?;
     let photographs = arguments.photographs(&items).map_err(Failure::call)?;
     let marked = arguments.marked().map_err(Failure::call)?;
     let folder = Folder::prepare(&arguments.output, arguments.overwrite).map_err(Failure::call)?;
@@ -167,6 +157,20 @@ impl Arguments {
     fn items(&self) -> Vec<Item> {
         let wanted = |item: &Item| self.items.is_empty() || self.items.contains(item);
         Item::ALL.into_iter().filter(wanted).collect()
+    }
+
+    /// Refuses options that nothing would heed, and files in the way.
+    fn check(&self, items: &[Item], context: &Context) -> anyhow::Result<()> {
+        if !items.iter().any(|item| item.goes_through_boards()) {
+            self.given.refuse_void(Decider::NoBoardItem, &context.settings.keys())?;
+        }
+        Files::new(self.overwrite)
+            .reads(&context.settings_file)
+            .reads([&self.synthesis])
+            .reads(&self.photograph)
+            .reads(&self.lines)
+            .writes_into("--output", Folder::fixed_files(&self.output))
+            .check()
     }
 
     fn photographs(&self, items: &[Item]) -> anyhow::Result<Vec<RgbImage>> {

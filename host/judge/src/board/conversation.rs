@@ -290,12 +290,14 @@ impl Conversation {
                 }
             }
         }
-        for Stray { needless, changed } in strays {
-            self.tally.strays += 1;
-            self.repeated_changes += u64::from(changed);
-            needless.into_iter().for_each(|took| self.was_late(took));
-        }
+        strays.into_iter().for_each(|stray| self.count_stray(stray));
         Ok(())
+    }
+
+    fn count_stray(&mut self, Stray { needless, changed }: Stray) {
+        self.tally.strays += 1;
+        self.repeated_changes += u64::from(changed);
+        needless.into_iter().for_each(|took| self.was_late(took));
     }
 
     /// Asks until a reply that `accept` takes has come.

@@ -208,26 +208,13 @@ impl Common<'_> {
             Ok(candidate) => candidate,
             Err(result) => return *result,
         };
-        let circumstances = Circumstances {
-            arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
-            files: self.plan.files.clone(),
-            draws: Draws::draw(),
-            // The record has them.
-            operator: None,
-        };
-        let options = RunOptions {
-            timeout: Some(within),
-            stop: self.stop.clone().within(Some(within)),
-            require_hardware: self.plan.production.require_hardware && !self.is_mock,
-            circumstances,
-            ..RunOptions::default()
-        };
-        let finished = match halfrow::verify(&judging.plan(self.seed), candidate, &options, progress) {
-            Ok(finished) => finished,
-            // The plan does not fit the board, which was not judged.
-            Err(misfit) => return Try::error(Cause::Refused, &misfit),
-        };
-        let Finished { report, evidence } = finished;
+        let plan = judging.plan(self.seed);
+        let Finished { report, evidence } =
+            match halfrow::verify(&plan, candidate, &self.run_options(within), progress) {
+                Ok(finished) => finished,
+                // The plan does not fit the board, which was not judged.
+                Err(misfit) => return Try::error(Cause::Refused, &misfit),
+            };
         let name = |index: usize| report.frames.get(index).map_or("", |frame| frame.name.as_str());
         let named: Vec<_> = evidence.iter().map(|one| (name(one.index), one)).collect();
         keep(self.spool, place, &named);
@@ -244,6 +231,23 @@ impl Common<'_> {
             ..Try::of(report.cause, &report.finding)
         };
         result.measured(measured)
+    }
+
+    fn run_options(&self, within: Duration) -> RunOptions {
+        let circumstances = Circumstances {
+            arguments: std::env::args_os().map(|one| one.to_string_lossy().into_owned()).collect(),
+            files: self.plan.files.clone(),
+            draws: Draws::draw(),
+            // The record has them.
+            operator: None,
+        };
+        RunOptions {
+            timeout: Some(within),
+            stop: self.stop.clone().within(Some(within)),
+            require_hardware: self.plan.production.require_hardware && !self.is_mock,
+            circumstances,
+            ..RunOptions::default()
+        }
     }
 
     /// Another board than the run began with.

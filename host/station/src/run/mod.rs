@@ -26,7 +26,7 @@ use crate::plan::serial::{Serial, SerialError};
 use crate::plan::{Act, Plan, Selected, Step, mock};
 use crate::record::{
     Attachment, BlobError, Blobs, BoardSeen, Conclusion, DeviceSeen, JobClaim, PlanRecord, Record, RunCause,
-    RunHead, SCHEMA, StepRecord, judged,
+    RunHead, SCHEMA, StepRecord, SuspectRecord, judged,
 };
 use crate::said::{Said, Saying};
 use crate::store::{Admission, SharedStore, Store, StoreError, Stored};
@@ -284,13 +284,8 @@ fn record(
     let ended_ms = clock::now_ms();
     let seconds = took.as_secs_f64();
     let measurements = judged(Maker::Run, &[("run.seconds", Some(seconds))], &selected.limits);
-    let lane = match end {
-        End::Done => None,
-        End::Refused(why) => Some(Conclusion::error(RunCause::Station, why)),
-        End::Stopped(by) => Some(Conclusion::stopped(by)),
-        End::Died(why) | End::Killed(why) | End::Stuck(why) => Some(Conclusion::error(RunCause::Crash, why)),
-    };
-    let conclusion = Conclusion::of(selected.steps.len() as u32, &steps, &measurements, lane).knowing(device);
+    let conclusion =
+        Conclusion::of(selected.steps.len() as u32, &steps, &measurements, of_lane(end)).knowing(device);
     let reached = steps.last().map_or(0, |step| step.seq);
     let rest = selected.steps.iter().zip(1..).filter(|(_, seq)| *seq > reached);
     steps.extend(rest.map(|(step, seq)| StepRecord::skipped(seq, step, ended_ms)));
@@ -308,18 +303,28 @@ fn record(
         marginal: steps.iter().any(|step| step.attempt > 1),
         board,
         device,
-        suspects: steps
-            .iter()
-            .rev()
-            .map(|step| &step.suspects)
-            .find(|some| !some.is_empty())
-            .cloned()
-            .unwrap_or_default(),
+        suspects: last_suspects(&steps),
         steps,
         measurements,
         attachments: Vec::new(),
         program: halfrow::VERSION.to_owned(),
     }
+}
+
+/// What the lane's end alone makes of the run.
+fn of_lane(end: End) -> Option<Conclusion> {
+    match end {
+        End::Done => None,
+        End::Refused(why) => Some(Conclusion::error(RunCause::Station, why)),
+        End::Stopped(by) => Some(Conclusion::stopped(by)),
+        End::Died(why) | End::Killed(why) | End::Stuck(why) => Some(Conclusion::error(RunCause::Crash, why)),
+    }
+}
+
+/// The suspects of the last step that has some.
+fn last_suspects(steps: &[StepRecord]) -> Vec<SuspectRecord> {
+    let mut of_steps = steps.iter().rev().map(|step| &step.suspects);
+    of_steps.find(|some| !some.is_empty()).cloned().unwrap_or_default()
 }
 
 /// Saves the record, with what the lane wrote down unless it is a PASS, and empties the spool.

@@ -30,7 +30,7 @@ class HalfrowDriver(Driver):
     """Judges the board at a serial port, by the program `halfrow`: `tools: {halfrow: PATH}`, or where the shell finds it.
 
     Args:
-        options (dict): options of `halfrow verify` for every call, without their hyphens, as `{radius: 10.0, frame: [a.pgm, b.pgm]}`
+        options (dict): options of `halfrow verify` for every call, without the leading `--`, as `{radius: 10.0, frame: [a.pgm, b.pgm]}`
         timeout (float): the longest that a run may take, in seconds
     """
 
