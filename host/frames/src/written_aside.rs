@@ -236,17 +236,26 @@ fn keep(file: NamedTempFile) -> Option<PathBuf> {
     Some(under_way::kept(&path).unwrap_or(path))
 }
 
-fn folder_of(path: &Path) -> &Path {
+/// The folder that `path` is in.
+#[must_use]
+pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Brings the new name to the disk, where the file system knows how to.
 fn synced(path: &Path) -> Result<(), WriteAsideError> {
-    match File::open(folder_of(path)).and_then(|folder| folder.sync_all()) {
-        Err(source) if !matches!(source.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
-            Err(WriteAsideError::Io { path: path.to_owned(), source })
+    sync_folder(folder_of(path)).map_err(|source| WriteAsideError::Io { path: path.to_owned(), source })
+}
+
+/// Makes the names in `folder` last through a power cut, where its file system knows how to.
+///
+/// # Errors
+/// The system's reason.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    match File::open(folder)?.sync_all() {
+        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
+            Ok(())
         }
-        _ => Ok(()),
+        synced => synced,
     }
 }
 

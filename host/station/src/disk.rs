@@ -1,6 +1,6 @@
 //! Whether a disk keeps what it was given: what stands in memory alone, or in another computer, may not.
 
-use std::fs::{self, File};
+use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -45,11 +45,6 @@ pub enum DiskError {
         /// Its reason.
         source: io::Error,
     },
-}
-
-/// Brings the names in a folder to the disk.
-pub(crate) fn synced(folder: &Path) -> io::Result<()> {
-    File::open(folder)?.sync_all()
 }
 
 /// Refuses the folder, which need not be there yet, if its file system may lose what was brought to the disk.

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 use super::under_way::{self, Noted};
-use super::{folder_of, rename};
+use super::{folder_of, rename, sync_folder};
 
 /// How often a place is looked at again that changes between two looks.
 const LOOKS: usize = 100;
@@ -61,7 +61,7 @@ impl AsideFolder {
     /// # Errors
     /// [`Misplaced`]
     pub fn put_in_place(self) -> Result<(), Misplaced> {
-        sync(self.path())?;
+        sync_folder(self.path())?;
         self.moved()?;
         self.done()
     }
@@ -71,7 +71,7 @@ impl AsideFolder {
     /// # Errors
     /// [`Misplaced`], with everything as it was.
     pub fn replace(self, foreign: impl Fn(&Path) -> Option<String>) -> Result<(), Misplaced> {
-        sync(self.path())?;
+        sync_folder(self.path())?;
         for _ in 0..LOOKS {
             match self.moved() {
                 Err(Misplaced::Taken(_)) => {}
@@ -107,7 +107,7 @@ impl AsideFolder {
             rename::swap(self.path(), &self.target)?;
             return Err(Misplaced::Taken(Some(why)));
         }
-        Ok(sync(folder_of(&self.target))?)
+        Ok(sync_folder(folder_of(&self.target))?)
     }
 
     /// Swaps in three steps. What is moved out of the way comes back when ours is not taken.
@@ -131,17 +131,7 @@ impl AsideFolder {
         let Self { dir, target, .. } = self;
         // It has another name by now, under which it stays.
         let _ = dir.keep();
-        Ok(sync(folder_of(&target))?)
-    }
-}
-
-/// Makes a folder's entries last through a power cut, where the file system can.
-fn sync(folder: &Path) -> io::Result<()> {
-    match File::open(folder)?.sync_all() {
-        Err(error) if matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported) => {
-            Ok(())
-        }
-        synced => synced,
+        Ok(sync_folder(folder_of(&target))?)
     }
 }
 

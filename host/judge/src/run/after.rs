@@ -52,8 +52,9 @@ impl Run<'_> {
             return Err(changed.clone());
         }
         let after = self.read_back_after();
-        self.findings.seen.changed_tables =
-            after.clone().err().filter(|end| matches!(end, End::Failed { .. }));
+        if let Err(changed @ End::Failed { .. }) = &after {
+            self.findings.seen.changed_tables = Some(changed.clone());
+        }
         after
     }
 

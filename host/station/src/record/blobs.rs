@@ -8,8 +8,6 @@ use std::time::SystemTime;
 use halfrow::frames::written_aside::{self, WriteAsideError, write_aside};
 use halfrow::result::sha256;
 
-use crate::disk;
-
 /// Evidence that cannot be written or read.
 #[derive(Debug, thiserror::Error)]
 pub enum BlobError {
@@ -175,7 +173,8 @@ fn is_hash(name: &str) -> bool {
 
 /// Brings the names in a folder to the disk.
 pub(crate) fn synced(folder: &Path) -> Result<(), BlobError> {
-    disk::synced(folder).map_err(|source| BlobError::Folder { path: folder.to_owned(), source })
+    let done = File::open(folder).and_then(|open| open.sync_all());
+    done.map_err(|source| BlobError::Folder { path: folder.to_owned(), source })
 }
 
 #[cfg(test)]

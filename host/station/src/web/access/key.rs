@@ -5,6 +5,7 @@ use std::io::{self, Write as _};
 use std::os::unix::fs::{OpenOptionsExt as _, PermissionsExt as _};
 use std::path::{Path, PathBuf};
 
+use halfrow::frames::written_aside::{folder_of, sync_folder};
 use hmac::{Hmac, KeyInit as _, Mac as _};
 use rand::TryRng as _;
 use rand::rngs::SysRng;
@@ -12,8 +13,6 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use sha2::Sha256;
 use tempfile::Builder;
-
-use crate::disk::synced;
 
 /// Bytes of a key, and of what is drawn for a session.
 const BYTES: usize = 32;
@@ -105,11 +104,7 @@ pub(crate) fn create(path: &Path, line: &str) -> io::Result<()> {
     writeln!(aside, "{line}")?;
     aside.as_file().sync_all()?;
     aside.persist_noclobber(path)?;
-    synced(folder_of(path))
-}
-
-fn folder_of(path: &Path) -> &Path {
-    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+    sync_folder(folder_of(path))
 }
 
 /// The text of a file that nobody else may read.
@@ -132,7 +127,7 @@ pub(crate) fn keep(path: &Path, text: &str, lasts: bool) -> Result<(), SecretErr
             file.sync_all()?;
         }
         fs::rename(&aside, path)?;
-        if lasts { synced(folder_of(path)) } else { Ok(()) }
+        if lasts { sync_folder(folder_of(path)) } else { Ok(()) }
     };
     write().map_err(|source| SecretError::File { path: path.to_owned(), source })
 }
