@@ -24,7 +24,7 @@ pub mod samples;
 
 pub use decoder::{Damage, Decoder};
 pub use message::{Malformed, Reply, Request};
-pub use packet::{Encoder, Header, Kind, Packet, TooLong};
+pub use packet::{Encoder, Header, Kind, Packet, TooLong, wire_length};
 
 /// The version of the wire that this crate speaks.
 pub const VERSION: u8 = 1;

@@ -12,6 +12,12 @@ pub(crate) const CRC: usize = 4;
 /// Bytes of a packet that are no payload.
 pub(crate) const OVERHEAD: usize = HEADER + CRC;
 
+/// The most bytes on the wire of a packet with a payload of so many, the zero behind it included.
+#[must_use]
+pub const fn wire_length(payload: usize) -> usize {
+    cobs::stuffed_length(OVERHEAD + payload) + 1
+}
+
 /// What a packet is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]

@@ -6,6 +6,7 @@
 //! * [`guard`]: a panic is an error with exit code 3, never 101.
 //! * [`json`]: what documents of both programs begin with, and [`codes`]: why there is no result.
 //! * [`mod@line`]: what a command line that asks for help, or is wrong, is told, and [`built`]: what `--version --verbose` tells.
+//! * [`number`]: options that take a number within limits.
 //! * [`man_pages`]: man pages and completion scripts, and [`mod@reference`]: the page of all commands.
 
 pub mod built;
@@ -17,4 +18,5 @@ pub mod json;
 pub mod line;
 pub mod log;
 pub mod man_pages;
+pub mod number;
 pub mod reference;

@@ -1,13 +1,34 @@
-//! Command lines that lead to no command.
+//! How a command line is read, and what is told of one that leads to no command.
 
-use clap::Command;
+use std::ffi::OsString;
+
 use clap::error::ErrorKind;
+use clap::{Command, Parser};
 use halfrow::result::Problem;
 
 use crate::built::{self, Built};
 use crate::console::{self, Unprinted};
 use crate::exit::Exit;
 use crate::{codes, json};
+
+/// What `arguments` say, the program's name in front. Every option that takes a value takes `-1` for one: whoever gives it is told what the
+/// option takes, and not that `-1` is no option.
+///
+/// # Errors
+/// clap's own, which [`tell`] tells.
+pub fn read<Line: Parser>(arguments: impl IntoIterator<Item = OsString>) -> clap::error::Result<Line> {
+    let mut command = with_negative_numbers(Line::command());
+    let mut matches = command.try_get_matches_from_mut(arguments)?;
+    Line::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
+}
+
+fn with_negative_numbers(command: Command) -> Command {
+    let options = command.mut_args(|argument| {
+        let takes_one = argument.get_action().takes_values() && !argument.is_positional();
+        if takes_one { argument.allow_negative_numbers(true) } else { argument }
+    });
+    options.mut_subcommands(with_negative_numbers)
+}
 
 /// Tells what the reader of the command line of `program` has to tell: help and version on stdout, what is wrong with a call on
 /// stderr, and as JSON on stdout where that is asked for. With `--verbose` the version says what the program was built from.

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use clap::{CommandFactory as _, Parser as _};
+use clap::CommandFactory as _;
 use halfrow_program::built::Built;
 use halfrow_program::{console, exit::Exit, guard, line, log};
 use halfrow_station::commands::{self, Cli, Failure};
@@ -14,7 +14,7 @@ fn main() -> ExitCode {
 }
 
 fn program() -> Exit {
-    let cli = match Cli::try_parse() {
+    let cli = match line::read::<Cli>(std::env::args_os()) {
         Ok(cli) => cli,
         Err(told) => {
             let told = line::tell(&told, &Cli::command(), BUILT);

@@ -32,6 +32,26 @@ fn a_frame_that_no_datapath_takes_is_refused() {
     }
 }
 
+/// Whoever gives one is told what the option takes, not that there is no option `-1`.
+#[test]
+fn a_negative_number_is_refused_by_its_option() {
+    let folder = Folder::new();
+    refused(&folder, &["verify", "--width", "-1"], "invalid value '-1' for '--width <SAMPLES>'");
+    refused(
+        &folder,
+        &["verify", "--within", "-1"],
+        "give a number of seconds, more than 0 and at most 1000000",
+    );
+    refused(&folder, &["verify", "--retry-limit", "-1"], "give a number of percent, 0 to 100");
+    refused(
+        &folder,
+        &["link", "--board", "mock", "--seconds", "-0.5"],
+        "give a number of seconds, 0.001 to 86400",
+    );
+    refused(&folder, &["load", "a.bit", "--deadline", "-1"], "give a number of seconds, 0.1 to 86400");
+    refused(&folder, &["soak", "--hours", "-1"], "give a number of hours, 0.0001 to 8760");
+}
+
 #[test]
 fn names_of_nothing_are_refused_with_those_that_there_are() {
     let folder = Folder::new();

@@ -8,6 +8,7 @@ use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 use halfrow_mock::Streamed;
+use halfrow_program::number::number;
 
 use super::{CallError, Failure};
 use crate::exit::Exit;
@@ -31,7 +32,7 @@ pub(super) struct BoardArguments {
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
     timeout: Option<f64>,
     /// Packets that may be sent again, in percent of those sent, beyond 16; above it the link is too poor [default: 5]
-    #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = percent)]
+    #[arg(long, value_name = "PERCENT", env = "HALFROW_RETRY_LIMIT", value_parser = number("percent", 0.0..=100.0))]
     retry_limit: Option<f64>,
     /// Take the board over from another host that holds it
     #[arg(long)]
@@ -49,11 +50,6 @@ pub(super) fn target() -> impl TypedValueParser<Value = Target> {
         Ok(text) => text.parse().map_err(|error: TargetError| error.to_string()),
         Err(_) => Err("a target is text in UTF-8; give the file another name, or link to it".to_owned()),
     })
-}
-
-fn percent(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|percent| (0.0..=100.0).contains(percent));
-    number.ok_or_else(|| "give a number of percent, 0 to 100".to_owned())
 }
 
 impl BoardArguments {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::{ArgAction, Parser, Subcommand};
 use halfrow_model::ModelPath;
+use halfrow_program::line;
 
 /// Validates a board that straightens fisheye Bayer video, bit for bit.
 ///
@@ -40,9 +41,9 @@ impl Line<Command> {
         if let [_, only] = arguments.as_slice()
             && ["--help", "-h", "help"].iter().any(|help| only == help)
         {
-            Line::<Named>::try_parse_from(&arguments)?;
+            line::read::<Line<Named>>(arguments.iter().cloned())?;
         }
-        Self::try_parse_from(arguments)
+        line::read(arguments)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use clap::Args;
+use halfrow_program::number::seconds;
 use serde_json::json;
 
 use super::board::BoardArguments;
@@ -18,16 +19,11 @@ pub(super) struct Arguments {
     #[command(flatten)]
     board: BoardArguments,
     /// How long each of the five parts takes
-    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "1", value_parser = seconds(0.001..=86_400.0))]
     seconds: Duration,
     /// Seed of what is sent
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-}
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().filter(|seconds| (0.001..=86_400.0).contains(seconds));
-    seconds.map(Duration::from_secs_f64).ok_or_else(|| "give a number of seconds, 0.001 to 86400".to_owned())
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {

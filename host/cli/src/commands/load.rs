@@ -11,6 +11,7 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
+use halfrow_program::number::seconds;
 use serde::Serialize;
 use serde_json::json;
 
@@ -43,16 +44,11 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", value_parser = super::board::target())]
     board: Option<Target>,
     /// The longest that loading may take, and the board until it answers
-    #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "120", value_parser = seconds(0.1..=86_400.0))]
     deadline: Duration,
     /// What else openFPGALoader is called with, as `-- --ftdi-serial NUMBER` of one board among several
     #[arg(last = true, value_name = "OPTIONS")]
     options: Vec<String>,
-}
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().filter(|seconds| (0.1..=86_400.0).contains(seconds));
-    seconds.map(Duration::from_secs_f64).ok_or_else(|| "give a number of seconds, 0.1 to 86400".to_owned())
 }
 
 /// What was loaded, and what came of it.

@@ -66,10 +66,10 @@ pub(super) struct LensArguments {
     #[arg(long, value_name = "DEGREES")]
     field_of_view: Option<f64>,
     /// Column of the optical centre [default: the lens file's, or the middle]
-    #[arg(long, value_name = "COLUMN", allow_negative_numbers = true)]
+    #[arg(long, value_name = "COLUMN")]
     centre_x: Option<f64>,
     /// Row of the optical centre [default: the lens file's, or the middle]
-    #[arg(long, value_name = "ROW", allow_negative_numbers = true)]
+    #[arg(long, value_name = "ROW")]
     centre_y: Option<f64>,
 }
 

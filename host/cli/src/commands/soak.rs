@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use halfrow_program::number::number;
 
 use super::given::Given;
 use super::run::{RunArguments, conclude, not_opened};
@@ -32,16 +33,11 @@ pub(super) struct Arguments {
 #[group(required = true, multiple = false)]
 struct Length {
     /// How long, in hours of the link's clock
-    #[arg(long, value_name = "HOURS", value_parser = hours)]
+    #[arg(long, value_name = "HOURS", value_parser = number("hours", 0.0001..=8760.0))]
     hours: Option<f64>,
     /// How many frames
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     frames: Option<u64>,
-}
-
-fn hours(text: &str) -> Result<f64, String> {
-    let hours = text.parse().ok().filter(|hours| (0.0001..=8760.0).contains(hours));
-    hours.ok_or_else(|| "give a number of hours, 0.0001 to 8760".to_owned())
 }
 
 impl Length {

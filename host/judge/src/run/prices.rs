@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::MAX_PAYLOAD;
 use halfrow_protocol::message::{Commit, Grids, Span};
+use halfrow_protocol::{MAX_PAYLOAD, wire_length};
 use serde::{Deserialize, Serialize};
 
 use super::at_speed;
@@ -14,10 +14,6 @@ use super::rules;
 use super::variations::Build;
 use crate::board::{Board, BoardError, BoardNature, Bursts, Capabilities, Table};
 
-/// Bytes of a packet beside its payload, with the stuffing's first code byte and the zero behind it.
-const PACKET: usize = 18;
-/// Bytes of which the stuffing makes one more.
-const STUFFED: usize = 254;
 /// Bytes of a row's place, and of what the board says behind it of a row that comes back, the CRC of what entered included.
 const PLACE: usize = 14;
 const SAID: usize = 12;
@@ -57,13 +53,13 @@ impl Rates {
             Some(known) => known,
             None => carried(short.0, long_round_trip(board)?),
         };
-        let round_trip = short.1 - 2.0 * wire(0) as f64 / bytes_per_second;
+        let round_trip = short.1 - 2.0 * wire_length(0) as f64 / bytes_per_second;
         Ok(Self { bytes_per_second, round_trip: round_trip.max(0.0) })
     }
 
     /// A request with a payload of `out` bytes, and its reply with one of `back`.
     pub(super) fn request(&self, out: usize, back: usize) -> f64 {
-        self.round_trip + (wire(out) + wire(back)) as f64 / self.bytes_per_second
+        self.round_trip + (wire_length(out) + wire_length(back)) as f64 / self.bytes_per_second
     }
 }
 
@@ -92,12 +88,7 @@ fn long_round_trip(board: &mut Board) -> Result<f64, BoardError> {
 fn carried(short: f64, long: f64) -> f64 {
     let took = if long > short { long - short } else { long };
     // One that carries everything at once takes no time for any byte.
-    if took > 0.0 { 2.0 * (wire(MAX_PAYLOAD) - wire(0)) as f64 / took } else { f64::INFINITY }
-}
-
-/// The bytes on the wire of a packet with a payload of so many.
-fn wire(payload: usize) -> usize {
-    PACKET + payload + payload / STUFFED
+    if took > 0.0 { 2.0 * (wire_length(MAX_PAYLOAD) - wire_length(0)) as f64 / took } else { f64::INFINITY }
 }
 
 /// What the parts of a plan cost on a board.
@@ -196,7 +187,7 @@ impl<'a> Prices<'a> {
     /// leaves while the next one enters.
     pub(super) fn rows(&self, rows: usize, width: usize, between: usize) -> f64 {
         let packed = (3 * width).div_ceil(2);
-        let carried = |payload| wire(payload) as f64 / self.rates.bytes_per_second;
+        let carried = |payload| wire_length(payload) as f64 / self.rates.bytes_per_second;
         let (out, back) = (carried(PLACE + packed), carried(PLACE + SAID + packed).max(carried(SMALL)));
         let played = self.clocks(width + between);
         let alone = 2.0 * (out + played) + self.rates.round_trip;

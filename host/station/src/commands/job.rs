@@ -65,7 +65,7 @@ struct Add {
     #[arg(long, value_name = "WORD")]
     needs: Vec<String>,
     /// Jobs of a higher one come first
-    #[arg(long, default_value_t = 0, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 0)]
     priority: i64,
     /// How many
     #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]

@@ -10,6 +10,7 @@ use halfrow::link::{OpenError, kinds};
 use halfrow::report::wording::says;
 use halfrow::target::Target;
 use halfrow::verdict::StoppedBy;
+use halfrow_program::number::seconds;
 use serde_json::json;
 
 use super::beginning::{Disk, Signal, recovered};
@@ -57,7 +58,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", env = "HALFROW_STATION")]
     station: Option<String>,
     /// Kill the lane when it tells nothing for so long
-    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = seconds(0.1..=86_400.0))]
     silence: Duration,
     /// How much memory the lane may have, in MiB of addresses
     #[arg(long, value_name = "MIB", default_value_t = MEMORY_MIB, value_parser = memory)]
@@ -70,11 +71,6 @@ pub(super) struct Arguments {
     /// Print JSON
     #[arg(long)]
     pub(super) json: bool,
-}
-
-fn seconds(text: &str) -> Result<Duration, String> {
-    let seconds = text.parse().ok().filter(|seconds| (0.1..=86_400.0).contains(seconds));
-    seconds.map(Duration::from_secs_f64).ok_or_else(|| "give a number of seconds, 0.1 to 86400".to_owned())
 }
 
 fn lane(text: &str) -> Result<String, String> {

@@ -1,0 +1,21 @@
+//! Options that take a number of something, within limits.
+
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+use clap::builder::{NonEmptyStringValueParser, TypedValueParser};
+
+/// A number of `unit`, as `within` has it.
+#[must_use]
+pub fn number(unit: &'static str, within: RangeInclusive<f64>) -> impl TypedValueParser<Value = f64> {
+    NonEmptyStringValueParser::new().try_map(move |text| {
+        let number = text.parse().ok().filter(|number| within.contains(number));
+        number.ok_or_else(|| format!("give a number of {unit}, {} to {}", within.start(), within.end()))
+    })
+}
+
+/// A number of seconds, as `within` has it.
+#[must_use]
+pub fn seconds(within: RangeInclusive<f64>) -> impl TypedValueParser<Value = Duration> {
+    number("seconds", within).map(Duration::from_secs_f64)
+}
