@@ -98,10 +98,12 @@ def gitlab_jobs():
 def gitlab(folder, job, variables, shell):
     """Runs a job: its exit code, and its checks by what became of them."""
     folder.mkdir(parents=True, exist_ok=True)
-    variables = variables | {"HALFROW_SOURCE": f"file://{folder.parent}/halfrow.git"}
+    # GitLab makes it of the job's name.
+    variables = variables | {"HALFROW_SOURCE": f"file://{folder.parent}/halfrow.git", "CI_JOB_NAME_SLUG": folder.name}
     ended = subprocess.run(["bash", "-eo", "pipefail", "-c", shell], cwd=folder, env=os.environ | variables)
-    report = folder / job["artifacts"]["reports"]["junit"].replace("$BOARD", variables["BOARD"])
-    assert all((folder / path.replace("$BOARD", variables["BOARD"])).is_dir() for path in job["artifacts"]["paths"])
+    place = lambda path: folder / path.replace("$CI_JOB_NAME_SLUG", folder.name)
+    report = place(job["artifacts"]["reports"]["junit"])
+    assert all(place(path).is_dir() for path in job["artifacts"]["paths"])
     cases = list(xml.etree.ElementTree.parse(report).iter("testcase"))
     return ended.returncode, [case.get("name") for case in cases if case.find("failure") is not None], len(cases)
 
@@ -110,9 +112,9 @@ def run(folder):
     job = read("github.yml")["jobs"]["verify"]
     for row in job["strategy"]["matrix"]["include"]:
         given = {name: filled(value, {"matrix": row}) for name, value in job["steps"][1]["with"].items()}
-        told, failed, shown = github(folder / f"github-{row['board']}", given)
+        told, failed, shown = github(folder / f"github-{row['name']}", given)
         assert (told, failed) == ("0", 0) and "| passed |" in shown and "FAIL" not in shown, (told, failed, shown)
-        print(f"GitHub, {row['board']}: PASS, {shown.count('| passed |')} checks shown")
+        print(f"GitHub, {row['name']}: PASS, {shown.count('| passed |')} checks shown")
     told, failed, shown = github(folder / "github-broken", {"board": BROKEN})
     assert (told, failed) == ("1", 1) and "| FAIL |" in shown, (told, failed, shown)
     print("GitHub, a broken board: FAIL, shown and kept")
