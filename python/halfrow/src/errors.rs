@@ -1,6 +1,7 @@
 //! The library's errors as Python's exceptions: the same codes, parameters, sentences and remedies.
 
 use std::error::Error;
+use std::path::Path;
 
 use halfrow::optics::OpticsError;
 use halfrow::result::Problem;
@@ -10,6 +11,11 @@ use pyo3::prelude::*;
 const VALUE_WRONG: &str = "usage-value-wrong";
 /// And of two options of which one leaves nothing for the other.
 const CONFLICT: &str = "usage-arguments-conflict";
+
+/// And of a name of tables that says nothing of their format.
+const TABLES_FORMAT: &str = "tables-format-unknown";
+/// What the command line finds before it begins: a name of no format, and what is there already.
+const NOT_WRITTEN: [&str; 3] = ["file-exists", "frame-extension-unknown", "report-exists"];
 
 /// Whose an error is, which tells the exception's class.
 #[derive(Clone, Copy)]
@@ -42,6 +48,29 @@ pub(crate) fn optics(error: impl Into<OpticsError>) -> PyErr {
 /// The exception for `error`, which the call cannot help.
 pub(crate) fn failed<E: Error + 'static>(error: E) -> PyErr {
     raised(Whose::World, &error)
+}
+
+/// The exception for what could not be written.
+pub(crate) fn unwritten<E: Error + 'static>(error: E) -> PyErr {
+    let problem = Problem::of(&error);
+    exception(Whose::of_call(NOT_WRITTEN.contains(&problem.code.as_str())), &problem)
+}
+
+/// The exception for tables that are to be written to `path`, which names no format of theirs: the command line's.
+pub(crate) fn no_tables(path: &Path) -> PyErr {
+    let told =
+        format!("{} names no format of tables; end it in .json, or in .mem for $readmemh", path.display());
+    let mut problem = Problem::new(TABLES_FORMAT, told);
+    problem.parameters.insert("path".to_owned(), path.display().to_string().into());
+    exception(Whose::Call, &problem)
+}
+
+/// The exception for an option that `error` says cannot be taken from Python: in the words of whoever called, and not of this package.
+pub(crate) fn not_taken(py: Python<'_>, error: &PyErr) -> PyErr {
+    let Some(reason) = error.cause(py) else { return error.clone_ref(py) };
+    let told = error.value(py).to_string();
+    let option = told.rsplit_once('.').map_or(told.as_str(), |(_, option)| option);
+    wrong_value(format!("{option} is not what verify takes: {}; see help(halfrow.verify)", reason.value(py)))
 }
 
 /// The exception for `error`.

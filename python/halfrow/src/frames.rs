@@ -61,7 +61,7 @@ pub(crate) fn write_frame(
     overwrite: bool,
 ) -> PyResult<()> {
     let frame = frame_of(frame, "frame", bits, phase)?;
-    py.detach(|| frames::write(&path, &frame, overwrite)).map_err(errors::failed)
+    py.detach(|| frames::write(&path, &frame, overwrite)).map_err(errors::unwritten)
 }
 
 /// A picture of `frame` to look at: uint8 of shape (height, width, 3), red, green and blue coded as sRGB, each missing colour

@@ -69,7 +69,7 @@ impl Kernel {
     #[pyo3(signature = (path, *, overwrite = false))]
     fn write(&self, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let file = KernelFile { kernel: self.kernel.clone(), about: None };
-        file.write(&path, overwrite).map_err(errors::failed)
+        file.write(&path, overwrite).map_err(errors::unwritten)
     }
 
     fn __repr__(&self) -> String {

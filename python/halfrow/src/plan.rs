@@ -63,12 +63,6 @@ impl Options<'_> {
             let options = RunOptions { timeout, stop, ..self.options(files)? };
             return Ok((plan, options));
         };
-        if self.tables.is_some() || self.kernel.is_some() || !self.frames.is_empty() || self.within.is_some()
-        {
-            return Err(errors::conflict(
-                "a recording has tables, kernel and frames of its own; leave them out beside replay:FILE",
-            ));
-        }
         let restored = RecordedRun::restore(recording);
         let (plan, options) =
             restored.map_err(|error| errors::raised(Whose::of_call(!error.is_other_datapath()), &error))?;
@@ -80,6 +74,9 @@ impl Options<'_> {
             return Err(errors::conflict(
                 "within chooses the frames and is of one link; leave out frames and record",
             ));
+        }
+        if self.reconnect.is_some() && self.record.is_some() {
+            return Err(errors::conflict("a recording is of one link; leave out reconnect or record"));
         }
         if !REPEATS.contains(&self.repeat) {
             return Err(errors::wrong_value(format!(
@@ -140,8 +137,7 @@ impl Options<'_> {
         let arguments = std::mem::take(&mut self.arguments);
         Ok(RunOptions {
             retry_limit,
-            // A recording is of one link.
-            reconnect: choices::seconds("reconnect", self.reconnect)?.filter(|_| self.record.is_none()),
+            reconnect: choices::seconds("reconnect", self.reconnect)?,
             take_over: self.take_over,
             require_hardware: self.require_hardware,
             keep_equal: self.report.is_some(),
@@ -168,7 +164,7 @@ fn source(
     let (path, frame) = if let Ok(path) = given.extract::<PathBuf>() {
         let size = PictureSize::Exactly(geometry.width(), geometry.height());
         let how = ReadOptions { depth, phase, size, ..ReadOptions::default() };
-        let read = frames::read(&path, &how).map_err(errors::input)?;
+        let read = given.py().detach(|| frames::read(&path, &how)).map_err(errors::input)?;
         files.push(files::hash(&path)?);
         (path, read)
     } else {

@@ -6,7 +6,7 @@ use halfrow::report::{self, wording};
 use halfrow::{Finished, ReportFolder};
 use pyo3::prelude::*;
 
-use crate::errors::{self, Whose};
+use crate::errors;
 
 /// What a run found, from which halfrow/_report.py makes a Report.
 #[pyclass(frozen, module = "halfrow")]
@@ -30,6 +30,6 @@ impl Run {
     fn save(&self, py: Python<'_>, path: PathBuf, overwrite: bool) -> PyResult<()> {
         let Finished { report, evidence } = &self.finished;
         py.detach(|| ReportFolder::prepare(&path, overwrite)?.commit(report, evidence))
-            .map_err(|error| errors::raised(Whose::World, &error))
+            .map_err(errors::unwritten)
     }
 }

@@ -85,13 +85,10 @@ impl Tables {
                 file.write(&path, overwrite)
             }
             _ => {
-                return Err(errors::wrong_value(format!(
-                    "{} names no format of tables; give NAME.json or NAME.mem",
-                    path.display()
-                )));
+                return Err(errors::no_tables(&path));
             }
         }
-        .map_err(errors::failed)
+        .map_err(errors::unwritten)
     }
 
     /// Columns of the frames.

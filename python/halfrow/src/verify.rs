@@ -18,9 +18,9 @@ use crate::watched::watched;
 /// Judges the board behind `target`; halfrow/_verify.py says how.
 #[pyfunction]
 pub(crate) fn verify(py: Python<'_>, target: &str, options: &Bound<'_, PyAny>) -> PyResult<Run> {
-    let mut asked: Options<'_> = options.extract()?;
+    let mut asked: Options<'_> = options.extract().map_err(|error| errors::not_taken(py, &error))?;
     let target: Target = target.parse().map_err(errors::input::<TargetError>)?;
-    let recording = link::recording(&target).map_err(not_opened)?;
+    let recording = py.detach(|| link::recording(&target)).map_err(not_opened)?;
     let is_stopped = Arc::new(AtomicBool::new(false));
     let stopped = Arc::clone(&is_stopped);
     let stop = Stop::when(move || stopped.load(Ordering::Relaxed).then_some(StoppedBy::Person));

@@ -2,6 +2,7 @@
 import pickle
 import re
 
+import numpy as np
 import pytest
 
 import halfrow
@@ -12,7 +13,18 @@ def test_codes_are_those_of_the_program(tmp_path, program, opencv):
     broken.write_text('{"datapath": 1, "width": 63}')
     other = tmp_path / "other.json"
     other.write_text('{"datapath": 3}')
+    (tmp_path / "there.json").write_text("{}")
+    (tmp_path / "there.pgm").write_text("")
+    frame = np.zeros((2, 64), np.uint16)
+    halfrow.write_frame(tmp_path / "in.pgm", frame)
+    there = {name: str(tmp_path / f"there.{name}") for name in ("json", "pgm")}
+    other_name = str(tmp_path / "out.xyz")
+    correct = ["correct", tmp_path / "in.pgm", "--model", "--width", "64", "--height", "2", "-o"]
     cases = [
+        (lambda: halfrow.Tables.from_lens().write(there["json"]), ["tables", "-o", there["json"]], "file-exists"),
+        (lambda: halfrow.Tables.from_lens().write(other_name), ["tables", "-o", other_name], "tables-format-unknown"),
+        (lambda: halfrow.write_frame(there["pgm"], frame), [*correct, there["pgm"]], "file-exists"),
+        (lambda: halfrow.write_frame(other_name, frame), [*correct, other_name], "frame-extension-unknown"),
         (lambda: halfrow.Tables.read(broken), ["verify", "--tables", broken], "table-file-wrong"),
         (lambda: halfrow.Tables.read(other), ["verify", "--tables", other], "table-file-of-other-datapath"),
         (lambda: halfrow.Tables.from_lens("no.yml"), ["verify", "--lens", "no.yml"], "lens-file-unreadable"),

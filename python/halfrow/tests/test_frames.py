@@ -18,7 +18,7 @@ def test_a_frame_comes_back_from_its_file(tmp_path, name, bits):
     frame = np.random.default_rng(bits).integers(0, 2**bits, (6, 8), dtype=np.uint16)
     halfrow.write_frame(tmp_path / name, frame, bits=bits)
     assert np.array_equal(halfrow.read_frame(tmp_path / name, bits=bits), frame)
-    with pytest.raises(halfrow.HalfrowError) as raised:
+    with pytest.raises(halfrow.InputError) as raised:
         halfrow.write_frame(tmp_path / name, frame, bits=bits)
     assert raised.value.code == "file-exists"
 

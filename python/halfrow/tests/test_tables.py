@@ -72,7 +72,7 @@ def test_tables_come_back_from_their_files(tmp_path, small):
     for name in ("tables.json", "tables.mem"):
         small.write(tmp_path / name)
         assert halfrow.Tables.read(tmp_path / name) == small
-        with pytest.raises(halfrow.HalfrowError) as raised:
+        with pytest.raises(halfrow.InputError) as raised:
             small.write(tmp_path / name)
         assert raised.value.code == "file-exists"
         small.write(tmp_path / name, overwrite=True)

@@ -10,6 +10,7 @@ import textwrap
 import threading
 import typing
 
+import numpy as np
 import pytest
 
 import halfrow
@@ -113,7 +114,7 @@ def test_a_report_is_written_and_not_overwritten_unasked(tmp_path, small):
     assert sorted(file.name for file in (tmp_path / "a").iterdir()) == ["report.html", "report.json", "report.xml"]
     assert json.loads((tmp_path / "a/report.json").read_text()) == report.document
     for call in (lambda: report.save(tmp_path / "a"), lambda: halfrow.verify(tables=small, report=tmp_path / "a")):
-        with pytest.raises(halfrow.HalfrowError) as raised:
+        with pytest.raises(halfrow.InputError) as raised:
             call()
         assert raised.value.code == "report-exists"
     report.save(tmp_path / "a", overwrite=True)
@@ -129,9 +130,28 @@ def test_a_recording_is_judged_again(tmp_path, small):
     again = halfrow.verify(f"replay:{tmp_path / 'run.rec'}")
     assert (again.verdict, again.headline) == (first.verdict, first.headline) and first.verdict == "FAIL"
     assert again.board.kind == "replay"
+    for vain in ({"tables": small}, {"seed": 2}, {"at_speed": 60.0}, {"retry_limit": 1.0}, {"phase": "rggb"}, {"reconnect": 5.0}):
+        with pytest.raises(halfrow.InputError) as raised:
+            halfrow.verify(f"replay:{tmp_path / 'run.rec'}", **vain)
+        assert (raised.value.code, raised.value.parameters) == ("option-without-effect", {"option": next(iter(vain))})
+        assert raised.value.remedy == "leave it out, or judge a board"
+
+
+def test_options_that_cannot_be_taken_are_named(tmp_path, small):
+    for option, value in (("seed", -1), ("repeat", "twice"), ("timeout", "soon"), ("report", 3)):
+        with pytest.raises(halfrow.InputError, match=f"^{option} is not what verify takes: .*; see help") as raised:
+            halfrow.verify(tables=small, **{option: value})
+        assert raised.value.code == "usage-value-wrong"
     with pytest.raises(halfrow.InputError) as raised:
-        halfrow.verify(f"replay:{tmp_path / 'run.rec'}", tables=small)
+        halfrow.verify(tables=small, record=tmp_path / "run.rec", reconnect=5)
     assert raised.value.code == "usage-arguments-conflict"
+
+
+def test_a_board_is_judged_whatever_the_program_was_called_with(small, monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["program", "\udcff"])
+    assert halfrow.verify(tables=small, frames="builtin:black").passed
+    monkeypatch.delattr(sys, "argv")
+    assert halfrow.verify(tables=small, frames=np.zeros((32, 128), np.uint16)).passed
 
 
 def test_what_does_not_fit_the_board_is_the_calls_fault():

@@ -7,8 +7,8 @@
     report = halfrow.verify("mock", tables=tables)
     assert report.passed, report.text
 
-Frames are NumPy arrays of uint16 of shape (height, width), a Bayer sample each, 0 to 2^bits − 1. They are never copied: an
-array of another kind is refused.
+Frames are NumPy arrays of uint16 of shape (height, width), a Bayer sample each, 0 to 2^bits − 1. An array of another
+kind is refused, and `correct` copies none.
 """
 from ._errors import HalfrowError, InputError, Problem
 from ._halfrow import (

@@ -3,17 +3,23 @@ from __future__ import annotations
 
 import os
 import sys
-from typing import Callable, Optional, Sequence, Union
+from typing import Callable, Mapping, Optional, Sequence, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _report
+from ._errors import InputError
 from ._halfrow import Kernel, Tables
 from ._halfrow import verify as _run
 
 Name = Union[str, "os.PathLike[str]"]
+Frame = Union[Name, NDArray[np.uint16]]
 Progress = Callable[[str, str, int], object]
+
+# What a recording says of its run, as the command line has it.
+_RECORDED = ("tables", "kernel", "frames", "phase", "repeat", "seed", "at_speed", "within", "fail_fast", "reconnect",
+             "retry_limit", "take_over")
 
 
 def verify(
@@ -21,7 +27,7 @@ def verify(
     *,
     tables: Optional[Tables] = None,
     kernel: Union[Kernel, Name, None] = None,
-    frames: Sequence[Union[Name, NDArray[np.uint16]]] = (),
+    frames: Union[Frame, Sequence[Frame]] = (),
     phase: str = "grbg",
     repeat: int = 1,
     seed: int = 1,
@@ -44,8 +50,8 @@ def verify(
         replay:run.rec.
     tables: what to judge with; the paper's when not given, and then other centres and depths as well.
     kernel: takes the place of the tables': a Kernel, one of halfrow.KERNELS, or a kernel file.
-    frames: what to stream instead of all built-in frames: "builtin:street", a file, or an array of uint16 of shape (height,
-        width) of the tables' size and depth; `phase` is their Bayer phase.
+    frames: what to stream instead of all built-in frames, one or several: "builtin:street", a file, or an array of uint16
+        of shape (height, width) of the tables' size and depth; `phase` is their Bayer phase.
     repeat: how often, 1 to 1000.
     seed: of noise, gaps, link test and what the board makes on its own.
     at_speed: seconds of the board's clock for which it makes frames at its full pixel clock, 0 for none; 3 on hardware and
@@ -66,10 +72,12 @@ def verify(
     Python's lock is released. Ctrl-C, or any signal handler that raises, ends the run, gives the board back, and raises here.
     Raises InputError where the call is wrong or does not fit the board, HalfrowError where no board could be opened.
     """
+    if isinstance(frames, (str, os.PathLike)) or isinstance(frames, np.ndarray) and frames.ndim == 2:
+        frames = (frames,)
     options = {
         "tables": tables,
         "kernel": kernel,
-        "frames": frames,
+        "frames": tuple(frames),
         "phase": phase,
         "repeat": repeat,
         "seed": seed,
@@ -81,10 +89,21 @@ def verify(
         "retry_limit": retry_limit,
         "take_over": take_over,
         "require_hardware": require_hardware,
-        "arguments": list(sys.argv),
+        "arguments": [word.encode(errors="replace").decode() for word in getattr(sys, "argv", ())],
         "report": report,
         "record": record,
         "overwrite": overwrite,
         "progress": progress,
     }
+    if board.startswith("replay:"):
+        _refuse_recorded(options)
     return _report.of(_run(board, options))
+
+
+def _refuse_recorded(options: Mapping[str, object]) -> None:
+    defaults = verify.__kwdefaults__ or {}
+    for name in _RECORDED:
+        if options[name] != defaults[name]:
+            wrong = f"{name} does nothing beside a recording, which holds what was streamed, and how"
+            remedy = "leave it out, or judge a board"
+            raise InputError("option-without-effect", {"option": name}, f"{wrong}; {remedy}", remedy)
