@@ -53,6 +53,7 @@ class HalfrowStrategy(Strategy):
             raise StrategyError("nothing leads to `unknown`; ask for off, on or judged")
         if wanted is self.status:
             return
+        self.report = None
         if wanted is Status.off:
             self._off()
         if wanted in (Status.on, Status.judged) and self.status in (Status.unknown, Status.off):
@@ -69,7 +70,6 @@ class HalfrowStrategy(Strategy):
         self.status = forced
 
     def _off(self) -> None:
-        self.report = None
         self.target.deactivate(self.halfrow)
         if self.power:
             self.target.activate(self.power)
