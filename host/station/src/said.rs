@@ -132,6 +132,10 @@ pub enum Saying {
     NoLaneOrPlan,
     #[error("the system has no thread for it ({error}); end other programs")]
     NoThread { error: String },
+    #[error(
+        "the hooks are not started: those of {verdicts} verdicts before are not done; look at what they drive"
+    )]
+    HooksBehind { verdicts: usize },
     #[error("the board is a {kind}, and the plan takes hardware alone")]
     HardwareAlone { kind: String },
     #[error("the board's build is {build}, and the plan takes {builds}")]

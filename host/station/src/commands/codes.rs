@@ -284,6 +284,7 @@ codes::codes! {
         MockWrong [target, verdict, barcode] => "shift-mock-wrong",
         NoLaneOrPlan => "settings-without-lane-or-plan",
         NoThread [error] => "thread-missing",
+        HooksBehind [verdicts] => "hooks-behind",
         HardwareAlone [kind] => "plan-takes-hardware",
         BuildNotOfPlan [build, builds] => "build-not-of-plan",
         DeviceAskedFor => "device-asked-for",

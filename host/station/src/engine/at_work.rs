@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 use halfrow::verdict::StoppedBy;
 
 use super::bay::{self, Shared, StopAsked};
+use super::in_turn::{InTurn, NotStarted};
 use super::news::{LaneState, News};
 use super::unsent;
 use super::{Board, Heard, Input};
@@ -37,6 +38,7 @@ pub(super) struct AtWork {
     known_until: Vec<Option<i64>>,
     /// The run of each lane that no thread could be had for to save it.
     unrecovered: Vec<Option<String>>,
+    hooks: Vec<InTurn>,
     threads: Vec<JoinHandle<()>>,
     begun: Instant,
 }
@@ -53,6 +55,7 @@ impl AtWork {
             asked: vec![None; lanes],
             known_until: vec![None; lanes],
             unrecovered: vec![None; lanes],
+            hooks: (0..lanes).map(|_| InTurn::new()).collect(),
             threads: Vec::new(),
             begun: Instant::now(),
         }
@@ -87,7 +90,8 @@ impl AtWork {
 
     /// Waits for hooks, recoveries and what labgrid lent, and hears what is left.
     fn end(mut self, inbox: &Receiver<Input>) {
-        for thread in std::mem::take(&mut self.threads) {
+        let hooks = std::mem::take(&mut self.hooks).into_iter().flat_map(InTurn::into_threads);
+        for thread in std::mem::take(&mut self.threads).into_iter().chain(hooks) {
             if thread.join().is_err() {
                 tracing::error!("a thread of a lane ended early; look at what it said before");
             }
@@ -268,10 +272,9 @@ impl AtWork {
         let Some(effect) = effect else { return };
         let started = match effect.clone() {
             Effect::Stop => return self.stop(lane, Some(StoppedBy::Person)),
-            Effect::Hooks(shown) if !self.shared.has_hook(shown.verdict) => return,
+            Effect::Hooks(shown) => return self.hook(lane, shown),
             Effect::Begin(accepted) => self.begin(lane, accepted),
             Effect::Recover { run } => bay::recover(&self.shared, lane, run),
-            Effect::Hooks(shown) => bay::hook(&self.shared, lane, shown),
         };
         self.threads.retain(|thread| !thread.is_finished());
         match started {
@@ -291,9 +294,23 @@ impl AtWork {
                     *unrecovered = Some(run);
                 }
             }
-            Effect::Hooks(Shown { run, .. }) => self.heard(lane, Heard::Hook { run, said: why }),
-            Effect::Stop => {}
+            Effect::Hooks(_) | Effect::Stop => {}
         }
+    }
+
+    /// Starts the hooks for what is shown, or tells why not.
+    fn hook(&mut self, lane: usize, shown: Shown) {
+        let Some(turns) = self.hooks.get_mut(lane).filter(|_| self.shared.has_hook(shown.verdict)) else {
+            return;
+        };
+        let (shared, run) = (Arc::clone(&self.shared), shown.run.clone());
+        let begun = turns.begin(format!("hooks of lane {lane}"), move || bay::hook(&shared, lane, &shown));
+        let why = match begun {
+            Ok(()) => return,
+            Err(NotStarted::Behind(verdicts)) => Saying::HooksBehind { verdicts },
+            Err(NotStarted::NoThread(error)) => Saying::NoThread { error: error.to_string() },
+        };
+        self.heard(lane, Heard::Hook { run, said: why.into() });
     }
 
     fn begin(&mut self, lane: usize, accepted: Accepted) -> std::io::Result<JoinHandle<()>> {

@@ -1,4 +1,4 @@
-//! What works for one lane: a thread for its run, one for its hooks, one to save what was not saved. Each tells the
+//! What works for one lane: a thread for its run, one for the hooks of a verdict, one to save what was not saved. Each tells the
 //! engine how it went; none waits for another lane.
 
 use std::error::Error;
@@ -119,20 +119,17 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
     })
 }
 
-/// Starts the hooks for what is shown on `lane`, one after another.
-pub(super) fn hook(shared: &Arc<Shared>, lane: usize, shown: Shown) -> std::io::Result<JoinHandle<()>> {
-    let shared = Arc::clone(shared);
-    thread::Builder::new().name(format!("hooks of lane {lane}")).spawn(move || {
-        let name = shared.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
-        for hook in shared.settings.hooks.iter().filter(|hook| hook.on == shown.verdict) {
-            let said = match guarded(|| hooks::run(hook, name, &shown)) {
-                Ok(Ok(())) => continue,
-                Ok(Err(error)) => Said::of(&error),
-                Err(fault) => Said::of(&fault),
-            };
-            shared.tell(lane, Heard::Hook { run: shown.run.clone(), said });
-        }
-    })
+/// Runs the hooks for what is shown on `lane`, one after another.
+pub(super) fn hook(shared: &Shared, lane: usize, shown: &Shown) {
+    let name = shared.settings.lanes.get(lane).map_or("", |lane| lane.name.as_str());
+    for hook in shared.settings.hooks.iter().filter(|hook| hook.on == shown.verdict) {
+        let said = match guarded(|| hooks::run(hook, name, shown)) {
+            Ok(Ok(())) => continue,
+            Ok(Err(error)) => Said::of(&error),
+            Err(fault) => Said::of(&fault),
+        };
+        shared.tell(lane, Heard::Hook { run: shown.run.clone(), said });
+    }
 }
 
 /// The verdict of a run that is saved; where the plant must have it, too, only once it has it, or that it has not within

@@ -11,6 +11,7 @@ mod at_work;
 mod bay;
 mod figures;
 mod hooks;
+mod in_turn;
 mod news;
 mod unsent;
 

@@ -32,6 +32,38 @@ arguments = ["{lane}", "{serial}", "{verdict}", "{record}"]
     assert_eq!(lamp("2").trim(), format!("2 {} FAIL", SERIALS[1]));
 }
 
+/// The lamp of a FAIL is not to be lit over by the PASS before it. The first hook waits for what comes after two more verdicts.
+#[test]
+fn the_hooks_of_a_lane_run_in_the_order_of_its_verdicts_and_keep_it_from_no_test() {
+    let settings = r#"
+[[on-pass]]
+program = "./lamp"
+arguments = ["{serial}"]
+deadline = 600
+"#;
+    let station = Station::with(&["mock"], settings);
+    let lamp = station.path("lamp");
+    let script = format!(
+        "#!/bin/sh\ncd \"$(dirname \"$0\")\"\necho \"begins $1\" >> lit\n\
+         [ $1 != {} ] || while [ ! -e go ]; do sleep 0.1; done\necho \"ends $1\" >> lit\n",
+        SERIALS[0]
+    );
+    std::fs::write(&lamp, script).unwrap();
+    std::fs::set_permissions(&lamp, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    let mut running = station.start();
+    for serial in &SERIALS[..3] {
+        running.scan(serial);
+        running.state("1", "PASS");
+    }
+    std::fs::write(station.path("go"), "").unwrap();
+    let (code, heard) = running.end();
+    assert_eq!(code, Some(0));
+    assert_eq!(heard.iter().filter(|news| news["news"] == "hook").count(), 0, "{heard:#?}");
+    let in_order: String =
+        SERIALS[..3].iter().map(|serial| format!("begins {serial}\nends {serial}\n")).collect();
+    assert_eq!(std::fs::read_to_string(station.path("lit")).unwrap(), in_order);
+}
+
 #[test]
 fn a_hook_that_fails_or_hangs_is_shown_and_changes_no_verdict() {
     let settings = r#"

@@ -1,0 +1,95 @@
+//! The hooks of a lane, those of one verdict behind those of the one before.
+
+use std::io;
+use std::sync::mpsc::{self, Receiver};
+use std::thread::{self, JoinHandle};
+
+/// So many verdicts whose hooks are not done are the last for a while: what hangs is killed at its deadline, and lamps and
+/// labels are not to tell of boards that are long gone.
+const MOST: usize = 4;
+
+/// Why hooks are not started.
+#[derive(Debug)]
+pub(super) enum NotStarted {
+    /// The hooks of so many verdicts before are not done.
+    Behind(usize),
+    /// The system has no thread for it.
+    NoThread(io::Error),
+}
+
+/// What the hooks of one lane do.
+#[derive(Debug)]
+pub(super) struct InTurn {
+    threads: Vec<JoinHandle<()>>,
+    /// Ends when the hooks of the last verdict are done.
+    last: Receiver<()>,
+}
+
+impl InTurn {
+    pub(super) fn new() -> Self {
+        Self { threads: Vec::new(), last: mpsc::channel().1 }
+    }
+
+    /// Does `work` in a thread of this name once all that was begun before is done.
+    ///
+    /// # Errors
+    /// [`NotStarted`]
+    pub(super) fn begin(
+        &mut self,
+        name: String,
+        work: impl FnOnce() + Send + 'static,
+    ) -> Result<(), NotStarted> {
+        self.threads.retain(|thread| !thread.is_finished());
+        if self.threads.len() >= MOST {
+            return Err(NotStarted::Behind(self.threads.len()));
+        }
+        // A turn is taken once there is a thread for it.
+        let (give, turn) = mpsc::channel::<(Receiver<()>, mpsc::Sender<()>)>();
+        let in_turn = move || {
+            let Ok((before, done)) = turn.recv() else { return };
+            // Nothing is ever sent: it ends.
+            let _ = before.recv();
+            work();
+            drop(done);
+        };
+        self.threads.push(thread::Builder::new().name(name).spawn(in_turn).map_err(NotStarted::NoThread)?);
+        let (done, last) = mpsc::channel();
+        let _ = give.send((std::mem::replace(&mut self.last, last), done));
+        Ok(())
+    }
+
+    /// The threads that are not done yet.
+    pub(super) fn into_threads(self) -> Vec<JoinHandle<()>> {
+        self.threads
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::{Arc, Mutex};
+
+    use super::*;
+
+    #[test]
+    fn what_was_begun_first_is_done_first_and_so_much_waits_and_no_more() {
+        let (mut turns, done) = (InTurn::new(), Arc::new(Mutex::new(Vec::new())));
+        let (go, held) = mpsc::channel::<()>();
+        let mut held = Some(held);
+        for number in 0..MOST {
+            let (done, held) = (Arc::clone(&done), held.take());
+            let work = move || {
+                if let Some(held) = held {
+                    let _ = held.recv();
+                }
+                done.lock().unwrap().push(number);
+            };
+            turns.begin("hooks".to_owned(), work).unwrap();
+        }
+        let one_more = turns.begin("hooks".to_owned(), || panic!("there is no room for it"));
+        assert!(matches!(one_more, Err(NotStarted::Behind(MOST))), "{one_more:?}");
+        assert!(done.lock().unwrap().is_empty());
+        drop(go);
+        turns.into_threads().into_iter().for_each(|thread| thread.join().unwrap());
+        assert_eq!(*done.lock().unwrap(), (0..MOST).collect::<Vec<_>>());
+    }
+}
