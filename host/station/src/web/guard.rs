@@ -150,9 +150,8 @@ fn look(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request,
         .get(header::ACCEPT)
         .is_some_and(|accept| accept.to_str().is_ok_and(|accept| accept.contains("text/html")));
     match visit.user {
-        Some(_) => Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden"))),
         None if wants_page => Err(Box::new(Redirect::to("/login").into_response())),
-        None => Err(refused(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login"))),
+        _ => Err(Box::new(Trouble::barred(visit).into_response())),
     }
 }
 
@@ -164,10 +163,7 @@ async fn act(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Req
         return Err(refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.origin")));
     }
     if who > Who::Anyone && !visit.may(who) {
-        return Err(match visit.user {
-            None => refused(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
-            Some(_) => refused(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
-        });
+        return Err(Box::new(Trouble::barred(visit).into_response()));
     }
     let (parts, body) = request.into_parts();
     let body = body::to_bytes(body, MOST).await;

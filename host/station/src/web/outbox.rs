@@ -85,6 +85,6 @@ async fn release(
 ) -> Result<Response, Trouble> {
     let operator = visit.name().to_owned();
     let released = app.change(&visit, move |store| store.release(&id, &operator, &reason)).await?;
-    released.map_err(|error| Trouble::store(&visit, error))?;
+    released.map_err(|error| Trouble::store(&visit, &error))?;
     Ok(Redirect::to("/outbox").into_response())
 }

@@ -138,7 +138,7 @@ impl App {
                 self.blocking(visit, move || pool.note(&name, act, &subject, &detail)).await?
             }
         };
-        entered.map_err(|error| Trouble::store(visit, error))
+        entered.map_err(|error| Trouble::store(visit, &error))
     }
 
     /// What `look` finds in the store as it is at one moment. Other requests go on meanwhile.
@@ -150,7 +150,7 @@ impl App {
         visit: &Visit,
         look: impl FnOnce(&Snapshot) -> Result<T, StoreError> + Send + 'static,
     ) -> Result<T, Trouble> {
-        self.try_to_look(visit, look).await?.map_err(|error| Trouble::store(visit, error))
+        self.try_to_look(visit, look).await?.map_err(|error| Trouble::store(visit, &error))
     }
 
     /// The same, for whoever can do without.

@@ -8,8 +8,11 @@ use axum::response::{IntoResponse, Response};
 use maud::html;
 use serde_json::json;
 
+use super::history::show;
+use super::language::Told;
 use super::layout::{Here, Page};
 use super::visit::Visit;
+use crate::said::Said;
 use crate::store::StoreError;
 
 /// An answer that says what is wrong, and what to do.
@@ -17,13 +20,26 @@ use crate::store::StoreError;
 pub(super) struct Trouble {
     status: StatusCode,
     visit: Box<Visit>,
-    said: String,
+    told: Told,
 }
 
 impl Trouble {
     /// What is wrong and what to do, with its status.
     pub(super) fn new(visit: &Visit, status: StatusCode, said: impl Into<String>) -> Self {
-        Self { status, visit: Box::new(visit.clone()), said: said.into() }
+        Self { status, visit: Box::new(visit.clone()), told: Told { text: said.into(), foreign: None } }
+    }
+
+    /// What has a code, in the visitor's language.
+    pub(super) fn telling(visit: &Visit, status: StatusCode, said: &Said) -> Self {
+        Self { status, visit: Box::new(visit.clone()), told: visit.words.tell(said) }
+    }
+
+    /// The visitor may not.
+    pub(super) fn barred(visit: &Visit) -> Self {
+        match visit.user {
+            None => Self::new(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
+            Some(_) => Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
+        }
     }
 
     /// Nothing has this address.
@@ -37,10 +53,10 @@ impl Trouble {
     }
 
     /// The store does not do it. The reason is for the log and the engineer.
-    pub(super) fn store(visit: &Visit, error: StoreError) -> Self {
-        let said = format!("{:#}", anyhow::Error::from(error));
+    pub(super) fn store(visit: &Visit, error: &StoreError) -> Self {
+        let said = Said::of(error);
         tracing::error!("{said}");
-        Self::new(visit, StatusCode::SERVICE_UNAVAILABLE, said)
+        Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &said)
     }
 
     /// Something of the program itself ended early.
@@ -52,12 +68,13 @@ impl Trouble {
 
 impl IntoResponse for Trouble {
     fn into_response(self) -> Response {
-        let Self { status, visit, said } = self;
+        let Self { status, visit, told } = self;
         if visit.is_script {
-            let text = json!({ "is_taken": false, "said": said }).to_string();
+            let text = json!({ "is_taken": false, "said": told.text }).to_string();
             return (status, [(CONTENT_TYPE, "application/json")], text).into_response();
         }
-        let content = html! { section.trouble { h1 { (status.as_u16()) } p role="alert" { (said) } } };
+        let content =
+            html! { section.trouble { h1 { (status.as_u16()) } p role="alert" { (show::told(&told)) } } };
         let page = Page { here: Here::Elsewhere, title: visit.say("trouble.title"), head: html! {}, content };
         page.with_status(&visit, status)
     }

@@ -8,6 +8,7 @@ use axum::response::{IntoResponse as _, Response};
 use crate::export::{self, ExportError, Format};
 use crate::history::unit::{self, UnitRun};
 use crate::record::Attachment;
+use crate::said::Said;
 use crate::store::{Snapshot, StoreError};
 use crate::web::state::App;
 use crate::web::trouble::Trouble;
@@ -83,10 +84,7 @@ pub(super) async fn export(
 
 fn refused(visit: &Visit, error: ExportError) -> Trouble {
     match error {
-        ExportError::Store(error) => Trouble::store(visit, error),
-        error => {
-            let said = format!("{:#}", anyhow::Error::from(error));
-            Trouble::new(visit, StatusCode::INTERNAL_SERVER_ERROR, said)
-        }
+        ExportError::Store(error) => Trouble::store(visit, &error),
+        error => Trouble::telling(visit, StatusCode::INTERNAL_SERVER_ERROR, &Said::of(&error)),
     }
 }

@@ -23,7 +23,7 @@ use crate::web::visit::Visit;
 /// A run, its record or why that cannot be read, and the attachments that are still there.
 struct Found {
     run: UnitRun,
-    record: Option<Result<Box<Record>, String>>,
+    record: Option<Result<Box<Record>, Said>>,
     kept: Vec<(Attachment, bool)>,
 }
 
@@ -46,7 +46,7 @@ pub(super) async fn shown(
         let Some(mut run) = history::run_of(now, &id)? else { return Ok(None) };
         let read = |hash: &String| match export::record(now, hash) {
             Ok((record, _)) => Ok(Box::new(record)),
-            Err(error) => Err(format!("{:#}", anyhow::Error::from(error))),
+            Err(error) => Err(Said::of(&error)),
         };
         let record = run.line.record_sha256.as_ref().map(read);
         let is_here = |one: Attachment| (now.has_evidence(&one.sha256), one);
@@ -72,7 +72,7 @@ fn content(visit: &Visit, Found { run, record, kept }: &Found) -> Markup {
         article.run {
             h1 { (show::outcome(visit, line)) " " a href=(unit_address(&line.serial)) { (show::said(&line.serial)) } }
             (concluded(visit, line.headline.as_deref(), read.map(AsRef::as_ref)))
-            @if let Some(Err(why)) = record { p.trouble role="alert" { (show::said(why)) } }
+            @if let Some(Err(why)) = record { p.trouble role="alert" { (show::told(&visit.words.tell(why))) } }
             @for one in &run.waivers { (waiver(visit, one)) }
             (suspects(visit, run, read.map(AsRef::as_ref)))
             (pictures::of_run(visit, line, read.map(AsRef::as_ref), kept))

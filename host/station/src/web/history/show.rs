@@ -26,7 +26,7 @@ pub(in crate::web) fn said(text: &str) -> Markup {
 }
 
 /// What was told, marked where it stands in another language than the page.
-pub(super) fn told(told: &Told) -> Markup {
+pub(in crate::web) fn told(told: &Told) -> Markup {
     match told.foreign {
         Some(language) => html! { span lang=(language) { (said(&told.text)) } },
         None => said(&told.text),

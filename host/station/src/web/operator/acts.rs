@@ -169,25 +169,24 @@ pub(super) async fn back(app: State<App>, visit: Visit, lane: Path<String>) -> R
 /// Does it with the lane.
 async fn done(app: App, visit: Visit, lane: String, act: Act) -> Result<Response, Trouble> {
     let (place, name) = place(&app, &lane)
-        .map_err(|error| Trouble::new(&visit, StatusCode::NOT_FOUND, told(&visit, &error)))?;
+        .map_err(|error| Trouble::telling(&visit, StatusCode::NOT_FOUND, &Said::of(&error)))?;
     app.audit(&visit, "lane", name, &act.barcode()).await?;
     let Floor { engine, live, .. } = app.floor(&visit)?;
     let (number, became) = live.ask();
     engine.act(number, place, act, visit.name());
     let became = heard(&visit, became).await?;
-    let said = visit.words.tell(&became.said).text;
     match (visit.is_script, became.is_taken) {
         (true, is_taken) => Ok(json(&Answer {
             counter: 0,
             is_taken,
             scanned: became.scanned,
             lane: became.lane,
-            said,
+            said: visit.words.tell(&became.said).text,
             armed: None,
             is_other: false,
         })),
         (false, true) => Ok(Redirect::to("/").into_response()),
-        (false, false) => Err(Trouble::new(&visit, StatusCode::CONFLICT, said)),
+        (false, false) => Err(Trouble::telling(&visit, StatusCode::CONFLICT, &became.said)),
     }
 }
 

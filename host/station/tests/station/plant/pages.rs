@@ -169,3 +169,5 @@ fn a_plant_that_is_away_is_said_to_be_and_is_shown_again_when_it_is_back() {
     server.again();
     text(&browser, "/history");
 }
+    let german = browser.get("/history").with("accept", "text/html").with("accept-language", "de").send();
+    assert!(german.text().contains("prüfen, ob es da ist"), "{}", german.text());
