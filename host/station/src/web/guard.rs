@@ -211,14 +211,11 @@ impl App {
         }
         let is_new = sent.is_none();
         let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
-        // A link on a page of another site comes without the cookie, which must not be put in the place of the one there is.
-        let is_from_elsewhere = only(headers, &HeaderName::from_static("sec-fetch-site"))
-            .is_some_and(|site| site == "cross-site");
         Visit {
             csrf: access.form_mark(&session),
             user,
             session,
-            is_new: is_new && !is_from_elsewhere,
+            is_new,
             can_log_in: access.has_people(),
             ..self.stranger(headers)
         }

@@ -230,10 +230,10 @@ impl Access {
         format!("{prefix}halfrow-{}", self.address.listen.port())
     }
 
-    /// The cookie of this session, as it is set.
+    /// The cookie of this session, as it is set. A link on a page of another site comes with it, and a form does not.
     pub(super) fn cookie(&self, session: &str) -> String {
         let secure = if self.address.is_https() { "; Secure" } else { "" };
-        format!("{}={session}; Path=/; HttpOnly; SameSite=Strict{secure}", self.cookie_name())
+        format!("{}={session}; Path=/; HttpOnly; SameSite=Lax{secure}", self.cookie_name())
     }
 
     fn sessions(&self) -> MutexGuard<'_, Sessions> {
