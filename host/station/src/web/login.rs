@@ -65,21 +65,32 @@ async fn log_in(
     visit: Visit,
     Form(Login { badge, password }): Form<Login>,
 ) -> Result<Response, Trouble> {
-    if let Some(wait) = app.access().wait(peer) {
+    let badge = app.settings().scanner.label(&badge).map(str::to_owned).unwrap_or(badge);
+    let known = identified(&app, &visit, peer, (badge, password)).await?;
+    let refused = || Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("login.refused"));
+    let cookie = logged_in(&app, &visit, known.ok_or_else(refused)?).await?;
+    Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
+}
+
+/// Who this badge and this password make, as somebody says who is at `peer` and not logged in. Nobody guesses there for long.
+pub(super) async fn identified(
+    app: &App,
+    visit: &Visit,
+    peer: IpAddr,
+    (badge, password): (String, String),
+) -> Result<Option<User>, Trouble> {
+    if let Some(wait) = app.access().attempt(peer) {
         let seconds = (wait.as_secs() + 1).to_string();
         let said = visit.words.fill("login.wait", &[("seconds", &seconds)]);
-        return Err(Trouble::new(&visit, StatusCode::TOO_MANY_REQUESTS, said));
+        return Err(Trouble::new(visit, StatusCode::TOO_MANY_REQUESTS, said));
     }
-    let badge = app.settings().scanner.label(&badge).map(str::to_owned).unwrap_or(badge);
     let access = app.clone();
-    let known = app.blocking(&visit, move || access.access().identify(&badge, &password)).await?;
-    let Some(user) = known else {
-        app.access().failed(peer);
-        app.audit(&visit, "login refused", &peer.to_string(), "").await?;
-        return Err(Trouble::new(&visit, StatusCode::FORBIDDEN, visit.say("login.refused")));
-    };
-    let cookie = logged_in(&app, &visit, user).await?;
-    Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
+    let known = app.blocking(visit, move || access.access().identify(&badge, &password)).await?;
+    match &known {
+        Some(_) => app.access().succeeded(peer),
+        None => app.audit(visit, "login refused", &peer.to_string(), "").await?,
+    }
+    Ok(known)
 }
 
 /// Logs `user` in, in the place of whoever was; returns the cookie to be set.

@@ -214,14 +214,20 @@ impl Access {
         self.key.is_mark(FORM, session, mark)
     }
 
-    /// How long `peer` waits before it may log in.
-    pub(super) fn wait(&self, peer: IpAddr) -> Option<Duration> {
-        self.failures.lock().unwrap_or_else(PoisonError::into_inner).wait(peer, Instant::now())
+    /// `peer` tries to log in, which has failed until it is known that it has not: many may try at once. How long it waits
+    /// first, if it has to.
+    pub(super) fn attempt(&self, peer: IpAddr) -> Option<Duration> {
+        let (mut failures, now) = (self.failures(), Instant::now());
+        let wait = failures.wait(peer, now);
+        if wait.is_none() {
+            failures.add(peer, now);
+        }
+        wait
     }
 
-    /// Logging in failed.
-    pub(super) fn failed(&self, peer: IpAddr) {
-        self.failures.lock().unwrap_or_else(PoisonError::into_inner).add(peer, Instant::now());
+    /// An attempt did not fail.
+    pub(super) fn succeeded(&self, peer: IpAddr) {
+        self.failures().take_back(peer);
     }
 
     /// The name of the cookie. Cookies do not tell ports apart.
@@ -234,6 +240,10 @@ impl Access {
     pub(super) fn cookie(&self, session: &str) -> String {
         let secure = if self.address.is_https() { "; Secure" } else { "" };
         format!("{}={session}; Path=/; HttpOnly; SameSite=Lax{secure}", self.cookie_name())
+    }
+
+    fn failures(&self) -> MutexGuard<'_, Failures> {
+        self.failures.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn sessions(&self) -> MutexGuard<'_, Sessions> {

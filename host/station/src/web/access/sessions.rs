@@ -141,6 +141,11 @@ impl Failures {
             self.0.entry(peer).or_default().push_back(now);
         }
     }
+
+    /// One of them was none.
+    pub(super) fn take_back(&mut self, peer: IpAddr) {
+        self.0.get_mut(&peer).and_then(VecDeque::pop_back);
+    }
 }
 
 #[cfg(test)]
@@ -158,6 +163,11 @@ mod tests {
         let after = |seconds| start + Duration::from_secs(seconds);
         assert_eq!(failures.wait(peer, after(20)), Some(Duration::from_secs(40)));
         assert_eq!(failures.wait(other, after(20)), None);
+        failures.take_back(peer);
+        failures.take_back(other);
+        assert_eq!(failures.wait(peer, after(20)), None);
+        failures.add(peer, after(20));
+        assert_eq!(failures.wait(peer, after(20)), Some(Duration::from_secs(40)));
         assert_eq!(failures.wait(peer, after(60)), None);
     }
 

@@ -3,6 +3,7 @@
 use std::fs;
 use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
+use std::thread;
 
 use crate::common::{Did, program};
 use crate::pages::http::{Request, exchange};
@@ -112,6 +113,20 @@ fn a_link_from_elsewhere_leads_to_a_page_that_logs_in() {
     browser.cookie = String::new();
     browser.learn(&browser.get("/login").with("sec-fetch-site", "cross-site").send());
     assert_eq!(browser.post("/login", &[("badge", "A-0017")]).send().status, 303);
+}
+
+#[test]
+fn many_who_guess_at_once_guess_no_oftener() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let browser = serving.browser(PUBLIC);
+    // A password takes a while to be told from another.
+    let guess = browser.post("/login", &[("badge", "B-0022"), ("password", "wrong horse")]);
+    let guesses: Vec<_> =
+        (0..30).map(|_| guess.clone()).map(|one| thread::spawn(move || one.send())).collect();
+    let statuses: Vec<_> = guesses.into_iter().map(|guess| guess.join().unwrap().status).collect();
+    let of = |status| statuses.iter().filter(|one| **one == status).count();
+    assert_eq!((of(403), of(429)), (10, 20), "{statuses:?}");
 }
 
 #[test]
