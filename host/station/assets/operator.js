@@ -16,6 +16,8 @@ function post(path, fields, show) {
     const body = new URLSearchParams({ csrf: station.csrf, ...fields() });
     try {
       const answer = await fetch(path, { method: "POST", body, headers: { accept: "application/json" } });
+      // Whoever the page is for is not logged in any more.
+      if (answer.status === 401 && "known" in station) return location.reload();
       show(await answer.json());
     } catch {
       show({ is_taken: false, said: station.unsent });

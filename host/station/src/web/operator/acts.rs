@@ -2,18 +2,18 @@
 
 use std::error::Error;
 
-use axum::Form;
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
 use axum::http::header::{CONTENT_TYPE, SET_COOKIE};
 use axum::response::{IntoResponse as _, Redirect, Response};
+use axum::{Extension, Form};
 use serde::{Deserialize, Serialize};
 
 use super::page;
 use crate::floor::{Act, Scan, ScanError};
 use crate::said::{Said, Saying};
 use crate::web::live::Became;
-use crate::web::login::logged_in;
+use crate::web::login::{Peer, identified, logged_in};
 use crate::web::routes::Who;
 use crate::web::state::{App, Floor};
 use crate::web::trouble::Trouble;
@@ -50,26 +50,39 @@ pub(super) struct Answer {
 
 pub(super) async fn scan(
     State(app): State<App>,
+    Extension(peer): Extension<Peer>,
     visit: Visit,
     Form(scanned): Form<Scanned>,
 ) -> Result<Response, Trouble> {
-    if let Some(response) = badge(&app, &visit, &scanned).await? {
+    if let Some(response) = badge(&app, &visit, peer, &scanned).await? {
         return Ok(response);
+    }
+    if !visit.may(Who::Operator) {
+        return Err(Trouble::barred(&visit));
     }
     let answer = understood(&app, &visit, &scanned).await?;
     if visit.is_script { Ok(json(&answer)) } else { page::answered(app, visit, answer).await }
 }
 
 /// The answer to a badge: who has it tests from then on, in the place of whoever did.
-async fn badge(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Option<Response>, Trouble> {
+async fn badge(
+    app: &App,
+    visit: &Visit,
+    Peer(peer): Peer,
+    scanned: &Scanned,
+) -> Result<Option<Response>, Trouble> {
     if !visit.can_log_in {
         return Ok(None);
     }
     let label = app.settings().scanner.label(&scanned.text).unwrap_or(&scanned.text).to_owned();
-    let access = app.clone();
-    let Some(user) = app.blocking(visit, move || access.access().identify(&label, "")).await? else {
-        return Ok(None);
+    let known = if visit.user.is_some() {
+        // What somebody scans who tests is no guess at a badge.
+        let access = app.clone();
+        app.blocking(visit, move || access.access().identify(&label, "")).await?
+    } else {
+        identified(app, visit, peer, (label, String::new())).await?
     };
+    let Some(user) = known else { return Ok(None) };
     let said = visit.words.fill("login.now", &[("name", &user.name)]);
     let cookie = logged_in(app, visit, user).await?;
     // A badge is shown to nobody.

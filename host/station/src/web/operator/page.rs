@@ -40,9 +40,10 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
     };
     let content = html! {
         section #station data-csrf=(visit.csrf) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
-            data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn")) {
+            data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn"))
+            data-known[visit.user.is_some()] {
             h1.heard { (visit.say("nav.lanes")) }
-            @if visit.may(Who::Operator) { (scan_box(&visit, &now, answer.as_ref())) } @else { (log_in(&visit)) }
+            (scan_box(&visit, &now, answer.as_ref()))
             (hint(hints, &visit, &now))
             (floor(&visit, &now))
             footer #today data-changes[app.settings().plant.is_some()] { (today) }
@@ -73,11 +74,14 @@ fn shape_of(lanes: usize) -> usize {
     [1, 2, 3, 4, 8].into_iter().find(|&most| lanes <= most).unwrap_or(16)
 }
 
+/// Where scans appear. It is there for whoever is not logged in, too: a badge is scanned.
 fn scan_box(visit: &Visit, now: &Now, answer: Option<&Answer>) -> Markup {
     let class = answer.map_or("", |answer| if answer.is_taken { "taken" } else { "refused" });
     html! {
         div.scan {
-            span.scans { (visit.say("scan.scan")) }
+            span.scans {
+                @if visit.may(Who::Operator) { (visit.say("scan.scan")) } @else { a href="/login" { (visit.say("scan.login")) } }
+            }
             output #typed .typed aria-label=(visit.say("scan.typed")) {}
             span #armed .armed data-for=(visit.say("scan.for")) {}
             output #answer .answer.(class) role="status" { @if let Some(answer) = answer { (answer.said) } }
@@ -114,16 +118,6 @@ fn by_hand(visit: &Visit, now: &Now) -> Markup {
             }
             label { (visit.say("hand.serial")) " " input #hand-text name="text" required maxlength="200" spellcheck="false"; }
             button { (visit.say("hand.send")) }
-        }
-    }
-}
-
-fn log_in(visit: &Visit) -> Markup {
-    html! {
-        div.scan {
-            span.scans { a href="/login" { (visit.say("scan.login")) } }
-            span #answer .answer {}
-            (live_lamp(visit))
         }
     }
 }

@@ -7,7 +7,7 @@ use std::thread;
 
 use crate::common::{Did, program};
 use crate::pages::http::{Request, exchange};
-use crate::pages::station::{PUBLIC, SERIALS, Station};
+use crate::pages::station::{Browser, PUBLIC, SERIALS, Station};
 
 #[test]
 fn what_others_can_reach_needs_people() {
@@ -127,6 +127,38 @@ fn many_who_guess_at_once_guess_no_oftener() {
     let statuses: Vec<_> = guesses.into_iter().map(|guess| guess.join().unwrap().status).collect();
     let of = |status| statuses.iter().filter(|one| **one == status).count();
     assert_eq!((of(403), of(429)), (10, 20), "{statuses:?}");
+}
+
+/// A station for whoever sits at it, with people and nothing but a scanner.
+#[test]
+fn a_badge_is_scanned_into_the_page_that_nobody_is_logged_in_on() {
+    let more = "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"";
+    let station = Station::with(1, more);
+    assert!(station.user(&["add", "Weber"], "A-0017\n").status.success());
+    let serving = station.serve();
+    let mut browser = serving.here();
+    let page = browser.get("/").with("accept", "text/html").send().text();
+    assert!(page.contains("id=\"hand\"") && page.contains("href=\"/login\""), "{page}");
+    let scan = |browser: &Browser, text: &str| {
+        browser.post("/scan", &[("text", text), ("typed", "true")]).with("accept", "application/json").send()
+    };
+    let number = scan(&browser, SERIALS[0]);
+    assert_eq!(number.status, 401, "{number:?}");
+    assert!(number.text().contains("Log in first"), "{number:?}");
+    let badge = scan(&browser, "A-0017");
+    assert!(badge.text().contains("Weber tests from now on"), "{badge:?}");
+    let stranger = serving.here();
+    browser.learn(&badge);
+    browser.learn(&browser.get("/").send());
+    assert!(scan(&browser, SERIALS[0]).text().contains("\"is_taken\":true"));
+    // What was no badge counts, as it does at the login.
+    for wrong in 1..10 {
+        assert_eq!(scan(&stranger, &format!("A-1{wrong:03}")).status, 401, "{wrong}");
+    }
+    assert_eq!(scan(&stranger, "A-0017").status, 429, "the eleventh waits, even if it is right");
+    let refused = station.query("SELECT act FROM audit WHERE act = 'login refused'");
+    assert_eq!(refused.len(), 10);
+    assert!(!scan(&browser, SERIALS[1]).text().contains("Too many"), "whoever tests goes on");
 }
 
 #[test]

@@ -92,6 +92,32 @@ fn none_of_ten_thousand_scans_is_lost_or_changed_or_goes_to_another_lane() {
     fs::remove_dir_all(kept).unwrap();
 }
 
+/// A station at a line, which has no keyboard.
+#[test]
+fn a_scanner_is_enough_to_log_in_and_to_log_in_again() {
+    let station = Station::with(1, "[web]\nlisten = \"127.0.0.1:0\"\n[access]\nusers = \"users.toml\"");
+    for (name, badge) in [("Weber", "A-0017\n"), ("Braun", "B-0022\n")] {
+        assert!(station.user(&["add", name], badge).status.success());
+    }
+    let serving = station.serve();
+    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
+    let live = "document.getElementById('lamp')?.textContent === 'live'";
+    let who =
+        |name: &str| format!("document.querySelector('.top .who')?.textContent.includes('{name}') && {live}");
+    page.wait(&who("Log in"));
+    page.scan("A-0017", "Enter", Duration::ZERO);
+    page.wait(&who("Weber"));
+    page.scan("CA0131103628", "Enter", Duration::ZERO);
+    page.wait("document.querySelector('.lane.pass') !== null");
+    // Whoever is nobody any more is told so by the page.
+    assert!(station.user(&["remove", "Weber"], "").status.success());
+    page.scan("CA0201134374", "Enter", Duration::ZERO);
+    page.wait(&who("Log in"));
+    page.scan("B-0022", "Enter", Duration::ZERO);
+    page.wait(&who("Braun"));
+    assert_eq!(station.query("SELECT operator_id FROM run"), ["Weber"]);
+}
+
 #[test]
 fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
     let station = Station::private(1);
