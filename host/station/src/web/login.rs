@@ -3,7 +3,7 @@
 use std::net::IpAddr;
 
 use axum::extract::State;
-use axum::http::{HeaderValue, StatusCode, header};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse as _, Redirect, Response};
 use axum::{Extension, Form};
 use maud::{Markup, html};
@@ -11,7 +11,7 @@ use serde::Deserialize;
 
 use super::language;
 use super::layout::{Here, Page};
-use super::routes::{Route, Who, act, look};
+use super::routes::{Route, Who, act, is_page, look};
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::{User, Visit};
@@ -124,12 +124,23 @@ struct Choice {
 async fn choose(
     State(app): State<App>,
     visit: Visit,
+    headers: HeaderMap,
     Form(choice): Form<Choice>,
 ) -> Result<Response, Trouble> {
     let known = language::all().find(|(code, _)| *code == choice.language);
     let (code, _) = known.ok_or_else(|| Trouble::wrong(&visit, visit.say("login.language")))?;
     let secure = if app.access().address().is_https() { "; Secure" } else { "" };
     let name = language::COOKIE;
-    let cookie = format!("{name}={code}; Path=/; Max-Age={YEAR}; HttpOnly; SameSite=Strict{secure}");
-    Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
+    let cookie = format!("{name}={code}; Path=/; Max-Age={YEAR}; HttpOnly; SameSite=Lax{secure}");
+    let back = back(&app, &headers).unwrap_or("/");
+    Ok(([(header::SET_COOKIE, cookie)], Redirect::to(back)).into_response())
+}
+
+/// The page that a form was on, with what it asks for.
+fn back<'a>(app: &App, headers: &'a HeaderMap) -> Option<&'a str> {
+    let (_, page) = headers.get(header::REFERER)?.to_str().ok()?.split_once("://")?;
+    let asked = page.get(page.find('/')?..)?;
+    let path = asked.split(['?', '#']).next()?;
+    // What an act was answered with has an address at which no page is.
+    is_page(app, path).then_some(asked)
 }

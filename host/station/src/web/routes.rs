@@ -67,13 +67,27 @@ pub fn routes_of_plant() -> Vec<Route> {
     [assets::routes(), login::routes(), plant::routes(), jobs::routes(), metrics::routes(), looks].concat()
 }
 
+/// The table of what is served.
+fn table(app: &App) -> Vec<Route> {
+    if app.is_plant() { routes_of_plant() } else { routes() }
+}
+
+/// Whether there is a page at this path.
+pub(super) fn is_page(app: &App, path: &str) -> bool {
+    let is_at = |route: &Route| {
+        let (known, asked) = (route.path.split('/'), path.split('/'));
+        known.clone().count() == asked.clone().count()
+            && known.zip(asked).all(|(known, asked)| known.starts_with('{') || known == asked)
+    };
+    table(app).iter().any(|route| route.method == Method::GET && is_at(route))
+}
+
 /// The table as a service. What is common to all routes stands around it, what depends on their lines around each.
 pub(super) fn router(app: &App) -> Router {
     let with = |router: Router<App>, Route { method, path, who, handler }: Route| {
         let guarded = Guarded { app: app.clone(), who, is_act: method == Method::POST };
         router.route(path, handler.layer(middleware::from_fn_with_state(guarded, guard::route)))
     };
-    let table = if app.is_plant() { routes_of_plant() } else { routes() };
-    let router = table.into_iter().fold(Router::new(), with).fallback(guard::nothing_here);
+    let router = table(app).into_iter().fold(Router::new(), with).fallback(guard::nothing_here);
     router.layer(middleware::from_fn_with_state(app.clone(), guard::every)).with_state(app.clone())
 }

@@ -107,6 +107,19 @@ fn every_language_says_it_in_its_words() {
     let here = serving.here();
     let answer = here.post("/language", &[("language", "de")]).send();
     assert!(answer.headers["set-cookie"].starts_with("halfrow-language=de;"), "{answer:?}");
+    // Back to the page that it was chosen on, if there is one at its address.
+    for (from, to) in [
+        ("/history?serial=S%201&lane=1", "/history?serial=S%201&lane=1"),
+        ("/runs/1", "/runs/1"),
+        ("/lanes/1/start", "/"),
+        ("//evil.example/history", "/"),
+        ("", "/"),
+    ] {
+        let page = format!("http://127.0.0.1:{}{from}", serving.port);
+        let answer = here.post("/language", &[("language", "de")]).with("referer", &page).send();
+        assert_eq!((answer.status, answer.headers["location"].as_str()), (303, to), "{from}");
+    }
+    assert_eq!(answer.headers["location"], "/");
 }
 
 /// A scan is for the lane that its page names, whatever another page scans in between.
