@@ -91,7 +91,8 @@ pub(super) struct Counted {
 impl Counted {
     /// As the counting functions take it.
     pub(super) fn wanted(&self) -> Wanted {
-        Wanted { plan: self.plan.clone(), lane: self.lane.clone(), period: self.range.period() }
+        let (plan, lane) = (self.plan.clone(), self.lane.clone());
+        Wanted { plan, lane, period: self.range.period(), ..Wanted::default() }
     }
 }
 

@@ -52,19 +52,7 @@ pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreErr
         Of::Check => "check",
     };
     let mut values: Vec<Value<'_>> = vec![kind.into(), period.from_ms.into(), period.until_ms.into()];
-    let mut filters = String::new();
-    if let Some(lane) = &wanted.lane {
-        values.push(lane.into());
-        filters.push_str(&format!("AND lane = ${}", values.len()));
-    }
-    if let Some(plans) = &plans {
-        let named: Vec<_> =
-            plans.iter().zip(values.len() + 1..).map(|(_, place)| format!("${place}")).collect();
-        values.extend(plans.iter().map(Value::from));
-        // No plan of this name has no run.
-        let named = if named.is_empty() { "NULL".to_owned() } else { named.join(", ") };
-        filters.push_str(&format!(" AND plan_sha256 IN ({named})"));
-    }
+    let filters = filters(wanted, plans.as_deref(), &mut values);
     let mut counted = Counted::default();
     let text = statements::FAILURES.replace("{filters}", &filters);
     of.rows("to tell its failures", &text, &values, |row| {
@@ -72,6 +60,32 @@ pub fn pareto(of: &Snapshot, wanted: &Wanted, by: Of) -> Result<Pareto, StoreErr
         Ok(())
     })?;
     Ok(counted.pareto())
+}
+
+/// The conditions for what is wanted beside its time, with plans by their hashes, behind `values`, which get theirs.
+fn filters<'a>(wanted: &'a Wanted, plans: Option<&'a [String]>, values: &mut Vec<Value<'a>>) -> String {
+    let mut filters = String::new();
+    if let Some(lane) = &wanted.lane {
+        values.push(lane.into());
+        filters.push_str(&format!(" AND lane = ${}", values.len()));
+    }
+    if let Some(station) = &wanted.station {
+        values.push(station.into());
+        // A failure has the lane of its run, and not the station.
+        filters.push_str(&format!(
+            " AND EXISTS (SELECT 1 FROM run WHERE run.id = failure.run_id AND run.station = ${})",
+            values.len()
+        ));
+    }
+    if let Some(plans) = plans {
+        let named: Vec<_> =
+            plans.iter().zip(values.len() + 1..).map(|(_, place)| format!("${place}")).collect();
+        values.extend(plans.iter().map(Value::from));
+        // No plan of this name has no run.
+        let named = if named.is_empty() { "NULL".to_owned() } else { named.join(", ") };
+        filters.push_str(&format!(" AND plan_sha256 IN ({named})"));
+    }
+    filters
 }
 
 /// What was counted so far of failures that come unit after unit, and of a unit run after run.

@@ -41,6 +41,8 @@ pub enum By {
 pub struct Wanted {
     /// Under plans of this name.
     pub plan: Option<String>,
+    /// At this station.
+    pub station: Option<String>,
     /// In this lane.
     pub lane: Option<String>,
     /// First judged then; of errors, those that began then.
@@ -50,6 +52,7 @@ pub struct Wanted {
 impl Wanted {
     fn is_wanted(&self, cell: &DayCell) -> bool {
         self.plan.as_ref().is_none_or(|plan| *plan == cell.plan.plan)
+            && self.station.as_ref().is_none_or(|station| *station == cell.station)
             && self.lane.as_ref().is_none_or(|lane| *lane == cell.lane)
     }
 }

@@ -75,7 +75,12 @@ impl Asked {
     /// # Errors
     /// As [`Self::filter`].
     pub(super) fn wanted(&self) -> Result<Wanted, Wrong> {
-        Ok(Wanted { plan: some(&self.plan), lane: some(&self.lane), period: self.period()? })
+        Ok(Wanted {
+            plan: some(&self.plan),
+            station: some(&self.station),
+            lane: some(&self.lane),
+            period: self.period()?,
+        })
     }
 
     /// The place after which the page begins.

@@ -71,7 +71,6 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
                     }
                 }
             }
-            @if visit.is_plant { (field(visit.say("nav.station"), "station", "search", &asked.station)) }
             (common(visit, asked, lanes, plans))
             (field(visit.say("history.operator"), "operator", "search", &asked.operator))
             span.acts {
@@ -82,9 +81,10 @@ fn form(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanNam
     }
 }
 
-/// The fields that runs, yields and failures have in common: plan, lane, first and last day.
+/// The fields that runs, yields and failures have in common: a plant's station, plan, lane, first and last day.
 pub(super) fn common(visit: &Visit, asked: &Asked, lanes: &[String], plans: &BTreeSet<PlanName>) -> Markup {
     html! {
+        @if visit.is_plant { (field(visit.say("nav.station"), "station", "search", &asked.station)) }
         label { span { (visit.say("history.plan")) }
             input type="search" name="plan" value=(asked.plan) list="plans";
         }

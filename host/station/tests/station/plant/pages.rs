@@ -45,6 +45,22 @@ pub(crate) fn text(browser: &Browser, path: &str) -> String {
     answer.text()
 }
 
+/// Nobody is to find the yield of one line in that of all.
+#[test]
+fn yields_and_failures_are_of_the_station_that_is_asked_for() {
+    let server = Server::prepared();
+    let (_made, _) = send(history(), server.address());
+    let (_folder, serving) = served(&server);
+    let browser = serving.here();
+    for (path, counted) in [("/yield", "<table class=\"yields\">"), ("/pareto", "<table class=\"pareto\">")] {
+        let page = |station: &str| text(&browser, &format!("{path}?station={station}"));
+        let here = page("station+7");
+        assert!(here.contains("name=\"station\" value=\"station 7\""), "{path}: {here}");
+        assert!(here.contains(counted), "{path}: {here}");
+        assert!(!page("station+8").contains(counted), "{path} of a station that judged nothing");
+    }
+}
+
 /// Everything that another program takes has the same bytes from both engines.
 #[test]
 fn what_is_exported_has_the_same_bytes_at_the_station_and_at_the_plant() {
@@ -166,8 +182,8 @@ fn a_plant_that_is_away_is_said_to_be_and_is_shown_again_when_it_is_back() {
     let away = browser.get("/history").with("accept", "text/html").send();
     assert_eq!(away.status, 503, "{}", away.text());
     assert!(away.text().contains("look whether it is there"), "{}", away.text());
+    let german = browser.get("/history").with("accept", "text/html").with("accept-language", "de").send();
+    assert!(german.text().contains("prüfen, ob es da ist"), "{}", german.text());
     server.again();
     text(&browser, "/history");
 }
-    let german = browser.get("/history").with("accept", "text/html").with("accept-language", "de").send();
-    assert!(german.text().contains("prüfen, ob es da ist"), "{}", german.text());
