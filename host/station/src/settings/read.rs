@@ -148,12 +148,18 @@ fn address(read: &SettingsText) -> Result<Address, Fault> {
     let listen = text(listen).unwrap_or_else(|| LISTEN.to_owned());
     let address = Address::new(&listen, text(public).as_deref(), hosts)
         .map_err(|error| Fault::input(place, "the address", error))?;
-    if address.is_private() || read.access.is_some() {
-        return Ok(address);
+    if !address.is_private() && read.access.is_none() {
+        let what = "others can reach these pages, and nobody logs in";
+        let remedy = "write [access] with users, or listen on 127.0.0.1 without `public` and `hosts`";
+        return Err(Fault::wrong(place, what, remedy));
     }
-    let what = "others can reach these pages, and nobody logs in";
-    let remedy = "write [access] with users, or listen on 127.0.0.1 without `public` and `hosts`";
-    Err(Fault::wrong(place, what, remedy))
+    if address.is_nameless() {
+        let what = format!(
+            "of all that arrives at {listen} nothing would be answered: no name is known by which browsers ask"
+        );
+        return Err(Fault::wrong(place, what, "write `hosts`, or `public` behind a proxy"));
+    }
+    Ok(address)
 }
 
 fn people(folder: &Path, text: &AccessText) -> Result<AccessSettings, Fault> {

@@ -68,6 +68,11 @@ impl Address {
         self.listen.ip().is_loopback() && !self.is_https && self.hosts.iter().all(is_here)
     }
 
+    /// Whether no name is known under which browsers could ask for it.
+    pub(crate) fn is_nameless(&self) -> bool {
+        self.hosts.is_empty()
+    }
+
     /// Whether what browsers send goes through TLS.
     pub(crate) fn is_https(&self) -> bool {
         self.is_https

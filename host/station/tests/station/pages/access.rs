@@ -20,6 +20,11 @@ fn what_others_can_reach_needs_people() {
         let said = Station::with(1, &format!("[web]\n{proxied}")).refused();
         assert!(said.contains("nobody logs in"), "{proxied}: {said}");
     }
+    for listen in ["0.0.0.0:0", "[::]:0"] {
+        let settings = format!("[web]\nlisten = \"{listen}\"\n[access]\nusers = \"users.toml\"");
+        let said = Station::with(1, &settings).refused();
+        assert!(said.contains("station.toml:6:") && said.contains("write `hosts`"), "{listen}: {said}");
+    }
     let people = Station::public(1);
     fs::set_permissions(people.path("users.toml"), fs::Permissions::from_mode(0o644)).unwrap();
     assert!(people.refused().contains("chmod 600"));
