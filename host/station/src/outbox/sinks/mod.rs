@@ -112,7 +112,7 @@ impl From<SinkError> for Undelivered {
             | SinkError::Unreached { .. }
             | SinkError::Closed { .. }
             | SinkError::Unconfirmed { .. } => Self::Away(said),
-            SinkError::Busy { status: 500, .. }
+            SinkError::Busy { status: 409 | 500, .. }
             | SinkError::Unwritten(_)
             | SinkError::Unread { .. }
             | SinkError::Export(_) => Self::NotNow(said),

@@ -87,7 +87,8 @@ impl PostSink {
         let (host, status) = (self.host.clone(), answered.as_u16());
         match status {
             200..=299 => Ok(()),
-            408 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
+            // It is still at work with the same key (draft-ietf-httpapi-idempotency-key-header-07, section 2.7), as after DEADLINE.
+            408 | 409 | 425 | 429 | 500..=599 => Err(SinkError::Busy { host, status }),
             300..=399 | 401 | 403 | 407 => Err(SinkError::Closed { host, status }),
             _ => Err(SinkError::Rejected { host, status, answer: beginning(body) }),
         }
