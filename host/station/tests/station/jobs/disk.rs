@@ -82,13 +82,19 @@ fn await_rows(server: &Server, text: &str) -> Vec<Vec<String>> {
     }
 }
 
-#[test]
-fn a_job_that_a_full_disk_kept_from_beginning_costs_no_attempt() {
+/// A plant with a job and a board, and a station whose database refuses this.
+fn one_job_and_no_disk_for(what: &str) -> (Server, Station) {
     let (server, mut plant) = shared(1);
     let station = Station::new(&server);
     let (plan, any) = (plan(), any());
     plant.add_jobs(&job(&plan, &any), 1).unwrap();
-    station.refuses("INSERT");
+    station.refuses(what);
+    (server, station)
+}
+
+#[test]
+fn a_job_that_a_full_disk_kept_from_beginning_costs_no_attempt() {
+    let (server, station) = one_job_and_no_disk_for("INSERT");
     let did = Did::from(station.work(&["--once"]).output().unwrap());
     assert!(did.code == Some(3) && did.complained.contains("the board not touched"), "{did:?}");
     assert_eq!(server.rows("SELECT state, attempts, fence FROM job"), [["waiting", "0", "1"]]);
@@ -104,11 +110,7 @@ fn a_job_that_a_full_disk_kept_from_beginning_costs_no_attempt() {
 /// Its run stays open until then, and nothing else is begun on its board.
 #[test]
 fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
-    let (server, mut plant) = shared(1);
-    let station = Station::new(&server);
-    let (plan, any) = (plan(), any());
-    plant.add_jobs(&job(&plan, &any), 1).unwrap();
-    station.refuses("UPDATE");
+    let (server, station) = one_job_and_no_disk_for("UPDATE");
     let worker = Worker(station.work(&[]).spawn().unwrap());
     await_rows(&server, "SELECT 1 FROM job WHERE attempts = 1 AND state = 'waiting'");
     station.is_well_again();
