@@ -319,6 +319,11 @@ fn unit(name: &str) -> Markup {
     }
 }
 
+/// So many bytes, with the language's decimal point.
+fn size(visit: &Visit, bytes: u64) -> String {
+    halfrow::report::wording::bytes(bytes).replace('.', visit.say("history.decimal"))
+}
+
 /// Exports and evidence.
 fn files(visit: &Visit, run: &UnitRun, kept: &[(Attachment, bool)]) -> Markup {
     let address = show::run_address(&run.line.id);
@@ -336,7 +341,7 @@ fn files(visit: &Visit, run: &UnitRun, kept: &[(Attachment, bool)]) -> Markup {
             ul.evidence { @for (one, is_here) in kept { li {
                 @if *is_here { a href=(format!("{address}/evidence/{}", one.sha256)) { (show::said(&one.name)) } }
                 @else { (show::said(&one.name)) " " span.soft { (visit.say("run.removed")) } }
-                " " span.soft { (halfrow::report::wording::bytes(one.bytes)) " · SHA-256 " code { (one.sha256) } }
+                " " span.soft { (size(visit, one.bytes)) " · SHA-256 " code { (one.sha256) } }
             } } }
         }
     }

@@ -101,7 +101,7 @@ fn drawn(visit: &Visit, lines: &[Yield]) -> Markup {
         @for of_plan in lines.chunk_by(|one, other| one.plan == other.plan) {
             figure.days {
                 figcaption { (visit.say("yield.first")) ", " (show::said(&of_plan[0].plan.plan)) }
-                div.wide tabindex="0" { (bars::days(visit.say("yield.first"), &named_days(of_plan))) }
+                div.wide tabindex="0" { (bars::days(visit.say("yield.first"), &named_days(visit, of_plan))) }
                 (beyond(visit, of_plan))
             }
         }
@@ -124,10 +124,11 @@ fn began(line: &Yield) -> String {
 }
 
 /// The newest days of a plan, whose lines begin with the newest, the earliest of them first.
-fn named_days(of_plan: &[Yield]) -> Vec<Day> {
+fn named_days(visit: &Visit, of_plan: &[Yield]) -> Vec<Day> {
+    let point = visit.say("history.decimal");
     let named = |line: &Yield| {
         let name = began(line);
-        let said = format!("{name}: {}", line.first_pass.text());
+        let said = format!("{name}: {}", line.first_pass.text().replace('.', point));
         Day { name, said, rate: line.first_pass, limits: line.limits }
     };
     of_plan.iter().take(MOST_DAYS).rev().map(named).collect()
