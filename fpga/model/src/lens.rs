@@ -104,7 +104,7 @@ pub enum LensError {
     #[error(
         "the lens's r(θ) turns back at {angle:.1} degrees off the axis, inside the frame; calibrate with points out to \
          the frame's corners, or give a field of view below {field:.1} degrees",
-        field = 2.0 * .angle
+        field = (20.0 * .angle).floor() / 10.0
     )]
     TurnsBack {
         /// Degrees from the axis.
