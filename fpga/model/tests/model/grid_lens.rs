@@ -1,8 +1,8 @@
 //! Grids from lenses: the projection against its inverse, what grids leave of it, and which grid is chosen.
 
 use halfrow_model::{
-    BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResidual, GridResiduals, TableSet,
-    exact_inverse,
+    BitDepth, CalibratedLens, Camera, Equidistant, Geometry, GridResidual, GridResiduals, GridShape,
+    TableSet, exact_inverse,
 };
 use proptest::prelude::*;
 
@@ -101,6 +101,10 @@ fn the_best_grid_has_the_least_error_that_the_entries_allow() {
         assert!(best.units().len() <= entries);
         let found = largest(&camera, &best);
         assert!(found < before, "{found} with {entries} entries, {before} with fewer");
+        for shape in GridShape::all().filter(|shape| shape.entries(camera.geometry()) <= entries) {
+            let other = largest(&camera, &camera.fitted_grid(shape));
+            assert!(found <= 1.01 * other, "{found} with {entries} entries, {other} with {shape}");
+        }
         before = found;
         check_ring(&best);
     }
