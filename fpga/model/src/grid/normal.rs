@@ -26,25 +26,18 @@ impl Normal {
         }
     }
 
-    /// The unknowns, by Cholesky's factor L of the matrix.
+    /// The unknowns.
     pub(super) fn solved(mut self) -> Vec<f64> {
-        for row in 0..self.right.len() {
+        let right = std::mem::take(&mut self.right);
+        self.factored().solved(right)
+    }
+
+    /// Cholesky's factor L of the matrix.
+    pub(super) fn factored(mut self) -> Factor {
+        for row in 0..self.entries.len() / (self.band + 1) {
             self.factor_row(row);
         }
-        let (stride, count) = (self.band + 1, self.right.len());
-        let (l, mut x) = (self.entries, self.right);
-        for row in 0..count {
-            let reach = row.min(self.band);
-            let known: f64 = (1..=reach).map(|back| l[row * stride + back] * x[row - back]).sum();
-            x[row] = (x[row] - known) / l[row * stride];
-        }
-        for row in (0..count).rev() {
-            x[row] /= l[row * stride];
-            for back in 1..=row.min(self.band) {
-                x[row - back] -= l[row * stride + back] * x[row];
-            }
-        }
-        x
+        Factor { band: self.band, l: self.entries }
     }
 
     /// A row of L from those above it.
@@ -62,5 +55,35 @@ impl Normal {
             self.entries[row * stride + back] =
                 if back == 0 { rest.max(f64::MIN_POSITIVE).sqrt() } else { rest / diagonal };
         }
+    }
+}
+
+/// L of a matrix L·Lᵀ, entry (i, i − d) at i · (`band` + 1) + d.
+pub(super) struct Factor {
+    band: usize,
+    l: Vec<f64>,
+}
+
+impl Factor {
+    /// How many unknowns there are.
+    pub(super) fn count(&self) -> usize {
+        self.l.len() / (self.band + 1)
+    }
+
+    /// The unknowns with which the matrix makes the right side `x`.
+    pub(super) fn solved(&self, mut x: Vec<f64>) -> Vec<f64> {
+        let (stride, l) = (self.band + 1, &self.l);
+        for row in 0..x.len() {
+            let reach = row.min(self.band);
+            let known: f64 = (1..=reach).map(|back| l[row * stride + back] * x[row - back]).sum();
+            x[row] = (x[row] - known) / l[row * stride];
+        }
+        for row in (0..x.len()).rev() {
+            x[row] /= l[row * stride];
+            for back in 1..=row.min(self.band) {
+                x[row - back] -= l[row * stride + back] * x[row];
+            }
+        }
+        x
     }
 }
