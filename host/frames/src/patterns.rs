@@ -90,8 +90,8 @@ pub(super) fn extremes(scene: &Scene) -> Result<Frame, FrameError> {
     })
 }
 
-/// Rings round the optical centre, ever closer: half a frame to its side they reach a quarter of a cycle per column, the
-/// finest that one colour can show.
+/// Rings round the optical centre's column in the frame's middle row, ever closer: half a frame to its side they reach a quarter
+/// of a cycle per column, the finest that one colour can show.
 pub(super) fn zone_plate(scene: &Scene) -> Result<Frame, FrameError> {
     let (width, height) = (scene.geometry.width() as u64, scene.geometry.height() as u64);
     let centre2 = u64::from(scene.geometry.centre2());
