@@ -16,7 +16,7 @@ use tiff::tags::Tag;
 pub(super) const FILTER_ARRAY: u16 = 32803;
 
 /// CFARepeatPatternDim, and what it must be here: two rows of two columns.
-const REPEAT: (u16, [u16; 2]) = (33421, [2, 2]);
+pub(super) const REPEAT: (u16, [u16; 2]) = (33421, [2, 2]);
 /// CFAPattern: one of red 0, green 1 and blue 2 for each place, row after row.
 pub(super) const PATTERN: u16 = 33422;
 /// DNGVersion.
@@ -27,10 +27,14 @@ const BACKWARD_VERSION: u16 = 50707;
 const CAMERA: u16 = 50708;
 /// CFAPlaneColor: the order of the colours in [`COLOUR_MATRIX`].
 const PLANES: u16 = 50710;
+/// CFALayout: 1 where rows and columns are not staggered.
+pub(super) const LAYOUT: u16 = 50711;
 /// LinearizationTable.
 pub(super) const LINEARISATION: u16 = 50712;
 /// BlackLevel.
 pub(super) const BLACK: u16 = 50714;
+/// BlackLevelDeltaH and BlackLevelDeltaV: what is added to [`BLACK`] in each column and row.
+pub(super) const BLACK_DELTAS: [u16; 2] = [50715, 50716];
 /// WhiteLevel.
 pub(super) const WHITE: u16 = 50717;
 /// ColorMatrix1: from XYZ to the camera's colours.

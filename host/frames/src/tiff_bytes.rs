@@ -7,6 +7,7 @@ const BYTE: u16 = 1;
 pub(super) const SHORT: u16 = 3;
 const LONG: u16 = 4;
 const RATIONAL: u16 = 5;
+const SIGNED_RATIONAL: u16 = 10;
 
 /// Numbers of either byte order at any place of a file.
 pub(super) struct Bytes<'a> {
@@ -48,7 +49,7 @@ impl<'a> Bytes<'a> {
         let size = match self.short(start.saturating_add(2))? {
             SHORT => 2,
             LONG => 4,
-            RATIONAL => 8,
+            RATIONAL | SIGNED_RATIONAL => 8,
             _ => return Err(DecodeError::TiffDirectory { offset: start }),
         };
         let count = usize::try_from(self.long(start.saturating_add(4))?).unwrap_or(usize::MAX);

@@ -98,6 +98,11 @@ pub(super) fn check(bytes: &[u8]) -> Result<Option<FilterArray>, DecodeError> {
     Ok(array)
 }
 
+fn no_bayer_pattern() -> DecodeError {
+    let what = "a colour filter array that is no Bayer pattern".to_owned();
+    DecodeError::Unsupported { what, remedy: "use a sensor of Bayer's pattern" }
+}
+
 /// Refuses samples that are not packed by a coding that is read here.
 fn check_coding(compression: u32) -> Result<(), DecodeError> {
     let (what, remedy) = match compression {
@@ -139,7 +144,8 @@ impl Tags {
             let value = match tag {
                 dng::PATTERN | dng::VERSION => file.four_bytes(start)?,
                 // Of a table only its presence matters; the others are not looked at unless the samples are raw.
-                dng::LINEARISATION | dng::BLACK | dng::ACTIVE_AREA => 0,
+                dng::LINEARISATION | dng::ACTIVE_AREA | dng::LAYOUT => 0,
+                tag if tag == dng::REPEAT.0 || Self::BLACKS.contains(&tag) => 0,
                 tag if Self::wanted(tag) => file.value(start)?,
                 _ => continue,
             };
@@ -166,9 +172,24 @@ impl Tags {
         self.entry(tag).map(|entry| entry.value)
     }
 
-    /// Refuses raw samples of `file`, `width` x `height`, that are not all of the picture, or not black at 0.
+    /// All that is black's: 0, or not there.
+    const BLACKS: [u16; 3] = [dng::BLACK, dng::BLACK_DELTAS[0], dng::BLACK_DELTAS[1]];
+
+    /// Refuses raw samples of `file`, `width` x `height`, that are not all of the picture, lie otherwise than in Bayer's pattern, or
+    /// are not black at 0.
     fn check_raw(&self, file: &Bytes<'_>, width: usize, height: usize) -> Result<(), DecodeError> {
         let values = |tag| self.entry(tag).map(|entry| file.values(entry.start)).transpose();
+        let (repeat, sides) = dng::REPEAT;
+        if values(repeat)?.is_some_and(|found| found != sides.map(u32::from)) {
+            return Err(no_bayer_pattern());
+        }
+        if values(dng::LAYOUT)?.is_some_and(|layout| layout != [1]) {
+            let what = "a DNG whose CFALayout is staggered".to_owned();
+            return Err(DecodeError::Unsupported {
+                what,
+                remedy: "write its samples in rows and columns first",
+            });
+        }
         let whole = [0, 0, height, width];
         if let Some(area) = values(dng::ACTIVE_AREA)?
             && !area.iter().map(|&side| usize::try_from(side).ok()).eq(whole.map(Some))
@@ -180,13 +201,15 @@ impl Tags {
                 remedy: "crop it to that area, and give the phase there",
             });
         }
-        match values(dng::BLACK)?.is_some_and(|black| black.iter().any(|&level| level != 0)) {
-            false => Ok(()),
-            true => {
-                let what = "a DNG whose BlackLevel is not 0".to_owned();
-                Err(DecodeError::Unsupported { what, remedy: "subtract it from the samples first" })
+        for (tag, name) in
+            Self::BLACKS.into_iter().zip(["BlackLevel", "BlackLevelDeltaH", "BlackLevelDeltaV"])
+        {
+            if values(tag)?.is_some_and(|black| black.iter().any(|&level| level != 0)) {
+                let what = format!("a DNG whose {name} is not 0");
+                return Err(DecodeError::Unsupported { what, remedy: "subtract it from the samples first" });
             }
         }
+        Ok(())
     }
 
     /// The filter array that the samples lie under, if they lie under any.
@@ -205,9 +228,7 @@ impl Tags {
         }
         match dng::phase_of(self.value(dng::PATTERN).unwrap_or(u32::MAX).to_be_bytes()) {
             Some(phase) => Ok(Some(FilterArray { phase, white: self.value(dng::WHITE), entry: entry.start })),
-            None => {
-                refused("a colour filter array that is no Bayer pattern", "use a sensor of Bayer's pattern")
-            }
+            None => Err(no_bayer_pattern()),
         }
     }
 }

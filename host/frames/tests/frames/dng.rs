@@ -82,6 +82,11 @@ fn what_is_no_plain_bayer_picture_is_refused_with_a_remedy() {
     let remedies = [
         (PATTERN + 8, vec![0, 0, 0, 0], "is no Bayer pattern"),
         (PATTERN + 4, 36_u32.to_le_bytes().to_vec(), "is no Bayer pattern"),
+        // The same four colours, in one row of four.
+        (REPEAT + 8, [1_u16, 4].map(u16::to_le_bytes).concat(), "is no Bayer pattern"),
+        // CFALayout 2, and BlackLevelDeltaV of 64, where CFARepeatPatternDim was.
+        (REPEAT, [50711_u16, 3, 1, 0, 2].map(u16::to_le_bytes).concat(), "CFALayout is staggered"),
+        (REPEAT, [50716 | 10 << 16, 1_u32, 8].map(u32::to_le_bytes).concat(), "BlackLevelDeltaV is not 0"),
         // A first picture in grey, as a preview is, whose raw samples lie elsewhere.
         (PHOTOMETRIC + 8, 1_u16.to_le_bytes().to_vec(), "as `dcraw -D -4 -T` does"),
         (VERSION, 50712_u16.to_le_bytes().to_vec(), "convert it to samples that are linear"),
