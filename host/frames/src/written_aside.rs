@@ -10,7 +10,7 @@ mod place;
 mod rename;
 mod under_way;
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
@@ -213,18 +213,19 @@ fn place(file: NamedTempFile, path: &Path, overwrite: bool) -> Result<(), (Write
     if overwrite && let Err(error) = check(path, true) {
         return Err((error, file));
     }
-    let placed = if overwrite {
-        file.persist(path).map_err(|refused| (refused.error, refused.file))
-    } else {
-        file.persist_noclobber(path).map_err(|refused| (refused.error, refused.file))
-    };
-    placed.map(drop).map_err(|(source, file)| {
-        let path = path.to_owned();
-        match source.kind() {
-            io::ErrorKind::AlreadyExists => (WriteAsideError::Exists { path }, file),
-            _ => (WriteAsideError::Io { path, source }, file),
+    let renamed = if overwrite { fs::rename(file.path(), path) } else { rename::to_new(file.path(), path) };
+    let path = path.to_owned();
+    match renamed {
+        Ok(()) => {
+            // It has another name by now, under which it stays.
+            let _ = file.keep();
+            Ok(())
         }
-    })
+        Err(source) if source.kind() == io::ErrorKind::AlreadyExists => {
+            Err((WriteAsideError::Exists { path }, file))
+        }
+        Err(source) => Err((WriteAsideError::Io { path, source }, file)),
+    }
 }
 
 /// Keeps what there is of a file, and says where.
@@ -261,8 +262,6 @@ pub fn sync_folder(folder: &Path) -> io::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
-
     use super::*;
 
     fn write(path: &Path, overwrite: bool, text: &str) -> Result<(), WriteAsideError> {

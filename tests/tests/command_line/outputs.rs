@@ -5,7 +5,7 @@ use std::os::unix::fs::symlink;
 use std::os::unix::net::UnixListener;
 use std::path::Path;
 
-use halfrow_tests::program::Folder;
+use halfrow_tests::program::{Folder, finish};
 
 use crate::{refused, small};
 
@@ -177,6 +177,18 @@ fn an_input_is_never_overwritten() {
         refused(&folder, &call, "is read by this call");
         assert!(folder.read(input) == before, "{call:?}");
     }
+}
+
+/// Neither can exFAT, nor some file systems of a network.
+#[test]
+fn a_file_system_without_renames_to_new_names_and_without_links_takes_files() {
+    let folder = Folder::new();
+    let line = "exec strace -f -qq -o /dev/null -e inject=renameat2:error=EINVAL -e inject=link,linkat:error=EPERM \"$@\"";
+    let write =
+        || finish(&mut folder.by_shell(line, small("correct", &["builtin:black", "--model", "-o", "a.pgm"])));
+    let (written, refused) = (write(), write());
+    assert_eq!((written.code, refused.code), (Some(0), Some(2)), "{}{}", written.stderr, refused.stderr);
+    assert_eq!(folder.names("."), ["a.pgm"]);
 }
 
 #[test]

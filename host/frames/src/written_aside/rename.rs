@@ -17,7 +17,7 @@ pub(super) fn to_new(from: &Path, to: &Path) -> io::Result<()> {
     }
 }
 
-/// [`to_new`] where the file system cannot: claims keep other runs of this program away between the two calls.
+/// [`to_new`] where the file system cannot. Claims keep other runs of this program away between the two calls, where there are any.
 fn to_new_by_looking(from: &Path, to: &Path) -> io::Result<()> {
     match std::fs::symlink_metadata(to) {
         Ok(_) => Err(io::ErrorKind::AlreadyExists.into()),
