@@ -9,7 +9,7 @@ use halfrow_model::Frame;
 use super::format::Format;
 use super::preview::{RgbImage, encode_png_rgb};
 use super::size::MAX_FILE_BYTES;
-use super::{Decoded, FrameShape, ReadError, ReadOptions, WriteError, png};
+use super::{Decoded, FrameShape, PictureSize, ReadError, ReadOptions, WriteError, photograph, png};
 use crate::written_aside::{BUFFER, write_aside};
 
 /// The frame in the file `path`. The bytes tell the format, not the name; without a header, `how.raw` must.
@@ -47,6 +47,20 @@ fn decode(bytes: &[u8], path: &Path, how: &ReadOptions) -> Result<Decoded, ReadE
 /// [`ReadError`] when the file cannot be read or holds no such picture.
 pub fn read_rgb(path: &Path) -> Result<RgbImage, ReadError> {
     png::decode_rgb(&bytes(path)?).map_err(|source| ReadError::Decode { path: path.to_owned(), source })
+}
+
+/// The picture in the file `path`, in red, green and blue of 8 bits: a PNG as [`read_rgb`] takes it, or a photograph, turned as its
+/// EXIF says.
+///
+/// # Errors
+/// [`ReadError`] when the file cannot be read or holds no such picture.
+pub fn read_shown(path: &Path) -> Result<RgbImage, ReadError> {
+    let bytes = bytes(path)?;
+    let shown = match photograph::Format::of(&bytes) {
+        Some(format) => photograph::shown(format, &bytes, PictureSize::Any).map(|(picture, _)| picture),
+        None => png::decode_rgb(&bytes),
+    };
+    shown.map_err(|source| ReadError::Decode { path: path.to_owned(), source })
 }
 
 /// Refuses what cannot be read twice: a pipe, which may also never begin, or a device. What is not there is left to be

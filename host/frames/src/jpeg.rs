@@ -1,6 +1,18 @@
-//! A first look at a JPEG, which decides whether its decoder may see it: that one fills up what is missing or unknown to it.
+//! JPEG, with a first look at the file, which decides whether its decoder may see it: that one fills up what is missing or unknown
+//! to it.
 //!
 //! Markers and their names are those of ITU-T T.81, table B.1.
+
+use std::borrow::Cow;
+use std::io;
+
+use image::error::{DecodingError, ImageFormatHint, UnsupportedError, UnsupportedErrorKind};
+use image::{ColorType, ImageDecoder, ImageError, ImageFormat, ImageResult};
+use zune_jpeg::JpegDecoder;
+use zune_jpeg::errors::DecodeErrors;
+use zune_jpeg::zune_core::bytestream::ZCursor;
+use zune_jpeg::zune_core::colorspace::ColorSpace;
+use zune_jpeg::zune_core::options::DecoderOptions;
 
 use super::DecodeError;
 use super::error::BROKEN_OFF;
@@ -13,26 +25,114 @@ pub(super) const MAGIC: &[u8] = b"\xff\xd8\xff";
 const SCAN: u8 = 0xda;
 /// End of image.
 const END: u8 = 0xd9;
+/// Start of frame of the progressive process.
+const PROGRESSIVE: u8 = 0xc2;
+/// The most pixels for which a coded byte stands: each block of 8 x 8 takes a bit.
+const PIXELS_A_BYTE: u64 = 8 * 8 * 8;
+/// What stands in the place of the end of image: the decoder, which reads up to nine bytes ahead, comes to its end only if samples
+/// are missing.
+const BEYOND: [u8; 16] = [0; 16];
 /// How a JPEG is to be saved that is of another kind.
 const REMEDY: &str = "save it as a baseline or progressive JPEG of 8 bits in RGB";
 
+/// A JPEG whose headers are read.
+pub(super) struct Jpeg<'a> {
+    /// As [`checked`] has it.
+    bytes: Cow<'a, [u8]>,
+    size: (u32, u32),
+    is_grey: bool,
+    exif: Option<Vec<u8>>,
+}
+
+type Decoder<'a> = JpegDecoder<ZCursor<&'a [u8]>>;
+
+impl<'a> Jpeg<'a> {
+    /// The JPEG in `bytes`.
+    ///
+    /// # Errors
+    /// [`DecodeError`] when it is damaged as far as its headers tell, or of a kind that is not taken.
+    pub(super) fn new(bytes: &'a [u8]) -> Result<Self, DecodeError> {
+        let bytes = checked(bytes)?;
+        let decoder = with_headers(&bytes, ColorSpace::RGB);
+        let decoder = decoder.map_err(|error| Format::Jpeg.refused(&found(error)))?;
+        let size = decoder.info().map_or((0, 0), |info| (info.width.into(), info.height.into()));
+        let is_grey = decoder.input_colorspace() == Some(ColorSpace::Luma);
+        let exif = decoder.exif().cloned();
+        Ok(Self { bytes, size, is_grey, exif })
+    }
+}
+
+/// Reads the headers of a JPEG that will be decoded to `colours`. Strange bytes between them are passed over, and in samples not.
+fn with_headers(bytes: &[u8], colours: ColorSpace) -> Result<Decoder<'_>, DecodeErrors> {
+    let options = DecoderOptions::default()
+        .jpeg_set_out_colorspace(colours)
+        .set_max_width(usize::MAX)
+        .set_max_height(usize::MAX);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options.set_strict_mode(false));
+    decoder.decode_headers()?;
+    decoder.set_options(options.set_strict_mode(true));
+    Ok(decoder)
+}
+
+impl ImageDecoder for Jpeg<'_> {
+    fn dimensions(&self) -> (u32, u32) {
+        self.size
+    }
+
+    fn color_type(&self) -> ColorType {
+        if self.is_grey { ColorType::L8 } else { ColorType::Rgb8 }
+    }
+
+    fn exif_metadata(&mut self) -> ImageResult<Option<Vec<u8>>> {
+        Ok(self.exif.clone())
+    }
+
+    fn read_image(self, samples: &mut [u8]) -> ImageResult<()> {
+        if u64::from(self.size.0) * u64::from(self.size.1) / PIXELS_A_BYTE > self.bytes.len() as u64 {
+            return Err(found(DecodeErrors::ExhaustedData));
+        }
+        let colours = if self.is_grey { ColorSpace::Luma } else { ColorSpace::RGB };
+        with_headers(&self.bytes, colours).and_then(|mut it| it.decode_into(samples)).map_err(found)
+    }
+
+    fn read_image_boxed(self: Box<Self>, samples: &mut [u8]) -> ImageResult<()> {
+        (*self).read_image(samples)
+    }
+}
+
+/// What the decoder found, as all photographs' have it.
+fn found(error: DecodeErrors) -> ImageError {
+    let format = ImageFormatHint::Exact(ImageFormat::Jpeg);
+    match error {
+        DecodeErrors::ExhaustedData | DecodeErrors::FormatStatic("Premature end of buffer") => {
+            ImageError::IoError(io::ErrorKind::UnexpectedEof.into())
+        }
+        DecodeErrors::Unsupported(_) => ImageError::Unsupported(UnsupportedError::from_format_and_kind(
+            format.clone(),
+            UnsupportedErrorKind::Format(format),
+        )),
+        error => ImageError::Decoding(DecodingError::new(format, error)),
+    }
+}
+
 /// Refuses a JPEG that is not of 8 bits, grey or of three colours, coded by Huffman's baseline, extended or progressive process, or
-/// that breaks off. What follows its end is not looked at: cameras put more there.
+/// that breaks off. What follows its end is left out: cameras put more there. Of all but a progressive one, [`BEYOND`] follows.
 ///
 /// # Errors
 /// [`DecodeError`] that names what is not taken.
-pub(super) fn check(bytes: &[u8]) -> Result<(), DecodeError> {
+fn checked(bytes: &[u8]) -> Result<Cow<'_, [u8]>, DecodeError> {
     let mut segments = Segments { bytes, place: 2 };
-    let mut has_frame = false;
+    let mut frame = None;
     loop {
         let (marker, content) = segments.next().ok_or_else(|| damaged(BROKEN_OFF))?;
-        match marker {
-            END if has_frame => return Ok(()),
-            END => return Err(damaged("it ends before its picture")),
-            SCAN => segments.skip_scan(),
-            0xc0..=0xcf if !matches!(marker, 0xc4 | 0xc8 | 0xcc) => {
+        match (marker, frame) {
+            (END, None) => return Err(damaged("it ends before its picture")),
+            (END, Some(PROGRESSIVE)) => return Ok(bytes[..segments.place].into()),
+            (END, Some(_)) => return Ok([&bytes[..segments.place - 2], &BEYOND].concat().into()),
+            (SCAN, _) => segments.skip_scan(),
+            (0xc0..=0xcf, _) if !matches!(marker, 0xc4 | 0xc8 | 0xcc) => {
                 check_frame(marker, content)?;
-                has_frame = true;
+                frame = Some(marker);
             }
             _ => {}
         }

@@ -37,7 +37,9 @@ use halfrow_model::{BitDepth, Frame, Phase};
 
 pub use builtin::{Builtin, UnknownBuiltin};
 pub use error::{DecodeError, EncodeError, PackingError, ReadError, WriteError};
-pub use file::{check_png, check_regular, read, read_fitted, read_rgb, write, write_rgb, write_rows};
+pub use file::{
+    check_png, check_regular, read, read_fitted, read_rgb, read_shown, write, write_rgb, write_rows,
+};
 pub use fitting::{Fitting, PictureSize};
 pub use format::{Format, UnknownFormat};
 pub use heat_map::HeatMap;

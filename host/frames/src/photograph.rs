@@ -9,14 +9,14 @@ use std::io::{Cursor, Read as _};
 use std::path::Path;
 
 use image::codecs::bmp::BmpDecoder;
-use image::codecs::jpeg::JpegDecoder;
 use image::codecs::webp::WebPDecoder;
 use image::metadata::Orientation;
 use image::{DynamicImage, ImageDecoder, ImageError, ImageResult, Limits};
 
 use super::error::BROKEN_OFF;
+use super::jpeg::{self, Jpeg};
 use super::preview::RgbImage;
-use super::{DecodeError, Decoded, ReadOptions, jpeg, mosaic};
+use super::{DecodeError, Decoded, Fitting, PictureSize, ReadOptions, mosaic};
 
 /// The most pixels that a photograph may have.
 pub(super) const MAX_PIXELS: u64 = 100_000_000;
@@ -43,7 +43,8 @@ impl Format {
         }
     }
 
-    fn name(self) -> &'static str {
+    /// What it is called.
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Jpeg => "JPEG",
             Self::WebP => "WebP",
@@ -56,10 +57,7 @@ impl Format {
         let input = Cursor::new(bytes);
         let refused = |error| self.refused(&error);
         Ok(match self {
-            Self::Jpeg => {
-                jpeg::check(bytes)?;
-                Box::new(JpegDecoder::new(input).map_err(refused)?)
-            }
+            Self::Jpeg => Box::new(Jpeg::new(bytes)?),
             Self::WebP => Box::new(self.still(bytes, WebPDecoder::new(input).map_err(refused)?)?),
             Self::Bmp => Box::new(BmpDecoder::new(input).map_err(refused)?),
         })
@@ -86,7 +84,7 @@ impl Format {
     }
 
     /// What the decoder found.
-    fn refused(self, error: &ImageError) -> DecodeError {
+    pub(super) fn refused(self, error: &ImageError) -> DecodeError {
         match error {
             ImageError::Unsupported(_) => DecodeError::Unsupported {
                 what: format!("this kind of {}", self.name()),
@@ -114,20 +112,33 @@ pub fn is_photograph(path: &Path) -> bool {
     regular && read().is_ok() && Format::of(&head).is_some()
 }
 
-/// The frame of the photograph in `bytes`, turned as its EXIF says, mosaicked to `how.phase`.
+/// The frame of the photograph in `bytes`, as it is [`shown`], mosaicked to `how.phase`.
 ///
 /// # Errors
-/// [`DecodeError`] when it is damaged, of a kind that is not taken, larger than [`MAX_PIXELS`], or not of the size that `how` asks for.
+/// Those of [`shown`].
 pub(super) fn decode(format: Format, bytes: &[u8], how: &ReadOptions) -> Result<Decoded, DecodeError> {
+    let (picture, fitting) = shown(format, bytes, how.size)?;
+    Ok(Decoded { frame: mosaic::of_rgb(&picture, how)?, fitting })
+}
+
+/// The photograph in `bytes`, turned as its EXIF says, and how it was fitted.
+///
+/// # Errors
+/// [`DecodeError`] when it is damaged, of a kind that is not taken, larger than [`MAX_PIXELS`], or not of the `size` asked for.
+pub(super) fn shown(
+    format: Format,
+    bytes: &[u8],
+    size: PictureSize,
+) -> Result<(RgbImage, Option<Fitting>), DecodeError> {
     let mut decoder = format.decoder(bytes)?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MAX_PIXELS {
         return Err(DecodeError::TooManyPixels { width: width.into(), height: height.into() });
     }
     let orientation = decoder.orientation().map_err(|error| format.refused(&error))?;
-    let size = (width as usize, height as usize);
+    let (width, height) = (width as usize, height as usize);
     let is_turned = is_quarter_turn(orientation);
-    let fitting = how.size.fitting(if is_turned { (size.1, size.0) } else { size })?;
+    let fitting = size.fitting(if is_turned { (height, width) } else { (width, height) })?;
     let mut image = image(decoder).map_err(|error| format.refused(&error))?;
     if let Some(fitting) = fitting {
         let as_it_lies = if is_turned { fitting.turned() } else { fitting };
@@ -136,8 +147,7 @@ pub(super) fn decode(format: Format, bytes: &[u8], how: &ReadOptions) -> Result<
     let mut shown = DynamicImage::ImageRgb8(image);
     shown.apply_orientation(orientation);
     let (width, height) = (shown.width() as usize, shown.height() as usize);
-    let picture = RgbImage { width, height, data: shown.into_rgb8().into_raw() };
-    Ok(Decoded { frame: mosaic::of_rgb(&picture, how)?, fitting })
+    Ok((RgbImage { width, height, data: shown.into_rgb8().into_raw() }, fitting))
 }
 
 fn image(mut decoder: Box<dyn ImageDecoder + '_>) -> ImageResult<image::RgbImage> {

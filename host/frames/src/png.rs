@@ -7,7 +7,7 @@ use png::{ColorType, Decoder, DecodingError, Encoder, EncodingError, Info, Trans
 
 use super::mosaic::Picture;
 use super::preview::RgbImage;
-use super::{DecodeError, ReadOptions, size};
+use super::{DecodeError, ReadOptions, photograph, size};
 
 /// The first bytes of a PNG.
 pub(super) const MAGIC: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -25,8 +25,13 @@ pub fn decode(bytes: &[u8], how: &ReadOptions) -> Result<Frame, DecodeError> {
 /// The picture in the bytes of a PNG in red, green and blue of 8 bits, as it is; alpha is ignored.
 ///
 /// # Errors
-/// [`DecodeError`] when [`decode`] would refuse the PNG, or when it is grey or has 16 bits.
+/// [`DecodeError`] when [`decode`] would refuse the PNG, when it is none, or when it is grey or has 16 bits.
 pub(super) fn decode_rgb(bytes: &[u8]) -> Result<RgbImage, DecodeError> {
+    if !bytes.starts_with(MAGIC) {
+        let what = photograph::Format::of(bytes)
+            .map_or("what is no PNG".to_owned(), |it| format!("a {}", it.name()));
+        return Err(DecodeError::Unsupported { what, remedy: "give a PNG in colour, 8 bits a sample" });
+    }
     picture(bytes)?.into_rgb().ok_or(DecodeError::Unsupported {
         what: "a PNG that is not in colour with 8 bits a sample".to_owned(),
         remedy: "give the photograph itself, in red, green and blue",

@@ -7,7 +7,7 @@ use halfrow_frames::preview::{RgbImage, encode_png_rgb};
 use halfrow_frames::{
     DecodeError, PictureSize, ReadError, ReadOptions, decode, is_photograph, mosaic, read, read_fitted,
 };
-use halfrow_frames::{RowReader, read_rgb};
+use halfrow_frames::{RowReader, read_rgb, read_shown};
 use halfrow_model::{BitDepth, Phase};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
@@ -198,9 +198,8 @@ fn a_header_cannot_ask_for_more_than_is_decoded() {
     assert!(decode(&webp, &ReadOptions::default()).is_err());
 }
 
-/// Of a BMP's last row, the padding is dispensable; of a WebP, what stands behind its picture.
 #[test]
-fn every_truncation_of_a_jpeg_is_an_error_and_none_of_another_panics() {
+fn every_truncation_is_an_error() {
     for (name, _) in READ {
         let file = bytes(name);
         for length in (0..file.len()).filter(|length| length % 97 == 0 || length + 4 > file.len()) {
@@ -208,6 +207,57 @@ fn every_truncation_of_a_jpeg_is_an_error_and_none_of_another_panics() {
             assert!(result.is_err(), "{length} of {} bytes of {name}", file.len());
         }
     }
+}
+
+/// A third of the samples and an end as in a whole file: what a decoder fills up.
+#[test]
+fn a_jpeg_with_samples_missing_is_refused() {
+    for name in ["baseline.jpg", "subsampled.jpg", "grey.jpg", "turned6.jpg"] {
+        let file = bytes(name);
+        let scan = file.windows(2).rposition(|pair| pair == [0xff, 0xda]).unwrap() + 14;
+        for share in [3, 2] {
+            let cut = [&file[..scan + (file.len() - scan) / share], b"\xff\xd9"].concat();
+            let error = decode(&cut, &ReadOptions::default()).unwrap_err().to_string();
+            assert!(error.starts_with("the JPEG is damaged: it breaks off"), "1/{share} of {name}: {error}");
+        }
+    }
+}
+
+/// 10000 x 9999 in a few kilobytes: each block of 8 x 8 pixels takes a bit at least.
+#[test]
+fn a_jpeg_of_fewer_bits_than_blocks_is_refused() {
+    for (name, frame) in [("baseline.jpg", 0xc0), ("progressive.jpg", 0xc2)] {
+        let mut file = bytes(name);
+        let header = file.windows(4).position(|window| window == [0xff, frame, 0, 17]).unwrap();
+        file[header + 5..header + 9].copy_from_slice(&[0x27, 0x0f, 0x27, 0x10]);
+        let error = decode(&file, &ReadOptions::default()).unwrap_err().to_string();
+        assert!(error.starts_with("the JPEG is damaged: it breaks off"), "{name}: {error}");
+    }
+}
+
+/// Decoders of JPEG may round otherwise than Pillow's.
+#[test]
+fn photographs_are_shown_as_pictures_of_colours_too() {
+    for (name, most) in READ {
+        let (found, wanted) =
+            (read_shown(&path(name)).unwrap(), read_rgb(&path(&format!("{name}.png"))).unwrap());
+        assert_eq!((found.width, found.height), (wanted.width, wanted.height), "{name}");
+        let apart = found.data.iter().zip(&wanted.data).map(|(found, wanted)| found.abs_diff(*wanted)).max();
+        assert!(apart.map(u16::from) <= Some(most), "{name}: {apart:?}");
+        let refused = read_rgb(&path(name)).unwrap_err();
+        let ReadError::Decode { source: DecodeError::Unsupported { what, remedy }, .. } = refused else {
+            panic!("{name}")
+        };
+        let format = if name.ends_with("jpg") {
+            "a JPEG"
+        } else if name.ends_with("webp") {
+            "a WebP"
+        } else {
+            "a BMP"
+        };
+        assert_eq!((what.as_str(), remedy), (format, "give a PNG in colour, 8 bits a sample"));
+    }
+    assert_eq!(read_shown(&path("small.png")).unwrap(), read_rgb(&path("small.png")).unwrap());
 }
 
 #[test]

@@ -36,7 +36,7 @@ pub struct MarkedPhotograph {
 #[derive(Debug, thiserror::Error)]
 pub enum MarkedError {
     /// The photograph cannot be read.
-    #[error("the photograph cannot be used; give a picture in colours, such as a PNG")]
+    #[error("the photograph cannot be used; give a PNG in colour of 8 bits, a JPEG, a WebP or a BMP")]
     Photograph(#[from] ReadError),
     /// The file of lines cannot be read.
     #[error("{} cannot be read; check that it is there and readable", path.display())]
@@ -121,6 +121,6 @@ impl MarkedPhotograph {
             found.ok_or_else(|| MarkedError::Line { path: path(), number })
         });
         let lines = marked.collect::<Result<_, _>>()?;
-        Ok(Self { image: frames::read_rgb(photograph)?, centre: (column, row), radius, lines })
+        Ok(Self { image: frames::read_shown(photograph)?, centre: (column, row), radius, lines })
     }
 }
