@@ -26,6 +26,7 @@ fn calls() -> Vec<(Vec<&'static str>, &'static str)> {
         (small("correct", &["builtin:black", "--model", "-o", "a.raw", "--preview", "b.png"]), "b.png"),
         (vec!["kernel", "train", "--images", ".", "-o", "kernel.json"], "kernel.json"),
         (vec!["paper", "fig8", "delay", "--board", DEAD, "-o", "paper"], "paper/paper.html"),
+        (vec!["paper", "fig8", "delay", "--board", DEAD, "-o", "paper"], "paper/fig-8c.svg"),
         (vec!["manual", "man"], "man/halfrow-lens.1"),
     ]
 }
@@ -169,8 +170,13 @@ fn an_input_is_never_overwritten() {
         (small("lens", &["--lens", "lens.png", "--map", "lens.png"]), "lens.png"),
         (vec!["kernel", "train", "--images", ".", "-o", "noise.png"], "noise.png"),
         (vec!["paper", "resources", "--synthesis", "tiny/paper.json", "-o", "tiny"], "tiny/paper.json"),
+        (
+            vec!["paper", "fig4", "--photograph", "tiny/fig-4a.png", "--lines", "s.toml", "-o", "tiny"],
+            "tiny/fig-4a.png",
+        ),
     ];
     folder.write("tiny/paper.json", "{}");
+    folder.write("tiny/fig-4a.png", "a photograph");
     for (call, input) in calls {
         let before = folder.read(input);
         let call: Vec<_> = call.iter().copied().chain(["--overwrite"]).collect();

@@ -1,5 +1,6 @@
 //! `paper`: what it writes, what it finds, and what it refuses.
 
+use halfrow_lab::paper::Item;
 use halfrow_tests::program::Folder;
 use serde_json::{Value, json};
 
@@ -11,7 +12,19 @@ fn made(folder: &Folder, code: i32, arguments: &[&str]) -> (Value, String) {
     let call = ["paper", "--quiet", "-o", "out"].iter().chain(arguments).copied();
     let ended = folder.halfrow(call);
     assert_eq!(ended.code, Some(code), "{arguments:?}: {}{}", ended.stdout, ended.stderr);
-    (serde_json::from_slice(&folder.read("out/paper.json")).unwrap(), ended.stdout)
+    let report: Value = serde_json::from_slice(&folder.read("out/paper.json")).unwrap();
+    // Whatever is written was looked at before.
+    if !arguments.contains(&"--overwrite") {
+        let items = report["items"].as_array().unwrap().iter();
+        let items = items.map(|item| item["item"].as_str().unwrap().parse::<Item>().unwrap());
+        let listed: Vec<_> = items.flat_map(Item::files).chain(&["paper.html", "paper.json"]).collect();
+        assert!(
+            folder.names("out").iter().all(|name| listed.contains(&&name.as_str())),
+            "{:?}",
+            folder.names("out")
+        );
+    }
+    (report, ended.stdout)
 }
 
 #[test]

@@ -169,7 +169,7 @@ impl Arguments {
             .reads([&self.synthesis])
             .reads(&self.photograph)
             .reads(&self.lines)
-            .writes_into("--output", Folder::fixed_files(&self.output))
+            .writes_into("--output", Folder::files(&self.output, items))
             .check()
     }
 

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::exhibit::{Drawing, Exhibit, Picture};
-use super::page;
+use super::{Item, page};
 use halfrow::frames::preview;
 use halfrow::result::SCHEMA;
 use halfrow_frames::written_aside::{Claim, WriteAsideError, check, write_aside};
@@ -58,10 +58,10 @@ impl Folder {
         Ok(Self { path: path.to_owned(), overwrite, _claim: claim })
     }
 
-    /// The files that there are in `folder` whatever the exhibits.
-    #[must_use]
-    pub fn fixed_files(folder: &Path) -> [PathBuf; 2] {
-        [PAGE, NUMBERS].map(|name| folder.join(name))
+    /// The files that `items` may write into `folder`, the page first.
+    pub fn files(folder: &Path, items: &[Item]) -> impl Iterator<Item = PathBuf> {
+        let of_items = items.iter().flat_map(|item| item.files());
+        [PAGE, NUMBERS].iter().chain(of_items).map(|name| folder.join(name))
     }
 
     /// Writes everything, the page last, and returns where that is.
@@ -130,6 +130,38 @@ pub(super) fn encoded(picture: &Picture) -> Result<Vec<u8>, png::EncodingError> 
             let mut bytes = Vec::new();
             preview::encode_png_rgb(image, &mut bytes)?;
             Ok(bytes)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+    use crate::paper::Material;
+    use halfrow::frames::preview::RgbImage;
+    use halfrow::progress::Silent;
+
+    /// What takes photographs; tests of the program hold all other items to their lists.
+    #[test]
+    fn items_of_photographs_write_the_files_on_their_lists() {
+        let (width, height) = (768, 512);
+        let flat = RgbImage { width, height, data: vec![90; 3 * width * height] };
+        let (photographs, synthesis) = (vec![flat; 8], Path::new(""));
+        let mut material = Material {
+            photographs: &photographs,
+            marked: None,
+            board: None,
+            through_board: false,
+            synthesis,
+        };
+        for item in Item::ALL.into_iter().filter(|item| item.needs_photographs()) {
+            let exhibit = material.exhibit(item, &Silent).unwrap();
+            let tables = exhibit.tables.iter().map(|table| format!("{}.csv", table.name));
+            let written: BTreeSet<String> = tables.chain(exhibit.pictures.iter().map(file_name)).collect();
+            let listed = item.files().iter().filter(|&&name| name != "table-1-board.csv");
+            assert_eq!(written, listed.map(|&name| name.to_owned()).collect(), "{item:?}");
         }
     }
 }
