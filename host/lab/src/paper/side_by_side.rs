@@ -133,7 +133,9 @@ impl Facades {
     }
 
     fn claim(&self) -> Claim {
+        // An edge that is not found any more may have bent out of sight.
         let found = self.corrected.iter().find(|(way, ..)| *way == Way::Exact);
+        let found = found.filter(|(.., edges)| edges.len() == self.fisheye.len());
         Claim {
             what: format!("farthest that an edge is from straight, exact projection, {}", self.lens),
             unit: "px",
@@ -151,7 +153,7 @@ impl Facades {
     }
 }
 
-/// How far edges are from their mean columns, in pixels, by medians of [`ROWS`] rows.
+/// How far edges are from their mean columns, in pixels, by medians of [`ROWS`] rows; no numbers if there is no such edge.
 struct Bend {
     mean: f64,
     max: f64,
@@ -172,7 +174,7 @@ fn distances(edge: &FoundEdge) -> Vec<f64> {
 
 impl Bend {
     fn of(edges: &[FoundEdge]) -> Self {
-        let (mut count, mut sum, mut max) = (0.0, 0.0, 0.0_f64);
+        let (mut count, mut sum, mut max) = (0.0, 0.0, f64::NAN);
         for distance in edges.iter().flat_map(distances) {
             (count, sum, max) = (count + 1.0, sum + distance, max.max(distance));
         }
@@ -262,5 +264,23 @@ fn edges(facades: &[Facades]) -> Table {
         columns: columns.map(str::to_owned).to_vec(),
         rows,
         on_page: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_that_are_not_found_are_not_straight() {
+        let straight = FoundEdge { longitude: 0.0, places: (0..40).map(|row| (row, 9.0)).collect() };
+        let frame = || Frame::new(64, halfrow_model::BitDepth::Eight, Phase::Grbg, vec![0; 64]).unwrap();
+        let holds = |before: usize, behind: usize| {
+            let edges = |count| vec![straight.clone(); count];
+            let corrected = vec![(Way::Exact, frame(), edges(behind))];
+            Facades { lens: PAPER, file: "paper", fisheye: edges(before), corrected }.claim().holds()
+        };
+        assert!(holds(2, 2));
+        assert!(!holds(2, 1) && !holds(2, 0) && !holds(0, 0));
     }
 }
