@@ -1,8 +1,9 @@
 //! The normal equations of a kernel's nodes: 65 times the five stored weights.
 
 use halfrow_model::{Interpolant, Kernel, NODES, Taps, WEIGHT_ONE};
+use nalgebra::{DMatrix, DVector};
 
-use super::{TrainingError, Warped, cholesky};
+use super::{TrainingError, Warped};
 
 /// Weights that a node stores.
 const STORED: usize = 5;
@@ -127,12 +128,12 @@ impl Equations {
         let entry = |row: usize, column: usize| {
             self.matrix[row * SIZE + column] + if row == column { ridge } else { 0.0 }
         };
-        let matrix: Vec<f64> =
-            free.iter().flat_map(|&row| free.iter().map(move |&column| entry(row, column))).collect();
-        let right: Vec<f64> = free.iter().map(|&row| self.right[row] + ridge * hermite(row)).collect();
-        let solution = cholesky::solve(&matrix, &right).ok_or(TrainingError::Singular)?;
+        let matrix = DMatrix::from_fn(free.len(), free.len(), |row, column| entry(free[row], free[column]));
+        let right = free.iter().map(|&row| self.right[row] + ridge * hermite(row));
+        let right = DVector::from_iterator(free.len(), right);
+        let solution = matrix.cholesky().ok_or(TrainingError::Singular)?.solve(&right);
         let mut weights = vec![[0.0; STORED]; NODES];
-        for (place, weight) in free.into_iter().zip(solution) {
+        for (place, &weight) in free.into_iter().zip(&solution) {
             weights[place / STORED][place % STORED] = weight;
         }
         Ok(Kernel::from_weights(&weights)?)

@@ -4,13 +4,11 @@
 //! photographs themselves solve one system of linear equations. G2 and R3 are never unknowns: what they take up of the others
 //! is built into the equations as it is into the datapath, so a fitted kernel keeps a flat field whatever the photographs are.
 
-mod cholesky;
 mod equations;
 mod figures;
 mod measure;
 mod model;
 
-pub use cholesky::solve;
 pub use equations::{Equations, RIDGE};
 pub use figures::noise_gain;
 pub(crate) use measure::Warped;
