@@ -1,6 +1,7 @@
 //! What each way to make tables leaves of the exact projection, per lens, frame and optical centre.
 
 use halfrow_model::{Camera, CameraError, Equidistant, GridResidual, GridResiduals, TableSet};
+use rayon::prelude::*;
 
 use super::cameras::{self, DSL215, FISHEYE_MODEL, FULL_HD, PAPER, SENSOR};
 use super::exhibit::{Accepted, Cell, Claim, Exhibit, Table};
@@ -67,9 +68,9 @@ pub(super) fn exhibit() -> Result<Exhibit, PaperError> {
          computed elsewhere.",
     );
     let (mut ways, mut parts) = (Vec::new(), Vec::new());
-    for case in &CASES {
-        let left = Left::of(case)?;
-        exhibit.claims.push(claim(case, &left));
+    let all = CASES.par_iter().map(Left::of).collect::<Result<Vec<_>, _>>()?;
+    for (case, left) in CASES.iter().zip(&all) {
+        exhibit.claims.push(claim(case, left));
         ways.push(left.ways());
         parts.push(left.parts());
     }

@@ -3,6 +3,7 @@
 use halfrow_model::{Frame, Interpolant, Kernel, TableSet};
 use rand_core::Rng;
 use rand_pcg::Pcg32;
+use rayon::prelude::*;
 
 use super::{Model, TrainingError, Warp};
 use crate::paper::psnr;
@@ -104,45 +105,49 @@ pub fn measure(
     progress: &dyn Progress,
 ) -> Result<Vec<Gains>, TrainingError> {
     let kernels = [Kernel::from(Interpolant::Hermite), kernel.clone()];
-    let mut scores = vec![Vec::new(); Condition::ALL.len()];
-    for (index, photograph) in photographs.iter().enumerate() {
+    let scores = photographs.par_iter().enumerate().map(|(index, photograph)| {
         progress.frame(&format!("photograph {}", index + 1));
-        let [linear, band_limited] = Warp::ALL.map(|warp| Model { radius: RADIUS, warp }.warped(photograph));
-        let (linear, band_limited) = (linear?, band_limited?);
-        for (condition, scores) in Condition::ALL.into_iter().zip(&mut scores) {
-            let [hermite, own] = &kernels;
-            let score = |kernel| score(condition, photograph, (&linear, &band_limited), kernel);
-            scores.push([score(hermite)?, score(own)?]);
-        }
+        let scores = scores(photograph, &kernels);
         progress.rows(photograph.height as u64);
-    }
-    let gains = Condition::ALL.into_iter().zip(&scores).map(|(condition, scores)| {
-        let hermite: Vec<f64> = scores.iter().map(|score| score[0]).collect();
-        let gains: Vec<f64> = scores.iter().map(|score| score[1] - score[0]).collect();
+        scores
+    });
+    let scores = scores.collect::<Result<Vec<_>, _>>()?;
+    let gains = Condition::ALL.into_iter().enumerate().map(|(place, condition)| {
+        let hermite: Vec<f64> = scores.iter().map(|scores| scores[place][0]).collect();
+        let gains: Vec<f64> = scores.iter().map(|scores| scores[place][1] - scores[place][0]).collect();
         Gains { condition: condition.name(), hermite: Spread::of(&hermite).mean, gain: Spread::of(&gains) }
     });
     Ok(gains.collect())
 }
 
+/// PSNR in dB under each of [`Condition::ALL`], by either kernel.
+fn scores(photograph: &RgbImage, kernels: &[Kernel; 2]) -> Result<Vec<[f64; 2]>, TrainingError> {
+    let [linear, band_limited] = Warp::ALL.map(|warp| Model { radius: RADIUS, warp }.warped(photograph));
+    let (linear, band_limited) = (linear?, band_limited?);
+    let scores = Condition::ALL.map(|condition| {
+        let is_linear = matches!(condition, Condition::Warped(Warp::Linear));
+        let warped = if is_linear { &linear } else { &band_limited };
+        let seen = match condition {
+            Condition::Noisy(deviation) => &noisy(&warped.distorted, deviation)?,
+            _ => &warped.distorted,
+        };
+        let score = |kernel| -> Result<f64, TrainingError> {
+            let corrected = reference::correct(&warped.tables, kernel, seen)?;
+            Ok(score(condition, photograph, &warped.reference, &corrected))
+        };
+        let [hermite, own] = kernels;
+        Ok([score(hermite)?, score(own)?])
+    });
+    scores.into_iter().collect()
+}
+
 /// PSNR in dB.
-fn score(
-    condition: Condition,
-    photograph: &RgbImage,
-    (linear, band_limited): (&Warped, &Warped),
-    kernel: &Kernel,
-) -> Result<f64, TrainingError> {
-    let warped = if matches!(condition, Condition::Warped(Warp::Linear)) { linear } else { band_limited };
-    let corrected = match condition {
-        Condition::Noisy(deviation) => {
-            reference::correct(&warped.tables, kernel, &noisy(&warped.distorted, deviation)?)?
-        }
-        _ => reference::correct(&warped.tables, kernel, &warped.distorted)?,
-    };
+fn score(condition: Condition, photograph: &RgbImage, reference: &Frame, corrected: &Frame) -> f64 {
     if !matches!(condition, Condition::Demosaicked) {
-        return Ok(psnr(warped.reference.samples(), corrected.samples()));
+        return psnr(reference.samples(), corrected.samples());
     }
-    let [wanted, found] = [photograph, &demosaic_coded(&corrected)].map(colours);
-    Ok(psnr(&wanted, &found))
+    let [wanted, found] = [photograph, &demosaic_coded(corrected)].map(colours);
+    psnr(&wanted, &found)
 }
 
 /// Red, green and blue of every pixel but those of an odd last column.
