@@ -11,9 +11,12 @@ use crate::ft2232h::Ft2232h;
 use crate::port::{Port, Step};
 use crate::uart::Uart;
 
-/// Steps without a byte taken after which a design that is not at rest never will be. The longest that it may work of
+/// Clocks of the core without a byte taken after which a design that is not at rest never will be. The longest that it may work of
 /// itself is a burst up to its last free record: 16 frames of the greatest size, with blankings of a thousand clocks.
 const PATIENCE: u32 = 150_000_000;
+
+/// The same at pins, where a step is an edge of either clock, and 2.3 of them come in a clock of the core.
+const PATIENCE_AT_PINS: u32 = PATIENCE / 10 * 23;
 
 /// The 10 s rule is the only thing that time is for.
 const MOST_MILLISECONDS: u64 = 11_000;
@@ -53,7 +56,7 @@ pub enum Failure {
         "the design was not at rest {clocks} clocks behind the last byte that it took; look at its waveform with trace=FILE"
     )]
     Hung {
-        /// That many.
+        /// That many, of either clock.
         clocks: u32,
     },
     /// It does what a chip at its pins does not allow.
@@ -93,8 +96,8 @@ impl Board {
     pub fn new(front: Front, seed: u32) -> Self {
         match front {
             Front::Bytes => Self::of_build(Build::Shipped, seed),
-            Front::Uart => Self::with(Uart::new(seed), PATIENCE),
-            Front::Fifo => Self::with(Ft2232h::new(seed), PATIENCE),
+            Front::Uart => Self::with(Uart::new(seed), PATIENCE_AT_PINS),
+            Front::Fifo => Self::with(Ft2232h::new(seed), PATIENCE_AT_PINS),
         }
     }
 
