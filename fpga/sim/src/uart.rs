@@ -109,10 +109,10 @@ impl Uart {
     fn far_end(&mut self, outputs: UartOutputs, offered: Option<u8>, step: &mut Step) {
         step.sent = self.from_board.level(outputs.txd);
         if let Some(byte) = offered.filter(|_| self.to_board.is_idle()) {
+            step.taken = !outputs.rts_n || self.overrun > 0;
             self.overrun = if outputs.rts_n { self.overrun.saturating_sub(1) } else { OVERRUN };
-            if !outputs.rts_n || self.overrun > 0 {
+            if step.taken {
                 self.to_board.start(byte);
-                step.taken = true;
             }
         }
         self.rxd = self.to_board.level();
