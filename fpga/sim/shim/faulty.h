@@ -3,7 +3,7 @@
 
 #include "bridge.h"
 
-// The fault of every board of this library, read at its power-up; 0 is none.
+// The fault of the next board of this library, which reads it at its power-up; 0 is none.
 extern "C" uint16_t halfrow_fault;
 uint16_t halfrow_fault = 0;
 

@@ -174,7 +174,7 @@ impl FaultyFunctions {
         }
     }
 
-    /// Its functions, with this fault from now on.
+    /// Its functions, with this fault for what is switched on next.
     pub(crate) fn choose(&mut self, fault: u16) -> &'static Functions<BridgeInputs, BridgeOutputs> {
         // SAFETY: it is a variable of the library's, which nothing reads but what this thread calls.
         unsafe { *self.fault = fault };

@@ -28,8 +28,8 @@ impl FaultyBoard {
     }
 
     /// The board with this fault, 0 for none, switched on and reset. `seed` draws what its memories hold then; a board that is
-    /// not at rest `patience` clocks behind the last byte that it took never will be. The fault is that of every board of this
-    /// library that is alive.
+    /// not at rest `patience` clocks behind the last byte that it took never will be. Each board of the library keeps the fault
+    /// that it was switched on with.
     pub fn switch_on(&mut self, fault: u16, seed: u32, patience: u32) -> Board {
         let functions = self.0.choose(fault);
         Board::with(BytePort::new(functions, seed), patience)

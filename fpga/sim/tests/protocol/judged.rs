@@ -7,7 +7,7 @@ use halfrow_pipe::Endpoint;
 use halfrow_protocol::{Decoder, Header, Kind};
 use halfrow_sim::{Board, Failure};
 
-/// Where WELCOME has its four bytes of BUILD (WIRE.md).
+/// Where the reply to HELLO has its four bytes of build (WIRE.md).
 const BUILD_AT: usize = 10;
 
 /// A board, and the mock that was built as it is.
