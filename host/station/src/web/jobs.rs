@@ -82,14 +82,14 @@ fn state_word(visit: &Visit, state: &str) -> &'static str {
 
 fn table(visit: &Visit, jobs: &[Job]) -> Markup {
     html! {
-        table.runs {
+        div.wide tabindex="0" { table.runs {
             thead { tr {
                 th { (visit.say("jobs.added")) } th { (visit.say("jobs.board")) } th { (visit.say("history.plan")) }
                 th.number { (visit.say("jobs.priority")) } th { (visit.say("plant.state")) }
                 th.number { (visit.say("jobs.claims")) } th { (visit.say("outbox.said")) }
             } }
             tbody { @for job in jobs { (row(visit, job)) } }
-        }
+        } }
     }
 }
 
@@ -119,7 +119,7 @@ fn row(visit: &Visit, job: &Job) -> Markup {
 
 fn shelf(visit: &Visit, boards: &[SharedBoard]) -> Markup {
     html! {
-        table.runs {
+        div.wide tabindex="0" { table.runs {
             thead { tr {
                 th { (visit.say("jobs.board")) } th { (visit.say("jobs.kind")) } th { (visit.say("jobs.place")) }
                 th { (visit.say("history.serial")) } th { (visit.say("nav.station")) } th { (visit.say("plant.state")) }
@@ -132,7 +132,7 @@ fn shelf(visit: &Visit, boards: &[SharedBoard]) -> Markup {
                     td { (state(visit, board)) }
                 }
             } }
-        }
+        } }
     }
 }
 

@@ -122,6 +122,8 @@ fn navigation(visit: &Visit, here: Here) -> Markup {
 fn who(visit: &Visit) -> Markup {
     html! {
         @match &visit.user {
+            // A plant without people lets everybody look, who is nobody.
+            Some(user) if user.name.is_empty() => {}
             Some(user) => {
                 span.who { (user.name) " " span.role { "(" (role(visit, user.who)) ")" } }
                 @if visit.can_log_in {

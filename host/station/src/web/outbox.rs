@@ -35,7 +35,7 @@ async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble>
 
 fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
     html! {
-        table.runs {
+        div.wide tabindex="0" { table.runs {
             thead { tr {
                 th { (visit.say("outbox.sink")) } th.number { (visit.say("outbox.entries")) }
                 th.number { (visit.say("outbox.waits")) } th { (visit.say("outbox.since")) }
@@ -48,7 +48,7 @@ fn sinks(visit: &Visit, unsent: &[Unsent]) -> Markup {
                     td.headline { @if let Some(said) = said { (show::english(visit, said)) } }
                 }
             } }
-        }
+        } }
     }
 }
 

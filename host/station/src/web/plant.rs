@@ -37,21 +37,21 @@ async fn page(State(app): State<App>, visit: Visit) -> Result<Response, Trouble>
 
 fn table(visit: &Visit, stations: &[Station]) -> Markup {
     html! {
-        table.runs {
+        div.wide tabindex="0" { table.runs {
             thead { tr {
                 th { (visit.say("nav.station")) } th { (visit.say("plant.state")) } th { (visit.say("plant.seen")) }
                 th { (visit.say("history.last")) } th.number { (visit.say("outbox.entries")) }
                 th { (visit.say("history.plan")) } th { (visit.say("plant.program")) }
             } }
             tbody { @for station in stations { (row(visit, station)) } }
-        }
+        } }
     }
 }
 
 /// The plans that hold.
 fn published(visit: &Visit, plans: &[(Statement, i64)]) -> Markup {
     html! {
-        table.runs {
+        div.wide tabindex="0" { table.runs {
             thead { tr {
                 th { (visit.say("history.plan")) } th { (visit.say("plant.version")) }
                 th.number { (visit.say("plant.number")) } th { (visit.say("outbox.since")) }
@@ -65,7 +65,7 @@ fn published(visit: &Visit, plans: &[(Statement, i64)]) -> Markup {
                     td.headline { (show::said(&statement.reason)) }
                 }
             } }
-        }
+        } }
     }
 }
 

@@ -109,7 +109,7 @@ fn day(label: &str, name: &str, value: &str) -> Markup {
 
 fn table(visit: &Visit, runs: &[RunLine]) -> Markup {
     html! {
-        table.runs {
+        table.runs.cards {
             thead { tr {
                 th { (visit.say("history.began")) } th { (visit.say("history.serial")) }
                 th { (visit.say("history.verdict")) } th { (visit.say("history.plan")) }
