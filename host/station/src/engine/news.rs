@@ -4,7 +4,7 @@ use std::sync::mpsc::{self, Receiver, SyncSender, TrySendError};
 
 use serde::Serialize;
 
-use crate::floor::{Lane, Shown, Word};
+use crate::floor::{Act, Lane, Shown, Word};
 use crate::said::{self, Said};
 
 /// How many pieces of news a listener may be behind. One that is further behind hears no more, and looks anew.
@@ -71,6 +71,9 @@ pub struct LaneState {
     /// Why it is out of service, why nothing was saved, why no run was begun.
     #[serde(serialize_with = "said::as_text_if_any")]
     pub note: Option<Said>,
+    /// What a button can do with it now.
+    #[serde(skip)]
+    pub can: Vec<Act>,
 }
 
 impl From<&Lane> for LaneState {
@@ -83,6 +86,7 @@ impl From<&Lane> for LaneState {
             run: lane.run().map(str::to_owned),
             shown: lane.shown().cloned(),
             note: lane.note().cloned(),
+            can: lane.can(),
         }
     }
 }

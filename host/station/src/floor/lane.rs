@@ -11,6 +11,7 @@ use halfrow::Verdict;
 use crate::plan::mock::is_mock;
 use crate::said::{Said, Saying};
 
+use super::scan::Act;
 use super::words::{Accepted, Effect, Event, Owes, Refusal, Shown, Starts, Word};
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -140,6 +141,13 @@ impl Lane {
             Phase::Idle | Phase::Ended if self.owes.is_some() => self.owes.as_ref().map(|owes| &owes.why),
             _ => self.note.as_ref(),
         }
+    }
+
+    /// What a barcode or a button can do with it now.
+    #[must_use]
+    pub fn can(&self) -> Vec<Act> {
+        let is_taken = |act: &Act| self.clone().take(act.event("")).is_ok();
+        Act::ALL.into_iter().map(|(_, act)| act).filter(is_taken).collect()
     }
 
     /// Takes an event.

@@ -193,13 +193,13 @@ impl Floor {
     /// [`ScanError::Lane`] when it cannot be done now.
     pub fn act(&mut self, lane: usize, act: Act, operator: &str) -> Result<Answer, ScanError> {
         let name = self.name(lane).to_owned();
-        let (event, said) = match act {
-            Act::Start => (Event::Start { operator: operator.to_owned() }, Saying::Starts { lane: name }),
-            Act::Abort => (Event::Abort, Saying::ToldToEnd { lane: name }),
-            Act::Out => (Event::Out { why: Saying::OutByPerson.into() }, Saying::TakenOut { lane: name }),
-            Act::In => (Event::In, Saying::PutBack { lane: name }),
+        let said = match act {
+            Act::Start => Saying::Starts { lane: name },
+            Act::Abort => Saying::ToldToEnd { lane: name },
+            Act::Out => Saying::TakenOut { lane: name },
+            Act::In => Saying::PutBack { lane: name },
         };
-        let effect = self.lane(lane)?.take(event)?;
+        let effect = self.lane(lane)?.take(act.event(operator))?;
         self.armed = None;
         Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }

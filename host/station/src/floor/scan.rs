@@ -1,7 +1,9 @@
 //! What a scanner reads: the station's own barcodes, and serial numbers.
 
+use super::words::Event;
 use crate::plan::mock::BARCODE;
 use crate::plan::serial::RESERVED;
+use crate::said::Saying;
 
 /// What was scanned.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,6 +35,16 @@ impl Act {
     /// All of them, each with the end of its barcode.
     pub const ALL: [(&'static str, Self); 4] =
         [("START", Self::Start), ("ABORT", Self::Abort), ("OUT", Self::Out), ("IN", Self::In)];
+
+    /// What a lane is asked when `operator` scans or presses it.
+    pub(super) fn event(self, operator: &str) -> Event {
+        match self {
+            Self::Start => Event::Start { operator: operator.to_owned() },
+            Self::Abort => Event::Abort,
+            Self::Out => Event::Out { why: Saying::OutByPerson.into() },
+            Self::In => Event::In,
+        }
+    }
 
     /// Its barcode.
     #[must_use]

@@ -325,15 +325,18 @@ fn what_waits_is_forgotten_when_its_lane_owes_a_check() {
     let mut floor = floor(&[BUTTON], false);
     plug(&mut floor, 0);
     floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    assert_eq!(floor.lanes()[0].can(), [Act::Start, Act::Abort, Act::Out]);
     let owes =
         Owes { plan: 0, serial: Some(serial(1)), why: Said::of(&std::io::Error::other("the shift is over")) };
     floor.happened(0, Event::Owes(Some(owes)), at(1));
     assert_eq!(words(&floor), [Word::Out]);
+    assert_eq!(floor.lanes()[0].can(), [Act::Out], "it is in service already, and nothing waits");
     assert!(floor.act(0, Act::Start, WEBER).is_err());
     assert_eq!(floor.happened(0, Event::Present(true), at(1)), None);
     floor.scan(&serial(1), WEBER, at(2)).unwrap();
     let begun = floor.act(0, Act::Start, WEBER).unwrap().effect;
     assert!(matches!(begun, Some(Effect::Begin(of)) if of.serial == serial(1)), "what is owed may wait");
+    assert_eq!(floor.lanes()[0].can(), [Act::Abort]);
 }
 
 #[test]

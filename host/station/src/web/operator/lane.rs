@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::shapes::{does, said, shape};
 use crate::clock;
 use crate::engine::LaneState;
-use crate::floor::{Shown, Word};
+use crate::floor::{Act, Shown, Word};
 use crate::web::language::Told;
 use crate::web::live::Doing;
 use crate::web::routes::Who;
@@ -60,11 +60,12 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
             data-run=[shown.map(|shown| &shown.run)] data-record=[shown.map(|shown| &shown.record_sha256)] {
             header {
                 h2 {
-                    button.name type="button" data-arm=(state.lane) aria-label=(visit.words.fill("lane.arm", &[("lane", &state.lane)])) {
+                    button.name.(length(&state.lane)) type="button" data-arm=(state.lane) aria-label=(visit.words.fill("lane.arm", &[("lane", &state.lane)])) {
                         (state.lane)
                     }
                 }
-                (acts(visit, state))
+                div.acts { (acts(visit, state)) }
+                @if let Some(shown) = shown { (saved(visit, shown)) }
             }
             p.word { (shape(state.state)) span { (word) } }
             p.serial { (state.serial.as_deref().unwrap_or_default()) }
@@ -74,7 +75,7 @@ pub(super) fn lane(visit: &Visit, state: &LaneState, doing: Option<&Doing>) -> M
     }
 }
 
-/// How large the word can be: a class of the style sheet.
+/// How large a word or a name can be: a class of the style sheet.
 fn length(word: &str) -> &'static str {
     match word.chars().count() {
         0..=5 => "short",
@@ -88,13 +89,12 @@ fn says(visit: &Visit, state: &LaneState) -> Markup {
     let shown = state.shown.as_ref().filter(|_| is_verdict(state.state));
     let judged = shown.filter(|_| state.state != Word::Pass);
     html! {
-        p.does { (does(visit, state.state)) }
+        p.does { (does(visit, state)) }
         @if let Some(note) = &state.note { (why(&visit.words.tell(note), None)) }
         @if let Some(shown) = judged {
             @let remedy = shown.remedy.as_ref().map(|text| visit.words.remedy(shown.finding.as_ref(), text));
             (why(&headline(visit, shown), remedy.as_ref()))
         }
-        @if let Some(shown) = shown { (saved(visit, shown)) }
     }
 }
 
@@ -136,37 +136,28 @@ pub(super) fn doing(visit: &Visit, doing: &Doing) -> Told {
     }
 }
 
-/// What may be done with the lane.
+/// What can be done with the lane, and may be. Before a board is tested it is aborted, and not taken out of service.
 fn acts(visit: &Visit, state: &LaneState) -> Markup {
-    let (start, abort) =
-        (Act::new("start", visit.say("lane.start")), Act::new("abort", visit.say("lane.abort")));
-    let (out, back) = (Act::new("out", visit.say("lane.out")), Act::new("in", visit.say("lane.in")));
-    let acts = match state.state {
-        Word::Waiting if state.is_present => vec![start, abort],
-        Word::Waiting | Word::Running => vec![abort],
-        Word::Out => vec![back],
-        Word::Saving | Word::Unsaved => vec![],
-        _ => vec![out],
-    };
+    let is_wanted = |act: &Act| *act != Act::Out || !matches!(state.state, Word::Waiting | Word::Out);
     let may =
-        |act: &Act| visit.may(if ["out", "in"].contains(&act.path) { Who::Engineer } else { Who::Operator });
+        |act: &Act| visit.may(if matches!(act, Act::Out | Act::In) { Who::Engineer } else { Who::Operator });
     html! {
-        @for act in acts.into_iter().filter(may) {
-            form.act method="post" action={ "/lanes/" (state.lane) "/" (act.path) } {
+        @for act in state.can.iter().filter(|act| is_wanted(act) && may(act)) {
+            @let (path, name) = button(visit, *act);
+            form.act method="post" action={ "/lanes/" (state.lane) "/" (path) } {
                 input type="hidden" name="csrf" value=(visit.csrf);
-                button id={ (act.path) "-" (state.lane) } { (act.name) }
+                button id={ (path) "-" (state.lane) } { (name) }
             }
         }
     }
 }
 
-struct Act {
-    path: &'static str,
-    name: &'static str,
-}
-
-impl Act {
-    fn new(path: &'static str, name: &'static str) -> Self {
-        Self { path, name }
+/// The end of its address, and what stands on it.
+fn button(visit: &Visit, act: Act) -> (&'static str, &'static str) {
+    match act {
+        Act::Start => ("start", visit.say("lane.start")),
+        Act::Abort => ("abort", visit.say("lane.abort")),
+        Act::Out => ("out", visit.say("lane.out")),
+        Act::In => ("in", visit.say("lane.in")),
     }
 }

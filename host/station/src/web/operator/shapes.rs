@@ -2,7 +2,8 @@
 
 use maud::{Markup, html};
 
-use crate::floor::Word;
+use crate::engine::LaneState;
+use crate::floor::{Act, Word};
 use crate::web::visit::Visit;
 
 /// The state in a word.
@@ -22,11 +23,14 @@ pub(super) fn said(visit: &Visit, word: Word) -> &'static str {
 }
 
 /// What the operator does now.
-pub(super) fn does(visit: &Visit, word: Word) -> &'static str {
-    match word {
+pub(super) fn does(visit: &Visit, state: &LaneState) -> &'static str {
+    match state.state {
         Word::Empty => visit.say("does.empty"),
         Word::Ready => visit.say("does.ready"),
-        Word::Waiting => visit.say("does.waiting"),
+        Word::Waiting if state.can.contains(&Act::Start) => visit.say("does.start"),
+        // It is plugging it in that starts this lane.
+        Word::Waiting if state.is_present => visit.say("does.again"),
+        Word::Waiting => visit.say("does.plug"),
         Word::Running => visit.say("does.running"),
         Word::Saving => visit.say("does.saving"),
         Word::Pass => visit.say("does.pass"),

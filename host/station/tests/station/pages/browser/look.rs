@@ -1,9 +1,11 @@
 //! Whether what is shown can be read.
 
+use std::time::Duration;
+
 use serde_json::json;
 
 use super::chromium::Chromium;
-use crate::pages::station::Station;
+use crate::pages::station::{SERIALS, Station};
 
 /// WCAG 2.1, success criterion 1.4.3.
 const LEAST: f64 = 4.5;
@@ -61,8 +63,13 @@ fn every_text_can_be_told_from_what_is_behind_it() {
 /// With one lane the word fills the screen, and of sixteen each can be read from three metres: 4 % of the height.
 #[test]
 fn words_are_large_and_nothing_lies_upon_another() {
-    for lanes in [1, 4, 16] {
-        let station = Station::private(lanes);
+    for (lanes, is_long) in [(1, false), (4, false), (16, false), (4, true), (16, true)] {
+        let mut station = Station::private(lanes);
+        // The longest that settings take.
+        for lane in (1..=lanes).filter(|_| is_long) {
+            let (was, is) = (format!("name = \"{lane}\""), format!("name = \"north-fixture-{lane:02}\""));
+            station = station.where_instead("station.toml", &was, &is);
+        }
         let serving = station.serve();
         let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
         for (width, height, is_phone) in [(1280, 720, false), (390, 844, true)] {
@@ -78,9 +85,31 @@ fn words_are_large_and_nothing_lies_upon_another() {
             let wide = page.evaluate("document.documentElement.scrollWidth > innerWidth");
             assert_eq!(wide, json!(false), "{lanes} lanes at {width}");
             let over = page.evaluate(OVER);
-            assert_eq!(over, json!([]), "{lanes} lanes at {width}");
+            assert_eq!(over, json!([]), "{lanes} lanes at {width}, {is_long}");
         }
     }
+}
+
+/// What was found is the last column of a run's tables.
+#[test]
+fn what_was_found_can_be_read_on_a_phone() {
+    let station =
+        Station::private(1).where_instead("station.toml", "mock,serial=1", "mock,serial=1,fault=stuck-data");
+    let serving = station.serve();
+    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.querySelector('.lane.ready') !== null && document.getElementById('lamp').textContent === 'live'");
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("document.querySelector('.lane.fail') !== null");
+    let run = page.evaluate("document.querySelector('.lane').dataset.run");
+    let size = json!({ "width": 400, "height": 844, "deviceScaleFactor": 1, "mobile": true });
+    page.call("Emulation.setDeviceMetricsOverride", size);
+    page.go(&format!("http://127.0.0.1:{}/runs/{}", serving.port, run.as_str().unwrap()));
+    page.wait("document.querySelectorAll('.steps tr, .checks tr').length > 1");
+    let narrowest = page.evaluate(
+        "Math.min(...[...document.querySelectorAll('.steps tr, .checks tr')].map(row => row.lastElementChild.clientWidth))",
+    );
+    assert!(narrowest.as_f64().unwrap() > 200.0, "{narrowest} px of 400");
+    assert_eq!(page.evaluate("document.documentElement.scrollWidth > innerWidth"), json!(false));
 }
 
 /// Parts of a lane, in every state, that overlap each other or stand out of it.
@@ -92,22 +121,23 @@ const OVER: &str = "(() => {
     for (const state of ['running', 'pass', 'error']) {
         lane.className = `lane ${state} ${state === 'running' ? 'middle' : 'short'}`;
         const more = state === 'running' ? '<p class=doing>rows</p><progress></progress>' : `<p class=why>${long}</p>`;
+        lane.innerHTML = before + (state === 'pass' ? '' : more);
+        lane.querySelector('.acts').innerHTML = '<form class=act><button id=out>out</button></form>';
         const saved = state === 'running' ? '' : '<p class=saved>gesichert 14:02</p>';
-        lane.innerHTML = before + (state === 'pass' ? '' : more) + saved;
+        lane.querySelector('header').insertAdjacentHTML('beforeend', saved);
         lane.querySelector('.word span').textContent = state.toUpperCase();
         lane.querySelector('.serial').textContent = 'CA080442957X';
-        const boxes = [...lane.children].filter(part => part.checkVisibility()).map(part => [part, part.getBoundingClientRect()]);
-        // What stands beside the name is no line of its own.
-        const isBeside = part => getComputedStyle(part).position === 'absolute';
-        const parts = boxes.filter(([part]) => !isBeside(part));
-        for (const [part, box] of boxes.filter(([part]) => isBeside(part))) {
-            for (const other of lane.querySelectorAll('header h2, header form, .word')) {
-                const its = other.getBoundingClientRect();
+        const boxes = of => [...of].filter(part => part.checkVisibility()).map(part => [part, part.getBoundingClientRect()]);
+        const parts = boxes(lane.children), all = lane.getBoundingClientRect();
+        const head = boxes(lane.querySelectorAll('.name, header button:not(.name), .saved'));
+        for (const [part, box] of head) {
+            const isCut = part.scrollWidth > part.clientWidth + 1 || box.right > all.right || box.bottom > parts[0][1].bottom + 1;
+            if (isCut) found.push(`${state}: ${part.className} ${part.id} is cut off`);
+            for (const [other, its] of head.filter(([other]) => other !== part)) {
                 const isClear = its.right <= box.left || its.left >= box.right || its.bottom <= box.top + 1 || its.top >= box.bottom - 1;
-                if (!isClear) found.push(`${state}: ${part.className} on ${other.tagName} ${other.className}`);
+                if (!isClear) found.push(`${state}: ${part.className} on ${other.className}`);
             }
         }
-        const all = lane.getBoundingClientRect();
         for (const [i, [part, box]] of parts.entries()) {
             if (box.bottom > all.bottom + 1) found.push(`${state}: ${part.className} stands out`);
             const next = parts[i + 1];
