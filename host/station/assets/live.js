@@ -1,11 +1,13 @@
 // The station's news. Without a beat for almost three seconds nothing here is live; then they are opened anew every two.
 
-const QUIET = 2800, AGAIN = 2000, LOOK = 100;
+const QUIET = 2800, AGAIN = 2000, LOOK = 100, RELOADS = 10000;
 const NAMES = ["snapshot", "lane", "doing", "scan", "hook", "beat"];
 
-export function live({ hear, show }) {
-  let source, id, opened, heard = -Infinity;
+// The page was made with `mark`. Returns what tells the last beat that was heard; nothing while the page is not live.
+export function live({ mark, hear, show }) {
+  let source, id, opened, beat = "", heard = -Infinity;
   const now = () => performance.now();
+  const isLive = () => now() - heard < QUIET;
   const open = () => {
     source?.close();
     opened = now();
@@ -13,20 +15,27 @@ export function live({ hear, show }) {
     const mine = source;
     for (const name of NAMES) source.addEventListener(name, (event) => mine === source && take(event));
   };
+  // Lanes, plans or the program are others than those of this page.
+  const leave = () => {
+    source.close();
+    [source, opened] = [undefined, now() + RELOADS];
+    location.reload();
+  };
   const take = (event) => {
-    const at = Number(event.lastEventId);
+    const at = Number(event.lastEventId), said = JSON.parse(event.data);
+    if (event.type === "snapshot" && said.mark !== mark) return leave();
     // Something was missed: what is shown may be wrong.
     if (event.type !== "snapshot" && at !== id + 1) return open();
     id = at;
-    if (event.type === "snapshot" || event.type === "beat") heard = now();
-    hear(event.type, JSON.parse(event.data));
+    if (said.beat) [beat, heard] = [said.beat, now()];
+    hear(event.type, said);
     look();
   };
   const look = () => {
-    const isLive = now() - heard < QUIET;
-    show(isLive);
-    if (!isLive && now() - opened >= AGAIN) open();
+    show(isLive());
+    if (!isLive() && now() - opened >= AGAIN) open();
   };
   open();
   setInterval(look, LOOK);
+  return () => (isLive() ? beat : "");
 }

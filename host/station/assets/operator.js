@@ -8,21 +8,39 @@ import { isOn, play, turn } from "./sound.js";
 const station = document.getElementById("station").dataset;
 const by = (id) => document.getElementById(id);
 const put = (id, text) => { if (by(id)) by(id).textContent = text; };
-let armed = "", sent = 0, answered = 0, isTyping = false, queue = Promise.resolve(), todayIsStale = false;
+// What did not arrive may have been a lane's barcode, so that the next scan is for none.
+const UNSENT = { is_taken: false, said: station.unsent, armed: "" };
+// Longer than the station takes anything behind the beat that it names.
+const PATIENT = 10000;
+// What each lane showed last.
+const shown = new Map();
+let armed = "", sent = 0, answered = 0, queue = Promise.resolve(), todayIsStale = false, noticed = "";
 
-// Acts go out one after another, so that a scan is for the lane whose barcode was scanned just before.
+// Acts go out one after another, so that a scan is for the lane whose barcode was scanned just before. Each names the last beat
+// that was heard when it was made: the station refuses what comes late, when another board may be there.
 function post(path, fields, show) {
+  const made = beat();
+  if (!made) return refuse(show);
   queue = queue.then(async () => {
-    const body = new URLSearchParams({ csrf: station.csrf, ...fields() });
+    if (!beat()) return refuse(show);
+    const body = new URLSearchParams({ csrf: station.csrf, beat: made, ...fields() });
+    const signal = AbortSignal.timeout(PATIENT);
     try {
-      const answer = await fetch(path, { method: "POST", body, headers: { accept: "application/json" } });
+      const answer = await fetch(path, { method: "POST", body, signal, headers: { accept: "application/json" } });
       // Whoever the page is for is not logged in any more.
       if (answer.status === 401 && "known" in station) return location.reload();
       show(await answer.json());
     } catch {
-      show({ is_taken: false, said: station.unsent });
+      show(UNSENT);
     }
   });
+}
+
+// What is not live takes nothing. A session that is over ends what is live as well, and whoever scans then is to log in.
+function refuse(show) {
+  show(UNSENT);
+  if (!("known" in station)) return;
+  fetch("/", { method: "HEAD", redirect: "manual" }).then(({ ok }) => ok || location.reload(), () => {});
 }
 
 function answer({ is_taken, scanned, said }) {
@@ -46,7 +64,7 @@ function scan(text, typed) {
   post("/scan", () => ({ counter, text, typed, lane: armed }), (became) => {
     answered += 1;
     counts();
-    if (became.counter !== undefined && became.counter !== counter) became = { is_taken: false, said: station.unsent };
+    if (became.counter !== undefined && became.counter !== counter) became = UNSENT;
     if ("armed" in became) arms(became.armed);
     if (became.is_other) return location.reload();
     answer(became);
@@ -56,10 +74,22 @@ function scan(text, typed) {
 function lane(event, isNews) {
   if (!draw(event)) return answer({ is_taken: false, said: station.undrawn });
   arm(armed);
+  const shows = `${event.state} ${event.run}`, isAsBefore = shown.get(event.lane) === shows;
+  shown.set(event.lane, shows);
+  // A board that comes or goes changes what can be done, and nothing of what was told.
+  if (isAsBefore) return;
+  if (noticed === event.lane) put("notice", noticed = "");
   if (!isNews) return;
   put("said", event.said);
   play(event.state);
   todayIsStale ||= Boolean(event.verdict);
+}
+
+// It is of a verdict that stands, and no answer to a scan.
+function hook({ lane, said }) {
+  noticed = lane;
+  put("notice", `${by("notice").dataset.lane} ${lane}: ${said}`);
+  play("ERROR");
 }
 
 async function today() {
@@ -70,15 +100,16 @@ async function today() {
 }
 
 const HEAR = {
-  snapshot: (lanes) => { lanes.forEach((one) => lane(one, false)); todayIsStale = true; today(); },
+  snapshot: ({ lanes }) => { lanes.forEach((one) => lane(one, false)); todayIsStale = true; today(); },
   lane: (one) => lane(one, true),
   doing: progress,
   scan: () => {},
-  hook: ({ said }) => answer({ is_taken: false, said }),
+  hook,
   beat: ({ clock }) => put("clock", clock),
 };
 
-live({
+const beat = live({
+  mark: station.mark,
   hear: (name, data) => HEAR[name](data),
   show: (isLive) => {
     document.body.classList.toggle("dead", !isLive);
@@ -87,8 +118,10 @@ live({
   },
 });
 
+const isTyping = () => document.activeElement === by("hand-text");
+const isOpen = () => by("hand").classList.contains("shown");
+
 function typing(on) {
-  isTyping = on;
   by("hand").classList.toggle("shown", on);
   by("type").setAttribute("aria-pressed", on);
   if (on) by("hand-text").focus();
@@ -110,10 +143,15 @@ addEventListener("submit", (event) => {
   form.reset();
 });
 if (by("hand")) {
-  scanner({ isTyping: () => isTyping, show: (text) => put("typed", text), scanned: (text) => scan(text, "false") });
+  scanner({ isTyping, show: (text) => put("typed", text), scanned: (text) => scan(text, "false") });
   for (const id of ["type", "sound"]) by(id).hidden = false;
-  by("type").addEventListener("click", () => typing(!isTyping));
-  by("hand").addEventListener("keydown", (event) => { if (event.key === "Escape") typing(false); });
+  by("type").addEventListener("click", () => typing(!isOpen()));
+  by("hand").addEventListener("keydown", (event) => {
+    if (event.key === "Escape") return typing(false);
+    // A scanner whose scans end in Tab.
+    const isWhole = event.key === "Tab" && !event.shiftKey && isTyping() && by("hand-text").value;
+    if (isWhole) { event.preventDefault(); by("hand").requestSubmit(); }
+  });
   by("sound").setAttribute("aria-pressed", isOn());
   by("sound").addEventListener("click", () => { turn(!isOn()); by("sound").setAttribute("aria-pressed", isOn()); play("PASS"); });
 }

@@ -54,6 +54,7 @@ codes::codes! {
     }
     ScanError {
         Incomplete => "scan-incomplete",
+        Late => "scan-late",
         NoLane [lane, known] => "lane-unknown",
         WhichLane [lanes] => "lane-not-named",
         Ambiguous [serial, first, second] => "serial-of-two-products",

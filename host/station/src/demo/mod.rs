@@ -103,7 +103,7 @@ fn line(engine: &Weak<Engine>, fixtures: &[Fixture], rule: &SerialRule) {
             }
             let is_due = (is_over(state) || state.state == Word::Ready) && known.1.elapsed() > known.2;
             if let Some(serial) = serial(rule).filter(|_| is_due && lane < by_itself) {
-                engine.label(0, Some(lane), &serial, OPERATOR);
+                engine.label(0, Some(lane), &serial, OPERATOR, None);
             }
         }
         drop(engine);

@@ -12,9 +12,9 @@ use super::bay::{self, Shared, StopAsked};
 use super::in_turn::{InTurn, NotStarted};
 use super::news::{LaneState, News};
 use super::unsent;
-use super::{Board, Heard, Input};
+use super::{Board, Heard, Input, in_time};
 use crate::clock;
-use crate::floor::{Accepted, Act, Answer, Effect, Event, Floor, Owes, ScanError, Shown, Word};
+use crate::floor::{Accepted, Answer, Effect, Event, Floor, Owes, ScanError, Shown, Word};
 use crate::labgrid;
 use crate::presence::{Presence, USB};
 use crate::said::{Said, Saying};
@@ -76,8 +76,14 @@ impl AtWork {
             match input {
                 Input::Scan { .. } | Input::Label { .. } | Input::Act { .. } if is_closing => {}
                 Input::Scan { number, text, operator } => self.scan(number, text, &operator),
-                Input::Label { number, lane, label, operator } => self.label(number, lane, label, &operator),
-                Input::Act { number, lane, act, operator } => self.act(number, lane, act, &operator),
+                Input::Label { number, lane, label, operator, until } => {
+                    let answer = in_time(until).and_then(|()| self.label(lane, &label, &operator));
+                    self.answer(number, label, answer);
+                }
+                Input::Act { number, lane, act, operator, until } => {
+                    let answer = in_time(until).and_then(|()| self.floor.act(lane, act, &operator));
+                    self.answer(number, act.barcode(), answer);
+                }
                 Input::Heard { lane, heard } => self.heard(lane, heard),
                 Input::Close(by) => {
                     is_closing = true;
@@ -183,18 +189,12 @@ impl AtWork {
         self.answer(number, text, answer);
     }
 
-    fn label(&mut self, number: u64, lane: Option<usize>, label: String, operator: &str) {
+    fn label(&mut self, lane: Option<usize>, label: &str, operator: &str) -> Result<Answer, ScanError> {
         let now = self.now();
-        let answer = match lane {
-            Some(lane) => self.floor.scan_for(lane, &label, operator, now),
-            None => self.floor.scan(&label, operator, now),
-        };
-        self.answer(number, label, answer);
-    }
-
-    fn act(&mut self, number: u64, lane: usize, act: Act, operator: &str) {
-        let answer = self.floor.act(lane, act, operator);
-        self.answer(number, act.barcode(), answer);
+        match lane {
+            Some(lane) => self.floor.scan_for(lane, label, operator, now),
+            None => self.floor.scan(label, operator, now),
+        }
     }
 
     /// Tells what became of a scan, and does what it asks for.

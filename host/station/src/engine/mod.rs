@@ -27,7 +27,7 @@ pub use figures::{Figures, Histogram};
 pub use hooks::HookError;
 pub use news::{LaneState, News};
 
-use crate::floor::{Act, Event};
+use crate::floor::{Act, Event, ScanError};
 use crate::guard::guarded;
 use crate::labgrid;
 use crate::said::Said;
@@ -45,8 +45,8 @@ const SILENT: Duration = Duration::from_secs(5);
 #[derive(Debug)]
 enum Input {
     Scan { number: u64, text: String, operator: String },
-    Label { number: u64, lane: Option<usize>, label: String, operator: String },
-    Act { number: u64, lane: usize, act: Act, operator: String },
+    Label { number: u64, lane: Option<usize>, label: String, operator: String, until: Option<Instant> },
+    Act { number: u64, lane: usize, act: Act, operator: String, until: Option<Instant> },
     Heard { lane: usize, heard: Heard },
     Close(Option<StoppedBy>),
 }
@@ -111,15 +111,24 @@ impl Engine {
         self.put(Input::Scan { number, text, operator });
     }
 
-    /// As [`Self::scan`], of a label that the scanner added nothing to, or nothing any more. It is for `lane` if there is one.
-    pub fn label(&self, number: u64, lane: Option<usize>, label: &str, operator: &str) {
+    /// As [`Self::scan`], of a label that the scanner added nothing to, or nothing any more. It is for `lane` if there is one,
+    /// and refused behind `until`.
+    pub fn label(
+        &self,
+        number: u64,
+        lane: Option<usize>,
+        label: &str,
+        operator: &str,
+        until: Option<Instant>,
+    ) {
         let (label, operator) = (label.to_owned(), operator.to_owned());
-        self.put(Input::Label { number, lane, label, operator });
+        self.put(Input::Label { number, lane, label, operator, until });
     }
 
-    /// Does with the lane at this place what `operator` wants. What becomes of it is news as that of a scan is.
-    pub fn act(&self, number: u64, lane: usize, act: Act, operator: &str) {
-        self.put(Input::Act { number, lane, act, operator: operator.to_owned() });
+    /// Does with the lane at this place what `operator` wants, unless that is behind `until`. What becomes of it is news as
+    /// that of a scan is.
+    pub fn act(&self, number: u64, lane: usize, act: Act, operator: &str, until: Option<Instant>) {
+        self.put(Input::Act { number, lane, act, operator: operator.to_owned(), until });
     }
 
     /// All news from now on, behind the state of every lane as it is. A listener that is too far behind hears no more.
@@ -179,6 +188,14 @@ impl Engine {
             tracing::error!("the engine has ended; start the station again");
         }
     }
+}
+
+/// Whether what was asked for may still be done.
+///
+/// # Errors
+/// [`ScanError::Late`] behind `until`.
+pub(crate) fn in_time(until: Option<Instant>) -> Result<(), ScanError> {
+    if until.is_some_and(|until| Instant::now() > until) { Err(ScanError::Late) } else { Ok(()) }
 }
 
 fn work(at_work: AtWork, inbox: &Receiver<Input>) {

@@ -62,6 +62,9 @@ pub enum ScanError {
     /// The scanner did not add what it always adds.
     #[error("the scan came without what the scanner adds to every label; scan the label again")]
     Incomplete,
+    /// It was made so long ago that the lane may have another board by now.
+    #[error("this came too late, and another board may be there by now; do it once more")]
+    Late,
     /// There is no such lane.
     #[error("there is no lane {lane}; the lanes are {known}")]
     NoLane {

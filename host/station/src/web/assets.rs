@@ -23,6 +23,11 @@ const ASSETS: [(&str, &str, &str); 8] = [
     ("sound.js", SCRIPT, include_str!("../../assets/sound.js")),
 ];
 
+/// What they say.
+pub(super) fn texts() -> impl Iterator<Item = &'static str> {
+    ASSETS.into_iter().map(|(_, _, text)| text)
+}
+
 pub(super) fn routes() -> Vec<Route> {
     vec![look("/assets/{name}", Who::Anyone, asset)]
 }

@@ -11,11 +11,16 @@ use std::{io, thread};
 
 use tokio::sync::{broadcast, oneshot};
 
-use crate::engine::{Engine, LaneState, News};
+use crate::clock;
+use crate::engine::{Engine, LaneState, News, in_time};
+use crate::floor::ScanError;
 use crate::said::Said;
 
 /// How often there is a beat.
 const BEAT: Duration = Duration::from_secs(1);
+/// How long behind the last beat that a page heard it is done what the page asks for. Behind it another board may be there, and a
+/// page that hears no beat has long said that it is not live.
+const FRESH: Duration = Duration::from_secs(5);
 /// How much a page may be behind. One that is further behind is dropped, and opens anew.
 const BACKLOG: usize = 1024;
 
@@ -40,11 +45,15 @@ pub(super) struct Became {
 /// What pages are told.
 #[derive(Clone, Debug)]
 pub(super) enum What {
-    Beat,
+    /// With its moment.
+    Beat(String),
     Lane(Box<LaneState>),
     Doing(String, Doing),
     Scan(Became),
-    Hook { lane: String, said: Said },
+    Hook {
+        lane: String,
+        said: Said,
+    },
 }
 
 /// With its number. They follow each other without a gap.
@@ -59,6 +68,8 @@ pub(super) struct Told {
 pub(super) struct Now {
     /// The number of the last that was told.
     pub(super) id: u64,
+    /// Its moment.
+    pub(super) beat: String,
     pub(super) lanes: Vec<LaneState>,
     pub(super) doing: BTreeMap<String, Doing>,
 }
@@ -70,6 +81,9 @@ pub(super) struct Live {
     pages: broadcast::Sender<Told>,
     asked: Mutex<HashMap<u64, oneshot::Sender<Became>>>,
     numbers: AtomicU64,
+    /// When it began, by a clock that only goes on, and what tells this start of the station from others.
+    begun: Instant,
+    start: String,
 }
 
 impl Live {
@@ -84,6 +98,8 @@ impl Live {
             pages,
             asked: Mutex::default(),
             numbers: AtomicU64::new(0),
+            begun: Instant::now(),
+            start: clock::now_ms().to_string(),
         });
         let (heard, engine, told) = (engine.listen(), Arc::clone(engine), Arc::downgrade(&live));
         thread::Builder::new().name("live".to_owned()).spawn(move || listen(&engine, heard, &told))?;
@@ -93,12 +109,33 @@ impl Live {
     /// Everything as it is, and what is told after.
     pub(super) fn follow(&self) -> (Now, broadcast::Receiver<Told>) {
         let now = self.now.lock().unwrap_or_else(PoisonError::into_inner);
-        (now.clone(), self.pages.subscribe())
+        (Now { beat: self.moment(), ..now.clone() }, self.pages.subscribe())
     }
 
     /// Everything as it is.
     pub(super) fn now(&self) -> Now {
         self.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// This moment, as pages name it.
+    fn moment(&self) -> String {
+        format!("{}-{}", self.start, self.begun.elapsed().as_millis())
+    }
+
+    /// Until when that may be done which a page asks for that last heard the station at the moment `beat`. Whoever names none
+    /// was told of no board, and is trusted to know which one is there.
+    ///
+    /// # Errors
+    /// [`ScanError::Late`] when it is too late already, and of a moment that is not of this start.
+    pub(super) fn until(&self, beat: &str) -> Result<Option<Instant>, ScanError> {
+        if beat.is_empty() {
+            return Ok(None);
+        }
+        let of_this = beat.split_once('-').filter(|(start, _)| *start == self.start);
+        let heard =
+            of_this.and_then(|(_, ms)| self.begun.checked_add(Duration::from_millis(ms.parse().ok()?)));
+        let until = heard.ok_or(ScanError::Late)?.min(Instant::now()) + FRESH;
+        in_time(Some(until)).map(|()| Some(until))
     }
 
     /// A number for a scan or an act, and what will become of it.
@@ -142,7 +179,7 @@ impl Live {
                 }
             }
             What::Doing(lane, doing) => drop(now.doing.insert(lane.clone(), doing.clone())),
-            What::Beat | What::Scan(_) | What::Hook { .. } => {}
+            What::Beat(_) | What::Scan(_) | What::Hook { .. } => {}
         }
         now.id += 1;
         // Without a page nobody hears it.
@@ -163,7 +200,7 @@ fn listen(engine: &Engine, mut heard: Receiver<News>, told: &Weak<Live>) {
         if beat.elapsed() >= BEAT {
             beat = Instant::now();
             if engine.is_well() {
-                live.tell(What::Beat);
+                live.tell(What::Beat(live.moment()));
             }
         }
     }

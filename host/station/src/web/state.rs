@@ -7,6 +7,7 @@ use halfrow::report::wording::plain;
 use tokio::task;
 
 use super::access::Access;
+use super::assets;
 use super::live::Live;
 use super::metrics::Turns;
 use super::trouble::Trouble;
@@ -32,6 +33,8 @@ struct Parts {
     settings: Settings,
     access: Access,
     plans: String,
+    /// What an open page of the lanes is told by whether it is still that of this station.
+    mark: String,
     /// For those who ask every few seconds.
     turns: Turns,
     source: Source,
@@ -66,17 +69,18 @@ impl App {
         hints: Vec<String>,
     ) -> io::Result<Self> {
         let live = Live::start(&engine)?;
-        let plans = named(&settings);
-        let source = Source::Station(Floor { engine, live, hints });
-        Ok(Self(Arc::new(Parts { settings, access, plans, turns: Turns::new(Tally::new(true, 0)), source })))
+        let (plans, mark) = (named(&settings), mark(&settings));
+        let (source, turns) =
+            (Source::Station(Floor { engine, live, hints }), Turns::new(Tally::new(true, 0)));
+        Ok(Self(Arc::new(Parts { settings, access, plans, mark, turns, source })))
     }
 
     /// The results of all stations, which these settings say where to find.
     #[must_use]
     pub fn of_plant(settings: Settings, address: PlantAddress, access: Access) -> Self {
         let source = Source::Plant(PlantPool::new(address));
-        let (plans, turns) = (String::new(), Turns::new(Tally::new(false, RESTS)));
-        Self(Arc::new(Parts { settings, access, plans, turns, source }))
+        let (plans, mark, turns) = (String::new(), String::new(), Turns::new(Tally::new(false, RESTS)));
+        Self(Arc::new(Parts { settings, access, plans, mark, turns, source }))
     }
 
     /// Whether it shows the results of all stations.
@@ -103,6 +107,11 @@ impl App {
     /// Its plans, for the head of every page.
     pub(super) fn plans(&self) -> &str {
         &self.0.plans
+    }
+
+    /// What changes whenever a page of the lanes that was made before is none of this station any more.
+    pub(super) fn mark(&self) -> &str {
+        &self.0.mark
     }
 
     pub(super) fn settings(&self) -> &Settings {
@@ -209,4 +218,15 @@ fn named(settings: &Settings) -> String {
     let (first, more) = settings.plans.split_at(settings.plans.len().min(NAMED));
     let names = first.iter().map(name).collect::<Vec<_>>().join(", ");
     if more.is_empty() { names } else { format!("{names} + {}", more.len()) }
+}
+
+/// The hash of all that stands on a page of the lanes beside their states, or makes it: program, station, plans, lanes.
+fn mark(settings: &Settings) -> String {
+    let plant = if settings.plant.is_some() { "plant" } else { "" };
+    let mut parts = vec![halfrow::VERSION, &settings.name, plant];
+    parts.extend(settings.plans.iter().map(|file| file.plan.sha256.as_str()));
+    parts.extend(settings.lanes.iter().map(|lane| lane.name.as_str()));
+    assets::texts().for_each(|text| parts.push(text));
+    // No name has a line's end in it.
+    halfrow::result::sha256(parts.into_iter().flat_map(|part| [part, "\n"]))
 }

@@ -1,6 +1,7 @@
 //! Scans, and what is done with lanes.
 
 use std::error::Error;
+use std::time::Instant;
 
 use axum::extract::{Path, State};
 use axum::http::StatusCode;
@@ -32,6 +33,17 @@ pub(super) struct Scanned {
     /// Whether a person may have typed it, without what the scanner adds.
     #[serde(default)]
     typed: bool,
+    /// The last beat that a page with a script had heard when it was made.
+    #[serde(default)]
+    beat: String,
+}
+
+/// A button as a page sends it.
+#[derive(Debug, Deserialize)]
+pub(super) struct Pressed {
+    /// As of a scan.
+    #[serde(default)]
+    beat: String,
 }
 
 /// What became of a scan, for the page that sent it.
@@ -60,7 +72,12 @@ pub(super) async fn scan(
     if !visit.may(Who::Operator) {
         return Err(Trouble::barred(&visit));
     }
-    let answer = understood(&app, &visit, &scanned).await?;
+    let until = match app.floor(&visit)?.live.until(&scanned.beat) {
+        Ok(until) => until,
+        // The page forgets its lane, too: the barcode of another one may be what came too late.
+        Err(late) => return Ok(json(&scanned.answer(None, Err(told(&visit, &late)), None))),
+    };
+    let answer = understood(&app, &visit, &scanned, until).await?;
     if visit.is_script { Ok(json(&answer)) } else { page::answered(app, visit, answer).await }
 }
 
@@ -91,8 +108,13 @@ async fn badge(
     Ok(Some(([(SET_COOKIE, cookie)], response).into_response()))
 }
 
-/// What the scan is for, and what became of it.
-async fn understood(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Answer, Trouble> {
+/// What the scan is for, and what became of it; behind `until` nothing does.
+async fn understood(
+    app: &App,
+    visit: &Visit,
+    scanned: &Scanned,
+    until: Option<Instant>,
+) -> Result<Answer, Trouble> {
     let refused = |error: ScanError| Ok(scanned.answer(None, Err(told(visit, &error)), scanned.armed()));
     let label = app.settings().scanner.label(&scanned.text).map(str::to_owned);
     let Some(label) = label.or_else(|| scanned.typed.then(|| scanned.text.clone())) else {
@@ -120,7 +142,7 @@ async fn understood(app: &App, visit: &Visit, scanned: &Scanned) -> Result<Answe
             app.audit(visit, "scan", armed.map_or("", |(_, name)| name), &label).await?;
             let Floor { engine, live, .. } = app.floor(visit)?;
             let (number, became) = live.ask();
-            engine.label(number, armed.map(|(place, _)| place), &label, visit.name());
+            engine.label(number, armed.map(|(place, _)| place), &label, visit.name(), until);
             let Became { is_taken, lane, said, .. } = heard(visit, became).await?;
             let said = visit.words.tell(&said).text;
             let armed = if is_taken { None } else { scanned.armed() };
@@ -163,30 +185,36 @@ async fn heard(visit: &Visit, became: tokio::sync::oneshot::Receiver<Became>) ->
     became.await.map_err(|error| Trouble::broken(visit, &error))
 }
 
-pub(super) async fn start(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
-    done(app.0, visit, lane.0, Act::Start).await
+/// A button of a lane.
+type Button = (State<App>, Visit, Path<String>, Form<Pressed>);
+
+pub(super) async fn start(button: Button) -> Result<Response, Trouble> {
+    done(button, Act::Start).await
 }
 
-pub(super) async fn abort(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
-    done(app.0, visit, lane.0, Act::Abort).await
+pub(super) async fn abort(button: Button) -> Result<Response, Trouble> {
+    done(button, Act::Abort).await
 }
 
-pub(super) async fn out(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
-    done(app.0, visit, lane.0, Act::Out).await
+pub(super) async fn out(button: Button) -> Result<Response, Trouble> {
+    done(button, Act::Out).await
 }
 
-pub(super) async fn back(app: State<App>, visit: Visit, lane: Path<String>) -> Result<Response, Trouble> {
-    done(app.0, visit, lane.0, Act::In).await
+pub(super) async fn back(button: Button) -> Result<Response, Trouble> {
+    done(button, Act::In).await
 }
 
 /// Does it with the lane.
-async fn done(app: App, visit: Visit, lane: String, act: Act) -> Result<Response, Trouble> {
+async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
+    let (State(app), visit, Path(lane), Form(pressed)) = button;
     let (place, name) = place(&app, &lane)
         .map_err(|error| Trouble::telling(&visit, StatusCode::NOT_FOUND, &Said::of(&error)))?;
-    app.audit(&visit, "lane", name, &act.barcode()).await?;
     let Floor { engine, live, .. } = app.floor(&visit)?;
+    let late = |error| Trouble::new(&visit, StatusCode::CONFLICT, told(&visit, &error));
+    let until = live.until(&pressed.beat).map_err(late)?;
+    app.audit(&visit, "lane", name, &act.barcode()).await?;
     let (number, became) = live.ask();
-    engine.act(number, place, act, visit.name());
+    engine.act(number, place, act, visit.name(), until);
     let became = heard(&visit, became).await?;
     match (visit.is_script, became.is_taken) {
         (true, is_taken) => Ok(json(&Answer {

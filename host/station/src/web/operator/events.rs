@@ -25,7 +25,7 @@ const UNBUFFERED: HeaderName = HeaderName::from_static("x-accel-buffering");
 /// Everything as it is, then what changes.
 pub(super) async fn events(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     let (now, told) = app.floor(&visit)?.live.follow();
-    let first = snapshot(&visit, &now);
+    let first = snapshot(app.mark(), &visit, &now);
     let news = stream::unfold((Some(first), Follower { app, visit, told }), |(first, of)| next(first, of));
     let headers = [(CONTENT_TYPE, "text/event-stream"), (CACHE_CONTROL, "no-store"), (UNBUFFERED, "no")];
     Ok((headers, Body::from_stream(news)).into_response())
@@ -48,7 +48,7 @@ async fn next(
         None => {
             let told = of.told.recv().await.ok()?;
             let access = of.app.access();
-            let is_beat = matches!(told.what, What::Beat);
+            let is_beat = matches!(told.what, What::Beat(_));
             if is_beat && !access.is_open() && access.user(Some(&of.visit.session), false).is_none() {
                 return None;
             }
@@ -58,19 +58,20 @@ async fn next(
     Some((Ok(text), (None, of)))
 }
 
-fn snapshot(visit: &Visit, now: &Now) -> String {
+/// Everything, with the mark of the page that it is for.
+fn snapshot(mark: &str, visit: &Visit, now: &Now) -> String {
     let event = |state| LaneEvent::new(visit, state, now.doing.get(&state.lane));
-    event_text(now.id, "snapshot", &now.lanes.iter().map(event).collect::<Vec<_>>())
+    let lanes: Vec<_> = now.lanes.iter().map(event).collect();
+    event_text(now.id, "snapshot", &json!({ "mark": mark, "beat": now.beat, "lanes": lanes }))
 }
 
 fn news(visit: &Visit, told: &Told) -> String {
     let id = told.id;
     match &told.what {
-        What::Beat => event_text(
-            id,
-            "beat",
-            &json!({ "clock": clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string() }),
-        ),
+        What::Beat(beat) => event_text(id, "beat", &{
+            let clock = clock::local(clock::now_ms()).strftime("%H:%M:%S").to_string();
+            json!({ "clock": clock, "beat": beat })
+        }),
         What::Lane(state) => event_text(id, "lane", &LaneEvent::new(visit, state, None)),
         What::Doing(lane, doing) => event_text(id, "doing", &{
             let told = super::lane::doing(visit, doing);

@@ -39,11 +39,12 @@ async fn drawn(app: App, visit: Visit, answer: Option<Answer>) -> Result<Respons
         script type="module" src="/assets/operator.js" {}
     };
     let content = html! {
-        section #station data-csrf=(visit.csrf) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
+        section #station data-csrf=(visit.csrf) data-mark=(app.mark()) data-not-live=(visit.say("live.not")) data-live=(visit.say("live.live"))
             data-unsent=(visit.say("scan.unsent")) data-undrawn=(visit.say("live.undrawn"))
             data-known[visit.user.is_some()] {
             h1.heard { (visit.say("nav.lanes")) }
             (scan_box(&visit, &now, answer.as_ref()))
+            p #notice .notice role="alert" data-lane=(visit.say("hand.lane")) {}
             (hint(hints, &visit, &now))
             (floor(&visit, &now))
             footer #today data-changes[app.settings().plant.is_some()] { (today) }

@@ -31,8 +31,8 @@ fn the_record_names_whoever_scanned_the_board_and_not_whoever_scanned_last() {
         while !is(&news.recv_timeout(HANG).unwrap()) {}
     };
     state("1", Word::Ready);
-    engine.label(1, Some(1), SERIALS[0], "weber");
-    engine.label(2, Some(0), SERIALS[1], "braun");
+    engine.label(1, Some(1), SERIALS[0], "weber", None);
+    engine.label(2, Some(0), SERIALS[1], "braun", None);
     state("1", Word::Pass);
     fs::write(&port, "").unwrap();
     // The file is no port.

@@ -61,7 +61,7 @@ fn a_lane_whose_process_cannot_be_killed_is_out_though_its_result_was_not_saved(
         }
     };
     state(Word::Ready);
-    engine.label(1, Some(0), SERIALS[0], "weber");
+    engine.label(1, Some(0), SERIALS[0], "weber", None);
     state(Word::Unsaved);
     database.execute_batch("DROP TRIGGER full").unwrap();
     let settled = news.iter().find_map(|news| match news {

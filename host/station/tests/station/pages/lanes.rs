@@ -41,8 +41,8 @@ fn news_begin_with_everything_and_have_no_gap_and_every_verdict_has_its_record()
     let station = Station::private(2);
     let serving = station.serve();
     let mut live = Live::of(&serving);
-    let (mut last, name, lanes) = live.next();
-    assert_eq!((name.as_str(), lanes.as_array().unwrap().len()), ("snapshot", 2));
+    let (mut last, name, all) = live.next();
+    assert_eq!((name.as_str(), all["lanes"].as_array().unwrap().len()), ("snapshot", 2));
     let here = serving.here();
     let scan = |text: &str, lane: &str| {
         let answer = here
@@ -209,5 +209,63 @@ fn nothing_that_an_operator_is_told_stays_english_in_another_language() {
         assert!(run.contains(said[0]) && run.contains(said[3]), "{run}");
         let (_, body) = run.split_once("<main>").unwrap();
         assert!(!body.contains("lang=\"en\""), "{run}");
+    }
+}
+
+/// What a page asks for names the last beat that it heard. Behind it another board may be in the lane.
+#[test]
+fn what_comes_long_behind_the_beat_that_its_page_heard_is_not_done() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let here = serving.here();
+    let post = |path: &str, text: &str, beat: &str| {
+        let request = here.post(path, &[("text", text), ("beat", beat)]).with("accept", "application/json");
+        serde_json::from_str::<Value>(&request.send().text()).unwrap()
+    };
+    let beat = || Live::of(&serving).next().2["beat"].as_str().unwrap().to_owned();
+    let old = beat();
+    // The barcode of the lane does nothing with it.
+    while post("/scan", "HR:LANE:1", &old)["is_taken"] == true {
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    let (_, milliseconds) = old.split_once('-').unwrap();
+    for (beat, of) in
+        [(old.as_str(), "old"), (&format!("1-{milliseconds}"), "of another start"), ("x", "none")]
+    {
+        for path in ["/scan", "/lanes/1/abort"] {
+            let late = post(path, SERIALS[0], beat);
+            assert_eq!(late["is_taken"], false, "{of}: {late}");
+            assert!(late["said"].as_str().unwrap().contains("too late"), "{of}: {late}");
+        }
+    }
+    assert_eq!(station.query("SELECT act FROM audit"), Vec::<String>::new());
+    // With a young one, once the board is seen.
+    while post("/scan", SERIALS[0], &beat())["is_taken"] != true {}
+}
+
+/// What is offered would be done.
+#[test]
+fn a_lane_that_waits_says_what_starts_it() {
+    for (start, does, has_button) in
+        [("button", "press start", true), ("presence", "unplug the board, and plug it in again", false)]
+    {
+        let board = "board = \"mock,serial=1\"";
+        let started = format!("{board}\nstart = [\"{start}\"]");
+        let station = Station::private(1).where_instead("station.toml", board, &started);
+        let serving = station.serve();
+        let here = serving.here();
+        let seen = |state: &str| {
+            let mut page = String::new();
+            while !page.contains(state) {
+                page = here.get("/").send().text();
+            }
+            page
+        };
+        seen("lane ready");
+        here.post("/scan", &[("text", SERIALS[0])]).send();
+        let page = seen("lane waiting");
+        assert!(page.contains(&format!("<p class=\"does\">{does}</p>")), "{page}");
+        assert_eq!(page.contains("/lanes/1/start"), has_button, "{page}");
+        assert!(page.contains("/lanes/1/abort") && !page.contains("/lanes/1/out"), "{page}");
     }
 }

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::thread;
 
+use nix::sys::signal::{Signal, kill};
+use nix::unistd::Pid;
 use tempfile::TempDir;
 
 use super::http::{Answer, Request, escaped};
@@ -62,6 +64,11 @@ impl Station {
         assert!(text.contains(was), "{text}");
         fs::write(self.path(name), text.replace(was, is)).unwrap();
         self
+    }
+
+    /// That is served at this port from now on, where a page knew it before.
+    pub(crate) fn at(self, port: u16) -> Self {
+        self.where_instead("station.toml", "127.0.0.1:0", &format!("127.0.0.1:{port}"))
     }
 
     pub(crate) fn path(&self, name: &str) -> PathBuf {
@@ -150,6 +157,11 @@ impl Serving {
             // A store that this test has closed is held for a moment by what other tests are just starting.
             assert_eq!(code, Some(4), "it does not say where its pages are: {why}");
         }
+    }
+
+    /// Stops the program, or lets it go on.
+    pub(crate) fn signal(&self, signal: Signal) {
+        kill(Pid::from_raw(self.child.id().try_into().unwrap()), signal).unwrap();
     }
 
     /// Whether the program goes on.

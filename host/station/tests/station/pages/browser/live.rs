@@ -1,5 +1,8 @@
 //! What is shown is live, or says that it is not.
 
+use std::time::Duration;
+
+use nix::sys::signal::Signal;
 use serde_json::json;
 
 use super::chromium::Chromium;
@@ -31,8 +34,8 @@ fn a_verdict_is_shown_with_its_record_and_stays_when_the_page_comes_anew() {
     let station = Station::private(2);
     let serving = station.serve();
     let mut page = open(&serving);
-    page.scan("HR:LANE:2", "Enter", std::time::Duration::ZERO);
-    page.scan(SERIALS[0], "Enter", std::time::Duration::ZERO);
+    page.scan("HR:LANE:2", "Enter", Duration::ZERO);
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
     page.wait("document.querySelector('#lane-2.pass') !== null");
     let shown = "const lane = document.getElementById('lane-2').dataset; `${lane.run} ${lane.record}`";
     let stored = station.query("SELECT id || ' ' || record_sha256 FROM run WHERE verdict = 'PASS'");
@@ -94,20 +97,99 @@ fn without_the_station_nothing_is_live_and_with_it_everything_again() {
             .unwrap()
             .starts_with("NOT LIVE")
     );
-    page.scan(SERIALS[0], "Enter", std::time::Duration::ZERO);
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
     page.wait("document.getElementById('answer').textContent.includes('did not arrive')");
-    let settings = std::fs::read_to_string(station.path("station.toml")).unwrap();
-    std::fs::write(
-        station.path("station.toml"),
-        settings.replace("127.0.0.1:0", &format!("127.0.0.1:{port}")),
-    )
-    .unwrap();
+    let station = station.at(port);
     let _again = station.serve();
     let back = page.evaluate("performance.now()").as_f64().unwrap();
     page.wait("window.rose > 0");
     let rose = page.evaluate("window.rose").as_f64().unwrap() - back;
     println!("live again {rose:.0} ms after it was back");
     page.wait("!document.body.classList.contains('dead')");
-    page.scan(SERIALS[0], "Enter", std::time::Duration::ZERO);
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
     page.wait("document.querySelector('.lane.pass') !== null");
+}
+
+#[test]
+fn an_open_page_comes_anew_by_itself_when_lanes_and_plans_are_others() {
+    let station = Station::private(2);
+    let serving = station.serve();
+    let port = serving.port;
+    let mut page = open(&serving);
+    page.scan("HR:LANE:1", "Enter", Duration::ZERO);
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("document.querySelector('#lane-1.pass') !== null");
+    drop(serving);
+    page.wait("document.body.classList.contains('dead')");
+    let station = station.at(port).where_instead("station.toml", "name = \"1\"", "name = \"A\"");
+    let station = station.where_instead("plan.toml", "version = \"1\"", "version = \"2\"");
+    let _again = station.serve();
+    page.wait("document.querySelector('.plans')?.textContent === 'CAM-T quick 2'");
+    page.wait("document.getElementById('lamp').textContent === 'live'");
+    let lanes = page.evaluate("[...document.querySelectorAll('.lane')].map(lane => lane.dataset.lane)");
+    assert_eq!(lanes, json!(["A", "2"]));
+    page.scan("HR:LANE:A", "Enter", Duration::ZERO);
+    page.scan(SERIALS[1], "Enter", Duration::ZERO);
+    page.wait("document.querySelector('#lane-A.pass') !== null");
+}
+
+/// The station stands still while its page scans, as on a computer that does something else, and goes on.
+#[test]
+fn what_is_scanned_while_the_page_is_not_live_is_never_done() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = open(&serving);
+    page.wait("document.querySelector('.lane.ready') !== null");
+    serving.signal(Signal::SIGSTOP);
+    page.wait("document.body.classList.contains('dead')");
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("document.getElementById('answer').textContent.includes('did not arrive')");
+    serving.signal(Signal::SIGCONT);
+    page.wait("!document.body.classList.contains('dead')");
+    page.scan(SERIALS[1], "Enter", Duration::ZERO);
+    page.wait("document.querySelector('.lane.pass') !== null");
+    assert_eq!(station.query("SELECT act || ' ' || detail FROM audit"), [format!("scan {}", SERIALS[1])]);
+}
+
+/// Keeps where the page hears its news, the last of them, and that of a PASS; counts tones.
+const HEAR: &str = "
+    window.tones = 0;
+    window.OscillatorNode = class extends OscillatorNode { constructor(...of) { super(...of); window.tones += 1; } };
+    window.EventSource = class extends EventSource {
+        constructor(...of) {
+            super(...of);
+            window.source = this;
+            for (const name of ['snapshot', 'lane', 'doing', 'scan', 'hook', 'beat']) this.addEventListener(name, event => {
+                window.last = Number(event.lastEventId);
+                if (name === 'lane' && JSON.parse(event.data).state === 'PASS') window.passed = event.data;
+            });
+        }
+    };";
+
+/// The state comes anew when a board is pulled out, and when the next one is plugged in.
+#[test]
+fn a_verdict_is_told_once() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = Chromium::open("about:blank");
+    page.call("Page.addScriptToEvaluateOnNewDocument", json!({ "source": HEAR }));
+    page.go(&format!("http://127.0.0.1:{}/", serving.port));
+    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    page.wait("document.querySelector('.lane.ready') !== null");
+    page.scan(SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("window.passed !== undefined && window.tones === 2");
+    let again = |run: &str| {
+        format!(
+            "(() => {{
+                document.getElementById('said').textContent = '';
+                const [lane, before] = [document.getElementById('lane-1'), window.tones];
+                const data = JSON.stringify({{...JSON.parse(window.passed), {run}}});
+                source.dispatchEvent(new MessageEvent('lane', {{data, lastEventId: `${{window.last + 1}}`}}));
+                const isDrawn = document.getElementById('lane-1') !== lane;
+                return [isDrawn, window.tones - before, document.getElementById('said').textContent !== ''];
+            }})()"
+        )
+    };
+    assert_eq!(page.evaluate(&again("")), json!([true, 0, false]));
+    assert_eq!(page.evaluate(&again("run: 'another'")), json!([true, 2, true]), "the control");
 }

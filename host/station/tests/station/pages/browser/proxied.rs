@@ -113,9 +113,7 @@ fn behind_a_proxy_that_says_502_the_page_is_live_again_by_itself() {
     let mut page = open(&proxy);
     page.evaluate(WATCH);
     page.wait("window.beat > 0");
-    let settings = station.path("station.toml");
-    let text = fs::read_to_string(&settings).unwrap();
-    fs::write(&settings, text.replace("127.0.0.1:0", &format!("127.0.0.1:{}", serving.port))).unwrap();
+    let station = station.at(serving.port);
     drop(serving);
     page.wait("window.died > 0");
     let silent = page.evaluate("window.died - window.beat").as_f64().unwrap();
