@@ -1,9 +1,12 @@
 //! Section 4 of WIRE.md: rows are played in the order of their numbers, and must follow each other.
 
-use halfrow_protocol::message::{Configuration, Hello, RefusalCode, Request, RowPlace};
+use halfrow_protocol::Kind;
+use halfrow_protocol::message::{
+    Configuration, Hello, RefusalCode, Request, Reset, ResetLevel, RowIn, RowPlace,
+};
 
-use crate::bench::{Bench, HELLO, Heard, rows_of};
-use crate::frames::{Row, configuration, ready, row, samples_of};
+use crate::bench::{Bench, HELLO, Heard, rows_of, wire};
+use crate::frames::{Row, configuration, make_ready, ready, row, samples_of};
 use crate::uploads::TableSet;
 use crate::{Boards, Build};
 
@@ -54,6 +57,9 @@ pub(crate) fn rows_that_are_not_the_configurations_are_refused(on: &dyn Boards) 
         Row { samples: vec![0; 62], ..moved(4, 0, |place| place.width = 62) },
         Row { samples: vec![0; 66], ..moved(4, 0, |place| place.width = 66) },
         Row { samples: vec![], ..moved(4, 0, |place| place.width = 0) },
+        // An odd width is no configuration's.
+        moved(4, 0, |place| place.width = 63),
+        Row { samples: vec![0; 66], ..moved(4, 0, |place| place.width = 65) },
         moved(4, 0, |place| place.row = 4),
         moved(4, 0, |place| place.row = u16::MAX),
         moved(4, 0, |place| place.last = true),
@@ -99,6 +105,17 @@ pub(crate) fn nothing_but_row_0_follows_the_last_row(on: &dyn Boards) {
     assert_eq!(bench.send_all(2, [2]), []);
 }
 
+pub(crate) fn a_frame_that_became_taller_goes_on_behind_the_row_that_was_its_last(on: &dyn Boards) {
+    let mut bench = board(on, 2);
+    bench.send_all(2, 0..2);
+    bench.window = 2;
+    bench.done(&Request::Configure(configuration(4)));
+    assert_eq!(bench.send_all(4, [2]), [], "row 2 of frame 0");
+    let heard = bench.send_all(4, [3]);
+    assert_eq!(rows_of(&heard), [2, 3]);
+    assert_eq!(heard[0].row().place, row(4, 2).place);
+}
+
 pub(crate) fn the_first_row_of_all_is_row_0(on: &dyn Boards) {
     let mut bench = board(on, 4);
     let wrong = moved(4, 0, |place| place.row = 1);
@@ -134,6 +151,56 @@ pub(crate) fn row_0_may_follow_any_row(on: &dyn Boards) {
     assert_eq!(rows_of(&heard), [1, 2]);
     assert_eq!(samples_of(&heard[1].row()), rows[0].samples);
     assert_eq!((heard[1].row().first_latency, heard[1].row().last_latency), (44, 44));
+}
+
+/// Sends a row in a payload that `change` has changed.
+fn send_changed(bench: &mut Bench, row: &Row, change: impl FnOnce(&mut Vec<u8>)) -> Vec<Heard> {
+    let header = bench.header(Kind::RowIn.code());
+    let mut payload = Vec::new();
+    RowIn::write_samples(&row.place, &row.samples, &mut payload);
+    change(&mut payload);
+    bench.receive(&wire(&header, |to| to.extend(payload)))
+}
+
+pub(crate) fn generation_and_further_flags_of_a_row_are_not_looked_at(on: &dyn Boards) {
+    let mut bench = board(on, 2);
+    let sent = (0..2).flat_map(|number| {
+        send_changed(&mut bench, &row(2, number), |payload| {
+            payload[10] |= 0xfe;
+            payload[11] = 255;
+        })
+    });
+    let heard: Vec<_> = sent.collect();
+    assert_eq!(
+        heard.iter().map(|packet| packet.payload[10..12].to_vec()).collect::<Vec<_>>(),
+        [[0, 1], [1, 1]]
+    );
+    for (number, packet) in (0..).zip(&heard) {
+        assert_eq!(packet.row().place, row(2, number).place);
+    }
+}
+
+pub(crate) fn of_several_wrong_things_about_a_row_the_first_of_the_page_is_named(on: &dyn Boards) {
+    const CREDIT: [(RefusalCode, u16); 1] = [(RefusalCode::Credit, 0)];
+    let wide = |number| Row { samples: vec![0; 66], ..moved(4, number, |place| place.width = 66) };
+    let mut bench = Bench::greeted(on);
+    for is_configured in [false, true] {
+        if is_configured {
+            bench.done(&Request::Configure(configuration(4)));
+        }
+        assert_eq!(refusals(&bench.send(&wide(1000))), CREDIT, "{is_configured}");
+        assert_eq!(refusals(&bench.send(&wide(0))), NOT_READY, "{is_configured}");
+    }
+    make_ready(&mut bench, 4);
+    assert_eq!(refusals(&bench.send(&wide(1000))), CREDIT);
+    bench.send_all(4, [0]);
+    for row in [wide(1000), wide(0), row(4, 0)] {
+        let heard = send_changed(&mut bench, &row, |payload| payload.truncate(payload.len() - 1));
+        assert_eq!(refusals(&heard), [(RefusalCode::Payload, 0)], "{:?}", row.place);
+    }
+    bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 4 }));
+    assert_eq!(bench.send(&wide(0)), [], "it is known, though nothing is ready");
+    assert_eq!(refusals(&bench.send(&wide(4))), NOT_READY);
 }
 
 pub(crate) fn frame_numbers_are_as_the_host_likes(on: &dyn Boards) {

@@ -43,6 +43,16 @@ pub(crate) fn a_repeated_nonce_is_answered_as_the_first_time_and_changes_nothing
     assert_eq!(after.packets, before.packets + 2, "the HELLO and this STATUS");
 }
 
+pub(crate) fn the_same_nonce_of_another_host_opens_a_session_of_its_own(on: &dyn Boards) {
+    let mut bench = ready(on, &Build::default(), 4);
+    bench.send_all(4, 0..2);
+    let session = bench.session;
+    let other = Hello { nonce: HELLO.nonce, ..OTHER };
+    assert_eq!(bench.refused(&Request::Hello(other)).0, RefusalCode::Held);
+    assert_eq!(bench.greet(&Hello { take_over: true, ..other }).session, next(session));
+    assert_eq!(bench.status().next_row_in, 0);
+}
+
 pub(crate) fn a_new_session_drops_rows_and_counters_and_keeps_configuration_and_tables(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 4);
     bench.send_all(4, [0, 1, 3]);
