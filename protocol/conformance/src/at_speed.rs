@@ -41,9 +41,7 @@ pub const ENDLESS: Burst = Burst { frames: Burst::ENDLESS, mode: BurstMode::Repe
 
 /// What a board of this build says of its bursts; none if it makes none of the page's content.
 pub fn bursts_of(bench: &mut Bench) -> Option<Bursts> {
-    let answer = bench.done(&Request::Capabilities);
-    let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
-    capabilities.bursts.filter(|bursts| bursts.content == 1)
+    bench.capabilities().bursts.filter(|bursts| bursts.content == 1)
 }
 
 /// A board of a build that makes bursts, configured, with these tables as the active ones under generation 1, and empty.
@@ -57,11 +55,16 @@ pub fn ready_with(
     let mut bench = Bench::switched_on(on, &build);
     bench.greet(&HELLO);
     let bursts = bursts_of(&mut bench)?;
-    bench.done(&Request::Configure(configuration));
-    tables.upload(&mut bench);
-    bench.done(&tables.commit(1, 0));
-    activate(&mut bench, &configuration, 0);
+    make_ready(&mut bench, configuration, tables);
     Some((bench, bursts))
+}
+
+/// Configures an empty board, and makes these tables the active ones under generation 1 unless that is active already.
+pub(crate) fn make_ready(bench: &mut Bench, configuration: Configuration, tables: &TableSet) {
+    bench.done(&Request::Configure(configuration));
+    tables.upload(bench);
+    bench.done(&tables.commit(1, 0));
+    activate(bench, &configuration, 0);
 }
 
 /// The same for the golden frame, of the default build.

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use halfrow_protocol::message::{Hello, Refusal, RefusalCode, RowOut, Status, Welcome};
+use halfrow_protocol::message::{Capabilities, Hello, Refusal, RefusalCode, RowOut, Status, Welcome};
 use halfrow_protocol::{Decoder, Encoder, Header, Kind, Packet, Reply, Request};
 
 use crate::{Boards, Build, Subject};
@@ -158,6 +158,13 @@ impl Bench {
         );
         (self.session, self.window) = (welcome.session, 0);
         welcome
+    }
+
+    /// What the board says of its build.
+    pub fn capabilities(&mut self) -> Capabilities {
+        let answer = self.done(&Request::Capabilities);
+        let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
+        capabilities
     }
 
     /// The counters.

@@ -8,9 +8,9 @@ use halfrow_protocol::message::{
 use halfrow_protocol::samples;
 
 use crate::Boards;
-use crate::at_speed::{ENDLESS, FRAME, ONE, ROWS, Told, ready};
+use crate::at_speed::{self, ENDLESS, FRAME, HEIGHT, ONE, ROWS, Told, golden_tables, ready};
 use crate::bench::{Bench, HELLO, rows_of};
-use crate::frames::{make_ready, row, samples_of};
+use crate::frames::{configuration, make_ready, row, samples_of};
 use crate::material::crc_of_words;
 
 /// A board in the middle of a burst.
@@ -151,6 +151,19 @@ pub(crate) fn a_row_that_nobody_uploaded_is_expected_to_have_0(on: &dyn Boards) 
         trapped(&mut bench).map(|(frame, row, signature, _)| (frame, row, signature)),
         Some((0, 0, ROWS[0]))
     );
+}
+
+pub(crate) fn expected_signatures_stay_whatever_happens(on: &dyn Boards) {
+    let Some(mut bench) = with_trap(on) else { return };
+    expect(&mut bench, ROWS);
+    let reset = |level| Request::Reset(Reset { level, next_row: 0 });
+    let hello = Request::Hello(Hello { nonce: 78, ..HELLO });
+    for (burst, request) in (1..).zip([reset(ResetLevel::Rows), reset(ResetLevel::Tables), hello]) {
+        bench.session = bench.done(&request).header.session;
+        at_speed::make_ready(&mut bench, configuration(HEIGHT), &golden_tables());
+        bench.signed(&Burst { burst, ..TRAPPED });
+        assert_eq!(trapped(&mut bench), None, "{request:?}");
+    }
 }
 
 pub(crate) fn only_a_trapped_burst_sets_the_trap_and_only_the_next_one_empties_it(on: &dyn Boards) {

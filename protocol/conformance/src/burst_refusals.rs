@@ -56,6 +56,11 @@ pub(crate) fn without_configuration_or_committed_tables_a_board_is_not_ready(on:
             assert_eq!(bench.refused(&Request::Burst(burst)), (RefusalCode::NotReady, 0));
         }
     }
+    golden_tables().upload(&mut bench);
+    bench.done(&golden_tables().commit(1, 0));
+    for burst in [ONE, wrong] {
+        assert_eq!(bench.refused(&Request::Burst(burst)), (RefusalCode::NotReady, 0), "a commit is pending");
+    }
 }
 
 pub(crate) fn fields_out_of_range_are_named_the_first_of_several(on: &dyn Boards) {

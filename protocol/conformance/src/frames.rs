@@ -55,6 +55,12 @@ pub fn ready(on: &dyn Boards, build: &Build, height: u16) -> Bench {
     bench
 }
 
+/// The same; none if there is no such build.
+#[must_use]
+pub fn ready_if_offered(on: &dyn Boards, build: &Build, height: u16) -> Option<Bench> {
+    on.offers(build).then(|| ready(on, build, height))
+}
+
 /// Configures for frames of `height` rows and commits tables that change no sample as generation 1, for frame 0.
 pub fn make_ready(bench: &mut Bench, height: u16) {
     let tables = TableSet::unstretched(height);

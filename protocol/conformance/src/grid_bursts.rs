@@ -1,9 +1,9 @@
 //! Frames that a board makes on its own, through grids.
 
-use halfrow_protocol::message::{Burst, BurstMode, FrameRecord, Shape};
+use halfrow_protocol::message::{Burst, BurstMode, FrameRecord, Hello, Request, Reset, ResetLevel, Shape};
 
 use crate::at_speed::{FRAME, HEIGHT, ONE, activate, golden_tables, ready_with};
-use crate::bench::Bench;
+use crate::bench::{Bench, HELLO};
 use crate::frames::WIDTH;
 use crate::grids::{greeted, narrow};
 use crate::material::{drawn_grid, hermite};
@@ -20,13 +20,19 @@ fn grid() -> TableSet {
     TableSet::grid(SHAPE, &drawn_grid(SHAPE, WIDTH, HEIGHT, 7), &hermite())
 }
 
-/// A board that makes bursts and takes grids, with a grid as its active tables under generation 1, and a burst of one frame
+/// A board that makes bursts and takes grids, with these as its active tables under generation 1, and a burst of one frame
 /// with as much blanking as it needs.
-fn ready(on: &dyn Boards, build: &Build) -> Option<(Bench, Burst)> {
-    let (_, grids) = greeted(on, build)?;
-    let (bench, bursts) = ready_with(on, build, narrow(&grids, HEIGHT), &grid())?;
+fn ready(on: &dyn Boards, tables: &TableSet) -> Option<(Bench, Burst)> {
+    let build = Build::default();
+    let (_, grids) = greeted(on, &build)?;
+    let (bench, bursts) = ready_with(on, &build, narrow(&grids, HEIGHT), tables)?;
     let frame_blanking = bursts.least_frame_blanking.max(grids.grid_blanking.into());
     Some((bench, Burst { frame_blanking, ..ONE }))
+}
+
+/// An alternating burst whose frame 1, which is the shadow bank's, has the number 0.
+fn to_the_shadow(one: Burst) -> Burst {
+    Burst { frames: 2, first_frame: u16::MAX, mode: BurstMode::Alternating, ..one }
 }
 
 fn made(record: FrameRecord) -> (u32, u8) {
@@ -34,17 +40,16 @@ fn made(record: FrameRecord) -> (u32, u8) {
 }
 
 pub(crate) fn a_burst_goes_through_the_grid(on: &dyn Boards) {
-    let Some((mut bench, one)) = ready(on, &Build::default()) else { return };
+    let Some((mut bench, one)) = ready(on, &grid()) else { return };
     let repeating = Burst { frames: 3, mode: BurstMode::Repeating, ..one };
     let records = bench.signed(&repeating);
     assert_eq!(records.into_iter().map(made).collect::<Vec<_>>(), [(DRAWN, 1); 3]);
 }
 
 pub(crate) fn an_alternating_burst_goes_through_each_banks_own_shape(on: &dyn Boards) {
-    let Some((mut bench, one)) = ready(on, &Build::default()) else { return };
+    let Some((mut bench, one)) = ready(on, &grid()) else { return };
     let even = Burst { mode: BurstMode::Alternating, ..one };
-    // Its frame 1 has the number 0.
-    let odd = Burst { frames: 2, first_frame: u16::MAX, ..even };
+    let odd = to_the_shadow(one);
     golden_tables().upload(&mut bench);
     assert_eq!(made(bench.signed(&even)[0]), (DRAWN, 1));
     assert_eq!(made(bench.signed(&Burst { burst: 2, ..odd })[1]), (FRAME, 0), "the shadow never was a grid");
@@ -63,4 +68,15 @@ pub(crate) fn an_alternating_burst_goes_through_each_banks_own_shape(on: &dyn Bo
         (FRAME, 0),
         "row factors were written over the grid"
     );
+}
+
+pub(crate) fn a_forgotten_commit_leaves_its_shape_in_the_shadow(on: &dyn Boards) {
+    let reset = Request::Reset(Reset { level: ResetLevel::Rows, next_row: 0 });
+    for request in [Request::Hello(Hello { nonce: 7, ..HELLO }), reset] {
+        let Some((mut bench, one)) = ready(on, &golden_tables()) else { return };
+        grid().upload(&mut bench);
+        bench.done(&grid().commit(2, 9));
+        bench.session = bench.done(&request).header.session;
+        assert_eq!(made(bench.signed(&to_the_shadow(one))[1]), (DRAWN, 0), "{request:?}");
+    }
 }

@@ -2,13 +2,13 @@
 //! stands here and in `grid_commits` of such boards.
 
 use halfrow_protocol::message::{
-    Bank, Configuration, Entries, Grids, RefusalCode, Reply, Request, Reset, ResetLevel, Span, Table,
+    Bank, Configuration, Entries, Grids, RefusalCode, Request, Reset, ResetLevel, Span, Table,
 };
 
 use crate::bench::{Bench, HELLO};
 use crate::frames::{configuration, lean, ready};
 use crate::material::UNSTRETCHED;
-use crate::uploads::{span, write};
+use crate::uploads::{span, write, write_both_banks};
 use crate::{Boards, Build, offered};
 
 /// The greatest entry of a grid.
@@ -16,9 +16,7 @@ pub(crate) const MOST: u32 = (1 << 25) - 1;
 
 /// What a board says of the grids that it takes; none of a datapath that the page does not describe.
 pub fn grids_of(bench: &mut Bench) -> Option<Grids> {
-    let answer = bench.done(&Request::Capabilities);
-    let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
-    capabilities.grids.filter(|grids| grids.further_datapath == 2)
+    bench.capabilities().grids.filter(|grids| grids.further_datapath == 2)
 }
 
 /// A board of this build with an open session; none if there is no such build, or it takes no grids.
@@ -100,7 +98,7 @@ pub(crate) fn spans_of_a_grid_end_before_its_last_entry(on: &dyn Boards) {
             let refusal = bench.refused(&write(Table::Grid, first, &words(&[1, 1])));
             assert_eq!(refusal, (RefusalCode::Range, first));
         }
-        let no_port = Span { port: 1, ..shadow(Table::Grid, 3, 1) };
+        let no_port = Span { port: bench.capabilities().step_ports, ..shadow(Table::Grid, 3, 1) };
         for wrong in [shadow(Table::Grid, entries - 1, 2), shadow(Table::Grid, 0xffff, 0xffff), no_port] {
             for request in [Request::TableRead(wrong), Request::TableCrc(wrong)] {
                 assert_eq!(bench.refused(&request), (RefusalCode::Range, wrong.first), "{request:?}");
@@ -125,7 +123,9 @@ pub(crate) fn before_any_write_every_entry_of_a_grid_is_1(on: &dyn Boards) {
                 let all = Span { bank, ..shadow(Table::Grid, 0, entries) };
                 assert_eq!(bench.crc(all), ones, "{bank:?}, round {round}");
             }
-            bench.done(&write(Table::Grid, entries - 2, &words(&[3, 4])));
+            write_both_banks(&mut bench, |bench| {
+                bench.done(&write(Table::Grid, entries - 2, &words(&[3, 4])));
+            });
             bench.done(&Request::Reset(Reset { level: ResetLevel::Tables, next_row: 0 }));
         }
     }

@@ -10,6 +10,7 @@
 #![expect(clippy::panic, clippy::unwrap_used, reason = "a test that cannot go on fails")]
 #![expect(clippy::missing_panics_doc, reason = "a board that answers otherwise than it must fails the test")]
 
+mod appended;
 pub mod at_speed;
 pub mod bench;
 mod burst_ends;
@@ -88,6 +89,9 @@ macro_rules! suite {
 }
 
 suite! { $
+    appended:
+        requests_may_carry_fields_of_a_later_version,
+        requests_of_bursts_may_carry_fields_of_a_later_version;
     burst_ends:
         a_reset_of_any_level_ends_a_burst_at_once,
         a_burst_can_follow_one_that_was_reset,
@@ -98,6 +102,7 @@ suite! { $
         the_trap_keeps_nothing_while_all_rows_are_expected,
         the_trap_keeps_the_first_row_that_is_not_expected,
         a_row_that_nobody_uploaded_is_expected_to_have_0,
+        expected_signatures_stay_whatever_happens,
         only_a_trapped_burst_sets_the_trap_and_only_the_next_one_empties_it,
         a_reset_and_a_new_session_empty_the_trap;
     burst_refusals:
@@ -185,7 +190,8 @@ suite! { $
         the_reply_flag_of_a_request_is_not_looked_at;
     grid_bursts:
         a_burst_goes_through_the_grid,
-        an_alternating_burst_goes_through_each_banks_own_shape;
+        an_alternating_burst_goes_through_each_banks_own_shape,
+        a_forgotten_commit_leaves_its_shape_in_the_shadow;
     grid_commits:
         a_board_without_grids_looks_at_no_shape,
         a_shape_out_of_range_is_named_the_first_of_several,
@@ -222,6 +228,7 @@ suite! { $
         the_board_says_how_many_banks_it_has,
         a_commit_takes_effect_at_once_whatever_its_frame,
         both_banks_are_the_same_memory,
+        rows_use_what_is_written_behind_the_commit_under_the_same_generation,
         tables_are_written_and_committed_between_frames,
         nothing_is_written_while_any_row_is_inside,
         nothing_is_committed_while_a_row_is_inside,

@@ -5,7 +5,8 @@ use halfrow_protocol::message::{
 };
 
 use crate::bench::Bench;
-use crate::material::{Nodes, UNSTRETCHED, hermite};
+use crate::frames::configuration;
+use crate::material::{GOLDEN_FACTOR, Nodes, UNSTRETCHED, hermite};
 
 /// Row factors of one packet.
 const FACTORS: usize = 1000;
@@ -67,6 +68,20 @@ pub fn write(table: Table, first: u16, bytes: &[u8]) -> Request<'_> {
 /// Entries of a bank as a port reads them.
 pub fn span(table: Table, bank: Bank, port: u8, first: u16, count: u16) -> Span {
     Span { table, bank, port, first, count }
+}
+
+/// Writes a golden factor, a kernel and what `also` writes into both banks: a row of a frame of one takes the first into use.
+pub(crate) fn write_both_banks(bench: &mut Bench, also: impl Fn(&mut Bench)) {
+    let tables = TableSet::new(&[GOLDEN_FACTOR], &hermite());
+    bench.done(&Request::Configure(configuration(1)));
+    for is_active in [false, true] {
+        tables.upload(bench);
+        also(bench);
+        if !is_active {
+            bench.done(&tables.commit(1, 0));
+            bench.send_all(1, [0]);
+        }
+    }
 }
 
 impl Bench {
