@@ -4,8 +4,8 @@ use halfrow_protocol::message::{RefusalCode, Request};
 use halfrow_protocol::{Kind, MAX_PAYLOAD};
 use proptest::prelude::*;
 
-use crate::Boards;
 use crate::bench::Bench;
+use crate::{Boards, cases};
 
 pub(crate) fn bytes_come_back_as_they_went_up_to_4080(on: &dyn Boards) {
     let mut bench = Bench::greeted(on);
@@ -19,7 +19,7 @@ pub(crate) fn bytes_come_back_as_they_went_up_to_4080(on: &dyn Boards) {
 }
 
 pub(crate) fn any_bytes_come_back_as_they_went(on: &dyn Boards) {
-    proptest!(ProptestConfig::default(), |(bytes in prop::collection::vec(any::<u8>(), 0..=4080))| {
+    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/echo.txt")), |(bytes in prop::collection::vec(any::<u8>(), 0..=4080))| {
         prop_assert_eq!(&Bench::greeted(on).done(&Request::Echo(&bytes)).payload, &bytes);
     });
 }

@@ -267,6 +267,7 @@ suite! { $
         the_tests_own_pattern_is_marsaglias,
         gaps_follow_the_seed_and_begin_anew_with_every_frame,
         gaps_and_blanking_change_no_sample,
+        blanking_without_a_seed_changes_no_sample,
         samples_are_packed_two_in_three_bytes,
         a_row_that_a_new_session_cuts_off_leaves_no_trace;
     random:

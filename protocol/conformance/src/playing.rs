@@ -1,6 +1,6 @@
 //! Section 5 of WIRE.md: samples, latencies and gaps of the rows that come back.
 
-use halfrow_protocol::message::{Configuration, Hello, Reply, Request};
+use halfrow_protocol::message::{Configuration, Hello, Request};
 use halfrow_protocol::samples;
 use proptest::prelude::*;
 
@@ -32,11 +32,10 @@ pub(crate) fn the_golden_rows_come_out_of_the_wire(on: &dyn Boards) {
 pub(crate) fn the_crc_of_what_entered_is_that_of_the_samples_that_were_sent(on: &dyn Boards) {
     let mut bench = ready(on, &Build::default(), 2);
     bench.done(&Request::Configure(Configuration { bits: 8, ..configuration(2) }));
-    let answer = bench.done(&Request::Capabilities);
-    let Reply::Capabilities(capabilities) = answer.reply() else { panic!("{answer:?}") };
+    let tells = bench.capabilities().entered;
     let heard = bench.send_all(2, 0..2);
     for (number, packet) in (0..).zip(&heard) {
-        let crc = capabilities.entered.then(|| crc_of_words(row(2, number).samples));
+        let crc = tells.then(|| crc_of_words(row(2, number).samples));
         assert_eq!(packet.row().entered, crc, "row {number}");
         assert_eq!(packet.payload.len(), 12 + 8 + 96 + if crc.is_some() { 4 } else { 0 });
     }
@@ -160,7 +159,7 @@ pub(crate) fn the_tests_own_pattern_is_marsaglias(_: &dyn Boards) {
 }
 
 pub(crate) fn gaps_follow_the_seed_and_begin_anew_with_every_frame(on: &dyn Boards) {
-    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/playing.txt")), |(seed in 1_u32..,
+    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/gaps.txt")), |(seed in 1_u32..,
         blanking in 0_u16..200,
         height in 1_u16..6,)| {
         let expected = pauses(seed, 64, height);
@@ -169,15 +168,26 @@ pub(crate) fn gaps_follow_the_seed_and_begin_anew_with_every_frame(on: &dyn Boar
 }
 
 pub(crate) fn gaps_and_blanking_change_no_sample(on: &dyn Boards) {
-    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/playing.txt")), |(seed in any::<u32>(), blanking in 0_u16..2000)| {
-        let mut bench = ready(on, &Build::default(), 2);
+    proptest!(cases(on, 8, concat!(env!("CARGO_MANIFEST_DIR"), "/proptest-regressions/blanking.txt")), |(seed in any::<u32>(), blanking in 0_u16..2000)| {
         let gaps = Configuration { gap_seed: seed, blanking, ..configuration(2) };
-        bench.done(&Request::Configure(gaps));
-        for (number, packet) in (0..).zip(bench.send_all(2, 0..4)) {
-            prop_assert_eq!(samples_of(&packet.row()), row(2, number).samples);
-        }
-        prop_assert_eq!(bench.status().rows_out, 4);
+        expect_unchanged(&mut ready(on, &Build::default(), 2), gaps);
     });
+}
+
+pub(crate) fn blanking_without_a_seed_changes_no_sample(on: &dyn Boards) {
+    for blanking in [1, 783, 2000] {
+        let blanking = Configuration { blanking, ..configuration(2) };
+        expect_unchanged(&mut ready(on, &Build::default(), 2), blanking);
+    }
+}
+
+/// Two frames of two rows come out as they went in.
+fn expect_unchanged(bench: &mut Bench, configuration: Configuration) {
+    bench.done(&Request::Configure(configuration));
+    for (number, packet) in (0..).zip(bench.send_all(2, 0..4)) {
+        assert_eq!(samples_of(&packet.row()), row(2, number).samples, "row {number}");
+    }
+    assert_eq!(bench.status().rows_out, 4);
 }
 
 pub(crate) fn samples_are_packed_two_in_three_bytes(on: &dyn Boards) {
