@@ -62,7 +62,9 @@ fn the_coordinates_of_drawn_grids_are_the_golden_ones() {
         ((128, 9, 127, 1, 5), (0, Narrow), 0xf3f8_7b0c, 0x45fa_e881),
         ((128, 70, 100, 6, 6), (1, Narrow), 0xdb24_8d53, 0x2617_fe6d),
         ((130, 40, 31, 3, 5), (2, Wide), 0x27d8_4e57, 0x21b5_19cd),
-        ((192, 5, 383, 2, 6), (3, Wide), 0x9f8f_1aa6, 0xc53e_6168),
+        ((192, 5, 382, 2, 6), (3, Wide), 0x9f8f_1aa6, 0xc53e_6168),
+        // No row of the page: the greatest C, where the factor of column 0 is no 1. From its formulas, by Python's integers.
+        ((192, 5, 382, 2, 6), (3, Narrow), 0x1340_8ac9, 0x551d_fae1),
     ] {
         let case = Case { width, height, centre2, shape: GridShape::new(v, k).unwrap() };
         let grid = case.drawn(seed, kind);
