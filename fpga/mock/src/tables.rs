@@ -223,12 +223,6 @@ impl Tables {
         }
     }
 
-    /// The factor of a row as a port sees it; none for a row that is not in the table.
-    #[must_use]
-    pub fn factor(&self, bank: Bank, row: usize, port: Port) -> Option<u32> {
-        self.entry(bank, row, port).filter(|_| row < self.max_height)
-    }
-
     /// An entry of a bank as a port sees it, whatever it holds; none beyond its end.
     #[must_use]
     pub fn entry(&self, bank: Bank, index: usize, port: Port) -> Option<u32> {

@@ -17,7 +17,7 @@ fn a_faulty_row_factor_shows_in_the_row_and_when_read_back() {
     let fault = fault("row-factor", &[("row", "0")]);
     let (samples, tables) = first_row(fault, GOLDEN_FACTOR ^ (1 << 18), &hermite());
     assert_eq!(samples, HERMITE);
-    assert_eq!(tables.factor(Bank::Active, 0, Port::ReadBack), Some(GOLDEN_FACTOR));
+    assert_eq!(tables.entry(Bank::Active, 0, Port::ReadBack), Some(GOLDEN_FACTOR));
 }
 
 #[test]
@@ -25,7 +25,7 @@ fn a_hidden_faulty_row_factor_shows_in_the_row_only() {
     let fault = fault("row-factor", &[("row", "0"), ("bit", "3"), ("hidden", "true")]);
     let (samples, tables) = first_row(fault, GOLDEN_FACTOR ^ 8, &hermite());
     assert_eq!(samples, HERMITE);
-    assert_eq!(tables.factor(Bank::Active, 0, Port::ReadBack), Some(GOLDEN_FACTOR ^ 8));
+    assert_eq!(tables.entry(Bank::Active, 0, Port::ReadBack), Some(GOLDEN_FACTOR ^ 8));
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn a_drifting_entry_flips_once_while_the_board_runs() {
     let golden: Vec<_> =
         (0..3).map(|frame| play_frame(&mut player, &mut tables, frame)[0].samples == HERMITE).collect();
     assert_eq!(golden, [false, true, true]);
-    assert_eq!(tables.factor(Bank::Active, 0, Port::ReadBack), Some(GOLDEN_FACTOR));
+    assert_eq!(tables.entry(Bank::Active, 0, Port::ReadBack), Some(GOLDEN_FACTOR));
 }
 
 /// Plays a frame with unstretched rows, commits the golden factor, and plays a second one. Returns whether its row was

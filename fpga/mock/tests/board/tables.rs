@@ -28,8 +28,8 @@ fn the_banks_change_places_at_a_commit() {
     tables.write_factors(3, &[5, 6]).unwrap();
     tables.commit(9, 0).unwrap();
     tables.start_frame(0);
-    assert_eq!(tables.factor(Bank::Active, 4, Port::ReadBack), Some(6));
-    assert_eq!(tables.factor(Bank::Shadow, 4, Port::ReadBack), Some(UNSTRETCHED));
+    assert_eq!(tables.entry(Bank::Active, 4, Port::ReadBack), Some(6));
+    assert_eq!(tables.entry(Bank::Shadow, 4, Port::ReadBack), Some(UNSTRETCHED));
     assert_eq!(tables.generation(), 9);
 }
 
@@ -52,7 +52,7 @@ fn entries_beyond_a_table_are_refused() {
     assert_eq!(tables.write_factors(2047, &[1, 1]), beyond(2048, 2048));
     assert_eq!(tables.write_nodes(65, &[Node::default()]), beyond(65, 65));
     assert_eq!(tables.write_factors(usize::MAX, &[1]), beyond(usize::MAX - 1, 2048));
-    assert_eq!(tables.factor(Bank::Active, 2048, Port::ReadBack), None);
+    assert_eq!(tables.entry(Bank::Active, 2048, Port::ReadBack), None);
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn a_factor_of_zero_or_above_one_is_refused_and_nothing_is_written() {
     for factor in [0, UNSTRETCHED + 1] {
         let refused = tables.write_factors(10, &[77, factor]);
         assert_eq!(refused, Err(TableError::Factor { row: 11, factor }));
-        assert_eq!(tables.factor(Bank::Shadow, 10, Port::ReadBack), Some(UNSTRETCHED));
+        assert_eq!(tables.entry(Bank::Shadow, 10, Port::ReadBack), Some(UNSTRETCHED));
     }
 }
 
