@@ -107,7 +107,7 @@ fn a_board_of_another_datapath_corrects_nothing() {
     let call = small("correct", &["builtin:noise", "--board", "mock,fault=wrong-datapath", "-o", "out.pgm"]);
     let refused = folder.halfrow(call);
     assert_eq!(refused.code, Some(6), "{}", refused.stderr);
-    assert!(refused.stderr.contains("datapath 2 is not known here"), "{}", refused.stderr);
+    assert!(refused.stderr.contains("datapath 9 is not known here"), "{}", refused.stderr);
     assert_eq!(folder.names("."), [""; 0]);
 }
 

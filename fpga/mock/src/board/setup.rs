@@ -123,7 +123,7 @@ impl Board {
             return Err((RefusalCode::Range, 0));
         }
         let shape = self.shape(commit)?;
-        if self.tables.has_commit() {
+        if self.is_busy() || self.tables.has_commit() {
             return Err((RefusalCode::Busy, 0));
         }
         let &Settings { width, height, .. } = self.player.settings();

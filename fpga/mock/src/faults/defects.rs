@@ -50,7 +50,7 @@ impl Defects {
                 tables.drift = Some(Drift { after, entry: row, bit });
             }
             Some(BoardFault::UncheckedCommit) => tables.unchecked = true,
-            Some(BoardFault::WrongDatapath) => claims.datapath = 1,
+            Some(BoardFault::WrongDatapath) => claims.datapath = 8,
             Some(BoardFault::SpoiltRow { row, column, bit }) => {
                 player.spoilt = Some(SpoiltSample { row, column, bit });
             }

@@ -1,7 +1,7 @@
 //! What is true of the mock alone: builds and faults that no other board has, and that it takes no time of its own.
 
 use halfrow_mock::{Board, BoardFault, Depth, Options, TapCount, Weight};
-use halfrow_protocol::message::{Bank, RefusalCode, Reply, Request, Table};
+use halfrow_protocol::message::{Bank, Datapath, RefusalCode, Reply, Request, Table};
 
 use halfrow_conformance::capabilities::values;
 use halfrow_conformance::frames::{configuration, make_ready, row};
@@ -24,6 +24,8 @@ fn ready_with(fault: Option<BoardFault>, height: u16) -> Bench {
 fn the_board_is_a_mock_of_datapath_1() {
     let values = values(&mut switched_on(&Options::default(), None));
     assert_eq!((values[&0x01], values[&0x20]), (1, 3));
+    assert_eq!((values[&0x0c], values[&0x0d]), (1, 2), "one port for factors, two for nodes");
+    assert_eq!((values[&0x07], values[&0x0e]), (2048, 0), "the clock is the host's");
 }
 
 #[test]
@@ -67,7 +69,8 @@ fn a_board_may_lie_about_its_latency() {
 fn a_board_may_claim_another_datapath() {
     let honest = values(&mut switched_on(&Options::default(), None));
     let lying = values(&mut switched_on(&Options::default(), Some(BoardFault::WrongDatapath)));
-    assert_ne!(lying[&1], 1);
+    let claimed = u16::try_from(lying[&1]).unwrap();
+    assert!(Datapath::try_from(claimed).is_err(), "{claimed} is one that this program knows");
     assert!(honest.keys().all(|tag| *tag == 1 || honest[tag] == lying[tag]));
 }
 
@@ -80,6 +83,18 @@ fn a_table_that_reads_back_wrong_is_not_committed() {
     TableSet::unstretched(1).upload(&mut bench);
     let commit = TableSet::unstretched(1).commit(1, 0);
     assert_eq!(bench.refused(&commit), (RefusalCode::TableCrc, 0));
+}
+
+/// Its one fault is that it does not look at the CRCs.
+#[test]
+fn a_board_that_checks_no_commit_is_busy_while_a_row_is_inside() {
+    let mut bench = ready_with(Some(BoardFault::UncheckedCommit), 2);
+    bench.send_all(2, [0]);
+    let tables = TableSet::unstretched(2);
+    tables.upload(&mut bench);
+    assert_eq!(bench.refused(&tables.commit(2, 1)), (RefusalCode::Busy, 0));
+    bench.send_all(2, [1]);
+    bench.done(&tables.commit(2, 1));
 }
 
 #[test]
