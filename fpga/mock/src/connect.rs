@@ -24,11 +24,13 @@ pub enum ConnectError {
 ///
 /// # Errors
 /// [`ConnectError`] when a key is unknown, given twice or taken by both faults, a value is out of range, or the build cannot
-/// exist.
+/// exist or has not got the part that the fault is of.
 pub fn connect(options: &[(&str, &str)]) -> Result<Pipe<Board>, ConnectError> {
     let mut build = Options::default();
     let (setup, fault) = PipeSetup::with_board(options, &mut build)?;
-    Ok(setup.connect(Board::new(&build, fault)?))
+    let board = Board::new(&build, fault)?;
+    fault.map_or(Ok(()), |fault| fault.check_part(&build))?;
+    Ok(setup.connect(board))
 }
 
 /// The fault of the board that [`connect`] would build from the same options, if it has one.

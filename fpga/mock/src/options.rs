@@ -73,6 +73,22 @@ pub enum OptionError {
     /// No depth is left.
     #[error("depths is empty; give at least one of 8, 10 and 12")]
     NoDepth,
+    /// A fault of an address line that the ring has not got.
+    #[error("the ring has no address line bit={bit}; give one from 0 to {last}, or a longer ring")]
+    NoAddressLine {
+        /// The line that the fault is of.
+        bit: u8,
+        /// The highest line that there is.
+        last: u32,
+    },
+    /// A fault of the choice between two banks of tables, where there is one.
+    #[error("the fault takes the wrong one of two banks of tables; give table-banks=2, or another fault")]
+    NoOtherBank,
+    /// A fault of frames that the board makes, where it makes none.
+    #[error(
+        "the fault strikes in frames that the board makes itself; leave bursts=no out, or give another fault"
+    )]
+    NoBursts,
 }
 
 /// How many taps a build weighs.

@@ -195,6 +195,11 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
         ("drifting-table,row=16", "there is no row=16"),
         ("tap-offset,columns=0", "columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3"),
         ("dead-tap,tap=4,reads=4", "tap=4,reads=4 lets the tap carry its own sample"),
+        ("spoilt-row,column=64", "there is no column=64 in rows of 64 samples; give one from 0 to 63"),
+        ("spoilt-row,row=16,column=64", "there is no row=16"),
+        ("stuck-address,bit=11", "the ring has no address line bit=11; give one from 0 to 10"),
+        ("stale-table,table-banks=1", "the wrong one of two banks of tables; give table-banks=2"),
+        ("slow-path,bursts=no", "leave bursts=no out"),
         // One frame and two of noise with these tables: 32 rows are played before row 3 of the last.
         ("drifting-table,after=36", "give 35 at most, or stream more frames"),
     ] {
@@ -205,6 +210,20 @@ fn a_fault_without_effect_is_refused_with_one_that_has_some() {
         let board = format!("mock,fault={fault}");
         let ended = folder.halfrow(small("verify", &["--board", &board, "--frame", "builtin:noise"]));
         assert_eq!(ended.code, Some(1), "{fault}: {}", ended.stdout);
+    }
+}
+
+#[test]
+fn a_fault_at_speed_is_refused_where_no_frame_is_made_at_speed() {
+    let folder = Folder::new();
+    for fault in ["slow-path", "warm-bit,after=100000", "late-swap", "hidden-pause"] {
+        let board = format!("mock,fault={fault}");
+        let call = small("verify", &["--board", &board, "--at-speed", "0"]);
+        refused(
+            &folder,
+            &call,
+            "it strikes in frames that the board makes at full speed, and there are none",
+        );
     }
 }
 

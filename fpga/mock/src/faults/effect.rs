@@ -1,16 +1,21 @@
-//! Faults that a run never comes upon, so that who asks for one is told.
+//! Faults that a run never comes upon or a build cannot have, so that who asks for one is told.
 
 use super::BoardFault;
+use crate::options::{BurstBuild, OptionError, Options};
 
 /// What a board is given under one generation of tables.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Streamed {
+    /// Samples of a row.
+    pub width: usize,
     /// Rows of a frame.
     pub height: usize,
     /// Entries of the grid that its rows are made with; none for row factors.
     pub grid: Option<usize>,
     /// Frames, one behind the other.
     pub frames: usize,
+    /// Whether the board makes frames of its own behind them.
+    pub at_speed: bool,
 }
 
 impl BoardFault {
@@ -23,10 +28,14 @@ impl BoardFault {
             Self::DriftingTable { after, row, .. } => {
                 streamed.lacks_entry(row).or_else(|| streamed.ends_before(after, row))
             }
-            Self::LostRow { row }
-            | Self::SpoiltRow { row, .. }
-            | Self::WarmBit { row, .. }
-            | Self::HiddenPause { row } => streamed.lacks_row(row),
+            Self::LostRow { row } => streamed.lacks_row(row),
+            Self::SpoiltRow { row, column, .. } => {
+                streamed.lacks_row(row).or_else(|| streamed.lacks_column(column?))
+            }
+            Self::WarmBit { row, .. } | Self::HiddenPause { row } => {
+                streamed.lacks_speed().or_else(|| streamed.lacks_row(row))
+            }
+            Self::SlowPath { .. } | Self::LateSwap => streamed.lacks_speed(),
             Self::TapOffset { columns: 0 } => {
                 Some("columns=0 leaves the taps where they are; give -3 to -1 or 1 to 3".to_owned())
             }
@@ -34,6 +43,25 @@ impl BoardFault {
                 "tap={tap},reads={other} lets the tap carry its own sample; give another tap, or leave reads out"
             )),
             _ => None,
+        }
+    }
+
+    /// Whether a build has the part that the fault puts out of order.
+    pub(crate) fn check_part(&self, build: &Options) -> Result<(), OptionError> {
+        let lines = build.ring_size().ilog2();
+        match *self {
+            Self::StuckAddress { bit, .. } if u32::from(bit) >= lines => {
+                Err(OptionError::NoAddressLine { bit, last: lines.saturating_sub(1) })
+            }
+            Self::StaleTable { .. } | Self::LateSwap if build.table_banks == 1 => {
+                Err(OptionError::NoOtherBank)
+            }
+            Self::SlowPath { .. } | Self::WarmBit { .. } | Self::LateSwap | Self::HiddenPause { .. }
+                if build.bursts == BurstBuild::None =>
+            {
+                Err(OptionError::NoBursts)
+            }
+            _ => Ok(()),
         }
     }
 }
@@ -46,7 +74,22 @@ impl Streamed {
             .then(|| format!("there is no row={row} in frames of {height} rows; give one from 0 to {last}"))
     }
 
-    /// The same for an entry, which is a row's or a grid's.
+    fn lacks_column(&self, column: u16) -> Option<String> {
+        let Self { width, .. } = self;
+        let last = width.saturating_sub(1);
+        (usize::from(column) >= *width).then(|| {
+            format!("there is no column={column} in rows of {width} samples; give one from 0 to {last}")
+        })
+    }
+
+    fn lacks_speed(&self) -> Option<String> {
+        (!self.at_speed).then(|| {
+            "it strikes in frames that the board makes at full speed, and there are none; ask for some"
+                .to_owned()
+        })
+    }
+
+    /// An entry is a row's or a grid's.
     fn lacks_entry(&self, row: u16) -> Option<String> {
         let Some(entries) = self.grid else { return self.lacks_row(row) };
         let last = entries.saturating_sub(1);

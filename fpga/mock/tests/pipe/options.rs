@@ -155,6 +155,26 @@ fn a_build_that_cannot_exist_is_refused() {
 }
 
 #[test]
+fn a_fault_of_a_part_that_the_build_has_not_got_is_refused() {
+    let refused = |options: &[(&str, &str)]| match connect(options).unwrap_err() {
+        ConnectError::Build(error) => error,
+        ConnectError::Target(error) => panic!("{error}"),
+    };
+    let line = |bit| [("fault", "stuck-address"), ("bit", bit)];
+    assert_eq!(refused(&line("11")), OptionError::NoAddressLine { bit: 11, last: 10 });
+    assert!(connect(&line("10")).is_ok());
+    let short = [("ring", "64"), ("max-width", "64"), ("fault", "stuck-address"), ("bit", "6")];
+    assert_eq!(refused(&short), OptionError::NoAddressLine { bit: 6, last: 5 });
+    for name in ["stale-table", "stale-table-hidden", "late-swap"] {
+        assert_eq!(refused(&[("table-banks", "1"), ("fault", name)]), OptionError::NoOtherBank, "{name}");
+    }
+    for name in ["slow-path", "warm-bit", "late-swap", "hidden-pause"] {
+        assert_eq!(refused(&[("fault", name), ("bursts", "no")]), OptionError::NoBursts, "{name}");
+        assert!(connect(&[("fault", name), ("bursts", "untrapped")]).is_ok(), "{name}");
+    }
+}
+
+#[test]
 fn a_wire_to_another_board_takes_what_the_wire_takes_alone() {
     let fine = [("speed", "5"), ("fault", "flip"), ("rate", "0.1")];
     PipeSetup::from_options(&fine).unwrap();

@@ -88,7 +88,9 @@ impl BoardArguments {
         let frames = judged.filter(|frame| frame.generation == JUDGED).count();
         let tables = &plan.tables;
         let grid = tables.shape().map(|_| tables.units().len());
-        let streamed = Streamed { height: tables.geometry().height(), grid, frames };
+        let (width, height) = (tables.geometry().width(), tables.geometry().height());
+        let at_speed = plan.at_speed != Some(Duration::ZERO);
+        let streamed = Streamed { width, height, grid, frames, at_speed };
         match fault.and_then(|fault| fault.without_effect(&streamed)) {
             None => Ok(()),
             Some(why) => Err(Failure::call(CallError::FaultWithoutEffect {

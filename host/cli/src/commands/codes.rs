@@ -163,6 +163,9 @@ codes::codes! {
         RingTooShort [ring, max_width] => "board-ring-too-short",
         OddWidth [max_width] => "board-width-odd",
         NoDepth => "board-without-depth",
+        NoAddressLine [bit, last] => "fault-without-address-line",
+        NoOtherBank => "fault-without-other-bank",
+        NoBursts => "fault-without-bursts",
         = Value,
     }
 }
