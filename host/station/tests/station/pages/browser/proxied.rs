@@ -130,3 +130,16 @@ fn behind_a_proxy_that_says_502_the_page_is_live_again_by_itself() {
     page.wait("document.querySelector('.lane.pass') !== null");
     assert_eq!(station.query("SELECT DISTINCT operator_id FROM run"), ["Weber"]);
 }
+
+/// What others reach tells nothing to whoever is not logged in, so that such a page is not live.
+#[test]
+fn a_scan_of_whoever_is_nobody_any_more_leads_to_the_login() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let proxy = Proxy::before(serving.port);
+    let mut page = open(&proxy);
+    assert!(station.user(&["remove", "Weber"], "").status.success());
+    page.wait("document.body.classList.contains('dead')");
+    page.scan(crate::common::SERIALS[0], "Enter", Duration::ZERO);
+    page.wait("location.pathname === '/login'");
+}
