@@ -321,7 +321,7 @@ fn unit(name: &str) -> Markup {
 
 /// So many bytes, with the language's decimal point.
 fn size(visit: &Visit, bytes: u64) -> String {
-    halfrow::report::wording::bytes(bytes).replace('.', visit.say("history.decimal"))
+    visit.words.figures(&halfrow::report::wording::bytes(bytes))
 }
 
 /// Exports and evidence.

@@ -64,8 +64,7 @@ pub(in crate::web) fn run_address(id: &str) -> String {
 
 /// A share in per cent, never without its interval.
 pub(super) fn share(visit: &Visit, rate: &Rate) -> Markup {
-    let point = visit.say("history.decimal");
-    let text = |value: f64| format!("{:.1}", 100.0 * value).replace('.', point);
+    let text = |value: f64| visit.words.figures(&format!("{:.1}", 100.0 * value));
     let Some((share, [low, high])) = rate.share.zip(rate.interval) else { return html! { "–" } };
     html! {
         span.share { (text(share)) " %" }
@@ -82,7 +81,7 @@ pub(super) fn of(rate: &Rate) -> Markup {
 pub(super) fn number(visit: &Visit, value: f64) -> String {
     let text =
         if value.abs() >= 1e6 { format!("{value:.0}") } else { format!("{}", (value * 1e6).round() / 1e6) };
-    text.replace('.', visit.say("history.decimal"))
+    visit.words.figures(&text)
 }
 
 /// A term with what it is.

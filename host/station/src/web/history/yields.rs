@@ -125,10 +125,9 @@ fn began(line: &Yield) -> String {
 
 /// The newest days of a plan, whose lines begin with the newest, the earliest of them first.
 fn named_days(visit: &Visit, of_plan: &[Yield]) -> Vec<Day> {
-    let point = visit.say("history.decimal");
     let named = |line: &Yield| {
         let name = began(line);
-        let said = format!("{name}: {}", line.first_pass.text().replace('.', point));
+        let said = format!("{name}: {}", visit.words.figures(&line.first_pass.text()));
         Day { name, said, rate: line.first_pass, limits: line.limits }
     };
     of_plan.iter().take(MOST_DAYS).rev().map(named).collect()

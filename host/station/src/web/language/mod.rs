@@ -49,6 +49,11 @@ impl Words {
         self.words.get(key).map_or(key, String::as_str)
     }
 
+    /// Figures as they are printed, with the language's decimal point.
+    pub(super) fn figures(&self, printed: &str) -> String {
+        printed.replace('.', self.say("history.decimal"))
+    }
+
     /// The words of this key with the values of their `{names}`.
     pub(super) fn fill(&self, key: &'static str, values: &[(&str, &str)]) -> String {
         let value = |wanted: &str| {

@@ -72,9 +72,8 @@ impl Words {
             Value::Null => "–".to_owned(),
             Value::String(text) => text.clone(),
             Value::Number(number) if number.is_f64() => {
-                let point = self.say("history.decimal");
                 let rounded = number.as_f64().map(|value| (value * 1e6).round() / 1e6);
-                rounded.map_or_else(|| number.to_string(), |value| value.to_string().replace('.', point))
+                rounded.map_or_else(|| number.to_string(), |value| self.figures(&value.to_string()))
             }
             Value::Array(values) => {
                 values.iter().map(|value| self.value(value)).collect::<Vec<_>>().join(", ")
