@@ -126,10 +126,14 @@ pub(crate) fn generation_0_is_out_of_range(on: &dyn Boards) {
 }
 
 pub(crate) fn nothing_is_committed_while_a_row_is_inside(on: &dyn Boards) {
-    let mut bench = ready(on, &Build::default(), 2);
+    is_busy_while_a_row_is_inside(&mut ready(on, &Build::default(), 2));
+}
+
+/// Holds a board that is ready for frames of two rows to it.
+pub fn is_busy_while_a_row_is_inside(bench: &mut Bench) {
     bench.send_all(2, [0]);
     let tables = TableSet::unstretched(2);
-    tables.upload(&mut bench);
+    tables.upload(bench);
     assert_eq!(bench.refused(&tables.commit(2, 1)), (RefusalCode::Busy, 0));
     bench.send_all(2, [1]);
     bench.done(&tables.commit(2, 1));

@@ -47,6 +47,7 @@ pub mod uploads;
 use proptest::test_runner::{Config, FileFailurePersistence};
 
 pub use bench::{Bench, HELLO, Heard, rows_of};
+pub use commits::is_busy_while_a_row_is_inside;
 pub use subject::{Boards, Build, Subject};
 
 /// Those of these builds that there are.

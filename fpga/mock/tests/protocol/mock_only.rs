@@ -6,7 +6,7 @@ use halfrow_protocol::message::{Bank, Datapath, RefusalCode, Reply, Request, Tab
 use halfrow_conformance::capabilities::values;
 use halfrow_conformance::frames::{configuration, make_ready, row};
 use halfrow_conformance::uploads::{TableSet, span};
-use halfrow_conformance::{Bench, HELLO, Heard, rows_of};
+use halfrow_conformance::{Bench, HELLO, Heard, is_busy_while_a_row_is_inside, rows_of};
 
 fn switched_on(options: &Options, fault: Option<BoardFault>) -> Bench {
     Bench::of(Box::new(Board::new(options, fault).unwrap()))
@@ -88,13 +88,7 @@ fn a_table_that_reads_back_wrong_is_not_committed() {
 /// Its one fault is that it does not look at the CRCs.
 #[test]
 fn a_board_that_checks_no_commit_is_busy_while_a_row_is_inside() {
-    let mut bench = ready_with(Some(BoardFault::UncheckedCommit), 2);
-    bench.send_all(2, [0]);
-    let tables = TableSet::unstretched(2);
-    tables.upload(&mut bench);
-    assert_eq!(bench.refused(&tables.commit(2, 1)), (RefusalCode::Busy, 0));
-    bench.send_all(2, [1]);
-    bench.done(&tables.commit(2, 1));
+    is_busy_while_a_row_is_inside(&mut ready_with(Some(BoardFault::UncheckedCommit), 2));
 }
 
 #[test]

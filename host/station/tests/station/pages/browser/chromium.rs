@@ -9,6 +9,8 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
+use crate::pages::station::Serving;
+
 /// How long something is waited for that must come: it ends hangs alone.
 const HANG: Duration = Duration::from_secs(120);
 /// How often it is looked.
@@ -37,7 +39,14 @@ impl Chromium {
         Self::with(&[], address)
     }
 
-    /// The same of a browser with more arguments.
+    /// With the lanes of a station, as soon as they are live.
+    pub(super) fn live(serving: &Serving) -> Self {
+        let mut page = Self::open(&format!("http://127.0.0.1:{}/", serving.port));
+        page.wait("document.getElementById('lamp')?.textContent === 'live'");
+        page
+    }
+
+    /// With the page at `address`, by a browser with more arguments.
     pub(super) fn with(arguments: &[&str], address: &str) -> Self {
         let profile = tempfile::tempdir().unwrap();
         let mut child = Command::new("sh")

@@ -31,8 +31,7 @@ const WATCH: &str = "(() => {
 })()";
 
 fn open(serving: &Serving) -> Chromium {
-    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    let mut page = Chromium::live(serving);
     page.wait(&format!("document.querySelectorAll('.lane.ready').length === {LANES}"));
     page
 }

@@ -6,7 +6,7 @@ use nix::sys::signal::Signal;
 use serde_json::json;
 
 use super::chromium::Chromium;
-use crate::pages::station::{SERIALS, Serving, Station};
+use crate::pages::station::{SERIALS, Station};
 
 /// The most milliseconds from the last beat until the page says that it is not live, beside what a busy machine takes.
 pub(super) const NOT_LIVE: f64 = 3000.0;
@@ -23,17 +23,11 @@ pub(super) const WATCH: &str = "new Promise(done => {
     done(true);
 })";
 
-fn open(serving: &Serving) -> Chromium {
-    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
-    page
-}
-
 #[test]
 fn a_verdict_is_shown_with_its_record_and_stays_when_the_page_comes_anew() {
     let station = Station::private(2);
     let serving = station.serve();
-    let mut page = open(&serving);
+    let mut page = Chromium::live(&serving);
     page.scan("HR:LANE:2", "Enter", Duration::ZERO);
     page.scan(SERIALS[0], "Enter", Duration::ZERO);
     page.wait("document.querySelector('#lane-2.pass') !== null");
@@ -57,7 +51,7 @@ fn a_verdict_is_shown_with_its_record_and_stays_when_the_page_comes_anew() {
 fn a_verdict_without_its_record_is_not_drawn() {
     let station = Station::private(1);
     let serving = station.serve();
-    let mut page = open(&serving);
+    let mut page = Chromium::live(&serving);
     let draw = |event: &str| {
         format!(
             "import('/assets/floor.js').then(floor => floor.draw({{lane: '1', html: '<article id=lane-1 class=lane>drawn</article>', {event}}}))"
@@ -83,7 +77,7 @@ fn without_the_station_nothing_is_live_and_with_it_everything_again() {
     let station = Station::private(1);
     let serving = station.serve();
     let port = serving.port;
-    let mut page = open(&serving);
+    let mut page = Chromium::live(&serving);
     page.evaluate(WATCH);
     page.wait("window.beat > 0");
     drop(serving);
@@ -115,7 +109,7 @@ fn an_open_page_comes_anew_by_itself_when_lanes_and_plans_are_others() {
     let station = Station::private(2);
     let serving = station.serve();
     let port = serving.port;
-    let mut page = open(&serving);
+    let mut page = Chromium::live(&serving);
     page.scan("HR:LANE:1", "Enter", Duration::ZERO);
     page.scan(SERIALS[0], "Enter", Duration::ZERO);
     page.wait("document.querySelector('#lane-1.pass') !== null");
@@ -138,7 +132,7 @@ fn an_open_page_comes_anew_by_itself_when_lanes_and_plans_are_others() {
 fn what_is_scanned_while_the_page_is_not_live_is_never_done() {
     let station = Station::private(1);
     let serving = station.serve();
-    let mut page = open(&serving);
+    let mut page = Chromium::live(&serving);
     page.wait("document.querySelector('.lane.ready') !== null");
     serving.signal(Signal::SIGSTOP);
     page.wait("document.body.classList.contains('dead')");

@@ -48,8 +48,7 @@ const CONTRAST: &str = "(() => {
 fn every_text_can_be_told_from_what_is_behind_it() {
     let station = Station::private(2);
     let serving = station.serve();
-    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    let mut page = Chromium::live(&serving);
     for scheme in ["light", "dark"] {
         let media = json!({ "features": [{ "name": "prefers-color-scheme", "value": scheme }] });
         page.call("Emulation.setEmulatedMedia", media);

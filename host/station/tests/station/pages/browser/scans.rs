@@ -39,8 +39,7 @@ fn answered(page: &mut Chromium, all: usize) {
 fn scanned(counts: [usize; 4], first: usize) {
     let station = Station::private(LANES);
     let serving = station.serve();
-    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    let mut page = Chromium::live(&serving);
     let mut expected = Vec::new();
     for (milliseconds, count) in SPEEDS.into_iter().zip(counts) {
         let apart = Duration::from_millis(milliseconds);
@@ -127,8 +126,7 @@ fn a_scanner_is_enough_to_log_in_and_to_log_in_again() {
 fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
     let station = Station::private(1);
     let serving = station.serve();
-    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    let mut page = Chromium::live(&serving);
     let apart = Duration::ZERO;
     let refused = "document.getElementById('answer').className === 'answer refused'";
     page.scan("CA01311", "Escape", apart);
@@ -152,8 +150,7 @@ fn half_scans_and_doubled_ones_are_refused_and_press_nothing() {
 fn no_scan_is_lost_while_the_field_is_open() {
     let station = Station::private(2);
     let serving = station.serve();
-    let mut page = Chromium::open(&format!("http://127.0.0.1:{}/", serving.port));
-    page.wait("document.getElementById('lamp')?.textContent === 'live'");
+    let mut page = Chromium::live(&serving);
     page.evaluate("document.getElementById('type').click()");
     let ends = [("1", "Tab"), ("2", "Enter"), ("1", "Tab")];
     for (number, (lane, end)) in ends.into_iter().enumerate() {
