@@ -81,6 +81,9 @@ pub(super) struct Counted {
     /// Under plans of this name
     #[arg(long, value_name = "NAME")]
     plan: Option<String>,
+    /// At this station of a plant
+    #[arg(long, value_name = "NAME")]
+    station: Option<String>,
     /// In this lane
     #[arg(long)]
     lane: Option<String>,
@@ -91,8 +94,8 @@ pub(super) struct Counted {
 impl Counted {
     /// As the counting functions take it.
     pub(super) fn wanted(&self) -> Wanted {
-        let (plan, lane) = (self.plan.clone(), self.lane.clone());
-        Wanted { plan, lane, period: self.range.period(), ..Wanted::default() }
+        let Self { plan, station, lane, range } = self;
+        Wanted { plan: plan.clone(), station: station.clone(), lane: lane.clone(), period: range.period() }
     }
 }
 
@@ -108,6 +111,9 @@ struct Said {
     /// Under plans of this name
     #[arg(long, value_name = "NAME")]
     plan: Option<String>,
+    /// At this station of a plant
+    #[arg(long, value_name = "NAME")]
+    station: Option<String>,
     /// In this lane
     #[arg(long)]
     lane: Option<String>,
@@ -131,12 +137,12 @@ impl Filtered {
 
     /// As a filter.
     pub(super) fn filter(&self) -> Filter {
-        let Said { serial, verdict, plan, lane, operator } = &self.said;
+        let Said { serial, verdict, plan, station, lane, operator } = &self.said;
         Filter {
             serial: serial.clone(),
             verdict: verdict.map(Into::into),
             plan: plan.clone(),
-            station: None,
+            station: station.clone(),
             lane: lane.clone(),
             operator: operator.clone(),
             period: self.range.period(),

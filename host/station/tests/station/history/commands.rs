@@ -110,6 +110,18 @@ fn no_percentage_is_told_without_its_interval() {
 }
 
 #[test]
+fn what_is_counted_and_listed_can_be_of_one_station() {
+    let mut made = made();
+    made.run(&Run { station: "north", started_ms: BEGIN_MS, ..Run::of("S4", End::Fail(&["core"])) });
+    let at_north = |command: &str| json(&made, &[command, "--station", "north"]);
+    let runs = &at_north("history")["runs"];
+    assert_eq!((runs[0]["serial"].as_str(), runs.as_array().unwrap().len()), (Some("S4"), 1), "{runs}");
+    assert_eq!(at_north("yield")["lines"][0]["first_pass"]["of"], 1);
+    assert_eq!(at_north("pareto")["failed"], 1);
+    assert_eq!(json(&made, &["pareto"])["failed"], 2);
+}
+
+#[test]
 fn a_waiver_is_seen_by_everyone() {
     let made = made();
     let run = json(&made, &["history", "--verdict", "fail"])["runs"][0]["id"].as_str().unwrap().to_owned();
