@@ -7,7 +7,8 @@
 //! ```
 //! Integers are little endian. A recording that ends early is one of an interrupted run.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, Read as _, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
@@ -37,7 +38,7 @@ pub enum RecordingError {
         path: PathBuf,
         /// Why.
         #[source]
-        source: std::io::Error,
+        source: io::Error,
     },
     /// It is something else.
     #[error("{0} is no recording of this version; record a run with `halfrow verify`")]
@@ -71,7 +72,7 @@ pub(super) struct Exchange<'a> {
 }
 
 impl<'a> Exchange<'a> {
-    fn write(&self, file: &mut impl Write) -> std::io::Result<()> {
+    fn write(&self, file: &mut impl Write) -> io::Result<()> {
         let nanoseconds = u64::try_from(self.at.as_nanos()).unwrap_or(u64::MAX);
         let length = |bytes: &[u8]| u32::try_from(bytes.len()).unwrap_or(u32::MAX).to_le_bytes();
         file.write_all(&nanoseconds.to_le_bytes())?;
@@ -219,7 +220,7 @@ impl Recording {
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
         check_regular(path)?;
         let bytes =
-            std::fs::read(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
+            read_ours(path).map_err(|source| RecordingError::Read { path: path.to_owned(), source })?;
         Self::parse(path, bytes).ok_or_else(|| RecordingError::Foreign(path.to_owned()))
     }
 
@@ -288,4 +289,15 @@ impl Recording {
         *place = self.bytes.len() - rest.len();
         Some(exchange)
     }
+}
+
+/// All bytes of a recording; of another file, however long it is, only the first ones.
+fn read_ours(path: &Path) -> io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    let mut bytes = Vec::new();
+    (&file).take(MAGIC.len() as u64).read_to_end(&mut bytes)?;
+    if bytes == MAGIC {
+        (&file).read_to_end(&mut bytes)?;
+    }
+    Ok(bytes)
 }

@@ -1,5 +1,7 @@
 //! `--record` and `replay:FILE`: the same judgement once more, without the board and without the files.
 
+use std::fs;
+
 use halfrow_tests::program::{Ended, Folder};
 use serde_json::Value;
 
@@ -14,7 +16,7 @@ fn both(board: &str, arguments: &[&str], prepare: impl Fn(&Folder) -> Vec<&'stat
     let first = folder.halfrow(call.into_iter().chain(arguments.iter().copied()));
     assert!(folder.names(".").contains(&"run.rec".to_owned()), "{}", first.stderr);
     for file in files {
-        std::fs::remove_file(folder.path().join(file)).unwrap();
+        fs::remove_file(folder.path().join(file)).unwrap();
     }
     let again = folder.halfrow(["verify", "--json", "--board", "replay:run.rec"]);
     assert_eq!(folder.names("."), ["run.rec"]);
@@ -136,6 +138,8 @@ fn what_is_no_recording_is_refused() {
     let replay = |target| ["verify", "--board", target];
     refused(&folder, &replay("replay:missing.rec"), "the recording missing.rec cannot be read");
     refused(&folder, &replay("replay:notes.txt"), "notes.txt is no recording of this version");
+    fs::File::create(folder.path().join("disk.img")).unwrap().set_len(1 << 43).unwrap();
+    refused(&folder, &replay("replay:disk.img"), "disk.img is no recording of this version");
     refused(&folder, &replay("replay:head.rec"), "the head of the recording head.rec is damaged");
     // It would be read until the memory is full.
     refused(&folder, &replay("replay:/dev/zero"), "/dev/zero is a pipe or a device");
