@@ -149,7 +149,7 @@ fn summed(visit: &Visit, Yields { lines, .. }: &Yields) -> Markup {
     let (passed, judged) = sum(|line| line.first_pass);
     let (errors, _) = sum(|line| line.errors);
     let (judged_text, errors) = (judged.to_string(), errors.to_string());
-    let first_pass = Rate::new(passed, judged).text().replace('.', visit.say("history.decimal"));
+    let first_pass = visit.words.figures(&Rate::new(passed, judged).text());
     let values = [("judged", judged_text.as_str()), ("first", &first_pass), ("errors", &errors)];
     html! { (visit.words.fill("today.counted", &values)) }
 }
