@@ -55,7 +55,7 @@ impl fmt::Display for Part {
 }
 
 /// The parts that are judged, and how much of each: rows of what is streamed, frames at speed, 1 for the corners and for the rules. A streamed
-/// frame of fewer rows than the tables have is its first ones.
+/// frame of fewer rows than the tables have is its first ones; behind a grid it is whole.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(from = "Vec<(Part, usize)>", into = "Vec<(Part, usize)>")]
 pub struct Selection(BTreeMap<Part, usize>);
@@ -118,6 +118,15 @@ impl Selection {
         parts.into_iter().fold(Self::least(), |selection, part| selection.with(part, usize::MAX))
     }
 
+    /// The same with whole frames of all that is streamed.
+    fn of_whole_frames(&self) -> Self {
+        let whole = |(&part, &amount): (&Part, &usize)| {
+            let is_streamed = amount > 0 && !matches!(part, Part::AtSpeed | Part::Corners | Part::Rules);
+            (part, if is_streamed { usize::MAX } else { amount })
+        };
+        Self(self.0.iter().map(whole).collect())
+    }
+
     /// What is streamed of a whole schedule.
     pub(super) fn of(&self, schedule: Vec<Segment>) -> Vec<Segment> {
         let (mut active, mut streamed) = (None, Vec::new());
@@ -170,6 +179,12 @@ impl Plan {
             }
         }
         parts
+    }
+
+    /// `selection` as it can be streamed. A grid is uploaded whole, and in a frame of fewer rows its entries lie otherwise, so
+    /// that frames behind it are whole.
+    pub(super) fn streamable(&self, selection: &Selection) -> Selection {
+        if self.tables.shape().is_some() { selection.of_whole_frames() } else { selection.clone() }
     }
 
     /// The name of a part for people, a frame's own included.

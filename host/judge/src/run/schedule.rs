@@ -21,7 +21,7 @@ impl Plan {
         let whole = self.whole_schedule(build);
         match &self.parts {
             None => whole,
-            Some(selection) => selection.of(whole),
+            Some(selection) => self.streamable(selection).of(whole),
         }
     }
 

@@ -118,7 +118,8 @@ fn chosen(prices: &Prices<'_>, build: &str, time: Time) -> Result<(Selection, Wi
             return Err(WithinError::AtSpeed { seconds, least });
         }
     }
-    let choice = coverage::choose(prices, faults, &from, left);
+    let mut choice = coverage::choose(prices, faults, &from, left);
+    choice.selection = prices.plan().streamable(&choice.selection);
     let measured = faults.are_of(prices.plan(), build);
     let report = report(prices, faults, measured, &choice, time);
     Ok((choice.selection, report))
