@@ -43,6 +43,34 @@ fn a_board_is_judged_behind_a_grid() {
     );
 }
 
+/// In a frame of fewer rows the entries of a grid lie otherwise, so that parts of frames would be refused.
+#[test]
+fn frames_behind_a_grid_are_whole_within_a_time() {
+    let folder = Folder::new();
+    let said = judged(&folder, "mock,speed=20000", &exact(&["--within", "8"]), 0);
+    let parts = said["within"]["parts"].as_array().unwrap();
+    let taken = |taken: &str| parts.iter().filter(|part| part["taken"] == part[taken]).count();
+    let left_out = parts.iter().filter(|part| part["taken"] == 0).count();
+    assert!(taken("of") > 1 && left_out > 0 && taken("of") + left_out == parts.len(), "{}", said["within"]);
+    refused(&folder, &exact(&["verify", "--board", "mock,speed=20000", "--within", "1"]), "give at least");
+}
+
+/// Tables by turns, of which each has its shape from a commit.
+#[test]
+fn a_board_is_soaked_behind_a_grid() {
+    let folder = Folder::new();
+    let soaked = |board, code: i32| {
+        let call = exact(&["soak", "--frames", "9", "--json", "--quiet", "--board", board]);
+        let ended = folder.halfrow(call);
+        assert_eq!(ended.code, Some(code), "{board}: {}{}", ended.stdout, ended.stderr);
+        ended.json()
+    };
+    let said = soaked("mock", 0);
+    assert_eq!(said["soak"]["frames"], 9, "{said}");
+    assert!(!said["not_exercised"].to_string().contains("table-change-at-speed"), "{said}");
+    soaked("mock,fault=stuck-data", 1);
+}
+
 #[test]
 fn a_grid_is_a_file_of_its_own_kind() {
     let folder = Folder::new();

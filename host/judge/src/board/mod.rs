@@ -287,10 +287,13 @@ impl Board {
     }
 
     fn reset_to(&mut self, reset: Reset, step: Step) -> Result<(), BoardError> {
-        let next_row = reset.next_row;
+        let Reset { level, next_row } = reset;
         let reset = Request::Reset(reset);
         self.conversation.request(&reset, step, |reply| matches!(reply, Reply::Reset).then_some(()))?;
         self.conversation.acknowledged = next_row;
+        if level == ResetLevel::Tables {
+            self.shapes = [None; 2];
+        }
         Ok(())
     }
 }

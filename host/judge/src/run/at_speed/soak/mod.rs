@@ -222,12 +222,18 @@ impl Run<'_> {
             tables.reverse();
         }
         tables.truncate(self.board.capabilities.table_banks.into());
+        let mut active = 0;
         for (place, generation) in tables.iter().enumerate() {
             self.board.upload(&generation.tables, &generation.kernel).map_err(of_board)?;
             self.check_read_back(CheckName::AtSpeed, Bank::Shadow, generation)?;
-            if place == 0 {
+            if place == 0 || !self.board.knows_shape_of(&generation.tables) {
                 self.activate(generation)?;
+                active = place;
             }
+        }
+        match tables.first() {
+            Some(first) if active > 0 => self.activate(first)?,
+            _ => {}
         }
         Ok(tables)
     }
