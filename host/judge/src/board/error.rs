@@ -60,8 +60,8 @@ pub enum BoardError {
     },
     /// Another host holds the board.
     #[error(
-        "another host holds the board; wait until it is done (silent for 10 s; {seconds:.1} s are left), or take the \
-         board over"
+        "another host holds the board; wait until it is done (silent for 10 s, of which {seconds:.1} s are left), \
+         or take the board over"
     )]
     Held {
         /// What is left of the ten seconds.

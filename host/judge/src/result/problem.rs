@@ -141,3 +141,16 @@ pub(super) fn tagged(value: &impl Serialize) -> (String, Parameters) {
     let parameters = value.get("parameters").and_then(Value::as_object).cloned().unwrap_or_default();
     (code, parameters)
 }
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::board::BoardError;
+
+    #[test]
+    fn what_to_do_is_a_whole_sentence() {
+        let held = Problem::of(&BoardError::Held { seconds: 0.5 });
+        let asked =
+            "Wait until it is done (silent for 10 s, of which 0.5 s are left), or take the board over.";
+        assert_eq!(held.remedy.as_deref(), Some(asked));
+    }
+}
