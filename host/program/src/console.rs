@@ -82,7 +82,7 @@ pub(crate) fn diagnose_raw(text: &str) {
     let _ = anstream::stderr().lock().write_all(text.as_bytes());
 }
 
-/// What a terminal may obey is ends of lines, tabs and colours; what else it would is spelt out.
+/// What a terminal may obey is ends of lines, tabs and colours; what else it would is spelt out, as JSON would have it.
 fn harmless(text: &str) -> Cow<'_, str> {
     let colours = |text: &str| {
         let digits = text
@@ -96,13 +96,13 @@ fn harmless(text: &str) -> Cow<'_, str> {
     while let Some(place) = rest.find(obeyed) {
         let (before, behind) = rest.split_at(place);
         shown.push_str(before);
-        let length = behind.chars().next().map_or(0, char::len_utf8);
+        let letter = behind.chars().next().unwrap_or_default();
         let kept = colours(behind);
         match kept {
             Some(length) => shown.push_str(&behind[..length]),
-            None => shown.push_str(&plain(&behind[..length])),
+            None => shown.push_str(&format!("\\u{:04x}", u32::from(letter))),
         }
-        rest = &behind[kept.unwrap_or(length)..];
+        rest = &behind[kept.unwrap_or(letter.len_utf8())..];
     }
     if shown.is_empty() { Cow::Borrowed(text) } else { Cow::Owned(shown + rest) }
 }
@@ -135,7 +135,9 @@ mod tests {
     #[test]
     fn a_terminal_is_told_colours_and_nothing_else_to_do() {
         let title = "\u{1b}[1mPASS\u{1b}[0m\n\u{1b}]0;x\u{7}a\u{9b}2Jb\u{1b}[2Jc\td";
-        assert_eq!(harmless(title), "\u{1b}[1mPASS\u{1b}[0m\n\\u{1b}]0;x\\u{7}a\\u{9b}2Jb\\u{1b}[2Jc\td");
+        assert_eq!(harmless(title), "\u{1b}[1mPASS\u{1b}[0m\n\\u001b]0;x\\u0007a\\u009b2Jb\\u001b[2Jc\td");
+        let name = serde_json::json!({ "name": "A\u{9b}31m\u{7f}Z\u{1b}[8m" });
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&harmless(&name.to_string())).unwrap(), name);
         assert!(matches!(harmless("façade\n"), Cow::Borrowed(_)));
     }
 }

@@ -7,6 +7,7 @@ use super::bitstreams::{BOARDS, BitstreamBoard};
 use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
+use halfrow::report::wording::plain;
 use halfrow::target::{BoardKind, Target};
 use halfrow_link::discovery::{self, Access, Answer, Found};
 use halfrow_link::kinds::{Form, KINDS};
@@ -105,15 +106,15 @@ fn bitstream_text(board: &BitstreamBoard) -> String {
 fn state(device: &Found) -> String {
     match &device.answer {
         Some(Answer::Board { name, datapath }) => {
-            return format!("a halfrow board answers: {name}, datapath {datapath}");
+            return format!("a halfrow board answers: {}, datapath {datapath}", plain(name));
         }
         Some(Answer::Held) => return "a halfrow board answers, which another host holds".to_owned(),
-        Some(Answer::Foreign { reason }) => return format!("something else answers: {reason}"),
+        Some(Answer::Foreign { reason }) => return format!("something else answers: {}", plain(reason)),
         Some(Answer::Silent) => return "nothing answers".to_owned(),
         Some(Answer::Busy) => return "busy: it is open elsewhere".to_owned(),
         Some(Answer::Failed { reason }) => {
             let free = if device.access == Access::Free { "free, but " } else { "" };
-            return format!("{free}cannot be asked: {reason}");
+            return format!("{free}cannot be asked: {}", plain(reason));
         }
         None => {}
     }

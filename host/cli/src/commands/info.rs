@@ -8,6 +8,7 @@ use super::document::print_result;
 use super::{Context, Failure, print};
 use crate::exit::Exit;
 use halfrow::board::{Board, Status};
+use halfrow::report::wording::plain;
 use halfrow::result::{BoardReport, Identity};
 
 #[derive(Debug, Args)]
@@ -39,7 +40,9 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
 fn text(board: &BoardReport, status: &Status) -> String {
     let mut lines = vec![format!("{:<18} {} ({})", "board", board.target, board.kind)];
     if let Some(identity) = &board.identity {
-        lines.extend(identity.lines().into_iter().map(|(name, value)| format!("{name:<18} {value}")));
+        lines.extend(
+            identity.lines().into_iter().map(|(name, value)| format!("{name:<18} {}", plain(&value))),
+        );
     }
     lines.push(String::new());
     lines.extend(status.counters().into_iter().map(|(name, count)| format!("{name:<18} {count}")));
