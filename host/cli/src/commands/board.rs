@@ -10,6 +10,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use halfrow_mock::Streamed;
 use halfrow_program::number::number;
 
+use super::run::seconds;
 use super::{CallError, Failure};
 use crate::exit::Exit;
 use crate::pool::{self, PoolError};
@@ -147,9 +148,7 @@ impl BoardArguments {
     }
 
     pub(super) fn timeout(&self, settings: &Settings) -> Result<Option<Duration>, Failure> {
-        let seconds = self.timeout.or(settings.timeout);
-        let limit = seconds.map(Duration::try_from_secs_f64).transpose();
-        limit.map_err(|_| Failure::call(CallError::Seconds { option: "--timeout" }))
+        seconds("--timeout", self.timeout.or(settings.timeout))
     }
 
     pub(super) fn retry_limit(&self, settings: &Settings) -> RetryLimit {
