@@ -4,7 +4,7 @@ use std::fmt;
 use std::fs;
 use std::path::PathBuf;
 
-use rusb::{Context, Device, UsbContext as _};
+use rusb::{Context, Device, UsbContext as _, Version};
 use serde::Serialize;
 
 use super::chip::{Channel, Chip};
@@ -81,8 +81,7 @@ fn all() -> Result<Vec<Found>, UsbError> {
 
 fn look_at(device: Device<Context>) -> Option<Found> {
     let descriptor = device.device_descriptor().ok()?;
-    let version = descriptor.device_version();
-    let version = u16::from(version.0) << 8 | u16::from(version.1) << 4 | u16::from(version.2);
+    let version = bcd(descriptor.device_version());
     let chip = (descriptor.vendor_id() == VENDOR).then(|| Chip::of(descriptor.product_id(), version))??;
     let place = place(&device);
     let handle = device.open().ok();
@@ -110,6 +109,12 @@ fn look_at(device: Device<Context>) -> Option<Found> {
     let (chip_name, is_permitted) = (chip.name(), handle.is_some());
     let board = UsbBoard { device: described, chip: chip_name, place, file, is_permitted };
     Some(Found { board, chip, device })
+}
+
+/// A version as it stands in the descriptor: four decimal digits, of which the first two are one number here.
+fn bcd(Version(major, minor, sub_minor): Version) -> u16 {
+    let digits = [major / 10, major % 10, minor, sub_minor];
+    digits.into_iter().fold(0, |version, digit| version << 4 | u16::from(digit))
 }
 
 /// The folder in which Linux tells of the device at `place`.
@@ -142,5 +147,18 @@ pub(super) fn choose(name: Option<&str>) -> Result<Found, UsbError> {
         (None, _, Some(name)) => Err(UsbError::NotFound { wanted: name.to_owned(), found: everything }),
         (None, _, None) if everything.is_empty() => Err(UsbError::NoneFound),
         (None, _, None) => Err(UsbError::OthersOnly(everything)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_version_is_the_descriptor_s_own() {
+        // An FT2232H's, an FT230X's, and one of four digits.
+        for version in [0x0700, 0x1000, 0x1234] {
+            assert_eq!(bcd(Version::from_bcd(version)), version);
+        }
     }
 }
