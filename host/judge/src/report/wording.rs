@@ -11,6 +11,7 @@ use crate::result::{
     Account, BoardKind, BoardReport, Finding, FrameReport, LatencyReport, LinkReport, NotExercised, Outcome,
     Reconnection, Report, SoakDifference, SoakLength, SoakReport, StreetReport, Suspect,
 };
+use crate::run::MAX_LATENCY;
 use crate::verdict::Verdict;
 
 pub use coverage::coverage;
@@ -142,7 +143,7 @@ pub fn latency(latency: &LatencyReport) -> String {
 
 /// `972 = 960 + 12 pixel clocks`: half a row and the build's own L; or what came instead.
 fn measured(latency: &LatencyReport) -> String {
-    let half_row = latency.limit.saturating_sub(32);
+    let half_row = latency.limit.saturating_sub(MAX_LATENCY.into());
     let claim = match latency.claimed.checked_sub(half_row) {
         Some(own) => format!("{} = {half_row} + {own}", latency.claimed),
         None => latency.claimed.to_string(),

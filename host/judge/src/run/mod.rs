@@ -42,7 +42,7 @@ use crate::target::{BoardKind, Target};
 
 use findings::{End, Findings};
 use reconnect::WayBack;
-use steps::{MAX_LATENCY, Run};
+use steps::Run;
 
 pub(crate) use at_speed::FEW as FEW_AT_SPEED;
 pub use finished::{Finished, Lack, RECORDING_LOST, REPORT_LOST};
@@ -57,6 +57,7 @@ pub use plan::{
 pub(crate) use prepared::PrepareError;
 pub use prices::{Prices, Rates, usual_capabilities};
 pub use recorded::{RecordedRun, RestoreError};
+pub(crate) use steps::MAX_LATENCY;
 pub use variations::{Build, Vary};
 pub use within::WithinError;
 

@@ -23,7 +23,7 @@ use crate::target::BoardKind;
 use crate::verdict::Cause;
 
 /// The largest L that a board may have.
-pub(super) const MAX_LATENCY: u8 = 32;
+pub(crate) const MAX_LATENCY: u8 = 32;
 
 /// A run with an open board.
 pub(super) struct Run<'a> {
