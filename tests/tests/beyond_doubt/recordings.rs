@@ -1,4 +1,4 @@
-//! Clocks that go back, as that of a spoilt recording does.
+//! Spoilt recordings, and clocks that go back as those of such do.
 
 use std::cell::Cell;
 use std::time::Duration;
@@ -6,6 +6,8 @@ use std::time::Duration;
 use halfrow::link::{Candidate, Link, LinkError};
 use halfrow::target::Target;
 use halfrow::verdict::Verdict;
+use halfrow_protocol::message::Commit;
+use halfrow_protocol::{Encoder, Header, Request};
 use halfrow_tests::dice::Dice;
 use halfrow_tests::program::Folder;
 use halfrow_tests::system::System;
@@ -58,6 +60,36 @@ fn a_recording_whose_times_go_back_is_judged_or_refused() {
         folder.write("spoilt.rec", &spoilt);
         let ended = folder.halfrow(["verify", "--json", "--board", "replay:spoilt.rec"]);
         assert!(matches!(ended.code, Some(0 | 3)), "{name}: {:?} {}", ended.code, ended.stderr);
+    }
+}
+
+/// An exchange in which a host commits generation 2, by which frames are judged, for the last frame that has a number.
+fn last_frame_committed() -> Vec<u8> {
+    let commit = Commit { steps_crc: 0, kernel_crc: 0, first_frame: u16::MAX, generation: 2, shape: None };
+    let (request, mut sent) = (Request::Commit(commit), Vec::new());
+    let header = Header { kind: request.kind().code(), ..Header::default() };
+    Encoder::new().encode(&header, |payload| request.write(payload), &mut sent).unwrap();
+    let lengths = [sent.len() as u32, 0].map(u32::to_le_bytes).concat();
+    [[0; 8].as_slice(), &lengths, &sent].concat()
+}
+
+#[test]
+fn a_recording_of_numbers_that_no_run_has_is_no_recording_of_this_run() {
+    let folder = Folder::new();
+    let call = ["verify", "--json", "--width", "64", "--height", "8", "--frame", "builtin:noise"];
+    let recorded = folder.halfrow(call.into_iter().chain(["--record", "sound.rec"]));
+    assert_eq!(recorded.code, Some(0), "{}{}", recorded.stdout, recorded.stderr);
+    let sound = folder.read("sound.rec");
+    let (head, exchanges) = sound.split_at(first_exchange(&sound));
+    let head = std::str::from_utf8(head).unwrap();
+    let patient = head.replace("\"retries\":16", &format!("\"retries\":{}", u64::MAX));
+    assert_ne!(patient, head);
+    folder.write("patient.rec", [patient.as_bytes(), exchanges].concat());
+    folder.write("last.rec", [head.as_bytes(), &last_frame_committed(), exchanges].concat());
+    for (target, code) in [("replay:patient.rec", 0), ("replay:last.rec", 3)] {
+        let ended = folder.halfrow(["verify", "--json", "--board", target]);
+        assert_eq!(ended.code, Some(code), "{target}: {}{}", ended.stdout, ended.stderr);
+        assert!(!ended.stdout.contains("program-failed"), "{}", ended.stdout);
     }
 }
 

@@ -111,7 +111,7 @@ impl Came {
 
     /// Of two rows that left for the first time, the one whose packet was numbered behind that of a later row.
     fn misordered(&self, other: &Self) -> Option<u32> {
-        if self.repeats + other.repeats > 0 || self.row_sequence == other.row_sequence {
+        if self.repeats > 0 || other.repeats > 0 || self.row_sequence == other.row_sequence {
             return None;
         }
         // Numbers wrap, and all that is compared lies close together.
@@ -165,6 +165,7 @@ mod tests {
     fn what_links_do_is_no_misconduct() {
         // Lost, twice, overtaken, asked for again, and past the end of the numbers.
         assert_eq!(found(&[(0, 0, 0, 1), (2, 2, 0, 3), (2, 2, 0, 3), (1, 1, 0, 2), (3, 0, 1, 1)]), None);
+        assert_eq!(found(&[(3, 1, u16::MAX, 1), (2, 0, 1, 1)]), None);
         assert_eq!(found(&[(65_535, 7, 0, 1), (0, 8, 0, 1), (1, 7, 1, 1), (65_535, 7, 0, 1)]), None);
     }
 

@@ -83,7 +83,7 @@ impl RetryLimit {
     /// The most retries among `packets` packets.
     #[must_use]
     pub fn of(self, packets: u64) -> u64 {
-        self.fixed + (packets as f64 * self.share) as u64
+        self.fixed.saturating_add((packets as f64 * self.share) as u64)
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a recording says of its run, so that the same conversation can be held again: the frames come from the rows
 //! that were sent, since their files may be elsewhere.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -153,15 +154,14 @@ impl RecordedRun {
         geometry: &Geometry,
         phase: Phase,
     ) -> Result<Vec<FrameSource>, RestoreError> {
-        let is_file = |name: &&String| !name.starts_with("builtin:");
-        let files: Vec<u16> =
-            (0..).zip(&self.frames).filter(|(_, name)| is_file(name)).map(|(index, _)| index).collect();
         let commits = Sent::find(recording.sent(), |_| false);
         let first = commits.first_frames.get(&JUDGED).copied().unwrap_or_default();
-        let is_of_file = |number: u16| number.checked_sub(first).is_some_and(|index| files.contains(&index));
-        let sent = Sent::find(recording.sent(), is_of_file);
-        let sources = self.frames.iter().zip(first..);
-        sources
+        let numbered = self.frames.iter().enumerate();
+        let numbered = numbered.map(|(index, name)| (name, first.wrapping_add(index as u16)));
+        let is_file = |(name, _): &(&String, u16)| !name.starts_with("builtin:");
+        let files: BTreeSet<u16> = numbered.clone().filter(is_file).map(|(_, number)| number).collect();
+        let sent = Sent::find(recording.sent(), |number| files.contains(&number));
+        numbered
             .map(|(name, number)| {
                 if let Some(builtin) = name.strip_prefix("builtin:") {
                     return Ok(FrameSource::Builtin(builtin.parse().map_err(value::<UnknownBuiltin>)?));
