@@ -2,7 +2,10 @@
 //! never PASS.
 
 use std::collections::VecDeque;
+use std::time::Duration;
 
+use halfrow::board::{Board, OpenOptions};
+use halfrow::link_test;
 use halfrow::result::Report;
 use halfrow::verdict::Verdict;
 use halfrow_protocol::Kind;
@@ -61,4 +64,36 @@ fn an_old_copy_of_a_request_makes_no_sound_board_fail() {
     // Most of them do no harm, and some would have.
     let errors = ends.iter().filter(|&&verdict| verdict == Verdict::Error).count();
     assert!(errors > 0 && 2 * errors < ends.len(), "{errors} errors of {}", ends.len());
+}
+
+/// How many reads and echoes are wrong in the test of a link that delivers the first TABLE_WRITE once more in front of the second
+/// TABLE_READ, before a board that reads its tables otherwise if it is `broken`.
+fn wrong_of_link(broken: bool) -> (u64, bool) {
+    let (sender, delivered) = std::sync::mpsc::channel();
+    let (mut copy, mut reads) = (None, 0);
+    let alter = move |toward, mut packet: Passing| {
+        if toward == Toward::Host {
+            let last =
+                packet.payload.last_mut().filter(|_| broken && packet.header.kind == Kind::TableRead.code());
+            last.into_iter().for_each(|byte| *byte ^= 1);
+            return vec![packet];
+        }
+        if packet.is(Kind::TableWrite) && copy.is_none() && reads == 0 {
+            copy = Some(packet.clone());
+        }
+        reads += usize::from(packet.is(Kind::TableRead));
+        let late = copy.take_if(|_| reads == 2);
+        late.iter().for_each(|_| sender.send(()).unwrap());
+        late.into_iter().chain([packet]).collect()
+    };
+    let link = Altered::new(&halfrow_mock::Options::default(), alter).candidate().link;
+    let mut board = Board::open(link, &OpenOptions::default()).map_err(|(error, _)| error).unwrap();
+    let figures = link_test::run(&mut board, Duration::from_millis(50), 1).unwrap();
+    (figures.errors.wrong, delivered.try_recv().is_ok())
+}
+
+#[test]
+fn an_old_copy_of_a_request_makes_no_link_test_call_a_sound_board_wrong() {
+    assert_eq!(wrong_of_link(false), (0, true));
+    assert!(wrong_of_link(true).0 > 0);
 }

@@ -75,6 +75,8 @@ pub struct Board {
     pub welcome: Welcome,
     /// What it can do.
     pub capabilities: Capabilities,
+    /// How the session was opened.
+    options: OpenOptions,
     /// The shapes of the tables of the last commit, and of the other bank.
     shapes: [Option<GridShape>; 2],
 }
@@ -99,7 +101,8 @@ impl Board {
         };
         match open() {
             Ok((welcome, capabilities, counted_from)) => {
-                Ok(Self { conversation, counted_from, welcome, capabilities, shapes: [None; 2] })
+                let (options, shapes) = (options.clone(), [None; 2]);
+                Ok(Self { conversation, counted_from, welcome, capabilities, options, shapes })
             }
             Err(error) => Err((error, Box::new(conversation.tally))),
         }
@@ -114,6 +117,15 @@ impl Board {
         self.welcome = greet_or_take_over(&mut self.conversation, options)?;
         self.counted_from = self.conversation.tally.packets_out;
         Ok(())
+    }
+
+    /// The same, as the host that opened the first one.
+    ///
+    /// # Errors
+    /// [`BoardError`] as of [`Self::open`].
+    pub(crate) fn open_another_session(&mut self) -> Result<(), BoardError> {
+        self.options.nonce = self.options.nonce.wrapping_add(1);
+        self.greet_again(&self.options.clone())
     }
 
     /// What the board did with rows in this session that no link can do.
