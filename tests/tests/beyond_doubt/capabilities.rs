@@ -1,8 +1,9 @@
 //! Boards that say of themselves what no board can be: refused, by name, and never judged.
 
 use halfrow::verdict::Cause;
-use halfrow_protocol::message::{Capabilities, Grids};
-use halfrow_tests::altered::{judge_claims, judge_claims_by};
+use halfrow_protocol::Reply;
+use halfrow_protocol::message::{Capabilities, Grids, Welcome};
+use halfrow_tests::altered::{Passing, judge_claims, judge_claims_by, judge_each};
 use halfrow_tests::system::{System, streamed};
 
 /// A capability by its name in WIRE.md, and what it is set to.
@@ -11,6 +12,7 @@ type Claim = (&'static str, fn(&mut Capabilities));
 /// What no board can say. The values are those of WIRE.md section 3 and DATAPATH.md, just outside.
 const IMPOSSIBLE: &[Claim] = &[
     ("max_width = 63", |board| board.max_width = 63),
+    ("max_width = 2047", |board| board.max_width = 2047),
     ("max_width = 2593", |board| board.max_width = 2593),
     ("max_height = 0", |board| board.max_height = 0),
     ("max_height = 2049", |board| board.max_height = 2049),
@@ -54,7 +56,6 @@ const UNUSUAL: &[Claim] = &[
     ("the least", |board| (board.max_width, board.max_height, board.ring) = (64, 8, 64)),
     ("the most", |board| (board.max_width, board.max_height, board.ring) = (2592, 2048, 16_384)),
     ("few records", |board| records(board, 2)),
-    ("an odd width", |board| board.max_width = 2047),
     ("12 bits alone", |board| board.depths = 4),
     ("a depth to come", |board| board.depths = 0x0f),
     ("the most entries", |board| grids(board, |grids| (grids.entries, grids.ks) = (u16::MAX, 0x20))),
@@ -82,5 +83,27 @@ fn a_board_that_is_only_unusual_is_judged() {
         // Corners would be those of a board that there is not, and what it must refuse too.
         let report = judge_claims_by(&streamed(System::TINY.plan()), change);
         assert_eq!(report.cause, Cause::Equal, "{claim}: {}", report.headline());
+    }
+}
+
+/// What is changed in an answer to HELLO, and what is said of it.
+type Greeting = (fn(&mut Welcome), &'static str);
+
+#[test]
+fn a_greeting_that_no_board_answers_with_is_refused() {
+    let greetings: [Greeting; 2] = [
+        (|welcome| welcome.session = 0, "what answers is no halfrow board"),
+        (|welcome| welcome.version = 2, "the board speaks version 2 of the wire and this program version 1"),
+    ];
+    for (change, said) in greetings {
+        let report = judge_each(&System::TINY, move |_, packet: Passing| match packet.reply() {
+            Some(Reply::Hello(mut welcome)) => {
+                change(&mut welcome);
+                packet.saying(&Reply::Hello(welcome))
+            }
+            _ => packet,
+        });
+        assert_eq!(report.cause, Cause::Refused, "{}", report.headline());
+        assert!(report.headline().contains(said), "{}", report.headline());
     }
 }

@@ -341,11 +341,20 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
     if answer.packet().payload == sent {
         return Err(BoardError::Echoed);
     }
-    take_reply(Kind::Hello, &answer, |reply| match reply {
+    let welcome = take_reply(Kind::Hello, &answer, |reply| match reply {
         Reply::Hello(welcome) => Some(welcome),
         _ => None,
-    })
-    .map_err(|error| match error {
+    });
+    match welcome.map_err(not_greeted)? {
+        welcome @ Welcome { version: VERSION, session: 1.., .. } => Ok(welcome),
+        Welcome { version: VERSION, .. } => Err(BoardError::NotABoard),
+        Welcome { version, .. } => Err(BoardError::Version { board: version.into(), ours: VERSION }),
+    }
+}
+
+/// What an error that takes the place of a greeting means.
+fn not_greeted(error: BoardError) -> BoardError {
+    match error {
         BoardError::Refused { refusal, .. } if refusal.code == RefusalCode::Held => {
             BoardError::Held { seconds: f64::from(refusal.detail) / 10.0 }
         }
@@ -354,5 +363,5 @@ fn greet(conversation: &mut Conversation, options: &OpenOptions) -> Result<Welco
         }
         BoardError::Malformed { .. } | BoardError::Unexpected { .. } => BoardError::NotABoard,
         other => other,
-    })
+    }
 }

@@ -36,9 +36,9 @@ pub(crate) fn grids(board: &Capabilities) -> Option<Grids> {
 const RULES: [Rule; 14] = [
     Rule {
         name: "max_width",
-        legal: "rows have 64 to 2592 samples",
+        legal: "rows have an even number of samples, 64 to 2592",
         value: |board| board.max_width,
-        holds: |board| (NARROWEST..=WIDEST).contains(&board.max_width),
+        holds: |board| (NARROWEST..=WIDEST).contains(&board.max_width) && board.max_width.is_multiple_of(2),
     },
     Rule {
         name: "max_height",
