@@ -140,7 +140,7 @@ impl Signed {
             name: name.plan.clone(),
             version: version.to_owned(),
             sha256: sha256.to_owned(),
-            number: last.map_or(0, |last| last.number) + 1,
+            number: last.map_or(0, |last| last.number).saturating_add(1),
             operator: self.why.operator.clone(),
             reason: self.why.reason.clone(),
             key: key.public(),

@@ -169,6 +169,25 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
 }
 
 #[test]
+fn nothing_is_published_behind_the_greatest_number() {
+    let made = Published::new();
+    made.publish("engel.key");
+    made.server
+        .client("plant")
+        .batch_execute(
+            "UPDATE publication SET number = 9223372036854775807,
+             statement = replace(statement, '\"number\":1', '\"number\":9223372036854775807')",
+        )
+        .unwrap();
+    made.plan("2", 2);
+    let last = made.publish("engel.key");
+    assert!(
+        last.code == Some(3) && last.complained.contains("look at `halfrow-station plan published`"),
+        "{last:?}"
+    );
+}
+
+#[test]
 fn what_was_kept_is_looked_at_again_whenever_it_is_used() {
     let made = Published::new();
     made.publish("engel.key");
