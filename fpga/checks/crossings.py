@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """The clock crossings of the boards' tops, by yosys' netlists in front of mapping. Every bit that a register takes from another clock, or
-from a pin, must go straight into two registers that nothing else reads between and that are marked ASYNC_REG; a bus of them must count in Gray
-code; a reset may begin at once when it ends in two registers. What is none of these stands in crossings.ini with its reason, and what stands
-there must be found. crossings.txt has faults that this must refuse.
+from a pin, must go straight into two registers that nothing else reads between and that are marked ASYNC_REG; the bits of one register that
+cross must count in Gray code; a reset may begin at once when it ends in two registers; a memory takes nothing from another clock than its
+port's. What is none of these stands in crossings.ini with its reason, and what stands there must be found. crossings.txt has faults that
+this must refuse.
 """
 import collections
 import concurrent.futures
@@ -33,11 +34,11 @@ class Crossings:
 
     def all(self):
         """(register, port, bit, what comes from elsewhere) of each."""
-        for register in self.by_bit.values():
-            for port, bit in self.netlist.inputs(register):
-                others = self.foreign(register, bit)
-                if others:
-                    yield register, port, bit, others
+        inputs = [(register, *taken) for register in self.by_bit.values() for taken in self.netlist.inputs(register)]
+        for register, port, bit in [*inputs, *self.netlist.memory_inputs()]:
+            others = self.foreign(register, bit)
+            if others:
+                yield register, port, bit, others
 
     def second(self, register):
         """The register that alone reads this one, in the same clock."""
@@ -52,6 +53,8 @@ class Crossings:
 
     def fault(self, register, port, bit):
         """Why this is no synchroniser, or None."""
+        if register.bit is None:
+            return f"reaches the memory's {port}"
         if port == "ARST":
             return self.fault_of_reset(register, bit)
         if port != "D":
@@ -105,21 +108,15 @@ class Crossings:
         return step[0] == "1" and all(bit == "0" for bit in step[1:])
 
 
-def buses(found):
-    """Synchronised bits by the register that they end in and the one that they come from."""
-    grouped = collections.defaultdict(set)
-    for register, bit in found:
-        grouped[register.cell].add(bit)
-    return grouped
-
-
 def judge(crossings, listed):
     """Faults, the entries of the list that were met, and how many bits were found sound."""
-    faults, met, sound = set(), set(), []
+    faults, met, sound, words = set(), set(), 0, collections.defaultdict(set)
     for register, port, bit, others in crossings.all():
         why = crossings.fault(register, port, bit)
         if why is None:
-            sound += [(register, bit)] if port == "D" else []
+            sound += port == "D"
+            if port == "D" and bit in crossings.by_bit:
+                words[crossings.by_bit[bit].cell, register.clock].add(bit)
             continue
         for clock, source in others:
             entry = next((key for key in listed if matches(key, source, register.name)), None)
@@ -127,14 +124,11 @@ def judge(crossings, listed):
                 met.add(entry)
             else:
                 faults.add(f"{source} ({clock}) -> {register.name} ({register.clock}) {why}")
-    for bits in buses(sound).values():
-        registers = [bit for bit in bits if bit in crossings.by_bit]
-        # Bits of one register that travel together and are no Gray code may be seen at different times.
-        words = collections.Counter(crossings.by_bit[bit].cell for bit in registers)
-        for cell, count in words.items():
-            word = [bit for bit in registers if crossings.by_bit[bit].cell == cell]
-            if count > 1 and not crossings.is_gray(word):
-                faults.add(f"{crossings.by_bit[word[0]].name} crosses as a bus of {count} bits that do not count in Gray code")
+    # Bits of one register that cross into one clock, each by synchronisers of its own or not, may be seen at different times.
+    for word in words.values():
+        if len(word) > 1 and not crossings.is_gray(word):
+            name = min(crossings.by_bit[bit].name for bit in word)
+            faults.add(f"{name} crosses as a bus of {len(word)} bits that do not count in Gray code")
     return faults, met, sound
 
 
@@ -152,7 +146,7 @@ def faults_of(top, tree=ROOT):
     listed = [key for section in config.sections() if fnmatch.fnmatchcase(name, section) for key in config[section]]
     faults, met, sound = judge(Crossings(Netlist(tops.netlist(top, "words", tree))), listed)
     faults |= {f"crossings.ini: {key} is not in {name}" for key in listed if key not in met}
-    return faults, f"PASS {name}: {len(sound)} bits cross through two registers, {len(met)} crossings are listed with their reasons"
+    return faults, f"PASS {name}: {sound} bits cross through two registers, {len(met)} crossings are listed with their reasons"
 
 
 def missed(top, mutants):

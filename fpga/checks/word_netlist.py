@@ -5,6 +5,8 @@ import collections
 BITWISE = {"$not", "$and", "$or", "$xor", "$xnor", "$mux"}
 REGISTERS = {"$dff", "$dffe", "$sdff", "$sdffe", "$sdffce", "$adff", "$adffe"}
 CONTROLS = ("EN", "SRST", "ARST")
+# What a memory takes with each of these clocks; reads that have no clock take nothing.
+MEMORY_INPUTS = {"WR_CLK": ("WR_ADDR", "WR_DATA", "WR_EN"), "RD_CLK": ("RD_ADDR", "RD_EN", "RD_SRST", "RD_ARST")}
 Register = collections.namedtuple("Register", "name bit clock cell place")
 
 
@@ -52,6 +54,21 @@ class Netlist:
             if cell["type"] in REGISTERS:
                 for place, bit in enumerate(cell["connections"]["Q"]):
                     yield Register(self.name(bit), bit, self.clock(name), name, place)
+
+    def memory_inputs(self):
+        """What memories take from a clock: the memory as a register without a bit, the port, its bit."""
+        for name, cell in self.cells.items():
+            if cell["type"] != "$mem_v2":
+                continue
+            pins, has_clock = cell["connections"], cell["parameters"]["RD_CLK_ENABLE"][::-1]
+            for clock, ports in MEMORY_INPUTS.items():
+                for place, wire in enumerate(pins[clock]):
+                    if clock == "RD_CLK" and has_clock[place] == "0":
+                        continue
+                    memory = Register(name, None, self.name(wire), name, place)
+                    for port in ports:
+                        width = len(pins[port]) // len(pins[clock])
+                        yield from ((memory, port, bit) for bit in pins[port][place * width:][:width])
 
     def sources_of(self, cell, port, place):
         """The bits of a cell's inputs that its output depends on without a clock."""
