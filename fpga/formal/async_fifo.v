@@ -1,5 +1,5 @@
 // halfrow_async_fifo with two clocks that rise whenever they like, beside a plain list: no word is lost, doubled, changed or
-// overtaken, and of a pointer that crosses no two bits change at once.
+// overtaken, one that is there is offered and one for which there is room is taken, and of a pointer that crosses no two bits change at once.
 `default_nettype none
 
 module async_fifo #(
@@ -39,6 +39,8 @@ module async_fifo #(
     wire [MOST:0]     behind = goes_out ? words >> 1 : words;
     wire [MOST:0]     words_now = goes_in ? (behind & ~(1'b1 << left)) | (data_next << left) : behind;
     reg  [BITS:0]     head_was, tail_was;
+    // Edges of each side since the other side's pointer has moved, from which on it has had the time to know.
+    reg  [1:0]        in_edges = 2'd0, out_edges = 2'd0;
     wire [BITS:0]     head_moved = head_was ^ head_gray, tail_moved = tail_was ^ tail_gray;
 
     always @(posedge step) begin
@@ -49,6 +51,8 @@ module async_fifo #(
         rst <= !(in_seen && out_seen);       // each side has had an edge in it
         watched <= !rst;
         {goes_in_next, goes_out_next, data_next} <= {in_valid && in_ready, out_valid && out_ready, in_data};
+        in_edges <= !watched || goes_out ? 2'd0 : in_edges + (in_rises && !(&in_edges));
+        out_edges <= !watched || goes_in ? 2'd0 : out_edges + (out_rises && !(&out_edges));
         count <= count_now;
         words <= words_now;
         head_was <= head_gray;
@@ -59,6 +63,8 @@ module async_fifo #(
         if (watched) begin
             holds: assert (count_now <= MOST);
             in_order: assert (!out_valid || (count_now != 0 && out_data == words_now[0]));
+            takes: assert (in_ready || goes_out || in_edges < 3 || count_now >= (1 << BITS));
+            gives: assert (out_valid || goes_in || out_edges < 3 || count_now == 0);
             head_is_gray: assert ((head_moved & (head_moved - 1'b1)) == 0);
             tail_is_gray: assert ((tail_moved & (tail_moved - 1'b1)) == 0);
         end

@@ -4,6 +4,7 @@
 `default_nettype none
 
 module grid_segments #(
+    parameter K = 5, // segments of 2^K columns, 5 or 6
     parameter BITS = 4, // of a factor that are any, above the lowest three; the others are FACTOR's
     parameter FACTOR = 25'd14680064
 ) (
@@ -23,16 +24,17 @@ module grid_segments #(
     wire [36:0] position = 37'h1234567; // S[0] / 8 + 2^11: it is only added
     wire [24:0] new_0 = FACTOR + {any_0, 3'd0}, new_1 = FACTOR + {any_1, 3'd0}, new_2 = FACTOR + {any_2, 3'd0};
 
-    // G of k = 5 is a quarter of the difference of factors.
+    // G is the difference of factors by 2^(k-3).
     wire [25:0] rise_0 = {1'b0, new_1} - {1'b0, new_0}, rise_1 = {1'b0, q2} - {1'b0, q1};
     wire [25:0] rise = {1'b0, q2} - {1'b0, q0};
+    wire [23:0] slope_0 = {{K-5{rise_0[25]}}, rise_0[25:K-3]}, slope_1 = {{K-5{rise_1[25]}}, rise_1[25:K-3]};
     wire ask_next;
     wire [39:0] sum;
     wire [28:0] step;
 
     halfrow_parabolas dut (
         .clk(clk), .enable(1'b1), .row_begin(row_begin), .position(position), .factor(new_0), .has_grid(1'b1),
-        .long_segments(1'b0), .first_slope(rise_0[25:2]), .next_slope(rise_1[25:2]), .hand_over(rise[25:2]),
+        .long_segments(K == 6), .first_slope(slope_0), .next_slope(slope_1), .hand_over({{K-5{rise[25]}}, rise[25:K-3]}),
         .reading(begun_once), .begun(begun[5:0]), .ask_next(ask_next), .\sum (sum), .\step (step));
 
     always @(posedge clk) begin
@@ -42,14 +44,14 @@ module grid_segments #(
             {q0, q1, q2} <= {new_0, new_1, new_2};
     end
 
-    wire [39:0] second = {position, 3'd0} + {7'd0, {1'b0, q0} + {1'b0, q1}, 8'd0};
-    wire [28:0] next_step = {q1, 4'd0} + {{5{rise_1[25]}}, rise_1[25:2]};
+    wire [39:0] second = {position, 3'd0} + ({14'd0, {1'b0, q0} + {1'b0, q1}} << K + 3);
+    wire [28:0] next_step = {q1, 4'd0} + {{5{slope_1[23]}}, slope_1};
 
     always @(posedge clk)
         if (running) begin
-            if (begun == 7'd33) assert (sum == second && step == next_step);
-            if (begun == 7'd34) assert (step == next_step + {{4{rise_1[25]}}, rise_1[25:2], 1'b0});
-            assert (!ask_next || begun == 7'd31 || begun == 7'd63);
+            if (begun == (1 << K) + 1) assert (sum == second && step == next_step);
+            if (begun == (1 << K) + 2) assert (step == next_step + {{4{slope_1[23]}}, slope_1, 1'b0});
+            assert (!ask_next || begun == (1 << K) - 1 || begun == 7'd63);
         end
 endmodule
 

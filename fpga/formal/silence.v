@@ -43,6 +43,10 @@ module silence #(
     reg [2:0] waited; // clocks behind the last of them
     reg was_over;     // the clock before ended a burst
     wire over = passed == LONGEST;
+    reg over_before;  // in the clock in which `silence` was decided, behind which a packet may have come
+
+    always @(posedge clk)
+        over_before <= over && !rst;
 
     always @(posedge clk)
         if (rst) begin
@@ -61,7 +65,7 @@ module silence #(
         if (running && !rst) begin
             in_time: assert (waited <= SOON);
             if (ends)
-                not_before: assert (over || passed == 4'd0);
+                not_before: assert (over || over_before);
             if (was_over)
                 closed: assert (!session_open && !burst);
         end
