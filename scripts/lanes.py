@@ -1,4 +1,5 @@
 """A station at work, for scripts: boards in, verdicts out."""
+import contextlib
 import json
 import subprocess
 
@@ -40,27 +41,37 @@ class Station:
     def start(self, **streams):
         return subprocess.Popen([self.program, "lanes", "--settings", self.settings], text=True, **streams)
 
+    @contextlib.contextmanager
+    def at_work(self, **streams):
+        """The program, which does not outlive whoever started it, and keeps no disk busy."""
+        process = self.start(**streams)
+        try:
+            yield process
+        finally:
+            process.kill()
+            process.wait()
+
     def judge(self, runs, seen=lambda: None, at_end=lambda process: None):
         """Judges so many boards, in all lanes at once; returns each verdict that was shown, with what `seen` returned then."""
-        station = self.start(stdin=subprocess.PIPE, stdout=subprocess.PIPE)
         shown, given, busy = {}, 0, set()
-        for line in station.stdout:
-            news = json.loads(line)
-            if news["news"] != "lane":
-                continue
-            lane, verdict = news["lane"], news["shown"]
-            if verdict and verdict["run"] not in shown:
-                shown[verdict["run"]] = (verdict, seen())
-                busy.discard(lane)
-            if given < runs and lane not in busy and (verdict or news["state"] == "READY"):
-                given += 1
-                busy.add(lane)
-                station.stdin.write(f"HR:LANE:{lane}\nCAT{given:05}\n")
-                station.stdin.flush()
-            if len(shown) == runs and not station.stdin.closed:
-                at_end(station)
-                station.stdin.close()
-        assert station.wait() == 0 and len(shown) == runs, f"{len(shown)} of {runs} boards were judged"
+        with self.at_work(stdin=subprocess.PIPE, stdout=subprocess.PIPE) as station:
+            for line in station.stdout:
+                news = json.loads(line)
+                if news["news"] != "lane":
+                    continue
+                lane, verdict = news["lane"], news["shown"]
+                if verdict and verdict["run"] not in shown:
+                    shown[verdict["run"]] = (verdict, seen())
+                    busy.discard(lane)
+                if given < runs and lane not in busy and (verdict or news["state"] == "READY"):
+                    given += 1
+                    busy.add(lane)
+                    station.stdin.write(f"HR:LANE:{lane}\nCAT{given:05}\n")
+                    station.stdin.flush()
+                if len(shown) == runs and not station.stdin.closed:
+                    at_end(station)
+                    station.stdin.close()
+            assert station.wait() == 0 and len(shown) == runs, f"{len(shown)} of {runs} boards were judged"
         return list(shown.values())
 
     def restarts(self):
