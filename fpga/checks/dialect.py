@@ -2,6 +2,7 @@
 """Holds fpga/rtl and the boards' sources to what XST of ISE 14.7 reads for certain, where Verilog-2001 as other tools know it allows more.
 A rule is a function; the file of its name in fpga/checks/dialect breaks it, and must be refused by it alone.
 """
+import itertools
 import pathlib
 import re
 import subprocess
@@ -98,10 +99,8 @@ def main():
     modules = list(rtl.modules().values())
     boards = sorted((HERE.parent / "boards").glob("*/*.v"))
     wrong = [what for path in modules + boards for _, what in offences(path)]
-    for top in ("halfrow_fifo_bridge", "halfrow_uart_bridge"):
-        for taps in (5, 7):
-            for banks in (1, 2):
-                wrong += zero_replications(modules, top, (f"TAPS={taps}", f"TABLE_BANKS={banks}"))
+    for top, taps, banks, trap in itertools.product(("halfrow_fifo_bridge", "halfrow_uart_bridge"), (5, 7), (1, 2), (0, 1)):
+        wrong += zero_replications(modules, top, (f"TAPS={taps}", f"TABLE_BANKS={banks}", f"TRAP={trap}"))
     if wrong:
         sys.exit("dialect: " + "\ndialect: ".join(sorted(set(wrong))))
     print(f"PASS {len(modules) + len(boards)} files keep to XST's dialect, and each of {refuses_its_cases()} rules refuses its case")

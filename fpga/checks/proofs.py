@@ -4,7 +4,7 @@ A fault is tried in the module that it is in, then in each one above it but the 
 clock, and the outputs of both must be equal at every clock. Assumptions:
     - registers begin at 0, as the FPGA's do;
     - a memory gives the same in both as long as the same goes into it, and at its ports what is not written or read may differ;
-    - LEGAL: where a proof says so, only until a row is flagged that is short, long or unprepared. The player makes none
+    - LEGAL: where a proof says so, only until a row is flagged that is short or long. The player makes none
       (fpga/formal, player), so only a camera's can be.
 """
 import re
@@ -21,7 +21,6 @@ NEAR = 30
 # By module, the outputs of the sound design that tell of a row that no host can play.
 LEGAL = {
     "halfrow_bridge.core.entry": ["row_short", "row_long"],
-    "halfrow_bridge.core.row_start": ["row_unprepared"],
 }
 # Registers of a module beyond which it is not tried: what has taken minutes there was hardly ever proven.
 MOST = 1500
