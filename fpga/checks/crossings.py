@@ -11,17 +11,14 @@ import configparser
 import fnmatch
 import os
 import pathlib
-import re
-import shutil
-import subprocess
 import sys
 import tempfile
 
+import edits
 import tops
 from word_netlist import REGISTERS, Netlist
 
 HERE = pathlib.Path(__file__).resolve().parent
-ROOT = HERE.parent.parent
 
 
 class Crossings:
@@ -137,7 +134,7 @@ def matches(key, source, register):
     return fnmatch.fnmatchcase(source, left) and fnmatch.fnmatchcase(register, right)
 
 
-def faults_of(top, tree=ROOT):
+def faults_of(top, tree=edits.ROOT):
     """Faults of a top, and a line about one that has none."""
     name = tops.name_of(top)
     config = configparser.ConfigParser(delimiters=(":",), interpolation=None)
@@ -153,21 +150,13 @@ def missed(top, mutants):
     """Those faults, put all into one copy of the sources, that are not refused by the name of what they spoil."""
     with tempfile.TemporaryDirectory() as scratch:
         tree = pathlib.Path(scratch)
-        shutil.copytree(ROOT / "fpga", tree / "fpga", ignore=shutil.ignore_patterns("target", "model", "mock", "sim"))
-        for _, path, edit, _ in mutants:
-            before = (tree / path).read_text()
-            after = subprocess.run(["sed", "-E", edit], input=before, capture_output=True, text=True, check=True).stdout
-            if after == before:
-                sys.exit(f"crossings: crossings.txt: {edit} changes nothing in {path}")
-            (tree / path).write_text(after)
+        edits.spoil(tree, mutants)
         faults, _ = faults_of(top, tree)
-        return [(path, edit) for _, path, edit, spoilt in mutants if not any(spoilt in fault for fault in faults)]
+        return [(path, edit) for path, edit, spoilt in mutants if not any(spoilt in fault for fault in faults)]
 
 
 def mutants(kind):
-    lines = (HERE / "crossings.txt").read_text().splitlines()
-    words = [re.split(r"\s{2,}", line.strip(), maxsplit=3) for line in lines if line and not line.startswith("#")]
-    return [word for word in words if word[0] == kind]
+    return edits.of_kind(HERE / "crossings.txt", kind)
 
 
 def main():

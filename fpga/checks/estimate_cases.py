@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""estimate.py and depth.py on netlists of a few cells, against sums made by hand."""
+"""estimate.py and depth.py on netlists of a few cells, against sums made by hand; and what resources.py makes of counts at their limits."""
 
 import sys
 
 import depth
 import estimate
 import netlist
+import resources
 
 CLOCK, OTHER = 2, 3
 
@@ -56,6 +57,12 @@ DEPTHS = [("one LUT", ONE_LUT, 0, 1), ("a chain", CHAIN, 1, 1), ("a block RAM", 
 LIMITS = [(ONE_LUT, {"mhz": "472", "crossing_ns": "9"}, True), (ONE_LUT, {"mhz": "471", "crossing_ns": "9"}, False),
           (CROSSING, {"mhz": "900", "crossing_ns": "1.3"}, True), (CROSSING, {"mhz": "900", "crossing_ns": "1.4"}, False)]
 
+# A build's limit, its counts and shares, and whether it is exceeded.
+EXCESSES = [({"luts": "100"}, {"luts": 101}, {}, True), ({"luts": "100"}, {"luts": 100}, {}, False),
+            ({"registers": "20%"}, {"registers": 1}, {"registers": 20.1}, True), ({"registers": "20%"}, {"registers": 99}, {"registers": 20.0}, False),
+            ({"mean": "9%"}, {"mean": 9.0}, {}, True), ({"mean": "9%"}, {"mean": 8.9}, {}, False),
+            ({"lut_levels": "4"}, {"lut_levels": 5}, {}, True), ({"carry_bits": "40"}, {"carry_bits": 41}, {}, True)]
+
 
 def faults():
     for name, cells, wanted in DELAYS:
@@ -70,6 +77,9 @@ def faults():
     for cells, limits, refused in LIMITS:
         if bool(estimate.judge("", cells, limits, 1)[1]) != refused:
             yield f"with {limits} a netlist is {'not ' if refused else ''}refused"
+    for limits, counts, shares, exceeded in EXCESSES:
+        if bool(list(resources.excesses(limits, counts, shares))) != exceeded:
+            yield f"{counts} {shares} are {'not ' if exceeded else ''}over {limits}"
 
 
 wrong = list(faults())

@@ -55,7 +55,7 @@ def excesses(build, counts, shares):
             continue
         limit = build[name]
         value = shares.get(name, counts[name]) if limit.endswith("%") else counts[name]
-        # A share has to stay below its limit, a count may reach it.
+        # The mean has to stay below its limit, all else may reach it.
         if value > float(limit.rstrip("%")) or (name == "mean" and value >= float(limit.rstrip("%"))):
             yield f"{name} {value:g}, allowed {limit}"
 

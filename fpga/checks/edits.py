@@ -1,0 +1,29 @@
+"""Edits of the sources that a check must refuse: a file of them, and a copy of the sources with them."""
+
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+IGNORED = shutil.ignore_patterns("target", "model", "mock", "sim", "coverage", "__pycache__")
+
+
+def of_kind(file, kind):
+    """(file in the project, edit for `sed -E`, what the check must say) of each line whose first column is the kind."""
+    lines = [line.strip() for line in file.read_text().splitlines() if line and not line.startswith("#")]
+    return [tuple(rest) for first, *rest in (re.split(r"\s{2,}", line, maxsplit=3) for line in lines) if first == kind]
+
+
+def spoil(tree, edits):
+    """Makes that folder a copy of fpga and of protocol/WIRE.md, with all these edits."""
+    shutil.copytree(ROOT / "fpga", tree / "fpga", ignore=IGNORED)
+    (tree / "protocol").mkdir()
+    shutil.copy(ROOT / "protocol/WIRE.md", tree / "protocol")
+    for path, edit, _ in edits:
+        before = (tree / path).read_text()
+        after = subprocess.run(["sed", "-E", edit], input=before, capture_output=True, text=True, check=True).stdout
+        if after == before:
+            sys.exit(f"edits: {edit} changes nothing in {path}")
+        (tree / path).write_text(after)

@@ -1,0 +1,33 @@
+#!/usr/bin/env python3
+"""Sees judges refuse: all edits of refused.txt that are one's, put into a copy of the sources, must be named by it.
+    refused.py JUDGE...     JUDGE: a program of fpga, as checks/form.py
+"""
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import edits
+
+CASES = pathlib.Path(__file__).resolve().parent / "refused.txt"
+
+
+def missed(judge, cases):
+    with tempfile.TemporaryDirectory() as scratch:
+        tree = pathlib.Path(scratch)
+        edits.spoil(tree, cases)
+        done = subprocess.run([sys.executable, tree / "fpga" / judge], capture_output=True, text=True)
+        said = done.stdout + done.stderr
+        return [f"{judge} does not refuse {path}: {edit}" for path, edit, spoilt in cases if not done.returncode or spoilt not in said]
+
+
+def main():
+    for judge in sys.argv[1:]:
+        cases = edits.of_kind(CASES, judge)
+        wrong = missed(judge, cases) if cases else [f"{judge} has no edit"]
+        if wrong:
+            sys.exit("refused: " + "\nrefused: ".join(wrong))
+        print(f"PASS {judge} refuses {len(cases)} edits")
+
+
+main()
