@@ -29,7 +29,7 @@ use crate::record::{
     RunHead, SCHEMA, StepRecord, SuspectRecord, judged,
 };
 use crate::said::{Said, Saying};
-use crate::store::{Admission, SharedStore, Store, StoreError, Stored};
+use crate::store::{Admission, Folder, SharedStore, StoreError, Stored};
 use crate::{clock, ids};
 
 /// Round trips, echoes, to the board, to the host, together: each takes the seconds of the plan.
@@ -152,7 +152,8 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let head = store.with(|store| store.begin(head, &planned)).map_err(not_begun)?;
     watch.hear(Stage::Begun(&head));
     let begun = Instant::now();
-    let spool = store.with(|store| store.folder().spool(&head.id));
+    let folder = store.with(|store| store.folder().clone());
+    let spool = folder.spool(&head.id);
     let job = job(&head, order, ids::seed(id), &spool);
     let mut attending = Attending { store, run: &head, watch, device: DeviceSeen::NotChecked };
     let heard = lent::supervised(order, job, &spool, patience(order, &selected), &mut attending);
@@ -160,7 +161,8 @@ pub fn run(store: &SharedStore, order: &Order<'_>, watch: &mut dyn Watch) -> Res
     let was_killed = is_stuck || matches!(heard.end, End::Killed(_));
     attending.watch.hear(Stage::Saving { was_killed, is_stuck });
     let record = record(head, planned, order, &selected, (heard, device), begun.elapsed());
-    store.with(|store| save(store, record, &spool, selected.steps.len() as u32))
+    let steps = selected.steps.len() as u32;
+    save(&folder, record, |record| store.with(|store| store.finish(record, steps)))
 }
 
 /// What is judged.
@@ -327,19 +329,25 @@ fn last_suspects(steps: &[StepRecord]) -> Vec<SuspectRecord> {
     of_steps.find(|some| !some.is_empty()).cloned().unwrap_or_default()
 }
 
-/// Saves the record, with what the lane wrote down unless it is a PASS, and empties the spool.
-fn save(store: &mut Store, mut record: Record, spool: &Path, steps: u32) -> Result<Saved, RunError> {
+/// Saves the record by `finish`, with what the lane wrote down unless it is a PASS, and empties the spool. That is on the disk
+/// before `finish`, which alone needs the store.
+fn save(
+    folder: &Folder,
+    mut record: Record,
+    finish: impl FnOnce(&Record) -> Result<Stored, StoreError>,
+) -> Result<Saved, RunError> {
+    let spool = folder.spool(&record.run.id);
     let run = record.run.id.clone();
-    let mut saved = || {
+    let saved = || {
         if record.conclusion.verdict != halfrow::Verdict::Pass {
-            record.attachments = attached(&store.folder().blobs(), spool)?;
+            record.attachments = attached(&folder.blobs(), &spool)?;
         }
-        store.finish(&record, steps)
+        finish(&record)
     };
     let stored = saved().map_err(|source| RunError::Unsaved { run, source: Box::new(source) })?;
     let saved_ms = clock::now_ms();
     // A lane that was not started wrote nothing down.
-    if let Err(error) = fs::remove_dir_all(spool)
+    if let Err(error) = fs::remove_dir_all(&spool)
         && error.kind() != std::io::ErrorKind::NotFound
     {
         tracing::warn!("{} cannot be removed: {error}; it is not needed any more", spool.display());

@@ -91,7 +91,8 @@ fn closed(store: &mut Store, open: OpenRun, why: impl Fn(usize) -> Saying) -> Re
         program: halfrow::VERSION.to_owned(),
         run,
     };
-    save(store, record, &spool, 0)
+    let folder = store.folder().clone();
+    save(&folder, record, |record| store.finish(record, 0))
 }
 
 /// Whether the run could count as production when it began.

@@ -1,8 +1,12 @@
 //! What all tests stand on: a plan, serial numbers, the program, and a look at what it kept.
 
-use std::path::Path;
+use std::fs::{self, File};
+use std::os::unix::fs::{FileTypeExt as _, PermissionsExt as _};
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
-use std::time::SystemTime;
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant, SystemTime};
 
 use tempfile::TempDir;
 
@@ -44,6 +48,30 @@ pub(crate) fn now_ms() -> i64 {
 /// A folder for a station, on a disk: where others keep temporary files may be memory.
 pub(crate) fn folder() -> TempDir {
     tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).unwrap()
+}
+
+/// A program of this name in `folder`, which a shell carries out.
+pub(crate) fn script(folder: &Path, name: &str, lines: &str) -> PathBuf {
+    let path = folder.join(name);
+    fs::write(&path, format!("#!/bin/sh\n{lines}")).unwrap();
+    fs::set_permissions(&path, fs::Permissions::from_mode(0o755)).unwrap();
+    path
+}
+
+/// How long somebody is waited for who must come: it ends hangs alone.
+const HANG: Duration = Duration::from_secs(120);
+
+/// The writing end of the FIFO at `path`, as soon as somebody reads there; they wait until it is dropped.
+pub(crate) fn held_up(path: &Path) -> File {
+    let begun = Instant::now();
+    while !fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo()) {
+        assert!(begun.elapsed() < HANG, "{} is no FIFO", path.display());
+        thread::sleep(Duration::from_millis(10));
+    }
+    let (sender, opened) = mpsc::channel();
+    let fifo = path.to_owned();
+    thread::spawn(move || sender.send(File::options().write(true).open(fifo)));
+    opened.recv_timeout(HANG).unwrap().unwrap()
 }
 
 /// `[plant]` of a station whose results go to `url`, however full the disk is that the tests have.

@@ -31,7 +31,13 @@ impl Watch for Unwatched {
 }
 
 /// A run in this lane, whose process is one of `program`.
-fn run_in(store: &SharedStore, station: &Station, lane: &str, serial: &str, program: &Path) -> Saved {
+pub(super) fn run_in(
+    store: &SharedStore,
+    station: &Station,
+    lane: &str,
+    serial: &str,
+    program: &Path,
+) -> Saved {
     let plan_file = station.path("plan.toml");
     let plan = Plan::load(&plan_file).unwrap();
     let board = LaneBoard::Own("mock".parse().unwrap());

@@ -1,6 +1,7 @@
 //! Runs of the program, from the serial number to what is kept.
 
 mod again;
+mod alone;
 pub(crate) mod bench;
 pub(crate) mod checked;
 mod ends;
