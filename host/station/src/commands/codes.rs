@@ -142,7 +142,6 @@ codes::codes! {
     WorkError {
         NoPlan [job, sha256] => "job-without-plan",
         Target [board, target] => "shared-board-without-place",
-        = Store,
         = Run,
     }
     Lost {

@@ -20,7 +20,7 @@ use crate::outbox::Outbox;
 use crate::said::Said;
 use crate::settings::Settings;
 use crate::store::{Claim, PlantLink, SharedStore, Worker};
-use crate::work::{Judged, Work, WorkError};
+use crate::work::{Judged, Work};
 
 /// Take jobs of the plant, and judge the boards that they are about
 ///
@@ -113,7 +113,6 @@ fn one_by_one(
             Ok(judged) => {
                 print(&if arguments.json { document(&judged) } else { text(&judged) })?;
             }
-            Err(error @ WorkError::Store(_)) => return Err(Failure::error(error)),
             // It would be asked again for ever.
             Err(error) if arguments.once && error.is_of_store() => return Err(Failure::error(error)),
             // The next one may come to something.

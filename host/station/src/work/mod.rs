@@ -41,9 +41,6 @@ const LOOK: Duration = Duration::from_millis(50);
 /// A job that came to no run.
 #[derive(Debug, thiserror::Error)]
 pub enum WorkError {
-    /// The plant or the station's own store.
-    #[error(transparent)]
-    Store(#[from] StoreError),
     /// The run has no verdict.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -172,11 +169,7 @@ impl Work<'_> {
             }
         };
         let run = &saved.record.run.id;
-        let mut is_sent = self.is_sent(run)?;
-        while !is_sent && !holding.is_lost() && stop().is_none() {
-            thread::sleep(LOOK);
-            is_sent = self.is_sent(run)?;
-        }
+        let is_sent = self.is_sent(run, &|| holding.is_lost() || stop().is_some());
         let counts = self.counts(&claim, run);
         holding.end();
         Ok(Judged { claim, is_sent, counts, saved })
@@ -252,8 +245,20 @@ impl Work<'_> {
         Ok(run::run(&self.store, &order, watched)?)
     }
 
-    fn is_sent(&self, run: &str) -> Result<bool, StoreError> {
-        self.store.with(|store| store.folder().is_sent(PlantSink::NAME, run))
+    /// Whether the plant has a run, which is waited for unless that `is_over`. A store that does not tell is waited for no longer:
+    /// the run is saved, and sent whenever the outbox can.
+    fn is_sent(&self, run: &str, is_over: &dyn Fn() -> bool) -> bool {
+        let folder = self.store.with(|store| store.folder().clone());
+        loop {
+            match folder.is_sent(PlantSink::NAME, run) {
+                Ok(false) if !is_over() => thread::sleep(LOOK),
+                Ok(is_sent) => return is_sent,
+                Err(error) => {
+                    tracing::warn!("whether the plant has the run {run} is not known: {}", Said::of(&error));
+                    return false;
+                }
+            }
+        }
     }
 
     /// Whether no other run of the job counts.

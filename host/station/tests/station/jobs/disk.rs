@@ -4,11 +4,14 @@ use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use halfrow::Verdict;
+use halfrow::verdict::StoppedBy;
+use halfrow_station::settings::Settings;
 use nix::sys::signal::{Signal, kill};
 use nix::unistd::Pid;
 use tempfile::TempDir;
 
-use super::{any, job, plan, settings, shared};
+use super::{any, at_work, job, plan, settings, shared};
 use crate::common::{Did, folder, program, query};
 use crate::lanes::floor::HANG;
 use crate::plant::server::Server;
@@ -119,4 +122,23 @@ fn what_a_worker_could_not_save_is_closed_before_it_takes_another_job() {
     worker.end();
     let verdicts = query(&station.folder.path().join("data"), "SELECT verdict FROM run ORDER BY id");
     assert_eq!(verdicts, ["ERROR", "PASS"]);
+}
+
+/// The table that knows it is gone.
+#[test]
+fn a_verdict_is_told_though_the_store_does_not_say_whether_the_plant_has_it() {
+    let (server, mut plant) = shared(1);
+    let (plan, any) = (plan(), any());
+    plant.add_jobs(&job(&plan, &any), 1).unwrap();
+    let folder = folder();
+    let settings = Settings::load_plant(&settings(&server, folder.path(), "12")).unwrap();
+    let work = at_work(&settings, program().to_owned());
+    let database = rusqlite::Connection::open(folder.path().join("data/station.db")).unwrap();
+    database.execute_batch("ALTER TABLE outbox RENAME TO elsewhere").unwrap();
+    let claim = work.claim().unwrap().unwrap();
+    let begun = Instant::now();
+    let stop = || (begun.elapsed() > HANG).then_some(StoppedBy::Person);
+    let judged = work.judge(claim, &stop, &mut |_| ()).unwrap();
+    assert_eq!(judged.saved.record.conclusion.verdict, Verdict::Pass);
+    assert!(!judged.is_sent);
 }
