@@ -154,7 +154,6 @@ impl Lane {
         loop {
             match self.lines.recv_timeout(LOOK) {
                 Ok(line) => {
-                    last = Instant::now();
                     // What is lost here is lost as evidence alone; the record has all that counts.
                     let _ = writeln!(self.events, "{line}");
                     match serde_json::from_str(&line) {
@@ -163,6 +162,8 @@ impl Lane {
                         Ok(message) => self.answer(&message, attendant, steps),
                         Err(_) => return End::Killed(Saying::LaneBabbles { line }.into()),
                     }
+                    // The answer may have waited for the store, which is no silence of the lane's.
+                    last = Instant::now();
                 }
                 Err(RecvTimeoutError::Disconnected) => {
                     return End::Died(Saying::LaneDied { status: String::new() }.into());

@@ -10,4 +10,5 @@ mod operators;
 mod refused;
 mod shift;
 pub(crate) mod stuck;
+mod supervised;
 mod threads;
