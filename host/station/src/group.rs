@@ -11,6 +11,9 @@ use nix::unistd::Pid;
 const FIRST: Duration = Duration::from_millis(1);
 const LONGEST: Duration = Duration::from_millis(10);
 
+/// How long what was killed is waited for.
+pub(crate) const KILLED: Duration = Duration::from_secs(10);
+
 /// How a process ended, if it does within `limit`.
 pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
     let (begun, mut look) = (Instant::now(), FIRST);
@@ -22,6 +25,12 @@ pub(crate) fn waited(child: &mut Child, limit: Duration) -> Option<ExitStatus> {
         }
         look = LONGEST.min(2 * look);
     }
+}
+
+/// Kills the group of `child`; how that ended, if it did. What sleeps uninterruptibly does not, and is waited for no longer.
+pub(crate) fn killed(child: &mut Child) -> Option<ExitStatus> {
+    kill(child.id());
+    waited(child, KILLED)
 }
 
 /// Kills the group of the process `leader`, of which none need be left.

@@ -3,11 +3,12 @@
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
 use std::process::{Command, ExitStatus, Stdio};
+use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
 
 use crate::floor::Shown;
-use crate::group::{kill, waited};
+use crate::group::{KILLED, kill, killed, waited};
 use crate::settings::{Hook, WORDS};
 
 /// The most that is kept of what a hook complains of, in bytes.
@@ -59,23 +60,22 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
         .spawn()
         .map_err(|source| HookError::Start { program: program(), source })?;
     let complaints = child.stderr.take();
-    let hear = move || complaints.map(beginning).unwrap_or_default();
-    let heard = thread::Builder::new().spawn(hear).map_err(|source| {
-        kill(child.id());
-        let _ = child.wait();
+    let (tell, heard) = mpsc::channel();
+    let hear = move || tell.send(complaints.map(beginning).unwrap_or_default());
+    thread::Builder::new().spawn(hear).map_err(|source| {
+        killed(&mut child);
         HookError::Start { program: program(), source }
     })?;
     match waited(&mut child, hook.deadline) {
         None => {
-            kill(child.id());
-            let _ = child.wait();
+            killed(&mut child);
             Err(HookError::Late { program: program(), deadline: hook.deadline })
         }
         Some(status) if status.success() => Ok(()),
         Some(status) => {
-            // What it left behind may hold the pipe open.
+            // What it left behind may hold the pipe open, and may have left its group.
             kill(child.id());
-            let said = heard.join().unwrap_or_default();
+            let said = heard.recv_timeout(KILLED).unwrap_or_default();
             let said = String::from_utf8_lossy(&said).split_whitespace().collect::<Vec<_>>().join(" ");
             Err(HookError::Failed { program: program(), status, said })
         }

@@ -12,7 +12,7 @@ use halfrow::target::Target;
 
 use super::error::{Answer, Port};
 use super::{LabgridError, Place};
-use crate::group::{self, waited};
+use crate::group::{killed, waited};
 
 /// How often it is looked whether anybody wants the run to end.
 const LOOK: Duration = Duration::from_millis(20);
@@ -165,7 +165,9 @@ impl Holder {
         ];
         let mut holder = Self { stdin: child.stdin.take(), child, lines };
         for thread in heard.into_iter().flatten() {
-            thread.inspect_err(|_| holder.kill())?;
+            thread.inspect_err(|_| {
+                killed(&mut holder.child);
+            })?;
         }
         Ok(holder)
     }
@@ -176,16 +178,12 @@ impl Holder {
             tracing::warn!(
                 "labgrid did not take {place} back in time; the lane's next run does it, or `labgrid-client -p {place} release`"
             );
-            return self.kill();
+            killed(&mut self.child);
+            return;
         };
         if !status.success() {
             tracing::debug!("what held {place} ended with {status}");
         }
-    }
-
-    fn kill(&mut self) {
-        group::kill(self.child.id());
-        let _ = self.child.wait();
     }
 }
 

@@ -5,15 +5,15 @@ use std::fs::{self, File};
 use std::io::{self, BufRead as _, BufReader, Write as _};
 use std::os::unix::process::CommandExt as _;
 use std::path::Path;
-use std::process::{Child, ChildStdin, Command, Stdio};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use halfrow::verdict::StoppedBy;
 
 use super::{Control, Job, Message, Ruling};
-use crate::group::{kill, waited};
+use crate::group::{kill, killed, waited};
 use crate::record::{BoardSeen, StepRecord};
 use crate::said::{Said, Saying};
 
@@ -119,13 +119,8 @@ impl Lane {
             .spawn()?;
         let (sender, lines) = mpsc::channel();
         let stdout = child.stdout.take();
-        thread::Builder::new().name("lane".to_owned()).spawn(move || {
-            let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
-            // Nobody hears it any more when the run is over.
-            lines.map_while(Result::ok).take_while(|line| sender.send(line.clone()).is_ok()).for_each(drop);
-        })?;
         let mut lane = Self { stdin: child.stdin.take(), child, lines, events };
-        match lane.brief(job, spool) {
+        match hear(stdout, sender).and_then(|()| lane.brief(job, spool)) {
             Ok(()) => Ok(lane),
             Err(error) => {
                 lane.end(End::Killed(Saying::LaneNotStarted { error: error.to_string() }.into()));
@@ -205,8 +200,7 @@ impl Lane {
         let is_over = matches!(end, End::Done | End::Refused(_) | End::Died(_));
         let mut status = if is_over { waited(&mut self.child, GRACE) } else { None };
         if status.is_none() {
-            kill(self.child.id());
-            status = waited(&mut self.child, GRACE);
+            status = killed(&mut self.child);
         }
         match (end, status) {
             (End::Killed(why), None) => End::Stuck(Saying::LaneStuck { why }.into()),
@@ -215,6 +209,16 @@ impl Lane {
             (end, _) => end,
         }
     }
+}
+
+/// Hands on what the lane tells, line by line.
+fn hear(stdout: Option<ChildStdout>, to: Sender<String>) -> io::Result<()> {
+    let hand_on = move || {
+        let lines = stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines());
+        // Nobody hears it any more when the run is over.
+        lines.map_while(Result::ok).take_while(|line| to.send(line.clone()).is_ok()).for_each(drop);
+    };
+    thread::Builder::new().name("lane".to_owned()).spawn(hand_on).map(drop)
 }
 
 /// Why the lane is waited for no longer.

@@ -3,6 +3,8 @@
 use std::process::Command;
 
 use super::floor::{SERIALS, Station};
+use super::stuck::Stuck;
+use crate::common::script;
 
 /// A hook that writes down what it was told, and fails if the record is not there by then.
 #[test]
@@ -110,4 +112,28 @@ arguments = ["-c", "echo no paper >&2; yes | head -c 300000 >&2 || exit 4; echo 
     assert!(said.contains("(exit status: 3): no paper y y") && said.len() < 2000, "{said}");
     assert_eq!(std::fs::read_to_string(station.path("done")).unwrap(), "printed\n");
     running.end();
+}
+
+#[test]
+fn a_hook_that_cannot_be_killed_is_waited_for_no_longer() {
+    let hook = "[[on-pass]]\nprogram = \"./stuck\"\ndeadline = 1\n";
+    let station = Station::with(&["mock"], hook);
+    let _stuck = Stuck::in_folder(&station.path(""));
+    let mut running = station.start();
+    running.scan(SERIALS[0]);
+    let news = running.wait("a hook that failed", |news| news["news"] == "hook");
+    assert!(news["said"].as_str().unwrap().contains("was killed after 1 s"), "{news}");
+    assert_eq!(running.end().0, Some(0));
+}
+
+#[test]
+fn a_hook_that_failed_is_told_though_what_it_has_started_may_say_more() {
+    let hook = "[[on-pass]]\nprogram = \"./lamp\"\n";
+    let station = Station::with(&["mock"], hook);
+    script(&station.path(""), "lamp", "setsid sleep 150 &\nexit 3\n");
+    let mut running = station.start();
+    running.scan(SERIALS[0]);
+    let news = running.wait("a hook that failed", |news| news["news"] == "hook");
+    assert!(news["said"].as_str().unwrap().contains("failed (exit status: 3)"), "{news}");
+    assert_eq!(running.end().0, Some(0));
 }

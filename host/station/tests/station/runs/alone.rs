@@ -1,6 +1,7 @@
-//! What a run does beside its store.
+//! What a run does beside its store, and beside what it has started.
 
 use std::fs;
+use std::process::Command;
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
@@ -8,8 +9,9 @@ use std::time::{Duration, Instant};
 use halfrow::Verdict;
 use halfrow_station::store::{SharedStore, Store};
 
-use super::bench::{PLAN, Station};
+use super::bench::{Did, PLAN, Station, program};
 use super::killed_lane::run_in;
+use super::unsaved::calls;
 use crate::common::{held_up, script};
 use crate::lanes::floor::HANG;
 
@@ -47,4 +49,25 @@ fn spool(station: &Station) -> std::path::PathBuf {
         assert!(begun.elapsed() < HANG, "no run");
         thread::sleep(Duration::from_millis(10));
     }
+}
+
+/// Its thread is the last that a run starts.
+#[test]
+fn a_lane_that_no_thread_can_hear_is_killed_and_waited_for() {
+    let station = Station::with(PLAN);
+    let last = calls(&station, "CAT00001", "clone3").len();
+    let trace = station.path("ended");
+    let traced = Command::new("strace")
+        .args(["-qq", "-e", "trace=clone3,kill,wait4", "-e", "signal=none", "-e"])
+        .arg(format!("inject=clone3:error=EAGAIN:when={last}"))
+        .arg("-o")
+        .arg(&trace)
+        .arg(program())
+        .args(station.run_arguments("CAT00002", "mock"))
+        .output();
+    let did = Did::from(traced.unwrap());
+    assert!(did.code == Some(3) && did.said.contains("the lane could not be started"), "{did:?}");
+    let trace = fs::read_to_string(trace).unwrap();
+    let (_, behind) = trace.split_once("(INJECTED)").unwrap();
+    assert!(behind.contains("SIGKILL") && behind.contains("WTERMSIG(s) == SIGKILL"), "{trace}");
 }
