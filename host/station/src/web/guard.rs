@@ -67,16 +67,17 @@ pub(super) async fn every(State(app): State<App>, request: Request, next: Next) 
 pub(super) async fn route(State(guarded): State<Guarded>, request: Request, next: Next) -> Response {
     let Guarded { app, who, is_act } = guarded;
     let visit = match bearer(request.headers()) {
-        None => app.visit(request.headers(), is_act),
+        None => app.visit(request.headers(), is_act).await.map_err(troubled),
         Some(token) => {
             let peer =
                 request.extensions().get().map_or(IpAddr::V4(Ipv4Addr::UNSPECIFIED), |Peer(peer)| *peer);
             let stranger = Visit { is_new: false, ..app.stranger(request.headers()) };
-            match machine(&app, token, (stranger, peer), is_act).await {
-                Ok(visit) => visit,
-                Err(refused) => return *refused,
-            }
+            machine(&app, token, (stranger, peer), is_act).await
         }
+    };
+    let visit = match visit {
+        Ok(visit) => visit,
+        Err(refused) => return *refused,
     };
     let checked =
         if is_act { act(&app, &visit, who, request).await } else { look(&app, &visit, who, request) };
@@ -101,6 +102,10 @@ fn refused(visit: &Visit, status: StatusCode, said: &'static str) -> Refused {
     Box::new(Trouble::new(visit, status, said).into_response())
 }
 
+fn troubled(trouble: Trouble) -> Refused {
+    Box::new(trouble.into_response())
+}
+
 /// The token of a machine (RFC 6750, section 2.1).
 fn bearer(headers: &HeaderMap) -> Option<&str> {
     let (scheme, token) = headers.get(header::AUTHORIZATION)?.to_str().ok()?.split_once(' ')?;
@@ -116,9 +121,11 @@ async fn machine(
 ) -> Result<Visit, Refused> {
     let told = |visit: Visit, act, from: String| async move {
         let told = app.audit(&visit, act, &from, "").await.map(|()| visit);
-        told.map_err(|trouble| Box::new(trouble.into_response()))
+        told.map_err(troubled)
     };
-    match app.access().machine(token, peer) {
+    let (of, token) = (app.clone(), token.to_owned());
+    let asked = app.blocking(&stranger, move || of.access().machine(&token, peer)).await;
+    match asked.map_err(troubled)? {
         Machine::Waits(wait) => {
             let seconds = (wait.as_secs() + 1).to_string();
             let said = stranger.words.fill("login.wait", &[("seconds", &seconds)]);
@@ -186,7 +193,7 @@ fn mark(body: &Bytes) -> Option<String> {
 
 /// Where nothing is.
 pub(super) async fn nothing_here(State(app): State<App>, headers: HeaderMap) -> Trouble {
-    Trouble::missing(&app.visit(&headers, false))
+    app.visit(&headers, false).await.map_or_else(|trouble| trouble, |visit| Trouble::missing(&visit))
 }
 
 fn host(headers: &HeaderMap) -> Option<&str> {
@@ -202,22 +209,19 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Option<&'a str> {
 
 impl App {
     /// Who asks, and in which language. Somebody without a cookie has one drawn.
-    fn visit(&self, headers: &HeaderMap, is_act: bool) -> Visit {
-        let access = self.access();
+    ///
+    /// # Errors
+    /// [`Trouble`] when that did not come to its end.
+    async fn visit(&self, headers: &HeaderMap, is_act: bool) -> Result<Visit, Trouble> {
+        let (access, stranger) = (self.access(), self.stranger(headers));
         let sent = cookie(headers, &access.cookie_name()).map(str::to_owned);
-        let mut user = access.user(sent.as_deref(), is_act);
+        let mut user = self.user(&stranger, sent.clone(), is_act).await?;
         if let Some(user) = user.as_mut().filter(|_| self.is_plant()) {
             user.who = user.who.min(Who::Reader);
         }
         let is_new = sent.is_none();
         let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
-        Visit {
-            csrf: access.form_mark(&session),
-            user,
-            session,
-            is_new,
-            can_log_in: access.has_people(),
-            ..self.stranger(headers)
-        }
+        let (csrf, can_log_in) = (access.form_mark(&session), access.has_people());
+        Ok(Visit { csrf, user, session, is_new, can_log_in, ..stranger })
     }
 }

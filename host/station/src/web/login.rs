@@ -97,22 +97,25 @@ pub(super) async fn identified(
 pub(super) async fn logged_in(app: &App, visit: &Visit, user: User) -> Result<HeaderValue, Trouble> {
     let now = Visit { user: Some(user.clone()), ..visit.clone() };
     app.audit(&now, "login", if now.may(Who::Engineer) { "engineer" } else { "operator" }, "").await?;
-    app.access().end(&visit.session);
-    cookie(app, visit, Some(user))
+    anew(app, visit, Some(user)).await
 }
 
 async fn log_out(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
     if visit.user.is_some() {
         app.audit(&visit, "logout", "", "").await?;
     }
-    app.access().end(&visit.session);
-    let cookie = cookie(&app, &visit, None)?;
+    let cookie = anew(&app, &visit, None).await?;
     Ok(([(header::SET_COOKIE, cookie)], Redirect::to("/")).into_response())
 }
 
-/// The cookie of a new session.
-pub(super) fn cookie(app: &App, visit: &Visit, user: Option<User>) -> Result<HeaderValue, Trouble> {
-    let session = app.access().begin(user).map_err(|error| Trouble::broken(visit, &error))?;
+/// The cookie of a new session, in the place of the visitor's, which ends.
+async fn anew(app: &App, visit: &Visit, user: Option<User>) -> Result<HeaderValue, Trouble> {
+    let (of, session) = (app.clone(), visit.session.clone());
+    let begun = move || {
+        of.access().end(&session);
+        of.access().begin(user)
+    };
+    let session = app.blocking(visit, begun).await?.map_err(|error| Trouble::broken(visit, &error))?;
     HeaderValue::from_str(&app.access().cookie(&session)).map_err(|error| Trouble::broken(visit, &error))
 }
 

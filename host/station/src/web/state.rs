@@ -11,7 +11,7 @@ use super::assets;
 use super::live::Live;
 use super::metrics::Turns;
 use super::trouble::Trouble;
-use super::visit::Visit;
+use super::visit::{User, Visit};
 use crate::engine::Engine;
 use crate::history::counts::Tally;
 use crate::plan::Plan;
@@ -124,6 +124,20 @@ impl App {
 
     pub(super) fn turns(&self) -> &Turns {
         &self.0.turns
+    }
+
+    /// Who has this cookie, or is everybody. The file of them may be on a slow disk.
+    ///
+    /// # Errors
+    /// [`Trouble`] when it did not come to its end.
+    pub(super) async fn user(
+        &self,
+        visit: &Visit,
+        session: Option<String>,
+        is_act: bool,
+    ) -> Result<Option<User>, Trouble> {
+        let app = self.clone();
+        self.blocking(visit, move || app.access().user(session.as_deref(), is_act)).await
     }
 
     /// Enters in the audit what the visitor is about to do. What cannot be entered is not done.

@@ -134,7 +134,7 @@ impl Access {
         self.address.is_private()
     }
 
-    /// Who has this cookie, or is everybody.
+    /// Who has this cookie, or is everybody. It may wait for the disk.
     pub(super) fn user(&self, session: Option<&str>, is_act: bool) -> Option<User> {
         match &self.people {
             People::Everybody(user) => Some(user.clone()),
@@ -164,12 +164,8 @@ impl Access {
         }
     }
 
-    /// Which machine has this token, asked from `peer`.
+    /// Which machine has this token, asked from `peer`. It may wait for the disk.
     pub(super) fn machine(&self, token: &str, peer: IpAddr) -> Machine {
-        let mut refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(wait) = refused.wait(peer, Instant::now()) {
-            return Machine::Waits(wait);
-        }
         let tokens = match &self.people {
             People::Listed { tokens: Some(file), .. } => Tokens::load_or_none(file),
             _ => Ok(Tokens::default()),
@@ -178,6 +174,11 @@ impl Access {
             tracing::error!("{:#}", anyhow::Error::from(error));
             Tokens::default()
         });
+        // From here on nothing waits for the disk: others wait for this.
+        let mut refused = self.refused.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(wait) = refused.wait(peer, Instant::now()) {
+            return Machine::Waits(wait);
+        }
         let Some(name) = tokens.reader(&self.key, token) else {
             refused.add(peer, Instant::now());
             return Machine::Unknown;

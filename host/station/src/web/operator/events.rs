@@ -47,10 +47,8 @@ async fn next(
         Some(first) => first,
         None => {
             let told = of.told.recv().await.ok()?;
-            let access = of.app.access();
-            let is_beat = matches!(told.what, What::Beat(_));
-            if is_beat && !access.is_open() && access.user(Some(&of.visit.session), false).is_none() {
-                return None;
+            if matches!(told.what, What::Beat(_)) && !of.app.access().is_open() {
+                of.app.user(&of.visit, Some(of.visit.session.clone()), false).await.ok()??;
             }
             news(&of.visit, &told)
         }

@@ -1,11 +1,12 @@
 //! Badges, passwords, cookies, and where pages may be.
 
 use std::fs;
+use std::io::Write as _;
 use std::os::unix::fs::PermissionsExt as _;
 use std::process::Command;
 use std::thread;
 
-use crate::common::{Did, program};
+use crate::common::{Did, held_up, program};
 use crate::pages::http::{Request, exchange};
 use crate::pages::station::{Browser, PUBLIC, SERIALS, Station};
 
@@ -211,4 +212,29 @@ fn nobody_sends_more_than_a_form_and_nobody_holds_a_place_for_long() {
     };
     assert_eq!(two.send().status, 421);
     assert!(serving.is_alive());
+}
+
+/// As a share does that is slow.
+#[test]
+fn a_file_that_says_who_may_enter_holds_up_those_alone_who_are_in_it() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let operator = serving.operator().get("/");
+    let machine = Request::bare(serving.port, "GET", "/history").with("host", PUBLIC);
+    let machine = machine.with("authorization", &format!("Bearer {}", "0".repeat(64)));
+    for (name, asked, status) in [("users.toml", operator, 200), ("tokens.toml", machine, 401)] {
+        let path = station.path(name);
+        let people = fs::read(&path).unwrap_or_default();
+        let _ = fs::remove_file(&path);
+        assert!(Command::new("mkfifo").args(["-m", "600"]).arg(&path).status().unwrap().success());
+        let waits = thread::spawn(move || asked.send());
+        let mut held = held_up(&path);
+        let stranger = Request::bare(serving.port, "GET", "/login").with("host", PUBLIC);
+        assert_eq!(stranger.send().status, 200, "{name}");
+        held.write_all(&people).unwrap();
+        drop(held);
+        assert_eq!(waits.join().unwrap().status, status, "{name}");
+        fs::remove_file(&path).unwrap();
+        fs::write(&path, people).unwrap();
+    }
 }
