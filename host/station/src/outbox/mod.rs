@@ -25,6 +25,8 @@ use crate::store::{Entry, Parcel, SharedStore, Snapshot, StoreError, Tried};
 
 /// How often it is looked whether there is something to send.
 const LOOK: Duration = Duration::from_millis(200);
+/// How soon behind another one what became of an entry is kept, with all that came meanwhile: each time waits for the disk.
+const KEPT: Duration = Duration::from_millis(200);
 /// How often a sink hears how much it does not have.
 const BEAT: Duration = Duration::from_secs(30);
 /// How long a sink that has nothing to do stays connected.
@@ -72,14 +74,15 @@ pub struct Round {
     pub is_away: bool,
 }
 
-/// Gives `sink` what is due for it, and keeps what became of it.
+/// Gives `sink` what is due for it, and keeps what became of it: what it has does not wait for all that is behind it.
 ///
 /// # Errors
 /// [`StoreError`] when the store cannot be read or written. What was sent is sent again then, which changes nothing.
 pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreError> {
     let folder = store.with(|store| store.folder().clone());
     let mut round = Round::default();
-    let mut tried = Vec::new();
+    let (mut tried, mut kept) = (Vec::new(), None::<Instant>);
+    let keep = |name: &str, tried: &[_]| store.with(|store| store.tried(name, tried, clock::now_ms()));
     for entry in folder.due(sink.name(), clock::now_ms(), back_off::LONGEST_MS)? {
         let taken = match folder.parcel(&entry) {
             Ok(parcel) => sink.take(&parcel),
@@ -93,9 +96,14 @@ pub fn round(store: &SharedStore, sink: &mut dyn Sink) -> Result<Round, StoreErr
         if round.is_away {
             break;
         }
+        if kept.is_none_or(|kept| kept.elapsed() >= KEPT) {
+            keep(sink.name(), &tried)?;
+            tried.clear();
+            kept = Some(Instant::now());
+        }
     }
     if !tried.is_empty() {
-        store.with(|store| store.tried(sink.name(), &tried, clock::now_ms()))?;
+        keep(sink.name(), &tried)?;
     }
     Ok(round)
 }

@@ -8,7 +8,9 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
+use halfrow_station::outbox::{Round, Sink, Undelivered, round};
 use halfrow_station::settings::Settings;
+use halfrow_station::store::{Folder, Parcel, SharedStore, Snapshot, Store};
 
 use crate::common::{Did, PLAN, program};
 
@@ -75,4 +77,37 @@ fn a_sink_that_is_not_one_is_refused_with_its_line() {
         settings(folder.path(), &format!("[[sink]]\nname = \"mes\"\n{right}"));
         Settings::load(&folder.path().join("station.toml")).unwrap();
     }
+}
+
+/// Looks at what it has whenever it is given something.
+struct Looking {
+    folder: Folder,
+    unsent: Vec<u32>,
+}
+
+impl Sink for Looking {
+    fn name(&self) -> &str {
+        "mes"
+    }
+
+    fn take(&mut self, _: &Parcel) -> Result<(), Undelivered> {
+        let unsent = Snapshot::take(&self.folder).unwrap().unsent().unwrap();
+        self.unsent.push(unsent.iter().map(|unsent| unsent.entries).sum());
+        Ok(())
+    }
+}
+
+#[test]
+fn what_a_sink_has_is_known_before_it_has_all_that_is_behind_it() {
+    let place = tempfile::tempdir().unwrap();
+    let folder = Folder::new(place.path());
+    let mut store = Store::open(&folder).unwrap();
+    store.sends_to(vec!["mes".to_owned()]).unwrap();
+    for number in ["1", "2", "3"] {
+        store.note("weber", "scan", "1", number).unwrap();
+    }
+    let (store, mut sink) = (SharedStore::new(store), Looking { folder, unsent: Vec::new() });
+    assert_eq!(round(&store, &mut sink).unwrap(), Round { sent: 3, failed: 0, is_away: false });
+    assert_eq!(sink.unsent[..2], [3, 2]);
+    assert!(Snapshot::take(&sink.folder).unwrap().unsent().unwrap().is_empty());
 }
