@@ -24,6 +24,32 @@ use crate::store::{AgainError, Folder, InLane, Owed};
 /// How often boards are looked for.
 const LOOK: Duration = Duration::from_millis(500);
 
+/// How long what a lane owes is not asked for when it could not be told: a store that is not well takes its time to say so, and
+/// other lanes wait for it.
+const REST: Duration = Duration::from_secs(1);
+
+/// What is known of what a lane owes its shift.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Known {
+    /// It was not asked for yet.
+    Nothing,
+    /// It is so up to this moment, in milliseconds since 1970.
+    Until(i64),
+    /// It could not be told at this moment.
+    Untold(Instant),
+}
+
+impl Known {
+    /// Whether it is to be asked for.
+    fn is_due(self, now_ms: i64, now: Instant) -> bool {
+        match self {
+            Self::Nothing => true,
+            Self::Until(until_ms) => now_ms > until_ms,
+            Self::Untold(since) => now.saturating_duration_since(since) >= REST,
+        }
+    }
+}
+
 /// What the thread has to itself.
 pub(super) struct AtWork {
     floor: Floor,
@@ -33,9 +59,8 @@ pub(super) struct AtWork {
     stops: Vec<StopAsked>,
     /// The unit of each lane that passed already, of which somebody was asked whether it is meant.
     asked: Vec<Option<String>>,
-    /// The last moment, in milliseconds since 1970, at which it is known what each lane owes its shift; none where that
-    /// could not be told.
-    known_until: Vec<Option<i64>>,
+    /// What is known of what each lane owes its shift.
+    known: Vec<Known>,
     /// The run of each lane that no thread could be had for to save it.
     unrecovered: Vec<Option<String>>,
     hooks: Vec<InTurn>,
@@ -53,7 +78,7 @@ impl AtWork {
             presence: vec![Presence::default(); lanes],
             stops: vec![StopAsked::default(); lanes],
             asked: vec![None; lanes],
-            known_until: vec![None; lanes],
+            known: vec![Known::Nothing; lanes],
             unrecovered: vec![None; lanes],
             hooks: (0..lanes).map(|_| InTurn::new()).collect(),
             threads: Vec::new(),
@@ -137,33 +162,33 @@ impl AtWork {
         }
     }
 
-    /// What a lane owes to its shift, as the store says, and until when that is so; it is out of service while that cannot
-    /// be told.
-    fn owed(&self, lane: usize) -> (Option<Owes>, Option<i64>) {
+    /// What a lane owes to its shift, as the store says; it is out of service while that cannot be told.
+    fn owed(&self, lane: usize) -> (Option<Owes>, Known) {
         let Settings { name, data, lanes, plans, .. } = &self.shared.settings;
         let mut until_ms = i64::MAX;
-        let Some(lane) = lanes.get(lane) else { return (None, Some(until_ms)) };
+        let Some(lane) = lanes.get(lane) else { return (None, Known::Until(until_ms)) };
         for &plan in &lane.plans {
             let Some(PlanFile { plan: of, .. }) = plans.get(plan) else { continue };
             match Folder::new(data).owed(&InLane::of(name, &lane.name, of), clock::now_ms()) {
                 Ok(checked) => {
                     until_ms = until_ms.min(checked.until_ms);
                     if let Some(Owed { serial, why }) = checked.owed {
-                        return (Some(Owes { plan, serial: Some(serial), why }), Some(until_ms));
+                        return (Some(Owes { plan, serial: Some(serial), why }), Known::Until(until_ms));
                     }
                 }
                 Err(error) => {
-                    return (Some(Owes { plan, serial: None, why: Said::of(&error) }), None);
+                    let owes = Owes { plan, serial: None, why: Said::of(&error) };
+                    return (Some(owes), Known::Untold(Instant::now()));
                 }
             }
         }
-        (None, Some(until_ms))
+        (None, Known::Until(until_ms))
     }
 
     fn check(&mut self, lane: usize) {
-        let (owed, until_ms) = self.owed(lane);
-        if let Some(known) = self.known_until.get_mut(lane) {
-            *known = until_ms;
+        let (owed, now_known) = self.owed(lane);
+        if let Some(known) = self.known.get_mut(lane) {
+            *known = now_known;
         }
         self.happened(lane, Event::Owes(owed));
     }
@@ -171,10 +196,9 @@ impl AtWork {
     /// Asks what lanes owe of which it is not known any more. Runs of this station alone change it meanwhile, and each is
     /// followed by a look.
     fn check_due(&mut self) {
-        let now_ms = clock::now_ms();
-        for lane in 0..self.known_until.len() {
-            let known = self.known_until.get(lane).copied().flatten();
-            if known.is_none_or(|until_ms| now_ms > until_ms) {
+        let (now_ms, now) = (clock::now_ms(), Instant::now());
+        for lane in 0..self.known.len() {
+            if self.known.get(lane).is_some_and(|known| known.is_due(now_ms, now)) {
                 self.check(lane);
             }
         }
@@ -341,5 +365,19 @@ impl AtWork {
 
     fn tell(&self, news: &News) {
         self.board.lock().unwrap_or_else(PoisonError::into_inner).listeners.tell(news);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_could_not_be_told_is_not_asked_for_before_every_scan() {
+        let now = Instant::now();
+        let known = Known::Untold(now);
+        assert!(!known.is_due(0, now) && !known.is_due(i64::MAX, now + REST / 2));
+        assert!(known.is_due(0, now + REST), "though the clock was set back");
+        assert!(Known::Until(5).is_due(6, now) && !Known::Until(5).is_due(5, now));
     }
 }

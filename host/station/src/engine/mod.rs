@@ -4,7 +4,7 @@
 //!  scans, buttons ──► ┌────────┐ ──► news
 //!  presence ────────► │ engine │ ──► a thread a run ──► a process a run
 //!  what runs tell ──► └────────┘ ──► hooks, recovery
-//!                     one thread, which owns the floor and waits for nothing but its inbox
+//!                     one thread, which owns the floor; it waits for its inbox, and for short looks at the store
 //! ```
 
 mod at_work;
