@@ -225,8 +225,12 @@ fn lanes(folder: &Path, read: &SettingsText, plans: &mut Plans<'_>) -> Result<Ve
 
 /// Whether a lane may be called so.
 pub(crate) fn is_lane_name(name: &str) -> bool {
-    (1..=MOST_NAME).contains(&name.len())
-        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-')
+    is_name(name, MOST_NAME)
+}
+
+/// Whether something may be called so whose names have up to `most` characters.
+pub(super) fn is_name(name: &str, most: usize) -> bool {
+    (1..=most).contains(&name.len()) && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-')
 }
 
 fn lane(text: &LaneText, lender: &Lender, plans: &mut Plans<'_>) -> Result<LaneSettings, Fault> {

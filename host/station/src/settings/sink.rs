@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use axum::http::Uri;
 use toml::Spanned;
 
+use super::read::is_name;
 use super::text::SinkText;
 use crate::export::Format;
 use crate::input_error::Fault;
@@ -137,9 +138,7 @@ impl SinkText {
 
 fn name(text: &Spanned<String>) -> Result<String, Fault> {
     let name = text.get_ref();
-    let is_name = (1..=MOST_NAME).contains(&name.len())
-        && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'-');
-    if is_name && name != PlantSink::NAME {
+    if is_name(name, MOST_NAME) && name != PlantSink::NAME {
         return Ok(name.clone());
     }
     let what = format!("`{name}` is no name for a sink");

@@ -2,10 +2,8 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::super::audit::Line;
 use super::super::{Snapshot, StoreError};
 use super::{Plant, PlantAddress};
-use crate::{clock, ids};
 
 /// Connections that are kept while nobody looks.
 const KEPT: usize = 4;
@@ -48,12 +46,8 @@ impl PlantPool {
     /// # Errors
     /// As [`Self::look`].
     pub fn note(&self, operator: &str, act: &str, subject: &str, detail: &str) -> Result<(), StoreError> {
-        let at_ms = clock::now_ms();
-        let id = ids::new(at_ms)?.to_string();
         let mut plant = Plant::connect(&self.0.address)?;
-        plant.carry_out("an audit", |to| {
-            Line { id: &id, at_ms, operator, act, subject, detail }.enter(to, &[])
-        })
+        plant.audited(operator, act, subject, detail, |_| Ok(1)).map(drop)
     }
 
     /// By a connection that was kept, unless it has ended meanwhile.
