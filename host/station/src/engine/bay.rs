@@ -111,7 +111,7 @@ pub(super) fn recover(shared: &Arc<Shared>, lane: usize, run: String) -> std::io
     let shared = Arc::clone(shared);
     thread::Builder::new().name(format!("recovery in lane {lane}")).spawn(move || {
         thread::sleep(AGAIN);
-        let event = guarded(|| match shared.store.with(|store| run::recover_run(store, &run)) {
+        let event = guarded(|| match run::recover_run(&shared.store, &run) {
             Ok(saved) => at_plant(&shared, saved, Duration::ZERO),
             Err(error) => unsaved(&error),
         });

@@ -12,7 +12,7 @@ use crate::record::{
     BoardSeen, Conclusion, DeviceSeen, PlanRecord, Record, RunCause, RunHead, SCHEMA, StepRecord,
 };
 use crate::said::Saying;
-use crate::store::{InLane, OpenRun, Store, StoreError};
+use crate::store::{Folder, InLane, OpenRun, SharedStore, Store, StoreError, Stored};
 
 use super::{RunError, Saved, save};
 
@@ -26,24 +26,28 @@ pub fn recover(store: &mut Store) -> Result<Vec<Saved>, RunError> {
     if !open.is_empty() {
         store.folder().blobs().clear();
     }
-    let closed = open.into_iter().map(|open| closed(store, open, |tries| Saying::StationEnded { tries }));
+    let folder = store.folder().clone();
+    let why = |tries| Saying::StationEnded { tries };
+    let closed = open.into_iter().map(|open| closed(&folder, open, why, |record| store.finish(record, 0)));
     let closed = closed.collect::<Result<_, _>>()?;
     clear(store);
     Ok(closed)
 }
 
 /// What became of a run whose result could not be saved, once the store is well: ERROR, cause crash; what the store has,
-/// if all had come to the disk and only could not be read back.
+/// if all had come to the disk and only could not be read back. The store is taken for moments only.
 ///
 /// # Errors
 /// [`RunError`] when the store is not well yet, or does not know the run.
-pub fn recover_run(store: &mut Store, run: &str) -> Result<Saved, RunError> {
+pub fn recover_run(store: &SharedStore, run: &str) -> Result<Saved, RunError> {
     let unsaved = |source| RunError::Unsaved { run: run.to_owned(), source: Box::new(source) };
-    let open = store.open_runs().map_err(unsaved)?;
+    let open = store.with(Store::open_runs).map_err(unsaved)?;
     if let Some(open) = open.into_iter().find(|open| open.run.id == run) {
-        return closed(store, open, |tries| Saying::SavedTooLate { tries });
+        let folder = store.with(|store| store.folder().clone());
+        let why = |tries| Saying::SavedTooLate { tries };
+        return closed(&folder, open, why, |record| store.with(|store| store.finish(record, 0)));
     }
-    let (stored, record) = store.saved(run).map_err(unsaved)?;
+    let (stored, record) = store.with(|store| store.saved(run)).map_err(unsaved)?;
     Ok(Saved { record, stored, saved_ms: clock::now_ms() })
 }
 
@@ -64,14 +68,20 @@ fn clear(store: &mut Store) {
     }
 }
 
-fn closed(store: &mut Store, open: OpenRun, why: impl Fn(usize) -> Saying) -> Result<Saved, RunError> {
+/// Closes a run by `finish`, as [`save`] does.
+fn closed(
+    folder: &Folder,
+    open: OpenRun,
+    why: impl Fn(usize) -> Saying,
+    finish: impl FnOnce(&Record) -> Result<Stored, StoreError>,
+) -> Result<Saved, RunError> {
     let OpenRun { run, plan_sha256, plan: [name, version, text] } = open;
-    let spool = store.folder().spool(&run.id);
+    let spool = folder.spool(&run.id);
     kill_left_behind(&spool);
     let steps = told(&spool);
     let why = why(steps.len());
     let board = steps.iter().find_map(|step| step.board.clone());
-    let counted = counts(store, &run, &plan_sha256, &text);
+    let counted = counts(folder, &run, &plan_sha256, &text);
     let unsaved = |source| RunError::Unsaved { run: run.id.clone(), source: Box::new(source) };
     let counts = counted.map_err(unsaved)?;
     let record = Record {
@@ -91,16 +101,15 @@ fn closed(store: &mut Store, open: OpenRun, why: impl Fn(usize) -> Saying) -> Re
         program: halfrow::VERSION.to_owned(),
         run,
     };
-    let folder = store.folder().clone();
-    save(&folder, record, |record| store.finish(record, 0))
+    save(folder, record, finish)
 }
 
 /// Whether the run could count as production when it began.
-fn counts(store: &Store, run: &RunHead, plan_sha256: &str, text: &str) -> Result<bool, StoreError> {
+fn counts(folder: &Folder, run: &RunHead, plan_sha256: &str, text: &str) -> Result<bool, StoreError> {
     let RunHead { station, lane, product, serial, started_ms, .. } = run;
     let Some(production) = Production::of_text(text) else { return Ok(false) };
     let place = InLane { station, lane, plan_sha256, product, production: &production };
-    store.folder().counts(&place, serial, *started_ms)
+    folder.counts(&place, serial, *started_ms)
 }
 
 /// The steps that the lane told of, as far as they were written down.

@@ -184,7 +184,7 @@ impl Work<'_> {
         rest(AWAY_MS, stop);
         let WorkError::Run(RunError::Unsaved { run, .. }) = error else { return };
         while stop().is_none() {
-            match self.store.with(|store| recover_run(store, run)) {
+            match recover_run(&self.store, run) {
                 Ok(_) => return,
                 Err(error) => tracing::warn!("no job is taken meanwhile: {}", Said::of(&error)),
             }
