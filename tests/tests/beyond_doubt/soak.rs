@@ -173,6 +173,53 @@ fn without_bursts_nothing_is_judged() {
     assert_eq!(soak(&report).frames, 0);
 }
 
+/// A board that begins every burst, makes no frame, and ends it when it is told to.
+fn without_frames(pixel_clock: u32, length: SoakLength) -> Report {
+    let mut state = BurstState::UnderWay;
+    let options = Options { pixel_clock, ..Options::default() };
+    let board = Altered::new(&options, move |toward, packet: Passing| {
+        let read = Request::read(&Packet { header: packet.header, payload: &packet.payload });
+        if let (Toward::Board, Ok(Request::Burst(burst))) = (toward, read) {
+            state = if burst.frames == 0 { BurstState::Ended } else { BurstState::UnderWay };
+        }
+        match packet.reply() {
+            Some(Reply::Records(found)) => {
+                vec![packet.saying(&Reply::Records(Records { state, bytes: &[], ..found }))]
+            }
+            _ => vec![packet],
+        }
+    });
+    let options = RunOptions { timeout: Some(Duration::from_secs(1000)), ..RunOptions::default() };
+    soaked_by(board.candidate(), length, &options)
+}
+
+#[test]
+fn a_soak_that_is_over_before_any_frame_has_come_judged_nothing() {
+    let report = without_frames(96_000_000, SoakLength::Time { seconds: 0.36 });
+    assert_eq!(report.cause, Cause::NothingJudged, "{}", report.headline());
+    assert_eq!((report.finding.clone(), soak(&report).frames), (Finding::NothingJudged {}, 0));
+}
+
+/// (64·8 + 8) clocks of 100 Hz are 5.2 s a frame: 20 of them are more than a burst's minute.
+#[test]
+fn a_soak_ends_with_a_burst_of_a_minute_without_a_frame() {
+    for length in [frames(10), SoakLength::Time { seconds: 3600.0 }] {
+        let report = without_frames(100, length);
+        let is_stalled = matches!(report.finding, Finding::BurstStalled { frame: 0, seconds: 60.0, .. });
+        assert!(is_stalled && report.cause == Cause::Station, "{}", report.headline());
+    }
+}
+
+/// The mock makes the frames of a burst of a minute at once.
+#[test]
+fn a_time_limit_ends_a_soak_amid_a_minute_in_which_nothing_comes() {
+    let options = RunOptions { timeout: Some(Duration::from_secs(30)), ..RunOptions::default() };
+    let board = link::open(&"mock,pixel-clock=10000".parse().unwrap()).unwrap();
+    let report = soaked_by(board, frames(3000), &options);
+    assert_eq!((report.verdict, soak(&report).wrong), (Verdict::Error, 0), "{}", report.headline());
+    assert!((30.0..31.0).contains(&report.link.seconds), "{}", report.link.seconds);
+}
+
 #[test]
 fn with_one_bank_tables_change_between_bursts() {
     let report = soaked("mock,pixel-clock=10000,table-banks=1,bursts=untrapped", frames(3000));

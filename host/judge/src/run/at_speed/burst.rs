@@ -14,7 +14,7 @@ pub(super) const USUAL_CLOCK: u32 = 96_000_000;
 /// 2^64 / golden ratio: spreads a run's seeds over all seeds of bursts.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The longest between two looks at the records, so that whoever stops the run need not wait.
-const LONGEST_LOOK: Duration = Duration::from_millis(250);
+pub(super) const LONGEST_LOOK: Duration = Duration::from_millis(250);
 /// The shortest, so that a link has time for others.
 const SHORTEST_LOOK: Duration = Duration::from_millis(10);
 /// What a board may keep a frame to itself, beside [`PATIENT_FRAMES`].

@@ -3,15 +3,18 @@
 use std::time::Duration;
 
 use crate::progress::Soaked;
-use crate::result::{Defect, Finding, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect};
+use crate::result::{
+    CheckName, Defect, Finding, SoakDifference, SoakInterval, SoakLength, SoakReport, Suspect,
+};
 use crate::run::at_speed::burst::BurstPlan;
 use crate::run::at_speed::watched::Watched;
 use crate::run::findings::End;
+use crate::verdict::Cause;
 
 use super::played::Played;
 
 /// The longest burst, on the link's clock.
-const LONGEST_BURST: Duration = Duration::from_secs(60);
+pub(super) const LONGEST_BURST: Duration = Duration::from_secs(60);
 /// Its most frames: behind them numbers of frames come again, and content with them.
 const MOST_FRAMES: u32 = 1 << 16;
 
@@ -109,13 +112,16 @@ impl Account {
     }
 
     /// Ends it at `now` on the run's clock. What differed goes before all else, since nothing that came later makes it right; then
-    /// `ended`; then what may have come from the link.
+    /// `ended`; then what may have come from the link; and without a frame nothing is right.
     pub(super) fn end(&mut self, now: Duration, ended: Result<(), End>) -> Result<(), End> {
         self.report.seconds = now.saturating_sub(self.begun).as_secs_f64();
         match (self.first.take(), ended, self.first_doubtful.take()) {
             (Some(end), _, _) => Err(self.of_all_frames(end)),
-            (None, ended @ Err(_), _) | (None, ended, None) => ended,
-            (None, Ok(()), Some(doubtful)) => Err(doubtful),
+            (None, Err(end), _) | (None, Ok(()), Some(end)) => Err(end),
+            (None, Ok(()), None) if self.report.frames == 0 => {
+                Err(End::error(CheckName::AtSpeed, Cause::NothingJudged, Finding::NothingJudged {}))
+            }
+            (None, Ok(()), None) => Ok(()),
         }
     }
 

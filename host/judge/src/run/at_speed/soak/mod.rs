@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use halfrow_protocol::message::BurstMode;
 
-use super::burst::BurstPlan;
+use super::burst::{BurstPlan, LONGEST_LOOK};
 use super::watched::{EndsEarly, Watched};
 use crate::board::{Bank, BoardError, Bursts, RowTiming};
 use crate::progress::{Event, Step};
@@ -18,7 +18,7 @@ use crate::run::plan::{DECOY, Generation, JUDGED, Segment};
 use crate::run::second_look::LOOKS;
 use crate::run::steps::Run;
 use crate::verdict::Cause;
-use account::{Account, counted};
+use account::{Account, LONGEST_BURST, counted};
 use played::Played;
 
 /// Whether a burst makes the same frame again and again, so that the board keeps a row of one that differs. What comes once in an
@@ -34,6 +34,15 @@ fn difference(played: &Result<Played, End>) -> Option<Finding> {
         Err(End::Failed { finding, .. }) => Some(finding.clone()),
         Err(End::Error { .. }) => None,
     }
+}
+
+/// Ends a soak whose burst as `plan` had `time` and brought no frame: with one as long as any, that would go on for ever.
+fn brought_frames(plan: &BurstPlan, watched: &Watched, time: Duration) -> Result<(), End> {
+    if watched.frames > 0 || time < LONGEST_BURST {
+        return Ok(());
+    }
+    let finding = Finding::BurstStalled { frame: 0, frames: plan.frames, seconds: time.as_secs_f64() };
+    Err(End::error(CheckName::AtSpeed, Cause::Station, finding))
 }
 
 /// What ends a soak in which something differed that may have come from the link, every time.
@@ -175,7 +184,8 @@ impl Run<'_> {
             progress.event(Event::Soaked(account.add(&mut before, watched, earlier + now)));
         };
         let (watched, ended) = self.watch(&plan, &tables, ends_early, &mut told);
-        let ended = ended.and_then(|()| self.pass_time(now + plan.time_of(watched.frames)));
+        let ended = ended.and_then(|()| brought_frames(&plan, &watched, time));
+        let ended = ended.and_then(|()| self.pass_time(now + plan.time_of(watched.frames).min(time)));
         told(&watched, self.board.now());
         account.report.paused += u64::from(watched.paused);
         account.report.held_back += u64::from(watched.held_back);
@@ -185,11 +195,13 @@ impl Run<'_> {
     /// Waits until it is `then` on the link's clock. A board that is computed takes no time of that for its frames, and hours of it
     /// would never pass.
     fn pass_time(&mut self, then: Duration) -> Result<(), End> {
-        let left = then.saturating_sub(self.board.now());
-        if left.is_zero() {
-            return Ok(());
+        let mut left = then.saturating_sub(self.board.now());
+        while !left.is_zero() {
+            let wait = left.min(LONGEST_LOOK);
+            self.board.idle(wait).map_err(|error| End::board(CheckName::AtSpeed, &error))?;
+            left -= wait;
         }
-        self.board.idle(left).map_err(|error| End::board(CheckName::AtSpeed, &error))
+        Ok(())
     }
 
     fn open_another_session(&mut self) -> Result<(), End> {
