@@ -214,7 +214,8 @@ impl Faults {
     /// What a whole run by `plan` on a board of this build finds; none when that was not measured.
     #[must_use]
     pub fn whole(&self, plan: &Plan, build: &str) -> Option<CoverageReport> {
-        let is_whole = plan.parts.is_none() && plan.at_speed.is_none() && plan.soak.is_none();
+        let is_whole =
+            plan.parts.is_none() && plan.within.is_none() && plan.at_speed.is_none() && plan.soak.is_none();
         (is_whole && self.are_of(plan, build)).then(|| CoverageReport {
             found: self.found_by_whole(),
             faults: self.count(),
@@ -295,6 +296,8 @@ impl Line {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use halfrow_model::Phase;
 
     use super::*;
@@ -348,7 +351,8 @@ mod tests {
         assert_eq!(faults.whole(&plan, "00000000"), None);
         let others = [
             Plan { seed: 2, ..plan.clone() },
-            Plan { at_speed: Some(std::time::Duration::ZERO), ..plan.clone() },
+            Plan { at_speed: Some(Duration::ZERO), ..plan.clone() },
+            Plan { within: Some(Duration::from_secs(1)), ..plan.clone() },
             Plan { parts: Some(Selection::least()), ..plan.clone() },
             Plan { kernel: Interpolant::Linear.into(), ..plan.clone() },
             Plan { vary: Vary::default(), ..plan.clone() },
