@@ -5,10 +5,11 @@ use std::time::Duration;
 
 use halfrow::board::{Board, OpenOptions};
 use halfrow::frames::Builtin;
-use halfrow::result::{CheckName, Finding, NoBurst, NotExercised, Outcome, Report};
+use halfrow::result::{CheckName, Finding, NoBurst, NotExercised, Outcome, Report, SoakLength};
 use halfrow::run::{Build, FrameSource, Part, Plan, Prices, Rates, Selection};
 use halfrow::verdict::Verdict;
 use halfrow_mock::Options;
+use halfrow_model::{BitDepth, Equidistant, Geometry, GridShape, Interpolant, TableSet};
 use halfrow_protocol::Kind;
 use halfrow_tests::altered::{Altered, Passing, Toward};
 use halfrow_tests::system::{System, failed_check, judge_by_plan, open};
@@ -170,4 +171,30 @@ fn a_frame_of_a_file_is_cut_like_any() {
         Plan { at_speed: Some(Duration::ZERO), parts: Some(Selection::least()), ..whole.frames([file]) };
     let report = judge_by_plan(&plan, open("mock"));
     assert_eq!((report.verdict, report.frames[0].first_rows), (Verdict::Pass, Some(1)));
+}
+
+/// DATAPATH.md, "Legal": S[0] = 8·C·(2^24 - Q[0]) + 2^15·O is 24,192 - 32,768 here, and may be -2^14 at least. Half way to 1 and rounded
+/// down, as factors and offsets are, 24 becomes 16, and the offset stays -1: 16,128 - 32,768.
+#[test]
+fn a_grid_beside_which_there_is_no_decoy_is_judged_without_one() {
+    let _alone = crate::RUNS.lock();
+    let (geometry, one) = (Geometry::new(192, 8, BitDepth::Twelve, 126).unwrap(), 1 << 24);
+    // Three segments: the offset and four nodes, of three grid rows each.
+    let entries = [one - 1, one - 24, one, one, one].map(|entry| [entry; 3]).concat();
+    let tables = TableSet::from_grid(geometry, GridShape::new(6, 6).unwrap(), &entries).unwrap();
+    assert!(tables.check_ring(256).is_ok() && tables.halved().check_ring(256).is_err());
+    let lens = Equidistant::from_radius(100.0).unwrap();
+    let plan = Plan::new(tables, Interpolant::Hermite.into()).seen_through(lens);
+    let report = judge_by_plan(&plan, open("mock"));
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    // All built-in frames, one with the sensor's blanking and one with gaps, and the judged tables.
+    let frames: Vec<_> = report.frames.iter().map(|frame| frame.generation).collect();
+    assert_eq!(frames, vec![2; Builtin::ALL.len() + 2]);
+    assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
+    let report = judge_by_plan(&plan, open("mock,fault=stuck-data"));
+    assert_eq!(failed_check(&report), Some(CheckName::Frames), "{}", report.headline());
+    let soak = Some(SoakLength::Frames { frames: 100 });
+    let report = judge_by_plan(&Plan { soak, ..plan }, open("mock"));
+    assert_eq!(report.verdict, Verdict::Pass, "{}", report.headline());
+    assert!(report.not_exercised.contains(&NotExercised::TableChangeAtSpeed {}));
 }

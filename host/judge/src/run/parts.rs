@@ -167,18 +167,23 @@ pub(super) fn of_height(geometry: &Geometry, rows: usize) -> Geometry {
     other.unwrap_or(*geometry)
 }
 
+/// Every part of a run with this whole schedule, in its order.
+pub(super) fn parts_of(schedule: &[Segment]) -> Vec<Part> {
+    let frames = schedule.iter().flat_map(|segment| &segment.frames);
+    let mut parts: Vec<Part> = Vec::new();
+    for part in frames.map(|frame| frame.part).chain([Part::AtSpeed, Part::Corners, Part::Rules]) {
+        if !parts.contains(&part) {
+            parts.push(part);
+        }
+    }
+    parts
+}
+
 impl Plan {
     /// Every part of a run on a board of this build, in the order of its schedule.
     #[must_use]
     pub fn parts(&self, build: &Build) -> Vec<Part> {
-        let frames = self.whole_schedule(build).into_iter().flat_map(|segment| segment.frames);
-        let mut parts: Vec<Part> = Vec::new();
-        for part in frames.map(|frame| frame.part).chain([Part::AtSpeed, Part::Corners, Part::Rules]) {
-            if !parts.contains(&part) {
-                parts.push(part);
-            }
-        }
-        parts
+        parts_of(&self.whole_schedule(build))
     }
 
     /// `selection` as it can be streamed. A grid is uploaded whole, and in a frame of fewer rows its entries lie otherwise, so

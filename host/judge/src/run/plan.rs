@@ -223,19 +223,20 @@ impl Plan {
         if frames <= MOST_FRAMES { Ok(()) } else { Err(TooManyFrames { frames }) }
     }
 
-    /// The tables that a run uploads, in order, to a board of this build, each with its geometry. The first are a decoy, legal wherever the others
-    /// are and different in every row that is stretched: a board that goes on using them is caught.
-    ///
-    /// A row factor half way to 1 reaches half as far, so the ring's limits hold.
+    /// The tables that a run uploads, in order, to a board of this build, each with its geometry. The first are a decoy, different in every row
+    /// that is stretched: a board that goes on using them is caught. Beside a few grids there can be none.
     #[must_use]
     pub fn generations(&self, build: &Build) -> Vec<Generation> {
-        let kernel = self.decoy_kernel(build.taps);
-        let decoy = Generation { number: DECOY, tables: self.tables.halved(), kernel };
-        // Rounding may bring a row of a grid that begins or ends at the frame's edge beyond it.
-        let fits = |tables: &TableSet| tables.shape().is_none() || tables.check_ring(build.ring).is_ok();
-        let decoy = Some(decoy).filter(|decoy| fits(&decoy.tables));
         let judged = Generation { number: JUDGED, tables: self.tables.clone(), kernel: self.kernel.clone() };
-        decoy.into_iter().chain([judged]).chain(self.varied(build)).collect()
+        self.decoy(build).into_iter().chain([judged]).chain(self.varied(build)).collect()
+    }
+
+    /// The decoy. A row factor half way to 1 reaches half as far, so the ring's limits hold; rounding may bring a row of a grid that
+    /// begins or ends at the frame's edge beyond it, and then there is none.
+    pub(super) fn decoy(&self, build: &Build) -> Option<Generation> {
+        let tables = self.tables.halved();
+        let fits = tables.shape().is_none() || tables.check_ring(build.ring).is_ok();
+        fits.then(|| Generation { number: DECOY, tables, kernel: self.decoy_kernel(build.taps) })
     }
 
     /// The judged tables with another centre, and with other depths.

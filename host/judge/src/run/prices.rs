@@ -7,7 +7,7 @@ use halfrow_protocol::{MAX_PAYLOAD, wire_length};
 use serde::{Deserialize, Serialize};
 
 use super::at_speed;
-use super::parts::{Part, Selection};
+use super::parts::{Part, Selection, parts_of};
 use super::patterns::patterns;
 use super::plan::{Plan, SENSOR_BLANKING, Segment, Timing};
 use super::rules;
@@ -118,8 +118,10 @@ impl<'a> Prices<'a> {
     /// Every part that there is on this board.
     #[must_use]
     pub fn parts(&self) -> Vec<Part> {
-        let parts = self.plan.parts(&Build::of(self.capabilities)).into_iter();
-        parts.filter(|part| self.has_bursts() || !matches!(part, Part::AtSpeed | Part::Corners)).collect()
+        parts_of(&self.whole)
+            .into_iter()
+            .filter(|part| self.has_bursts() || !matches!(part, Part::AtSpeed | Part::Corners))
+            .collect()
     }
 
     fn has_bursts(&self) -> bool {

@@ -13,7 +13,7 @@ use crate::result::Variation;
 impl Plan {
     /// The run, segment by segment: a frame with the decoy; another one with the decoy and, close behind it, the frames to judge; then
     /// noise with the sensor's blanking, and noise with gaps; last a frame for each other centre or depth. A board with one bank of tables cannot change them between two
-    /// frames that follow closely, so there the second segment begins with the frames to judge.
+    /// frames that follow closely, so there the second segment begins with the frames to judge; and so does the run where there is no decoy.
     ///
     /// Where only some parts are selected, frames keep the numbers that they have among all, and with them what they hold.
     #[must_use]
@@ -35,12 +35,11 @@ impl Plan {
             part,
         };
         let noise = || FrameSource::Builtin(Builtin::Noise);
-        let first = vec![frame(Part::Decoy, noise(), DECOY)];
-        let mut judged = Vec::new();
-        if build.table_banks > 1 {
-            judged.push(frame(Part::Swap, noise(), DECOY));
-        }
-        let first_judged = 1 + judged.len() as u16;
+        let has_decoy = self.decoy(build).is_some();
+        let first = has_decoy.then(|| vec![frame(Part::Decoy, noise(), DECOY)]);
+        let swap = (has_decoy && build.table_banks > 1).then(|| frame(Part::Swap, noise(), DECOY));
+        let first_judged = u16::from(first.is_some()) + u16::from(swap.is_some());
+        let mut judged: Vec<_> = swap.into_iter().collect();
         for _ in 0..self.repeat {
             let sources = self.frames.iter().enumerate();
             judged.extend(sources.map(|(place, source)| frame(Part::Judged(place), source.clone(), JUDGED)));
@@ -58,14 +57,13 @@ impl Plan {
             })
             .collect();
         let segment = |timing, commit, frames| Segment { geometry, timing, commit, frames };
-        let mut segments = vec![
-            segment(Timing::Least, Some((DECOY, 0)), first),
+        let first = first.map(|frames| segment(Timing::Least, Some((DECOY, 0)), frames));
+        let others = [
             segment(Timing::Least, Some((JUDGED, first_judged)), judged),
             segment(Timing::Sensor, None, sensor),
             segment(Timing::Gaps((self.seed as u32) | 1), None, gaps),
         ];
-        segments.extend(varied);
-        segments
+        first.into_iter().chain(others).chain(varied).collect()
     }
 
     fn varied_part(&self, geometry: &Geometry) -> Part {

@@ -69,7 +69,8 @@ impl Run<'_> {
         let ended = account.end(self.clock(), ended);
         if ended.is_ok() {
             let capabilities = &self.board.capabilities;
-            let changes = capabilities.table_banks > 1;
+            let has_decoy = self.generations.iter().any(|generation| generation.number == DECOY);
+            let changes = has_decoy && capabilities.table_banks > 1;
             let plan = BurstPlan::new(
                 self.plan.tables.geometry(),
                 self.plan.seed,
