@@ -21,6 +21,8 @@ const SHORTEST_LOOK: Duration = Duration::from_millis(10);
 const PATIENCE: Duration = Duration::from_secs(5);
 /// The frames that could have been made meanwhile.
 const PATIENT_FRAMES: u32 = 20;
+/// The longest that a frame is waited for, however slow a clock the board claims.
+const LONGEST_PATIENCE: Duration = Duration::from_secs(300);
 
 /// What a burst will be.
 #[derive(Clone, Copy, Debug)]
@@ -134,7 +136,7 @@ impl BurstPlan {
 
     /// How long no record may come.
     pub(super) fn patience(&self) -> Duration {
-        PATIENCE.max(self.time_of(1).saturating_mul(PATIENT_FRAMES))
+        self.time_of(1).saturating_mul(PATIENT_FRAMES).clamp(PATIENCE, LONGEST_PATIENCE)
     }
 }
 
@@ -191,6 +193,8 @@ mod tests {
     /// Of 64 draws from 4096 levels some 63 are different; steps have some five levels, the others two.
     #[test]
     fn row_0_is_noise_wherever_a_usual_burst_changes_tables() {
+        // 24 days a frame.
+        assert_eq!(plan(1).patience(), Duration::from_secs(300));
         for drawn in (0..=u32::MAX).step_by(1 << 22) {
             let seed = telling_seed(drawn);
             for frame in 0..32 {

@@ -59,20 +59,59 @@ pub(in crate::run) fn price_of_corners(prices: &Prices<'_>) -> f64 {
     corners::corners(prices.capabilities, prices.plan.seed).iter().map(corner).sum()
 }
 
-/// A burst of `frames` frames, from the request on: each look takes the records that are there by then.
+/// A burst of `frames` frames, from the request on: each look takes the records that are there by then, if any are.
 fn watching(prices: &Prices<'_>, geometry: &Geometry, frames: u32) -> f64 {
     let Some(bursts) = prices.capabilities.bursts else { return 0.0 };
     let burst = BurstPlan::new(geometry, prices.plan.seed, prices.capabilities, bursts, BurstMode::Fresh, 0);
+    let (frame, look) = (burst.seconds(1), |records| {
+        prices.rates.request(LOOK.0, LOOK.1 + records as usize * FrameRecord::BYTES)
+    });
     let (mut seconds, mut had) = (prices.short_request(), 0);
     loop {
-        let made = (seconds / burst.seconds(1)) as u32;
+        let made = (seconds / frame) as u32;
         // Half of the board's memory is made while the other half is fetched.
         let come = made.saturating_sub(had).min(u32::from(bursts.records / 2).max(1)).min(frames - had);
-        seconds += prices.rates.request(LOOK.0, LOOK.1 + come as usize * FrameRecord::BYTES);
+        seconds += look(come);
         had += come;
         if had >= frames {
             return seconds;
         }
-        seconds += burst.look_again_in(frames - had).as_secs_f64();
+        let wait = burst.look_again_in(frames - had).as_secs_f64();
+        seconds += wait;
+        // As many looks as find nothing, at once: on a slow clock there may be millions.
+        let in_vain = ((f64::from(had + 1) * frame - seconds) / (look(0) + wait)).ceil().max(0.0);
+        seconds += in_vain * (look(0) + wait);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_model::{BitDepth, Geometry, Interpolant, TableSet};
+
+    use super::*;
+    use crate::run::{Rates, usual_capabilities};
+
+    /// 64·8 + 8 clocks are a frame. A link that takes no time looks every 250 ms where frames take longer, and every 10 ms
+    /// where they are shorter.
+    #[test]
+    fn frames_are_looked_for_until_the_last_is_made() {
+        let geometry = Geometry::centred(64, 8, BitDepth::Twelve).unwrap();
+        let lens = halfrow_model::Equidistant::from_radius(10.0).unwrap();
+        let tables = TableSet::from_lens(geometry, &lens, None).unwrap();
+        let plan = Plan::new(tables, Interpolant::Hermite.into());
+        let usual = usual_capabilities(&plan, BoardNature::Hardware);
+        let seconds = |clock_hz, frames| {
+            let capabilities = Capabilities { clock_hz, ..usual.clone() };
+            let rates = Rates { bytes_per_second: f64::INFINITY, round_trip: 0.0 };
+            let prices = Prices::new(&plan, &capabilities, rates);
+            (1000.0 * watching(&prices, &geometry, frames)).round()
+        };
+        assert_eq!([1, 2, 3].map(|frames| seconds(1, frames)), [520e3, 1040e3, 1560e3]);
+        // 52 s, 104 s: the first look behind them.
+        assert_eq!(seconds(10, 2), 104e3);
+        // 5.2 s: 21 looks, and 42.
+        assert_eq!([seconds(100, 1), seconds(100, 2)], [5250.0, 10_500.0]);
+        // 52 us a frame: half of 64 records a look.
+        assert_eq!([seconds(10_000_000, 32), seconds(10_000_000, 33)], [10.0, 20.0]);
     }
 }
