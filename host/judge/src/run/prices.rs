@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use halfrow_model::MAX_WIDTH;
 use halfrow_protocol::message::{Commit, Grids, Span};
 use halfrow_protocol::{MAX_PAYLOAD, wire_length};
 use serde::{Deserialize, Serialize};
@@ -252,7 +253,7 @@ pub fn usual_capabilities(plan: &Plan, nature: BoardNature) -> Capabilities {
     let build = Build::full(geometry.width().max(1920));
     Capabilities {
         datapath: crate::tables::DATAPATH.id(),
-        max_width: build.ring as u16,
+        max_width: build.ring.min(MAX_WIDTH) as u16,
         max_height: geometry.height().max(2048) as u16,
         depths: 7,
         taps: build.taps,
@@ -282,7 +283,11 @@ pub fn usual_capabilities(plan: &Plan, nature: BoardNature) -> Capabilities {
 
 #[cfg(test)]
 mod tests {
+    use halfrow_model::{BitDepth, Equidistant, Geometry, Interpolant, TableSet};
+
     use super::*;
+    use crate::board::Datapath;
+    use crate::run::legal::impossible;
 
     /// 2 · (4080 + 16) bytes there and back, 8,192 in 10 ms.
     #[test]
@@ -291,5 +296,16 @@ mod tests {
         // Not infinite, and not negative.
         assert_eq!(carried(0.012, 0.010).round(), 819_200.0);
         assert_eq!(carried(0.0, 0.0), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_board_that_nobody_has_asked_is_one_that_there_can_be() {
+        for width in [64, 1920, 2592] {
+            let geometry = Geometry::centred(width, 8, BitDepth::Twelve).unwrap();
+            let tables = TableSet::from_lens(geometry, &Equidistant::default(), None).unwrap();
+            let plan = Plan::new(tables, Interpolant::Hermite.into());
+            let board = usual_capabilities(&plan, BoardNature::Hardware);
+            assert_eq!(impossible(Datapath::RowFactors, &board), None, "{width}");
+        }
     }
 }
