@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use halfrow_protocol::{Kind, Packet, Request};
+use halfrow_protocol::{Kind, Packet, Reply, Request};
 
 /// Requests that are remembered. Only copies of the last few can still be under way over a link that keeps their order.
 const KEPT: usize = 16;
@@ -45,6 +45,7 @@ impl Asking<'_> {
 /// A request that was sent.
 struct Asked {
     sequence: u16,
+    kind: Kind,
     changes: bool,
     begun: Duration,
     /// How long the first answer took; none before it came.
@@ -68,7 +69,8 @@ pub(super) struct LastAsked(VecDeque<Asked>);
 impl LastAsked {
     pub(super) fn asked(&mut self, asking: &Asking<'_>, sequence: u16, now: Duration) {
         self.0.truncate(KEPT - 1);
-        self.0.push_front(Asked { sequence, changes: asking.changes(), begun: now, took: None, again: 0 });
+        let (kind, changes) = (asking.kind(), asking.changes());
+        self.0.push_front(Asked { sequence, kind, changes, begun: now, took: None, again: 0 });
     }
 
     /// The last request is sent once more. Says whether that may change the board.
@@ -85,7 +87,11 @@ impl LastAsked {
         if kind == Some(Kind::RowOut) {
             return None;
         }
-        let known = self.0.iter_mut().find(|asked| asked.sequence == packet.header.sequence);
+        // A row that is refused may have the number of a request long before it.
+        let refused = refused(packet);
+        let known = self.0.iter_mut().find(|asked| {
+            asked.sequence == packet.header.sequence && refused.is_none_or(|kind| kind == asked.kind.code())
+        });
         let Some(asked) = known else {
             // A row may be refused.
             let changed = kind.is_some_and(may_change);
@@ -101,6 +107,14 @@ impl LastAsked {
     }
 }
 
+/// The code of the kind that `packet` refuses, if it refuses one.
+fn refused(packet: &Packet<'_>) -> Option<u8> {
+    match Reply::read(packet) {
+        Ok(Reply::Refusal(refusal)) => Some(refusal.kind),
+        _ => None,
+    }
+}
+
 fn may_change(kind: Kind) -> bool {
     matches!(
         kind,
@@ -112,4 +126,36 @@ fn may_change(kind: Kind) -> bool {
             | Kind::Burst
             | Kind::Expect
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use halfrow_protocol::Header;
+    use halfrow_protocol::message::{Refusal, RefusalCode};
+
+    use super::*;
+
+    /// What `last` makes of an answer under this number.
+    fn stray(last: &mut LastAsked, sequence: u16, kind: Kind, payload: &[u8]) -> Option<bool> {
+        let header = Header { kind: kind.code(), sequence, reply: true, session: 1, window: 0 };
+        let packet = Packet { header, payload };
+        last.answered(&packet, Duration::ZERO).map(|stray| stray.changed)
+    }
+
+    /// WIRE.md numbers packets by 16 bits, so that the 65,536th row behind a request has its number.
+    #[test]
+    fn a_refused_row_is_no_second_answer_to_a_request_of_its_number() {
+        let mut last = LastAsked::default();
+        last.asked(&Asking::Bytes(Kind::TableWrite, &[]), 7, Duration::ZERO);
+        assert_eq!(stray(&mut last, 7, Kind::TableWrite, &[]), None);
+        let refusal = |kind: Kind| {
+            let mut payload = Vec::new();
+            let refusal = Refusal { code: RefusalCode::Row, kind: kind.code(), detail: 0 };
+            Reply::Refusal(refusal).write(&mut payload);
+            payload
+        };
+        assert_eq!(stray(&mut last, 7, Kind::Refusal, &refusal(Kind::RowIn)), None);
+        assert_eq!(stray(&mut last, 7, Kind::Refusal, &refusal(Kind::TableWrite)), Some(true));
+        assert_eq!(stray(&mut last, 7, Kind::TableWrite, &[]), Some(true));
+    }
 }
