@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use halfrow::board::{Board, OpenOptions};
 use halfrow::link_test;
-use halfrow::result::Report;
+use halfrow::result::{CheckName, Outcome, Report};
 use halfrow::verdict::Verdict;
-use halfrow_protocol::Kind;
-use halfrow_tests::altered::{Altered, Passing, Toward};
+use halfrow_protocol::message::Status;
+use halfrow_protocol::{Kind, Reply};
+use halfrow_tests::altered::{Altered, Passing, Toward, judge};
 use halfrow_tests::system::System;
 
 /// A link that delivers the request number `which` of a kind once more, in front of the request number `before` of another, and
@@ -96,4 +97,32 @@ fn wrong_of_link(broken: bool) -> (u64, bool) {
 fn an_old_copy_of_a_request_makes_no_link_test_call_a_sound_board_wrong() {
     assert_eq!(wrong_of_link(false), (0, true));
     assert!(wrong_of_link(true).0 > 0);
+}
+
+/// A request comes twice, and the counters are wrong behind frames that are right; in the session in which that is looked at again
+/// nothing comes back.
+#[test]
+fn no_check_of_a_doubtful_session_is_told_of_the_next_one() {
+    let (mut first, mut is_lost) = (None, false);
+    let report = judge(&System::TINY, move |toward, packet: Passing| {
+        let session = packet.header.session;
+        if packet.is(Kind::Echo) && *first.get_or_insert(session) != session {
+            return Vec::new();
+        }
+        if toward == Toward::Host && packet.is(Kind::TableWrite) && !is_lost {
+            is_lost = true;
+            return Vec::new();
+        }
+        match packet.reply() {
+            Some(Reply::Status(status)) => {
+                vec![packet.saying(&Reply::Status(Status { samples_over: 1, ..status }))]
+            }
+            _ => vec![packet],
+        }
+    });
+    assert_eq!(report.verdict, Verdict::Error, "{}", report.headline());
+    let told = report.checks.iter().filter(|check| check.outcome != Outcome::Skipped);
+    let told: Vec<_> = told.map(|check| (check.name, check.outcome)).collect();
+    let passed = [CheckName::Judge, CheckName::Identity].map(|name| (name, Outcome::Passed));
+    assert_eq!(told, [&passed[..], &[(CheckName::Link, Outcome::Error)]].concat());
 }

@@ -149,6 +149,16 @@ impl Findings {
         let (name, outcome, finding) = end.check();
         self.note(name, outcome, finding.clone());
     }
+    /// Forgets what was found of the open board, for a look in another session; names of bursts do not come again.
+    pub(super) fn begin_again(&mut self) {
+        (self.seen, self.rows_counted) = (Seen::default(), 0);
+        self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
+        self.not_exercised.clear();
+        self.untested_at_speed.clear();
+        self.corners.clear();
+        self.whole_at_speed.clear();
+    }
+
 
     /// What is wrong beside that which ends the run.
     pub(super) fn also_wrong(&mut self, ends: impl Iterator<Item = End>) {

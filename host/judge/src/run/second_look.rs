@@ -4,7 +4,6 @@
 //! settings. In a session of its own no copy of an earlier session means anything.
 
 use super::findings::End;
-use super::judge::Seen;
 use super::steps::Run;
 use crate::board::{BoardError, OpenOptions};
 use crate::progress::Step;
@@ -26,7 +25,7 @@ impl Run<'_> {
             tracing::warn!("{}; looking again, since {}", found.sentence(), doubt.sentence());
             self.progress.step(Step::LookAgain);
             self.open_session(look)?;
-            (self.findings.seen, self.findings.rows_counted) = (Seen::default(), 0);
+            self.findings.begin_again();
             match self.all_but_identity() {
                 Err(again @ End::Failed { .. }) => failed = again,
                 Err(error) => return Err(error),
