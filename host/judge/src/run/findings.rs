@@ -124,6 +124,11 @@ impl Findings {
         self.note(name, Outcome::Passed, finding);
     }
 
+    /// Whether a check was made and found nothing.
+    pub(super) fn has_passed(&self, name: CheckName) -> bool {
+        self.checks.iter().any(|check| check.name == name && check.outcome == Outcome::Passed)
+    }
+
     /// Takes the outcome of a check; of one that is made again the last word stands, and the times add up.
     pub(super) fn note(&mut self, name: CheckName, outcome: Outcome, finding: Finding) {
         self.lap(name);
@@ -144,11 +149,6 @@ impl Findings {
         self.since = Instant::now();
     }
 
-    /// Takes the check that ended the run.
-    pub(super) fn note_end(&mut self, end: &End) {
-        let (name, outcome, finding) = end.check();
-        self.note(name, outcome, finding.clone());
-    }
     /// Forgets what was found of the open board, for a look in another session; names of bursts do not come again.
     pub(super) fn begin_again(&mut self) {
         (self.seen, self.rows_counted) = (Seen::default(), 0);
@@ -159,6 +159,11 @@ impl Findings {
         self.whole_at_speed.clear();
     }
 
+    /// Takes the check that ended the run.
+    pub(super) fn note_end(&mut self, end: &End) {
+        let (name, outcome, finding) = end.check();
+        self.note(name, outcome, finding.clone());
+    }
 
     /// What is wrong beside that which ends the run.
     pub(super) fn also_wrong(&mut self, ends: impl Iterator<Item = End>) {

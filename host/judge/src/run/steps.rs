@@ -131,7 +131,7 @@ impl Run<'_> {
             .as_ref()
             .map_or_else(Vec::new, |board| not_exercised(board, &generations, seen.levels));
         self.findings.not_exercised.append(&mut self.findings.untested_at_speed);
-        let untried = !self.tries_rules();
+        let untried = !self.findings.has_passed(CheckName::Rules);
         self.findings.not_exercised.extend(untried.then_some(NotExercised::Rules {}));
         self.findings.not_exercised.extend(no_grid.then_some(NotExercised::Grids {}));
     }

@@ -50,7 +50,10 @@ impl Run<'_> {
         }
         self.progress.step(Step::Rules);
         loop {
-            let Some(rules) = Rules::new(self) else { return Ok(()) };
+            let Some(rules) = Rules::new(self) else {
+                self.findings.note(CheckName::Rules, Outcome::Skipped, Finding::RulesLeftOut {});
+                return Ok(());
+            };
             match (rules.all(), last) {
                 (Err(end), Some(last)) if end.is_outage() => self.return_to(last, last.frames.len(), end)?,
                 (Err(end), _) => return Err(end),
