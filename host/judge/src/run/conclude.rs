@@ -1,5 +1,7 @@
 //! From findings to the report.
 
+use std::time::Instant;
+
 use jiff::Timestamp;
 
 use super::findings::{End, Findings};
@@ -14,6 +16,21 @@ use crate::result::{
 };
 use crate::verdict::Cause;
 
+/// When a run began.
+#[derive(Clone, Copy)]
+pub(super) struct Begun {
+    /// By the computer's clock, which may be set meanwhile.
+    at: Timestamp,
+    /// By one that only goes on.
+    since: Instant,
+}
+
+impl Begun {
+    pub(super) fn now() -> Self {
+        Self { at: Timestamp::now(), since: Instant::now() }
+    }
+}
+
 /// How the run ended.
 struct Ending {
     cause: Cause,
@@ -26,7 +43,7 @@ pub(super) fn conclude(
     mut findings: Findings,
     end: Option<End>,
     options: &RunOptions,
-    started: Timestamp,
+    begun: Begun,
 ) -> Finished {
     let ending = ending(&mut findings, end);
     skip_the_rest(&mut findings.checks);
@@ -54,7 +71,7 @@ pub(super) fn conclude(
         lacks: Vec::new(),
         link: link(findings.link, &findings.tally),
         tables: tables(plan),
-        run: run(plan, &options.circumstances, started),
+        run: run(plan, &options.circumstances, begun),
     };
     Finished { report, evidence }
 }
@@ -65,16 +82,15 @@ fn coverage(plan: &Plan, findings: &Findings) -> Option<CoverageReport> {
     Faults::all().ok()?.whole(plan, build)
 }
 
-fn run(plan: &Plan, circumstances: &Circumstances, started: Timestamp) -> RunReport {
-    let ended = Timestamp::now();
+fn run(plan: &Plan, circumstances: &Circumstances, Begun { at, since }: Begun) -> RunReport {
     RunReport {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: crate::COMMIT.to_owned(),
         arguments: circumstances.arguments.clone(),
         seed: plan.seed,
-        started: format!("{started:.0}"),
-        ended: format!("{ended:.0}"),
-        seconds: ended.duration_since(started).as_secs_f64(),
+        started: format!("{at:.0}"),
+        ended: format!("{:.0}", Timestamp::now()),
+        seconds: since.elapsed().as_secs_f64(),
         host: host_name(),
         operator: circumstances.operator.clone(),
         files: circumstances.files.clone(),

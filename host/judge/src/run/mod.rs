@@ -40,6 +40,7 @@ use crate::progress::{Progress, Step};
 use crate::result::{CheckName, FileHash, Problem};
 use crate::target::{BoardKind, Target};
 
+use conclude::Begun;
 use findings::{End, Findings};
 use reconnect::WayBack;
 use steps::Run;
@@ -117,7 +118,7 @@ pub fn not_opened(plan: &Plan, target: &Target, error: &OpenError, options: &Run
     let kind = kinds::of(target).map_or(BoardKind::Hardware, |kind| kind.board);
     let findings = Findings::new(options, &name, kind, name.clone());
     let end = End::error(CheckName::Identity, error.class().into(), Problem::of(error));
-    conclude::conclude(plan, findings, Some(end), options, jiff::Timestamp::now())
+    conclude::conclude(plan, findings, Some(end), options, Begun::now())
 }
 
 fn judge(
@@ -127,7 +128,7 @@ fn judge(
     progress: &dyn Progress,
 ) -> Result<Finished, Misfit> {
     plan.check_length()?;
-    let started = jiff::Timestamp::now();
+    let begun = Begun::now();
     let mut findings = Findings::new(options, &candidate.target, candidate.kind, candidate.link.name());
     let way_back =
         WayBack { reopen: candidate.reopen, patience: options.reconnect, options: open_options(options) };
@@ -135,7 +136,7 @@ fn judge(
     progress.done();
     match findings.misfit.take() {
         Some(misfit) => Err(misfit),
-        None => Ok(conclude::conclude(plan, findings, end, options, started)),
+        None => Ok(conclude::conclude(plan, findings, end, options, begun)),
     }
 }
 
