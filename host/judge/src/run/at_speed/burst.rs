@@ -91,9 +91,7 @@ impl BurstPlan {
 
     /// What frame `n` holds.
     pub(super) fn content(&self, n: u32) -> Content {
-        let own = matches!(self.mode, BurstMode::Fresh | BurstMode::Alternating);
-        let frame = self.first_frame.wrapping_add(if own { n as u16 } else { 0 });
-        Content { seed: self.seed, frame }
+        content(&self.request(0), n)
     }
 
     /// Whether frame `n` is made with the tables of the other bank.
@@ -138,6 +136,13 @@ impl BurstPlan {
     pub(super) fn patience(&self) -> Duration {
         self.time_of(1).saturating_mul(PATIENT_FRAMES).clamp(PATIENCE, LONGEST_PATIENCE)
     }
+}
+
+/// What frame `n` of `burst` holds (AT-SPEED.md).
+pub(in crate::run) fn content(burst: &Burst, n: u32) -> Content {
+    let own = matches!(burst.mode, BurstMode::Fresh | BurstMode::Alternating);
+    let frame = burst.first_frame.wrapping_add(if own { n as u16 } else { 0 });
+    Content { seed: burst.seed, frame }
 }
 
 /// Of `drawn` and its three neighbours, whose row 0 each has another kind of content, the one in which that is noise, and
@@ -188,13 +193,13 @@ mod tests {
         assert_eq!(plan(96_000_000).patience(), Duration::from_secs(5));
         // 1 MHz: 2.07 s a frame.
         assert_eq!(plan(1_000_000).patience().as_secs(), 41);
+        // 24 days a frame.
+        assert_eq!(plan(1).patience(), Duration::from_secs(300));
     }
 
     /// Of 64 draws from 4096 levels some 63 are different; steps have some five levels, the others two.
     #[test]
     fn row_0_is_noise_wherever_a_usual_burst_changes_tables() {
-        // 24 days a frame.
-        assert_eq!(plan(1).patience(), Duration::from_secs(300));
         for drawn in (0..=u32::MAX).step_by(1 << 22) {
             let seed = telling_seed(drawn);
             for frame in 0..32 {

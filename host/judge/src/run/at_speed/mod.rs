@@ -27,6 +27,7 @@ use crate::progress::Step;
 use crate::reference::correct;
 use crate::result::{BurstCount, CheckName, Corner, Finding, NoBurst, NotExercised, Outcome};
 use burst::BurstPlan;
+pub(super) use burst::content;
 pub(super) use price::{clock_hz, most_frames, price_of_corners, price_of_frames};
 use watched::{EndsEarly, Watched};
 

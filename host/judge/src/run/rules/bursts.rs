@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::time::Duration;
 
-use halfrow_model::{Content, Signer};
+use halfrow_model::Signer;
 use halfrow_protocol::Kind;
 use halfrow_protocol::message::{
     Burst, BurstMode, BurstState, Entries, Expect, FrameRecord, Records, RefusalCode, Request, RowPlace, Span,
@@ -13,7 +13,7 @@ use super::{FIRST_FACTOR, Rules, of_board};
 use crate::board::{BoardError, Fetched, Said};
 use crate::result::{Answer, Rule};
 use crate::run::Generation;
-use crate::run::at_speed::{clock_hz, signer};
+use crate::run::at_speed::{clock_hz, content, signer};
 use crate::run::findings::End;
 
 /// How many records are taken each time that a burst waits for free ones.
@@ -88,12 +88,9 @@ impl Rules<'_, '_> {
 
     /// The record of frame `n` of `burst`, made at the full pixel clock with `made`, whose frames `signer` signs.
     fn record(&self, (made, signer): (&Generation, &mut Signer), burst: &Burst, n: u32) -> FrameRecord {
-        let own = burst.mode == BurstMode::Fresh || burst.mode == BurstMode::Alternating;
-        let frame = burst.first_frame.wrapping_add(if own { n as u16 } else { 0 });
-        let content = Content { seed: burst.seed, frame };
         let geometry = made.tables.geometry();
         FrameRecord {
-            signature: signer.sign(&made.tables, content, &mut Vec::new()),
+            signature: signer.sign(&made.tables, content(burst, n), &mut Vec::new()),
             samples: (geometry.width() * geometry.height()) as u32,
             rows: geometry.height() as u16,
             least_latency: self.small.latency(geometry),
