@@ -17,12 +17,13 @@ use crate::diagnosis::{self, Case, Uploaded};
 use crate::frames::{Builtin, Scene};
 use crate::reference::correct;
 use crate::result::{
-    Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Repetition, Suspect,
+    Account, CheckName, Defect, Evidence, Finding, FrameReport, FrameTiming, Problem, Repetition, Suspect,
 };
 use crate::run::findings::End;
 use crate::run::judge::as_found;
 use crate::run::plan::Generation;
 use crate::run::steps::Run;
+use crate::verdict::Cause;
 
 /// Differing samples below which a row is too little to tell one defect from another.
 const TELLING: usize = 4;
@@ -119,7 +120,9 @@ impl Run<'_> {
         let of_board = |error| End::board(CheckName::AtSpeed, &error);
         let Generation { number, tables, kernel } = generation;
         let scene = Scene { geometry: *tables.geometry(), ..self.plan.scene(u16::MAX.into()) };
-        let Ok(frame) = Builtin::Noise.render(&scene) else { return Ok(()) };
+        let frame = Builtin::Noise
+            .render(&scene)
+            .map_err(|error| End::error(CheckName::AtSpeed, Cause::Station, Problem::of(&error)))?;
         self.board.commit(tables, kernel, u16::MAX, *number).map_err(of_board)?;
         let frame = NumberedFrame { number: u16::MAX, frame: frame.into() };
         self.board.stream(&mut Unjudged(iter::once(frame))).map_err(of_board)
