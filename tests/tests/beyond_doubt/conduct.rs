@@ -205,6 +205,33 @@ fn gaps_are_compared_with_their_seed() {
     fails(&report, CheckName::Counters, "was kept waiting by gaps for 1 board clocks");
 }
 
+/// What each row says of itself, as `change` has it.
+fn with_rows(is_meant: fn(&RowPlace) -> bool, change: fn(&mut RowOut<'_>)) -> Report {
+    judge_each(&System::TINY, move |_, packet| match place(&packet) {
+        Some(at) if is_meant(&at) => changed(&packet, packet.header.sequence, |row, _| change(row)),
+        _ => packet,
+    })
+}
+
+#[test]
+fn rows_that_say_that_they_were_sent_before_are_compared_with_the_board_s_count() {
+    let report = with_rows(|at| at.frame == 2 && at.row == 5, |row| row.repeats = 7);
+    fails(&report, CheckName::Counters, "0 rows sent again, and it is 7");
+}
+
+#[test]
+fn what_entered_is_looked_at_wherever_a_board_is_to_tell_it() {
+    let report = with_rows(|_| true, |row| row.entered = None);
+    fails(
+        &report,
+        CheckName::Frames,
+        "the board's CRC of what entered the core is not that of what was sent",
+    );
+    // Beyond the frames of the plan, where rules are tried.
+    let report = with_rows(|at| at.frame > 1000, |row| row.entered = row.entered.map(|crc| crc ^ 1));
+    assert_eq!((report.verdict, failed_check(&report)), (Verdict::Fail, Some(CheckName::Rules)));
+}
+
 /// The comparisons hold for the Verilog as for the mock, over sound links and poor ones.
 #[cfg(feature = "sim")]
 #[test]

@@ -111,6 +111,7 @@ impl Run<'_> {
         let generation = seen.frames.last().map_or(0, |frame| frame.generation.into());
         let next_row = self.board.acknowledged();
         let tally = self.board.tally();
+        let repeated = status.rows_repeated.max(self.findings.repeats_counted);
         let damaged = status.crc_errors.saturating_add(status.framing_errors);
         let is_calm = tally.retries + tally.strays + tally.damaged_in + u64::from(damaged) == 0
             && self.board.had_each_packet_once(status);
@@ -121,6 +122,7 @@ impl Run<'_> {
             (Counter::NextRowIn, status.next_row_in, next_row, true),
             (Counter::NextRowOut, status.next_row_out, next_row, true),
             (Counter::Generation, status.generation, generation, true),
+            (Counter::RowsRepeated, status.rows_repeated, repeated, true),
             (Counter::RowsRepeated, status.rows_repeated, 0, is_calm),
             (Counter::RowsUnneeded, status.rows_unneeded, 0, is_calm),
             (Counter::Refusals, status.refusals, 0, is_calm),

@@ -78,6 +78,8 @@ pub(super) struct Findings {
     pub(super) earlier: Earlier,
     /// Rows that the board should have counted since it was greeted.
     pub(super) rows_counted: usize,
+    /// The least that it should have counted of rows that it sent again.
+    pub(super) repeats_counted: u32,
     /// What was left untouched of a board that is right.
     pub(super) not_exercised: Vec<NotExercised>,
     /// What was left untouched at the full pixel clock.
@@ -109,6 +111,7 @@ impl Findings {
             link,
             earlier: Earlier::default(),
             rows_counted: 0,
+            repeats_counted: 0,
             not_exercised: Vec::new(),
             untested_at_speed: Vec::new(),
             corners: Vec::new(),
@@ -151,7 +154,7 @@ impl Findings {
 
     /// Forgets what was found of the open board, for a look in another session; names of bursts do not come again.
     pub(super) fn begin_again(&mut self) {
-        (self.seen, self.rows_counted) = (Seen::default(), 0);
+        (self.seen, self.rows_counted, self.repeats_counted) = (Seen::default(), 0, 0);
         self.checks.retain(|check| matches!(check.name, CheckName::Judge | CheckName::Identity));
         self.not_exercised.clear();
         self.untested_at_speed.clear();
@@ -188,7 +191,7 @@ impl Findings {
     pub(super) fn keep_counts(&mut self, board: &Board) {
         self.earlier.tally += board.tally();
         self.earlier.seconds += board.now();
-        self.rows_counted = 0;
+        (self.rows_counted, self.repeats_counted) = (0, 0);
     }
 
     pub(super) fn note_status(&mut self, status: &Status) {

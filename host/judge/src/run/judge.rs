@@ -138,6 +138,8 @@ pub(super) struct Judge<'a> {
     frames_done: usize,
     /// Rows that have come back since the stream began, or began again.
     pub(super) rows: usize,
+    /// How often those had been sent before, by what they say.
+    pub(super) repeats: u32,
 }
 
 impl<'a> Judge<'a> {
@@ -160,6 +162,7 @@ impl<'a> Judge<'a> {
             again: VecDeque::new(),
             frames_done: 0,
             rows: 0,
+            repeats: 0,
         }
     }
 
@@ -171,7 +174,7 @@ impl<'a> Judge<'a> {
     /// Has the frames sent again that have not come back whole. Rows that did come back are not judged twice.
     pub(super) fn begin_again(&mut self) {
         self.again = self.in_flight.iter().map(|frame| frame.prepared.numbered()).collect();
-        self.rows = 0;
+        (self.rows, self.repeats) = (0, 0);
     }
 
     /// Takes what came back of frames that never came back whole.
@@ -209,8 +212,7 @@ impl<'a> Judge<'a> {
     }
 
     fn check_entry(&mut self, row: &ReturnedRow<'_>, sent: &[u16]) {
-        let Some(entered) = row.entered.filter(|_| self.manner.names_entered) else { return };
-        if entered != row_signature(sent) {
+        if self.manner.names_entered && row.entered != Some(row_signature(sent)) {
             let (row, frame) = (row.row, row.frame);
             self.seen.wrong_entry.get_or_insert(WrongEntry { rows: 0, row, frame }).rows += 1;
         }
@@ -282,6 +284,7 @@ impl RowTraffic for Judge<'_> {
 
     fn returned(&mut self, row: &ReturnedRow<'_>) -> ControlFlow<()> {
         self.rows += 1;
+        self.repeats = self.repeats.saturating_add(row.repeats.into());
         let is_new = |frame: &InFlight| frame.prepared.number == row.frame && !frame.returned[row.row];
         let Some(place) = self.in_flight.iter().position(is_new) else {
             return ControlFlow::Continue(());
@@ -348,6 +351,7 @@ mod tests {
             first_latency,
             last_latency,
             pauses,
+            repeats: 0,
             entered: None,
             samples,
         };

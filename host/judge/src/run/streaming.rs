@@ -48,6 +48,7 @@ impl Run<'_> {
             return Err(misconduct);
         }
         self.findings.rows_counted += judge.rows;
+        self.findings.repeats_counted = self.findings.repeats_counted.saturating_add(judge.repeats);
         Ok(())
     }
 

@@ -83,6 +83,7 @@ impl<'a> Arrivals<'a> {
             first_latency: found.first_latency,
             last_latency: found.last_latency,
             pauses: found.pauses,
+            repeats: found.repeats,
             entered: found.entered,
             samples: &self.unpacked,
         });

@@ -29,6 +29,8 @@ pub struct ReturnedRow<'a> {
     pub last_latency: u16,
     /// Board clocks for which gaps kept the enable off while it entered.
     pub pauses: u16,
+    /// How often it was sent before.
+    pub repeats: u16,
     /// The CRC-32 of its samples as they entered the core; without meaning where the board does not advertise it.
     pub entered: Option<u32>,
     /// Its samples.

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-use halfrow_model::Frame;
+use halfrow_model::{Frame, row_signature};
 
 use super::small::Small;
 use crate::board::{NumberedFrame, ReturnedRow, RowTraffic};
@@ -18,6 +18,8 @@ struct Right {
     frame: Frame,
     latency: u16,
     pauses: Vec<u16>,
+    /// The CRC-32 of each row as it enters; none if the board tells none.
+    entered: Vec<Option<u32>>,
 }
 
 /// Frames that must come back right.
@@ -50,7 +52,9 @@ impl Compared {
             if let Ok(frame) = correct(tables, kernel, &numbered.frame) {
                 let (latency, generation) = (small.latency(tables.geometry()), *generation);
                 let pauses = pauses(self.gap_seed, frame.width(), frame.height());
-                self.right.push(Right { number, generation, frame, latency, pauses });
+                let sent = (0..frame.height()).map(|row| row_signature(numbered.frame.row(row)));
+                let entered = sent.map(|sent| small.names_entered.then_some(sent)).collect();
+                self.right.push(Right { number, generation, frame, latency, pauses, entered });
             }
             self.frames.push_back(numbered);
         }
@@ -64,6 +68,7 @@ impl Compared {
                 && right.generation == row.generation
                 && right.pauses.get(row.row) == Some(&row.pauses)
                 && right.frame.row(row.row) == row.samples
+                && right.entered[row.row].is_none_or(|entered| row.entered == Some(entered))
         })
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct Small {
     pub(super) phase: Phase,
     /// L, in pixel clocks.
     latency: u16,
+    /// Whether the board tells of each row what entered.
+    pub(super) names_entered: bool,
     /// Two that are not alike, for tall frames.
     pub(super) tables: [Generation; 2],
 }
@@ -43,7 +45,8 @@ impl Small {
             Some(Generation { number: 0, tables, kernel: drawn_kernel(build.taps, CALM, &mut draws)? })
         };
         let tables = [drawn()?, drawn()?];
-        Some(Self { geometry, seed: seed as u32, phase, latency: capabilities.latency.into(), tables })
+        let Capabilities { latency, entered: names_entered, .. } = *capabilities;
+        Some(Self { geometry, seed: seed as u32, phase, latency: latency.into(), names_entered, tables })
     }
 
     /// D of a frame, in pixel clocks.
