@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use halfrow::board::{Board, OpenOptions, Stop};
 use halfrow::link::{self, Candidate, OpenError};
 use halfrow::link_test::{self, Figures, LinkTestError};
+use halfrow::report::wording::plain;
 use halfrow::result::{BoardReport, Identity, Problem, Suspect};
 use halfrow::run::{Circumstances, Draws};
 use halfrow::target::{BoardKind, Target};
@@ -281,7 +282,8 @@ fn seen(kind: BoardKind, identity: &Identity) -> BoardSeen {
     let has_number = identity.serial.bytes().any(|digit| digit != b'0');
     BoardSeen {
         kind: kind.to_string(),
-        name: identity.name.clone(),
+        // A name that fills up a field of the board's ends with zeros.
+        name: plain(identity.name.trim_end_matches('\0')).into_owned(),
         device: has_number.then(|| identity.serial.clone()),
         build: identity.build.clone(),
     }
@@ -328,4 +330,23 @@ fn of_verify(report: &Report, took: Duration) -> [(&'static str, Option<f64>); 5
         ("verify.seconds", Some(took.as_secs_f64())),
         (SAMPLES_DIFFERING, Some(differing as f64)),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_kept_of_a_name_can_be_shown_and_stored() {
+        let named = |name: &str| {
+            let says = serde_json::json!({
+                "name": name, "serial": "0", "build": "0", "protocol": 1, "datapath": 1, "max_width": 1, "max_height": 1,
+                "depths": [8], "taps": 7, "latency": 1, "ring": 1, "least_blanking": 1, "table_banks": 1, "row_banks_in": 1,
+                "row_banks_out": 1, "clock_hz": 0
+            });
+            seen(BoardKind::Mock, &serde_json::from_value::<Identity>(says).unwrap()).name
+        };
+        assert_eq!(named("shelf board\0\0\0"), "shelf board");
+        assert_eq!(named("a\0b\u{7}"), "a\\u{0}b\\u{7}");
+    }
 }

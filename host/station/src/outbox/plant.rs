@@ -54,10 +54,7 @@ impl Sink for PlantSink {
                 return away(error);
             }
             let said = Said::of(&error);
-            match error {
-                PlantError::OtherContent { .. } => Undelivered::Refused(said),
-                _ => Undelivered::NotNow(said),
-            }
+            if error.is_final() { Undelivered::Refused(said) } else { Undelivered::NotNow(said) }
         })
     }
 

@@ -176,4 +176,10 @@ impl StoreError {
     pub fn is_away(&self) -> bool {
         matches!(self, Self::Plant { source, .. } if source.is_away())
     }
+
+    /// Whether the plant can never hold what it was given.
+    #[must_use]
+    pub(super) fn is_of_content(&self) -> bool {
+        matches!(self, Self::Plant { source, .. } if source.is_of_content())
+    }
 }

@@ -57,6 +57,13 @@ impl DatabaseError {
         let away = |code: &str| ["08", "53", "57", "58"].iter().any(|class| code.starts_with(class));
         error.as_db_error().is_none_or(|said| away(said.code().code()))
     }
+
+    /// Whether the engine can never hold what it was given. What contradicts other rows may be taken once they have changed.
+    pub(crate) fn is_of_content(&self) -> bool {
+        let Self::Postgres(error) = self else { return false };
+        // Data exceptions: PostgreSQL, appendix A.
+        error.code().is_some_and(|code| code.code().starts_with("22"))
+    }
 }
 
 /// A row as an engine brings it.

@@ -9,6 +9,7 @@ use postgres::fallible_iterator::FallibleIterator as _;
 use postgres::types::{IsNull, ToSql, Type, to_sql_checked};
 use postgres::{Client, Statement};
 
+use super::value::kept;
 use super::{Database, DatabaseError, Each, Engine, Row, Value};
 
 /// A connection to a PostgreSQL server.
@@ -92,7 +93,7 @@ impl ToSql for Value<'_> {
             (Self::Whole(whole), &Type::FLOAT8) => (whole as f64).to_sql(of, out),
             (Self::Whole(whole), _) => whole.to_sql(of, out),
             (Self::Real(real), _) => real.to_sql(of, out),
-            (Self::Text(text), _) => text.to_sql(of, out),
+            (Self::Text(text), _) => kept(text).as_ref().to_sql(of, out),
         }
     }
 

@@ -1,9 +1,12 @@
 //! SQLite.
 
+use std::borrow::Cow;
+
 use rusqlite::config::DbConfig;
 use rusqlite::types::{ToSqlOutput, ValueRef};
 use rusqlite::{Connection, ToSql, params_from_iter};
 
+use super::value::kept;
 use super::{Database, DatabaseError, Each, Engine, Row, Value};
 
 /// Statements that a connection keeps prepared: more than a run's record takes.
@@ -69,7 +72,10 @@ impl ToSql for Value<'_> {
             Self::Null => ValueRef::Null,
             Self::Whole(whole) => ValueRef::Integer(whole),
             Self::Real(real) => ValueRef::Real(real),
-            Self::Text(text) => ValueRef::Text(text.as_bytes()),
+            Self::Text(text) => match kept(text) {
+                Cow::Borrowed(text) => ValueRef::Text(text.as_bytes()),
+                Cow::Owned(text) => return Ok(ToSqlOutput::Owned(text.into())),
+            },
         }))
     }
 }

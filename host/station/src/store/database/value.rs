@@ -1,5 +1,7 @@
 //! What stands in a column, and what is asked for by it.
 
+use std::borrow::Cow;
+
 /// What stands in a column.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Value<'a> {
@@ -11,6 +13,11 @@ pub(crate) enum Value<'a> {
     Real(f64),
     /// A text.
     Text(&'a str),
+}
+
+/// `text` as both engines keep it. PostgreSQL has no U+0000 in a text, and whatever a person or a device said is to come to a plant.
+pub(super) fn kept(text: &str) -> Cow<'_, str> {
+    if text.contains('\0') { text.replace('\0', "\u{fffd}").into() } else { text.into() }
 }
 
 impl Value<'_> {

@@ -88,6 +88,16 @@ impl PlantError {
     pub fn is_away(&self) -> bool {
         matches!(self, Self::Store(error) if error.is_away())
     }
+
+    /// Whether it never takes this one thing as it is.
+    #[must_use]
+    pub(crate) fn is_final(&self) -> bool {
+        match self {
+            Self::OtherContent { .. } => true,
+            Self::Store(error) => error.is_of_content(),
+            _ => false,
+        }
+    }
 }
 
 /// What a plant hears of a station.

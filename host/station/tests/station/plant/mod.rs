@@ -13,5 +13,6 @@ mod refused;
 pub(crate) mod sent;
 pub(crate) mod server;
 mod tables;
+mod texts;
 mod waiting;
 pub(crate) mod way;

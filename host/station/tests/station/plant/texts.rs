@@ -1,0 +1,44 @@
+//! Text that PostgreSQL cannot hold.
+
+use halfrow_station::history::runs::{Filter, page};
+use halfrow_station::store::{Plant, Snapshot};
+
+use super::sent::send;
+use super::server::Server;
+use super::tables::is_as;
+use crate::history::made::{End, Made, Run};
+use crate::history::released::history;
+
+/// Boards, scanners and forms can say any character, U+0000 among them, which PostgreSQL has in no text (8.3).
+#[test]
+fn no_character_keeps_a_result_from_the_plant() {
+    let server = Server::prepared();
+    let mut made = Made::new();
+    let run = Run { operator: "we\0ber".to_owned(), ..Run::of("S1", End::Fail(&["memory"])) };
+    let run = made.run(&run);
+    made.store.waive(&run, "engel", "used\0as it is").unwrap();
+    made.store.note("weber", "scan", "CA\0", "").unwrap();
+    let (made, all) = send(made, server.address());
+    // A run, a waiver with its line in the audit, and a line of its own.
+    assert_eq!((all.sent, all.failed), (4, 0));
+    is_as(&server, &made);
+    assert_eq!(server.rows("SELECT operator_id FROM run"), [["we\u{fffd}ber"]]);
+    assert_eq!(server.rows("SELECT reason FROM waiver"), [["used\u{fffd}as it is"]]);
+    let now = Snapshot::of_plant(Plant::connect(&server.address()).unwrap()).unwrap();
+    let asked = Filter { serial: Some("S\0".to_owned()), ..Filter::default() };
+    assert!(page(&now, &asked, None, 10).unwrap().runs.is_empty());
+}
+
+#[test]
+fn what_a_plant_can_never_hold_waits_for_a_person() {
+    let server = Server::prepared();
+    // A character that the encoding does not have (appendix A).
+    let never = "CREATE FUNCTION never() RETURNS trigger LANGUAGE plpgsql AS
+            $$ BEGIN RAISE EXCEPTION 'no such character' USING ERRCODE = '22021'; END $$;
+        CREATE TRIGGER never BEFORE INSERT ON waiver FOR EACH ROW EXECUTE FUNCTION never()";
+    server.client("plant").batch_execute(never).unwrap();
+    let (made, all) = send(history(), server.address());
+    assert_eq!((all.sent, all.failed, all.is_away), (9, 1, false));
+    let [dead] = &made.now().dead().unwrap()[..] else { panic!("nothing waits") };
+    assert!(dead.said.contains("no such character"), "{dead:?}");
+}
