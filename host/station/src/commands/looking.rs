@@ -48,7 +48,7 @@ impl Results {
     /// The results at this moment.
     pub(super) fn snapshot(&self) -> Result<Snapshot, Failure> {
         if let Some(path) = &self.plant {
-            let address = plant(&load_plant(path)?)?.address()?;
+            let address = plant(&load_plant(path)?)?.address()?.patient();
             return Ok(Snapshot::of_plant(Plant::connect(&address)?)?);
         }
         let data = self.data.as_deref().unwrap_or(Path::new("."));

@@ -74,7 +74,7 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
     let address = plant(&settings)?.address()?;
     match what {
         What::Prepare => {
-            let version = Plant::prepare(&address)?;
+            let version = Plant::prepare(&address.patient())?;
             print(&format!("the plant {address} has version {version}"))
         }
         What::Forget { station, why: Why { reason, operator } } => {
@@ -84,14 +84,15 @@ pub(super) fn run(Arguments { settings, what }: &Arguments) -> Result<Exit, Fail
             Err(Failure::call(NoStation { station: station.clone() }))
         }
         What::Check { json } => {
-            let snapshot = Snapshot::of_plant(Plant::connect(&address)?)?;
+            let snapshot = Snapshot::of_plant(Plant::connect(&address.patient())?)?;
             let mut told = progress("runs read");
             check::tell(&check_plant(&snapshot, &mut |runs| told(runs as u64))?, *json)
         }
         What::Prune { older_than, why: Why { reason, operator } } => {
             let before_ms = days_ago_ms(*older_than);
             let mut told = progress("rows removed");
-            let removed = Plant::connect(&address)?.prune(before_ms, operator, reason, &mut told)?;
+            let removed =
+                Plant::connect(&address.patient())?.prune(before_ms, operator, reason, &mut told)?;
             print(&format!("{removed} rows were removed; every record is kept"))
         }
         What::Serve => serve(settings, address),

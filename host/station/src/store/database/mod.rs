@@ -5,6 +5,7 @@ mod sqlite;
 mod value;
 
 use std::fmt::Debug;
+use std::io;
 
 use rusqlite::ErrorCode;
 
@@ -20,7 +21,16 @@ pub enum DatabaseError {
     Sqlite(#[from] rusqlite::Error),
     /// PostgreSQL says why, or the connection to it does.
     #[error(transparent)]
-    Postgres(#[from] ::postgres::Error),
+    Postgres(#[from] tokio_postgres::Error),
+    /// The server of a plant is not there, or does as if it were not.
+    #[error("the server has said nothing for {seconds} s")]
+    Silent {
+        /// How long.
+        seconds: u64,
+    },
+    /// The system does not let anybody wait for a server.
+    #[error("the system has no room for a connection")]
+    Room(#[source] io::Error),
     /// A column holds something else than it should.
     #[error("column {place} of a row holds {found} where {expected} should be")]
     Column {
@@ -52,7 +62,11 @@ impl DatabaseError {
 
     /// Whether the engine is not there, or not for now, rather than that it does not do this one thing.
     pub(crate) fn is_away(&self) -> bool {
-        let Self::Postgres(error) = self else { return false };
+        let error = match self {
+            Self::Postgres(error) => error,
+            Self::Silent { .. } | Self::Room(_) => return true,
+            _ => return false,
+        };
         // Connections and resources that are no more, and an operator's intervention: PostgreSQL, appendix A.
         let away = |code: &str| ["08", "53", "57", "58"].iter().any(|class| code.starts_with(class));
         error.as_db_error().is_none_or(|said| away(said.code().code()))
@@ -70,7 +84,7 @@ impl DatabaseError {
 #[derive(Debug)]
 pub(crate) enum Row<'a> {
     Sqlite(&'a rusqlite::Row<'a>),
-    Postgres(&'a ::postgres::Row),
+    Postgres(&'a tokio_postgres::Row),
 }
 
 impl Row<'_> {

@@ -1,22 +1,70 @@
-//! PostgreSQL.
+//! PostgreSQL, by a connection that ends when its server says nothing for too long.
 
 use std::collections::HashMap;
 use std::error::Error;
 use std::fmt;
+use std::pin::pin;
+use std::time::Duration;
 
 use bytes::BytesMut;
-use postgres::fallible_iterator::FallibleIterator as _;
-use postgres::types::{IsNull, ToSql, Type, to_sql_checked};
-use postgres::{Client, Statement};
+use futures_util::TryStreamExt as _;
+use tokio::runtime::{Builder, Runtime};
+use tokio::task::JoinHandle;
+use tokio::time::timeout;
+use tokio_postgres::tls::MakeTlsConnect;
+use tokio_postgres::types::{IsNull, ToSql, Type, to_sql_checked};
+use tokio_postgres::{Client, Config, Socket, Statement};
 
 use super::value::kept;
 use super::{Database, DatabaseError, Each, Engine, Row, Value};
 
+/// How long a server may take to hear that a connection ends.
+const FAREWELL: Duration = Duration::from_secs(1);
+
 /// A connection to a PostgreSQL server.
 pub(crate) struct Postgres {
+    /// The connection ends when this is dropped, and with it the line.
     client: Client,
+    line: Line,
     /// Statements by their text, which the server has read already.
     ready: HashMap<String, Statement>,
+}
+
+/// What carries a connection.
+struct Line {
+    runtime: Runtime,
+    connection: JoinHandle<Result<(), tokio_postgres::Error>>,
+    /// How long the server may say nothing while it is waited for; for ever if none.
+    patience: Option<Duration>,
+}
+
+impl Line {
+    /// What the server answers. Behind one that it does not give there is no connection any more.
+    fn wait<T>(
+        &self,
+        answer: impl Future<Output = Result<T, tokio_postgres::Error>>,
+    ) -> Result<T, DatabaseError> {
+        let Some(patience) = self.patience else { return Ok(self.runtime.block_on(answer)?) };
+        match self.runtime.block_on(async { timeout(patience, answer).await }) {
+            Ok(answered) => Ok(answered?),
+            Err(_) => {
+                self.connection.abort();
+                Err(silent(patience))
+            }
+        }
+    }
+}
+
+impl Drop for Line {
+    fn drop(&mut self) {
+        let Self { runtime, connection, .. } = self;
+        // A server that does not hear it finds out by itself.
+        let _ = runtime.block_on(async { timeout(FAREWELL, connection).await });
+    }
+}
+
+fn silent(patience: Duration) -> DatabaseError {
+    DatabaseError::Silent { seconds: patience.as_secs() }
 }
 
 impl fmt::Debug for Postgres {
@@ -26,15 +74,33 @@ impl fmt::Debug for Postgres {
 }
 
 impl Postgres {
-    pub(crate) fn new(client: Client) -> Self {
-        Self { client, ready: HashMap::new() }
+    /// To the server of `config`, which lets somebody in within `reached`, and then says nothing for no longer than `patience`.
+    pub(crate) fn connect<T>(
+        config: &Config,
+        tls: T,
+        reached: Duration,
+        patience: Option<Duration>,
+    ) -> Result<Self, DatabaseError>
+    where
+        T: MakeTlsConnect<Socket>,
+        T::Stream: Send + 'static,
+    {
+        let runtime = Builder::new_current_thread().enable_all().build().map_err(DatabaseError::Room)?;
+        let Ok(connected) = runtime.block_on(async { timeout(reached, config.connect(tls)).await }) else {
+            // The system may be looking for the server's address still.
+            runtime.shutdown_background();
+            return Err(silent(reached));
+        };
+        let (client, connection) = connected?;
+        let connection = runtime.spawn(connection);
+        Ok(Self { client, line: Line { runtime, connection, patience }, ready: HashMap::new() })
     }
 
     fn ready(&mut self, text: &str) -> Result<Statement, DatabaseError> {
         if let Some(statement) = self.ready.get(text) {
             return Ok(statement.clone());
         }
-        let statement = self.client.prepare(text)?;
+        let statement = self.line.wait(self.client.prepare(text))?;
         self.ready.insert(text.to_owned(), statement.clone());
         Ok(statement)
     }
@@ -50,19 +116,19 @@ impl Database for Postgres {
     }
 
     fn batch(&mut self, text: &str) -> Result<(), DatabaseError> {
-        Ok(self.client.batch_execute(text)?)
+        self.line.wait(self.client.batch_execute(text))
     }
 
     fn execute(&mut self, text: &str, values: &[Value<'_>]) -> Result<u64, DatabaseError> {
         let statement = self.ready(text)?;
         let values: Vec<_> = values.iter().map(|value| value as &(dyn ToSql + Sync)).collect();
-        Ok(self.client.execute(&statement, &values)?)
+        self.line.wait(self.client.execute(&statement, &values))
     }
 
     fn each(&mut self, text: &str, values: &[Value<'_>], row: Each<'_>) -> Result<(), DatabaseError> {
         let statement = self.ready(text)?;
-        let mut rows = self.client.query_raw(&statement, values)?;
-        while let Some(one) = rows.next()? {
+        let mut rows = pin!(self.line.wait(self.client.query_raw(&statement, values))?);
+        while let Some(one) = self.line.wait(rows.try_next())? {
             row(&Row::Postgres(&one))?;
         }
         Ok(())
@@ -70,7 +136,7 @@ impl Database for Postgres {
 }
 
 /// What the column at `place` holds.
-pub(super) fn value(row: &postgres::Row, place: usize) -> Result<Value<'_>, DatabaseError> {
+pub(super) fn value(row: &tokio_postgres::Row, place: usize) -> Result<Value<'_>, DatabaseError> {
     let Some(column) = row.columns().get(place) else {
         return Err(DatabaseError::Column { place, found: "nothing", expected: "a column" });
     };

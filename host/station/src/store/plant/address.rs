@@ -6,15 +6,18 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
-use postgres::config::{Host, SslMode};
-use postgres::{Client, Config, NoTls};
 use rustls::ClientConfig;
+use tokio_postgres::config::{Host, SslMode};
+use tokio_postgres::{Config, NoTls};
 use tokio_postgres_rustls::MakeRustlsConnect;
 
+use super::super::database::{DatabaseError, Postgres};
 use crate::trust::{self, TrustError};
 
 /// How long a connection may take to come about.
 const REACHED: Duration = Duration::from_secs(10);
+/// How long a server may say nothing to somebody who waits for it. What it is asked without haste takes it a few seconds at most.
+const SILENT: Duration = Duration::from_secs(20);
 /// How long a server may leave what was sent to it without an acknowledgement.
 const ACKNOWLEDGED: Duration = Duration::from_secs(20);
 /// How long a connection may say nothing until it is asked whether it is still there.
@@ -25,7 +28,7 @@ const QUIET: Duration = Duration::from_secs(10);
 pub enum PlantAddressError {
     /// It is none.
     #[error("this is no address of a plant; write it as postgres://halfrow@db.example/plant")]
-    Malformed(#[source] postgres::Error),
+    Malformed(#[source] tokio_postgres::Error),
     /// It says no host, no user or no database.
     #[error("the plant's address says no {what}; write it as postgres://halfrow@db.example/plant")]
     Without {
@@ -49,6 +52,7 @@ pub struct PlantAddress {
     config: Config,
     tls: Option<Arc<ClientConfig>>,
     shown: String,
+    patience: Option<Duration>,
 }
 
 impl PlantAddress {
@@ -82,14 +86,25 @@ impl PlantAddress {
             .keepalives_idle(QUIET)
             .keepalives_interval(QUIET)
             .keepalives_retries(2);
-        Ok(Self { config, tls, shown })
+        Ok(Self { config, tls, shown, patience: Some(SILENT) })
+    }
+
+    /// The same for questions that take as long as they take, of a person who sees that there is no answer.
+    #[must_use]
+    pub(crate) fn patient(&self) -> Self {
+        Self { patience: None, ..self.clone() }
     }
 
     /// A new connection.
-    pub(super) fn connect(&self) -> Result<Client, postgres::Error> {
+    pub(super) fn connect(&self) -> Result<Postgres, DatabaseError> {
+        let servers = self.config.get_hosts().len().max(self.config.get_hostaddrs().len());
+        let reached = SILENT.saturating_mul(u32::try_from(servers).unwrap_or(u32::MAX));
         match &self.tls {
-            None => self.config.connect(NoTls),
-            Some(tls) => self.config.connect(MakeRustlsConnect::new(ClientConfig::clone(tls))),
+            None => Postgres::connect(&self.config, NoTls, reached, self.patience),
+            Some(tls) => {
+                let tls = MakeRustlsConnect::new(ClientConfig::clone(tls));
+                Postgres::connect(&self.config, tls, reached, self.patience)
+            }
         }
     }
 }

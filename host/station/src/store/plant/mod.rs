@@ -23,7 +23,7 @@ pub use pool::PlantPool;
 
 use std::path::PathBuf;
 
-use super::database::{Database, DatabaseError, Postgres, values};
+use super::database::{Database, DatabaseError, values};
 use super::{Parcel, StoreError, migrations, statements as sql};
 use crate::clock;
 
@@ -212,12 +212,12 @@ impl Plant {
     fn reach(address: &PlantAddress) -> Result<Self, StoreError> {
         let shown = PathBuf::from(address.to_string());
         let connected = address.connect();
-        let client = connected.map_err(|error| StoreError::Plant {
+        let database = connected.map_err(|source| StoreError::Plant {
             plant: address.to_string(),
             doing: "a connection",
-            source: error.into(),
+            source,
         })?;
-        Ok(Self { shown, database: Box::new(Postgres::new(client)) })
+        Ok(Self { shown, database: Box::new(database) })
     }
 
     fn sorts_as_a_station(&mut self) -> Result<(), PlantError> {

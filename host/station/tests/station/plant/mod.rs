@@ -12,6 +12,7 @@ mod plans;
 mod refused;
 pub(crate) mod sent;
 pub(crate) mod server;
+mod silent;
 mod tables;
 mod texts;
 mod waiting;

@@ -1,0 +1,95 @@
+//! A plant that takes what it is sent, and answers nothing.
+
+use std::io::{Read as _, Write as _};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+
+use halfrow_station::outbox::{PlantSink, round};
+use halfrow_station::store::{PlantAddress, SharedStore};
+
+use super::sent::presence;
+use super::server::Server;
+use crate::history::made::{End, Made, Run};
+
+/// A way to a server.
+struct Way {
+    port: u16,
+    is_silent: Arc<AtomicBool>,
+}
+
+impl Way {
+    /// To the server on the port `to`.
+    fn to(to: u16) -> Self {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let is_silent = Arc::new(AtomicBool::new(false));
+        let told = Arc::clone(&is_silent);
+        thread::spawn(move || {
+            for client in listener.incoming() {
+                let (client, server) = (client.unwrap(), TcpStream::connect(("127.0.0.1", to)).unwrap());
+                for (from, to) in [(&client, &server), (&server, &client)] {
+                    let (from, to) = (from.try_clone().unwrap(), to.try_clone().unwrap());
+                    let is_silent = Arc::clone(&told);
+                    thread::spawn(move || carry(from, to, &is_silent));
+                }
+            }
+        });
+        Self { port, is_silent }
+    }
+
+    fn is_silent(&self, is_silent: bool) {
+        self.is_silent.store(is_silent, Ordering::SeqCst);
+    }
+}
+
+/// Carries bytes on until some are to be kept silent about: then this connection stays as it is for ever.
+fn carry(mut from: TcpStream, mut to: TcpStream, is_silent: &AtomicBool) {
+    let mut bytes = vec![0; 65_536];
+    while let Ok(read @ 1..) = from.read(&mut bytes) {
+        while is_silent.load(Ordering::SeqCst) {
+            thread::park();
+        }
+        if to.write_all(&bytes[..read]).is_err() {
+            break;
+        }
+    }
+    let _ = to.shutdown(Shutdown::Both);
+}
+
+#[test]
+fn a_plant_that_answers_nothing_is_away_and_has_all_once_it_answers_again() {
+    let server = Server::prepared();
+    let way = Way::to(server.port());
+    let url = format!("postgres://postgres@127.0.0.1:{}/plant", way.port);
+    let mut made = Made::new();
+    made.store.sends_to(vec![PlantSink::NAME.to_owned()]).unwrap();
+    for (number, serial) in (1..).zip(["S1", "S2"]) {
+        made.numbered(number, &Run::of(serial, End::Pass));
+    }
+    let database = rusqlite::Connection::open(made.folder().database()).unwrap();
+    let one_waits =
+        "UPDATE outbox SET next_ms = (unixepoch() + 240) * 1000 WHERE subject = (SELECT max(id) FROM run)";
+    assert_eq!(database.execute(one_waits, []).unwrap(), 1);
+    let due = || database.execute("UPDATE outbox SET next_ms = 0 WHERE done_ms IS NULL", []).unwrap();
+    let origin = made.store.origin().unwrap();
+    let mut sink =
+        PlantSink::new(PlantAddress::new(&url, None, None).unwrap(), presence("station 7", origin));
+    let (_folder, store) = made.parts();
+    let store = SharedStore::new(store);
+    assert_eq!(round(&store, &mut sink).unwrap().sent, 1);
+    // In a connection that is there, and in one that comes about.
+    way.is_silent(true);
+    for _ in 0..2 {
+        assert_eq!(due(), 1);
+        let vain = round(&store, &mut sink).unwrap();
+        assert_eq!((vain.sent, vain.failed, vain.is_away), (0, 1, true));
+        let said: String = database.query_row("SELECT max(said) FROM outbox", [], |row| row.get(0)).unwrap();
+        assert!(said.contains("has said nothing for 20 s"), "{said}");
+    }
+    way.is_silent(false);
+    assert_eq!(due(), 1);
+    assert_eq!(round(&store, &mut sink).unwrap().sent, 1);
+    assert_eq!(server.rows("SELECT count(*) FROM run"), [["2"]]);
+}
