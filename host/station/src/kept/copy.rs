@@ -9,6 +9,9 @@ use crate::check::check;
 use crate::record::synced;
 use crate::store::{Folder, Snapshot, Store, StoreError};
 
+/// What a copy is called that is being made.
+const ASIDE: &str = ".partial";
+
 /// What was copied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Copied {
@@ -84,17 +87,22 @@ pub fn restore(from: &Folder, to: &Path) -> Result<Copied, CopyError> {
     })
 }
 
-/// Makes the new folder `to`, whole or not at all: `fill` is given its place aside.
+/// Makes the folder `to`, whole or not at all: `fill` is given its place aside. One that is there already stays the one that it is,
+/// and may be a disk of its own.
 fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Result<Copied, CopyError> {
     let refused = |source| CopyError::Io { path: to.to_owned(), source };
-    if fs::read_dir(to).is_ok_and(|mut entries| entries.next().is_some()) || to.is_file() {
-        return Err(CopyError::Exists { path: to.to_owned() });
-    }
     let to = std::path::absolute(to).map_err(refused)?;
-    let (Some(parent), Some(name)) = (to.parent(), to.file_name()) else {
-        return Err(CopyError::Exists { path: to.clone() });
-    };
-    let aside = parent.join(format!(".{}.partial", name.to_string_lossy()));
+    let exists = || CopyError::Exists { path: to.clone() };
+    let (Some(parent), Some(name)) = (to.parent(), to.file_name()) else { return Err(exists()) };
+    let is_there = to.is_dir();
+    let aside =
+        if is_there { to.join(ASIDE) } else { parent.join(format!(".{}{ASIDE}", name.to_string_lossy())) };
+    if aside.exists() {
+        return Err(CopyError::UnderWay { path: aside });
+    }
+    if to.is_file() || (is_there && holds_anything(&to).map_err(refused)?) {
+        return Err(exists());
+    }
     match fs::create_dir(&aside) {
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
             return Err(CopyError::UnderWay { path: aside });
@@ -102,8 +110,9 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
         made => made.map_err(refused)?,
     }
     let copied = fill(&aside).and_then(|copied| {
-        fs::rename(&aside, &to).map_err(refused)?;
-        synced(parent).map_err(StoreError::from)?;
+        let moved = if is_there { moved_into(&aside, &to) } else { fs::rename(&aside, &to) };
+        moved.map_err(refused)?;
+        synced(if is_there { &to } else { parent }).map_err(StoreError::from)?;
         Ok(copied)
     });
     if copied.is_err() {
@@ -111,6 +120,28 @@ fn made(to: &Path, fill: impl FnOnce(&Path) -> Result<Copied, CopyError>) -> Res
         let _ = fs::remove_dir_all(&aside);
     }
     copied
+}
+
+/// Whether there is anything in `folder` but what a file system is made with.
+fn holds_anything(folder: &Path) -> io::Result<bool> {
+    let names = fs::read_dir(folder)?.map(|entry| Ok(entry?.file_name())).collect::<io::Result<Vec<_>>>()?;
+    Ok(names.iter().any(|name| name != "lost+found"))
+}
+
+/// Moves what is in `aside` to the folder `to` around it, the database last: without it nothing is a copy. Of what fails nothing is left.
+fn moved_into(aside: &Path, to: &Path) -> io::Result<()> {
+    let mut entries = fs::read_dir(aside)?.collect::<io::Result<Vec<_>>>()?;
+    let database = Folder::new(aside).database();
+    entries.sort_by_key(|entry| entry.path() == database);
+    for (place, entry) in entries.iter().enumerate() {
+        if let Err(error) = fs::rename(entry.path(), to.join(entry.file_name())) {
+            for moved in &entries[..place] {
+                let _ = fs::rename(to.join(moved.file_name()), moved.path());
+            }
+            return Err(error);
+        }
+    }
+    fs::remove_dir(aside)
 }
 
 /// Refuses a folder in which anything is not as it was written, as a fault of the one that is `named`.

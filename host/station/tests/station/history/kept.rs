@@ -1,6 +1,7 @@
 //! Backups, and evidence that is removed.
 
 use std::fs;
+use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
 
 use halfrow_station::check::{Checked, check};
 use halfrow_station::history::runs::{Filter, Page, page};
@@ -75,6 +76,23 @@ fn a_restored_folder_is_the_one_that_was_saved() {
     // The folder can be worked in: the open run is closed and another one begun.
     let mut store = Store::open(&Folder::new(&again)).unwrap();
     assert_eq!(halfrow_station::run::recover(&mut store).unwrap().len(), 1);
+}
+
+/// It may be a disk of its own, which a file system is made on with a folder for what is found of it.
+#[test]
+fn a_folder_that_is_there_stays_the_one_that_it_is() {
+    let (made, place) = (made(), tempfile::tempdir().unwrap());
+    let [copy, disk] = ["copy", "disk"].map(|name| place.path().join(name));
+    backup(&made.folder(), &copy).unwrap();
+    fs::create_dir_all(disk.join("lost+found")).unwrap();
+    fs::set_permissions(&disk, fs::Permissions::from_mode(0o750)).unwrap();
+    let before = fs::metadata(&disk).unwrap();
+    restore(&Folder::new(&copy), &disk).unwrap();
+    assert_eq!(sound(&Folder::new(&disk)), [3, 1, 7, 0]);
+    let after = fs::metadata(&disk).unwrap();
+    assert_eq!((after.ino(), after.mode()), (before.ino(), before.mode()));
+    assert!(disk.join("lost+found").is_dir() && !disk.join(".partial").exists());
+    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2, "nothing else is left there");
 }
 
 #[test]
