@@ -3,16 +3,18 @@
 use std::io::{self, Read};
 use std::os::unix::process::CommandExt as _;
 use std::process::{Command, ExitStatus, Stdio};
-use std::sync::mpsc;
+use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use crate::floor::Shown;
-use crate::group::{KILLED, kill, killed, waited};
+use crate::group::{kill, killed, waited};
 use crate::settings::{Hook, WORDS};
 
 /// The most that is kept of what a hook complains of, in bytes.
-const MOST_SAID: u64 = 1000;
+const MOST_SAID: usize = 1000;
+/// How long it is listened to a hook that has ended: what it left behind may hold its complaints open for ever.
+const LISTENED: Duration = Duration::from_secs(5);
 
 /// A hook that did not do what it should have done.
 #[derive(Debug, thiserror::Error)]
@@ -60,9 +62,13 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
         .spawn()
         .map_err(|source| HookError::Start { program: program(), source })?;
     let complaints = child.stderr.take();
-    let (tell, heard) = mpsc::channel();
-    let hear = move || tell.send(complaints.map(beginning).unwrap_or_default());
-    thread::Builder::new().spawn(hear).map_err(|source| {
+    let (tell, told) = mpsc::channel();
+    let listen = move || {
+        if let Some(complaints) = complaints {
+            hear(complaints, tell);
+        }
+    };
+    thread::Builder::new().spawn(listen).map_err(|source| {
         killed(&mut child);
         HookError::Start { program: program(), source }
     })?;
@@ -73,21 +79,32 @@ pub(super) fn run(hook: &Hook, lane: &str, shown: &Shown) -> Result<(), HookErro
         }
         Some(status) if status.success() => Ok(()),
         Some(status) => {
-            // What it left behind may hold the pipe open, and may have left its group.
             kill(child.id());
-            let said = heard.recv_timeout(KILLED).unwrap_or_default();
+            let said = heard(&told);
             let said = String::from_utf8_lossy(&said).split_whitespace().collect::<Vec<_>>().join(" ");
             Err(HookError::Failed { program: program(), status, said })
         }
     }
 }
 
-/// The beginning of what a hook complains of. All of it is read: a hook to which nobody listens dies before its work is done.
-fn beginning(mut complaints: impl Read) -> Vec<u8> {
-    let mut said = Vec::new();
-    let read = complaints.by_ref().take(MOST_SAID).read_to_end(&mut said);
+/// Tells the beginning of what a hook complains of. All of it is read: a hook to which nobody listens dies before its work is done.
+fn hear(mut complaints: impl Read, tell: Sender<Vec<u8>>) {
+    let (mut piece, mut left) = ([0; MOST_SAID], MOST_SAID);
+    while let Ok(read @ 1..) = complaints.read(&mut piece[..left]) {
+        left -= read;
+        let _ = tell.send(piece[..read].to_vec());
+    }
+    drop(tell);
     // What there is no more to be heard of has been said.
-    let _ = read.and_then(|_| io::copy(&mut complaints, &mut io::sink()));
+    let _ = io::copy(&mut complaints, &mut io::sink());
+}
+
+/// What was told.
+fn heard(told: &Receiver<Vec<u8>>) -> Vec<u8> {
+    let (begun, mut said) = (Instant::now(), Vec::new());
+    while let Ok(piece) = told.recv_timeout(LISTENED.saturating_sub(begun.elapsed())) {
+        said.extend(piece);
+    }
     said
 }
 
@@ -116,8 +133,6 @@ fn first_word<'a>(text: &'a str, values: &[&'a str; 6]) -> Option<(&'a str, &'a 
 
 #[cfg(test)]
 mod tests {
-    use std::time::Instant;
-
     use halfrow::Verdict;
 
     use super::*;
@@ -156,6 +171,23 @@ mod tests {
         assert!(failed.to_string().contains("(exit status: 3): no paper;"), "{failed}");
         let missing = Hook { program: "/no/such/program".into(), ..hook("", 60) };
         assert!(matches!(run(&missing, "1", &shown("x")), Err(HookError::Start { .. })));
+    }
+
+    /// What it leaves in a session of its own is not killed with it.
+    #[test]
+    fn a_hook_that_fails_is_over_though_it_leaves_something_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        let id = folder.path().join("id");
+        let id = id.display();
+        let leaves = format!(
+            "echo no paper >&2; setsid sh -c 'echo $$ > {id}; exec sleep 1000' &
+            until test -s {id}; do sleep 0.01; done; exit 4"
+        );
+        let failed = run(&hook(&leaves, 600), "1", &shown("x")).unwrap_err();
+        let id: u32 = std::fs::read_to_string(id.to_string()).unwrap().trim().parse().unwrap();
+        assert!(std::path::Path::new(&format!("/proc/{id}")).exists(), "it is there still");
+        kill(id);
+        assert!(failed.to_string().contains("(exit status: 4): no paper;"), "{failed}");
     }
 
     #[test]
