@@ -108,6 +108,8 @@ pub enum Saying {
     WaitsForPlug { serial: String },
     #[error("{serial} waits for the next board that is plugged in, instead of {other}")]
     WaitsInstead { serial: String, other: String },
+    #[error("{serial} waited for this board, and is not tested: {why}; then scan it again")]
+    NotGiven { serial: String, why: Said },
     #[error("taken out by a person")]
     OutByPerson,
     #[error("its process cannot be killed; restart the computer")]

@@ -274,6 +274,7 @@ codes::codes! {
         Waits [serial, lane] => "serial-waits",
         WaitsForPlug [serial] => "serial-waits-for-board",
         WaitsInstead [serial, other] => "serial-waits-instead",
+        NotGiven [serial, why] => "serial-not-given",
         OutByPerson => "out-by-person",
         Unkillable => "out-by-process",
         GoodUnitWrong [serial, verdict] => "shift-good-unit-wrong",

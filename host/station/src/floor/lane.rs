@@ -34,6 +34,8 @@ pub struct Lane {
     waiting: Option<Accepted>,
     shown: Option<Shown>,
     note: Option<Said>,
+    /// Why it did not take the serial number of the board that came.
+    missed: Option<Said>,
     owes: Option<Owes>,
     /// Whether a process of it cannot be killed.
     is_stuck: bool,
@@ -51,6 +53,7 @@ impl Lane {
             waiting: None,
             shown: None,
             note: None,
+            missed: None,
             owes: None,
             is_stuck: false,
         }
@@ -133,14 +136,21 @@ impl Lane {
         self.shown.as_ref()
     }
 
-    /// What else there is to say: why it is out of service, why nothing was saved, why no run was begun.
+    /// What else there is to say: why it did not take a number, why it is out of service, why nothing was saved, why no run was
+    /// begun.
     #[must_use]
     pub fn note(&self) -> Option<&Said> {
         match &self.phase {
+            _ if self.missed.is_some() => self.missed.as_ref(),
             Phase::Out { why } | Phase::Unsaved { why, .. } => Some(why),
             Phase::Idle | Phase::Ended if self.owes.is_some() => self.owes.as_ref().map(|owes| &owes.why),
             _ => self.note.as_ref(),
         }
+    }
+
+    /// Keeps why it did not take the serial number of the board that came, as long as that board is there and has none.
+    pub(super) fn miss(&mut self, why: Said) {
+        self.missed = Some(why);
     }
 
     /// What a barcode or a button can do with it now.
@@ -194,13 +204,16 @@ impl Lane {
     }
 
     fn begin(&mut self, of: Accepted) -> Effect {
-        (self.waiting, self.shown, self.note) = (None, None, None);
+        (self.waiting, self.shown, self.note, self.missed) = (None, None, None, None);
         self.phase = Phase::Running { of: of.clone(), run: None };
         Effect::Begin(of)
     }
 
     fn present(&mut self, is_present: bool) -> Option<Effect> {
         self.is_present = is_present;
+        if !is_present {
+            self.missed = None;
+        }
         if !is_present && !self.starts.presence {
             // The serial number was of the board that is gone.
             self.waiting = None;
@@ -222,7 +235,7 @@ impl Lane {
         if !self.is_present && !self.starts.presence {
             return Err(Refusal::NoBoard { lane: self.name.clone() });
         }
-        (self.waiting, self.shown, self.note) = (Some(accepted), None, None);
+        (self.waiting, self.shown, self.note, self.missed) = (Some(accepted), None, None, None);
         self.phase = Phase::Idle;
         Ok(None)
     }

@@ -127,6 +127,12 @@ struct Pending {
     since: Duration,
 }
 
+impl Pending {
+    fn is_fresh(&self, now: Duration) -> bool {
+        now.saturating_sub(self.since) <= WAIT
+    }
+}
+
 impl Floor {
     /// With these lanes, and the rules of all plans. `scan_then_plug` is the third way of the head of this module.
     #[must_use]
@@ -145,11 +151,7 @@ impl Floor {
     /// The serial number that waits for a lane at the time `now`.
     #[must_use]
     pub fn pending(&self, now: Duration) -> Option<&str> {
-        self.fresh(now).map(|pending| pending.serial.as_str())
-    }
-
-    fn fresh(&self, now: Duration) -> Option<&Pending> {
-        self.pending.as_ref().filter(|pending| now.saturating_sub(pending.since) <= WAIT)
+        self.pending.as_ref().filter(|pending| pending.is_fresh(now)).map(|pending| pending.serial.as_str())
     }
 
     /// Takes what `operator` scanned at the time `now`, by any clock that only goes on.
@@ -207,7 +209,8 @@ impl Floor {
         Ok(Answer { lane: Some(lane), effect, said: said.into() })
     }
 
-    /// Takes what happened to a lane at the time `now`. A serial number that waits goes to the lane that a board came to.
+    /// Takes what happened to a lane at the time `now`. A serial number that waits goes to the lane that a board came to, or to
+    /// none: it is that board's.
     pub fn happened(&mut self, lane: usize, event: Event, now: Duration) -> Option<Effect> {
         let came =
             event == Event::Present(true) && self.lanes.get(lane).is_some_and(|lane| !lane.is_present());
@@ -215,10 +218,17 @@ impl Floor {
         if effect.is_some() || !came {
             return effect;
         }
-        let Pending { serial, operator, .. } = self.fresh(now)?.clone();
-        let answer = self.give(lane, &serial, &operator).ok()?;
-        // Plugging it in is what starts some lanes.
-        answer.effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
+        let Pending { serial, operator, .. } = self.pending.take().filter(|pending| pending.is_fresh(now))?;
+        match self.give(lane, &serial, &operator) {
+            // Plugging it in is what starts some lanes.
+            Ok(answer) => {
+                answer.effect.or_else(|| self.lanes.get_mut(lane)?.take(Event::Present(true)).ok()?)
+            }
+            Err(refused) => {
+                self.lanes.get_mut(lane)?.miss(Saying::NotGiven { serial, why: Said::of(&refused) }.into());
+                None
+            }
+        }
     }
 
     /// The lane that a scan is for.

@@ -1,5 +1,7 @@
 //! The lanes' states and the way of a scan, without a board.
 
+mod plugged;
+
 use std::time::Duration;
 
 use halfrow::Verdict;
@@ -229,55 +231,6 @@ fn a_scan_goes_to_the_lane_that_was_scanned_and_never_to_a_guess() {
     // A misread label uses up nothing.
     assert!(floor.scan("CA0131103629", WEBER, at(0)).is_err());
     assert_eq!(floor.scan(&serial(1), WEBER, at(0)).unwrap().lane, Some(2));
-}
-
-#[test]
-fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
-    let mut floor = floor(&[PLUG, PLUG], true);
-    plug(&mut floor, 0);
-    floor.scan(&serial(0), WEBER, at(10)).unwrap();
-    let instead = floor.scan(&serial(1), WEBER, at(20)).unwrap();
-    assert!(instead.said.to_string().ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
-    let effect = floor.happened(1, Event::Present(true), at(80));
-    assert!(matches!(effect, Some(Effect::Begin(accepted)) if accepted.serial == serial(1)));
-    assert_eq!(words(&floor), [Word::Ready, Word::Running]);
-}
-
-/// Whoever waited for the plug says which lane it is after all.
-#[test]
-fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
-    let mut floor = floor(&[SCAN, SCAN], true);
-    plug(&mut floor, 0);
-    floor.scan(&serial(0), WEBER, at(0)).unwrap();
-    floor.scan("HR:LANE:1", WEBER, at(1)).unwrap();
-    assert_eq!(floor.scan(&serial(1), WEBER, at(2)).unwrap().lane, Some(0));
-    assert_eq!(floor.pending(at(2)), Some(serial(0).as_str()), "another one waits still");
-    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
-    floor.scan("HR:LANE:1", WEBER, at(4)).unwrap();
-    assert_eq!(floor.scan(&serial(0), WEBER, at(5)).unwrap().lane, Some(0));
-    assert_eq!(floor.pending(at(5)), None);
-    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(6));
-    assert_eq!(floor.happened(1, Event::Present(true), at(7)), None);
-    assert_eq!(words(&floor), [Word::Pass, Word::Ready]);
-}
-
-#[test]
-fn a_number_waits_a_minute_for_its_board() {
-    for (seconds, word) in [(60, Word::Running), (61, Word::Ready)] {
-        let mut floor = floor(&[SCAN, SCAN], true);
-        floor.scan(&serial(0), WEBER, at(0)).unwrap();
-        floor.happened(0, Event::Present(true), at(seconds));
-        assert_eq!(words(&floor)[0], word);
-    }
-}
-
-#[test]
-fn a_board_that_was_there_already_takes_no_number() {
-    let mut floor = floor(&[SCAN, SCAN], true);
-    plug(&mut floor, 0);
-    floor.scan(&serial(0), WEBER, at(0)).unwrap();
-    assert_eq!(plug(&mut floor, 0), None);
-    assert_eq!(words(&floor), [Word::Ready, Word::Empty]);
 }
 
 #[test]

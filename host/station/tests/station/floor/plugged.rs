@@ -1,0 +1,96 @@
+//! A serial number that is scanned before its board is plugged in.
+
+use halfrow::Verdict;
+use halfrow_station::floor::{Act, Effect, Event, Floor, Owes, Place, Word};
+use halfrow_station::said::Said;
+
+use super::{PLUG, SCAN, WEBER, at, floor, plug, rule, serial, shown, words};
+
+#[test]
+fn a_number_that_was_scanned_first_goes_to_the_board_that_is_plugged_in() {
+    let mut floor = floor(&[PLUG, PLUG], true);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), WEBER, at(10)).unwrap();
+    let instead = floor.scan(&serial(1), WEBER, at(20)).unwrap();
+    assert!(instead.said.to_string().ends_with(&format!("instead of {}", serial(0))), "{instead:?}");
+    let effect = floor.happened(1, Event::Present(true), at(80));
+    assert!(matches!(effect, Some(Effect::Begin(accepted)) if accepted.serial == serial(1)));
+    assert_eq!(words(&floor), [Word::Ready, Word::Running]);
+}
+
+/// Whoever waited for the plug says which lane it is after all.
+#[test]
+fn a_number_that_a_lane_was_given_waits_for_no_other_board() {
+    let mut floor = floor(&[SCAN, SCAN], true);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    floor.scan("HR:LANE:1", WEBER, at(1)).unwrap();
+    assert_eq!(floor.scan(&serial(1), WEBER, at(2)).unwrap().lane, Some(0));
+    assert_eq!(floor.pending(at(2)), Some(serial(0).as_str()), "another one waits still");
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(3));
+    floor.scan("HR:LANE:1", WEBER, at(4)).unwrap();
+    assert_eq!(floor.scan(&serial(0), WEBER, at(5)).unwrap().lane, Some(0));
+    assert_eq!(floor.pending(at(5)), None);
+    floor.happened(0, Event::Ended(shown(Verdict::Pass)), at(6));
+    assert_eq!(floor.happened(1, Event::Present(true), at(7)), None);
+    assert_eq!(words(&floor), [Word::Pass, Word::Ready]);
+}
+
+#[test]
+fn a_number_waits_a_minute_for_its_board() {
+    for (seconds, word) in [(60, Word::Running), (61, Word::Ready)] {
+        let mut floor = floor(&[SCAN, SCAN], true);
+        floor.scan(&serial(0), WEBER, at(0)).unwrap();
+        floor.happened(0, Event::Present(true), at(seconds));
+        assert_eq!(words(&floor)[0], word);
+    }
+}
+
+#[test]
+fn a_board_that_was_there_already_takes_no_number() {
+    let mut floor = floor(&[SCAN, SCAN], true);
+    plug(&mut floor, 0);
+    floor.scan(&serial(0), WEBER, at(0)).unwrap();
+    assert_eq!(plug(&mut floor, 0), None);
+    assert_eq!(words(&floor), [Word::Ready, Word::Empty]);
+}
+
+/// Has the first lane take no number, each in a way of its own.
+fn taking_nothing() -> [(&'static str, Floor); 5] {
+    let [mut out, mut owes, mut running] = [(); 3].map(|()| floor(&[SCAN, SCAN], true));
+    out.act(0, Act::Out, WEBER).unwrap();
+    let why = Said::of(&std::io::Error::other("the shift is over"));
+    owes.happened(0, Event::Owes(Some(Owes { plan: 0, serial: Some(serial(1)), why: why.clone() })), at(0));
+    plug(&mut running, 0);
+    running.scan_for(0, &serial(1), WEBER, at(0)).unwrap();
+    running.happened(0, Event::Present(false), at(0));
+    let mut unsaved = running.clone();
+    unsaved.happened(0, Event::Unsaved { why }, at(0));
+    let place = |name: &str, plans| Place { name: name.to_owned(), starts: SCAN, plans };
+    let places = vec![place("1", vec![1]), place("2", vec![0, 1])];
+    let other = Floor::new(places, vec![rule("CAM-A", "CA"), rule("CAM-B", "CB")], true);
+    [
+        ("is out of service", out),
+        ("the shift is over", owes),
+        ("is testing", running),
+        ("is not saved", unsaved),
+        ("pattern", other),
+    ]
+}
+
+/// It is that of the board which came: no other board is tested under it.
+#[test]
+fn a_number_whose_board_came_to_a_lane_that_does_not_take_it_waits_for_no_other() {
+    for (why, mut floor) in taking_nothing() {
+        floor.scan(&serial(0), WEBER, at(1)).unwrap();
+        assert_eq!(floor.happened(0, Event::Present(true), at(2)), None, "{why}");
+        let noted = |floor: &Floor| floor.lanes()[0].note().map(ToString::to_string).unwrap_or_default();
+        let note = noted(&floor);
+        assert!(note.contains(&serial(0)) && note.contains(why), "{why}: {note}");
+        assert_eq!(floor.pending(at(2)), None, "{why}");
+        assert_eq!(floor.happened(1, Event::Present(true), at(3)), None, "{why}");
+        assert_eq!(words(&floor)[1], Word::Ready, "{why}");
+        floor.happened(0, Event::Present(false), at(4));
+        assert!(!noted(&floor).contains(&serial(0)), "{why}: it goes with its board");
+    }
+}
