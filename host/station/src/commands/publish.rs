@@ -19,7 +19,8 @@ use crate::guard::guarded;
 use crate::history::PlanName;
 use crate::plan::Plan;
 use crate::published::{
-    Bundle, BundleError, FetchError, Fetched, Kept, Offer, SigningError, SigningKey, Statement, offered,
+    Bundle, BundleError, FetchError, Fetched, Kept, Offer, PublicKey, SigningError, SigningKey, Statement,
+    look_whole, offered,
 };
 use crate::said::Said;
 use crate::settings::{Published, Settings};
@@ -91,6 +92,15 @@ pub(super) enum PublishError {
         "the plant never had a plan {plan} {version}; `halfrow-station plan published` lists those that hold"
     )]
     NoVersion { plan: String, version: String },
+    /// Whoever signed what the plant has is not known here.
+    #[error(
+        "what the plant has of the plan {plan} is signed neither by this key nor by one of `trusts` in [plant]; write whose it is there if \
+         you know it, and ask whoever keeps the plant if not"
+    )]
+    Untrusted { plan: String },
+    /// Its last statement has the last number that there is.
+    #[error("the plan {plan} has had the last number that there is; publish it under another name")]
+    NoNumber { plan: String },
 }
 
 /// Makes an engineer's key in a new file, and prints what stations know it by.
@@ -103,50 +113,88 @@ pub(super) fn publish(Publish { settings, file, signed }: &Publish) -> Result<Ex
     let plan = Plan::load(file).map_err(Failure::call)?;
     let bundle = Bundle::of(file, &plan)?;
     let name = PlanName::from(&plan);
-    let mut at = connected(settings)?;
-    let before = at.published_version(&name, &plan.version)?;
-    if before.is_some_and(|before| before != plan.sha256) {
+    let mut desk = signed.desk(settings)?;
+    // Whoever signed it: runs were judged by it.
+    let before = desk.at.published_version(&name, &plan.version)?;
+    let is_other = |(text, _): &(String, String)| {
+        serde_json::from_str(text).map_or(true, |before: Statement| before.sha256 != plan.sha256)
+    };
+    if before.as_ref().is_some_and(is_other) {
         let version = plan.version.clone();
         return Err(Failure::call(PublishError::OtherContent { plan: name.to_string(), version }));
     }
-    signed.state(&mut at, &name, &plan.version, &plan.sha256, Some(&bundle))
+    desk.state(&name, &plan.version, &plan.sha256, Some(&bundle))
 }
 
 pub(super) fn back(Back { settings, plan, earlier: version, signed }: &Back) -> Result<Exit, Failure> {
-    let none = || PublishError::NoVersion { plan: plan.clone(), version: version.clone() };
-    let (product, name) = plan.split_once('/').ok_or_else(|| Failure::call(none()))?;
+    let none = || Failure::call(PublishError::NoVersion { plan: plan.clone(), version: version.clone() });
+    let (product, name) = plan.split_once('/').ok_or_else(none)?;
     let name = PlanName { product: product.to_owned(), plan: name.to_owned() };
-    let mut at = connected(settings)?;
-    let sha256 = at.published_version(&name, version)?.ok_or_else(|| Failure::call(none()))?;
-    signed.state(&mut at, &name, version, &sha256, None)
+    let mut desk = signed.desk(settings)?;
+    let said = desk.at.published_version(&name, version)?.ok_or_else(none)?;
+    let statement = desk.trusted(&name, &said)?;
+    if statement.version != *version {
+        return Err(Failure::error(PublishError::Untrusted { plan: plan.clone() }));
+    }
+    look_whole(&mut desk.at, &statement)?;
+    desk.state(&name, version, &statement.sha256, None)
 }
 
 impl Signed {
+    /// Where it is published that the settings name.
+    fn desk(&self, settings: &SettingsFile) -> Result<Desk<'_>, Failure> {
+        let published = published(settings)?;
+        let key = SigningKey::load(&self.key)?;
+        let trusted = [published.trusts(), &[key.public()]].concat();
+        Ok(Desk { at: Plant::connect(&address(&published)?)?, key, trusted, why: &self.why })
+    }
+}
+
+/// The plant, before which an engineer sits with a key. What its database says counts only as it was signed.
+struct Desk<'a> {
+    at: Plant,
+    key: SigningKey,
+    /// Whose statements are taken: the engineer's own, and those of whom the settings trust.
+    trusted: Vec<PublicKey>,
+    why: &'a Why,
+}
+
+impl Desk<'_> {
+    /// What was said of this plan, if somebody has signed it who is trusted.
+    fn trusted(&self, name: &PlanName, (text, signature): &(String, String)) -> Result<Statement, Failure> {
+        Statement::signed(text, signature, &self.trusted)
+            .filter(|statement| statement.plan() == *name)
+            .ok_or_else(|| Failure::error(PublishError::Untrusted { plan: name.to_string() }))
+    }
+
+    /// The number of the next statement about this plan.
+    fn number(&mut self, name: &PlanName) -> Result<i64, Failure> {
+        let Some(said) = self.at.publication(name)? else { return Ok(1) };
+        let last = self.trusted(name, &said)?.number;
+        last.checked_add(1).ok_or_else(|| Failure::error(PublishError::NoNumber { plan: name.to_string() }))
+    }
+
     /// Signs that this plan holds from now on.
     fn state(
-        &self,
-        at: &mut Plant,
+        &mut self,
         name: &PlanName,
         version: &str,
         sha256: &str,
         bundle: Option<&Bundle>,
     ) -> Result<Exit, Failure> {
-        let key = SigningKey::load(&self.key)?;
-        let last: Option<Statement> =
-            at.publication(name)?.and_then(|(statement, _)| serde_json::from_str(&statement).ok());
         let statement = Statement {
             schema: Statement::SCHEMA,
             product: name.product.clone(),
             name: name.plan.clone(),
             version: version.to_owned(),
             sha256: sha256.to_owned(),
-            number: last.map_or(0, |last| last.number).saturating_add(1),
+            number: self.number(name)?,
             operator: self.why.operator.clone(),
             reason: self.why.reason.clone(),
-            key: key.public(),
+            key: self.key.public(),
         };
-        let signature = key.sign(&statement.text());
-        if !at.publish(&statement, &signature, bundle)? {
+        let signature = self.key.sign(&statement.text());
+        if !self.at.publish(&statement, &signature, bundle)? {
             return Err(Failure::error(PublishError::TooLate { plan: name.to_string() }));
         }
         print(&format!("{name} {version} holds, as number {}", statement.number))
@@ -250,10 +298,6 @@ fn fetched(kept: &Kept, offers: Offers) -> Result<Vec<Result<Fetched, FetchError
 /// The same; the first error, if there is one.
 fn all_fetched(kept: &Kept, offers: Offers) -> Result<(), Failure> {
     fetched(kept, offers)?.into_iter().try_for_each(|fetched| Ok(fetched.map(drop)?))
-}
-
-fn connected(settings: &SettingsFile) -> Result<Plant, Failure> {
-    Ok(Plant::connect(&address(&published(settings)?)?)?)
 }
 
 /// What the settings have of the plant.

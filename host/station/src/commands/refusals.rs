@@ -18,6 +18,8 @@ codes::codes! {
         OtherContent [plan, version] => "plan-version-taken",
         TooLate [plan] => "plan-published-meanwhile",
         NoVersion [plan, version] => "plan-version-unknown",
+        Untrusted [plan] => "plan-statement-untrusted",
+        NoNumber [plan] => "plan-without-number",
     }
     ;
     EngineEnded => "engine-ended"

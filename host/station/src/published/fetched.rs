@@ -1,5 +1,7 @@
 //! Fetches what a plant publishes.
 
+use std::path::Path;
+
 use super::kept::Signed;
 use super::{Bundle, BundleError, Kept, PublicKey, Statement};
 use crate::history::PlanName;
@@ -109,14 +111,31 @@ impl Offer {
     pub fn keep(self, kept: &Kept) -> Result<Fetched, FetchError> {
         let Self { signed, statement, bundle, is_new } = self;
         let Some(text) = bundle else { return Ok(Fetched { statement, is_new }) };
-        let plan = statement.plan();
-        let file = Bundle::unpack(&text, &statement.sha256, kept.folder())?;
-        let read = Plan::load(&file).map_err(|source| FetchError::Plan { plan: plan.to_string(), source })?;
-        let says = (read.product.as_str(), read.name.as_str(), read.version.as_str());
-        if says != (statement.product.as_str(), statement.name.as_str(), statement.version.as_str()) {
-            return Err(FetchError::Untrusted { plan: plan.to_string() });
-        }
-        kept.keep(&plan, &signed)?;
+        unpacked(&statement, &text, kept.folder())?;
+        kept.keep(&statement.plan(), &signed)?;
         Ok(Fetched { statement, is_new })
     }
+}
+
+/// Looks whether the plant has the plan of this statement just so, with every file that it names. Nothing is kept.
+///
+/// # Errors
+/// [`FetchError`]
+pub fn look_whole(plant: &mut Plant, statement: &Statement) -> Result<(), FetchError> {
+    let text = plant.bundle(&statement.sha256)?;
+    let folder =
+        tempfile::tempdir().map_err(|source| BundleError::Folder { path: std::env::temp_dir(), source })?;
+    unpacked(statement, &text, folder.path())
+}
+
+/// Unpacks the bundle `text` into `folder`: it is the plan of this statement.
+fn unpacked(statement: &Statement, text: &str, folder: &Path) -> Result<(), FetchError> {
+    let plan = || statement.plan().to_string();
+    let file = Bundle::unpack(text, &statement.sha256, folder)?;
+    let read = Plan::load(&file).map_err(|source| FetchError::Plan { plan: plan(), source })?;
+    let says = (read.product.as_str(), read.name.as_str(), read.version.as_str());
+    if says != (statement.product.as_str(), statement.name.as_str(), statement.version.as_str()) {
+        return Err(FetchError::Untrusted { plan: plan() });
+    }
+    Ok(())
 }

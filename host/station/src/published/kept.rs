@@ -28,11 +28,7 @@ pub(super) struct Signed {
 impl Signed {
     /// What it says, if somebody of `trusted` has signed it.
     pub(super) fn by(&self, trusted: &[PublicKey]) -> Option<Statement> {
-        let statement: Statement = serde_json::from_str(&self.statement).ok()?;
-        let is_trusted = trusted.contains(&statement.key)
-            && statement.schema == Statement::SCHEMA
-            && statement.key.has_signed(&self.statement, &self.signature);
-        is_trusted.then_some(statement)
+        Statement::signed(&self.statement, &self.signature, trusted)
     }
 }
 

@@ -14,7 +14,7 @@ mod kept;
 mod signed;
 
 pub use bundle::{Bundle, BundleError};
-pub use fetched::{FetchError, Fetched, Offer, offered};
+pub use fetched::{FetchError, Fetched, Offer, look_whole, offered};
 pub use kept::Kept;
 pub use signed::{PublicKey, SigningError, SigningKey, Statement};
 

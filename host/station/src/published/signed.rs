@@ -154,6 +154,16 @@ impl Statement {
     /// The version of the format.
     pub const SCHEMA: u32 = 1;
 
+    /// What `text` says, if somebody of `trusted` has signed it by `signature`.
+    #[must_use]
+    pub fn signed(text: &str, signature: &str, trusted: &[PublicKey]) -> Option<Self> {
+        let statement: Self = serde_json::from_str(text).ok()?;
+        let is_trusted = trusted.contains(&statement.key)
+            && statement.schema == Self::SCHEMA
+            && statement.key.has_signed(text, signature);
+        is_trusted.then_some(statement)
+    }
+
     /// What is signed of it.
     #[must_use]
     pub fn text(&self) -> String {

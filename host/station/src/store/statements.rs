@@ -135,7 +135,7 @@ statements! {
     pub(super) BUNDLE = "plant/bundle.sql";
     pub(super) PUBLISH = "plant/publish.sql";
     pub(super) PUBLICATION = "plant/publication.sql";
-    pub(super) HASH_OF_VERSION = "plant/hash-of-version.sql";
+    pub(super) PUBLISHED_VERSION = "plant/published-version.sql";
     pub(super) PUBLICATIONS = "plant/publications.sql";
     pub(super) ADD_MISMATCH = "plant/add-mismatch.sql";
     pub(crate) MISMATCHES = "mismatches.sql";

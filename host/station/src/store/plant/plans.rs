@@ -19,7 +19,7 @@ impl Plant {
         })
     }
 
-    /// The hash of the plan of this version that was published last.
+    /// As [`Self::publication`], what was said last of this version.
     ///
     /// # Errors
     /// As [`Self::publication`].
@@ -27,10 +27,11 @@ impl Plant {
         &mut self,
         plan: &PlanName,
         version: &str,
-    ) -> Result<Option<String>, StoreError> {
+    ) -> Result<Option<(String, String)>, StoreError> {
         let PlanName { product, plan } = plan;
         self.carry_out("to tell a plan's versions", |from| {
-            from.first(sql::HASH_OF_VERSION, values![product, plan, version], |row| row.get(0))
+            let values = values![product, plan, version];
+            from.first(sql::PUBLISHED_VERSION, values, |row| Ok((row.get(0)?, row.get(1)?)))
         })
     }
 

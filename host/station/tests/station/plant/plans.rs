@@ -168,6 +168,70 @@ fn what_nobody_signed_who_is_trusted_is_not_taken() {
     assert_eq!(made.held(), ("3".to_owned(), 3));
 }
 
+/// What the engineer with the key is made to sign by somebody who can write to the database, and has no key that anybody trusts.
+#[test]
+fn an_older_plan_holds_again_as_it_was_signed_or_not_at_all() {
+    let made = Published::new();
+    let change = |text: &str| made.server.client("plant").batch_execute(text).unwrap();
+    // Another plan of the same name and version is in the database.
+    made.did(&["plan", "key", &made.path("other.key")]);
+    made.plan("1", 9);
+    made.publish("other.key");
+    change("DELETE FROM publication");
+    let other = made.server.rows("SELECT sha256 FROM bundle")[0][0].clone();
+    made.plan("1", 1);
+    made.publish("engel.key");
+    made.plan("2", 2);
+    made.publish("engel.key");
+    change(&format!("UPDATE publication SET sha256 = '{other}' WHERE version = '1'"));
+    assert_eq!(made.back("1").said, "CAM-T/quick 1 holds, as number 3\n");
+    made.fetch();
+    assert_eq!(made.held(), ("1".to_owned(), 1), "what was signed");
+    let refused = |expected: &str| {
+        let back = made.back("1");
+        assert!(back.code == Some(3) && back.complained.contains(expected), "{expected}: {back:?}");
+    };
+    change(&format!(
+        "UPDATE bundle SET text = replace(text, 'timeout = 60', 'timeout = 61') WHERE sha256 <> '{other}'"
+    ));
+    refused("has the hash");
+    change(&format!(
+        "UPDATE publication SET statement = regexp_replace(statement, '\"sha256\":\"[0-9a-f]*\"', '\"sha256\":\"{other}\"') WHERE version = '1'"
+    ));
+    refused("is signed neither by this key nor");
+    change(
+        "UPDATE publication SET statement = two.statement, signature = two.signature FROM publication two
+            WHERE publication.version = '1' AND two.version = '2'",
+    );
+    refused("is signed neither by this key nor");
+}
+
+/// The next number is one more than the last that somebody signed who is trusted.
+#[test]
+fn a_plan_gets_no_number_that_nobody_signed_who_is_trusted() {
+    let made = Published::new();
+    made.publish("engel.key");
+    let change = |text: &str| made.server.client("plant").batch_execute(text).unwrap();
+    change(
+        "UPDATE publication SET statement = replace(statement, '\"number\":1', '\"number\":9223372036854775807')",
+    );
+    made.plan("2", 2);
+    let refused = || {
+        let did = made.publish("engel.key");
+        assert!(
+            did.code == Some(3) && did.complained.contains("is signed neither by this key nor"),
+            "{did:?}"
+        );
+    };
+    refused();
+    change("DELETE FROM publication");
+    made.did(&["plan", "key", &made.path("other.key")]);
+    made.publish("other.key");
+    made.plan("3", 3);
+    refused();
+    assert_eq!(made.publish("other.key").said, "CAM-T/quick 3 holds, as number 2\n");
+}
+
 #[test]
 fn nothing_is_published_behind_the_greatest_number() {
     let made = Published::new();

@@ -1,4 +1,4 @@
-SELECT sha256 FROM publication
+SELECT statement, signature FROM publication
 WHERE product = $1 AND name = $2 AND version = $3
 ORDER BY number DESC
 LIMIT 1;
