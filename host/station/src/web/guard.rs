@@ -17,6 +17,7 @@ use super::routes::Who;
 use super::state::App;
 use super::trouble::Trouble;
 use super::visit::{User, Visit, cookie};
+use crate::said::Said;
 
 /// How long an answer may take to begin.
 const PATIENCE: Duration = Duration::from_secs(30);
@@ -157,7 +158,7 @@ fn look(app: &App, visit: &Visit, who: Who, request: Request) -> Result<Request,
         .get(header::ACCEPT)
         .is_some_and(|accept| accept.to_str().is_ok_and(|accept| accept.contains("text/html")));
     match visit.user {
-        None if wants_page => Err(Box::new(Redirect::to("/login").into_response())),
+        None if wants_page && visit.untold.is_none() => Err(Box::new(Redirect::to("/login").into_response())),
         _ => Err(Box::new(Trouble::barred(visit).into_response())),
     }
 }
@@ -215,13 +216,19 @@ impl App {
     async fn visit(&self, headers: &HeaderMap, is_act: bool) -> Result<Visit, Trouble> {
         let (access, stranger) = (self.access(), self.stranger(headers));
         let sent = cookie(headers, &access.cookie_name()).map(str::to_owned);
-        let mut user = self.user(&stranger, sent.clone(), is_act).await?;
+        let (mut user, untold) = match self.user(&stranger, sent.clone(), is_act).await? {
+            Ok(user) => (user, None),
+            Err(error) => (None, Some(Said::of(&error))),
+        };
+        if let Some(why) = &untold {
+            tracing::error!("{why}");
+        }
         if let Some(user) = user.as_mut().filter(|_| self.is_plant()) {
             user.who = user.who.min(Who::Reader);
         }
         let is_new = sent.is_none();
         let session = sent.or_else(|| access.begin(None).ok()).unwrap_or_default();
         let (csrf, can_log_in) = (access.form_mark(&session), access.has_people());
-        Ok(Visit { csrf, user, session, is_new, can_log_in, ..stranger })
+        Ok(Visit { csrf, user, untold, session, is_new, can_log_in, ..stranger })
     }
 }

@@ -9,12 +9,13 @@ use axum::{Extension, Form};
 use maud::{Markup, html};
 use serde::Deserialize;
 
+use super::access::Identified;
 use super::language;
 use super::layout::{Here, Page};
 use super::routes::{Route, Who, act, is_page, look};
 use super::state::App;
 use super::trouble::Trouble;
-use super::visit::{User, Visit};
+use super::visit::Visit;
 
 /// How long the choice of a language is kept, in seconds.
 const YEAR: u32 = 31_536_000;
@@ -78,7 +79,7 @@ pub(super) async fn identified(
     visit: &Visit,
     peer: IpAddr,
     (badge, password): (String, String),
-) -> Result<Option<User>, Trouble> {
+) -> Result<Option<Identified>, Trouble> {
     if let Some(wait) = app.access().attempt(peer) {
         let seconds = (wait.as_secs() + 1).to_string();
         let said = visit.words.fill("login.wait", &[("seconds", &seconds)]);
@@ -87,17 +88,18 @@ pub(super) async fn identified(
     let access = app.clone();
     let known = app.blocking(visit, move || access.access().identify(&badge, &password)).await?;
     match &known {
-        Some(_) => app.access().succeeded(peer),
-        None => app.audit(visit, "login refused", &peer.to_string(), "").await?,
+        // Where nobody can be told, nobody has guessed.
+        Ok(Some(_)) | Err(_) => app.access().succeeded(peer),
+        Ok(None) => app.audit(visit, "login refused", &peer.to_string(), "").await?,
     }
-    Ok(known)
+    known.map_err(|error| Trouble::secret(visit, &error))
 }
 
-/// Logs `user` in, in the place of whoever was; returns the cookie to be set.
-pub(super) async fn logged_in(app: &App, visit: &Visit, user: User) -> Result<HeaderValue, Trouble> {
-    let now = Visit { user: Some(user.clone()), ..visit.clone() };
+/// Logs somebody in, in the place of whoever was; returns the cookie to be set.
+pub(super) async fn logged_in(app: &App, visit: &Visit, who: Identified) -> Result<HeaderValue, Trouble> {
+    let now = Visit { user: Some(who.user.clone()), ..visit.clone() };
     app.audit(&now, "login", if now.may(Who::Engineer) { "engineer" } else { "operator" }, "").await?;
-    anew(app, visit, Some(user)).await
+    anew(app, visit, Some(who)).await
 }
 
 async fn log_out(State(app): State<App>, visit: Visit) -> Result<Response, Trouble> {
@@ -109,11 +111,11 @@ async fn log_out(State(app): State<App>, visit: Visit) -> Result<Response, Troub
 }
 
 /// The cookie of a new session, in the place of the visitor's, which ends.
-async fn anew(app: &App, visit: &Visit, user: Option<User>) -> Result<HeaderValue, Trouble> {
+async fn anew(app: &App, visit: &Visit, who: Option<Identified>) -> Result<HeaderValue, Trouble> {
     let (of, session) = (app.clone(), visit.session.clone());
     let begun = move || {
         of.access().end(&session);
-        of.access().begin(user)
+        of.access().begin(who)
     };
     let session = app.blocking(visit, begun).await?.map_err(|error| Trouble::broken(visit, &error))?;
     HeaderValue::from_str(&app.access().cookie(&session)).map_err(|error| Trouble::broken(visit, &error))

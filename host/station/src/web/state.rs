@@ -6,7 +6,7 @@ use std::sync::Arc;
 use halfrow::report::wording::plain;
 use tokio::task;
 
-use super::access::Access;
+use super::access::{Access, SecretError};
 use super::assets;
 use super::live::Live;
 use super::metrics::Turns;
@@ -126,7 +126,7 @@ impl App {
         &self.0.turns
     }
 
-    /// Who has this cookie, or is everybody. The file of them may be on a slow disk.
+    /// Who has this cookie, or is everybody, as [`Access::user`] tells. The file of them may be on a slow disk.
     ///
     /// # Errors
     /// [`Trouble`] when it did not come to its end.
@@ -135,7 +135,7 @@ impl App {
         visit: &Visit,
         session: Option<String>,
         is_act: bool,
-    ) -> Result<Option<User>, Trouble> {
+    ) -> Result<Result<Option<User>, SecretError>, Trouble> {
         let app = self.clone();
         self.blocking(visit, move || app.access().user(session.as_deref(), is_act)).await
     }

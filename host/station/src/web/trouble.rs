@@ -8,6 +8,7 @@ use axum::response::{IntoResponse, Response};
 use maud::html;
 use serde_json::json;
 
+use super::access::SecretError;
 use super::history::show;
 use super::language::Told;
 use super::layout::{Here, Page};
@@ -36,9 +37,10 @@ impl Trouble {
 
     /// The visitor may not.
     pub(super) fn barred(visit: &Visit) -> Self {
-        match visit.user {
-            None => Self::new(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
-            Some(_) => Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
+        match (&visit.user, &visit.untold) {
+            (None, Some(why)) => Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, why),
+            (None, None) => Self::new(visit, StatusCode::UNAUTHORIZED, visit.say("trouble.login")),
+            (Some(_), _) => Self::new(visit, StatusCode::FORBIDDEN, visit.say("trouble.forbidden")),
         }
     }
 
@@ -54,6 +56,13 @@ impl Trouble {
 
     /// The store does not do it. The reason is for the log and the engineer.
     pub(super) fn store(visit: &Visit, error: &StoreError) -> Self {
+        let said = Said::of(error);
+        tracing::error!("{said}");
+        Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &said)
+    }
+
+    /// It cannot be told who somebody is.
+    pub(super) fn secret(visit: &Visit, error: &SecretError) -> Self {
         let said = Said::of(error);
         tracing::error!("{said}");
         Self::telling(visit, StatusCode::SERVICE_UNAVAILABLE, &said)

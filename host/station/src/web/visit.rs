@@ -8,6 +8,7 @@ use super::language::{self, Words};
 use super::routes::Who;
 use super::state::App;
 use super::trouble::Trouble;
+use crate::said::Said;
 
 /// Somebody who is known by name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,6 +26,8 @@ pub(super) struct Visit {
     pub(super) words: &'static Words,
     /// Who it is, if it is somebody.
     pub(super) user: Option<User>,
+    /// Why it cannot be told who it is.
+    pub(super) untold: Option<Said>,
     /// The value of the cookie that the visitor has, or is given.
     pub(super) session: String,
     /// Whether it is given.
@@ -79,6 +82,7 @@ impl App {
         Visit {
             words,
             user: None,
+            untold: None,
             session,
             is_new: true,
             can_log_in: false,

@@ -19,6 +19,7 @@ pub use address::{Address, AddressError};
 pub use key::SecretError;
 pub(crate) use key::{create, secret};
 pub use tokens::{Scope, TokenError, Tokens};
+pub(super) use users::Identified;
 pub use users::{Role, UserError, Users};
 
 use super::visit::User;
@@ -135,33 +136,32 @@ impl Access {
     }
 
     /// Who has this cookie, or is everybody. It may wait for the disk.
-    pub(super) fn user(&self, session: Option<&str>, is_act: bool) -> Option<User> {
-        match &self.people {
-            People::Everybody(user) => Some(user.clone()),
-            People::Listed { file, idle, .. } => {
-                let session = session?;
-                let mark = self.key.mark(SESSION, session);
-                let user = self.sessions().user(&mark, *idle, is_act, clock::now_ms())?;
-                // Whoever was taken from the file is nobody any more.
-                if Users::load(file).is_ok_and(|users| users.has(&user)) {
-                    return Some(user);
-                }
-                self.sessions().remove(&mark, clock::now_ms());
-                None
-            }
+    ///
+    /// # Errors
+    /// [`SecretError`] when the file of people cannot tell; whoever is logged in stays so.
+    pub(super) fn user(&self, session: Option<&str>, is_act: bool) -> Result<Option<User>, SecretError> {
+        let (file, idle) = match &self.people {
+            People::Everybody(user) => return Ok(Some(user.clone())),
+            People::Listed { file, idle, .. } => (file, *idle),
+        };
+        let Some(mark) = session.map(|session| self.key.mark(SESSION, session)) else { return Ok(None) };
+        let known = self.sessions().user(&mark, idle, is_act, clock::now_ms());
+        let Some(known) = known else { return Ok(None) };
+        // Whoever was taken from the file, or has another badge or password there, is nobody any more.
+        if Users::load(file)?.has(&self.key, &known) {
+            return Ok(Some(known.user));
         }
+        self.sessions().remove(&mark, clock::now_ms());
+        Ok(None)
     }
 
     /// Who this badge and this password make, and nobody else. It takes a while.
-    pub(super) fn identify(&self, badge: &str, password: &str) -> Option<User> {
-        let People::Listed { file, .. } = &self.people else { return None };
-        match Users::load(file) {
-            Ok(users) => users.identify(&self.key, badge, password),
-            Err(error) => {
-                tracing::error!("{:#}", anyhow::Error::from(error));
-                None
-            }
-        }
+    ///
+    /// # Errors
+    /// As [`Self::user`].
+    pub(super) fn identify(&self, badge: &str, password: &str) -> Result<Option<Identified>, SecretError> {
+        let People::Listed { file, .. } = &self.people else { return Ok(None) };
+        Ok(Users::load(file)?.identify(&self.key, badge, password))
     }
 
     /// Which machine has this token, asked from `peer`. It may wait for the disk.
@@ -188,14 +188,14 @@ impl Access {
         Machine::Known { name: name.to_owned(), is_new }
     }
 
-    /// A new session of `user`: the value of its cookie.
+    /// A new session of `who`: the value of its cookie.
     ///
     /// # Errors
     /// When the system has no randomness.
-    pub(super) fn begin(&self, user: Option<User>) -> Result<String, SecretError> {
+    pub(super) fn begin(&self, who: Option<Identified>) -> Result<String, SecretError> {
         let session = key::hex(&key::drawn().map_err(SecretError::NoRandomness)?);
-        if let Some(user) = user {
-            self.sessions().add(self.key.mark(SESSION, &session), user, clock::now_ms());
+        if let Some(who) = who {
+            self.sessions().add(self.key.mark(SESSION, &session), who, clock::now_ms());
         }
         Ok(session)
     }

@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use serde::{Deserialize, Serialize};
 
 use super::key::{self, SecretError};
+use super::users::Identified;
 use crate::web::routes::Who;
 use crate::web::visit::User;
 
@@ -30,6 +31,8 @@ struct Line {
     mark: String,
     name: String,
     is_engineer: bool,
+    /// The mark of the badge and the password that they logged in by.
+    proof: String,
     /// When they did something last, in milliseconds since 1970, UTC.
     used_ms: i64,
 }
@@ -45,7 +48,7 @@ struct Lines {
 /// that pages that are open go on.
 #[derive(Debug, Default)]
 pub(super) struct Sessions {
-    known: HashMap<String, (User, i64)>,
+    known: HashMap<String, (Identified, i64)>,
     file: Option<PathBuf>,
     saved_ms: i64,
 }
@@ -64,36 +67,42 @@ impl Sessions {
             }
             Err(error) => return Err(error),
         };
-        let known = lines.session.into_iter().map(|Line { mark, name, is_engineer, used_ms }| {
+        let known = lines.session.into_iter().map(|Line { mark, name, is_engineer, proof, used_ms }| {
             let who = if is_engineer { Who::Engineer } else { Who::Operator };
-            (mark, (User { name, who }, used_ms))
+            (mark, (Identified { user: User { name, who }, proof }, used_ms))
         });
         Ok(Self { known: known.collect(), file: Some(path.to_owned()), saved_ms: 0 })
     }
 
     /// Somebody logged in. Whoever has been idle for longest makes room.
-    pub(super) fn add(&mut self, mark: String, user: User, now_ms: i64) {
+    pub(super) fn add(&mut self, mark: String, who: Identified, now_ms: i64) {
         if self.known.len() >= MOST {
             let idle = self.known.iter().min_by_key(|(_, (_, used))| *used).map(|(mark, _)| mark.clone());
             idle.map(|mark| self.known.remove(&mark));
         }
-        self.known.insert(mark, (user, now_ms));
+        self.known.insert(mark, (who, now_ms));
         self.save(now_ms);
     }
 
     /// Who this is, unless they have been idle for `idle`. An act is no idleness.
-    pub(super) fn user(&mut self, mark: &str, idle: Duration, is_act: bool, now_ms: i64) -> Option<User> {
+    pub(super) fn user(
+        &mut self,
+        mark: &str,
+        idle: Duration,
+        is_act: bool,
+        now_ms: i64,
+    ) -> Option<Identified> {
         let idle_ms = i64::try_from(idle.as_millis()).unwrap_or(i64::MAX);
         self.known.retain(|_, (_, used)| now_ms.saturating_sub(*used) < idle_ms);
-        let (user, used) = self.known.get_mut(mark)?;
-        let user = user.clone();
+        let (who, used) = self.known.get_mut(mark)?;
+        let who = who.clone();
         if is_act {
             *used = now_ms;
             if now_ms.saturating_sub(self.saved_ms) >= SAVED_MS {
                 self.save(now_ms);
             }
         }
-        Some(user)
+        Some(who)
     }
 
     /// Somebody logged out, or may not be logged in any more.
@@ -107,10 +116,11 @@ impl Sessions {
     fn save(&mut self, now_ms: i64) {
         let Some(file) = &self.file else { return };
         self.saved_ms = now_ms;
-        let line = |(mark, (user, used_ms)): (&String, &(User, i64))| Line {
+        let line = |(mark, (Identified { user, proof }, used_ms)): (&String, &(Identified, i64))| Line {
             mark: mark.clone(),
             name: user.name.clone(),
             is_engineer: user.who == Who::Engineer,
+            proof: proof.clone(),
             used_ms: *used_ms,
         };
         let lines = Lines { session: self.known.iter().map(line).collect() };
@@ -171,10 +181,14 @@ mod tests {
         assert_eq!(failures.wait(peer, after(60)), None);
     }
 
+    fn identified(name: &str, who: Who) -> Identified {
+        Identified { user: User { name: name.to_owned(), who }, proof: format!("{name}'s badge") }
+    }
+
     #[test]
     fn idleness_ends_a_session_and_an_act_is_none() {
         let (mut sessions, idle) = (Sessions::default(), Duration::from_secs(100));
-        let weber = User { name: "Weber".to_owned(), who: Who::Operator };
+        let weber = identified("Weber", Who::Operator);
         sessions.add("s".to_owned(), weber.clone(), 1_000);
         assert_eq!(sessions.user("s", idle, true, 91_000), Some(weber.clone()));
         assert_eq!(sessions.user("s", idle, false, 181_000), Some(weber));
@@ -186,8 +200,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("station.sessions");
         let idle = Duration::from_secs(3600);
-        let [weber, braun] = [("Weber", Who::Operator), ("Braun", Who::Engineer)]
-            .map(|(name, who)| User { name: name.to_owned(), who });
+        let [weber, braun] =
+            [("Weber", Who::Operator), ("Braun", Who::Engineer)].map(|(name, who)| identified(name, who));
         let mut sessions = Sessions::load(&path).unwrap();
         sessions.add("w".to_owned(), weber.clone(), 0);
         sessions.add("b".to_owned(), braun.clone(), 0);

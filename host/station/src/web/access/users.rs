@@ -12,6 +12,8 @@ use crate::web::visit::User;
 
 /// What the marks of badges are told from others by.
 const BADGE: &str = "badge";
+/// What the marks of sessions' proofs are told from others by.
+const PROOF: &str = "proof";
 /// The fewest characters of a password.
 const FEWEST: usize = 8;
 
@@ -36,6 +38,22 @@ struct Line {
     /// By Argon2id, as a PHC string.
     #[serde(skip_serializing_if = "Option::is_none")]
     password: Option<String>,
+}
+
+impl Line {
+    /// The mark of what makes them `who`: whoever has the same name with another badge or password has another one.
+    fn proof(&self, key: &Key, who: Who) -> String {
+        let password = self.password.as_deref().filter(|_| who == Who::Engineer).unwrap_or_default();
+        key.mark(PROOF, &format!("{} {password}", self.badge))
+    }
+}
+
+/// Somebody whom a badge has made out, or a badge and a password.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Identified {
+    pub(crate) user: User,
+    /// The mark of that badge and that password.
+    pub(super) proof: String,
 }
 
 /// Everybody.
@@ -147,23 +165,28 @@ impl Users {
     }
 
     /// Who has this badge. The badge alone makes an operator of everybody; an engineer's password makes the engineer.
-    pub(crate) fn identify(&self, key: &Key, badge: &str, password: &str) -> Option<User> {
-        let user = self.of_badge(key, badge);
-        let known = user.and_then(|user| user.password.as_deref());
+    pub(crate) fn identify(&self, key: &Key, badge: &str, password: &str) -> Option<Identified> {
+        let identified = |line: &Line, who| Identified {
+            user: User { name: line.name.clone(), who },
+            proof: line.proof(key, who),
+        };
+        let line = self.of_badge(key, badge);
+        let known = line.and_then(|line| line.password.as_deref());
         if password.is_empty() {
-            return user.map(|user| User { name: user.name.clone(), who: Who::Operator });
+            return line.map(|line| identified(line, Who::Operator));
         }
         // Whoever guesses badges does not learn by the time that it takes whether there is such a one.
         let is_right =
             Argon2::default().verify_password(password.as_bytes(), known.unwrap_or(&NOBODYS)).is_ok();
-        user.filter(|_| is_right && known.is_some())
-            .map(|user| User { name: user.name.clone(), who: Who::Engineer })
+        line.filter(|_| is_right && known.is_some()).map(|line| identified(line, Who::Engineer))
     }
 
-    /// Whether somebody of this name may be what `user` is.
-    pub(crate) fn has(&self, user: &User) -> bool {
+    /// Whether somebody of this name may be what this was, by the same badge and password.
+    pub(crate) fn has(&self, key: &Key, Identified { user, proof }: &Identified) -> bool {
         let is = |known: &Line| {
-            known.name == user.name && (user.who < Who::Engineer || known.role == Role::Engineer)
+            known.name == user.name
+                && (user.who < Who::Engineer || known.role == Role::Engineer)
+                && known.proof(key, user.who) == *proof
         };
         self.user.iter().any(is)
     }
@@ -200,17 +223,20 @@ mod tests {
         let users = Users::load(&path).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         assert!(!text.contains("A17") && !text.contains("horse") && text.contains("$argon2id$"), "{text}");
-        let who = |badge, password| users.identify(&key, badge, password).map(|user| user.who);
+        let who = |badge, password| users.identify(&key, badge, password).map(|known| known.user.who);
         assert_eq!(who("A17", ""), Some(Who::Operator));
         assert_eq!(who("A17", "correct horse"), None);
         assert_eq!(who("B22", ""), Some(Who::Operator));
         assert_eq!(who("B22", "correct horse"), Some(Who::Engineer));
         assert_eq!(who("B22", "correct house"), None);
         assert_eq!(who("B2", "correct horse"), None);
-        let braun = |who| User { name: "Braun".to_owned(), who };
-        assert!(users.has(&braun(Who::Engineer)));
+        let [braun, operator] =
+            ["correct horse", ""].map(|password| users.identify(&key, "B22", password).unwrap());
+        assert!(users.has(&key, &braun) && users.has(&key, &operator));
         let mut fewer = users.clone();
         fewer.remove("Braun").unwrap();
-        assert!(!fewer.has(&braun(Who::Operator)));
+        assert!(!fewer.has(&key, &operator));
+        fewer.add(&key, "Braun", Role::Engineer, "B22", "correct horse").unwrap();
+        assert!(fewer.has(&key, &operator) && !fewer.has(&key, &braun), "another salt, so another password");
     }
 }

@@ -95,13 +95,14 @@ async fn badge(
     let known = if visit.user.is_some() {
         // What somebody scans who tests is no guess at a badge.
         let access = app.clone();
-        app.blocking(visit, move || access.access().identify(&label, "")).await?
+        let known = app.blocking(visit, move || access.access().identify(&label, "")).await?;
+        known.map_err(|error| Trouble::secret(visit, &error))?
     } else {
         identified(app, visit, peer, (label, String::new())).await?
     };
-    let Some(user) = known else { return Ok(None) };
-    let said = visit.words.fill("login.now", &[("name", &user.name)]);
-    let cookie = logged_in(app, visit, user).await?;
+    let Some(known) = known else { return Ok(None) };
+    let said = visit.words.fill("login.now", &[("name", &known.user.name)]);
+    let cookie = logged_in(app, visit, known).await?;
     // A badge is shown to nobody.
     let answer = Answer { scanned: String::new(), is_other: true, ..scanned.answer(None, Ok(said), None) };
     let response = if visit.is_script { json(&answer) } else { Redirect::to("/").into_response() };

@@ -48,7 +48,7 @@ async fn next(
         None => {
             let told = of.told.recv().await.ok()?;
             if matches!(told.what, What::Beat(_)) && !of.app.access().is_open() {
-                of.app.user(&of.visit, Some(of.visit.session.clone()), false).await.ok()??;
+                of.app.user(&of.visit, Some(of.visit.session.clone()), false).await.ok()?.ok()??;
             }
             news(&of.visit, &told)
         }

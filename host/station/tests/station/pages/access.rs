@@ -110,6 +110,54 @@ fn a_cookie_is_the_browsers_alone_and_ends_with_its_owner() {
     assert_eq!(engineer.get("/").send().status, 401);
 }
 
+#[test]
+fn whoever_is_added_anew_logs_in_anew_with_what_is_another() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let (operator, engineer) = (serving.operator(), serving.engineer());
+    let braun = serving.logged_in("B-0022", "");
+    let anew = |name: &str, role: &str, said: &str| {
+        assert!(station.user(&["remove", name], "").status.success());
+        assert!(station.user(&["add", name, "--role", role], said).status.success());
+    };
+    anew("Weber", "operator", "A-0099\n");
+    assert_eq!(operator.get("/").send().status, 401, "the badge is another");
+    anew("Braun", "engineer", "B-0022\nanother horse\n");
+    assert_eq!(engineer.get("/").send().status, 401, "the password is another");
+    assert_eq!(braun.get("/").send().status, 200, "the badge is the same");
+    // A station that starts again knows it, too.
+    let [weber, braun] = ["A-0099", "B-0022"].map(|badge| serving.logged_in(badge, ""));
+    anew("Weber", "operator", "A-0017\n");
+    drop(serving);
+    let again = station.serve();
+    let asks = |browser: &Browser| {
+        let (_, session) = browser.cookie.split_once('=').unwrap();
+        // The port is of the cookie's name.
+        let cookie = format!("__Host-halfrow-{}={session}", again.port);
+        again.browser(PUBLIC).get("/").with("cookie", &cookie).send().status
+    };
+    assert_eq!((asks(&weber), asks(&braun)), (401, 200));
+}
+
+#[test]
+fn people_who_cannot_be_read_stay_logged_in_and_are_told() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let (operator, stranger) = (serving.operator(), serving.browser(PUBLIC));
+    let (file, people) = (station.path("users.toml"), fs::read(station.path("users.toml")).unwrap());
+    fs::write(&file, "no table").unwrap();
+    for answer in [
+        operator.get("/").send(),
+        operator.get("/").with("accept", "text/html").send(),
+        operator.post("/lanes/1/abort", &[]).send(),
+        stranger.post("/login", &[("badge", "A-0017")]).send(),
+    ] {
+        assert!(answer.status == 503 && answer.text().contains("users.toml"), "{answer:?}");
+    }
+    fs::write(&file, people).unwrap();
+    assert_eq!(operator.get("/").send().status, 200);
+}
+
 /// As browsers fetch a page behind a link on one of another site: without the cookie where it is the browser's first.
 #[test]
 fn a_link_from_elsewhere_leads_to_a_page_that_logs_in() {
