@@ -8,11 +8,14 @@ use axum::http::StatusCode;
 use axum::http::header::{CONTENT_TYPE, SET_COOKIE};
 use axum::response::{IntoResponse as _, Redirect, Response};
 use axum::{Extension, Form};
+use futures_util::future;
 use serde::{Deserialize, Serialize};
 
 use super::page;
+use crate::engine::Engine;
 use crate::floor::{Act, Scan, ScanError};
 use crate::said::{Said, Saying};
+use crate::settings::PlanFile;
 use crate::web::live::Became;
 use crate::web::login::{Peer, identified, logged_in};
 use crate::web::routes::Who;
@@ -140,11 +143,10 @@ async fn understood(
             Ok(scanned.answer(None, Err(visit.say("scan.engineer").to_owned()), scanned.armed()))
         }
         _ => {
-            app.audit(visit, "scan", armed.map_or("", |(_, name)| name), &label).await?;
-            let Floor { engine, live, .. } = app.floor(visit)?;
-            let (number, became) = live.ask();
-            engine.label(number, armed.map(|(place, _)| place), &label, visit.name(), until);
-            let Became { is_taken, lane, said, .. } = heard(visit, became).await?;
+            let (lane, name) = armed.unzip();
+            let entry = ("scan", name.unwrap_or_default(), kept(app, &label));
+            let ask = |engine: &Engine, number| engine.label(number, lane, &label, visit.name(), until);
+            let Became { is_taken, lane, said, .. } = asked(app, visit, entry, ask).await?;
             let said = visit.words.tell(&said).text;
             let armed = if is_taken { None } else { scanned.armed() };
             Ok(scanned.answer(lane, if is_taken { Ok(said) } else { Err(said) }, armed))
@@ -182,8 +184,42 @@ fn place<'a>(app: &'a App, name: &str) -> Result<(usize, &'a str), ScanError> {
     })
 }
 
-async fn heard(visit: &Visit, became: tokio::sync::oneshot::Receiver<Became>) -> Result<Became, Trouble> {
-    became.await.map_err(|error| Trouble::broken(visit, &error))
+/// What the audit has of a scan. What no plan takes may be a badge that is not known here, of which it has the length alone.
+fn kept(app: &App, label: &str) -> String {
+    let takes = |file: &PlanFile| file.plan.serial.read(label).is_ok();
+    match Scan::read(label) {
+        Ok(Scan::Serial(_)) if !app.settings().plans.iter().any(takes) => {
+            format!("{} characters", label.chars().count())
+        }
+        _ => label.to_owned(),
+    }
+}
+
+/// What became of that which `ask` asks of the engine under a number. It stands in the audit before; an abort at the same time: no
+/// disk that is full keeps a board from being let go.
+async fn asked(
+    app: &App,
+    visit: &Visit,
+    (act, subject, detail): (&'static str, &str, String),
+    ask: impl FnOnce(&Engine, u64),
+) -> Result<Became, Trouble> {
+    let Floor { engine, live, .. } = app.floor(visit)?;
+    let entered = app.audit(visit, act, subject, &detail);
+    let ask = || {
+        let (number, became) = live.ask();
+        ask(engine, number);
+        became
+    };
+    let (became, entered) = if detail == Act::Abort.barcode() {
+        future::join(ask(), entered).await
+    } else {
+        entered.await?;
+        (ask().await, Ok(()))
+    };
+    if entered.is_err() {
+        tracing::error!("the audit does not have that {} aborted what was in lane {subject}", visit.name());
+    }
+    became.map_err(|error| Trouble::broken(visit, &error))
 }
 
 /// A button of a lane.
@@ -210,13 +246,10 @@ async fn done(button: Button, act: Act) -> Result<Response, Trouble> {
     let (State(app), visit, Path(lane), Form(pressed)) = button;
     let (place, name) = place(&app, &lane)
         .map_err(|error| Trouble::telling(&visit, StatusCode::NOT_FOUND, &Said::of(&error)))?;
-    let Floor { engine, live, .. } = app.floor(&visit)?;
     let late = |error| Trouble::new(&visit, StatusCode::CONFLICT, told(&visit, &error));
-    let until = live.until(&pressed.beat).map_err(late)?;
-    app.audit(&visit, "lane", name, &act.barcode()).await?;
-    let (number, became) = live.ask();
-    engine.act(number, place, act, visit.name(), until);
-    let became = heard(&visit, became).await?;
+    let until = app.floor(&visit)?.live.until(&pressed.beat).map_err(late)?;
+    let ask = |engine: &Engine, number| engine.act(number, place, act, visit.name(), until);
+    let became = asked(&app, &visit, ("lane", name, act.barcode()), ask).await?;
     match (visit.is_script, became.is_taken) {
         (true, is_taken) => Ok(json(&Answer {
             counter: 0,

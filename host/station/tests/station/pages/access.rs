@@ -235,6 +235,19 @@ fn the_badge_of_another_operator_is_no_scan() {
     );
 }
 
+/// It may be a badge that this station does not know.
+#[test]
+fn what_no_plan_takes_is_kept_by_its_length_alone() {
+    let station = Station::public(1);
+    let serving = station.serve();
+    let operator = serving.operator();
+    for text in ["A-1234", "HR:START", SERIALS[0]] {
+        operator.post("/scan", &[("text", text)]).with("accept", "application/json").send();
+    }
+    let scans = station.query("SELECT detail FROM audit WHERE act = 'scan' ORDER BY id");
+    assert_eq!(scans, ["6 characters", "HR:START", SERIALS[0]]);
+}
+
 #[test]
 fn nobody_sends_more_than_a_form_and_nobody_holds_a_place_for_long() {
     let station = Station::private(1);
