@@ -10,6 +10,7 @@ use crate::clock;
 use crate::history::Period;
 use crate::history::rate::Rate;
 use crate::history::yields::{By, Wanted, Yields, yields};
+use crate::outbox::PlantSink;
 use crate::store::Snapshot;
 use crate::web::layout::{Here, Page};
 use crate::web::live::Now;
@@ -133,7 +134,8 @@ async fn counted(app: &App, visit: &Visit) -> Result<Markup, Trouble> {
     let wanted = Wanted { period, ..Wanted::default() };
     let look = move |snapshot: &Snapshot| Ok((yields(snapshot, &wanted, By::Plan)?, snapshot.unsent()?));
     let (counted, unsent) = app.look(visit, look).await?;
-    let entries: u32 = unsent.iter().map(|unsent| unsent.entries).sum();
+    let at_plant = unsent.iter().filter(|unsent| unsent.sink == PlantSink::NAME);
+    let entries: u32 = at_plant.map(|unsent| unsent.entries).sum();
     Ok(html! {
         (summed(visit, &counted))
         @if app.settings().plant.is_some() {

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::common::NO_AUDIT;
+use crate::common::{NO_AUDIT, plant_settings};
 use crate::pages::station::{SERIALS, Serving, Station};
 
 /// The page's news.
@@ -170,6 +170,23 @@ fn the_page_says_plan_station_and_operator_when_it_was_saved_and_the_day() {
     assert!(page.contains("today 1 judged · first pass 100.0 % (20.7–100.0) · errors 0"), "{page}");
     let german = operator.get("/").with("accept-language", "de").send().text();
     assert!(german.contains("100,0 % (20,7–100,0)") && german.contains("(Bediener)"), "{german}");
+}
+
+#[test]
+fn the_page_counts_what_is_not_at_the_plant_and_nothing_that_other_sinks_do_not_have() {
+    let plant = plant_settings("postgres://halfrow@127.0.0.1:1/plant");
+    let sink = "[[sink]]\nname = \"share\"\nfolder = \"nowhere\"\nformat = \"record\"";
+    let station = Station::with(1, &format!("[web]\nlisten = \"127.0.0.1:0\"\n{plant}{sink}"));
+    let serving = station.serve();
+    let scan =
+        || serving.here().post("/scan", &[("text", SERIALS[0])]).with("accept", "application/json").send();
+    while !scan().text().contains("\"is_taken\":true") {}
+    seen(&serving, "lane pass");
+    let unsent =
+        |sink: &str| station.query(&format!("SELECT count(*) FROM outbox WHERE sink = '{sink}'")).remove(0);
+    assert_ne!(unsent("share"), "0", "the control");
+    let page = serving.here().get("/").send().text();
+    assert!(page.contains(&format!("not at the plant yet: {}<", unsent("plant"))), "{page}");
 }
 
 /// Reasons, refusals and headlines come by their codes.
