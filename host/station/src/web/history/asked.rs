@@ -60,7 +60,8 @@ impl Asked {
             other => return Err(Wrong(other.to_owned())),
         };
         Ok(Filter {
-            serial: some(&self.serial),
+            // What was scanned is taken as it is, and a blank at its end is of it.
+            serial: Some(self.serial.clone()).filter(|serial| !serial.is_empty()),
             verdict,
             plan: some(&self.plan),
             station: some(&self.station),
@@ -158,5 +159,12 @@ mod tests {
         let asked = Asked { serial: "A&B=ü#".to_owned(), lane: "1".to_owned(), ..Asked::default() };
         assert_eq!(asked.address("/history", None), "/history?serial=A%26B%3D%C3%BC%23&lane=1");
         assert_eq!(Asked::default().address("/history", None), "/history");
+    }
+
+    #[test]
+    fn a_serial_number_is_looked_for_as_it_is() {
+        let asked = Asked { serial: " A ".to_owned(), lane: " 1 ".to_owned(), ..Asked::default() };
+        let Filter { serial, lane, operator, .. } = asked.filter().unwrap();
+        assert_eq!([serial, lane, operator], [Some(" A ".to_owned()), Some("1".to_owned()), None]);
     }
 }
