@@ -105,7 +105,11 @@ const HEAR = {
   doing: progress,
   scan: () => {},
   hook,
-  beat: ({ clock }) => put("clock", clock),
+  beat: ({ clock }) => {
+    // Behind midnight another day is counted.
+    todayIsStale ||= clock < by("clock")?.textContent;
+    put("clock", clock);
+  },
 };
 
 const beat = live({

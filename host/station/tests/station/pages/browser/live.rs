@@ -73,6 +73,19 @@ fn a_verdict_without_its_record_is_not_drawn() {
 }
 
 #[test]
+fn the_day_is_counted_anew_when_the_clock_begins_again() {
+    let station = Station::private(1);
+    let serving = station.serve();
+    let mut page = Chromium::live(&serving);
+    let counted =
+        "performance.getEntriesByType('resource').filter(one => one.name.endsWith('/today')).length";
+    page.wait(&format!("{counted} > 0"));
+    // As if the last beat had been that of a second before midnight.
+    page.evaluate("document.getElementById('clock').textContent = '23:59:60'");
+    page.wait(&format!("{counted} > 1"));
+}
+
+#[test]
 fn without_the_station_nothing_is_live_and_with_it_everything_again() {
     let station = Station::private(1);
     let serving = station.serve();
