@@ -15,6 +15,7 @@ use signal_hook::iterator::Signals;
 use crate::console;
 use crate::exit::Exit;
 use halfrow_frames::written_aside;
+use halfrow_program::signals::is_ignored;
 
 /// How long the last words may take.
 const TOLD: Duration = Duration::from_millis(300);
@@ -75,12 +76,4 @@ fn tell(said: &'static str) {
     if teller.is_ok() {
         let _ = is_done.recv_timeout(TOLD);
     }
-}
-
-/// Whether whoever started the program wants it not to hear this signal, as far as the system tells.
-fn is_ignored(signal: i32) -> bool {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or_default();
-    mask >> (signal - 1) & 1 == 1
 }

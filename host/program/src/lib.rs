@@ -8,6 +8,7 @@
 //! * [`mod@line`]: what a command line that asks for help, or is wrong, is told, and [`built`]: what `--version --verbose` tells.
 //! * [`number`]: options that take a number within limits.
 //! * [`man_pages`]: man pages and completion scripts, and [`mod@reference`]: the page of all commands.
+//! * [`signals`]: those that are not to be heard.
 
 pub mod built;
 pub mod codes;
@@ -20,3 +21,4 @@ pub mod log;
 pub mod man_pages;
 pub mod number;
 pub mod reference;
+pub mod signals;

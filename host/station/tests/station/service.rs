@@ -1,9 +1,12 @@
-//! The unit for systemd, which docs/station-setup.md installs.
+//! What starts the program: the unit for systemd, which docs/station-setup.md installs, and `nohup`.
 
 use std::fs;
 use std::process::Command;
 
+use nix::sys::signal::Signal;
+
 use crate::common::{Did, folder, program};
+use crate::pages::station::{Serving, Station};
 
 const UNIT: &str = include_str!("../../systemd/halfrow-station.service");
 /// How the unit begins the program, which systemd finds where it is installed.
@@ -46,4 +49,16 @@ fn the_unit_leaves_open_what_lanes_need_and_little_else() {
     let level: f64 = level.unwrap_or_else(|| panic!("{did:?}"));
     println!("exposure {level}");
     assert!(level <= EXPOSURE, "{did:?}");
+}
+
+/// As `nohup` does it, which wants the program to outlive the terminal.
+#[test]
+fn a_signal_that_it_was_started_to_ignore_stays_ignored() {
+    let station = Station::private(1);
+    let serve = station.command();
+    let mut shell = Command::new("sh");
+    let ignoring = "trap '' HUP; exec \"$0\" \"$@\"";
+    shell.args(["-c", ignoring]).arg(serve.get_program()).args(serve.get_args());
+    let serving = Serving::of(&mut shell);
+    assert_eq!([Signal::SIGHUP, Signal::SIGTERM].map(|signal| serving.ignores(signal)), [true, false]);
 }

@@ -112,7 +112,7 @@ impl Station {
         String::from_utf8(output.stderr).unwrap()
     }
 
-    fn command(&self) -> Command {
+    pub(crate) fn command(&self) -> Command {
         command(&self.path("station.toml"))
     }
 
@@ -162,6 +162,13 @@ impl Serving {
     /// Stops the program, or lets it go on.
     pub(crate) fn signal(&self, signal: Signal) {
         kill(Pid::from_raw(self.child.id().try_into().unwrap()), signal).unwrap();
+    }
+
+    /// Whether the system keeps this signal from the program.
+    pub(crate) fn ignores(&self, signal: Signal) -> bool {
+        let status = fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
+        let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:")).unwrap();
+        u64::from_str_radix(ignored.trim(), 16).unwrap() >> (signal as i32 - 1) & 1 == 1
     }
 
     /// Whether the program goes on.
