@@ -18,7 +18,7 @@ use crate::beside::{self, STATION};
 use crate::console;
 
 /// The kind of a target that is any board of a kind.
-const POOL: &str = "pool";
+pub(crate) const POOL: &str = "pool";
 /// How often somebody who waits is told so, in seconds, when nothing has changed.
 const TOLD: u64 = 10;
 

@@ -2,7 +2,7 @@
 //! are found. A new kind is a line here and a module beside.
 
 use crate::discovery::{Found, serial_ports, usb_chips};
-use crate::open::{open_mock, open_replay, open_simulated};
+use crate::open::{check_replay, check_simulated, open_mock, open_replay, open_simulated};
 use crate::{BoardKind, Link, OpenError, SerialLink, Target, TcpLink, UsbLink};
 
 /// A way to write a target of a kind.
@@ -22,6 +22,8 @@ pub struct Kind {
     pub forms: &'static [Form],
     /// What stands behind it, as far as the kind tells.
     pub board: BoardKind,
+    /// Whether a target's address and options are those of the kind; no device, host or file is looked at.
+    pub(crate) check: fn(&Target) -> Result<(), OpenError>,
     /// Opens the link; nothing is said over it yet.
     pub(crate) open: fn(&Target) -> Result<Box<dyn Link>, OpenError>,
     /// Lists what could be such a board on this computer; what cannot be listed at all is not there.
@@ -37,6 +39,7 @@ pub static KINDS: [Kind; 6] = [
             summary: "a board in this program; mock,KEY=VALUE sets its build, its wire and its fault",
         }],
         board: BoardKind::Mock,
+        check: |target| open_mock(target).map(drop),
         open: open_mock,
         find: Vec::new,
     },
@@ -52,6 +55,7 @@ pub static KINDS: [Kind; 6] = [
             Form { target: "sim:fifo", summary: "the same behind the pins of its FT2232H" },
         ],
         board: BoardKind::Sim,
+        check: check_simulated,
         open: open_simulated,
         find: Vec::new,
     },
@@ -65,6 +69,7 @@ pub static KINDS: [Kind; 6] = [
             Form { target: "usb:SERIAL", summary: "the one with this serial number, when there are several" },
         ],
         board: BoardKind::Hardware,
+        check: UsbLink::check,
         open: |target| Ok(Box::new(UsbLink::open(target)?)),
         find: usb_chips::find,
     },
@@ -72,6 +77,7 @@ pub static KINDS: [Kind; 6] = [
         name: "serial",
         forms: &[Form { target: "serial:PATH", summary: "the board behind a serial port" }],
         board: BoardKind::Hardware,
+        check: SerialLink::check,
         open: |target| Ok(Box::new(SerialLink::open(target)?)),
         find: serial_ports::find,
     },
@@ -82,6 +88,7 @@ pub static KINDS: [Kind; 6] = [
             summary: "the board that another computer exports as raw bytes",
         }],
         board: BoardKind::Hardware,
+        check: TcpLink::check,
         open: |target| Ok(Box::new(TcpLink::open(target)?)),
         find: Vec::new,
     },
@@ -89,6 +96,7 @@ pub static KINDS: [Kind; 6] = [
         name: "replay",
         forms: &[Form { target: "replay:FILE", summary: "the board that answered when FILE was recorded" }],
         board: BoardKind::Replay,
+        check: check_replay,
         open: open_replay,
         find: Vec::new,
     },

@@ -6,18 +6,31 @@ use std::path::Path;
 use halfrow_mock::BoardFault;
 
 #[cfg(feature = "sim")]
-pub(crate) use super::simulated::open_simulated;
-use super::{Candidate, Link, OpenError, Recording, ReplayLink, WireLink, kinds};
+pub(crate) use super::simulated::{check_simulated, open_simulated};
+use super::{Candidate, Link, OpenError, Recording, ReplayLink, WireLink};
+use crate::kinds::{self, Kind};
 use crate::target::{BoardKind, Target};
 
 const MOCK: &str = "the mock board";
+
+/// Whether `target` is written as one of ours, which can be told before its board is plugged in or powered.
+///
+/// # Errors
+/// [`OpenError`] when it is of no kind that there is, or its address or options are not of that kind.
+pub fn check(target: &Target) -> Result<(), OpenError> {
+    (kind(target)?.check)(target)
+}
+
+fn kind(target: &Target) -> Result<&'static Kind, OpenError> {
+    kinds::of(target).ok_or_else(|| OpenError::UnknownKind(target.kind.clone()))
+}
 
 /// Opens the link that `target` names; nothing is said over it yet.
 ///
 /// # Errors
 /// [`OpenError`] when the target is none of ours, or its options are not.
 pub fn open(target: &Target) -> Result<Candidate, OpenError> {
-    let kind = kinds::of(target).ok_or_else(|| OpenError::UnknownKind(target.kind.clone()))?;
+    let kind = kind(target)?;
     let link = (kind.open)(target)?;
     let again = target.clone();
     let reopen = Box::new(move || Ok(open(&again)?.link));
@@ -43,6 +56,11 @@ pub(crate) fn open_mock(target: &Target) -> Result<Box<dyn Link>, OpenError> {
     let (paced, options) = pace(target)?;
     let pipe = halfrow_mock::connect(&options).map_err(|source| wrong_options(MOCK, target, source))?;
     Ok(Box::new(WireLink::new(pipe, MOCK, paced)))
+}
+
+#[cfg(not(feature = "sim"))]
+pub(crate) fn check_simulated(target: &Target) -> Result<(), OpenError> {
+    Err(OpenError::NoSimulation(target.to_string()))
 }
 
 #[cfg(not(feature = "sim"))]
@@ -97,10 +115,18 @@ pub fn replay(target: &Target, recording: Recording) -> Result<Candidate, OpenEr
     Ok(Candidate { target: target.to_string(), kind: BoardKind::Replay, link, reopen: None })
 }
 
+pub(crate) fn check_replay(target: &Target) -> Result<(), OpenError> {
+    file_of(target).map(|_| ())
+}
+
 fn read_replay(target: &Target) -> Result<Recording, OpenError> {
+    Ok(Recording::read(Path::new(file_of(target)?))?)
+}
+
+fn file_of(target: &Target) -> Result<&str, OpenError> {
     if let Some((key, value)) = target.options.first() {
         return Err(OpenError::NoOption { kind: target.kind.clone(), option: format!("{key}={value}") });
     }
-    let file = target.address.as_deref().ok_or_else(|| OpenError::address_missing(target))?;
-    Ok(Recording::read(Path::new(file))?)
+    let file = target.address.as_deref().filter(|file| !file.is_empty());
+    file.ok_or_else(|| OpenError::address_missing(target))
 }

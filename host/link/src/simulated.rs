@@ -15,7 +15,20 @@ const SIMULATED: &str = "the simulated board";
 /// What memories and registers hold when the board is switched on is drawn by this number.
 const SEED: u32 = 1;
 
-pub(super) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+/// What a target asks for.
+struct Asked<'a> {
+    front: Front,
+    setup: PipeSetup,
+    paced: bool,
+    /// The file of the waveform.
+    trace: Option<&'a str>,
+}
+
+pub(super) fn check_simulated(target: &Target) -> Result<(), OpenError> {
+    asked(target).map(drop)
+}
+
+fn asked(target: &Target) -> Result<Asked<'_>, OpenError> {
     let front = match target.address.as_deref() {
         None => Front::Bytes,
         Some("uart") => Front::Uart,
@@ -26,6 +39,11 @@ pub(super) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError
     let trace = options.iter().position(|(key, _)| *key == "trace").map(|place| options.remove(place).1);
     let setup =
         PipeSetup::from_options(&options).map_err(|source| wrong_options(SIMULATED, target, source))?;
+    Ok(Asked { front, setup, paced, trace })
+}
+
+pub(super) fn open_simulated(target: &Target) -> Result<Box<dyn Link>, OpenError> {
+    let Asked { front, setup, paced, trace } = asked(target)?;
     let mut board = Board::new(front, SEED);
     if let Some(file) = trace {
         board.trace(Path::new(file))?;

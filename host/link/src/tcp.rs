@@ -82,16 +82,17 @@ pub(crate) struct TcpLink {
 }
 
 impl TcpLink {
+    /// Whether `target` names a host and a port, with options of this kind.
+    pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
+        asked(target).map(drop)
+    }
+
     /// Connects to the host and port of a `tcp:HOST:PORT` target.
     ///
     /// # Errors
     /// [`OpenError`] when the target is none, or no connection comes about.
     pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
-        let address = target.address.clone().ok_or_else(|| OpenError::address_missing(target))?;
-        let mut baud = None;
-        read(target, "baud=RATE, that of the serial line at the far end", |key, value| {
-            key == "baud" && set(&mut baud, positive(value).map(Some))
-        })?;
+        let (address, baud) = asked(target)?;
         let stream = connect(&address)?;
         let refused = |source| OpenError::System { target: target.to_string(), source };
         stream.set_nodelay(true).and_then(|()| never_block(stream.as_raw_fd())).map_err(refused)?;
@@ -155,6 +156,17 @@ impl Link for TcpLink {
     }
 }
 
+/// Host and port, and the rate at the far end.
+fn asked(target: &Target) -> Result<(String, Option<u32>), OpenError> {
+    let address = target.address.clone().ok_or_else(|| OpenError::address_missing(target))?;
+    let mut baud = None;
+    read(target, "baud=RATE, that of the serial line at the far end", |key, value| {
+        key == "baud" && set(&mut baud, positive(value).map(Some))
+    })?;
+    check_address(&address)?;
+    Ok((address, baud))
+}
+
 /// Connects to the first of the host's addresses that answers.
 fn connect(address: &str) -> Result<TcpStream, TcpError> {
     let mut last = None;
@@ -173,15 +185,16 @@ fn connect(address: &str) -> Result<TcpStream, TcpError> {
     })
 }
 
-fn resolve(address: &str) -> Result<Vec<SocketAddr>, TcpError> {
+fn check_address(address: &str) -> Result<(), TcpError> {
     let well_formed = address.rsplit_once(':').is_some_and(|(host, port)| {
         let bare = host.strip_prefix('[').and_then(|host| host.strip_suffix(']'));
         let unambiguous = bare.is_some() || !host.contains(':');
         unambiguous && !bare.unwrap_or(host).is_empty() && port.parse::<u16>().is_ok_and(|port| port > 0)
     });
-    if !well_formed {
-        return Err(TcpError::Address(address.to_owned()));
-    }
+    if well_formed { Ok(()) } else { Err(TcpError::Address(address.to_owned())) }
+}
+
+fn resolve(address: &str) -> Result<Vec<SocketAddr>, TcpError> {
     let unknown = |source| TcpError::UnknownHost { address: address.to_owned(), source };
     Ok(address.to_socket_addrs().map_err(unknown)?.collect())
 }
@@ -197,7 +210,7 @@ mod tests {
         for wrong in
             ["", "host", "host:", ":3001", "host:0", "host:http", "::1:3001", "[::1]", "[]:1", "host:70000"]
         {
-            assert!(matches!(resolve(wrong), Err(TcpError::Address(_))), "{wrong}");
+            assert!(matches!(check_address(wrong), Err(TcpError::Address(_))), "{wrong}");
         }
     }
 }

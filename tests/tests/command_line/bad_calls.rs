@@ -71,7 +71,7 @@ fn names_of_nothing_are_refused_with_those_that_there_are() {
     refused(&folder, &["verify", "--moon"], "unexpected argument '--moon'");
     refused(&folder, &["moon"], "unrecognized subcommand 'moon'");
     refused(&folder, &["completions", "moon"], "invalid value 'moon'");
-    refused(&folder, &["info", "--board", "replay:moon"], "moon");
+    refused(&folder, &["verify", "--board", "replay:moon"], "moon");
 }
 
 /// What is wrong with an address is known before there is anything to serve.

@@ -11,6 +11,21 @@ fn no_such_board(target: &str, sentence: &str) {
     refused(&folder, &["info", "--board", target], sentence);
 }
 
+/// What a run over a board costs is told without the board, but not of what is none.
+#[test]
+fn a_list_for_a_board_that_cannot_be_named_is_refused() {
+    let folder = Folder::new();
+    for (target, sentence) in [
+        ("serial:/dev/x,baud=abc", "`baud=abc` is no option of `serial`"),
+        ("serial", "write serial:PATH"),
+        ("usb,foo=1", "`foo=1` is no option of `usb`"),
+        ("tcp:nope", "`nope` is no host and port"),
+    ] {
+        refused(&folder, &["verify", "--list", "--board", target], sentence);
+    }
+    assert_eq!(folder.halfrow(["verify", "--list", "--board", "serial:/dev/x,baud=9600"]).code, Some(0));
+}
+
 #[test]
 fn an_unknown_kind_is_refused() {
     no_such_board("moon", "`moon` is no kind of board that this program knows");

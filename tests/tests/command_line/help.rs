@@ -52,6 +52,26 @@ fn the_help_of_verify_says_what_the_exit_codes_mean() {
     assert!(help.contains(codes), "{help}");
 }
 
+/// A value that needs its equals sign is shown with it, and what only the long help says begins a sentence.
+#[test]
+fn the_page_of_commands_shows_what_the_command_line_takes() {
+    let page = halfrow(["commands"]).stdout;
+    for shown in ["`--overwrite[=YES\\|NO]`", "`--reconnect[=SECONDS]`", "`--board TARGET`", "`--fail-fast`"]
+    {
+        assert!(page.contains(shown), "{shown}");
+    }
+    assert!(page.contains("the lens options make the tables. Options that make tables are refused"));
+}
+
+/// What each command does without `--board`.
+#[test]
+fn the_board_s_default_is_that_of_the_command() {
+    for (command, default) in [("verify", true), ("soak", true), ("info", true), ("correct", false)] {
+        let help = halfrow([command, "--help"]).stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!(help.contains("`halfrow boards` [default: mock]"), default, "{command}: {help}");
+    }
+}
+
 #[test]
 fn the_version_names_the_commit() {
     let version = halfrow(["--version"]).stdout;

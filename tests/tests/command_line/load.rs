@@ -144,6 +144,26 @@ fn what_contradicts_itself_is_refused_before_anything_is_loaded() {
 }
 
 #[test]
+fn a_board_that_can_never_be_greeted_is_refused_before_anything_is_loaded() {
+    let folder = with_loader(WORKS);
+    recorded(&folder, "ulx3s", "00000001");
+    for (board, error) in [
+        ("mok", "target-kind-unknown"),
+        ("tcp:nope", "tcp-address-malformed"),
+        ("tcp:nope:1,rate=5", "target-option-unknown"),
+        ("serial", "target-address-missing"),
+        ("serial:/dev/nonesuch,baud=much", "target-option-unknown"),
+        ("usb,channel=e", "target-option-unknown"),
+        ("mock,foo=1", "target-options-wrong"),
+        ("replay:run.rec", "recording-corrects-nothing"),
+        ("pool:ulx3s", "bitstream-for-board-of-pool"),
+    ] {
+        refused(&folder, &["top.bit", "--board", board], 2, error);
+        assert!(!folder.path().join("called").exists(), "{board}");
+    }
+}
+
+#[test]
 fn a_loader_that_fails_is_quoted() {
     let folder = with_loader(NO_BOARD);
     recorded(&folder, "minispartan6plus", "00000001");

@@ -131,6 +131,20 @@ fn a_recording_that_breaks_off_is_judged_as_far_as_it_goes() {
 }
 
 #[test]
+fn a_recording_is_no_board_for_what_it_was_never_asked() {
+    let folder = Folder::new();
+    assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
+    let soak = small("soak", &["--frames", "1", "--report", "out"]);
+    let correct = small("correct", &["builtin:grey", "-o", "grey.pgm"]);
+    for call in [vec!["info"], vec!["link"], vec!["serve"], soak, correct] {
+        let call: Vec<_> = call.into_iter().chain(["--board", "replay:run.rec"]).collect();
+        refused(&folder, &call, "a recording answers only what it was asked when it was made");
+        assert!(!folder.halfrow([call[0], "--help"]).stdout.contains("replay:FILE"), "{}", call[0]);
+    }
+    assert!(folder.halfrow(["verify", "--help"]).stdout.contains("replay:FILE"));
+}
+
+#[test]
 fn what_is_no_recording_is_refused() {
     let folder = Folder::new();
     folder.write("notes.txt", "halfrow recording of Tuesday\n");
@@ -144,6 +158,7 @@ fn what_is_no_recording_is_refused() {
     // It would be read until the memory is full.
     refused(&folder, &replay("replay:/dev/zero"), "/dev/zero is a pipe or a device");
     refused(&folder, &replay("replay"), "write replay:FILE");
+    refused(&folder, &replay("replay:"), "write replay:FILE");
     assert_eq!(folder.halfrow(small("verify", &["--record", "run.rec"])).code, Some(0));
     refused(&folder, &replay("replay:run.rec,speed=1"), "takes no option");
 }

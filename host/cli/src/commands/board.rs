@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use clap::Args;
 use clap::builder::{OsStringValueParser, TypedValueParser};
+use clap::{Arg, Args};
 
 use halfrow_mock::Streamed;
 use halfrow_program::number::number;
@@ -20,14 +20,14 @@ use halfrow::board::deadlines::RetryLimit;
 use halfrow::board::{OpenOptions, Stop};
 use halfrow::link::{self, Candidate, Recording, kinds};
 use halfrow::run::{Build, Draws, JUDGED, Plan};
-use halfrow::target::{Target, TargetError};
+use halfrow::target::{BoardKind, Target, TargetError};
 use halfrow::verdict::StoppedBy;
 
 /// Which board, and how patiently.
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Board")]
 pub(super) struct BoardArguments {
-    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = board_help(), value_parser = target())]
+    #[arg(long, value_name = "TARGET", env = "HALFROW_BOARD", help = help(Replays::No, MOCK), value_parser = target())]
     board: Option<Target>,
     /// The longest that the run may take, in seconds: of this computer's clock or the link's, whichever is over first
     #[arg(long, value_name = "SECONDS", env = "HALFROW_TIMEOUT")]
@@ -40,9 +40,35 @@ pub(super) struct BoardArguments {
     pub(super) take_over: bool,
 }
 
-fn board_help() -> String {
-    let forms = kinds::forms().join(", ");
-    format!("The board: {forms}, or pool:KIND, which a plant shares; see `halfrow boards` [default: mock]")
+/// What most commands do without a board.
+pub(super) const MOCK: &str = " [default: mock]";
+
+/// Whether a command can do with a recording, which answers what it was asked and nothing else.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Replays {
+    Yes,
+    No,
+}
+
+/// The help of `--board`, with what is done without one at its end.
+fn help(replays: Replays, without: &str) -> String {
+    let takes = |kind: &&kinds::Kind| replays == Replays::Yes || kind.board != BoardKind::Replay;
+    let forms: Vec<_> = kinds::KINDS.iter().filter(takes).flat_map(kinds::Kind::targets).collect();
+    let forms = forms.join(", ");
+    format!("The board: {forms}, or pool:KIND, which a plant shares; see `halfrow boards`{without}")
+}
+
+/// `argument` with that help if it is `--board`. In its place: clap puts a single one that is changed behind all others.
+pub(super) fn helped(argument: Arg, replays: Replays, without: &str) -> Arg {
+    if argument.get_id() == "board" { argument.help(help(replays, without)) } else { argument }
+}
+
+/// Refuses a recording where a board is needed that answers anew.
+pub(super) fn refuse_recording(target: &Target) -> Result<(), Failure> {
+    match kinds::of(target) {
+        Some(kind) if kind.board == BoardKind::Replay => Err(Failure::call(CallError::RecordingCorrects)),
+        _ => Ok(()),
+    }
 }
 
 /// Reads a target, and names its option when it is no text.
@@ -101,9 +127,11 @@ impl BoardArguments {
         }
     }
 
-    /// The link to the board that is named; by default the mock, never a guess.
+    /// The link to the board that is named, which is no recording; by default the mock, never a guess.
     pub(super) fn candidate(&self, settings: &Settings) -> Result<Candidate, Failure> {
-        Ok(link::open(&self.target(settings)?)?)
+        let target = self.target(settings)?;
+        refuse_recording(&target)?;
+        Ok(link::open(&target)?)
     }
 
     /// The link to the board that is named, which is the one in `recording` if there is one.

@@ -28,9 +28,10 @@ pub(super) enum CallError {
     /// `correct` without a board or the model.
     #[error("nobody is named to correct; give --model or --board TARGET")]
     NobodyCorrects,
-    /// New frames for a board that answers from a recording.
+    /// A recording where a board is needed that answers anew, as for new frames.
     #[error(
-        "a recording corrects no new frames; name another board, or judge it again with `halfrow verify`"
+        "a recording answers only what it was asked when it was made; name another board, or judge it again with \
+         `halfrow verify`"
     )]
     RecordingCorrects,
     /// A fault of the mock that a run never comes upon.

@@ -69,6 +69,7 @@ codes::codes! {
         Nameless [path, known] => "bitstream-board-not-named",
         UnknownBoard [path, board, known] => "bitstream-board-unknown",
         OtherBoard [path, board, named] => "bitstream-for-other-board",
+        OfPool [target] => "bitstream-for-board-of-pool",
         LoaderMissing [other] => "loader-missing",
         LoaderNotStarted [call] => "loader-not-started",
         LoaderFailed [call, said] => "loader-failed",

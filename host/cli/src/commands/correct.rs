@@ -11,7 +11,7 @@ use clap::Args;
 use halfrow_model::Frame;
 use serde_json::json;
 
-use super::board::BoardArguments;
+use super::board::{self, BoardArguments, Replays};
 use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
@@ -28,6 +28,7 @@ use halfrow::target::BoardKind;
 use places::{Places, Wanted};
 
 #[derive(Debug, Args)]
+#[command(mut_args(|argument| board::helped(argument, Replays::No, "")))]
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,

@@ -18,11 +18,12 @@ use serde_json::json;
 use self::loader::Call;
 use self::record::Record;
 use super::bitstreams::{BOARDS, BitstreamBoard};
+use super::board::refuse_recording;
 use super::document::result_text;
 use super::{Context, Failure, conclude};
 use crate::exit::Exit;
 use crate::progress::Told;
-use crate::{console, signals};
+use crate::{console, pool, signals};
 use halfrow::board::{Board, BoardError, OpenOptions};
 use halfrow::link::{self, Class};
 use halfrow::result::{BoardReport, Identity};
@@ -69,6 +70,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         (None, Some(text)) => Some(text.parse().map_err(Failure::call)?),
         (target, _) => target.clone(),
     };
+    board.as_ref().map_or(Ok(()), check)?;
     if let Some(warning) = warning(&arguments.file, record.as_ref()) {
         console::diagnose(&format_args!("warning: {warning}"));
     }
@@ -93,6 +95,15 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
         return conclude(Exit::Pass, &said);
     }
     conclude(Exit::Pass, &text(&loaded, report.as_ref()))
+}
+
+/// Whether the board behind `target` can be greeted when it is loaded: then it is too late to refuse a call.
+fn check(target: &Target) -> Result<(), Failure> {
+    if target.kind == pool::POOL {
+        return Err(Failure::call(LoadError::OfPool { target: target.to_string() }));
+    }
+    refuse_recording(target)?;
+    Ok(link::check(target)?)
 }
 
 /// The board that the call or the record names.

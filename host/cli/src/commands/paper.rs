@@ -6,7 +6,7 @@ use std::time::Instant;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 
-use super::board::BoardArguments;
+use super::board::{self, BoardArguments, Replays};
 use super::document::tell_result;
 use super::files::Files;
 use super::given::{Decider, Given};
@@ -16,12 +16,12 @@ use crate::settings::Settings;
 use crate::{console, progress};
 use halfrow::board::Board;
 use halfrow::frames::preview::RgbImage;
-use halfrow::target::BoardKind;
 use halfrow_lab::paper::{
     self, Claim, Exhibit, Folder, Item, MarkedError, MarkedPhotograph, Material, PaperError, TestedBoard,
 };
 
 #[derive(Debug, Args)]
+#[command(mut_args(|argument| board::helped(argument, Replays::No, " [default: mock, for the delay alone]")))]
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
@@ -195,9 +195,6 @@ impl Arguments {
 
     fn open(&self, settings: &Settings) -> Result<TestedBoard, Failure> {
         let candidate = self.board.candidate(settings)?;
-        if candidate.kind == BoardKind::Replay {
-            return Err(Failure::call(CallError::RecordingCorrects));
-        }
         let options = self.board.open_options(settings, None)?;
         let board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
         Ok(TestedBoard::new(board, candidate.kind))

@@ -5,6 +5,7 @@ use std::sync::atomic::Ordering;
 
 use clap::Args;
 
+use super::board::refuse_recording;
 use super::{Failure, print};
 use crate::exit::Exit;
 use crate::serve::{Hosted, Name, Port, Pty, ServeError, Traffic};
@@ -34,6 +35,7 @@ fn door(text: &str) -> Result<String, String> {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<Exit, Failure> {
+    refuse_recording(&arguments.board)?;
     let mut board = Hosted::open(&arguments.board)?;
     let signal = signals::stop();
     let mut ended = |_: Traffic| signal.load(Ordering::Relaxed) != 0;

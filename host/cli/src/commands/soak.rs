@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::Args;
 use halfrow_program::number::number;
 
+use super::board::refuse_recording;
 use super::given::Given;
 use super::run::{RunArguments, conclude, not_opened};
 use super::{Context, Failure};
@@ -56,7 +57,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     let files = run.input_files(settings);
     files.iter().try_for_each(|path| check_regular(path)).map_err(Failure::call)?;
     // Whoever waits for a board of a pool has no run yet that a signal could end in order.
-    run.board.target(settings)?;
+    refuse_recording(&run.board.target(settings)?)?;
     let (plan, options) = arguments.plan(&files, settings)?;
     run.board.check_fault(settings, &plan)?;
     let outputs = run.outputs(files, None, context)?;

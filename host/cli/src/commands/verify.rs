@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::board::{self, MOCK, Replays};
 use super::given::{Decider, Given};
 use super::inputs::{FrameName, InputArguments, frame_sources, tell_fitting};
 use super::listing;
@@ -14,12 +15,12 @@ use crate::exit::Exit;
 use crate::progress;
 use crate::settings::Settings;
 use halfrow::frames::{Builtin, check_regular};
-use halfrow::link::{Candidate, Lost, Recorder, Recording, kinds};
+use halfrow::link::{self, Candidate, Lost, Recorder, Recording};
 use halfrow::optics::Chosen;
 use halfrow::run::{self, FrameSource, Plan, RecordedRun, RestoreError, RunOptions, Vary};
-use halfrow::target::BoardKind;
 
 #[derive(Debug, Args)]
+#[command(mut_args(|argument| board::helped(argument, Replays::Yes, MOCK)))]
 pub(super) struct Arguments {
     #[command(flatten)]
     given: Given,
@@ -67,9 +68,7 @@ pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Fail
     if arguments.list {
         let target = board.target(settings)?;
         // A device need not be there to know what a run over it costs.
-        if kinds::of(&target).is_none_or(|kind| kind.board != BoardKind::Hardware) {
-            board.candidate_of(settings, recording)?;
-        }
+        link::check(&target)?;
         return listing::list(&plan, &target, context.json);
     }
     let outputs = arguments.run.outputs(files, arguments.record.as_deref(), context)?;

@@ -39,19 +39,17 @@ pub(crate) struct SerialLink {
 }
 
 impl SerialLink {
+    /// Whether `target` names a path, with options of this kind.
+    pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
+        asked(target).map(drop)
+    }
+
     /// Opens the port of a `serial:PATH` target for this program alone, sets it and drops what lies in its buffers.
     ///
     /// # Errors
     /// [`OpenError`] when there is no such port, or it is another's, or cannot be set as the target says.
     pub(crate) fn open(target: &Target) -> Result<Self, OpenError> {
-        let options = SerialOptions::parse(target)?;
-        let path = PathBuf::from(
-            target
-                .address
-                .as_ref()
-                .filter(|path| !path.is_empty())
-                .ok_or_else(|| OpenError::address_missing(target))?,
-        );
+        let (path, options) = asked(target)?;
         Ok(Self::open_port(path, options)?)
     }
 
@@ -126,6 +124,13 @@ impl Link for SerialLink {
     fn name(&self) -> String {
         format!("the serial port {} ({} baud)", self.path.display(), self.baud)
     }
+}
+
+/// The port and how it is to be set.
+fn asked(target: &Target) -> Result<(PathBuf, SerialOptions), OpenError> {
+    let options = SerialOptions::parse(target)?;
+    let path = target.address.as_ref().filter(|path| !path.is_empty());
+    Ok((PathBuf::from(path.ok_or_else(|| OpenError::address_missing(target))?), options))
 }
 
 fn lock(path: &Path, options: SerialOptions) -> Result<TTYPort, SerialError> {

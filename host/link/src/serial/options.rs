@@ -4,7 +4,8 @@ use crate::OpenError;
 use crate::options::{choice, positive, read, set};
 use crate::target::Target;
 
-const KNOWN: &str = "baud=RATE, flow=rtscts or flow=none, dtr=on or dtr=off, rts=on or rts=off";
+const KNOWN: &str =
+    "baud=RATE, flow=rtscts or flow=none, dtr=on or dtr=off, and beside flow=none rts=on or rts=off";
 
 /// The rate of an FT2232H's UART, as on the miniSpartan6+.
 const DEFAULT_BAUD: u32 = 12_000_000;
@@ -32,6 +33,9 @@ impl SerialOptions {
             "rts" => set(&mut options.rts, choice(value, "on", "off")),
             _ => false,
         })?;
+        // RTS is flow control's.
+        let allowed = |key: &str, _: &str| key != "rts" || !options.rts_cts;
+        read(target, KNOWN, allowed)?;
         Ok(options)
     }
 }
@@ -54,7 +58,9 @@ mod tests {
 
     #[test]
     fn what_is_no_option_is_refused() {
-        for wrong in ["baud=0", "baud=fast", "flow=maybe", "dtr=1", "parity=even"] {
+        for wrong in
+            ["baud=0", "baud=fast", "flow=maybe", "dtr=1", "parity=even", "rts=off", "rts=on,flow=rtscts"]
+        {
             assert!(
                 matches!(parse(&format!("serial:/dev/x,{wrong}")), Err(OpenError::Option { .. })),
                 "{wrong}"

@@ -57,6 +57,11 @@ pub(crate) struct UsbLink {
 }
 
 impl UsbLink {
+    /// Whether `target` has options of this kind.
+    pub(crate) fn check(target: &Target) -> Result<(), OpenError> {
+        UsbOptions::of(target).map(drop)
+    }
+
     /// Opens the channel that `target` names, and makes it ready; nothing is said over it yet.
     ///
     /// # Errors

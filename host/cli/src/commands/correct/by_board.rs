@@ -6,7 +6,6 @@ use std::sync::Arc;
 use anyhow::Context as _;
 use halfrow_model::Frame;
 
-use super::super::CallError;
 use super::places::Places;
 use super::{Context, Failure, Job};
 use halfrow::board::Board;
@@ -26,9 +25,6 @@ impl Job<'_> {
         progress: &dyn Progress,
     ) -> Result<BoardKind, Failure> {
         let candidate = self.arguments.board.candidate(&context.settings)?;
-        if candidate.kind == BoardKind::Replay {
-            return Err(Failure::call(CallError::RecordingCorrects));
-        }
         let options = self.arguments.board.open_options(&context.settings, None)?;
         let mut board = Board::open(candidate.link, &options).map_err(|(error, _)| error)?;
         let corrected = match run::misfit(&self.chosen.tables, &self.chosen.kernel, &board.capabilities) {

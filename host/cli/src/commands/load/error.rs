@@ -27,6 +27,11 @@ pub(in crate::commands) enum LoadError {
     /// A bitstream for another board than the call's.
     #[error("{} is for {board}, and --onto says {named}; leave --onto out, or name another file", path.display())]
     OtherBoard { path: PathBuf, board: String, named: String },
+    /// A board of a pool, which may be any of its kind.
+    #[error(
+        "{target} is any board of its kind, and need not be the one that is loaded; name the place of that one with --board"
+    )]
+    OfPool { target: String },
     /// No loader.
     #[error(
         "openFPGALoader is not installed; install it (Debian, Ubuntu: `sudo apt install openfpgaloader`, macOS: `brew \
