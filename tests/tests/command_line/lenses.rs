@@ -171,8 +171,9 @@ fn a_call_that_names_two_lenses_or_none_that_fits_is_refused() {
     tables(&[&lens[..], &["--width", "1920", "--height", "1080"]].concat(), "pictures of 752 x 480");
     tables(&[&lens[..], &["--radius", "400"]].concat(), "cannot be used with");
     tables(&[&lens[..], &["--focal-length", "2"]].concat(), "cannot be used with");
-    tables(&["--lens-pitch", "6"], "--lens");
-    tables(&["--lens", "equidistant:400", "--lens-pitch", "6"], "--lens-pitch goes with a lens file");
+    for lens in [&[][..], &["--lens", "equidistant:400"], &["--radius", "400"], &["--focal-length", "2"]] {
+        tables(&[lens, &["--lens-pitch", "6"]].concat(), "--lens-pitch goes with a lens file");
+    }
     tables(&["--lens", "equidistant:wide"], "takes the radius");
     tables(&["--lens", "equidistant:0"], "radius");
     tables(&["--lens", "nowhere.yml"], "cannot read the lens file nowhere.yml");

@@ -41,7 +41,7 @@ pub(super) struct LensArguments {
     lens: Option<LensName>,
     /// Distance between two pixels of the camera that the lens file was made with, in micrometres: takes the lens alone from
     /// it, scaled to --pixel-pitch, with its axis in the middle of the frame
-    #[arg(long, value_name = "UM", requires = "lens")]
+    #[arg(long, value_name = "UM")]
     lens_pitch: Option<f64>,
     /// How the row factors are found [default: fitted for a lens file, equation-9 otherwise]
     #[arg(long, value_enum)]
@@ -181,9 +181,7 @@ impl LensArguments {
             Some(LensName::File(_)) if self.pixel_pitch.is_some() && !scales => {
                 bail!(CallError::PitchAlone)
             }
-            Some(LensName::Equidistant(_)) if scales => {
-                bail!(CallError::LensPitchWithoutFile)
-            }
+            None | Some(LensName::Equidistant(_)) if scales => bail!(CallError::LensPitchWithoutFile),
             Some(LensName::Equidistant(_)) if self.pixel_pitch.is_some() || self.field_of_view.is_some() => {
                 bail!(CallError::RadiusTwice)
             }
