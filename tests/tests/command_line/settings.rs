@@ -139,7 +139,11 @@ fn what_corrects_takes_tables_and_kernel_from_the_file_too() {
     folder.write(FILE, "tables = 'lens.json'\nkernel = 'keys'\n");
     let named = corrected("named.pgm", &["--tables", "lens.json", "--kernel", "keys"]);
     assert!(corrected("set.pgm", &["--settings", FILE]) == named);
-    assert!(corrected("other.pgm", &["--settings", FILE, "--kernel", "linear"]) != named);
+    let linear = corrected("other.pgm", &["--settings", FILE, "--kernel", "linear"]);
+    assert!(linear != named);
+    let call = correct.into_iter().chain(["variable.pgm", "--settings", FILE]);
+    assert_eq!(finish(folder.command(call).env("HALFROW_KERNEL", "linear")).code, Some(0));
+    assert!(folder.read("variable.pgm") == linear);
 }
 
 #[test]

@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     inputs: Vec<OsString>,
     #[command(flatten)]
     tables: TableArgument,
-    #[arg(long, value_name = "NAME|FILE", help = optics::kernel_help(", instead of the table file's"))]
+    #[arg(long, value_name = "NAME|FILE", help = optics::kernel_help(", instead of the table file's"), env = "HALFROW_KERNEL")]
     kernel: Option<OsString>,
     /// Correct with the reference model, whatever board is set
     #[arg(long)]
