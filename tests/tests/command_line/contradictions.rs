@@ -75,6 +75,20 @@ fn what_a_station_always_says_is_passed_over_beside_a_recording() {
     assert!(said.contains("--retry-limit of the environment is passed over"), "{said}");
 }
 
+/// It is of one link. A station's patience for its boards keeps nobody from recording one.
+#[test]
+fn a_recording_that_is_made_waits_for_no_board() {
+    let folder = Folder::new();
+    let call = |more: &[&'static str]| {
+        small("verify", &[&["--frame", "builtin:grey", "--record", "run.rec"], more].concat())
+    };
+    refused(&folder, &call(&["--reconnect=5"]), "--reconnect does nothing beside --record");
+    folder.write("settings.toml", "reconnect = 5\n");
+    assert_eq!(folder.halfrow(call(&["--settings", "settings.toml"])).code, Some(0));
+    let ended = finish(folder.command(call(&["--overwrite"])).env("HALFROW_RECONNECT", "5"));
+    assert_eq!(ended.code, Some(0), "{}", ended.stderr);
+}
+
 #[test]
 fn the_list_of_a_recording_is_what_it_holds() {
     let folder = recorded();

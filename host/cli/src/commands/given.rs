@@ -23,6 +23,8 @@ pub(super) struct Given {
 pub(super) enum Decider {
     /// A recording that is judged again.
     Recording,
+    /// A recording that is made.
+    Record,
     /// A table file, whatever it holds.
     Tables,
     /// A time, for which the frames are chosen.
@@ -80,6 +82,7 @@ impl Decider {
     fn voids(self) -> Vec<&'static str> {
         let options: &[&[&str]] = match self {
             Self::Recording => &[&RECORDED, &["reconnect"], &IN_TABLE_FILES, &LENS],
+            Self::Record => &[&["reconnect"]],
             Self::Tables => &[&LENS],
             Self::Within => &[&["frame", "repeat"]],
             Self::Model | Self::NoBoardItem => &[&BOARD],
@@ -95,6 +98,9 @@ impl Decider {
             Self::Recording => {
                 "does nothing beside a recording, which holds what was streamed, and how; leave it out, or judge a \
                  board"
+            }
+            Self::Record => {
+                "does nothing beside --record, since a recording is of one link; give one of them"
             }
             Self::Tables => "is for making tables, and the file of --tables holds some; give one of them",
             Self::Within => "does nothing beside --within, which chooses the frames; give one of them",
@@ -204,6 +210,7 @@ mod tests {
     #[test]
     fn options_that_are_void_exist() {
         for (decider, known) in [
+            (Decider::Record, options::<verify::Arguments>()),
             (Decider::Tables, options::<verify::Arguments>()),
             (Decider::Model, options::<correct::Arguments>()),
             (Decider::NoFrameFile, options::<correct::Arguments>()),

@@ -45,7 +45,7 @@ pub(super) struct Arguments {
     #[arg(long)]
     list: bool,
     /// Keep every byte of the run with its time, for replay:FILE
-    #[arg(long, value_name = "FILE", conflicts_with = "reconnect")]
+    #[arg(long, value_name = "FILE")]
     record: Option<PathBuf>,
     #[command(flatten)]
     run: RunArguments,
@@ -137,6 +137,9 @@ impl Arguments {
         }
         if self.within.is_some() {
             self.given.refuse_void(Decider::Within, &settings.keys()).map_err(Failure::call)?;
+        }
+        if self.record.is_some() {
+            self.given.refuse_void(Decider::Record, &settings.keys()).map_err(Failure::call)?;
         }
         self.input.refuse_void(&self.given, settings)?;
         // Each is read more than once, since its hash is reported.
