@@ -183,7 +183,7 @@ fn verdict(report: &Report) -> String {
         Verdict::Fail => RED,
         Verdict::Error => YELLOW,
     };
-    let line = wording::verdict_line(report);
+    let line = flags::named(&wording::verdict_line(report));
     let word = report.verdict.to_string();
     let rest = line.strip_prefix(&word).unwrap_or(&line);
     format!("{style}{word}{style:#}{rest}\n")

@@ -255,7 +255,7 @@ fn the_time_limit_is_also_this_computer_s() {
     for ended in [mock, replay] {
         assert_eq!(ended.code, Some(3), "{}", ended.stdout);
         assert!(
-            ended.stdout.contains("the run took longer than the 0.0 ms of its time limit"),
+            ended.stdout.contains("the run took longer than the 0.0 ms of its time limit (--timeout)"),
             "{}",
             ended.stdout
         );
