@@ -70,6 +70,18 @@ fn verdicts_checks_and_faults_are_explained_too() {
     assert_eq!(explained(&["NO-ANSWER"])[0]["code"], "no-answer");
     let told = &explained(&["stuck-data"])[0]["meaning"];
     assert_eq!(told, "A data line of the line memory is stuck (bit=5, value=1).");
+    for it in explained(&["PASS", "FAIL", "ERROR", "link", "frames"]) {
+        assert!(it["do"][0].as_str().is_some_and(|act| act.ends_with('.')), "{it}");
+    }
+}
+
+/// A finding with another suspect asks for something else.
+#[test]
+fn what_an_example_s_suspect_asks_for_is_said_to_be_the_example_s() {
+    for it in explained(&["samples-differ", "table-reads-wrong", "differs-at-speed"]) {
+        let act = it["do"][0].as_str().unwrap();
+        assert!(act.starts_with("As its suspect's own code says. In this example: Check "), "{act}");
+    }
 }
 
 #[test]

@@ -17,7 +17,7 @@ use crate::pool::PoolError;
 use crate::serve::ServeError;
 use crate::settings::SettingsError;
 use halfrow::result::codes::{self, CodeList, Coded};
-use halfrow::result::{Problem, examples};
+use halfrow::result::{Finding, Problem, examples};
 use halfrow::run::{RECORDING_LOST, REPORT_LOST};
 use halfrow_lab::paper::{FolderError, MarkedError, PaperError, PhotographError};
 use halfrow_lab::training::TrainingError;
@@ -226,6 +226,22 @@ pub(super) fn all() -> Vec<Value> {
     findings.chain(defects).chain(untouched).chain(errors).chain(others).collect()
 }
 
+/// What to do about an example of a finding. What it asks for by its suspect, another suspect does not.
+pub(super) fn act(example: &Finding) -> Option<String> {
+    let is_by_suspect = matches!(
+        example,
+        Finding::TableReadsWrong { .. }
+            | Finding::SamplesDiffer { suspect: Some(_), .. }
+            | Finding::DiffersAtSpeed { suspect: Some(_), .. }
+    );
+    let remedy = example.remedy()?;
+    Some(if is_by_suspect {
+        format!("As its suspect's own code says. In this example: {remedy}")
+    } else {
+        remedy
+    })
+}
+
 /// The page of all codes, in Markdown.
 fn page() -> String {
     let mut text = HEAD.to_owned();
@@ -234,7 +250,7 @@ fn page() -> String {
         let problem = finding.as_problem();
         text +=
             &format!("* `{}`{}: {}\n", problem.code, parameters(problem.parameters.keys()), problem.message);
-        text += &problem.remedy.map_or_else(String::new, |remedy| format!("  *Do:* {remedy}\n"));
+        text += &act(&finding).map_or_else(String::new, |remedy| format!("  *Do:* {remedy}\n"));
     }
     text += "\n## Defects that suspects have\n\n";
     for suspect in examples::suspects() {

@@ -148,7 +148,7 @@ commands! {
     Commands(super::overview::Arguments), "commands";
     /// Say what a code means, whose fault it is, and what to do first
     ///
-    /// Codes stand in JSON, in reports, and behind errors. An unknown one is answered with those that are like it, exit code 2.
+    /// What to do is said where it can be told beforehand. Codes stand in JSON, in reports, and behind errors. An unknown one is answered with those that are like it, exit code 2.
     Explain(super::explain::Arguments), "explain";
     /// Print the JSON Schema of what --json prints and of report.json
     Schema(super::schema::Arguments), "schema";

@@ -151,7 +151,7 @@ fn unjudged() -> [Finding; 11] {
             doubt: Doubt::PacketsMiscounted { counted: 513, sent: 512 },
         },
         Finding::NothingJudged {},
-        Finding::DatapathUnknown { datapath: 2, known: 1 },
+        Finding::DatapathUnknown { datapath: 3, known: 1 },
         Finding::HardwareRequired { board: BoardKind::Mock },
         Finding::BoardExchanged {},
         Finding::BoardStayedAway { reason: Box::new(reason), seconds: 30.0 },

@@ -52,7 +52,7 @@ pub(super) fn known() -> BTreeMap<String, Vec<Explanation>> {
     for (verdict, finding) in examples::findings_with_verdicts() {
         add(&finding.code(), &|it| {
             it.sentence = finding.sentence();
-            it.acts = finding.remedy().into_iter().collect();
+            it.acts = codes::act(&finding).into_iter().collect();
             (it.verdict, it.fault) = (verdict, fault(verdict));
         });
     }
@@ -85,6 +85,7 @@ fn words() -> impl Iterator<Item = Explanation> {
         meaning: meaning(&verdict.to_string().to_lowercase()).to_owned(),
         verdict: Some(verdict),
         fault: fault(Some(verdict)),
+        acts: vec![act(verdict).to_owned()],
         place: "`verdict` of a result",
         ..Explanation::default()
     });
@@ -93,6 +94,7 @@ fn words() -> impl Iterator<Item = Explanation> {
         of: "check".to_owned(),
         meaning: meaning(check.name()).to_owned(),
         fault: "as the finding beside it says, which has a code of its own",
+        acts: vec!["Ask `halfrow explain` for the code of that finding.".to_owned()],
         place: "`name` of each of a result's `checks`",
         ..Explanation::default()
     });
@@ -106,6 +108,17 @@ fn words() -> impl Iterator<Item = Explanation> {
         ..Explanation::default()
     });
     faults.chain(checks).chain(verdicts)
+}
+
+/// What a verdict asks for, whatever led to it.
+const fn act(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "Nothing. What no frame put to the test is named behind `limits`.",
+        Verdict::Fail => {
+            "What the suspect says behind \"At the bench\", then run again. If it fails again, set the board aside with its report."
+        }
+        Verdict::Error => "What stands behind `do`, then run again: of the board nothing is known yet.",
+    }
 }
 
 /// What is known of a code by its kind alone.
