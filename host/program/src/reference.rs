@@ -49,7 +49,7 @@ fn table(command: &Command, is_wanted: impl Fn(&Arg) -> bool) -> String {
 
 fn row(argument: &Arg) -> String {
     let help = argument.get_long_help().or(argument.get_help()).map(ToString::to_string).unwrap_or_default();
-    let mut told = help.split_whitespace().collect::<Vec<_>>().join(" ").replace('<', "&lt;");
+    let mut told = on_one_line(&help).replace('<', "&lt;");
     let choices: Vec<_> =
         argument.get_possible_values().iter().map(|choice| choice.get_name().to_owned()).collect();
     let has_choices = !choices.is_empty() && !argument.is_hide_possible_values_set();
@@ -67,18 +67,34 @@ fn row(argument: &Arg) -> String {
     format!("| {} | {} |", names(argument).replace('|', "\\|"), told.replace('|', "\\|"))
 }
 
-/// As in `-o, --output FILE`, or `FILE...`.
+/// The paragraphs of a help one behind the other. The first has no full stop, since alone it is the short help.
+fn on_one_line(help: &str) -> String {
+    let paragraphs = help.split("\n\n").map(|it| it.split_whitespace().collect::<Vec<_>>().join(" "));
+    let joined = paragraphs.reduce(|text, more| {
+        let stop = if text.ends_with('.') { "" } else { "." };
+        format!("{text}{stop} {more}")
+    });
+    joined.unwrap_or_default()
+}
+
+/// As in `-o, --output FILE`, `--overwrite[=YES|NO]`, or `FILE...`.
 fn names(argument: &Arg) -> String {
     let value = argument.get_value_names().unwrap_or_default().join(" ");
     let value = if value.is_empty() { argument.get_id().as_str().to_uppercase() } else { value };
     let many = argument.get_num_args().is_some_and(|range| range.max_values() > 1);
     let value = if many { format!("{value}...") } else { value };
+    let may_lack = argument.get_num_args().is_some_and(|range| range.min_values() == 0);
+    let value = match (argument.is_require_equals_set(), may_lack) {
+        (false, _) => format!(" {value}"),
+        (true, false) => format!("={value}"),
+        (true, true) => format!("[={value}]"),
+    };
     let long = argument.get_long().map(|long| format!("--{long}"));
     let names: Vec<_> =
         argument.get_short().map(|short| format!("-{short}")).into_iter().chain(long).collect();
     match (names.is_empty(), argument.get_action().takes_values()) {
-        (true, _) => format!("`{value}`"),
+        (true, _) => format!("`{}`", value.trim_start()),
         (false, false) => format!("`{}`", names.join(", ")),
-        (false, true) => format!("`{} {value}`", names.join(", ")),
+        (false, true) => format!("`{}{value}`", names.join(", ")),
     }
 }
