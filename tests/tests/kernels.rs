@@ -63,6 +63,26 @@ fn a_photograph_that_is_too_small_is_refused_by_its_name() {
 }
 
 #[test]
+fn a_photograph_counts_once() {
+    let folder = folder_of_pictures();
+    let measure = |more: &[&str]| {
+        let call = ["kernel", "measure", "--kernel", "sharp5", "--images", "photos"];
+        folder.halfrow(call.into_iter().chain(more.iter().copied()))
+    };
+    std::fs::create_dir(folder.path().join("copies")).unwrap();
+    folder.write("copies/c.png", folder.read("photos/a.png"));
+    for (more, other) in [("photos", "photos/a.png"), ("copies", "copies/c.png")] {
+        let ended = measure(&[more]);
+        assert_eq!(ended.code, Some(2), "{}{}", ended.stdout, ended.stderr);
+        let said = format!("photos/a.png and {other} are one photograph");
+        assert!(ended.stderr.contains(&said), "{}", ended.stderr);
+    }
+    std::fs::remove_file(folder.path().join("photos/a.png")).unwrap();
+    let ended = measure(&[]);
+    assert!(ended.stdout.starts_with("sharp5 on 1 photograph, over Hermite"), "{}", ended.stdout);
+}
+
+#[test]
 fn a_place_that_cannot_be_written_is_refused_before_the_training() {
     let folder = folder_of_pictures();
     let refused = train(&folder, &["-o", "none/mine.json"]);

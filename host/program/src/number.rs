@@ -14,6 +14,13 @@ pub fn number(unit: &'static str, within: RangeInclusive<f64>) -> impl TypedValu
     })
 }
 
+/// A whole number, as a seed is.
+#[must_use]
+pub fn whole_number() -> impl TypedValueParser<Value = u64> {
+    NonEmptyStringValueParser::new()
+        .try_map(|text| text.parse().map_err(|_| format!("give a whole number, 0 to {}", u64::MAX)))
+}
+
 /// A number of seconds, as `within` has it.
 #[must_use]
 pub fn seconds(within: RangeInclusive<f64>) -> impl TypedValueParser<Value = Duration> {

@@ -193,10 +193,17 @@ fn a_layout_needs_a_file() {
 }
 
 #[test]
-fn a_board_needs_an_item_that_goes_through_it() {
+fn an_option_of_paper_needs_an_item_that_heeds_it() {
     let folder = Folder::new();
     let call = ["paper", "fig5", "-o", "paper", "--board", "mock"];
     refused(&folder, &call, "--board does nothing, since no item that is asked for goes through a board");
+    for (option, sentence) in [
+        (&["--images", "."][..], "--images does nothing, since no item"),
+        (&["--photograph", "p.png", "--lines", "l.toml"], "--photograph is for fig4"),
+        (&["--synthesis", "report.json"], "--synthesis is for resources"),
+    ] {
+        refused(&folder, &[&["paper", "fig5", "-o", "paper"], option].concat(), sentence);
+    }
 }
 
 /// Faults of the mock board that a run never comes upon.

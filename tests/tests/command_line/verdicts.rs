@@ -242,7 +242,7 @@ fn limits_that_make_no_sense_are_refused() {
     refused(&folder, &["verify", "--timeout=soon"], "invalid value 'soon'");
     refused(&folder, &["verify", "--retry-limit=-1"], "percent");
     refused(&folder, &["verify", "--retry-limit=nan"], "percent");
-    refused(&folder, &["verify", "--seed=-1"], "invalid value '-1'");
+    refused(&folder, &["verify", "--seed=-1"], "give a whole number, 0 to 18446744073709551615");
 }
 
 /// A board in this program has a clock of its own, and --timeout means somebody's patience, too.

@@ -37,9 +37,9 @@ pub(super) enum CallError {
     /// A fault of the mock that a run never comes upon.
     #[error("the fault of {target} would change nothing: {reason}")]
     FaultWithoutEffect { target: String, reason: String },
-    /// Ways of making row factors, where none are made.
-    #[error("a frame has no row factors; leave --rows out")]
-    RowsOfFrame,
+    /// Ways of making tables, where none are made.
+    #[error("a frame has no tables; leave {option} out")]
+    RowsOfFrame { option: &'static str },
     /// An option that says something else than a table file.
     #[error(
         "{option} is not that of --tables {}, which is for {width} x {height}, {bits} bits, centre at column {centre}; \
@@ -117,6 +117,11 @@ pub(super) enum CallError {
     /// Folders without a photograph.
     #[error("there is no .png file in the folders of --images")]
     NoPhotograph,
+    /// A photograph that would count twice.
+    #[error(
+        "{} and {} are one photograph, which would count twice; leave one of them out", first.display(), second.display()
+    )]
+    PhotographTwice { first: PathBuf, second: PathBuf },
     /// Items of the paper that need its photographs.
     #[error(
         "{needing} need the 24 photographs; give --images FOLDER with kodim01.png to kodim24.png \

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use halfrow_program::number::whole_number;
 use serde_json::json;
 
 use super::document::tell_result;
@@ -21,7 +22,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME")]
     only: Vec<Builtin>,
     /// Seed of noise
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, value_parser = whole_number())]
     seed: u64,
     /// The folder, made if it is not there
     #[arg(short, long, value_name = "FOLDER")]
@@ -32,11 +33,12 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, context: &Context) -> Result<Exit, Failure> {
-    if arguments.lens.says_how() {
-        return Err(Failure::call(CallError::RowsOfFrame));
+    if let Some(option) = arguments.lens.says_how() {
+        return Err(Failure::call(CallError::RowsOfFrame { option }));
     }
     let scene = arguments.lens.optics()?.scene(arguments.lens.phase, arguments.seed);
-    let chosen = if arguments.only.is_empty() { &Builtin::ALL[..] } else { &arguments.only };
+    let is_wanted = |frame: &Builtin| arguments.only.is_empty() || arguments.only.contains(frame);
+    let chosen: Vec<_> = Builtin::ALL.into_iter().filter(is_wanted).collect();
     let folder = &arguments.output;
     let places: Vec<_> = chosen.iter().map(|frame| folder.join(format!("{}.pgm", frame.name()))).collect();
     Files::new(arguments.overwrite)

@@ -37,6 +37,12 @@ pub(super) enum Decider {
     Headerless,
     /// Items none of which goes through a board.
     NoBoardItem,
+    /// Items none of which takes the photographs of the paper.
+    NoPhotographItem,
+    /// Items without Fig. 4.
+    NoFigure4,
+    /// Items without the FPGA's resources.
+    NoSynthesisItem,
 }
 
 /// Options that tables are made from, and that a table file has too: they stand where both say the same.
@@ -86,6 +92,9 @@ impl Decider {
             Self::Tables => &[&LENS],
             Self::Within => &[&["frame", "repeat"]],
             Self::Model | Self::NoBoardItem => &[&BOARD],
+            Self::NoPhotographItem => &[&["images"]],
+            Self::NoFigure4 => &[&["photograph", "lines"]],
+            Self::NoSynthesisItem => &[&["synthesis"]],
             Self::NoFrameFile => &[&["raw", "fit"]],
             Self::Headerless => &[&["fit"]],
         };
@@ -110,6 +119,13 @@ impl Decider {
             Self::NoBoardItem => {
                 "does nothing, since no item that is asked for goes through a board; leave it out, or add table1 or \
                  delay"
+            }
+            Self::NoPhotographItem => {
+                "does nothing, since no item that is asked for takes them; leave it out, or add fig12 or table1"
+            }
+            Self::NoFigure4 => "is for fig4, which is not asked for; leave it out, or add fig4",
+            Self::NoSynthesisItem => {
+                "is for resources, which are not asked for; leave it out, or add resources"
             }
         }
     }
@@ -216,6 +232,9 @@ mod tests {
             (Decider::NoFrameFile, options::<correct::Arguments>()),
             (Decider::Headerless, options::<correct::Arguments>()),
             (Decider::NoBoardItem, options::<paper::Arguments>()),
+            (Decider::NoPhotographItem, options::<paper::Arguments>()),
+            (Decider::NoFigure4, options::<paper::Arguments>()),
+            (Decider::NoSynthesisItem, options::<paper::Arguments>()),
         ] {
             assert!(decider.voids().iter().all(|id| known.iter().any(|known| known == id)), "{decider:?}");
         }

@@ -1,5 +1,6 @@
 //! `halfrow kernel`
 
+use std::collections::HashMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -18,6 +19,7 @@ use crate::{console, progress};
 use halfrow::frames;
 use halfrow::frames::lying;
 use halfrow::frames::preview::RgbImage;
+use halfrow::report::wording::count;
 use halfrow::tables::KernelFile;
 use halfrow_lab::training;
 use halfrow_lab::training::{Model, RIDGE, Spread, Trained, TrainingError, measure, noise_gain, train};
@@ -99,10 +101,22 @@ fn paths(folders: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// The photographs. Those that stand are turned to lie.
+/// The photographs, each of which counts once. Those that stand are turned to lie.
 fn photographs(paths: &[PathBuf]) -> anyhow::Result<(Vec<Origin>, Vec<RgbImage>)> {
     let photographs: anyhow::Result<Vec<_>> = paths.iter().map(|path| photograph(path)).collect();
-    Ok(photographs?.into_iter().unzip())
+    let (origins, images): (Vec<Origin>, _) = photographs?.into_iter().unzip();
+    check_apart(paths, &origins)?;
+    Ok((origins, images))
+}
+
+fn check_apart(paths: &[PathBuf], origins: &[Origin]) -> Result<(), CallError> {
+    let mut seen = HashMap::new();
+    for (path, origin) in paths.iter().zip(origins) {
+        if let Some(first) = seen.insert(&origin.sha256, path) {
+            return Err(CallError::PhotographTwice { first: first.clone(), second: path.clone() });
+        }
+    }
+    Ok(())
 }
 
 fn photograph(path: &Path) -> anyhow::Result<(Origin, RgbImage)> {
@@ -149,9 +163,9 @@ fn fit(arguments: &Train, context: &Context) -> Result<Exit, Failure> {
         return Ok(Exit::Pass);
     }
     console::tell(&format!(
-        "{} photographs: {:+.2} dB over Hermite on them; each by the kernel of the others {:+.2} dB \
+        "{}: {:+.2} dB over Hermite on them; each by the kernel of the others {:+.2} dB \
          ({:+.2} to {:+.2}); noise gain {:.3}",
-        images.len(),
+        count(images.len(), "photograph"),
         trained.gain,
         held_out.mean,
         held_out.least,
@@ -212,7 +226,7 @@ fn judge(arguments: &Measure, context: &Context) -> Result<Exit, Failure> {
         print_result("kernel", Exit::Pass, None, rest)?;
         return Ok(Exit::Pass);
     }
-    let mut lines = vec![format!("{} on {} photographs, over Hermite in dB", name, images.len())];
+    let mut lines = vec![format!("{name} on {}, over Hermite in dB", count(images.len(), "photograph"))];
     lines.extend(measured.iter().map(|gains| {
         let Spread { mean, least, most } = gains.gain;
         format!("  {mean:+.3} ({least:+.3} to {most:+.3})  {}, {:.4}", gains.condition, gains.hermite)

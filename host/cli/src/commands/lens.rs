@@ -24,7 +24,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "FILE.png")]
     map: Option<PathBuf>,
     /// Replace a picture that is there
-    #[arg(long)]
+    #[arg(long, requires = "map")]
     overwrite: bool,
 }
 

@@ -142,9 +142,13 @@ impl LensArguments {
         }
     }
 
-    /// Whether the call says how tables are made.
-    pub(super) fn says_how(&self) -> bool {
-        self.rows.is_some() || self.projection.is_some()
+    /// The option by which the call says how tables are made, if it does.
+    pub(super) fn says_how(&self) -> Option<&'static str> {
+        match (self.rows, self.projection) {
+            (Some(_), _) => Some("--rows"),
+            (None, Some(_)) => Some("--projection"),
+            (None, None) => None,
+        }
     }
 
     /// How tables are made.

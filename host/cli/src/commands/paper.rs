@@ -43,7 +43,7 @@ pub(super) struct Arguments {
     /// The folder to write to, made if it is not there
     #[arg(short, long, value_name = "FOLDER")]
     output: PathBuf,
-    /// Replace an earlier page
+    /// Replace an earlier page; what is not made this time is left beside it
     #[arg(long)]
     overwrite: bool,
     #[command(flatten)]
@@ -161,8 +161,16 @@ impl Arguments {
 
     /// Refuses options that nothing would heed, and files in the way.
     fn check(&self, items: &[Item], context: &Context) -> anyhow::Result<()> {
-        if !items.iter().any(|item| item.goes_through_boards()) {
-            self.given.refuse_void(Decider::NoBoardItem, &context.settings.keys())?;
+        let any = |is_meant: fn(Item) -> bool| items.iter().any(|&item| is_meant(item));
+        for (is_wanted, decider) in [
+            (any(Item::goes_through_boards), Decider::NoBoardItem),
+            (any(Item::needs_photographs), Decider::NoPhotographItem),
+            (any(|item| item == Item::Fig4), Decider::NoFigure4),
+            (any(|item| item == Item::Resources), Decider::NoSynthesisItem),
+        ] {
+            if !is_wanted {
+                self.given.refuse_void(decider, &context.settings.keys())?;
+            }
         }
         Files::new(self.overwrite)
             .reads(&context.settings_file)

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::Args;
+use halfrow_program::number::whole_number;
 
 use super::board::BoardArguments;
 use super::files::Files;
@@ -49,7 +50,7 @@ pub(super) struct RunArguments {
     #[arg(env = "HALFROW_REQUIRE_HARDWARE", value_parser = yes_or_no)]
     require_hardware: Option<bool>,
     /// Seed of noise, gaps, link test and what the board makes on its own
-    #[arg(long, value_name = "SEED", env = "HALFROW_SEED")]
+    #[arg(long, value_name = "SEED", env = "HALFROW_SEED", value_parser = whole_number())]
     seed: Option<u64>,
     #[command(flatten)]
     pub(super) lens: LensArguments,
